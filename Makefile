@@ -1,0 +1,27 @@
+# Everything that needs system packages goes through scripts/setup, which installs what is missing and is silent otherwise.
+# ARGS is handed on: make run ARGS="render --material gold --output gold.png"
+
+.DEFAULT_GOAL := help
+.PHONY: help run test bench pictures
+
+help: ## Print this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+
+run: ## Open the editor (without a display: render the default scene to a picture)
+	@scripts/setup run
+	cargo run --release -- $(ARGS)
+
+test: ## Check format and lints, then run every test
+	@scripts/setup test
+	@if cargo fmt --version >/dev/null 2>&1; then set -x; cargo fmt --check; \
+	else echo "note: rustfmt is not installed, the format is not checked (rustup component add rustfmt)"; fi
+	@if cargo clippy --version >/dev/null 2>&1; then set -x; cargo clippy --all-targets -- -D warnings; \
+	else echo "note: clippy is not installed, lints are not checked (rustup component add clippy)"; fi
+	cargo test $(ARGS)
+
+bench: ## Measure what docs/PERFORMANCE.md quotes
+	cargo bench $(ARGS)
+
+pictures: ## Render the pictures of the documentation again
+	@scripts/setup run
+	scripts/pictures
