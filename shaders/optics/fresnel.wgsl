@@ -1,0 +1,82 @@
+// The Fresnel factor at the half vector. Twin of src/optics/fresnel.rs.
+#import "optics/numeric"
+
+const FRESNEL_NONE: u32 = 0u;
+const FRESNEL_SCHLICK: u32 = 1u;
+const FRESNEL_DIELECTRIC: u32 = 2u;
+
+struct FresnelTerms {
+    model: u32,
+    metal_f0: vec3f,
+    metalness: f32,
+    tint: vec3f,
+    weight: f32,
+    ior: f32,
+    eta: vec3f,
+    k: vec3f,
+}
+
+fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
+    switch terms.model {
+        case FRESNEL_NONE: { return terms.weight * terms.tint; }
+        case FRESNEL_SCHLICK: {
+            let dielectric = fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine);
+            return terms.weight * mix(dielectric, fresnel_schlick(terms.metal_f0, cosine) * terms.tint, terms.metalness);
+        }
+        case FRESNEL_DIELECTRIC: {
+            let dielectric = terms.tint * fresnel_dielectric(cosine, terms.ior);
+            return terms.weight * mix(dielectric, fresnel_schlick(terms.metal_f0, cosine) * terms.tint, terms.metalness);
+        }
+        default: {
+            return terms.weight * terms.tint * vec3f(
+                fresnel_conductor(cosine, terms.eta.x, terms.k.x),
+                fresnel_conductor(cosine, terms.eta.y, terms.k.y),
+                fresnel_conductor(cosine, terms.eta.z, terms.k.z),
+            );
+        }
+    }
+}
+
+fn half_vector_cosine(wo: vec3f, wi: vec3f) -> f32 {
+    return sqrt(clamp(0.5 + 0.5 * dot(wo, wi), 0.0, 1.0));
+}
+
+fn fresnel_f0(ior: f32) -> f32 {
+    let ratio = (ior - 1.0) / (ior + 1.0);
+    return ratio * ratio;
+}
+
+fn fresnel_schlick(f0: vec3f, cosine: f32) -> vec3f {
+    let x = clamp(1.0 - cosine, 0.0, 1.0);
+    let x2 = x * x;
+    return f0 + (vec3f(1.0) - f0) * (x2 * x2 * x);
+}
+
+fn fresnel_dielectric(cosine: f32, ior: f32) -> f32 {
+    let c = clamp(cosine, 0.0, 1.0);
+    // ior^2 cos^2 of the refracted angle, not negative unless the reflection is total.
+    let square = ior * ior - (1.0 - c * c);
+    let g = safe_sqrt(square);
+    let perpendicular = (c - g) / max(c + g, 1e-12);
+    let parallel = (ior * ior * c - g) / max(ior * ior * c + g, 1e-12);
+    let value = 0.5 * (perpendicular * perpendicular + parallel * parallel);
+    return select(value, 1.0, square < 0.0);
+}
+
+fn fresnel_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
+    let c = clamp(cosine, 0.0, 1.0);
+    let cos2 = c * c;
+    let sin2 = 1.0 - cos2;
+    let eta2 = eta * eta;
+    let k2 = k * k;
+    let t0 = eta2 - k2 - sin2;
+    let a2_plus_b2 = safe_sqrt(t0 * t0 + 4.0 * eta2 * k2);
+    let a = safe_sqrt(0.5 * (a2_plus_b2 + t0));
+    let t1 = a2_plus_b2 + cos2;
+    let t2 = 2.0 * a * c;
+    let perpendicular = (t1 - t2) / max(t1 + t2, 1e-12);
+    let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
+    let t4 = t2 * sin2;
+    let parallel = perpendicular * (t3 - t4) / max(t3 + t4, 1e-12);
+    return clamp(0.5 * (perpendicular + parallel), 0.0, 1.0);
+}

@@ -1,0 +1,32 @@
+// Blinn-Phong as a microfacet lobe. Twin of src/optics/lobe/blinn_phong.rs.
+#import "optics/microfacet"
+
+const BLINN_PHONG_HEMISPHERICAL: bool = true;
+
+fn blinn_phong_exponent(roughness: f32) -> f32 {
+    let alpha = alpha_from_roughness(roughness);
+    return max(2.0 / (alpha * alpha) - 2.0, 0.0);
+}
+
+fn blinn_phong_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
+    let power = log(1.0 - xi.x) / (blinn_phong_exponent(shape.roughness) + 2.0);
+    let cosine = exp(power);
+    let sine = safe_sqrt(-expm1(2.0 * power));
+    let phi_rad = 2.0 * PI * xi.y;
+    let h = vec3f(sine * cos(phi_rad), sine * sin(phi_rad), cosine);
+    return world_from_local(frame, mirrored_about(local_from_world(frame, wo), h));
+}
+
+fn blinn_phong_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
+    let f = facet(frame, wo, wi);
+    let n = blinn_phong_exponent(shape.roughness);
+    // cos^2 = 1 - sin^2 from the tangential components: exact where the lobe is narrow.
+    let sine2 = min(dot(f.h.xy, f.h.xy), 0.9999999);
+    let power = exp(0.5 * (n + 1.0) * log1p(-sine2));
+    let value = (n + 2.0) * (0.125 * INV_PI) * power / max(dot(f.wo, f.h), 1e-12);
+    return select(0.0, value, f.h.z > 0.0);
+}
+
+fn blinn_phong_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
+    return distribution_weight(isotropic_alpha(shape), facet(frame, wo, wi));
+}

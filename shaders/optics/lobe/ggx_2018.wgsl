@@ -1,0 +1,29 @@
+// GGX, visible normals sampled as by Heitz 2018. Twin of src/optics/lobe/ggx_2018.rs.
+#import "optics/microfacet"
+
+const GGX_2018_HEMISPHERICAL: bool = true;
+
+fn ggx_2018_sample(shape: LobeShape, frame: Frame, wo_world: vec3f, xi: vec3f) -> vec3f {
+    let alpha = microfacet_alpha(shape);
+    let wo = local_from_world(frame, wo_world);
+    let v = normalize_or(vec3f(wo.xy * alpha, wo.z), vec3f(0.0, 0.0, 1.0));
+    let t1 = normalize_or(vec3f(-v.y, v.x, 0.0), vec3f(1.0, 0.0, 0.0));
+    let t2 = cross(v, t1);
+    let radius = safe_sqrt(xi.x);
+    let phi_rad = 2.0 * PI * xi.y;
+    let p1 = radius * cos(phi_rad);
+    let s = 0.5 * (1.0 + v.z);
+    let p2 = (1.0 - s) * safe_sqrt(1.0 - p1 * p1) + s * radius * sin(phi_rad);
+    let p3 = safe_sqrt(1.0 - p1 * p1 - p2 * p2);
+    let n = t1 * p1 + t2 * p2 + v * p3;
+    let h = normalize_or(vec3f(n.xy * alpha, max(n.z, 0.0)), vec3f(0.0, 0.0, 1.0));
+    return world_from_local(frame, mirrored_about(wo, h));
+}
+
+fn ggx_2018_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
+    return visible_density(shape, frame, wo, wi);
+}
+
+fn ggx_2018_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
+    return visible_weight(shape, frame, wo, wi);
+}

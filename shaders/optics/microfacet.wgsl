@@ -1,0 +1,63 @@
+// What the microfacet lobes share. Twin of src/optics/microfacet.rs; local frame, n = +z.
+#import "optics/lobe/lobe"
+
+struct Facet {
+    wo: vec3f,
+    wi: vec3f,
+    h: vec3f,
+}
+
+fn microfacet_alpha(shape: LobeShape) -> vec2f {
+    let alpha = alpha_from_roughness(shape.roughness);
+    let stretch = stretch_from_anisotropy(shape.anisotropy);
+    return vec2f(alpha * stretch, alpha / stretch);
+}
+
+fn isotropic_alpha(shape: LobeShape) -> vec2f {
+    return vec2f(alpha_from_roughness(shape.roughness));
+}
+
+fn facet(frame: Frame, wo_world: vec3f, wi_world: vec3f) -> Facet {
+    let wo = local_from_world(frame, wo_world);
+    let wi = local_from_world(frame, wi_world);
+    return Facet(wo, wi, normalize_or(wo + wi, vec3f(0.0, 0.0, 1.0)));
+}
+
+fn ggx_distribution(alpha: vec2f, h: vec3f) -> f32 {
+    let xy = h.xy / alpha;
+    let square = dot(xy, xy) + h.z * h.z;
+    return INV_PI / (alpha.x * alpha.y * square * square);
+}
+
+fn smith_length(alpha: vec2f, w: vec3f) -> f32 {
+    let xy = alpha * w.xy;
+    return sqrt(w.z * w.z + dot(xy, xy));
+}
+
+fn smith_g1_over_cosine(alpha: vec2f, wo: vec3f) -> f32 {
+    return 2.0 / max(abs(wo.z) + smith_length(alpha, wo), 1e-12);
+}
+
+fn smith_g2_over_cosine(alpha: vec2f, wo: vec3f, wi: vec3f) -> f32 {
+    let sum = wo.z * smith_length(alpha, wi) + wi.z * smith_length(alpha, wo);
+    return select(0.0, 2.0 * wi.z / max(sum, 1e-12), wo.z > 0.0 && wi.z > 0.0);
+}
+
+fn visible_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
+    let alpha = microfacet_alpha(shape);
+    let f = facet(frame, wo, wi);
+    let value = 0.25 * ggx_distribution(alpha, f.h) * smith_g1_over_cosine(alpha, f.wo);
+    return select(0.0, value, f.h.z > 0.0);
+}
+
+fn visible_weight(shape: LobeShape, frame: Frame, wo_world: vec3f, wi_world: vec3f) -> f32 {
+    let alpha = microfacet_alpha(shape);
+    let wo = local_from_world(frame, wo_world);
+    let wi = local_from_world(frame, wi_world);
+    return smith_g2_over_cosine(alpha, wo, wi) / smith_g1_over_cosine(alpha, wo);
+}
+
+fn distribution_weight(alpha: vec2f, f: Facet) -> f32 {
+    let ratio = dot(f.wo, f.h) / max(f.h.z, 1e-6);
+    return smith_g2_over_cosine(alpha, f.wo, f.wi) * max(ratio, 0.0);
+}

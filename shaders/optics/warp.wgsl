@@ -1,0 +1,16 @@
+// Uniform numbers turned into directions and points. Twin of src/optics/warp.rs.
+#import "optics/numeric"
+
+// A uniform direction on the unit sphere (paper, eq. 9).
+fn uniform_sphere(xi: vec2f) -> vec3f {
+    let x = 2.0 * xi.x - 1.0;
+    let s = safe_sqrt(1.0 - x * x);
+    let phi_rad = 2.0 * PI * xi.y;
+    return vec3f(x, s * sin(phi_rad), s * cos(phi_rad));
+}
+
+fn uniform_disc(xi: vec2f) -> vec2f {
+    let radius = safe_sqrt(xi.x);
+    let phi_rad = 2.0 * PI * xi.y;
+    return vec2f(radius * cos(phi_rad), radius * sin(phi_rad));
+}

@@ -1,0 +1,196 @@
+//! The Fresnel factor: which share of the light is reflected at the half vector of view and sampled direction.
+
+use serde::{Deserialize, Serialize};
+
+use super::real::Real;
+use super::vector::{Vec3, vec3};
+
+macro_rules! fresnels {
+    ($($variant:ident = $index:literal, $name:literal, $label:literal, $help:literal;)*) => {
+        /// The Fresnel model.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[serde(rename_all = "lowercase")]
+        #[repr(u32)]
+        pub enum Fresnel {
+            $(#[doc = $help] $variant = $index,)*
+        }
+
+        impl Fresnel {
+            /// Every model, in the order of the menus.
+            pub const ALL: &'static [Fresnel] = &[$(Fresnel::$variant),*];
+
+            /// Name in presets and on the command line.
+            pub fn name(self) -> &'static str {
+                match self { $(Fresnel::$variant => $name,)* }
+            }
+            /// Name in the menus.
+            pub fn label(self) -> &'static str {
+                match self { $(Fresnel::$variant => $label,)* }
+            }
+            /// When to choose it.
+            pub fn help(self) -> &'static str {
+                match self { $(Fresnel::$variant => $help,)* }
+            }
+        }
+    };
+}
+
+fresnels! {
+    None = 0, "none", "None", "Every sample counts fully: F = 1 at any angle, tinted by the specular colour.";
+    Schlick = 1, "schlick", "Schlick", "Schlick's approximation from the reflectance at normal incidence.";
+    Dielectric = 2, "dielectric", "Dielectric", "The exact equations for glass, water, plastic, lacquer, from the index of refraction.";
+    Conductor = 3, "conductor", "Conductor", "The exact equations for metals, from η and k of each colour channel.";
+}
+
+/// What the Fresnel factor depends on, besides the angle.
+#[derive(Clone, Copy, Debug)]
+pub struct FresnelTerms<T> {
+    /// The model.
+    pub model: Fresnel,
+    /// Reflectance at normal incidence of the metal, linear RGB.
+    pub metal_f0: Vec3<T>,
+    /// 0 for a dielectric, 1 for a metal.
+    pub metalness: T,
+    /// Tint: of the reflectance at normal incidence where the model is Schlick's for a dielectric, else of all of it.
+    pub tint: Vec3<T>,
+    /// Share of the reflection that is kept at any angle, in [0, 1].
+    pub weight: T,
+    /// Index of refraction of the dielectric against what surrounds it.
+    pub ior: T,
+    /// Conductor: real part of the index of refraction a channel.
+    pub eta: Vec3<T>,
+    /// Conductor: imaginary part a channel, not negative.
+    pub k: Vec3<T>,
+}
+
+/// The share reflected, linear RGB in [0, 1]; `cosine` between the half vector and either direction, in [0, 1].
+#[inline(always)]
+pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
+    let metal = |metal_f0| fresnel_schlick(metal_f0, cosine) * terms.tint;
+    let share = match terms.model {
+        Fresnel::None => terms.tint,
+        Fresnel::Schlick => {
+            let dielectric = fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine);
+            dielectric.mix(metal(terms.metal_f0), terms.metalness)
+        }
+        Fresnel::Dielectric => {
+            let dielectric = terms.tint * fresnel_dielectric(cosine, terms.ior);
+            dielectric.mix(metal(terms.metal_f0), terms.metalness)
+        }
+        Fresnel::Conductor => {
+            let channels = vec3(
+                fresnel_conductor(cosine, terms.eta.x, terms.k.x),
+                fresnel_conductor(cosine, terms.eta.y, terms.k.y),
+                fresnel_conductor(cosine, terms.eta.z, terms.k.z),
+            );
+            channels * terms.tint
+        }
+    };
+    share * terms.weight
+}
+
+/// The cosine at the half vector of two unit directions, by the half-angle formula: nothing to normalise.
+#[inline(always)]
+pub fn half_vector_cosine<T: Real>(wo: Vec3<T>, wi: Vec3<T>) -> T {
+    (T::from_f64(0.5) + T::from_f64(0.5) * wo.dot(wi))
+        .clamp(T::zero(), T::one())
+        .sqrt()
+}
+
+/// Reflectance at normal incidence of a dielectric.
+#[inline(always)]
+pub fn fresnel_f0<T: Real>(ior: T) -> T {
+    let ratio = (ior - T::one()) / (ior + T::one());
+    ratio * ratio
+}
+
+/// Schlick's approximation (1994).
+#[inline(always)]
+pub fn fresnel_schlick<T: Real>(f0: Vec3<T>, cosine: T) -> Vec3<T> {
+    let x = (T::one() - cosine).clamp(T::zero(), T::one());
+    let x2 = x * x;
+    let grazing = x2 * x2 * x;
+    f0 + (Vec3::splat(T::one()) - f0) * grazing
+}
+
+/// Fresnel's equations for unpolarised light at a boundary of two dielectrics. `cosine` in [0, 1] on the incident side,
+/// `ior` = index behind the boundary over index before it; 1 under total internal reflection.
+#[inline(always)]
+pub fn fresnel_dielectric<T: Real>(cosine: T, ior: T) -> T {
+    let c = cosine.clamp(T::zero(), T::one());
+    // ior² cos²θt, not negative unless the reflection is total.
+    let square = ior * ior - (T::one() - c * c);
+    let g = square.safe_sqrt();
+    let perpendicular = (c - g) / (c + g).max(T::from_f64(1e-12));
+    let parallel = (ior * ior * c - g) / (ior * ior * c + g).max(T::from_f64(1e-12));
+    let half = T::from_f64(0.5);
+    let value = half * (perpendicular * perpendicular + parallel * parallel);
+    T::select(square.less(T::zero()), T::one(), value)
+}
+
+/// Fresnel's equations for unpolarised light on a conductor with complex index `eta` + i `k` against vacuum.
+/// Source: Lagarde, "Memo on Fresnel equations" (2013).
+#[inline(always)]
+pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
+    let c = cosine.clamp(T::zero(), T::one());
+    let cos2 = c * c;
+    let sin2 = T::one() - cos2;
+    let eta2 = eta * eta;
+    let k2 = k * k;
+    let t0 = eta2 - k2 - sin2;
+    let a2_plus_b2 = (t0 * t0 + T::from_f64(4.0) * eta2 * k2).safe_sqrt();
+    let a = (T::from_f64(0.5) * (a2_plus_b2 + t0)).safe_sqrt();
+    let t1 = a2_plus_b2 + cos2;
+    let t2 = T::from_f64(2.0) * a * c;
+    let tiny = T::from_f64(1e-12);
+    let perpendicular = (t1 - t2) / (t1 + t2).max(tiny);
+    let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
+    let t4 = t2 * sin2;
+    let parallel = perpendicular * (t3 - t4) / (t3 + t4).max(tiny);
+    (T::from_f64(0.5) * (perpendicular + parallel)).clamp(T::zero(), T::one())
+}
+
+/// A metal of the preset list.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metal {
+    /// Name in presets and on the command line.
+    pub name: &'static str,
+    /// η at about 650, 550 and 450 nm.
+    pub eta: [f64; 3],
+    /// k at the same wavelengths.
+    pub k: [f64; 3],
+}
+
+/// Measured metals, sampled at the primaries (refractiveindex.info: Johnson and Christy 1972 and 1974, Rakić 1998).
+pub const METALS: &[Metal] = &[
+    Metal {
+        name: "gold",
+        eta: [0.143, 0.375, 1.442],
+        k: [3.983, 2.386, 1.603],
+    },
+    Metal {
+        name: "copper",
+        eta: [0.200, 0.924, 1.102],
+        k: [3.912, 2.452, 2.142],
+    },
+    Metal {
+        name: "silver",
+        eta: [0.155, 0.117, 0.138],
+        k: [4.828, 3.122, 2.147],
+    },
+    Metal {
+        name: "aluminium",
+        eta: [1.657, 0.880, 0.521],
+        k: [9.224, 6.270, 4.837],
+    },
+    Metal {
+        name: "iron",
+        eta: [2.911, 2.950, 2.585],
+        k: [3.089, 2.932, 2.767],
+    },
+    Metal {
+        name: "chromium",
+        eta: [3.108, 3.180, 2.230],
+        k: [3.317, 3.330, 3.147],
+    },
+];

@@ -1,0 +1,52 @@
+//! Blinn-Phong as a microfacet lobe: D = (n + 2)/(2π) cosⁿθh (Blinn 1977), n = 2/α² − 2, masked as GGX of the same α
+//! (Walter et al. 2007 show the two to be close).
+
+use super::LobeShape;
+use crate::optics::frame::{Frame, local_from_world, world_from_local};
+use crate::optics::real::Real;
+use crate::optics::vector::{Vec3, vec3};
+use crate::optics::lobe::alpha_from_roughness;
+use crate::optics::microfacet::{distribution_weight, facet, isotropic_alpha};
+use crate::optics::numeric::{expm1, log1p};
+
+/// Reflections below the shading normal are lost: single scattering.
+pub const HEMISPHERICAL: bool = true;
+/// Isotropic.
+pub const ANISOTROPIC: bool = false;
+
+/// The exponent n.
+#[inline(always)]
+pub fn exponent<T: Real>(roughness: T) -> T {
+    let alpha = alpha_from_roughness(roughness);
+    (T::from_f64(2.0) / (alpha * alpha) - T::from_f64(2.0)).max(T::zero())
+}
+
+/// The reflection at a normal drawn from D cosθ.
+#[inline(always)]
+pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
+    let power = (T::one() - xi[0]).ln() / (exponent(shape.roughness) + T::from_f64(2.0));
+    let cosine = power.exp();
+    let sine = (-expm1(T::from_f64(2.0) * power)).safe_sqrt();
+    let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[1];
+    let h = vec3(sine * phi_rad.cos(), sine * phi_rad.sin(), cosine);
+    world_from_local(frame, local_from_world(frame, wo).mirrored_about(h))
+}
+
+/// D h.z/(4 |wo·h|).
+#[inline(always)]
+pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+    let facet = facet(frame, wo, wi);
+    let n = exponent(shape.roughness);
+    // cos²θh = 1 − sin²θh from the tangential components: exact where the lobe is narrow.
+    let sine2 = (facet.h.x * facet.h.x + facet.h.y * facet.h.y).min(T::from_f64(1.0 - 1e-7));
+    let power = (T::from_f64(0.5) * (n + T::one()) * log1p(-sine2)).exp();
+    let scale = (n + T::from_f64(2.0)) * T::from_f64(0.125 * std::f64::consts::FRAC_1_PI);
+    let value = scale * power / facet.wo.dot(facet.h).max(T::from_f64(1e-12));
+    T::select(T::zero().less(facet.h.z), value, T::zero())
+}
+
+/// G2 (wo·h)/(cosθo h.z).
+#[inline(always)]
+pub fn weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+    distribution_weight(isotropic_alpha(shape), facet(frame, wo, wi))
+}

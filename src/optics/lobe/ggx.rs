@@ -1,0 +1,41 @@
+//! GGX with height-correlated Smith masking, single scattering; visible normals sampled by spherical caps.
+//! Source: Dupuy and Benyoub, "Sampling visible GGX normals with spherical caps", HPG 2023, listing 3.
+
+use super::LobeShape;
+use crate::optics::frame::{Frame, local_from_world, world_from_local};
+use crate::optics::real::Real;
+use crate::optics::vector::{Vec3, vec3};
+use crate::optics::microfacet::{microfacet_alpha, visible_density, visible_weight};
+use crate::optics::numeric::normalize_or;
+
+/// Reflections below the shading normal are lost: single scattering.
+pub const HEMISPHERICAL: bool = true;
+/// Two widths.
+pub const ANISOTROPIC: bool = true;
+
+/// The reflection at a visible normal: a uniform point on the spherical cap of the stretched view direction.
+#[inline(always)]
+pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
+    let alpha = microfacet_alpha(shape);
+    let up = vec3(T::zero(), T::zero(), T::one());
+    let wo = local_from_world(frame, wo);
+    let stretched = normalize_or(vec3(wo.x * alpha.x, wo.y * alpha.y, wo.z), up);
+    let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[0];
+    let z = (T::one() - xi[1]) * (T::one() + stretched.z) - stretched.z;
+    let sine = (T::one() - z * z).safe_sqrt();
+    let cap = vec3(sine * phi_rad.cos(), sine * phi_rad.sin(), z) + stretched;
+    let h = normalize_or(vec3(cap.x * alpha.x, cap.y * alpha.y, cap.z.max(T::zero())), up);
+    world_from_local(frame, wo.mirrored_about(h))
+}
+
+/// D G1/(4 cosθo).
+#[inline(always)]
+pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+    visible_density(shape, frame, wo, wi)
+}
+
+/// G2/G1.
+#[inline(always)]
+pub fn weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+    visible_weight(shape, frame, wo, wi)
+}

@@ -1,0 +1,111 @@
+//! What the microfacet lobes share: GGX's distribution and the height-correlated Smith masking that goes with it.
+//! All vectors in the local frame, n = +z. Source: Walter et al. 2007; Heitz 2014 and 2018.
+
+use super::frame::{Frame, local_from_world};
+use super::lobe::{LobeShape, alpha_from_roughness, stretch_from_anisotropy};
+use super::numeric::normalize_or;
+use super::real::Real;
+use super::vector::{Vec3, vec3};
+
+/// The widths along tangent and bitangent.
+#[derive(Clone, Copy, Debug)]
+pub struct Alpha<T> {
+    /// α along the tangent.
+    pub x: T,
+    /// α along the bitangent.
+    pub y: T,
+}
+
+/// The widths of a shape, anisotropy applied.
+#[inline(always)]
+pub fn microfacet_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
+    let alpha = alpha_from_roughness(shape.roughness);
+    let stretch = stretch_from_anisotropy(shape.anisotropy);
+    Alpha {
+        x: alpha * stretch,
+        y: alpha / stretch,
+    }
+}
+
+/// Equal widths.
+#[inline(always)]
+pub fn isotropic_alpha<T: Real>(shape: &LobeShape<'_, T>) -> Alpha<T> {
+    let alpha = alpha_from_roughness(shape.roughness);
+    Alpha { x: alpha, y: alpha }
+}
+
+/// View, light and half vector in the local frame.
+#[derive(Clone, Copy, Debug)]
+pub struct Facet<T> {
+    /// Towards the viewer.
+    pub wo: Vec3<T>,
+    /// Towards the light.
+    pub wi: Vec3<T>,
+    /// The facet's normal.
+    pub h: Vec3<T>,
+}
+
+/// The facet that reflects `wi` to `wo`.
+#[inline(always)]
+pub fn facet<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> Facet<T> {
+    let (wo, wi) = (local_from_world(frame, wo), local_from_world(frame, wi));
+    Facet {
+        wo,
+        wi,
+        h: normalize_or(wo + wi, vec3(T::zero(), T::zero(), T::one())),
+    }
+}
+
+/// D(h) of GGX, so written that the tangential components are not lost where α is small.
+#[inline(always)]
+pub fn ggx_distribution<T: Real>(alpha: Alpha<T>, h: Vec3<T>) -> T {
+    let (x, y) = (h.x / alpha.x, h.y / alpha.y);
+    let square = x * x + y * y + h.z * h.z;
+    T::from_f64(std::f64::consts::FRAC_1_PI) / (alpha.x * alpha.y * square * square)
+}
+
+/// √(z² + αx²x² + αy²y²): Smith's Λ is (that over |z| − 1)/2.
+#[inline(always)]
+pub fn smith_length<T: Real>(alpha: Alpha<T>, w: Vec3<T>) -> T {
+    let (x, y) = (alpha.x * w.x, alpha.y * w.y);
+    (w.z * w.z + x * x + y * y).sqrt()
+}
+
+/// Masking of the view alone over its cosine: G1(wo)/cosθo = 2/(cosθo + smith_length).
+#[inline(always)]
+pub fn smith_g1_over_cosine<T: Real>(alpha: Alpha<T>, wo: Vec3<T>) -> T {
+    T::from_f64(2.0) / (wo.z.abs() + smith_length(alpha, wo)).max(T::from_f64(1e-12))
+}
+
+/// Height-correlated masking and shadowing over cosθo: G2/cosθo; 0 where either direction is below the horizon.
+#[inline(always)]
+pub fn smith_g2_over_cosine<T: Real>(alpha: Alpha<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+    let sum = wo.z * smith_length(alpha, wi) + wi.z * smith_length(alpha, wo);
+    let value = T::from_f64(2.0) * wi.z / sum.max(T::from_f64(1e-12));
+    let above = T::zero().less(wo.z) & T::zero().less(wi.z);
+    T::select(above, value, T::zero())
+}
+
+/// The density of a direction whose facet was drawn by visible normals: D G1/(4 cosθo).
+#[inline(always)]
+pub fn visible_density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+    let alpha = microfacet_alpha(shape);
+    let facet = facet(frame, wo, wi);
+    let value = T::from_f64(0.25) * ggx_distribution(alpha, facet.h) * smith_g1_over_cosine(alpha, facet.wo);
+    T::select(T::zero().less(facet.h.z), value, T::zero())
+}
+
+/// The weight of such a direction: G2/G1.
+#[inline(always)]
+pub fn visible_weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+    let alpha = microfacet_alpha(shape);
+    let (wo, wi) = (local_from_world(frame, wo), local_from_world(frame, wi));
+    smith_g2_over_cosine(alpha, wo, wi) / smith_g1_over_cosine(alpha, wo)
+}
+
+/// The weight of a direction whose facet was drawn in proportion to D cosθ: G2 (wo·h)/(cosθo h.z).
+#[inline(always)]
+pub fn distribution_weight<T: Real>(alpha: Alpha<T>, facet: Facet<T>) -> T {
+    let ratio = facet.wo.dot(facet.h) / facet.h.z.max(T::from_f64(1e-6));
+    smith_g2_over_cosine(alpha, facet.wo, facet.wi) * ratio.max(T::zero())
+}

@@ -1,0 +1,40 @@
+//! Elementary functions in forms that do not cancel.
+
+use super::real::Real;
+use super::vector::Vec3;
+
+/// eˣ − 1, accurate for small |x|.
+#[inline(always)]
+pub fn expm1<T: Real>(x: T) -> T {
+    let c = T::from_f64;
+    let series = x * (T::one() + x * (c(0.5) + x * (c(1.0 / 6.0) + x * c(1.0 / 24.0))));
+    T::select(x.abs().less(c(0.01)), series, x.exp() - T::one())
+}
+
+/// ln(1 + x), accurate for small |x|; x > −1.
+#[inline(always)]
+pub fn log1p<T: Real>(x: T) -> T {
+    let c = T::from_f64;
+    let series = x * (T::one() - x * (c(0.5) - x * (c(1.0 / 3.0) - x * (c(0.25) - x * c(0.2)))));
+    T::select(x.abs().less(c(0.01)), series, (T::one() + x).ln())
+}
+
+/// The inverse of sinh, odd to the last bit.
+#[inline(always)]
+pub fn arsinh<T: Real>(x: T) -> T {
+    let magnitude = x.abs();
+    // ln(|x| + √(x² + 1)) with the part that vanishes at 0 kept apart.
+    let square = magnitude * magnitude;
+    let root = (square + T::one()).sqrt();
+    let value = log1p(magnitude + square / (T::one() + root));
+    T::select(x.less(T::zero()), -value, value)
+}
+
+/// `v` scaled to length 1, or `fallback` where `v` is so short that its direction is rounding noise.
+#[inline(always)]
+pub fn normalize_or<T: Real>(v: Vec3<T>, fallback: Vec3<T>) -> Vec3<T> {
+    let square = v.dot(v);
+    let usable = T::from_f64(1e-30).less(square);
+    let scale = T::one() / T::select(usable, square, T::one()).sqrt();
+    Vec3::select(usable, v * scale, fallback)
+}

@@ -1,0 +1,110 @@
+//! Counter-based random numbers: (pixel, sample, dimension) gives the same bits on every processor.
+//!
+//! A *dimension* counts the pairs of numbers that a path draws. Two sequences: `Independent` hashes the three counters;
+//! `Sobol` takes the first two dimensions of Sobol's sequence, shuffled and Owen-scrambled for each pixel and pair by
+//! the hash of Laine and Karras (Burley, "Practical hash-based Owen scrambling", JCGT 2020; constants by Vegdahl).
+
+use super::real::Real;
+
+/// Which numbers a render draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Hash, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[repr(u32)]
+pub enum Sequence {
+    /// Owen-scrambled Sobol points: the error falls faster than 1/√n where the integrand is smooth.
+    #[default]
+    Sobol = 0,
+    /// Independent hashed numbers.
+    Independent = 1,
+}
+
+/// The counters from which a path draws its numbers.
+#[derive(Clone, Copy, Debug)]
+pub struct RandomState {
+    /// Hash of pixel and seed.
+    pub key: u32,
+    /// Index of the sample in its pixel.
+    pub sample: u32,
+    /// Sequence to draw from.
+    pub sequence: Sequence,
+}
+
+/// The pixel's stream. `x`, `y` in pixels, below 65 536.
+#[inline(always)]
+pub fn random_state(x: u32, y: u32, seed: u32, sample: u32, sequence: Sequence) -> RandomState {
+    RandomState {
+        key: hash_bits((x | (y << 16)) ^ hash_bits(seed)),
+        sample,
+        sequence,
+    }
+}
+
+/// A bijection of the 32-bit numbers without visible structure (Wellons' lowbias32).
+#[inline(always)]
+pub fn hash_bits(bits: u32) -> u32 {
+    let mut x = bits;
+    x = (x ^ (x >> 16)).wrapping_mul(0x7feb_352d);
+    x = (x ^ (x >> 15)).wrapping_mul(0x846c_a68b);
+    x ^ (x >> 16)
+}
+
+/// A number in [0, 1) of 24 bits: never 1, in any precision.
+#[inline(always)]
+pub fn unit_from_bits<T: Real>(bits: u32) -> T {
+    T::from_f64(f64::from(bits >> 8) / 16_777_216.0)
+}
+
+/// The independent sequence: for a fixed key and dimension a permutation of the 2³² samples, so no number of a pixel's
+/// stream repeats before all have been drawn.
+#[inline(always)]
+pub fn random_bits(key: u32, sample: u32, dimension: u32) -> u32 {
+    let stream = hash_bits(key ^ dimension.wrapping_mul(0x9e37_79b9));
+    hash_bits(hash_bits(sample ^ stream).wrapping_add(stream.rotate_left(16) ^ key))
+}
+
+/// Scrambles as Owen would, from the lowest bit up: each bit is flipped by a hash of the bits below it.
+#[inline(always)]
+pub fn scramble_from_low(bits: u32, seed: u32) -> u32 {
+    let mut x = bits;
+    x ^= x.wrapping_mul(0x3d20_adea);
+    x = x.wrapping_add(seed);
+    x = x.wrapping_mul((seed >> 16) | 1);
+    x ^= x.wrapping_mul(0x0552_6c56);
+    x ^ x.wrapping_mul(0x53a2_2864)
+}
+
+/// Sobol's second dimension with its bits reversed: Pascal's triangle modulo 2 applied to the index's bits.
+#[inline(always)]
+pub fn sobol_second_reversed(index: u32) -> u32 {
+    let mut x = index;
+    x ^= (x >> 1) & 0x5555_5555;
+    x ^= (x >> 2) & 0x3333_3333;
+    x ^= (x >> 4) & 0x0f0f_0f0f;
+    x ^= (x >> 8) & 0x00ff_00ff;
+    x ^ ((x >> 16) & 0x0000_ffff)
+}
+
+/// The bits of the pair of numbers number `dimension` of this path.
+#[inline(always)]
+pub fn random_pair_bits(state: RandomState, dimension: u32) -> [u32; 2] {
+    match state.sequence {
+        Sequence::Sobol => {
+            let seed = hash_bits(state.key ^ dimension.wrapping_mul(0x9e37_79b9).wrapping_add(0x2545_f491));
+            let index = scramble_from_low(state.sample.reverse_bits(), seed).reverse_bits();
+            [
+                scramble_from_low(index, hash_bits(seed ^ 0x68bc_21eb)).reverse_bits(),
+                scramble_from_low(sobol_second_reversed(index), hash_bits(seed ^ 0x02e5_be93)).reverse_bits(),
+            ]
+        }
+        Sequence::Independent => [
+            random_bits(state.key, state.sample, 2 * dimension),
+            random_bits(state.key, state.sample, 2 * dimension + 1),
+        ],
+    }
+}
+
+/// The pair of numbers in [0, 1) number `dimension` of this path.
+#[inline(always)]
+pub fn random_pair<T: Real>(state: RandomState, dimension: u32) -> [T; 2] {
+    random_pair_bits(state, dimension).map(unit_from_bits)
+}
