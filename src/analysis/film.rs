@@ -40,7 +40,11 @@ impl Film {
     pub fn image(&self) -> Image {
         let pixels = self.color.iter().zip(&self.statistics);
         let mean = |(sum, s): (&[f64; 4], &[f64; 2])| sum.map(|x| if s[1] > 0.0 { (x / s[1]) as f32 } else { 0.0 });
-        Image { width: self.width, height: self.height, pixels: pixels.map(mean).collect() }
+        Image {
+            width: self.width,
+            height: self.height,
+            pixels: pixels.map(mean).collect(),
+        }
     }
 
     /// Variance of the mean luminance of each pixel, unbiased; infinite below two samples.

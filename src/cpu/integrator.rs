@@ -89,14 +89,21 @@ impl<'a, T: Real> Integrator<'a, T> {
         if density.to_f64() <= 0.0 || point.surface.normal.dot(wi).to_f64() <= 0.0 {
             return Vec3::zero();
         }
-        let competing = T::from_f64(if self.settings.strategy == Strategy::Mis { 1.0 } else { 0.0 });
+        let competing = T::from_f64(if self.settings.strategy == Strategy::Mis {
+            1.0
+        } else {
+            0.0
+        });
         let material = &self.materials[point.slot as usize];
         let value = material_evaluate(material, self.tables, &point.surface, wi, density, competing);
         if value.max_component().to_f64() <= 0.0 {
             return Vec3::zero();
         }
         *rays += 1;
-        if self.geometry.occluded(point.ray_origin().to_f32(), wi.to_f32(), f32::MAX) {
+        if self
+            .geometry
+            .occluded(point.ray_origin().to_f32(), wi.to_f32(), f32::MAX)
+        {
             return Vec3::zero();
         }
         value * self.far_radiance(wi) / density
@@ -118,8 +125,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         let offset: [T; 2] = filter_offset(self.camera.filter_kind, random_pair(state, 0));
         let half = T::from_f64(0.5);
         let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
-        let [mut origin, mut direction] =
-            camera_ray(&self.camera, place, settings.image_size, random_pair(state, 1));
+        let [mut origin, mut direction] = camera_ray(&self.camera, place, settings.image_size, random_pair(state, 1));
         let mut throughput = Vec3::splat(T::one());
         let mut radiance = Vec3::zero();
         let mut lobe_density = T::zero();
@@ -147,8 +153,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             let [a, b] = random_pair(state, dimension);
             let [c, layer] = random_pair(state, dimension + 1);
             let wants_density = self.samples_light && settings.strategy == Strategy::Mis;
-            let drawn =
-                material_sample(material, self.tables, &point.surface, [a, b, c], layer, wants_density);
+            let drawn = material_sample(material, self.tables, &point.surface, [a, b, c], layer, wants_density);
             throughput = throughput * drawn.throughput;
             let strength = throughput.max_component();
             // Also ends paths that are NaN.
@@ -166,7 +171,11 @@ impl<'a, T: Real> Integrator<'a, T> {
             was_mirror = drawn.is_mirror;
             (origin, direction) = (point.ray_origin(), drawn.wi);
         }
-        PathResult { radiance, alpha: T::one(), rays }
+        PathResult {
+            radiance,
+            alpha: T::one(),
+            rays,
+        }
     }
 
     fn surface(&self, hit: &Hit, direction: Vec3<T>) -> SurfacePoint<T> {

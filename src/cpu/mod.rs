@@ -52,7 +52,9 @@ impl CpuEngine {
         while self.next_sample < samples && pixels > 0 {
             let left = budget.saturating_sub(start.elapsed()).as_secs_f64();
             let count = (self.pixels_per_second * left) as usize;
-            let count = count.max(CHUNK_PIXELS * rayon::current_num_threads()).min(pixels - self.next_pixel);
+            let count = count
+                .max(CHUNK_PIXELS * rayon::current_num_threads())
+                .min(pixels - self.next_pixel);
             let slice_start = Instant::now();
             self.render(&integrator, job.settings.image_size[0], self.next_pixel, count);
             self.pixels_per_second = count as f64 / slice_start.elapsed().as_secs_f64().max(1e-9);

@@ -1,1 +1,4 @@
-//! See docs/ARCHITECTURE.md.
+//! What is edited and saved, and what it compiles to.
+
+pub mod job;
+pub mod plan;

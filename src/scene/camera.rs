@@ -98,8 +98,8 @@ pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
     }
     // The radius of a Gaussian cut off at GAUSSIAN_RADIUS, by inversion.
     let kept = 1.0 - (-0.5 * (GAUSSIAN_RADIUS / GAUSSIAN_SIGMA).powi(2)).exp();
-    let radius = T::from_f64(GAUSSIAN_SIGMA)
-        * (T::from_f64(-2.0) * (T::one() - xi[0] * T::from_f64(kept)).ln()).safe_sqrt();
+    let radius =
+        T::from_f64(GAUSSIAN_SIGMA) * (T::from_f64(-2.0) * (T::one() - xi[0] * T::from_f64(kept)).ln()).safe_sqrt();
     let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[1];
     [radius * phi_rad.cos(), radius * phi_rad.sin()]
 }
@@ -117,5 +117,8 @@ pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 
     let disc = uniform_disc(xi_lens);
     let shift = camera.right.normalize() * (disc[0] * camera.lens_radius)
         + camera.up.normalize() * (disc[1] * camera.lens_radius);
-    [camera.origin + shift, (along * camera.focus_distance - shift).normalize()]
+    [
+        camera.origin + shift,
+        (along * camera.focus_distance - shift).normalize(),
+    ]
 }

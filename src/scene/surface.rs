@@ -60,12 +60,14 @@ pub fn surface_at<T: Real>(
     let out = normalize_or((p1 - p0).cross(p2 - p0), wo);
     let normal = Vec3::select(out.dot(wo).less(T::zero()), -out, out);
     let corners = geometry.triangles[index].map(|vertex| &geometry.vertices[vertex as usize]);
-    let interpolate = |a: [f32; 3], b: [f32; 3], c: [f32; 3]| {
-        Vec3::from_f32(a) * w + Vec3::from_f32(b) * u + Vec3::from_f32(c) * v
-    };
+    let interpolate =
+        |a: [f32; 3], b: [f32; 3], c: [f32; 3]| Vec3::from_f32(a) * w + Vec3::from_f32(b) * u + Vec3::from_f32(c) * v;
     let interpolated = interpolate(corners[0].normal, corners[1].normal, corners[2].normal);
     let smoothed = normalize_or(interpolated, normal);
-    let shading = bent_normal(Vec3::select(smoothed.dot(normal).less(T::zero()), -smoothed, smoothed), wo);
+    let shading = bent_normal(
+        Vec3::select(smoothed.dot(normal).less(T::zero()), -smoothed, smoothed),
+        wo,
+    );
     let slot = geometry.slots[index];
     let material = &materials[slot as usize];
     let frame = if material.anisotropy.to_f64() != 0.0 {
@@ -77,5 +79,10 @@ pub fn surface_at<T: Real>(
     let extent = p0.map(T::abs) * w.abs() + p1.map(T::abs) * u.abs() + p2.map(T::abs) * v.abs();
     let margin = T::from_f64(0.05);
     let error = T::from_f64(POSITION_ERROR) * normal.map(T::abs).dot(extent + vec3(margin, margin, margin));
-    SurfacePoint { surface: Surface { frame, normal, wo }, position, error, slot }
+    SurfacePoint {
+        surface: Surface { frame, normal, wo },
+        position,
+        error,
+        slot,
+    }
 }
