@@ -1,3 +1,4 @@
 //! Numbers about pictures and samples.
 
 pub mod film;
+pub mod scatter;

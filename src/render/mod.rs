@@ -6,6 +6,7 @@ mod assets;
 mod calibration;
 mod compile;
 mod engine;
+pub mod display;
 pub mod output;
 mod session;
 pub mod worker;
