@@ -42,11 +42,7 @@ impl<T: Real> Vec3<T> {
     /// The components as the nearest numbers of this type.
     #[inline(always)]
     pub fn from_f64(value: [f64; 3]) -> Self {
-        vec3(
-            T::from_f64(value[0]),
-            T::from_f64(value[1]),
-            T::from_f64(value[2]),
-        )
+        vec3(T::from_f64(value[0]), T::from_f64(value[1]), T::from_f64(value[2]))
     }
     /// The components of an f32 array.
     #[inline(always)]
