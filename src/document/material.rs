@@ -1,0 +1,169 @@
+//! A material as it is edited.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value as Json};
+
+use crate::optics::curve::Curve;
+use crate::optics::fresnel::{Fresnel, METALS, Metal};
+use crate::optics::lobe::{Horizon, Lobe};
+use crate::scene::Slot;
+
+/// A material as it is edited. Ranges, labels and meanings of the fields: `PARAMETERS`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MaterialSettings {
+    /// Name in lists and files.
+    pub name: String,
+    /// Linear RGB in [0, 1].
+    pub base_color: [f32; 3],
+    /// In [0, 1].
+    pub metalness: f32,
+    /// In [0, 1].
+    pub specular_weight: f32,
+    /// The specular lobe.
+    pub lobe: Lobe,
+    /// In [0, 1].
+    pub roughness: f32,
+    /// In [−1, 1].
+    pub anisotropy: f32,
+    /// Turn of the tangent, degrees.
+    pub rotation_deg: f32,
+    /// The geometric lobe's curve.
+    pub curve: Curve,
+    /// The custom curve.
+    pub custom_curve: super::CustomCurve,
+    /// What happens below the surface.
+    pub horizon: Horizon,
+    /// The Fresnel model.
+    pub fresnel: Fresnel,
+    /// The dielectric's index of refraction.
+    pub ior: f32,
+    /// Tint of the reflection, linear RGB in [0, 1].
+    pub specular_color: [f32; 3],
+    /// Where `eta` and `k` come from.
+    pub conductor: Conductor,
+    /// Real part of the conductor's index of refraction at about 650, 550 and 450 nm.
+    pub eta: [f32; 3],
+    /// Imaginary part.
+    pub k: [f32; 3],
+    /// Linear RGB in [0, 1].
+    pub emission_color: [f32; 3],
+    /// Emitted radiance is `emission_color` times this.
+    pub emission_strength: f32,
+    /// What the file's "material" had that this version does not know.
+    pub extra: Map<String, Json>,
+    /// What the file had beside it.
+    pub file_extra: Map<String, Json>,
+}
+
+impl Default for MaterialSettings {
+    fn default() -> Self {
+        let mut material = Self {
+            name: "material".to_owned(),
+            base_color: [0.8; 3],
+            metalness: 1.0,
+            specular_weight: 1.0,
+            lobe: Lobe::Geometric,
+            roughness: 0.3,
+            anisotropy: 0.0,
+            rotation_deg: 0.0,
+            curve: Curve::Smooth,
+            custom_curve: super::CustomCurve::default(),
+            horizon: Horizon::Mirror,
+            fresnel: Fresnel::Schlick,
+            ior: 1.5,
+            specular_color: [1.0; 3],
+            conductor: Conductor::Custom,
+            eta: [1.0; 3],
+            k: [1.0; 3],
+            emission_color: [1.0; 3],
+            emission_strength: 0.0,
+            extra: Map::new(),
+            file_extra: Map::new(),
+        };
+        material.set_conductor(Conductor::named("aluminium"));
+        material
+    }
+}
+
+impl MaterialSettings {
+    /// Takes a metal's η and k over; [`Conductor::Custom`] leaves them as they are.
+    pub fn set_conductor(&mut self, conductor: Conductor) {
+        self.conductor = conductor;
+        if let Some(metal) = conductor.metal() {
+            self.eta = metal.eta.map(|x| x as f32);
+            self.k = metal.k.map(|x| x as f32);
+        }
+    }
+
+    /// Sets η and k. The conductor turns custom unless they are its own.
+    pub fn set_eta_and_k(&mut self, eta: [f32; 3], k: [f32; 3]) {
+        if (eta, k) != (self.eta, self.k) {
+            self.conductor = Conductor::Custom;
+        }
+        (self.eta, self.k) = (eta, k);
+    }
+
+    /// A Lambertian surface of this albedo (linear RGB) and nothing else.
+    pub fn diffuse(name: &str, albedo: [f32; 3]) -> Self {
+        Self {
+            name: name.to_owned(),
+            base_color: albedo,
+            metalness: 0.0,
+            specular_weight: 0.0,
+            ..Self::default()
+        }
+    }
+
+    /// The material that a model's file gives one of its slots.
+    pub fn from_slot(slot: &Slot) -> Self {
+        let strength = slot.emission.into_iter().fold(0.0_f32, f32::max);
+        let mut material = Self {
+            name: slot.name.clone(),
+            base_color: slot.base_color,
+            metalness: slot.metalness,
+            roughness: slot.roughness,
+            ior: slot.ior,
+            ..Self::default()
+        };
+        if strength > 0.0 {
+            material.emission_color = slot.emission.map(|x| x / strength);
+            material.emission_strength = strength;
+        }
+        material
+    }
+}
+
+/// Where the conductor's η and k come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Conductor {
+    /// Numbers of the user's own.
+    #[default]
+    Custom,
+    /// The metal with this index in [`METALS`].
+    Metal(usize),
+}
+
+impl Conductor {
+    /// Every choice, in the order of the menus.
+    pub fn all() -> impl Iterator<Item = Self> {
+        std::iter::once(Self::Custom).chain((0..METALS.len()).map(Self::Metal))
+    }
+
+    /// The metal; `None` where the numbers are custom.
+    pub fn metal(self) -> Option<&'static Metal> {
+        match self {
+            Self::Custom => None,
+            Self::Metal(index) => METALS.get(index),
+        }
+    }
+
+    /// Name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        self.metal().map_or("custom", |metal| metal.name)
+    }
+
+    /// The metal of that name; custom where there is none.
+    pub fn named(name: &str) -> Self {
+        Self::all().find(|c| c.name() == name).unwrap_or_default()
+    }
+}
