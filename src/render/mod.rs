@@ -12,5 +12,5 @@ mod session;
 pub mod worker;
 
 pub use assets::Assets;
-pub use engine::{EngineChoice, EngineInfo};
+pub use engine::{EngineChoice, EngineInfo, scatter};
 pub use session::{Progress, Session, SessionError};
