@@ -1,1 +1,3 @@
-//! See docs/ARCHITECTURE.md.
+//! Numbers about pictures and samples.
+
+pub mod film;

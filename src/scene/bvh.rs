@@ -28,13 +28,8 @@ pub(super) fn build(corners: impl ExactSizeIterator<Item = [[f32; 3]; 3]>) -> Cw
         return CwBvh::default();
     }
     let order = (0..boxes.len() as u32).collect();
-    let mut binary = PlocBuilder::with_capacity(boxes.len()).build(
-        PlocSearchDistance::Medium,
-        &boxes,
-        order,
-        SortPrecision::U64,
-        3,
-    );
+    let mut binary =
+        PlocBuilder::with_capacity(boxes.len()).build(PlocSearchDistance::Medium, &boxes, order, SortPrecision::U64, 3);
     ReinsertionOptimizer::default().run(&mut binary, 0.05, None);
     bvh2_to_cwbvh(&binary, LEAF_TRIANGLES, true, false)
 }

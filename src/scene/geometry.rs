@@ -63,11 +63,7 @@ impl Geometry {
     pub fn build(model: &Model, ground: bool) -> Self {
         let mesh = &model.mesh;
         let finite: Vec<usize> = (0..mesh.triangles.len())
-            .filter(|&triangle| {
-                mesh.corners(triangle)
-                    .iter()
-                    .all(|corner| corner.is_finite())
-            })
+            .filter(|&triangle| mesh.corners(triangle).iter().all(|corner| corner.is_finite()))
             .collect();
         let bounds_world = bounds(mesh, &finite);
         let center_world = bounds_world[0].midpoint(bounds_world[1]);
@@ -84,31 +80,15 @@ impl Geometry {
             dropped_not_finite: mesh.triangles.len() - finite.len(),
             dropped_no_area: 0,
         };
-        let to_units = |place: DVec3| {
-            ((place - center_world) / world_units_per_unit)
-                .as_vec3()
-                .to_array()
-        };
+        let to_units = |place: DVec3| ((place - center_world) / world_units_per_unit).as_vec3().to_array();
         geometry.add(mesh, finite.into_iter(), to_units);
         if ground {
             let lowest = (bounds_world[0].y - center_world.y) / world_units_per_unit - GROUND_GAP;
             let slot = model.slots.len() as u32;
-            let ground = shapes::square(
-                DVec3::Y * lowest,
-                GROUND_HALF_SIDE,
-                GROUND_HALF_SIDE as f32,
-                slot,
-            );
-            geometry.add(&ground, 0..ground.triangles.len(), |place| {
-                place.as_vec3().to_array()
-            });
+            let ground = shapes::square(DVec3::Y * lowest, GROUND_HALF_SIDE, GROUND_HALF_SIDE as f32, slot);
+            geometry.add(&ground, 0..ground.triangles.len(), |place| place.as_vec3().to_array());
         }
-        geometry.bvh = bvh::build(
-            geometry
-                .triangles
-                .iter()
-                .map(|triangle| geometry.corners_of(triangle)),
-        );
+        geometry.bvh = bvh::build(geometry.triangles.iter().map(|triangle| geometry.corners_of(triangle)));
         geometry.sort_by_leaves();
         geometry
     }
@@ -140,12 +120,7 @@ impl Geometry {
     }
 
     /// Adds the chosen triangles of a mesh that have an area.
-    fn add(
-        &mut self,
-        mesh: &Mesh,
-        chosen: impl Iterator<Item = usize>,
-        to_units: impl Fn(DVec3) -> [f32; 3],
-    ) {
+    fn add(&mut self, mesh: &Mesh, chosen: impl Iterator<Item = usize>, to_units: impl Fn(DVec3) -> [f32; 3]) {
         let base = self.positions.len() as u32;
         for (vertex, &position) in mesh.positions.iter().enumerate() {
             self.positions.push(to_units(position));
@@ -176,10 +151,7 @@ impl Geometry {
     /// read together close together; drops vertices that no triangle uses.
     fn sort_by_leaves(&mut self) {
         let order = std::mem::take(&mut self.bvh.primitive_indices);
-        self.slots = order
-            .iter()
-            .map(|&triangle| self.slots[triangle as usize])
-            .collect();
+        self.slots = order.iter().map(|&triangle| self.slots[triangle as usize]).collect();
         const UNUSED: u32 = u32::MAX;
         let mut new_of_old = vec![UNUSED; self.positions.len()];
         let (mut positions, mut vertices) = (Vec::new(), Vec::new());

@@ -5,7 +5,5 @@ use super::model::{Model, ModelError};
 
 /// Loads a .gltf or .glb file.
 pub(super) fn load(path: &Path) -> Result<Model, ModelError> {
-    Err(ModelError::NoTriangles {
-        path: path.to_owned(),
-    })
+    Err(ModelError::NoTriangles { path: path.to_owned() })
 }

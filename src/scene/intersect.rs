@@ -39,20 +39,11 @@ impl RayFrame {
     pub fn new(origin: Vec3A, direction: Vec3A) -> Self {
         let (d, size) = (direction, direction.abs());
         let (axis_x, axis_y) = if size.z >= size.x && size.z >= size.y {
-            (
-                Vec3A::new(1.0, 0.0, -d.x / d.z),
-                Vec3A::new(0.0, 1.0, -d.y / d.z),
-            )
+            (Vec3A::new(1.0, 0.0, -d.x / d.z), Vec3A::new(0.0, 1.0, -d.y / d.z))
         } else if size.y >= size.x {
-            (
-                Vec3A::new(1.0, -d.x / d.y, 0.0),
-                Vec3A::new(0.0, -d.z / d.y, 1.0),
-            )
+            (Vec3A::new(1.0, -d.x / d.y, 0.0), Vec3A::new(0.0, -d.z / d.y, 1.0))
         } else {
-            (
-                Vec3A::new(-d.y / d.x, 1.0, 0.0),
-                Vec3A::new(-d.z / d.x, 0.0, 1.0),
-            )
+            (Vec3A::new(-d.y / d.x, 1.0, 0.0), Vec3A::new(-d.z / d.x, 0.0, 1.0))
         };
         Self {
             origin,
@@ -70,13 +61,7 @@ impl RayFrame {
 /// a closed mesh always hits some triangle at each crossing; one exactly on an edge hits both. A twin must keep the
 /// products as they are (no fused multiply-add, no reordering).
 #[inline(always)]
-pub fn intersect_triangle(
-    ray: &RayFrame,
-    v0: Vec3A,
-    v1: Vec3A,
-    v2: Vec3A,
-    t_max: f32,
-) -> Option<(f32, f32, f32)> {
+pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max: f32) -> Option<(f32, f32, f32)> {
     let (a, b, c) = (v0 - ray.origin, v1 - ray.origin, v2 - ray.origin);
     let (ax, ay) = (ray.axis_x.dot(a), ray.axis_y.dot(a));
     let (bx, by) = (ray.axis_x.dot(b), ray.axis_y.dot(b));
@@ -106,26 +91,18 @@ impl Geometry {
         let mut nearest = None;
         let mut state = self.bvh.new_traversal(ray.direction);
         let mut node;
-        obvhs::traverse!(
-            self.bvh,
-            node,
-            state,
-            node.intersect_ray(&ray, state.oct_inv4),
-            {
-                let [v0, v1, v2] = self
-                    .corners(state.primitive_id as usize)
-                    .map(Vec3A::from_array);
-                if let Some((t, u, v)) = intersect_triangle(&frame, v0, v1, v2, ray.tmax) {
-                    nearest = Some(Hit {
-                        t,
-                        triangle: state.primitive_id,
-                        u,
-                        v,
-                    });
-                    ray.tmax = t;
-                }
+        obvhs::traverse!(self.bvh, node, state, node.intersect_ray(&ray, state.oct_inv4), {
+            let [v0, v1, v2] = self.corners(state.primitive_id as usize).map(Vec3A::from_array);
+            if let Some((t, u, v)) = intersect_triangle(&frame, v0, v1, v2, ray.tmax) {
+                nearest = Some(Hit {
+                    t,
+                    triangle: state.primitive_id,
+                    u,
+                    v,
+                });
+                ray.tmax = t;
             }
-        );
+        });
         nearest
     }
 
@@ -136,21 +113,13 @@ impl Geometry {
         let mut state = self.bvh.new_traversal(ray.direction);
         let mut node;
         let mut met = false;
-        obvhs::traverse!(
-            self.bvh,
-            node,
-            state,
-            node.intersect_ray(&ray, state.oct_inv4),
-            {
-                let [v0, v1, v2] = self
-                    .corners(state.primitive_id as usize)
-                    .map(Vec3A::from_array);
-                if intersect_triangle(&frame, v0, v1, v2, t_max).is_some() {
-                    met = true;
-                    break;
-                }
+        obvhs::traverse!(self.bvh, node, state, node.intersect_ray(&ray, state.oct_inv4), {
+            let [v0, v1, v2] = self.corners(state.primitive_id as usize).map(Vec3A::from_array);
+            if intersect_triangle(&frame, v0, v1, v2, t_max).is_some() {
+                met = true;
+                break;
             }
-        );
+        });
         met
     }
 }

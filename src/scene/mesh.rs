@@ -83,12 +83,7 @@ impl Mesh {
             let normal = plane_normal(self.corners(triangle)).as_vec3();
             let corners = self.triangles[triangle].map(|vertex| {
                 let vertex = vertex as usize;
-                flat.push_vertex(
-                    self.positions[vertex],
-                    normal,
-                    self.uvs[vertex],
-                    self.tangents[vertex],
-                )
+                flat.push_vertex(self.positions[vertex], normal, self.uvs[vertex], self.tangents[vertex])
             });
             flat.triangles.push(corners);
         }
@@ -178,8 +173,7 @@ impl Mesh {
     /// or the triangle are degenerate.
     fn texture_frame(&self, triangle: usize) -> Option<(DVec3, f32)> {
         let [a, b, c] = self.corners(triangle);
-        let [uv_a, uv_b, uv_c] =
-            self.triangles[triangle].map(|vertex| self.uvs[vertex as usize].as_dvec2());
+        let [uv_a, uv_b, uv_c] = self.triangles[triangle].map(|vertex| self.uvs[vertex as usize].as_dvec2());
         let (to_b, to_c) = (b - a, c - a);
         let (uv_to_b, uv_to_c) = (uv_b - uv_a, uv_c - uv_a);
         let determinant = uv_to_b.perp_dot(uv_to_c);

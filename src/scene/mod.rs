@@ -1,6 +1,7 @@
 //! What is rendered: meshes and where they come from, the hierarchy that rays find them by, the light around them.
 
 mod bvh;
+pub mod camera;
 pub mod environment;
 mod geometry;
 mod gltf;
@@ -8,6 +9,7 @@ mod intersect;
 pub mod mesh;
 mod model;
 pub mod shapes;
+pub mod surface;
 pub mod teapot;
 
 pub use geometry::{Geometry, Vertex};

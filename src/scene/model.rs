@@ -228,11 +228,7 @@ pub struct Texture {
 
 impl fmt::Debug for Texture {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "Texture({:?}, {} × {})",
-            self.name, self.width, self.height
-        )
+        write!(f, "Texture({:?}, {} × {})", self.name, self.width, self.height)
     }
 }
 

@@ -92,13 +92,7 @@ fn upper_shell() -> Profile {
         ),
         1,
     );
-    profile.arc(
-        polar(SHELL_INSIDE + EDGE, inner),
-        EDGE,
-        wall - 90.0,
-        inner - 180.0,
-        8,
-    );
+    profile.arc(polar(SHELL_INSIDE + EDGE, inner), EDGE, wall - 90.0, inner - 180.0, 8);
     profile.arc(DVec2::ZERO, SHELL_INSIDE, inner, 90.0, 24);
     profile
 }
@@ -110,18 +104,9 @@ fn lower_shell() -> Profile {
     let inner = wall - edge_offset_deg(SHELL_INSIDE + EDGE);
     let mut profile = Profile::start(dvec2(0.0, -SHELL_INSIDE));
     profile.arc(DVec2::ZERO, SHELL_INSIDE, -90.0, inner, 24);
-    profile.arc(
-        polar(SHELL_INSIDE + EDGE, inner),
-        EDGE,
-        inner + 180.0,
-        wall + 90.0,
-        8,
-    );
+    profile.arc(polar(SHELL_INSIDE + EDGE, inner), EDGE, inner + 180.0, wall + 90.0, 8);
     profile.line(
-        polar(
-            (1.0 - EDGE) * edge_offset_deg(1.0 - EDGE).to_radians().cos(),
-            wall,
-        ),
+        polar((1.0 - EDGE) * edge_offset_deg(1.0 - EDGE).to_radians().cos(), wall),
         1,
     );
     profile.arc(polar(1.0 - EDGE, outer), EDGE, wall + 90.0, outer, 8);
@@ -137,13 +122,7 @@ fn stand(ball: DVec2) -> Profile {
     let mut profile = Profile::start(ball - dvec2(0.0, cup));
     profile.arc(ball, cup, -90.0, lip_deg, 10);
     profile.arc(lip_center, lip, lip_deg + 180.0, 0.0, 10);
-    profile.arc(
-        lip_center + dvec2(lip + throat, 0.0),
-        throat,
-        180.0,
-        270.0,
-        16,
-    );
+    profile.arc(lip_center + dvec2(lip + throat, 0.0), throat, 180.0, 270.0, 16);
     profile.line(dvec2(0.93, top), 2);
     profile.arc(dvec2(0.93, top - 0.02), 0.02, 90.0, 0.0, 8);
     profile.line(dvec2(0.95, 0.012), 1);
@@ -189,11 +168,7 @@ impl Profile {
         let from = self.end;
         let normal = (place - from).perp().normalize();
         for step in 0..=steps {
-            self.push(
-                step,
-                from.lerp(place, f64::from(step) / f64::from(steps)),
-                normal,
-            );
+            self.push(step, from.lerp(place, f64::from(step) / f64::from(steps)), normal);
         }
     }
 

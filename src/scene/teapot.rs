@@ -20,8 +20,7 @@ const SMOOTH_COSINE: f64 = 0.9;
 
 type Patch = [[DVec3; 4]; 4];
 
-static PATCHES: LazyLock<Vec<Patch>> =
-    LazyLock::new(|| parse(include_str!("../../assets/teapot-patches.txt")));
+static PATCHES: LazyLock<Vec<Patch>> = LazyLock::new(|| parse(include_str!("../../assets/teapot-patches.txt")));
 
 /// The patches of a list of control points and indices; +Y is made up.
 fn parse(text: &str) -> Vec<Patch> {
@@ -85,10 +84,7 @@ impl Basis {
 }
 
 fn combine(weights: &[f64; 4], points: &[DVec3; 4]) -> DVec3 {
-    weights[0] * points[0]
-        + weights[1] * points[1]
-        + weights[2] * points[2]
-        + weights[3] * points[3]
+    weights[0] * points[0] + weights[1] * points[1] + weights[2] * points[2] + weights[3] * points[3]
 }
 
 /// The weights at the points of a regular grid over a patch.
@@ -116,12 +112,7 @@ impl Grid {
                 let (position, normal, tangent) = self.evaluate(patch, i, j);
                 let uv = Vec2::new(j as f32, i as f32) / self.segments as f32;
                 // v grows as the right-handed second direction does, so the bitangent of glTF is against n × t.
-                mesh.push_vertex(
-                    position,
-                    normal.as_vec3(),
-                    uv,
-                    tangent.as_vec3().extend(-1.0),
-                );
+                mesh.push_vertex(position, normal.as_vec3(), uv, tangent.as_vec3().extend(-1.0));
             }
         }
         for i in 0..self.segments {
@@ -148,11 +139,7 @@ impl Grid {
             du = combine(&along.slope, &rows_slope) * inwards;
         }
         let tangent = du.normalize_or(DVec3::X);
-        (
-            self.position(patch, i, j),
-            du.cross(dv).normalize_or(DVec3::Y),
-            tangent,
-        )
+        (self.position(patch, i, j), du.cross(dv).normalize_or(DVec3::Y), tangent)
     }
 
     /// The position, on a border computed from the border's own control points and in an order that does not depend on
@@ -197,15 +184,9 @@ fn smooth_borders(mesh: &mut Mesh, segments: u32) {
         }
     }
     for vertices in groups.into_values() {
-        let normals: Vec<DVec3> = vertices
-            .iter()
-            .map(|&vertex| mesh.normals[vertex].as_dvec3())
-            .collect();
+        let normals: Vec<DVec3> = vertices.iter().map(|&vertex| mesh.normals[vertex].as_dvec3()).collect();
         for (&vertex, normal) in vertices.iter().zip(&normals) {
-            let sum: DVec3 = normals
-                .iter()
-                .filter(|other| other.dot(*normal) > SMOOTH_COSINE)
-                .sum();
+            let sum: DVec3 = normals.iter().filter(|other| other.dot(*normal) > SMOOTH_COSINE).sum();
             mesh.normals[vertex] = sum.normalize().as_vec3();
         }
     }

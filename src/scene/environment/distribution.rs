@@ -46,11 +46,7 @@ pub(super) fn band_solid_angle(top: f64, bottom: f64, height: f64) -> f64 {
 
 /// The integral over each texel's cell of the row, in units of the cell's area, of the bilinear picture of `value`:
 /// neighbours along an axis weigh 1/8, 3/4, 1/8.
-pub(super) fn bilinear_row_integrals(
-    map: &Map,
-    row: u32,
-    value: impl Fn(&[f32; 4]) -> f64,
-) -> Vec<f64> {
+pub(super) fn bilinear_row_integrals(map: &Map, row: u32, value: impl Fn(&[f32; 4]) -> f64) -> Vec<f64> {
     let width = map.width as usize;
     let line = |row: u32| &map.texels[row as usize * width..][..width];
     let above = line(row.saturating_sub(1));
@@ -73,8 +69,7 @@ pub(super) fn summarise(map: &Map) -> Summary {
     let (sum, max) = (0..map.height)
         .into_par_iter()
         .map(|row| {
-            let solid_angle =
-                band_solid_angle(f64::from(row), f64::from(row + 1), f64::from(map.height));
+            let solid_angle = band_solid_angle(f64::from(row), f64::from(row + 1), f64::from(map.height));
             let share = solid_angle / f64::from(map.width);
             let sum = [0, 1, 2].map(|channel| {
                 share
@@ -87,12 +82,7 @@ pub(super) fn summarise(map: &Map) -> Summary {
         })
         .reduce(
             || ([0.0; 3], 0.0),
-            |(a, a_max), (b, b_max)| {
-                (
-                    [a[0] + b[0], a[1] + b[1], a[2] + b[2]],
-                    f64::max(a_max, b_max),
-                )
-            },
+            |(a, a_max), (b, b_max)| ([a[0] + b[0], a[1] + b[1], a[2] + b[2]], f64::max(a_max, b_max)),
         );
     let sphere = 2.0 * std::f64::consts::TAU;
     Summary {
