@@ -9,7 +9,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::names;
-use crate::document::parameter::{assign, parse_color};
+use crate::document::parameter::{assign, parse_hex_color};
 use crate::document::preset;
 use crate::document::{Background, Document, MaterialSettings, PixelFilter, Strategy};
 use crate::optics::random::Sequence;
@@ -214,9 +214,9 @@ fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Resul
     let model = session.assets().model(&arguments.model)?;
     let mut document = Document { model: arguments.model.clone(), ground: arguments.ground, ..Document::default() };
     if let Some(name) = &arguments.material {
-        let material = preset::find(name)?;
+        let material = preset::open_material(name)?;
         material.warnings.iter().for_each(|warning| log::warn!("{warning}"));
-        document.materials = vec![material.settings];
+        document.materials = vec![material.value];
     } else if matches!(arguments.model, ModelSource::File(_)) {
         document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
     }
@@ -258,7 +258,9 @@ fn parse_background(text: &str) -> Result<Background, String> {
     match text {
         "environment" => Ok(Background::Environment),
         "transparent" => Ok(Background::Transparent),
-        color => parse_color(color).map(Background::Color).map_err(|error| error.to_string()),
+        color => parse_hex_color(color)
+            .map(Background::Color)
+            .ok_or_else(|| "expected environment, transparent or a colour such as #808080".to_owned()),
     }
 }
 

@@ -1,21 +1,34 @@
 //! What is edited and saved, as plain values: what is rendered, its materials, light, camera, view and render settings;
-//! their parameters as data; files; differences; history.
+//! their parameters as data; files; differences; history; and what a document compiles to.
 
+pub mod change;
 mod compile;
-mod custom_curve;
+pub mod custom_curve;
+pub mod file;
+pub mod history;
 pub mod job;
 mod material;
+pub mod parameter;
 pub mod plan;
+pub mod preset;
+pub mod project;
+mod registry;
 mod settings;
 
 use serde::{Deserialize, Serialize};
 
+pub use change::Change;
 pub use compile::compile;
 pub use custom_curve::CustomCurve;
+pub use file::{FileError, Loaded};
+pub use history::History;
+pub use job::Strategy;
 pub use material::{Conductor, MaterialSettings};
-pub use settings::{
-    Background, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings, range,
-};
+pub use parameter::{Choice, Kind, Parameter, ParameterError, Value, assign, parameter};
+pub use preset::{PRESETS, load_material, material_by_name, open_material, save_material};
+pub use project::{load_document, save_document};
+pub use registry::PARAMETERS;
+pub use settings::{Background, CameraSettings, Lighting, RenderSettings, SettingError, ViewSettings, range};
 
 pub use crate::scene::camera::PixelFilter;
 
@@ -61,7 +74,7 @@ impl Default for Document {
 
 impl Document {
     /// Whether every number lies where the renderer can work with it. Materials need no check: they are set through
-    /// `PARAMETERS`.
+    /// [`PARAMETERS`].
     ///
     /// # Errors
     /// The first setting that is out of range.
