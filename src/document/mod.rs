@@ -13,9 +13,7 @@ use serde::{Deserialize, Serialize};
 pub use compile::compile;
 pub use custom_curve::CustomCurve;
 pub use material::{Conductor, MaterialSettings};
-pub use settings::{
-    Background, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings, range,
-};
+pub use settings::{Background, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings, range};
 
 pub use crate::scene::camera::PixelFilter;
 

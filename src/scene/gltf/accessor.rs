@@ -12,16 +12,11 @@ const MAX_ZEROS: usize = 1 << 24;
 
 impl Document {
     /// The elements of a vector accessor as f32, normalised integers as the fractions that they stand for.
-    pub fn read_vectors<const N: usize>(
-        &self,
-        accessor: usize,
-        what: &str,
-    ) -> Result<Vec<[f32; N]>, ModelError> {
+    pub fn read_vectors<const N: usize>(&self, accessor: usize, what: &str) -> Result<Vec<[f32; N]>, ModelError> {
         let (component, normalized, bytes) = self.read_elements(accessor, N, what)?;
         let size = component.size();
         let number = |bytes: &[u8]| decode(component, normalized, bytes);
-        let vector =
-            |element: &[u8]| std::array::from_fn(|i| number(&element[i * size..(i + 1) * size]));
+        let vector = |element: &[u8]| std::array::from_fn(|i| number(&element[i * size..(i + 1) * size]));
         Ok(bytes.chunks_exact(N * size).map(vector).collect())
     }
 
@@ -29,12 +24,8 @@ impl Document {
     pub fn read_indices(&self, accessor: usize) -> Result<Vec<u32>, ModelError> {
         let (component, _, bytes) = self.read_elements(accessor, 1, "indices")?;
         match component {
-            ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => {
-                Ok(unsigned(component, &bytes))
-            }
-            _ => Err(self.invalid(format!(
-                "accessor {accessor} (indices) does not hold unsigned integers"
-            ))),
+            ComponentType::U8 | ComponentType::U16 | ComponentType::U32 => Ok(unsigned(component, &bytes)),
+            _ => Err(self.invalid(format!("accessor {accessor} (indices) does not hold unsigned integers"))),
         }
     }
 
@@ -51,9 +42,7 @@ impl Document {
             .accessors
             .get(index)
             .ok_or_else(|| invalid("does not exist"))?;
-        let (Checked::Valid(component), Checked::Valid(kind)) =
-            (accessor.component_type, accessor.type_)
-        else {
+        let (Checked::Valid(component), Checked::Valid(kind)) = (accessor.component_type, accessor.type_) else {
             return Err(invalid("is of unknown type"));
         };
         let is_vector = matches!(kind, Type::Scalar | Type::Vec2 | Type::Vec3 | Type::Vec4);
@@ -94,21 +83,10 @@ impl Document {
         let end = last.checked_mul(stride)?.checked_add(size)?;
         // Overlapping elements would let a small file ask for any amount of memory.
         let bytes = bytes.get(..end).filter(|_| stride >= size)?;
-        Some(
-            bytes
-                .chunks(stride)
-                .flat_map(|chunk| &chunk[..size])
-                .copied()
-                .collect(),
-        )
+        Some(bytes.chunks(stride).flat_map(|chunk| &chunk[..size]).copied().collect())
     }
 
-    fn put_sparse(
-        &self,
-        sparse: &json::accessor::sparse::Sparse,
-        size: usize,
-        elements: &mut [u8],
-    ) -> Option<()> {
+    fn put_sparse(&self, sparse: &json::accessor::sparse::Sparse, size: usize, elements: &mut [u8]) -> Option<()> {
         let count = usize::try_from(sparse.count.0).ok()?;
         let Checked::Valid(component) = sparse.indices.component_type else {
             return None;
@@ -153,11 +131,7 @@ fn unsigned(component: ComponentType, bytes: &[u8]) -> Vec<u32> {
 /// One little-endian component.
 fn decode(component: ComponentType, normalized: bool, bytes: &[u8]) -> f32 {
     let scale = |value: f32, largest: f32| {
-        if normalized {
-            (value / largest).max(-1.0)
-        } else {
-            value
-        }
+        if normalized { (value / largest).max(-1.0) } else { value }
     };
     match (component, bytes) {
         (ComponentType::F32, &[a, b, c, d]) => f32::from_le_bytes([a, b, c, d]),

@@ -23,10 +23,7 @@ pub(super) const UNDERSTOOD: [&str; 11] = [
 ];
 
 const REMEDIES: [(&str, &str); 7] = [
-    (
-        "KHR_draco_mesh_compression",
-        "export without Draco mesh compression",
-    ),
+    ("KHR_draco_mesh_compression", "export without Draco mesh compression"),
     (
         "EXT_meshopt_compression",
         "export without meshopt compression (gltfpack without -c)",
@@ -35,22 +32,10 @@ const REMEDIES: [(&str, &str); 7] = [
         "KHR_meshopt_compression",
         "export without meshopt compression (gltfpack without -c)",
     ),
-    (
-        "KHR_texture_basisu",
-        "export textures as PNG or JPEG instead of KTX2",
-    ),
-    (
-        "EXT_texture_webp",
-        "export textures as PNG or JPEG instead of WebP",
-    ),
-    (
-        "EXT_texture_avif",
-        "export textures as PNG or JPEG instead of AVIF",
-    ),
-    (
-        "MSFT_texture_dds",
-        "export textures as PNG or JPEG instead of DDS",
-    ),
+    ("KHR_texture_basisu", "export textures as PNG or JPEG instead of KTX2"),
+    ("EXT_texture_webp", "export textures as PNG or JPEG instead of WebP"),
+    ("EXT_texture_avif", "export textures as PNG or JPEG instead of AVIF"),
+    ("MSFT_texture_dds", "export textures as PNG or JPEG instead of DDS"),
 ];
 
 fn remedy(extension: &str) -> &'static str {
@@ -160,6 +145,17 @@ impl Document {
 
     /// Lets the crate check indices and enumerations.
     fn validate(&mut self) -> Result<(), ModelError> {
+        // The crate's own check of primitives looks up their positions without asking whether they are there.
+        let accessors = self.root.accessors.len();
+        let mut primitives = self.root.meshes.iter().flat_map(|mesh| &mesh.primitives);
+        if primitives.any(|primitive| {
+            primitive
+                .attributes
+                .values()
+                .any(|accessor| accessor.value() >= accessors)
+        }) {
+            return Err(self.invalid(format!("a mesh refers to an accessor beyond the {accessors} there are")));
+        }
         match gltf::Document::from_json(std::mem::take(&mut self.root)) {
             Ok(document) => {
                 self.root = document.into_json();
@@ -203,9 +199,7 @@ impl Document {
     pub fn read_uri(&self, name: &str, uri: &str) -> Result<Vec<u8>, ModelError> {
         if uri.starts_with("data:") {
             let data = gltf::buffer::Data::from_source(gltf::buffer::Source::Uri(uri), None);
-            return data
-                .map(|data| data.0)
-                .map_err(|error| self.resource(name, error));
+            return data.map(|data| data.0).map_err(|error| self.resource(name, error));
         }
         if uri.contains("://") {
             return Err(self.resource(uri, "web addresses are not loaded"));
@@ -238,12 +232,8 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
         return match text.iter().find(|byte| !byte.is_ascii_whitespace()) {
             Some(b'{') => Ok((text, None)),
             None => Err(not_gltf("the file is empty".to_owned())),
-            Some(_) if std::str::from_utf8(bytes).is_ok() => {
-                Err(not_gltf("it is some other text".to_owned()))
-            }
-            Some(_) => Err(not_gltf(
-                "it begins with neither \"glTF\" nor JSON".to_owned(),
-            )),
+            Some(_) if std::str::from_utf8(bytes).is_ok() => Err(not_gltf("it is some other text".to_owned())),
+            Some(_) => Err(not_gltf("it begins with neither \"glTF\" nor JSON".to_owned())),
         };
     }
     let number = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
@@ -263,8 +253,7 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
         _ if version != 2 => Err(not_gltf(format!("it is of GLB version {version}"))),
         None => Err(cut(u64::from(length))),
         Some(_) if length < 20 => Err(invalid(format!("a GLB length of {length} bytes"))),
-        Some(whole) => split_chunks(whole)
-            .ok_or_else(|| invalid("its GLB chunks do not fit its length".to_owned())),
+        Some(whole) => split_chunks(whole).ok_or_else(|| invalid("its GLB chunks do not fit its length".to_owned())),
     }
 }
 
@@ -310,8 +299,7 @@ fn percent_decoded(uri: &str) -> String {
     let mut rest = uri.as_bytes();
     while let [first, tail @ ..] = rest {
         let code = (*first == b'%').then(|| tail.get(..2)).flatten();
-        let code =
-            code.and_then(|digits| u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok());
+        let code = code.and_then(|digits| u8::from_str_radix(std::str::from_utf8(digits).ok()?, 16).ok());
         bytes.push(code.unwrap_or(*first));
         rest = if code.is_some() { &tail[2..] } else { tail };
     }

@@ -63,10 +63,7 @@ impl<'a> Materials<'a> {
             .iter()
             .map(|&image| decode(self.document, image))
             .collect::<Result<_, _>>()?;
-        Ok((
-            self.slots.into_iter().map(|(slot, _)| slot).collect(),
-            textures,
-        ))
+        Ok((self.slots.into_iter().map(|(slot, _)| slot).collect(), textures))
     }
 
     /// A material and the set of texture coordinates of its pictures: that of the first that it has; pictures on
@@ -83,25 +80,16 @@ impl<'a> Materials<'a> {
         let mut uv_set = None;
         let info = |info: &Option<json::texture::Info>| {
             let info = info.as_ref()?;
-            let transform = info
-                .extensions
-                .as_ref()
-                .and_then(|e| e.texture_transform.clone());
+            let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
             Some((info.index.value(), info.tex_coord, transform))
         };
         let normal = material.normal_texture.as_ref();
         let slot = Slot {
-            name: material
-                .name
-                .clone()
-                .unwrap_or_else(|| format!("material {index}")),
+            name: material.name.clone().unwrap_or_else(|| format!("material {index}")),
             base_color: [red, green, blue].map(unit),
             metalness: unit(pbr.metallic_factor.0),
             roughness: unit(pbr.roughness_factor.0),
-            emission: material
-                .emissive_factor
-                .0
-                .map(|factor| not_negative(factor * strength)),
+            emission: material.emissive_factor.0.map(|factor| not_negative(factor * strength)),
             opacity: unit(opacity),
             alpha_mode: alpha_mode(material),
             alpha_cutoff: material.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0),
@@ -113,16 +101,9 @@ impl<'a> Materials<'a> {
                 .and_then(|e| e.transmission.as_ref())
                 .map_or(0.0, |e| unit(e.transmission_factor.0)),
             base_color_texture: self.texture(info(&pbr.base_color_texture), &mut uv_set),
-            metallic_roughness_texture: self
-                .texture(info(&pbr.metallic_roughness_texture), &mut uv_set),
+            metallic_roughness_texture: self.texture(info(&pbr.metallic_roughness_texture), &mut uv_set),
             normal_texture: self.texture(
-                normal.map(|normal| {
-                    (
-                        normal.index.value(),
-                        normal.tex_coord,
-                        self.normal_transform(index),
-                    )
-                }),
+                normal.map(|normal| (normal.index.value(), normal.tex_coord, self.normal_transform(index))),
                 &mut uv_set,
             ),
             normal_scale: normal.map_or(1.0, |normal| normal.scale),
@@ -143,21 +124,16 @@ impl<'a> Materials<'a> {
             .and_then(|transform| transform.tex_coord)
             .unwrap_or(set);
         if *uv_set.get_or_insert(set) != set {
-            self.warnings.push(format!(
-                "a texture on TEXCOORD_{set} beside others is left out"
-            ));
+            self.warnings
+                .push(format!("a texture on TEXCOORD_{set} beside others is left out"));
             return None;
         }
         let texture = &self.document.root.textures[texture];
         let image = texture.source.value();
-        let place = self
-            .images
-            .iter()
-            .position(|&known| known == image)
-            .unwrap_or_else(|| {
-                self.images.push(image);
-                self.images.len() - 1
-            });
+        let place = self.images.iter().position(|&known| known == image).unwrap_or_else(|| {
+            self.images.push(image);
+            self.images.len() - 1
+        });
         let sampler = texture
             .sampler
             .map(|sampler| &self.document.root.samplers[sampler.value()]);
@@ -183,11 +159,7 @@ fn unit(value: f32) -> f32 {
 }
 
 fn not_negative(value: f32) -> f32 {
-    if value.is_finite() {
-        value.max(0.0)
-    } else {
-        0.0
-    }
+    if value.is_finite() { value.max(0.0) } else { 0.0 }
 }
 
 fn alpha_mode(material: &Material) -> AlphaMode {

@@ -34,25 +34,20 @@ pub(super) fn load(path: &Path) -> Result<Model, ModelError> {
             None => primitive::read_mesh(&document, mesh_index, &mut materials, &mut warnings)?,
         };
         if whole.positions.len() + local.positions.len() > MAX_VERTICES {
-            return Err(
-                document.invalid(format!("its scene has more than {MAX_VERTICES} vertices"))
-            );
+            return Err(document.invalid(format!("its scene has more than {MAX_VERTICES} vertices")));
         }
         whole.append(transformed(local.clone(), world_from_node));
         meshes[mesh_index] = Some(local);
     }
     if whole.triangles.is_empty() {
-        return Err(ModelError::NoTriangles {
-            path: path.to_owned(),
-        });
+        return Err(ModelError::NoTriangles { path: path.to_owned() });
     }
     warnings.append(&mut materials.warnings);
     let (slots, textures) = materials.finish()?;
     warnings.dedup();
-    let name = path.file_stem().map_or_else(
-        || "model".into(),
-        |stem| stem.to_string_lossy().into_owned(),
-    );
+    let name = path
+        .file_stem()
+        .map_or_else(|| "model".into(), |stem| stem.to_string_lossy().into_owned());
     Ok(Model {
         name,
         mesh: whole,
@@ -77,10 +72,7 @@ fn general_warnings(root: &json::Root) -> Vec<String> {
         .filter(|name| !container::UNDERSTOOD.contains(&name.as_str()));
     let unknown: Vec<&str> = unknown.map(String::as_str).collect();
     if !unknown.is_empty() {
-        warnings.push(format!(
-            "optional extensions left out: {}",
-            unknown.join(", ")
-        ));
+        warnings.push(format!("optional extensions left out: {}", unknown.join(", ")));
     }
     warnings
 }
@@ -97,9 +89,7 @@ fn mesh_nodes(document: &Document) -> Result<Vec<(usize, DMat4)>, ModelError> {
     open.reverse();
     while let Some((index, world_from_parent)) = open.pop() {
         if std::mem::replace(&mut seen[index], true) {
-            return Err(document.invalid(format!(
-                "node {index} is in its scene twice, or is its own ancestor"
-            )));
+            return Err(document.invalid(format!("node {index} is in its scene twice, or is its own ancestor")));
         }
         let node = &root.nodes[index];
         let world_from_node = world_from_parent * parent_from_node(node);
@@ -118,16 +108,10 @@ fn scene_roots(root: &json::Root) -> Vec<usize> {
         return scene.nodes.iter().map(|node| node.value()).collect();
     }
     let mut is_child = vec![false; root.nodes.len()];
-    for child in root
-        .nodes
-        .iter()
-        .flat_map(|node| node.children.iter().flatten())
-    {
+    for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
         is_child[child.value()] = true;
     }
-    (0..root.nodes.len())
-        .filter(|&node| !is_child[node])
-        .collect()
+    (0..root.nodes.len()).filter(|&node| !is_child[node]).collect()
 }
 
 fn parent_from_node(node: &json::Node) -> DMat4 {
@@ -162,15 +146,11 @@ fn transformed(mut mesh: Mesh, world_from_node: DMat4) -> Mesh {
         *normal = (normals_from * normal.as_dvec3()).as_vec3();
     }
     for tangent in &mut mesh.tangents {
-        let direction = (linear * tangent.truncate().as_dvec3())
-            .normalize_or_zero()
-            .as_vec3();
+        let direction = (linear * tangent.truncate().as_dvec3()).normalize_or_zero().as_vec3();
         *tangent = direction.extend(if mirrors { -tangent.w } else { tangent.w });
     }
     if mirrors {
-        mesh.triangles
-            .iter_mut()
-            .for_each(|triangle| triangle.swap(1, 2));
+        mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
     }
     mesh.repair_normals();
     mesh

@@ -24,19 +24,13 @@ pub(super) fn read_mesh(
             Some(name) => format!("mesh \"{name}\""),
             None => format!("mesh {index}"),
         };
-        if primitive
-            .targets
-            .as_ref()
-            .is_some_and(|targets| !targets.is_empty())
-        {
+        if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
             warnings.push(format!("{place}: morph targets are left out"));
         }
         if attribute(primitive, &Semantic::Colors(0)).is_some() {
             warnings.push(format!("{place}: vertex colours are left out"));
         }
-        let Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) =
-            primitive.mode
-        else {
+        let Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) = primitive.mode else {
             warnings.push(format!("{place}: points and lines are left out"));
             continue;
         };
@@ -68,15 +62,11 @@ struct Reader<'a> {
 
 impl Reader<'_> {
     fn read(&self, mode: Mode, slot: u32, uv_set: u32) -> Result<Mesh, ModelError> {
-        let positions: Vec<[f32; 3]> = self
-            .vectors(&Semantic::Positions, "POSITION")?
-            .unwrap_or_default();
+        let positions: Vec<[f32; 3]> = self.vectors(&Semantic::Positions, "POSITION")?.unwrap_or_default();
         let count = positions.len();
         let normals: Option<Vec<[f32; 3]>> = self.optional(&Semantic::Normals, "NORMAL", count)?;
-        let tangents: Option<Vec<[f32; 4]>> =
-            self.optional(&Semantic::Tangents, "TANGENT", count)?;
-        let uvs: Option<Vec<[f32; 2]>> =
-            self.optional(&Semantic::TexCoords(uv_set), "TEXCOORD", count)?;
+        let tangents: Option<Vec<[f32; 4]>> = self.optional(&Semantic::Tangents, "TANGENT", count)?;
+        let uvs: Option<Vec<[f32; 2]>> = self.optional(&Semantic::TexCoords(uv_set), "TEXCOORD", count)?;
         let triangles = triangles(mode, &self.indices(count)?);
         let mut mesh = Mesh {
             positions: positions
@@ -109,11 +99,7 @@ impl Reader<'_> {
         Ok(mesh)
     }
 
-    fn vectors<const N: usize>(
-        &self,
-        semantic: &Semantic,
-        what: &str,
-    ) -> Result<Option<Vec<[f32; N]>>, ModelError> {
+    fn vectors<const N: usize>(&self, semantic: &Semantic, what: &str) -> Result<Option<Vec<[f32; N]>>, ModelError> {
         let what = format!("{what} of {}", self.place);
         attribute(self.primitive, semantic)
             .map(|accessor| self.document.read_vectors(accessor, &what))
@@ -143,9 +129,7 @@ impl Reader<'_> {
         };
         let indices = self.document.read_indices(accessor.value())?;
         match indices.iter().find(|&&index| index as usize >= count) {
-            Some(index) => {
-                Err(self.invalid(format!("index {index} where there are {count} vertices")))
-            }
+            Some(index) => Err(self.invalid(format!("index {index} where there are {count} vertices"))),
             None => Ok(indices),
         }
     }
@@ -178,9 +162,6 @@ fn triangles(mode: Mode, indices: &[u32]) -> Vec<[u32; 3]> {
             .split_first()
             .map(|(hub, rim)| rim.windows(2).map(|w| [w[0], w[1], *hub]).collect())
             .unwrap_or_default(),
-        _ => indices
-            .chunks_exact(3)
-            .map(|t| [t[0], t[1], t[2]])
-            .collect(),
+        _ => indices.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(),
     }
 }
