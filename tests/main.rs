@@ -1,1 +1,6 @@
+//! The integration tests, in one binary.
 
+#[path = "suite/environment.rs"]
+mod environment;
+#[path = "suite/environment_files.rs"]
+mod environment_files;

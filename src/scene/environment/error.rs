@@ -76,9 +76,7 @@ pub enum EnvironmentError {
         height: u64,
     },
     /// No pixels.
-    #[error(
-        "the environment {name} has no pixels: it needs at least one; save it again at its full size"
-    )]
+    #[error("the environment {name} has no pixels: it needs at least one; save it again at its full size")]
     Empty {
         /// The file or the map's name.
         name: String,

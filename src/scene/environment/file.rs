@@ -26,28 +26,18 @@ pub(super) fn load(path: &Path) -> Result<Environment, EnvironmentError> {
         Some("hdr") => super::radiance_hdr::read(path)?,
         Some("exr") => super::open_exr::read(path)?,
         _ => {
-            return Err(EnvironmentError::UnknownExtension {
-                path: path.to_owned(),
-            });
+            return Err(EnvironmentError::UnknownExtension { path: path.to_owned() });
         }
     };
     mend(&mut picture);
-    let name = path
-        .file_name()
-        .unwrap_or(path.as_os_str())
-        .to_string_lossy();
-    let mut environment =
-        Environment::from_texels(name, picture.width, picture.height, picture.texels)?;
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    let mut environment = Environment::from_texels(name, picture.width, picture.height, picture.texels)?;
     environment.warnings = picture.warnings;
     Ok(environment)
 }
 
 /// Refuses sizes that do not fit or are nothing.
-pub(super) fn check_size(
-    path: &Path,
-    width: u64,
-    height: u64,
-) -> Result<(u32, u32), EnvironmentError> {
+pub(super) fn check_size(path: &Path, width: u64, height: u64) -> Result<(u32, u32), EnvironmentError> {
     if width == 0 || height == 0 {
         return Err(EnvironmentError::Empty {
             name: path.display().to_string(),
@@ -104,11 +94,7 @@ fn mend(picture: &mut Picture) {
     };
     tell(not_a_number, "not-a-number", "0");
     tell(negative, "negative", "0");
-    tell(
-        infinite,
-        "infinite",
-        &format!("the largest finite one, {largest}"),
-    );
+    tell(infinite, "infinite", &format!("the largest finite one, {largest}"));
     if picture.width != 2 * picture.height {
         warnings.push(format!(
             "The picture is {} × {}, not twice as wide as it is high; it is stretched over the whole sphere.",

@@ -154,20 +154,14 @@ pub fn load(source: &EnvironmentSource) -> Result<Environment, EnvironmentError>
 
 /// The direction in the map's frame that a direction in the world meets when the map is turned by an angle about +Y,
 /// anticlockwise seen from above (+Z towards +X). `rotation` is the cosine and the sine of the angle.
-pub fn environment_local_from_world<T: Real>(
-    direction_world: Vec3<T>,
-    rotation: [T; 2],
-) -> Vec3<T> {
+pub fn environment_local_from_world<T: Real>(direction_world: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
     let [cos, sin] = rotation;
     let d = direction_world;
     vec3(d.x * cos - d.z * sin, d.y, d.x * sin + d.z * cos)
 }
 
 /// The inverse of [`environment_local_from_world`].
-pub fn environment_world_from_local<T: Real>(
-    direction_local: Vec3<T>,
-    rotation: [T; 2],
-) -> Vec3<T> {
+pub fn environment_world_from_local<T: Real>(direction_local: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
     let [cos, sin] = rotation;
     let d = direction_local;
     vec3(d.x * cos + d.z * sin, d.y, d.z * cos - d.x * sin)
@@ -184,10 +178,7 @@ pub fn environment_uv<T: Real>(direction: Vec3<T>) -> [T; 2] {
     let turns = direction.x.atan2(-z) * T::from_f64(0.5 * std::f64::consts::FRAC_1_PI);
     let u = T::select(turns.less(T::zero()), turns + T::one(), turns);
     // A tiny negative angle plus one turn rounds to a whole turn.
-    [
-        T::select(u.less(T::one()), u, T::zero()),
-        v.clamp(T::zero(), T::one()),
-    ]
+    [T::select(u.less(T::one()), u, T::zero()), v.clamp(T::zero(), T::one())]
 }
 
 /// The unit direction of a place in the map, the inverse of [`environment_uv`].
@@ -208,10 +199,7 @@ fn environment_direction_from_angles<T: Real>(u: T, cos_polar: T, sin_polar: T) 
 }
 
 /// Radiance from a unit direction: bilinear, wrapping in u, clamped at the poles in v.
-pub fn environment_radiance<T: Real>(
-    environment: &Environment,
-    direction_local: Vec3<T>,
-) -> Vec3<T> {
+pub fn environment_radiance<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> Vec3<T> {
     let uv = environment_uv(direction_local);
     let half = T::from_f64(0.5);
     let x = uv[0] * T::from_f64(f64::from(environment.width)) - half;
@@ -255,10 +243,7 @@ pub fn environment_sample<T: Real>(environment: &Environment, xi: Vec3<T>) -> (V
 fn split<T: Real>(xi: T, count: u32) -> (u32, T) {
     let scaled = xi * T::from_f64(f64::from(count));
     let whole = (scaled.to_f64() as u32).min(count - 1);
-    (
-        whole,
-        (scaled - T::from_f64(f64::from(whole))).min(T::one()),
-    )
+    (whole, (scaled - T::from_f64(f64::from(whole))).min(T::one()))
 }
 
 /// The direction at `place` (in [0, 1]², from the top left) of a cell, uniform in solid angle.
@@ -286,15 +271,7 @@ fn environment_direction_in_cell<T: Real>(
     let s = near_squared + across * (far * far - near_squared);
     let cos_from_pole = T::one() - (s + s);
     let sin_polar = T::from_f64(2.0) * (s * (T::one() - s)).safe_sqrt();
-    environment_direction_from_angles(
-        u,
-        if is_south {
-            -cos_from_pole
-        } else {
-            cos_from_pole
-        },
-        sin_polar,
-    )
+    environment_direction_from_angles(u, if is_south { -cos_from_pole } else { cos_from_pole }, sin_polar)
 }
 
 /// The density, per steradian, with which [`environment_sample`] draws a unit direction in the map's frame.

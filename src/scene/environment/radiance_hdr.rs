@@ -34,8 +34,7 @@ pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
     let mut texels: Vec<[f32; 4]> = Vec::new();
     let mut line = vec![0.0_f32; 3 * width as usize];
     for row in 0..height {
-        read_row(&mut rest, width, &mut line)
-            .map_err(|error| row_error(path, error, row, height))?;
+        read_row(&mut rest, width, &mut line).map_err(|error| row_error(path, error, row, height))?;
         if row == height / 8 {
             texels.reserve_exact(width as usize * (height - row) as usize);
         }
@@ -48,10 +47,7 @@ pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
     }
     let mut warnings = Vec::new();
     if header.exposure.is_some_and(|exposure| exposure != 1.0) {
-        warnings.push(
-            "The file's EXPOSURE is ignored, as most programs do; set the strength instead."
-                .to_owned(),
-        );
+        warnings.push("The file's EXPOSURE is ignored, as most programs do; set the strength instead.".to_owned());
     }
     Ok(Picture {
         width,
@@ -89,12 +85,10 @@ fn header_error(path: &Path, error: ImageError) -> EnvironmentError {
 fn row_error(path: &Path, error: ImageError, row: u32, height: u32) -> EnvironmentError {
     let path = path.to_owned();
     match error {
-        ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => {
-            EnvironmentError::Truncated {
-                path,
-                detail: format!("it ends in row {} of {height}", row + 1),
-            }
-        }
+        ImageError::IoError(error) if error.kind() == ErrorKind::UnexpectedEof => EnvironmentError::Truncated {
+            path,
+            detail: format!("it ends in row {} of {height}", row + 1),
+        },
         error => EnvironmentError::Damaged {
             path,
             detail: format!("row {} cannot be decoded ({error})", row + 1),

@@ -33,9 +33,8 @@ fn pixel_radiance(environment: &Environment, place: [u32; 2], size: [u32; 2]) ->
     let mut sum = [0.0; 3];
     for tap in 0..TAPS * TAPS {
         let offset = [tap % TAPS, tap / TAPS];
-        let uv = [0, 1].map(|axis| {
-            (place[axis] as f32 + (offset[axis] as f32 + 0.5) / TAPS as f32) / size[axis] as f32
-        });
+        let uv =
+            [0, 1].map(|axis| (place[axis] as f32 + (offset[axis] as f32 + 0.5) / TAPS as f32) / size[axis] as f32);
         let radiance = environment_radiance(environment, environment_direction(uv)).to_f32();
         sum = [0, 1, 2].map(|channel| sum[channel] + radiance[channel]);
     }

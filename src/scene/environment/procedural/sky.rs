@@ -6,7 +6,7 @@ use hw_skymodel::rgb::{Channel, SkyParams as ModelParams, SkyState};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::super::distribution::{Map, band_solid_angle, bilinear_row_integrals};
+use super::super::distribution::texel_solid_angle;
 use super::super::{Environment, EnvironmentError, environment_direction};
 use crate::optics::vector::{Vec3, vec3};
 
@@ -28,7 +28,7 @@ const WAVELENGTHS_UM: [f64; 3] = [0.612, 0.549, 0.464];
 const OZONE: [f64; 3] = [0.043, 0.030, 0.003];
 /// The model's unit to ours: sun and sky of the default parameters together shine on level ground with irradiance π,
 /// so that a white diffuse table under them has radiance 1.
-const EXPOSURE: f64 = 1.0;
+const EXPOSURE: f64 = 0.0324;
 
 /// A clear sky's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,24 +57,18 @@ impl Default for SkyParams {
 
 /// The unit direction to the centre of the sun, in the map's frame.
 pub fn sun_direction(params: &SkyParams) -> Vec3<f64> {
-    environment_direction([
-        params.sun_azimuth_deg / 360.0,
-        0.5 - params.sun_elevation_deg / 180.0,
-    ])
+    environment_direction([params.sun_azimuth_deg / 360.0, 0.5 - params.sun_elevation_deg / 180.0])
 }
 
 /// What the sun alone shines on a surface that faces it: its radiance integrated over its solid angle, in the units of
 /// the map. Attenuation by Rayleigh scattering, aerosol and ozone after Preetham, Shirley and Smits (1999), appendix.
 pub fn sun_irradiance(params: &SkyParams) -> [f64; 3] {
     let zenith_deg = 90.0 - params.sun_elevation_deg;
-    let air_mass =
-        1.0 / (zenith_deg.to_radians().cos() + 0.15 * (93.885 - zenith_deg).powf(-1.253));
+    let air_mass = 1.0 / (zenith_deg.to_radians().cos() + 0.15 * (93.885 - zenith_deg).powf(-1.253));
     let aerosol = (0.046_08 * params.turbidity - 0.045_86).max(0.0);
     [0, 1, 2].map(|channel| {
         let wavelength_um = WAVELENGTHS_UM[channel];
-        let thickness = 0.008_735 * wavelength_um.powf(-4.08)
-            + aerosol * wavelength_um.powf(-1.3)
-            + OZONE[channel];
+        let thickness = 0.008_735 * wavelength_um.powf(-4.08) + aerosol * wavelength_um.powf(-1.3) + OZONE[channel];
         EXPOSURE * SUN_OUTSIDE * SUN_COLOR[channel] * (-thickness * air_mass).exp()
     })
 }
@@ -118,9 +112,7 @@ impl Model {
             albedo: params.ground_albedo.map(|albedo| albedo as f32),
         };
         let state = SkyState::new(&model_params).map_err(|error| {
-            EnvironmentError::SkyParameter(format!(
-                "this sky cannot be computed: {error}; keep it in that range"
-            ))
+            EnvironmentError::SkyParameter(format!("this sky cannot be computed: {error}; keep it in that range"))
         })?;
         if !params.sun_azimuth_deg.is_finite() {
             let message = "this sky cannot be computed: the sun's azimuth is not a number; give it in degrees";
@@ -136,9 +128,8 @@ impl Model {
     fn radiance(&self, direction: Vec3<f64>) -> [f64; 3] {
         let zenith_rad = direction.y.clamp(0.0, 1.0).acos() as f32;
         let from_sun_rad = direction.dot(self.sun_direction).clamp(-1.0, 1.0).acos() as f32;
-        [Channel::R, Channel::G, Channel::B].map(|channel| {
-            EXPOSURE * f64::from(self.state.radiance(zenith_rad, from_sun_rad, channel)).max(0.0)
-        })
+        [Channel::R, Channel::G, Channel::B]
+            .map(|channel| EXPOSURE * f64::from(self.state.radiance(zenith_rad, from_sun_rad, channel)).max(0.0))
     }
 
     /// Radiance of ground that scatters the light of sun and sky evenly.
@@ -160,8 +151,7 @@ impl Model {
             let cos = ((f64::from(place / COLUMNS) + 0.5) / f64::from(ROWS)).sqrt();
             let azimuth_rad = (f64::from(place % COLUMNS) + 0.5) / f64::from(COLUMNS) * 2.0 * PI;
             let sin = (1.0 - cos * cos).sqrt();
-            let radiance =
-                self.radiance(vec3(sin * azimuth_rad.cos(), cos, sin * azimuth_rad.sin()));
+            let radiance = self.radiance(vec3(sin * azimuth_rad.cos(), cos, sin * azimuth_rad.sin()));
             sum = [0, 1, 2].map(|channel| sum[channel] + radiance[channel]);
         }
         sum.map(|sum| sum * PI / f64::from(ROWS * COLUMNS))
@@ -181,7 +171,10 @@ impl Model {
 fn add_sun(params: &SkyParams, texels: &mut [[f32; 4]]) {
     let direction = sun_direction(params);
     let coverage = sun_coverage(direction);
-    let covered = covered_solid_angle(&coverage);
+    let covered: f64 = coverage
+        .iter()
+        .map(|&(index, share)| share * texel_solid_angle(index as u32 / WIDTH, WIDTH, HEIGHT))
+        .sum();
     let radiance = sun_irradiance(params).map(|irradiance| irradiance / covered);
     for &(index, share) in &coverage {
         for (value, radiance) in texels[index].iter_mut().zip(radiance) {
@@ -193,9 +186,8 @@ fn add_sun(params: &SkyParams, texels: &mut [[f32; 4]]) {
 /// The texels that the disc touches, with the share of each that it covers.
 fn sun_coverage(sun_direction: Vec3<f64>) -> Vec<(usize, f64)> {
     let radius_rad = (0.5 * SUN_DIAMETER_DEG).to_radians();
-    let is_inside = |uv: [f64; 2]| {
-        (environment_direction(uv) - sun_direction).length() < 2.0 * (0.5 * radius_rad).sin()
-    };
+    let is_inside =
+        |uv: [f64; 2]| (environment_direction(uv) - sun_direction).length() < 2.0 * (0.5 * radius_rad).sin();
     let top_rad = sun_direction.y.clamp(-1.0, 1.0).acos() - radius_rad;
     let rows_per_rad = f64::from(HEIGHT) / PI;
     let first = (top_rad * rows_per_rad).floor().max(0.0) as u32;
@@ -208,9 +200,7 @@ fn sun_coverage(sun_direction: Vec3<f64>) -> Vec<(usize, f64)> {
                 (f64::from(column) + 0.5) / f64::from(WIDTH),
                 (f64::from(row) + 0.5) / f64::from(HEIGHT),
             ];
-            if (environment_direction(centre) - sun_direction).length()
-                > radius_rad + 2.0 * PI / f64::from(HEIGHT)
-            {
+            if (environment_direction(centre) - sun_direction).length() > radius_rad + 2.0 * PI / f64::from(HEIGHT) {
                 continue;
             }
             let count = (0..SUN_TAPS * SUN_TAPS)
@@ -221,37 +211,9 @@ fn sun_coverage(sun_direction: Vec3<f64>) -> Vec<(usize, f64)> {
                 })
                 .count();
             if count > 0 {
-                coverage.push((
-                    (row * WIDTH + column) as usize,
-                    count as f64 / (taps * taps),
-                ));
+                coverage.push(((row * WIDTH + column) as usize, count as f64 / (taps * taps)));
             }
         }
     }
     coverage
-}
-
-/// The solid angle that the bilinear picture of a coverage holds.
-fn covered_solid_angle(coverage: &[(usize, f64)]) -> f64 {
-    let mut texels = vec![[0.0; 4]; (WIDTH * HEIGHT) as usize];
-    for &(index, share) in coverage {
-        texels[index][0] = share as f32;
-    }
-    let map = Map {
-        width: WIDTH,
-        height: HEIGHT,
-        texels: &texels,
-    };
-    let row_of = |entry: Option<&(usize, f64)>| entry.map_or(0, |(index, _)| *index as u32 / WIDTH);
-    let first = row_of(coverage.first()).saturating_sub(1);
-    let last = (row_of(coverage.last()) + 1).min(HEIGHT - 1);
-    (first..=last)
-        .map(|row| {
-            let band = band_solid_angle(f64::from(row), f64::from(row + 1), f64::from(HEIGHT));
-            let sum: f64 = bilinear_row_integrals(&map, row, |texel| f64::from(texel[0]))
-                .iter()
-                .sum();
-            band / f64::from(WIDTH) * sum
-        })
-        .sum()
 }

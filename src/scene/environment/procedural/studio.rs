@@ -91,9 +91,9 @@ pub fn studio() -> Result<Environment, EnvironmentError> {
                     (row as f64 + 0.5) / f64::from(HEIGHT),
                 ];
                 let direction = environment_direction(uv);
-                let radiance = BOXES.iter().fold(room(direction), |behind, soft_box| {
-                    soft_box.over(behind, direction)
-                });
+                let radiance = BOXES
+                    .iter()
+                    .fold(room(direction), |behind, soft_box| soft_box.over(behind, direction));
                 texel[..3].copy_from_slice(&radiance.to_f32());
             }
         });
@@ -134,10 +134,7 @@ impl SoftBox {
     /// The signed distance, negative inside, of a point in the box's plane to its outline with rounded corners.
     fn distance(&self, x: f64, y: f64) -> f64 {
         let corner = 0.35 * self.half_width.min(self.half_height);
-        let (dx, dy) = (
-            x.abs() - self.half_width + corner,
-            y.abs() - self.half_height + corner,
-        );
+        let (dx, dy) = (x.abs() - self.half_width + corner, y.abs() - self.half_height + corner);
         dx.max(0.0).hypot(dy.max(0.0)) + dx.max(dy).min(0.0) - corner
     }
 }
