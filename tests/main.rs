@@ -1,5 +1,10 @@
-//! See docs/ARCHITECTURE.md.
+//! The integration tests, in one binary.
+#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+#[path = "suite/environment.rs"]
+mod environment;
+#[path = "suite/environment_files.rs"]
+mod environment_files;
 #[path = "suite/geometry.rs"]
 mod geometry;
 #[path = "suite/gltf.rs"]
