@@ -1,3 +1,5 @@
 //! Numbers about pictures and samples.
 
 pub mod film;
+pub mod plot;
+pub mod scatter;

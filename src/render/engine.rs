@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::analysis::film::Film;
+use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
 use crate::cpu::CpuEngine;
 use crate::document::job::Job;
 use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
@@ -142,4 +143,20 @@ fn auto() -> (Engine, EngineInfo) {
         Ok(opened) => opened,
         Err(_) => super::calibration::fastest_without_hardware(),
     }
+}
+
+/// Samples of a lobe, drawn by the function that the chosen engine renders with.
+///
+/// # Errors
+/// Where a GPU was asked for and fails.
+pub fn scatter(choice: EngineChoice, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
+    let device = match choice {
+        EngineChoice::Cpu => return Ok(crate::cpu::scatter::scatter(request)),
+        EngineChoice::Gpu => GpuDevice::open(AdapterKind::Any)?,
+        EngineChoice::Auto => match GpuDevice::open(AdapterKind::Hardware) {
+            Ok(device) => device,
+            Err(_) => return Ok(crate::cpu::scatter::scatter(request)),
+        },
+    };
+    crate::gpu::scatter::scatter(&device, request)
 }

@@ -6,10 +6,11 @@ mod assets;
 mod calibration;
 mod compile;
 mod engine;
+pub mod display;
 pub mod output;
 mod session;
 pub mod worker;
 
 pub use assets::Assets;
-pub use engine::{EngineChoice, EngineInfo};
+pub use engine::{EngineChoice, EngineInfo, scatter};
 pub use session::{Progress, Session, SessionError};
