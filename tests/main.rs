@@ -1,12 +1,6 @@
-//! See docs/ARCHITECTURE.md.
+//! The integration tests, in one binary.
 
-#[path = "suite/geometry.rs"]
-mod geometry;
-#[path = "suite/gltf.rs"]
-mod gltf;
-#[path = "suite/gltf_builder.rs"]
-mod gltf_builder;
-#[path = "suite/gltf_damaged.rs"]
-mod gltf_damaged;
-#[path = "suite/support.rs"]
-mod support;
+#[path = "suite/environment.rs"]
+mod environment;
+#[path = "suite/environment_files.rs"]
+mod environment_files;

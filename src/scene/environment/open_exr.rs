@@ -37,6 +37,18 @@ struct Layer {
 
 /// Reads the first layer that has colour or luminance, at its largest size, into its display window.
 pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
+    // Some damaged files fail assertions inside the crate instead of giving errors.
+    std::panic::catch_unwind(|| read_guarded(path)).unwrap_or_else(|_| {
+        let detail = "its pixels contradict each other".to_owned();
+        Err(EnvironmentError::Damaged {
+            path: path.to_owned(),
+            detail,
+        })
+    })
+}
+
+/// [`read`], where the crate may panic.
+fn read_guarded(path: &Path) -> Result<Picture, EnvironmentError> {
     let file_bytes = check_preamble(path)?;
     let file = BufReader::new(io(path, File::open(path))?);
     let reader = Reader::read_from_buffered(file, false).map_err(|error| exr_error(path, error))?;
@@ -86,13 +98,12 @@ fn check_preamble(path: &Path) -> Result<u64, EnvironmentError> {
             detail: "it has no content".to_owned(),
         });
     }
-    let Some((magic, version)) = preamble.split_first_chunk::<4>().filter(|(magic, _)| **magic == MAGIC) else {
+    let Some(version) = preamble.strip_prefix(&MAGIC) else {
         return Err(EnvironmentError::WrongContent {
             path: path.to_owned(),
             expected: "an OpenEXR",
         });
     };
-    debug_assert_eq!(magic, &MAGIC);
     if let Ok(version) = <[u8; 4]>::try_from(version)
         && u32::from_le_bytes(version) & DEEP_FLAG != 0
     {
@@ -219,7 +230,7 @@ impl Window {
 }
 
 /// Decompresses all chunks, on all cores, and hands the blocks on in order. (The crate's own parallel reader runs them
-/// as detached tasks, where a panic over a damaged file would end the program.)
+/// as detached tasks, where a panic would end the program.)
 fn for_each_block(
     mut chunks: impl ChunksReader,
     meta_data: &MetaData,
