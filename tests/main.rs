@@ -4,3 +4,5 @@
 mod environment;
 #[path = "suite/environment_files.rs"]
 mod environment_files;
+#[path = "suite/environment_twin.rs"]
+mod environment_twin;
