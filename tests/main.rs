@@ -1,14 +1,12 @@
 //! The integration tests, in one binary.
-<<<<<<< HEAD
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
-=======
->>>>>>> environment
 
 #[path = "suite/environment.rs"]
 mod environment;
 #[path = "suite/environment_files.rs"]
 mod environment_files;
-<<<<<<< HEAD
+#[path = "suite/environment_twin.rs"]
+mod environment_twin;
 #[path = "suite/geometry.rs"]
 mod geometry;
 #[path = "suite/gltf.rs"]
@@ -19,7 +17,3 @@ mod gltf_builder;
 mod gltf_damaged;
 #[path = "suite/support.rs"]
 mod support;
-=======
-#[path = "suite/environment_twin.rs"]
-mod environment_twin;
->>>>>>> environment
