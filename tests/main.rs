@@ -15,5 +15,7 @@ mod gltf;
 mod gltf_builder;
 #[path = "suite/gltf_damaged.rs"]
 mod gltf_damaged;
+#[path = "suite/renders.rs"]
+mod renders;
 #[path = "suite/support.rs"]
 mod support;
