@@ -35,30 +35,41 @@ fn register_fonts() {
 pub fn scatter_png(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> Result<(), PlotError> {
     register_fonts();
     let drawn = draw_scatter(path, request, cloud);
-    drawn.map_err(|error| PlotError { path: path.to_owned(), reason: error.to_string() })
+    drawn.map_err(|error| PlotError {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    })
 }
 
-fn draw_scatter(
-    path: &Path,
-    request: &ScatterRequest,
-    cloud: &ScatterCloud,
-) -> Result<(), Box<dyn std::error::Error>> {
+fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> Result<(), Box<dyn std::error::Error>> {
     let wo: Vec3<f32> = request.wo();
     // The mirror direction and the two axes across it.
     let mirror: Vec3<f32> = Vec3::from_f32([-wo.x, 0.0, wo.z]);
     let across: Vec3<f32> = Vec3::from_f32([mirror.z, 0.0, -mirror.x]);
-    let points = cloud.samples.iter().map(|&[x, y, z, _]| (across.dot(Vec3::from_f32([x, y, z])), y));
+    let points = cloud
+        .samples
+        .iter()
+        .map(|&[x, y, z, _]| (across.dot(Vec3::from_f32([x, y, z])), y));
     let reach = points.clone().map(|(x, y)| x.abs().max(y.abs())).fold(0.01, f32::max) * 1.05;
     let root = BitMapBackend::new(path, (800, 860)).into_drawing_area();
     root.fill(&WHITE)?;
-    let caption = format!("{}, roughness {}, view {}°", request.lobe.label(), request.roughness, request.view_angle_deg);
+    let caption = format!(
+        "{}, roughness {}, view {}°",
+        request.lobe.label(),
+        request.roughness,
+        request.view_angle_deg
+    );
     let mut chart = ChartBuilder::on(&root)
         .caption(caption, ("sans-serif", 26))
         .margin(14)
         .x_label_area_size(34)
         .y_label_area_size(54)
         .build_cartesian_2d(-reach..reach, -reach..reach)?;
-    chart.configure_mesh().light_line_style(TRANSPARENT).label_style(("sans-serif", 16)).draw()?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .label_style(("sans-serif", 16))
+        .draw()?;
     // Fainter the more there are, so that the density shows.
     let opacity = (4000.0 / cloud.samples.len().max(1) as f64).clamp(0.04, 0.8);
     let dot = RGBColor(20, 90, 170).mix(opacity).filled();

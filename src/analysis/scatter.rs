@@ -52,7 +52,11 @@ impl ScatterRequest {
     /// The frame: the axes.
     pub fn frame<T: Real>() -> Frame<T> {
         let (zero, one) = (T::zero(), T::one());
-        Frame { tangent: vec3(one, zero, zero), bitangent: vec3(zero, one, zero), normal: vec3(zero, zero, one) }
+        Frame {
+            tangent: vec3(one, zero, zero),
+            bitangent: vec3(zero, one, zero),
+            normal: vec3(zero, zero, one),
+        }
     }
 }
 
@@ -70,6 +74,9 @@ impl ScatterCloud {
     pub fn from_raw(mut samples: Vec<[f32; 4]>) -> Self {
         let drawn = samples.len();
         samples.retain(|sample| sample[3] >= 0.0);
-        Self { absorbed: (drawn - samples.len()) as u32, samples }
+        Self {
+            absorbed: (drawn - samples.len()) as u32,
+            samples,
+        }
     }
 }

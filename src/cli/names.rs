@@ -9,7 +9,10 @@ use crate::optics::tone::ToneCurve;
 /// The entry of a registry with this name.
 fn by_name<E: Copy>(all: &[E], name: fn(E) -> &'static str, text: &str) -> Result<E, String> {
     let names = || all.iter().map(|&entry| name(entry)).collect::<Vec<_>>().join(", ");
-    all.iter().copied().find(|&entry| name(entry) == text).ok_or_else(|| format!("expected one of {}", names()))
+    all.iter()
+        .copied()
+        .find(|&entry| name(entry) == text)
+        .ok_or_else(|| format!("expected one of {}", names()))
 }
 
 /// A parser for the names of a registry.

@@ -59,9 +59,16 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
     if arguments.curve == Curve::Custom {
         bail!("--curve custom has no points here; draw it in the editor, or choose a named curve");
     }
-    let ending = arguments.output.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let ending = arguments
+        .output
+        .extension()
+        .and_then(|ending| ending.to_str())
+        .unwrap_or_default();
     if !matches!(ending, "csv" | "png") {
-        bail!("{}: samples are written as .csv or .png; give the file one of these endings", arguments.output.display());
+        bail!(
+            "{}: samples are written as .csv or .png; give the file one of these endings",
+            arguments.output.display()
+        );
     }
     let request = ScatterRequest {
         lobe: arguments.lobe,
@@ -76,7 +83,10 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
     };
     let cloud = crate::render::scatter(arguments.engine, &request)?;
     if cloud.absorbed > 0 {
-        eprintln!("{} of {} samples were absorbed at the horizon", cloud.absorbed, request.count);
+        eprintln!(
+            "{} of {} samples were absorbed at the horizon",
+            cloud.absorbed, request.count
+        );
     }
     match ending {
         "csv" => write_csv(&arguments.output, &cloud)?,

@@ -77,7 +77,11 @@ impl Plan {
             ("emission", self.emission),
             ("depth-of-field", self.lens),
         ];
-        effects.into_iter().filter(|(_, is_on)| *is_on).map(|(name, _)| name).collect()
+        effects
+            .into_iter()
+            .filter(|(_, is_on)| *is_on)
+            .map(|(name, _)| name)
+            .collect()
     }
 
     /// The override constants of the pipeline, by their names in `shaders/scene/plan.wgsl`.

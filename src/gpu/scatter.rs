@@ -42,7 +42,11 @@ pub struct Scatter {
 /// # Errors
 /// If the shader does not compile or the device fails.
 pub fn scatter(gpu: &GpuDevice, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
-    let table: &[f32] = if request.table.is_empty() { &[0.0] } else { &request.table };
+    let table: &[f32] = if request.table.is_empty() {
+        &[0.0]
+    } else {
+        &request.table
+    };
     let tables = gpu.storage("the curve", bytemuck::cast_slice(table))?;
     let out = gpu.empty_storage("the samples", u64::from(request.count.min(BATCH)) * 16)?;
     let pipeline = pipeline(gpu)?;
@@ -98,12 +102,19 @@ fn pipeline(gpu: &GpuDevice) -> Result<wgpu::ComputePipeline, GpuError> {
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
         binding,
         visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
+        ty: wgpu::BindingType::Buffer {
+            ty,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
         count: None,
     };
     let storage = |read_only| wgpu::BufferBindingType::Storage { read_only };
     let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("scatter"), entries })
+        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("scatter"),
+            entries,
+        })
     };
     let tables = layout(&[entry(6, storage(true))]);
     let own = layout(&[entry(0, wgpu::BufferBindingType::Uniform), entry(1, storage(false))]);
@@ -134,7 +145,10 @@ fn bind_group(
 ) -> wgpu::BindGroup {
     let entries: Vec<_> = buffers
         .iter()
-        .map(|(binding, buffer)| wgpu::BindGroupEntry { binding: *binding, resource: buffer.as_entire_binding() })
+        .map(|(binding, buffer)| wgpu::BindGroupEntry {
+            binding: *binding,
+            resource: buffer.as_entire_binding(),
+        })
         .collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: Some("scatter"),

@@ -43,7 +43,14 @@ impl Compiler {
             seed: document.render.seed,
         };
         let plan = Plan::new(&materials, &environment, settings.camera.lens_radius);
-        Ok(Job { geometry, environment, materials, tables, settings, plan })
+        Ok(Job {
+            geometry,
+            environment,
+            materials,
+            tables,
+            settings,
+            plan,
+        })
     }
 
     fn materials(&mut self, wanted: Vec<MaterialSettings>) -> (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>) {
@@ -81,7 +88,13 @@ fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometr
         };
         target + distance * glam::DVec3::new(pitch.cos() * yaw.sin(), pitch.sin(), pitch.cos() * yaw.cos())
     });
-    Camera::look_at(position.to_array(), target.to_array(), settings.fov_deg, aspect, render.filter)
+    Camera::look_at(
+        position.to_array(),
+        target.to_array(),
+        settings.fov_deg,
+        aspect,
+        render.filter,
+    )
 }
 
 /// The distance at which the bounding sphere, of radius 1, just fits the picture's shorter side.

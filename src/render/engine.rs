@@ -134,8 +134,13 @@ pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineIn
 /// The processor's own name where the system tells it.
 fn processor_name() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
-    name.map_or_else(|| format!("{} processor", std::env::consts::ARCH), |(_, name)| name.trim().to_owned())
+    let name = text
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    name.map_or_else(
+        || format!("{} processor", std::env::consts::ARCH),
+        |(_, name)| name.trim().to_owned(),
+    )
 }
 
 fn auto() -> (Engine, EngineInfo) {

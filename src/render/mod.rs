@@ -5,8 +5,8 @@
 mod assets;
 mod calibration;
 mod compile;
-mod engine;
 pub mod display;
+mod engine;
 pub mod output;
 mod session;
 pub mod worker;

@@ -41,7 +41,11 @@ pub enum Format {
 /// # Errors
 /// [`OutputError::Format`] for another ending: ask before hours of rendering.
 pub fn format_of(path: &Path) -> Result<Format, OutputError> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let ending = path
+        .extension()
+        .and_then(|ending| ending.to_str())
+        .unwrap_or_default()
+        .to_ascii_lowercase();
     match ending.as_str() {
         "png" => Ok(Format::Png),
         "exr" => Ok(Format::Exr),
@@ -60,7 +64,10 @@ pub fn write(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), Outp
         Format::Exr => write_exr(path, image),
         Format::Hdr => write_hdr(path, image),
     };
-    written.map_err(|reason| OutputError::Write { path: path.to_owned(), reason })
+    written.map_err(|reason| OutputError::Write {
+        path: path.to_owned(),
+        reason,
+    })
 }
 
 fn write_png(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), String> {

@@ -123,7 +123,8 @@ impl Session {
         }
         let left = self.time_limit().map(|limit| limit.saturating_sub(self.render_time));
         let begun = Instant::now();
-        self.engine.step(left.map_or(budget, |left| budget.min(left)), progress.samples_wanted)?;
+        self.engine
+            .step(left.map_or(budget, |left| budget.min(left)), progress.samples_wanted)?;
         self.render_time += begun.elapsed();
         Ok(self.progress())
     }

@@ -160,6 +160,9 @@ impl Grid {
 
     fn border(&self, points: &[DVec3; 4], i: usize) -> DVec3 {
         let [a, b, c, d] = *points;
+        if [b, c, d] == [a; 3] {
+            return a; // A pole.
+        }
         let backwards = (a.to_array(), b.to_array()) > (d.to_array(), c.to_array());
         if backwards {
             combine(&self.bases[self.segments - i].value, &[d, c, b, a])
