@@ -1,5 +1,7 @@
 //! See docs/ARCHITECTURE.md.
 
+#[path = "suite/document.rs"]
+mod document;
 #[path = "suite/environment.rs"]
 mod environment;
 #[path = "suite/environment_files.rs"]
@@ -8,6 +10,8 @@ mod environment_files;
 mod environment_sampling;
 #[path = "suite/environment_twin.rs"]
 mod environment_twin;
+#[path = "suite/files.rs"]
+mod files;
 #[path = "suite/geometry.rs"]
 mod geometry;
 #[path = "suite/gltf.rs"]
@@ -20,3 +24,5 @@ mod gltf_damaged;
 mod renders;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/tone.rs"]
+mod tone;
