@@ -6,7 +6,10 @@ use clap::Parser;
 use glossmith::cli::Arguments;
 
 fn main() -> ExitCode {
-    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("warn,wgpu=error,naga=error")).init();
+    env_logger::Builder::from_env(
+        env_logger::Env::default().default_filter_or("warn,wgpu=error,wgpu_hal=off,naga=error"),
+    )
+    .init();
     let arguments = Arguments::parse();
     let outcome = match arguments.command {
         Some(command) => command.run(),

@@ -9,7 +9,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::names;
-use crate::document::parameter::{assign, parse_hex_color};
+use crate::document::parameter::{assign, parse_color};
 use crate::document::preset;
 use crate::document::{Background, Document, MaterialSettings, PixelFilter, Strategy};
 use crate::optics::random::Sequence;
@@ -112,7 +112,11 @@ pub struct RenderArguments {
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let default_output = [PathBuf::from("glossmith.png")];
-    let outputs = if arguments.outputs.is_empty() { &default_output } else { arguments.outputs.as_slice() };
+    let outputs = if arguments.outputs.is_empty() {
+        &default_output
+    } else {
+        arguments.outputs.as_slice()
+    };
     // Before the work, not after it.
     for path in outputs {
         format_of(path)?;
@@ -212,9 +216,13 @@ fn json_report(
 /// The document that the arguments describe.
 fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Result<Document> {
     let model = session.assets().model(&arguments.model)?;
-    let mut document = Document { model: arguments.model.clone(), ground: arguments.ground, ..Document::default() };
+    let mut document = Document {
+        model: arguments.model.clone(),
+        ground: arguments.ground,
+        ..Document::default()
+    };
     if let Some(name) = &arguments.material {
-        let material = preset::open_material(name)?;
+        let material = preset::find(name)?;
         material.warnings.iter().for_each(|warning| log::warn!("{warning}"));
         document.materials = vec![material.value];
     } else if matches!(arguments.model, ModelSource::File(_)) {
@@ -243,7 +251,11 @@ fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Resul
     let render = &mut document.render;
     [render.width, render.height] = arguments.size;
     // With a time limit only, samples are not limited.
-    render.samples = arguments.samples.unwrap_or(if arguments.time.is_some() { u32::MAX } else { render.samples });
+    render.samples = arguments.samples.unwrap_or(if arguments.time.is_some() {
+        u32::MAX
+    } else {
+        render.samples
+    });
     render.time_s = arguments.time;
     render.bounces = arguments.bounces;
     render.sequence = arguments.sequence;
@@ -258,24 +270,35 @@ fn parse_background(text: &str) -> Result<Background, String> {
     match text {
         "environment" => Ok(Background::Environment),
         "transparent" => Ok(Background::Transparent),
-        color => parse_hex_color(color)
+        color => parse_color(color)
             .map(Background::Color)
-            .ok_or_else(|| "expected environment, transparent or a colour such as #808080".to_owned()),
+            .map_err(|error| error.to_string()),
     }
 }
 
 fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
     let parts: Vec<&str> = text.split(',').collect();
-    let numbers: Vec<f64> = parts.iter().filter_map(|part| part.trim().parse().ok()).filter(|x: &f64| x.is_finite()).collect();
+    let numbers: Vec<f64> = parts
+        .iter()
+        .filter_map(|part| part.trim().parse().ok())
+        .filter(|x: &f64| x.is_finite())
+        .collect();
     let count = parts.len();
     <[f64; N]>::try_from(numbers)
         .ok()
         .filter(|_| count == N)
-        .ok_or_else(|| format!("{N} numbers with commas between them are expected, such as {}", ["1"; N].join(",")))
+        .ok_or_else(|| {
+            format!(
+                "{N} numbers with commas between them are expected, such as {}",
+                ["1"; N].join(",")
+            )
+        })
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let parsed = text.split_once(['x', 'X']).and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
+    let parsed = text
+        .split_once(['x', 'X'])
+        .and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
     parsed
         .filter(|size: &[u32; 2]| size.iter().all(|side| (1..=65_535).contains(side)))
         .ok_or_else(|| "a width and a height are expected, such as 640x480".to_owned())

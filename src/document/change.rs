@@ -103,6 +103,9 @@ impl Change {
 
 fn look_alike(old: &Document, new: &Document) -> bool {
     old.materials.len() == new.materials.len()
-        && std::iter::zip(&old.materials, &new.materials)
-            .all(|(old, new)| PARAMETERS.iter().all(|parameter| parameter.get(old) == parameter.get(new)))
+        && std::iter::zip(&old.materials, &new.materials).all(|(old, new)| {
+            PARAMETERS
+                .iter()
+                .all(|parameter| parameter.get(old) == parameter.get(new))
+        })
 }

@@ -17,7 +17,10 @@ const REMEMBERED: usize = 32;
 /// empty.
 pub fn compile(materials: &[MaterialSettings]) -> (Vec<Material<f32>>, Vec<f32>) {
     let mut tables = Vec::new();
-    let compiled = materials.iter().map(|settings| compile_one(settings, &mut tables)).collect();
+    let compiled = materials
+        .iter()
+        .map(|settings| compile_one(settings, &mut tables))
+        .collect();
     if tables.is_empty() {
         tables.push(0.0);
     }
@@ -72,7 +75,10 @@ static ALBEDOS: Mutex<Vec<(AlbedoKey, Arc<[f32]>)>> = Mutex::new(Vec::new());
 fn remembered_albedo(material: &Material<f32>, curve_table: Vec<f32>) -> Arc<[f32]> {
     let key = albedo_key(material, curve_table);
     let memory = || ALBEDOS.lock().unwrap_or_else(PoisonError::into_inner);
-    let known = memory().iter().find(|(of, _)| *of == key).map(|(_, table)| table.clone());
+    let known = memory()
+        .iter()
+        .find(|(of, _)| *of == key)
+        .map(|(_, table)| table.clone());
     if let Some(table) = known {
         return table;
     }

@@ -84,8 +84,16 @@ impl CustomCurve {
         let mut below = 0.0;
         let density: Vec<f64> = (0..=CUSTOM_INTERVALS)
             .map(|node| {
-                let share_of_width = if node == 0 || node == CUSTOM_INTERVALS { 0.5 } else { 1.0 };
-                let next = if node == CUSTOM_INTERVALS { 1.0 } else { xi_at(&segments, (node as f64 + 0.5) * width) };
+                let share_of_width = if node == 0 || node == CUSTOM_INTERVALS {
+                    0.5
+                } else {
+                    1.0
+                };
+                let next = if node == CUSTOM_INTERVALS {
+                    1.0
+                } else {
+                    xi_at(&segments, (node as f64 + 0.5) * width)
+                };
                 let density = (next - below).max(0.0) / (share_of_width * width);
                 below = next;
                 density
@@ -149,7 +157,11 @@ fn xi_at(segments: &[Segment], distance: f64) -> f64 {
     // Each halving gains a bit of the interval.
     for _ in 0..52 {
         let middle = 0.5 * (low + high);
-        if segment.distance(middle) <= distance { low = middle } else { high = middle }
+        if segment.distance(middle) <= distance {
+            low = middle
+        } else {
+            high = middle
+        }
     }
     low
 }

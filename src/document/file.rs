@@ -160,7 +160,10 @@ pub fn save_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 
 fn replace(target: &Path, bytes: &[u8]) -> io::Result<()> {
     let name = target.file_name().ok_or(io::ErrorKind::IsADirectory)?;
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = target
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
     let (temporary, mut file) = create_beside(folder, &name.to_string_lossy())?;
     let written = (|| {
         file.write_all(bytes)?;

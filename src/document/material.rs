@@ -169,6 +169,8 @@ impl Conductor {
 
     /// The metal of that name; custom where there is none.
     pub fn named(name: &str) -> Self {
-        Self::all().find(|conductor| conductor.name() == name).unwrap_or_default()
+        Self::all()
+            .find(|conductor| conductor.name() == name)
+            .unwrap_or_default()
     }
 }

@@ -22,13 +22,12 @@ pub use compile::compile;
 pub use custom_curve::CustomCurve;
 pub use file::{FileError, Loaded};
 pub use history::History;
-pub use job::Strategy;
 pub use material::{Conductor, MaterialSettings};
 pub use parameter::{Choice, Kind, Parameter, ParameterError, Value, assign, parameter};
-pub use preset::{PRESETS, load_material, material_by_name, open_material, save_material};
+pub use preset::{PRESETS, load_material, material_by_name, save_material};
 pub use project::{load_document, save_document};
 pub use registry::PARAMETERS;
-pub use settings::{Background, CameraSettings, Lighting, RenderSettings, SettingError, ViewSettings, range};
+pub use settings::{Background, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings, range};
 
 pub use crate::scene::camera::PixelFilter;
 

@@ -205,7 +205,7 @@ impl Parameter {
         let text = text.trim();
         let value = match &self.kind {
             Kind::Number { .. } => parse_number(text).map(Value::Number),
-            Kind::Color => parse_hex_color(text).or_else(|| parse_triple(text)).map(Value::Color),
+            Kind::Color => parse_color(text).ok().map(Value::Color),
             Kind::Triple { .. } => parse_triple(text).map(Value::Triple),
             Kind::Choice(choices) => choose(choices, text),
             Kind::Toggle => text.parse().ok().map(Value::Toggle),
@@ -268,7 +268,11 @@ impl Parameter {
     fn invalid(&self, value: &str, expected: String) -> ParameterError {
         ParameterError::Invalid {
             key: self.key,
-            value: if value.is_empty() { "nothing".to_owned() } else { shortened(value.to_owned()) },
+            value: if value.is_empty() {
+                "nothing".to_owned()
+            } else {
+                shortened(value.to_owned())
+            },
             expected,
         }
     }
@@ -276,11 +280,15 @@ impl Parameter {
     /// What the parameter takes, as a request.
     pub fn expected(&self) -> String {
         match &self.kind {
-            Kind::Number { range: [low, high], unit, .. } => {
+            Kind::Number {
+                range: [low, high],
+                unit,
+                ..
+            } => {
                 let space = if unit.is_empty() { "" } else { " " };
                 format!("give a number from {low} to {high}{space}{unit}")
             }
-            Kind::Color => "give #rrggbb (sRGB) or r,g,b (linear, each from 0 to 1)".to_owned(),
+            Kind::Color => format!("give {COLOR_EXPECTED}"),
             Kind::Triple { range: [low, high] } => {
                 format!("give r,g,b: three numbers, each from {low} to {high}")
             }
@@ -290,7 +298,9 @@ impl Parameter {
             }
             Kind::Toggle => "give true or false".to_owned(),
             Kind::Curve => {
-                format!("give points ξ:D,ξ:D,… such as 0:0,0.5:0.4,1:1, ξ from 0 to 1, D rising to at most {DISTANCE_MAX}")
+                format!(
+                    "give points ξ:D,ξ:D,… such as 0:0,0.5:0.4,1:1, ξ from 0 to 1, D rising to at most {DISTANCE_MAX}"
+                )
             }
         }
     }
@@ -315,8 +325,25 @@ fn parse_triple(text: &str) -> Option<[f32; 3]> {
     numbers?.try_into().ok()
 }
 
+/// A text that is no colour.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0} is no colour; give {COLOR_EXPECTED}")]
+pub struct ColorError(String);
+
+const COLOR_EXPECTED: &str = "#rrggbb (sRGB) or r,g,b (linear, each from 0 to 1)";
+
+/// Linear RGB, each in [0, 1], from `#rrggbb` (sRGB) or `r,g,b` (linear).
+///
+/// # Errors
+/// Says what would be right.
+pub fn parse_color(text: &str) -> Result<[f32; 3], ColorError> {
+    let color = parse_hex_color(text).or_else(|| parse_triple(text));
+    let color = color.filter(|color| color.iter().all(|x| (0.0..=1.0).contains(x)));
+    color.ok_or_else(|| ColorError(shortened(text.to_owned())))
+}
+
 /// Linear RGB from `#rrggbb` in sRGB.
-pub fn parse_hex_color(text: &str) -> Option<[f32; 3]> {
+fn parse_hex_color(text: &str) -> Option<[f32; 3]> {
     let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6)?;
     // A sign would pass as part of a number.
     let digits = Some(digits).filter(|digits| digits.bytes().all(|digit| digit.is_ascii_hexdigit()))?;
@@ -370,8 +397,12 @@ pub(super) fn nearest_key(key: &str) -> Option<&'static str> {
         let short = known.rsplit_once('.').map_or(known, |(_, short)| short);
         edit_distance(key, known).min(edit_distance(key, short))
     };
-    let near = PARAMETERS.iter().map(|p| (distance(p.key), p.key)).min_by_key(|(edits, _)| *edits);
-    near.filter(|(edits, _)| 3 * edits <= key.chars().count()).map(|(_, key)| key)
+    let near = PARAMETERS
+        .iter()
+        .map(|p| (distance(p.key), p.key))
+        .min_by_key(|(edits, _)| *edits);
+    near.filter(|(edits, _)| 3 * edits <= key.chars().count())
+        .map(|(_, key)| key)
 }
 
 /// Fewest insertions, removals and replacements of characters that turn one text into the other.

@@ -34,7 +34,9 @@ pub const SHIPPED: &[&str] = shipped! {
 /// The shipped materials, in the order of the menus.
 pub static PRESETS: LazyLock<Vec<MaterialSettings>> = LazyLock::new(|| {
     let parse = |text: &&str| parse_material(Path::new("assets/presets"), text.as_bytes());
-    let parsed = SHIPPED.iter().map(|text| parse(text).expect("shipped materials are valid").value);
+    let parsed = SHIPPED
+        .iter()
+        .map(|text| parse(text).expect("shipped materials are valid").value);
     parsed.collect()
 });
 
@@ -46,14 +48,16 @@ pub fn command_line_name(name: &str) -> String {
 /// The shipped material of that name, in upper or lower case, with spaces or hyphens.
 pub fn material_by_name(name: &str) -> Option<&'static MaterialSettings> {
     let wanted = command_line_name(name);
-    PRESETS.iter().find(|material| command_line_name(&material.name) == wanted)
+    PRESETS
+        .iter()
+        .find(|material| command_line_name(&material.name) == wanted)
 }
 
 /// The shipped material of that name, else the material in the file of that name.
 ///
 /// # Errors
 /// What is wrong with the file; the names that there are if there is no such file.
-pub fn open_material(name_or_path: &str) -> Result<Loaded<MaterialSettings>, FileError> {
+pub fn find(name_or_path: &str) -> Result<Loaded<MaterialSettings>, FileError> {
     if let Some(material) = material_by_name(name_or_path) {
         return Ok(Loaded {
             value: material.clone(),
@@ -63,7 +67,10 @@ pub fn open_material(name_or_path: &str) -> Result<Loaded<MaterialSettings>, Fil
     let path = Path::new(name_or_path);
     let is_path = path.extension().is_some() || path.components().count() > 1;
     if !is_path && !path.exists() {
-        let known: Vec<_> = PRESETS.iter().map(|material| command_line_name(&material.name)).collect();
+        let known: Vec<_> = PRESETS
+            .iter()
+            .map(|material| command_line_name(&material.name))
+            .collect();
         return Err(FileError::UnknownMaterial {
             name: name_or_path.to_owned(),
             known: known.join(", "),
@@ -129,7 +136,10 @@ fn migrate_0(object: &mut Map<String, Json>) {
     };
     for key in object.keys().cloned().collect::<Vec<_>>() {
         let is_meant = |known: &str| known == key || known.split_once('.').is_some_and(|(_, short)| short == key);
-        let mut meant = PARAMETERS.iter().map(|parameter| parameter.key).filter(|known| is_meant(known));
+        let mut meant = PARAMETERS
+            .iter()
+            .map(|parameter| parameter.key)
+            .filter(|known| is_meant(known));
         if let (Some(known), None) = (meant.next(), meant.next())
             && let Some(value) = object.remove(&key)
         {
@@ -212,7 +222,10 @@ impl From<MaterialSettings> for Map<String, Json> {
     fn from(material: MaterialSettings) -> Self {
         let mut values = Map::new();
         for parameter in PARAMETERS.iter() {
-            values.insert(parameter.key.to_owned(), parameter.json_from_value(&parameter.get(&material)));
+            values.insert(
+                parameter.key.to_owned(),
+                parameter.json_from_value(&parameter.get(&material)),
+            );
         }
         values.extend(material.extra);
         let mut object = Map::new();

@@ -67,7 +67,8 @@ fn document_from_json(object: &Map<String, Json>) -> Result<Document, String> {
     for (part, json) in object {
         let mut only = Map::new();
         only.insert(part.clone(), json.clone());
-        let read: Document = serde_json::from_value(Json::Object(only)).map_err(|error| format!("\"{part}\": {error}"))?;
+        let read: Document =
+            serde_json::from_value(Json::Object(only)).map_err(|error| format!("\"{part}\": {error}"))?;
         match part.as_str() {
             "model" => document.model = read.model,
             "ground" => document.ground = read.ground,
@@ -109,7 +110,10 @@ pub fn document_text(path: &Path, document: &Document) -> Result<String, FileErr
     if let ModelSource::File(model) = &document.model
         && model.to_str().is_none()
     {
-        return Err(content(format!("{} is not named in Unicode; rename the file", model.display())));
+        return Err(content(format!(
+            "{} is not named in Unicode; rename the file",
+            model.display()
+        )));
     }
     let known = known_part(&document).map_err(content)?;
     let mut object = Map::new();
@@ -173,6 +177,10 @@ fn folder(path: &Path) -> &Path {
 
 /// The path from the root, nothing looked up; as it is where the current folder is gone.
 fn absolute(path: &Path) -> PathBuf {
-    let path = if path.as_os_str().is_empty() { Path::new(".") } else { path };
+    let path = if path.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        path
+    };
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }

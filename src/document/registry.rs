@@ -120,15 +120,21 @@ fn specular_shape() -> Vec<Parameter> {
             symbol: "R_x, R_y",
             help: "Stretches the highlight along the surface's tangent, below 0 across it: brushed metal, hair, satin.",
             applies: |material| has_specular(material) && material.lobe.is_anisotropic(),
-            ..of("specular.anisotropy", number([-1.0, 1.0], [-1.0, 1.0], "", 0.01), field!(Number anisotropy))
+            ..of(
+                "specular.anisotropy",
+                number([-1.0, 1.0], [-1.0, 1.0], "", 0.01),
+                field!(Number anisotropy),
+            )
         },
         Parameter {
             label: "Rotation",
             help: "Turns the direction of the stretch about the normal, anticlockwise seen from outside.",
-            applies: |material| {
-                has_specular(material) && material.lobe.is_anisotropic() && material.anisotropy != 0.0
-            },
-            ..of("specular.rotation", number([-360.0, 360.0], [-180.0, 180.0], "°", 1.0), field!(Number rotation_deg))
+            applies: |material| has_specular(material) && material.lobe.is_anisotropic() && material.anisotropy != 0.0,
+            ..of(
+                "specular.rotation",
+                number([-360.0, 360.0], [-180.0, 180.0], "°", 1.0),
+                field!(Number rotation_deg),
+            )
         },
         Parameter {
             label: "Below the surface",
@@ -155,7 +161,11 @@ fn specular_fresnel() -> Vec<Parameter> {
                 let of_dielectric = matches!(material.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
                 has_specular(material) && of_dielectric && material.metalness < 1.0
             },
-            ..of("specular.ior", number([1.0, 4.0], [1.0, 2.5], "", 0.01), field!(Number ior))
+            ..of(
+                "specular.ior",
+                number([1.0, 4.0], [1.0, 2.5], "", 0.01),
+                field!(Number ior),
+            )
         },
         Parameter {
             label: "Tint",
@@ -197,7 +207,11 @@ fn emission() -> Vec<Parameter> {
             label: "Strength",
             help: "Radiance of the light that the surface gives off; at 1, white looks as bright as the furnace.",
             applies: |_| true,
-            ..of("emission.strength", number([0.0, 1e6], [0.0, 20.0], "", 0.1), field!(Number emission_strength))
+            ..of(
+                "emission.strength",
+                number([0.0, 1e6], [0.0, 20.0], "", 0.1),
+                field!(Number emission_strength),
+            )
         },
     ]
 }

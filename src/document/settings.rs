@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::job::Strategy;
 use super::Document;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
@@ -164,8 +163,15 @@ impl Default for RenderSettings {
     }
 }
 
-macro_rules! names {
-    ($type:ident { $($variant:ident, $name:literal, $label:literal, $help:literal;)* }) => {
+macro_rules! named {
+    ($(#[$doc:meta])* $type:ident { $($(#[$attribute:meta])* $variant:ident = $index:literal, $name:literal, $label:literal, $help:literal;)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[repr(u32)]
+        pub enum $type {
+            $(#[doc = $help] #[serde(rename = $name)] $(#[$attribute])* $variant = $index,)*
+        }
+
         impl $type {
             /// Every one, in the order of the menus.
             pub const ALL: &'static [$type] = &[$($type::$variant),*];
@@ -186,25 +192,13 @@ macro_rules! names {
     };
 }
 
-names! {
+named! {
+    /// How light is found. All three converge to the same picture.
     Strategy {
-        Lobe, "lobe", "Lobe", "Sample the material's lobe and see what light it meets.";
-        Light, "light", "Light", "Sample the light and see how the material reflects it.";
-        Mis, "mis", "Both (MIS)", "Sample both, each weighed by its density (Veach 1997).";
-    }
-}
-
-names! {
-    PixelFilter {
-        Box, "box", "Box", "Evenly over the pixel: what to compare renderers with.";
-        Gaussian, "gaussian", "Gaussian", "By a Gaussian of half a pixel's width, cut off at 1.5 pixels: smoother edges.";
-    }
-}
-
-names! {
-    Sequence {
-        Sobol, "sobol", "Sobol", "Owen-scrambled Sobol points: less noise for the same samples.";
-        Independent, "independent", "Independent", "Hashed random numbers: for statistics.";
+        Lobe = 0, "lobe", "Lobe", "Sample the material's lobe and see what light it meets.";
+        Light = 1, "light", "Light", "Sample the light and see how the material reflects it.";
+        #[default]
+        Mis = 2, "mis", "Both (MIS)", "Sample both, each weighed by its density (Veach 1997).";
     }
 }
 

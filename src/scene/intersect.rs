@@ -1,16 +1,13 @@
-//! Rays against the geometry.
+//! A ray against a triangle.
 
-use glam::{UVec2, Vec3A};
-use obvhs::ray::Ray;
-
-use super::geometry::Geometry;
+use glam::Vec3A;
 
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance in lengths of the ray's direction, above 0.
     pub t: f32,
-    /// Which triangle of [`Geometry::triangles`].
+    /// Which triangle of [`Geometry::triangles`](super::Geometry::triangles).
     pub triangle: u32,
     /// Weight of the triangle's second corner.
     pub u: f32,
@@ -81,45 +78,4 @@ pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max
     let t = normal.dot(a) / normal.dot(ray.direction);
     // False for NaN, too.
     (t > 0.0 && t < t_max).then_some((t, area_b / area, area_c / area))
-}
-
-impl Geometry {
-    /// The nearest triangle along a ray, in the geometry's units, with 0 < t < `t_max`.
-    pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
-        let frame = RayFrame::new(origin.into(), direction.into());
-        let mut ray = Ray::new(frame.origin, frame.direction, 0.0, t_max);
-        let mut nearest = None;
-        let mut state = self.bvh.new_traversal(ray.direction);
-        let mut node;
-        obvhs::traverse!(self.bvh, node, state, node.intersect_ray(&ray, state.oct_inv4), {
-            let [v0, v1, v2] = self.corners(state.primitive_id as usize).map(Vec3A::from_array);
-            if let Some((t, u, v)) = intersect_triangle(&frame, v0, v1, v2, ray.tmax) {
-                nearest = Some(Hit {
-                    t,
-                    triangle: state.primitive_id,
-                    u,
-                    v,
-                });
-                ray.tmax = t;
-            }
-        });
-        nearest
-    }
-
-    /// Whether any triangle is met with 0 < t < `t_max`.
-    pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
-        let frame = RayFrame::new(origin.into(), direction.into());
-        let ray = Ray::new(frame.origin, frame.direction, 0.0, t_max);
-        let mut state = self.bvh.new_traversal(ray.direction);
-        let mut node;
-        let mut met = false;
-        obvhs::traverse!(self.bvh, node, state, node.intersect_ray(&ray, state.oct_inv4), {
-            let [v0, v1, v2] = self.corners(state.primitive_id as usize).map(Vec3A::from_array);
-            if intersect_triangle(&frame, v0, v1, v2, t_max).is_some() {
-                met = true;
-                break;
-            }
-        });
-        met
-    }
 }

@@ -54,7 +54,9 @@ fn nodes_move_turn_mirror_and_nest() {
         let [a, b, c] = mesh.corners(triangle);
         let normal = (b - a).cross(c - a).normalize();
         near(normal, DVec3::X);
-        vertices.map(|vertex| near(mesh.normals[vertex as usize].as_dvec3(), DVec3::X));
+        for vertex in vertices {
+            near(mesh.normals[*vertex as usize].as_dvec3(), DVec3::X);
+        }
     }
     assert_eq!(
         (mesh.tangents[0].w, mesh.tangents[4].w),

@@ -14,8 +14,9 @@ const WIDTH: u32 = 2048;
 const HEIGHT: u32 = 1024;
 /// The diameter of the sun's disc.
 const SUN_DIAMETER_DEG: f64 = 0.53;
-/// Over this angle below the horizon haze turns into ground.
-const HAZE_DEG: f64 = 4.0;
+/// The optical thickness of the haze between the eye and the ground straight below. The thickness along a flatter ray is
+/// this over the sine of its angle, so that the ground fades into the horizon over some degrees.
+const HAZE_THICKNESS: f64 = 0.035;
 /// Looks per texel side when the share of it that the sun covers is counted.
 const SUN_TAPS: u32 = 32;
 /// The sun's illuminance outside the atmosphere in the sky model's unit, 683 lx: 133 800 lx.
@@ -50,7 +51,7 @@ impl Default for SkyParams {
             sun_elevation_deg: 40.0,
             sun_azimuth_deg: 222.0,
             turbidity: 3.0,
-            ground_albedo: [0.26, 0.22, 0.17],
+            ground_albedo: [0.23, 0.205, 0.175],
         }
     }
 }
@@ -157,11 +158,14 @@ impl Model {
         sum.map(|sum| sum * PI / f64::from(ROWS * COLUMNS))
     }
 
-    /// The sky above the horizon, the ground below, haze between.
+    /// The sky above the horizon, the ground through the haze below.
     fn radiance_with_ground(&self, direction: Vec3<f64>, ground: [f64; 3]) -> [f64; 3] {
         let above = self.radiance(direction);
-        let depth = (-direction.y.asin().to_degrees() / HAZE_DEG).clamp(0.0, 1.0);
-        let share = depth * depth * (3.0 - 2.0 * depth);
+        let share = if direction.y < 0.0 {
+            (HAZE_THICKNESS / direction.y).exp()
+        } else {
+            0.0
+        };
         [0, 1, 2].map(|channel| above[channel] * (1.0 - share) + ground[channel] * share)
     }
 }
