@@ -26,3 +26,5 @@ mod renders;
 mod support;
 #[path = "suite/tone.rs"]
 mod tone;
+#[path = "suite/tone_twin.rs"]
+mod tone_twin;

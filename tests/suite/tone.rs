@@ -123,7 +123,7 @@ fn agx_and_aces_have_their_published_values() {
 
 #[test]
 fn srgb_is_the_standards() {
-    let encoded = srgb_from_linear(Vec3::<f64>::from_f64([0.0_f64, 0.0031308, 0.214_041_14])).to_f64();
+    let encoded = srgb_from_linear(Vec3::<f64>::from_f64([0.0, 0.0031308, 0.214_041_14])).to_f64();
     assert_near(encoded, [0.0, 0.04045, 0.5], 1e-5);
     for byte in 0..=255 {
         let srgb = f64::from(byte) / 255.0;
