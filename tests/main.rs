@@ -7,6 +7,8 @@ mod environment;
 mod environment_files;
 #[path = "suite/environment_twin.rs"]
 mod environment_twin;
+#[path = "suite/fit.rs"]
+mod fit;
 #[path = "suite/geometry.rs"]
 mod geometry;
 #[path = "suite/gltf.rs"]

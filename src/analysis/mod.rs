@@ -1,5 +1,8 @@
 //! Numbers about pictures and samples.
 
 pub mod film;
+pub mod fit;
+pub mod lobe_model;
 pub mod plot;
 pub mod scatter;
+pub mod sphere_grid;
