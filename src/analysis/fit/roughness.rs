@@ -23,12 +23,12 @@ const ACCURACY: f64 = 1e-4;
 pub fn nearest_roughness(target: Profile, model: &LobeModel, view_angle_rad: f64, measure: Measure) -> Nearest {
     let distance = |roughness: f64| total_variation(target, &model.with_roughness(roughness), view_angle_rad, measure);
     let low = roughness_min(model.lobe).max(1e-3);
-    minimum(&[low, 1.0], SCAN_STEPS, &distance)
+    minimum([low, 1.0], SCAN_STEPS, ACCURACY, &distance)
 }
 
 /// The least value of a function of the roughness in a range: a scan, then golden-section search between the neighbours
-/// of the best, both in the logarithm.
-pub fn minimum(range: &[f64; 2], steps: usize, distance: &dyn Fn(f64) -> f64) -> Nearest {
+/// of the best, both in the logarithm, down to the relative `accuracy`.
+pub fn minimum(range: [f64; 2], steps: usize, accuracy: f64, distance: &dyn Fn(f64) -> f64) -> Nearest {
     let [low, high] = range.map(f64::ln);
     let at = |log: f64| Nearest {
         roughness: log.exp().min(range[1]),
@@ -40,7 +40,7 @@ pub fn minimum(range: &[f64; 2], steps: usize, distance: &dyn Fn(f64) -> f64) ->
         .min_by(|&i, &j| scan[i].total_variation.total_cmp(&scan[j].total_variation))
         .unwrap_or(0);
     let centre = low + step * best as f64;
-    let found = golden_section([(centre - step).max(low), (centre + step).min(high)], &at);
+    let found = golden_section([(centre - step).max(low), (centre + step).min(high)], accuracy, &at);
     if found.total_variation < scan[best].total_variation {
         found
     } else {
@@ -49,11 +49,11 @@ pub fn minimum(range: &[f64; 2], steps: usize, distance: &dyn Fn(f64) -> f64) ->
 }
 
 /// Golden-section search (Kiefer 1953).
-fn golden_section([mut low, mut high]: [f64; 2], at: &dyn Fn(f64) -> Nearest) -> Nearest {
+fn golden_section([mut low, mut high]: [f64; 2], accuracy: f64, at: &dyn Fn(f64) -> Nearest) -> Nearest {
     let ratio = 0.5 * (5.0_f64.sqrt() - 1.0);
     let mut left = at(high - ratio * (high - low));
     let mut right = at(low + ratio * (high - low));
-    while high - low > ACCURACY {
+    while high - low > accuracy {
         if left.total_variation < right.total_variation {
             high = low + ratio * (high - low);
             right = left;
