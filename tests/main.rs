@@ -12,6 +12,8 @@ mod environment_sampling;
 mod environment_twin;
 #[path = "suite/files.rs"]
 mod files;
+#[path = "suite/fit.rs"]
+mod fit;
 #[path = "suite/geometry.rs"]
 mod geometry;
 #[path = "suite/gltf.rs"]

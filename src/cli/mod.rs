@@ -3,6 +3,8 @@
 //! Exit codes: 0 done; 1 something could not be read, rendered or written (one line on stderr says what and what to
 //! do); 2 the arguments are wrong.
 
+mod fit;
+mod lobe_spec;
 mod names;
 mod render;
 mod scatter;
@@ -39,6 +41,8 @@ pub enum Command {
     Render(Box<render::RenderArguments>),
     /// Draw samples of a lobe, as the renderer draws them.
     Scatter(scatter::ScatterArguments),
+    /// Match the look of another lobe or of a measured material.
+    Fit(fit::FitArguments),
 }
 
 impl Command {
@@ -50,6 +54,7 @@ impl Command {
         match self {
             Command::Render(arguments) => render::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),
+            Command::Fit(arguments) => fit::run(&arguments),
         }
     }
 }
