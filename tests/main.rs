@@ -1,5 +1,7 @@
 //! See docs/ARCHITECTURE.md.
 
+#[path = "suite/check.rs"]
+mod check;
 #[path = "suite/document.rs"]
 mod document;
 #[path = "suite/environment.rs"]

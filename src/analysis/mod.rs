@@ -6,8 +6,8 @@
 pub mod chi_square;
 pub mod error;
 pub mod film;
-pub mod histogram;
 pub mod fit;
+pub mod histogram;
 pub mod lobe_model;
 pub mod plot;
 pub mod quadrature;

@@ -202,7 +202,11 @@ impl App {
 
     fn desk_material(&self) -> MaterialSettings {
         let materials = &self.document.materials;
-        materials.get(self.panels.slot).or(materials.last()).cloned().unwrap_or_default()
+        materials
+            .get(self.panels.slot)
+            .or(materials.last())
+            .cloned()
+            .unwrap_or_default()
     }
 
     fn apply(&mut self, ctx: &egui::Context, action: Action) {
@@ -259,7 +263,11 @@ impl App {
             }
             Command::ToggleTheme => {
                 let is_dark = ctx.theme() == egui::Theme::Dark;
-                self.theme = if is_dark { egui::ThemePreference::Light } else { egui::ThemePreference::Dark };
+                self.theme = if is_dark {
+                    egui::ThemePreference::Light
+                } else {
+                    egui::ThemePreference::Dark
+                };
                 ctx.set_theme(self.theme);
             }
             Command::ResetLayout => {
@@ -311,12 +319,16 @@ impl App {
             None if self.panels.resolution != Resolution::Document => return,
             None => {}
         }
-        let change = self.submitted.as_ref().map_or(Change::everything(), |old| Change::between(old, &wanted));
+        let change = self
+            .submitted
+            .as_ref()
+            .map_or(Change::everything(), |old| Change::between(old, &wanted));
         if change.is_none() {
             return;
         }
         let is_moving = is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
-        self.worker.submit(&wanted, if is_moving { Pace::Moving } else { Pace::Still });
+        self.worker
+            .submit(&wanted, if is_moving { Pace::Moving } else { Pace::Still });
         self.submitted = Some(wanted);
         self.submitted_at = Instant::now();
     }
@@ -324,7 +336,9 @@ impl App {
     fn show(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let snapshot = self.worker.snapshot();
         let is_dark = ui.visuals().dark_mode;
-        let bar = egui::Frame::new().fill(ui.visuals().panel_fill).inner_margin(egui::Margin::symmetric(8, 3));
+        let bar = egui::Frame::new()
+            .fill(ui.visuals().panel_fill)
+            .inner_margin(egui::Margin::symmetric(8, 3));
         let answer = egui::Panel::top("menu")
             .frame(bar)
             .show_separator_line(false)
@@ -338,7 +352,9 @@ impl App {
             .show_separator_line(false)
             .exact_size(theme::BAR_HEIGHT)
             .show(ui, |ui| status::show(ui, &snapshot, &self.meter));
-        let ground = egui::Frame::new().fill(theme::ground(is_dark)).inner_margin(egui::Margin::symmetric(0, 3));
+        let ground = egui::Frame::new()
+            .fill(theme::ground(is_dark))
+            .inner_margin(egui::Margin::symmetric(0, 3));
         egui::CentralPanel::default().frame(ground).show(ui, |ui| {
             let mut desk = Desk {
                 document: &mut self.document,
