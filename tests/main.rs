@@ -1,6 +1,14 @@
 //! The integration tests, in one binary.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+#[path = "suite/cli_errors.rs"]
+mod cli_errors;
+#[path = "suite/cli_render.rs"]
+mod cli_render;
+#[path = "suite/cli_scatter.rs"]
+mod cli_scatter;
+#[path = "suite/cli_support.rs"]
+mod cli_support;
 #[path = "suite/environment.rs"]
 mod environment;
 #[path = "suite/environment_files.rs"]
