@@ -9,6 +9,8 @@ mod cli_render;
 mod cli_scatter;
 #[path = "suite/cli_support.rs"]
 mod cli_support;
+#[path = "suite/docs.rs"]
+mod docs;
 #[path = "suite/environment.rs"]
 mod environment;
 #[path = "suite/environment_files.rs"]

@@ -198,5 +198,6 @@ fn wrong_arguments_are_refused() {
         place.refused(2, &format!("scatter {arguments}"), &words);
     }
     place.refused(1, "paint", &["paint", "no such command or file", "--help"]);
+    place.write("notes.txt", b"milk, bread");
     place.refused(1, "--engine cpu notes.txt", &["notes.txt", ".glb"]);
 }

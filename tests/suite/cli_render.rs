@@ -257,7 +257,7 @@ fn parameters_change_the_picture() {
         (
             "specular.horizon=mirror",
             "specular.horizon=absorb",
-            "--set specular.roughness=0.9",
+            "--environment furnace --set specular.roughness=0.6 --set specular.curve=long-tail",
         ),
         ("specular.fresnel=none", "specular.fresnel=conductor", ""),
         (
