@@ -2,6 +2,16 @@
 
 #[path = "suite/check.rs"]
 mod check;
+#[path = "suite/cli_errors.rs"]
+mod cli_errors;
+#[path = "suite/cli_render.rs"]
+mod cli_render;
+#[path = "suite/cli_scatter.rs"]
+mod cli_scatter;
+#[path = "suite/cli_support.rs"]
+mod cli_support;
+#[path = "suite/docs.rs"]
+mod docs;
 #[path = "suite/document.rs"]
 mod document;
 #[path = "suite/environment.rs"]

@@ -7,6 +7,7 @@ mod check;
 mod fit;
 mod lobe_spec;
 mod names;
+mod parse;
 mod render;
 mod scatter;
 
@@ -63,10 +64,11 @@ impl Command {
     }
 }
 
-/// Renders the default scene to a picture and says where it is: what the program does where no window can be opened.
+/// Renders the default scene, with these files in the place of its parts, to a picture and says where it is: what the
+/// program does where no window can be opened.
 ///
 /// # Errors
-/// Where the picture can't be written.
-pub fn render_default_scene(engine: EngineChoice) -> anyhow::Result<()> {
-    render::run_default(engine)
+/// One line that names the file, what is wrong and what to do.
+pub fn render_default_scene(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()> {
+    render::run_default(files, engine)
 }
