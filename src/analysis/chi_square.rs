@@ -30,20 +30,36 @@ pub struct PolarGrid {
 impl PolarGrid {
     /// Rings that hold equal numbers of the `pilot` samples. The axis (the frame's normal) should be the mirror
     /// direction where the lobe is narrow.
-    pub fn following(frame: Frame<f64>, rings: usize, sectors: usize, pilot: impl IntoIterator<Item = Vec3<f64>>) -> Self {
+    pub fn following(
+        frame: Frame<f64>,
+        rings: usize,
+        sectors: usize,
+        pilot: impl IntoIterator<Item = Vec3<f64>>,
+    ) -> Self {
         let mut angles: Vec<f64> = pilot.into_iter().map(|w| polar_angle_rad(&frame, w)).collect();
         angles.sort_by(f64::total_cmp);
         let quantile = |ring: usize| angles.get(ring * angles.len() / rings).copied();
-        let mut ring_ends_rad: Vec<f64> = (1..rings).filter_map(quantile).filter(|a| *a > 0.0 && *a < PI).collect();
+        let mut ring_ends_rad: Vec<f64> = (1..rings)
+            .filter_map(quantile)
+            .filter(|a| *a > 0.0 && *a < PI)
+            .collect();
         ring_ends_rad.dedup();
         ring_ends_rad.push(PI);
-        Self { frame, ring_ends_rad, sectors }
+        Self {
+            frame,
+            ring_ends_rad,
+            sectors,
+        }
     }
 
     /// Rings of equal solid angle.
     pub fn equal_area(frame: Frame<f64>, rings: usize, sectors: usize) -> Self {
         let end = |ring: usize| (1.0 - 2.0 * ring as f64 / rings as f64).acos();
-        Self { frame, ring_ends_rad: (1..=rings).map(end).collect(), sectors }
+        Self {
+            frame,
+            ring_ends_rad: (1..=rings).map(end).collect(),
+            sectors,
+        }
     }
 
     /// Number of cells.
@@ -55,7 +71,10 @@ impl PolarGrid {
     pub fn cell(&self, direction: Vec3<f64>) -> usize {
         let local = local_from_world(&self.frame, direction);
         let polar = polar_angle_rad(&self.frame, direction);
-        let ring = self.ring_ends_rad.partition_point(|end| *end < polar).min(self.ring_ends_rad.len() - 1);
+        let ring = self
+            .ring_ends_rad
+            .partition_point(|end| *end < polar)
+            .min(self.ring_ends_rad.len() - 1);
         let turn = (local.y.atan2(local.x) + PI) / TAU;
         ring * self.sectors + ((turn * self.sectors as f64) as usize).min(self.sectors - 1)
     }
@@ -74,9 +93,15 @@ impl PolarGrid {
     /// The probability of each cell under `density` (per steradian), which may jump across the planes through the
     /// origin with the normals `cuts`. Exact to a thousandth of a count of `samples` in the smallest cells that matter.
     pub fn probabilities(&self, samples: u64, cuts: &[Vec3<f64>], density: impl Fn(Vec3<f64>) -> f64) -> Vec<f64> {
-        let function = SphereFunction { frame: self.frame, cuts, f: density };
+        let function = SphereFunction {
+            frame: self.frame,
+            cuts,
+            f: density,
+        };
         let absolute = CELL_TOLERANCE * EXPECTATION_MIN / samples.max(1) as f64;
-        (0..self.cells()).map(|cell| function.integrate(self.patch(cell), CELL_TOLERANCE, absolute)).collect()
+        (0..self.cells())
+            .map(|cell| function.integrate(self.patch(cell), CELL_TOLERANCE, absolute))
+            .collect()
     }
 }
 
@@ -141,12 +166,20 @@ pub fn test_counts(observed: &[u64], expected: &[f64]) -> ChiSquare {
     } else {
         upper_tail(statistic, f64::from(degrees_of_freedom))
     };
-    ChiSquare { statistic, degrees_of_freedom, p_value }
+    ChiSquare {
+        statistic,
+        degrees_of_freedom,
+        p_value,
+    }
 }
 
 /// Probability that a χ² variable of so many degrees of freedom is at least `statistic`.
 pub fn upper_tail(statistic: f64, degrees_of_freedom: f64) -> f64 {
-    if statistic <= 0.0 { 1.0 } else { gamma_ur(0.5 * degrees_of_freedom, 0.5 * statistic) }
+    if statistic <= 0.0 {
+        1.0
+    } else {
+        gamma_ur(0.5 * degrees_of_freedom, 0.5 * statistic)
+    }
 }
 
 /// The p-value below which one of `cases` independent tests fails, so that all of them together fail by chance with

@@ -61,7 +61,12 @@ pub fn z_test(a: Estimates<'_>, b: Estimates<'_>) -> ZTest {
         _ if sum.is_infinite() => 0.0,
         _ => upper_tail(sum, compared as f64),
     };
-    ZTest { beyond_three_sigma: beyond as f64 / compared.max(1) as f64, max_z, p_value, compared }
+    ZTest {
+        beyond_three_sigma: beyond as f64 / compared.max(1) as f64,
+        max_z,
+        p_value,
+        compared,
+    }
 }
 
 #[cfg(test)]
@@ -87,11 +92,22 @@ mod tests {
         const PIXELS: u32 = 20_000;
         let (sigma, variance) = (0.1, vec![0.01; PIXELS as usize]);
         let image = |seed: u32, offset: f64| -> Vec<f64> {
-            (0..PIXELS).map(|pixel| 1.0 + offset + sigma * noise(pixel, seed)).collect()
+            (0..PIXELS)
+                .map(|pixel| 1.0 + offset + sigma * noise(pixel, seed))
+                .collect()
         };
         let compare = |offset: f64| {
             let (a, b) = (image(1, 0.0), image(2, offset));
-            z_test(Estimates { mean: &a, variance: &variance }, Estimates { mean: &b, variance: &variance })
+            z_test(
+                Estimates {
+                    mean: &a,
+                    variance: &variance,
+                },
+                Estimates {
+                    mean: &b,
+                    variance: &variance,
+                },
+            )
         };
         let same = compare(0.0);
         assert!(same.p_value > 1e-3 && same.p_value < 0.999, "{same:?}");
@@ -107,6 +123,16 @@ mod tests {
         let one = |mean: &'static [f64]| Estimates { mean, variance: &[0.0] };
         assert_eq!(z_test(one(&[1.0]), one(&[1.0])).compared, 0);
         assert_eq!(z_test(one(&[1.0]), one(&[2.0])).p_value, 0.0);
-        assert_eq!(z_test(one(&[f64::NAN]), Estimates { mean: &[1.0], variance: &zero }).p_value, 0.0);
+        assert_eq!(
+            z_test(
+                one(&[f64::NAN]),
+                Estimates {
+                    mean: &[1.0],
+                    variance: &zero
+                }
+            )
+            .p_value,
+            0.0
+        );
     }
 }

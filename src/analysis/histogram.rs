@@ -19,7 +19,12 @@ impl Histogram {
     /// Empty bins over [`low`, `high`]; at least one bin.
     pub fn new(low: f64, high: f64, bins: usize) -> Self {
         let bins = bins.max(1);
-        Self { low, width: (high - low) / bins as f64, counts: vec![0; bins], total: 0 }
+        Self {
+            low,
+            width: (high - low) / bins as f64,
+            counts: vec![0; bins],
+            total: 0,
+        }
     }
 
     /// Counts a value; one outside the interval counts in the total only. The upper end belongs to the last bin.
@@ -46,7 +51,11 @@ impl Histogram {
     pub fn density(&self) -> Vec<[f64; 2]> {
         let scale = 1.0 / (self.width * self.total.max(1) as f64);
         let middle = |bin: usize| self.low + self.width * (bin as f64 + 0.5);
-        self.counts.iter().enumerate().map(|(bin, count)| [middle(bin), *count as f64 * scale]).collect()
+        self.counts
+            .iter()
+            .enumerate()
+            .map(|(bin, count)| [middle(bin), *count as f64 * scale])
+            .collect()
     }
 }
 
@@ -66,7 +75,10 @@ pub fn angle_density(frame: &Frame<f64>, alpha_rad: f64, steps: u32, density: im
     let sum: f64 = (0..steps)
         .map(|i| {
             let phi_rad = TAU * (f64::from(i) + 0.5) / f64::from(steps);
-            density(world_from_local(frame, vec3(sine * phi_rad.cos(), sine * phi_rad.sin(), cosine)))
+            density(world_from_local(
+                frame,
+                vec3(sine * phi_rad.cos(), sine * phi_rad.sin(), cosine),
+            ))
         })
         .sum();
     sum * sine * TAU / f64::from(steps)

@@ -41,7 +41,10 @@ pub fn gauss_legendre(order: usize) -> Vec<[f64; 2]> {
 /// ∫ f(x) dx over [`low`, `high`] by a rule of [`gauss_legendre`].
 pub fn integrate(rule: &[[f64; 2]], low: f64, high: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (half, middle) = (0.5 * (high - low), 0.5 * (high + low));
-    rule.iter().map(|[x, weight]| weight * f(middle + half * x)).sum::<f64>() * half
+    rule.iter()
+        .map(|[x, weight]| weight * f(middle + half * x))
+        .sum::<f64>()
+        * half
 }
 
 /// ∫ f(ω) dω over the directions with n·ω > 0, n = +z: `order` nodes in the cosine, twice as many equal steps in azimuth.
@@ -118,7 +121,9 @@ impl<F: Fn(Vec3<f64>) -> f64> SphereFunction<'_, F> {
             }
             breaks.sort_by(f64::total_cmp);
             let parts = breaks.windows(2);
-            sine * parts.map(|part| integrate(&PATCH_NODES, part[0], part[1], on_circle)).sum::<f64>()
+            sine * parts
+                .map(|part| integrate(&PATCH_NODES, part[0], part[1], on_circle))
+                .sum::<f64>()
         })
     }
 }
@@ -127,7 +132,10 @@ impl Patch {
     fn quarters(self) -> [Patch; 4] {
         let halves = |[low, high]: [f64; 2]| [[low, 0.5 * (low + high)], [0.5 * (low + high), high]];
         let (polar, azimuth) = (halves(self.polar_rad), halves(self.azimuth_rad));
-        let patch = |i: usize, j: usize| Patch { polar_rad: polar[i], azimuth_rad: azimuth[j] };
+        let patch = |i: usize, j: usize| Patch {
+            polar_rad: polar[i],
+            azimuth_rad: azimuth[j],
+        };
         [patch(0, 0), patch(0, 1), patch(1, 0), patch(1, 1)]
     }
 }
@@ -155,7 +163,10 @@ pub fn integrate_sphere<F: Fn(Vec3<f64>) -> f64>(function: &SphereFunction<'_, F
         let inner = if ring + 1 == RINGS { 0.0 } else { 0.5 * outer };
         for sector in 0..SECTORS {
             let azimuth = |i: i32| TAU * f64::from(i) / f64::from(SECTORS) - PI;
-            let patch = Patch { polar_rad: [inner, outer], azimuth_rad: [azimuth(sector), azimuth(sector + 1)] };
+            let patch = Patch {
+                polar_rad: [inner, outer],
+                azimuth_rad: [azimuth(sector), azimuth(sector + 1)],
+            };
             sum += function.integrate(patch, tolerance, 0.1 * tolerance);
         }
     }
@@ -173,7 +184,10 @@ mod tests {
             let rule = gauss_legendre(order);
             let degree = 2 * order as i32 - 2;
             let value = integrate(&rule, -1.0, 1.0, |x| x.powi(degree));
-            assert!((value - 2.0 / f64::from(degree + 1)).abs() < 1e-13, "order {order}: {value}");
+            assert!(
+                (value - 2.0 / f64::from(degree + 1)).abs() < 1e-13,
+                "order {order}: {value}"
+            );
         }
         // One degree more than the rule can do is not exact: the check above has teeth.
         let value = integrate(&gauss_legendre(3), -1.0, 1.0, |x| x.powi(6));
@@ -186,9 +200,17 @@ mod tests {
         let up = vec3(0.0, 0.0, 1.0);
         let frame = frame_from_normal(axis);
         // A peak of 1/distance at the axis, and a jump at the horizon.
-        let peak = SphereFunction { frame, cuts: &[], f: |w: Vec3<f64>| 1.0 / (w - axis).length() };
+        let peak = SphereFunction {
+            frame,
+            cuts: &[],
+            f: |w: Vec3<f64>| 1.0 / (w - axis).length(),
+        };
         assert!((integrate_sphere(&peak, 1e-6) - 2.0 * TAU).abs() < 1e-5);
-        let jump = SphereFunction { frame, cuts: &[up], f: |w: Vec3<f64>| if w.z > 0.0 { w.z + 0.5 } else { 0.0 } };
+        let jump = SphereFunction {
+            frame,
+            cuts: &[up],
+            f: |w: Vec3<f64>| if w.z > 0.0 { w.z + 0.5 } else { 0.0 },
+        };
         let value = integrate_sphere(&jump, 1e-6);
         assert!((value - TAU).abs() < 5e-5, "{value}");
         assert!((integrate_hemisphere(8, |w| w.z * w.z) - TAU / 3.0).abs() < 1e-12);
