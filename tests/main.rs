@@ -1,1 +1,34 @@
+//! See docs/ARCHITECTURE.md.
 
+#[path = "suite/check.rs"]
+mod check;
+#[path = "suite/document.rs"]
+mod document;
+#[path = "suite/environment.rs"]
+mod environment;
+#[path = "suite/environment_files.rs"]
+mod environment_files;
+#[path = "suite/environment_sampling.rs"]
+mod environment_sampling;
+#[path = "suite/environment_twin.rs"]
+mod environment_twin;
+#[path = "suite/files.rs"]
+mod files;
+#[path = "suite/fit.rs"]
+mod fit;
+#[path = "suite/geometry.rs"]
+mod geometry;
+#[path = "suite/gltf.rs"]
+mod gltf;
+#[path = "suite/gltf_builder.rs"]
+mod gltf_builder;
+#[path = "suite/gltf_damaged.rs"]
+mod gltf_damaged;
+#[path = "suite/renders.rs"]
+mod renders;
+#[path = "suite/support.rs"]
+mod support;
+#[path = "suite/tone.rs"]
+mod tone;
+#[path = "suite/tone_twin.rs"]
+mod tone_twin;

@@ -2,6 +2,7 @@
 #import "optics/fresnel"
 #import "optics/lobe/registry"
 #import "scene/layout"
+#import "scene/plan"
 
 const ALBEDO_NODES: u32 = 64u;
 
@@ -25,23 +26,24 @@ struct Layers {
 
 fn material_shape(material: Material) -> LobeShape {
     return LobeShape(
-        material.lobe, material.curve, material.horizon, material.curve_table, material.roughness, material.anisotropy,
+        planned(material.lobe, PLAN_LOBE), planned(material.curve, PLAN_CURVE), planned(material.horizon, PLAN_HORIZON),
+        material.curve_table, material.roughness, select(0.0, material.anisotropy, PLAN_ANISOTROPY == 1u),
     );
 }
 
 fn material_fresnel_terms(material: Material) -> FresnelTerms {
     return FresnelTerms(
-        material.fresnel, material.base_color, material.metalness, material.specular_color, material.specular_weight,
+        planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.specular_color, material.specular_weight,
         material.ior, material.eta, material.k,
     );
 }
 
 fn material_has_base(material: Material) -> bool {
-    return material.metalness < 1.0 && any(material.base_color > vec3f(0.0));
+    return PLAN_BASE == 1u && material.metalness < 1.0 && any(material.base_color > vec3f(0.0));
 }
 
 fn material_has_specular(material: Material) -> bool {
-    return material.specular_weight > 0.0;
+    return PLAN_SPECULAR == 1u && material.specular_weight > 0.0;
 }
 
 fn material_layers(material: Material, surface: Surface) -> Layers {

@@ -1,8 +1,15 @@
-//! Proof by numbers: quadrature, χ² tests of samples against densities, histograms, and errors of images.
+//! Proof by numbers: quadrature, χ² tests of samples against densities, histograms, errors of images; and what is read
+//! off films and clouds of samples.
 //!
-//! Everything here is f64 and takes plain directions and slices, so that samples of either engine can be tested.
+//! The tests are f64 and take plain directions and slices, so that samples of either engine can be tested.
 
 pub mod chi_square;
 pub mod error;
+pub mod film;
+pub mod fit;
 pub mod histogram;
+pub mod lobe_model;
+pub mod plot;
 pub mod quadrature;
+pub mod scatter;
+pub mod sphere_grid;

@@ -1,1 +1,12 @@
-//! See docs/ARCHITECTURE.md.
+//! The engine on the GPU: the only code that talks to wgpu's compute.
+
+pub mod device;
+mod engine;
+pub mod layout;
+mod pipeline;
+mod resources;
+pub mod scatter;
+pub mod shader;
+
+pub use device::{AdapterKind, GpuDevice, GpuError};
+pub use engine::GpuEngine;

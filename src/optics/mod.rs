@@ -15,5 +15,6 @@ pub mod microfacet;
 pub mod numeric;
 pub mod random;
 pub mod real;
+pub mod tone;
 pub mod vector;
 pub mod warp;

@@ -1,1 +1,17 @@
-//! See docs/ARCHITECTURE.md.
+//! The session over an engine: what the window, the command line and the tests all drive.
+//!
+//! `submit` a document, `step` with a budget of time until `progress` says that it is done, read `film` or `image`.
+
+mod assets;
+mod calibration;
+pub mod check;
+mod compile;
+pub mod display;
+mod engine;
+pub mod output;
+mod session;
+pub mod worker;
+
+pub use assets::Assets;
+pub use engine::{EngineChoice, EngineInfo, scatter};
+pub use session::{Progress, Session, SessionError};

@@ -1,1 +1,18 @@
-//! See docs/ARCHITECTURE.md.
+//! What is rendered: meshes and where they come from, the hierarchy that rays find them by, the light around them.
+
+mod bvh;
+pub mod camera;
+pub mod environment;
+mod geometry;
+mod gltf;
+mod intersect;
+pub mod mesh;
+mod model;
+pub mod shapes;
+pub mod surface;
+pub mod teapot;
+mod traverse;
+
+pub use geometry::{Geometry, Vertex};
+pub use intersect::{Hit, RayFrame, intersect_triangle};
+pub use model::{AlphaMode, Model, ModelError, ModelSource, Slot, Texture, TextureRef, Wrap, load};

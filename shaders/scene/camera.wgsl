@@ -1,0 +1,33 @@
+// The camera's rays. Twin of src/scene/camera.rs.
+#import "optics/warp"
+#import "scene/layout"
+
+const FILTER_BOX: u32 = 0u;
+const GAUSSIAN_SIGMA: f32 = 0.5;
+// 1 - exp(-(radius/sigma)^2/2): the Gaussian is cut off at 1.5 pixels.
+const GAUSSIAN_KEPT: f32 = 0.988891;
+
+struct Ray {
+    origin: vec3f,
+    direction: vec3f,
+}
+
+fn filter_offset(filter_kind: u32, xi: vec2f) -> vec2f {
+    if filter_kind == FILTER_BOX {
+        return xi - 0.5;
+    }
+    let radius = GAUSSIAN_SIGMA * safe_sqrt(-2.0 * log(1.0 - xi.x * GAUSSIAN_KEPT));
+    let phi_rad = 2.0 * PI * xi.y;
+    return vec2f(radius * cos(phi_rad), radius * sin(phi_rad));
+}
+
+fn camera_ray(camera: Camera, place: vec2f, image_size: vec2u, xi_lens: vec2f) -> Ray {
+    let ndc = 2.0 * place / vec2f(image_size) - 1.0;
+    let along = camera.forward + camera.right * ndc.x - camera.up * ndc.y;
+    if camera.lens_radius <= 0.0 {
+        return Ray(camera.origin, normalize(along));
+    }
+    let disc = uniform_disc(xi_lens) * camera.lens_radius;
+    let shift = normalize(camera.right) * disc.x + normalize(camera.up) * disc.y;
+    return Ray(camera.origin + shift, normalize(along * camera.focus_distance - shift));
+}

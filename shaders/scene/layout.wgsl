@@ -1,0 +1,88 @@
+// What the passes read: the twins of the structures in src/gpu/layout.rs and src/optics/material.rs, and the bindings.
+#import "scene/environment"
+
+struct Camera {
+    // In the geometry's units.
+    origin: vec3f,
+    // Share of the lens that is open, radius in the geometry's units.
+    lens_radius: f32,
+    forward: vec3f,
+    focus_distance: f32,
+    // Half the picture's width and height at distance 1.
+    right: vec3f,
+    filter_kind: u32,
+    up: vec3f,
+    reserved: u32,
+}
+
+struct Globals {
+    camera: Camera,
+    image_size: vec2u,
+    // The part of the picture that this dispatch renders.
+    tile_origin: vec2u,
+    tile_size: vec2u,
+    first_sample: u32,
+    sample_count: u32,
+    background: vec3f,
+    background_kind: u32,
+    // Cosine and sine.
+    environment_rotation: vec2f,
+    environment_cells_size: vec2u,
+    environment_strength: f32,
+    bounces: u32,
+    sequence: u32,
+    strategy: u32,
+    seed: u32,
+    node_count: u32,
+    reserved_a: u32,
+    reserved_b: u32,
+}
+
+struct Material {
+    base_color: vec3f,
+    metalness: f32,
+    specular_color: vec3f,
+    specular_weight: f32,
+    eta: vec3f,
+    ior: f32,
+    k: vec3f,
+    roughness: f32,
+    emission: vec3f,
+    anisotropy: f32,
+    rotation_rad: f32,
+    lobe: u32,
+    curve: u32,
+    horizon: u32,
+    fresnel: u32,
+    curve_table: u32,
+    albedo_table: u32,
+    reserved: u32,
+}
+
+// A triangle to intersect: corner positions as bits, with the corner's vertex index in w.
+struct Triangle {
+    corners: array<vec4u, 3>,
+}
+
+// What shading needs of a vertex besides its position; scalars, so that the stride is 36 bytes.
+struct Vertex {
+    normal: array<f32, 3>,
+    uv: array<f32, 2>,
+    tangent: array<f32, 4>,
+}
+
+@group(0) @binding(0) var<uniform> globals: Globals;
+// Five vec4u a node (80 bytes, CWBVH).
+@group(0) @binding(1) var<storage, read> nodes: array<vec4u>;
+@group(0) @binding(2) var<storage, read> triangles: array<Triangle>;
+@group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
+@group(0) @binding(4) var<storage, read> triangle_slots: array<u32>;
+@group(0) @binding(5) var<storage, read> materials: array<Material>;
+// Custom curves and albedo tables.
+@group(0) @binding(6) var<storage, read> tables: array<f32>;
+@group(0) @binding(7) var environment_map: texture_2d<f32>;
+@group(0) @binding(8) var<storage, read> environment_cells: array<AliasCell>;
+// Sums over the samples of a pixel since the host last took them: red, green, blue, alpha.
+@group(0) @binding(9) var<storage, read_write> color_sums: array<vec4f>;
+// The same of luminance squared; samples kept; samples dropped; rays traced.
+@group(0) @binding(10) var<storage, read_write> statistics: array<vec4f>;

@@ -1,0 +1,62 @@
+// A ray's hit made into a surface to shade. Twin of src/scene/surface.rs.
+#import "optics/material"
+#import "scene/bvh"
+
+struct SurfacePoint {
+    surface: Surface,
+    position: vec3f,
+    // How far off the true place `position` may be, along the normal.
+    error: f32,
+    slot: u32,
+}
+
+// Rounding of the position's three products and sums, with what the box test and the transforms add.
+const POSITION_ERROR: f32 = 1e-6;
+// Smallest cosine between shading normal and view: where interpolation leans further away, the normal is bent back.
+const VIEW_COSINE_MIN: f32 = 1e-3;
+
+fn bent_normal(shading: vec3f, wo: vec3f) -> vec3f {
+    let lean = dot(shading, wo);
+    let bent = normalize(shading + wo * (VIEW_COSINE_MIN - lean));
+    return select(shading, bent, lean < VIEW_COSINE_MIN);
+}
+
+fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
+    let triangle = triangles[hit.triangle];
+    let p0 = bitcast<vec3f>(triangle.corners[0].xyz);
+    let p1 = bitcast<vec3f>(triangle.corners[1].xyz);
+    let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
+    let w = 1.0 - hit.u - hit.v;
+    let position = p0 * w + p1 * hit.u + p2 * hit.v;
+    let wo = -direction;
+    let out = normalize_or(cross(p1 - p0, p2 - p0), wo);
+    let normal = select(out, -out, dot(out, wo) < 0.0);
+    let a = vertices[triangle.corners[0].w];
+    let b = vertices[triangle.corners[1].w];
+    let c = vertices[triangle.corners[2].w];
+    let interpolated = vec3f(
+        a.normal[0] * w + b.normal[0] * hit.u + c.normal[0] * hit.v,
+        a.normal[1] * w + b.normal[1] * hit.u + c.normal[1] * hit.v,
+        a.normal[2] * w + b.normal[2] * hit.u + c.normal[2] * hit.v,
+    );
+    let smoothed = normalize_or(interpolated, normal);
+    let shading = bent_normal(select(smoothed, -smoothed, dot(smoothed, normal) < 0.0), wo);
+    let slot = triangle_slots[hit.triangle];
+    var frame = frame_from_normal(shading);
+    if PLAN_ANISOTROPY == 1u && materials[slot].anisotropy != 0.0 {
+        let tangent = vec3f(
+            a.tangent[0] * w + b.tangent[0] * hit.u + c.tangent[0] * hit.v,
+            a.tangent[1] * w + b.tangent[1] * hit.u + c.tangent[1] * hit.v,
+            a.tangent[2] * w + b.tangent[2] * hit.u + c.tangent[2] * hit.v,
+        );
+        frame = frame_from_tangent(shading, tangent, materials[slot].rotation_rad);
+    }
+    let extent = abs(p0) * abs(w) + abs(p1) * abs(hit.u) + abs(p2) * abs(hit.v);
+    let error = POSITION_ERROR * dot(abs(normal), extent + vec3f(0.05));
+    return SurfacePoint(Surface(frame, normal, wo), position, error, slot);
+}
+
+// Where a ray from the surface starts: outside the bound on the position's error.
+fn ray_origin(point: SurfacePoint) -> vec3f {
+    return point.position + point.surface.normal * point.error;
+}

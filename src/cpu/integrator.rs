@@ -1,0 +1,189 @@
+//! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
+
+use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
+use crate::optics::material::{Material, material_evaluate, material_sample};
+use crate::optics::random::{RandomState, random_pair, random_state};
+use crate::optics::real::Real;
+use crate::optics::vector::{Vec3, vec3};
+use crate::scene::camera::{Camera, camera_ray, filter_offset};
+use crate::scene::environment::{
+    Environment, environment_density, environment_local_from_world, environment_radiance, environment_sample,
+    environment_world_from_local,
+};
+use crate::scene::surface::{SurfacePoint, surface_at};
+use crate::scene::{Geometry, Hit};
+
+/// Pairs of numbers before the first bounce: pixel, lens.
+const FIRST_DIMENSION: u32 = 2;
+/// Pairs of numbers a bounce: lobe twice, light twice.
+const BOUNCE_DIMENSIONS: u32 = 4;
+/// Bounces before Russian roulette.
+const ROULETTE_START: u32 = 3;
+/// Beyond it the square would overflow f32: dropped and counted.
+const RADIANCE_MAX: f64 = 1e18;
+
+/// What one path found.
+#[derive(Clone, Copy, Debug)]
+pub struct PathResult<T> {
+    /// Linear RGB.
+    pub radiance: Vec3<T>,
+    /// 1 where the path met something that is not transparent background.
+    pub alpha: T,
+    /// Rays traced.
+    pub rays: u32,
+}
+
+/// A job with its numbers in the precision of the shading.
+pub struct Integrator<'a, T> {
+    geometry: &'a Geometry,
+    environment: &'a Environment,
+    tables: &'a [f32],
+    settings: &'a Settings,
+    materials: Vec<Material<T>>,
+    camera: Camera<T>,
+    rotation: [T; 2],
+    samples_light: bool,
+}
+
+impl<'a, T: Real> Integrator<'a, T> {
+    /// Reads the job.
+    pub fn new(job: &'a Job) -> Self {
+        Self {
+            geometry: &job.geometry,
+            environment: &job.environment,
+            tables: &job.tables,
+            settings: &job.settings,
+            materials: job.materials.iter().map(Material::cast).collect(),
+            camera: job.settings.camera.cast(),
+            rotation: job.settings.environment_rotation.map(T::from_f64),
+            samples_light: job.plan.light_sampling && job.settings.strategy != Strategy::Lobe,
+        }
+    }
+
+    /// Radiance of the environment in a world direction.
+    fn far_radiance(&self, direction: Vec3<T>) -> Vec3<T> {
+        let local = environment_local_from_world(direction, self.rotation);
+        environment_radiance(self.environment, local) * T::from_f64(self.settings.environment_strength)
+    }
+
+    /// What a path that left the scene sees, weighed against light sampling.
+    fn far_light(&self, direction: Vec3<T>, lobe_density: T, is_mirror: bool) -> Vec3<T> {
+        let radiance = self.far_radiance(direction);
+        if !self.samples_light || is_mirror {
+            return radiance;
+        }
+        if self.settings.strategy == Strategy::Light {
+            return Vec3::zero();
+        }
+        let local = environment_local_from_world(direction, self.rotation);
+        let light_density: T = environment_density(self.environment, local);
+        radiance * (lobe_density / (lobe_density + light_density).max(T::from_f64(1e-30)))
+    }
+
+    /// Light that arrives straight from the environment, one direction drawn from it.
+    fn direct_light(&self, point: &SurfacePoint<T>, state: RandomState, dimension: u32, rays: &mut u32) -> Vec3<T> {
+        let [a, b] = random_pair(state, dimension);
+        let [c, _] = random_pair(state, dimension + 1);
+        let (local, density) = environment_sample(self.environment, vec3(a, b, c));
+        let wi = environment_world_from_local(local, self.rotation);
+        if density.to_f64() <= 0.0 || point.surface.normal.dot(wi).to_f64() <= 0.0 {
+            return Vec3::zero();
+        }
+        let competing = T::from_f64(if self.settings.strategy == Strategy::Mis {
+            1.0
+        } else {
+            0.0
+        });
+        let material = &self.materials[point.slot as usize];
+        let value = material_evaluate(material, self.tables, &point.surface, wi, density, competing);
+        if value.max_component().to_f64() <= 0.0 {
+            return Vec3::zero();
+        }
+        *rays += 1;
+        if self
+            .geometry
+            .occluded(point.ray_origin().to_f32(), wi.to_f32(), f32::MAX)
+        {
+            return Vec3::zero();
+        }
+        value * self.far_radiance(wi) / density
+    }
+
+    fn camera_background(&self, direction: Vec3<T>, rays: u32) -> PathResult<T> {
+        let (radiance, alpha) = match self.settings.background {
+            BackgroundKind::Environment => (self.far_radiance(direction), T::one()),
+            BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
+            BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
+        };
+        PathResult { radiance, alpha, rays }
+    }
+
+    /// One path through a pixel.
+    pub fn trace_path(&self, pixel: [u32; 2], sample: u32) -> PathResult<T> {
+        let settings = self.settings;
+        let state = random_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
+        let offset: [T; 2] = filter_offset(self.camera.filter_kind, random_pair(state, 0));
+        let half = T::from_f64(0.5);
+        let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
+        let [mut origin, mut direction] = camera_ray(&self.camera, place, settings.image_size, random_pair(state, 1));
+        let mut throughput = Vec3::splat(T::one());
+        let mut radiance = Vec3::zero();
+        let mut lobe_density = T::zero();
+        let mut was_mirror = true;
+        let mut rays = 0;
+        for bounce in 0.. {
+            rays += 1;
+            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX) else {
+                if bounce == 0 {
+                    return self.camera_background(direction, rays);
+                }
+                radiance += throughput * self.far_light(direction, lobe_density, was_mirror);
+                break;
+            };
+            let point = self.surface(&hit, direction);
+            let material = &self.materials[point.slot as usize];
+            radiance += throughput * material.emission;
+            if bounce >= settings.bounces {
+                break;
+            }
+            let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
+            if self.samples_light {
+                radiance += throughput * self.direct_light(&point, state, dimension + 2, &mut rays);
+            }
+            let [a, b] = random_pair(state, dimension);
+            let [c, layer] = random_pair(state, dimension + 1);
+            let wants_density = self.samples_light && settings.strategy == Strategy::Mis;
+            let drawn = material_sample(material, self.tables, &point.surface, [a, b, c], layer, wants_density);
+            throughput = throughput * drawn.throughput;
+            let strength = throughput.max_component();
+            // Also ends paths that are NaN.
+            if !(strength.to_f64() > 0.0) {
+                break;
+            }
+            if bounce >= ROULETTE_START && strength.to_f64() < 1.0 {
+                let [_, survival]: [T; 2] = random_pair(state, dimension + 3);
+                if survival.to_f64() >= strength.to_f64() {
+                    break;
+                }
+                throughput = throughput / strength;
+            }
+            lobe_density = drawn.density;
+            was_mirror = drawn.is_mirror;
+            (origin, direction) = (point.ray_origin(), drawn.wi);
+        }
+        PathResult {
+            radiance,
+            alpha: T::one(),
+            rays,
+        }
+    }
+
+    fn surface(&self, hit: &Hit, direction: Vec3<T>) -> SurfacePoint<T> {
+        surface_at(self.geometry, &self.materials, hit, direction)
+    }
+}
+
+/// Finite and not negative: what may be added to the picture.
+pub fn is_sound<T: Real>(color: Vec3<T>) -> bool {
+    color.to_f64().iter().all(|x| (0.0..=RADIANCE_MAX).contains(x))
+}

@@ -1,0 +1,63 @@
+//! What an engine renders: the document compiled to numbers, with the plan that says which effects it calls for.
+
+use std::sync::Arc;
+
+use crate::optics::material::Material;
+use crate::optics::random::Sequence;
+use crate::scene::Geometry;
+use crate::scene::camera::Camera;
+use crate::scene::environment::Environment;
+
+use super::plan::Plan;
+pub use super::settings::Strategy;
+
+/// Everything that a picture depends on. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// What rays meet.
+    pub geometry: Arc<Geometry>,
+    /// What they see far away.
+    pub environment: Arc<Environment>,
+    /// The materials by slot, the ground's last.
+    pub materials: Arc<Vec<Material<f32>>>,
+    /// Custom curves and albedo tables; never empty.
+    pub tables: Arc<Vec<f32>>,
+    /// Camera, light and sampling.
+    pub settings: Settings,
+    /// Which effects are simulated.
+    pub plan: Plan,
+}
+
+/// The numbers of a job that are cheap to change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Width and height in pixels.
+    pub image_size: [u32; 2],
+    /// In the geometry's units.
+    pub camera: Camera<f64>,
+    /// What the camera sees where it meets nothing.
+    pub background: BackgroundKind,
+    /// Cosine and sine of the environment's rotation about +Y.
+    pub environment_rotation: [f64; 2],
+    /// Factor of the environment's radiance.
+    pub environment_strength: f64,
+    /// Reflections a path may have.
+    pub bounces: u32,
+    /// Random numbers.
+    pub sequence: Sequence,
+    /// How light is found.
+    pub strategy: Strategy,
+    /// Changes all random numbers.
+    pub seed: u32,
+}
+
+/// What the camera sees where it meets nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BackgroundKind {
+    /// The environment.
+    Environment,
+    /// Nothing: alpha 0.
+    Transparent,
+    /// A linear colour.
+    Color([f32; 3]),
+}

@@ -1,0 +1,245 @@
+//! The GPU: which adapter, and what it says when it fails.
+
+use std::sync::{Arc, Mutex};
+
+use pollster::block_on;
+
+/// What can go wrong with a GPU.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum GpuError {
+    /// No adapter of the wanted kind.
+    #[error(
+        "no {0}Vulkan adapter was found. Install a driver (on Debian and Ubuntu: apt install mesa-vulkan-drivers), or \
+         render on the processor with --engine cpu"
+    )]
+    NoAdapter(&'static str),
+    /// The adapter can't run the path tracer.
+    #[error("the adapter {adapter} can't run the renderer: {reason}. Render on the processor with --engine cpu")]
+    Unfit {
+        /// Its name.
+        adapter: String,
+        /// What it lacks.
+        reason: String,
+    },
+    /// Something is larger than the adapter takes.
+    #[error(
+        "{what} takes {needed_mib} MiB, and the adapter {adapter} takes {allowed_mib} MiB at once. Choose something \
+         smaller, or render on the processor with --engine cpu"
+    )]
+    TooLarge {
+        /// What is too large.
+        what: &'static str,
+        /// Its size.
+        needed_mib: u64,
+        /// The adapter's name.
+        adapter: String,
+        /// The adapter's limit.
+        allowed_mib: u64,
+    },
+    /// The device stopped working.
+    #[error("the GPU stopped working: {0}. Start again, or render on the processor with --engine cpu")]
+    Lost(String),
+    /// A shader did not compile: a mistake of ours.
+    #[error("a shader does not compile on this adapter: {0}. Please report it; --engine cpu works meanwhile")]
+    Shader(String),
+}
+
+/// Which adapters are considered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AdapterKind {
+    /// The fastest: hardware before software.
+    Any,
+    /// Only real GPUs.
+    Hardware,
+    /// Only Vulkan on the processor.
+    Software,
+}
+
+/// An open device.
+#[derive(Clone, Debug)]
+pub struct GpuDevice {
+    /// wgpu's device.
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Name, driver, kind.
+    pub info: wgpu::AdapterInfo,
+    /// The first error that no call returned.
+    failure: Arc<Mutex<Option<String>>>,
+}
+
+/// Storage buffers that the path tracer binds.
+const STORAGE_BUFFERS: u32 = 9;
+
+impl GpuDevice {
+    /// Opens the best adapter of a kind.
+    ///
+    /// # Errors
+    /// Says what to install where there is none, or what the adapter lacks.
+    pub fn open(kind: AdapterKind) -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let wanted = |backends| {
+            let mut adapters = block_on(instance.enumerate_adapters(backends));
+            adapters.retain(|adapter| {
+                let is_software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+                match kind {
+                    AdapterKind::Any => true,
+                    AdapterKind::Hardware => !is_software,
+                    AdapterKind::Software => is_software,
+                }
+            });
+            adapters
+        };
+        // OpenGL only where there is nothing else: looking for it takes time and prints errors where it is missing.
+        let mut adapters = wanted(wgpu::Backends::PRIMARY);
+        if adapters.is_empty() && kind != AdapterKind::Software {
+            adapters = wanted(wgpu::Backends::GL);
+        }
+        adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
+        let adapter = adapters.into_iter().next().ok_or(GpuError::NoAdapter(match kind {
+            AdapterKind::Any => "",
+            AdapterKind::Hardware => "hardware ",
+            AdapterKind::Software => "software ",
+        }))?;
+        Self::from_adapter(&adapter)
+    }
+
+    fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
+        let info = adapter.get_info();
+        let limits = adapter.limits();
+        let unfit = |reason: String| GpuError::Unfit {
+            adapter: info.name.clone(),
+            reason,
+        };
+        if limits.max_storage_buffers_per_shader_stage < STORAGE_BUFFERS {
+            return Err(unfit(format!(
+                "it binds {} storage buffers, {STORAGE_BUFFERS} are needed",
+                limits.max_storage_buffers_per_shader_stage
+            )));
+        }
+        let descriptor = wgpu::DeviceDescriptor {
+            label: Some("glossmith"),
+            required_limits: limits,
+            ..Default::default()
+        };
+        let (device, queue) =
+            block_on(adapter.request_device(&descriptor)).map_err(|error| unfit(error.to_string()))?;
+        let failure = Arc::new(Mutex::new(None));
+        let note = |failure: &Arc<Mutex<Option<String>>>, message: String| {
+            log::error!("GPU: {message}");
+            failure
+                .lock()
+                .unwrap_or_else(|poisoned| poisoned.into_inner())
+                .get_or_insert(message);
+        };
+        let uncaptured = failure.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&uncaptured, error.to_string())));
+        let lost = failure.clone();
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                note(&lost, message);
+            }
+        });
+        Ok(Self {
+            device,
+            queue,
+            info,
+            failure,
+        })
+    }
+
+    /// True where the adapter is the processor in disguise.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// Driver with its version.
+    pub fn driver(&self) -> String {
+        format!("{} {}", self.info.driver, self.info.driver_info)
+            .trim()
+            .to_owned()
+    }
+
+    /// Waits until all submitted work is done.
+    ///
+    /// # Errors
+    /// If the device failed since it was opened.
+    pub fn wait(&self) -> Result<(), GpuError> {
+        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        let failure = self.failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        match (&*failure, polled) {
+            (Some(message), _) => Err(GpuError::Lost(message.clone())),
+            (None, Err(error)) => Err(GpuError::Lost(error.to_string())),
+            (None, Ok(_)) => Ok(()),
+        }
+    }
+
+    /// A storage buffer with these bytes.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] beyond the adapter's limit.
+    pub fn storage(&self, what: &'static str, bytes: &[u8]) -> Result<wgpu::Buffer, GpuError> {
+        let buffer = self.empty_storage(what, bytes.len() as u64)?;
+        self.queue.write_buffer(&buffer, 0, bytes);
+        Ok(buffer)
+    }
+
+    /// A storage buffer of zeros.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] beyond the adapter's limit.
+    pub fn empty_storage(&self, what: &'static str, size: u64) -> Result<wgpu::Buffer, GpuError> {
+        let limits = self.device.limits();
+        let allowed = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        if size > allowed {
+            return Err(GpuError::TooLarge {
+                what,
+                needed_mib: size >> 20,
+                adapter: self.info.name.clone(),
+                allowed_mib: allowed >> 20,
+            });
+        }
+        Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(what),
+            // Nothing of length zero can be bound.
+            size: size.max(48),
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        }))
+    }
+
+    /// The contents of buffers, as one kind of plain value each; waits for the device.
+    ///
+    /// # Errors
+    /// If the device failed.
+    pub fn read<A: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<A>, GpuError> {
+        let size = (count * size_of::<A>()) as u64;
+        let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("read back"),
+            size,
+            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
+        self.queue.submit([encoder.finish()]);
+        // The outcome shows in get_mapped_range below.
+        staging.map_async(wgpu::MapMode::Read, .., |_| {});
+        self.wait()?;
+        let view = staging
+            .get_mapped_range(..)
+            .map_err(|error| GpuError::Lost(error.to_string()))?;
+        Ok(bytemuck::pod_collect_to_vec(&view))
+    }
+}
+
+/// Sorts adapters: real GPUs first.
+fn rank(info: &wgpu::AdapterInfo) -> u8 {
+    match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}

@@ -1,0 +1,100 @@
+//! The structures that the GPU reads, byte for byte as in `shaders/scene/layout.wgsl`; a test compares the two.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::document::job::{BackgroundKind, Settings};
+use crate::scene::Geometry;
+use crate::scene::camera::Camera;
+
+/// The uniforms of a dispatch.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct Globals {
+    /// See [`Camera`].
+    pub camera: Camera<f32>,
+    /// Width and height in pixels.
+    pub image_size: [u32; 2],
+    /// Top left pixel of the dispatch.
+    pub tile_origin: [u32; 2],
+    /// Pixels of the dispatch.
+    pub tile_size: [u32; 2],
+    /// Index of the first sample.
+    pub first_sample: u32,
+    /// Samples a pixel.
+    pub sample_count: u32,
+    /// Linear colour of the background.
+    pub background: [f32; 3],
+    /// 0 environment, 1 transparent, 2 colour.
+    pub background_kind: u32,
+    /// Cosine and sine.
+    pub environment_rotation: [f32; 2],
+    /// Columns and rows of the environment's cells.
+    pub environment_cells_size: [u32; 2],
+    /// Factor of the environment's radiance.
+    pub environment_strength: f32,
+    /// Reflections a path may have.
+    pub bounces: u32,
+    /// Random numbers.
+    pub sequence: u32,
+    /// How light is found.
+    pub strategy: u32,
+    /// Changes all random numbers.
+    pub seed: u32,
+    /// Nodes of the hierarchy; 0 where there is nothing to meet.
+    pub node_count: u32,
+    /// Fills the last 16 bytes.
+    pub reserved: [u32; 2],
+}
+
+impl Globals {
+    /// The uniforms of a job, for the whole picture and no sample yet.
+    pub fn new(settings: &Settings, node_count: usize, environment_cells_size: [u32; 2]) -> Self {
+        let (background_kind, background) = match settings.background {
+            BackgroundKind::Environment => (0, [0.0; 3]),
+            BackgroundKind::Transparent => (1, [0.0; 3]),
+            BackgroundKind::Color(color) => (2, color),
+        };
+        Self {
+            camera: settings.camera.cast(),
+            image_size: settings.image_size,
+            tile_origin: [0; 2],
+            tile_size: settings.image_size,
+            first_sample: 0,
+            sample_count: 0,
+            background,
+            background_kind,
+            environment_rotation: settings.environment_rotation.map(|x| x as f32),
+            environment_cells_size,
+            environment_strength: settings.environment_strength as f32,
+            bounces: settings.bounces,
+            sequence: settings.sequence as u32,
+            strategy: settings.strategy as u32,
+            seed: settings.seed,
+            node_count: node_count as u32,
+            reserved: [0; 2],
+        }
+    }
+}
+
+/// A triangle to intersect: corner positions, each with the corner's vertex index.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct Triangle {
+    /// x, y, z as bits, then the index.
+    pub corners: [[u32; 4]; 3],
+}
+
+/// The triangles of a geometry, in its order.
+pub fn triangles(geometry: &Geometry) -> Vec<Triangle> {
+    let corner = |vertex: u32| {
+        let [x, y, z] = geometry.positions[vertex as usize].map(f32::to_bits);
+        [x, y, z, vertex]
+    };
+    geometry
+        .triangles
+        .iter()
+        .map(|triangle| Triangle {
+            corners: triangle.map(corner),
+        })
+        .collect()
+}

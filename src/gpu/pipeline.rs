@@ -1,0 +1,111 @@
+//! Pipelines specialised for plans.
+
+use std::collections::HashMap;
+
+use super::device::{GpuDevice, GpuError};
+use super::shader;
+use crate::document::plan::Plan;
+
+/// The path tracer's shader, its binding layout, and a pipeline for each plan met.
+#[derive(Debug)]
+pub struct Pipelines {
+    module: wgpu::ShaderModule,
+    layout: wgpu::PipelineLayout,
+    /// Bindings of `shaders/scene/layout.wgsl`.
+    pub bindings: wgpu::BindGroupLayout,
+    of_plan: HashMap<Plan, wgpu::ComputePipeline>,
+}
+
+impl Pipelines {
+    /// Links and compiles the shader.
+    ///
+    /// # Errors
+    /// [`GpuError::Shader`] with the module and line.
+    pub fn new(gpu: &GpuDevice) -> Result<Self, GpuError> {
+        let linked = shader::link("pass/path_trace").map_err(GpuError::Shader)?;
+        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let descriptor = wgpu::ShaderModuleDescriptor {
+            label: Some("path_trace"),
+            source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
+        };
+        // SAFETY: every index is made by our own code from sizes that it uploads itself: hierarchy and triangles from
+        // the same geometry, slots below the number of materials, pixels inside the picture. The loops end: paths are
+        // bounded by their bounces and the traversal by its stack.
+        let module = unsafe {
+            gpu.device
+                .create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
+        };
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            return Err(GpuError::Shader(error.to_string()));
+        }
+        let bindings = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("path_trace"),
+            entries: &binding_entries(),
+        });
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("path_trace"),
+            bind_group_layouts: &[Some(&bindings)],
+            immediate_size: 0,
+        });
+        Ok(Self {
+            module,
+            layout,
+            bindings,
+            of_plan: HashMap::new(),
+        })
+    }
+
+    /// The pipeline of a plan, compiled at its first use.
+    ///
+    /// # Errors
+    /// [`GpuError::Shader`] where the driver refuses it.
+    pub fn get(&mut self, gpu: &GpuDevice, plan: Plan) -> Result<&wgpu::ComputePipeline, GpuError> {
+        if !self.of_plan.contains_key(&plan) {
+            let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+            let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some("path_trace"),
+                layout: Some(&self.layout),
+                module: &self.module,
+                entry_point: Some("path_trace"),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &plan.constants(),
+                    zero_initialize_workgroup_memory: false,
+                },
+                cache: None,
+            });
+            if let Some(error) = pollster::block_on(scope.pop()) {
+                return Err(GpuError::Shader(error.to_string()));
+            }
+            self.of_plan.insert(plan, pipeline);
+        }
+        Ok(&self.of_plan[&plan])
+    }
+}
+
+/// Uniforms, seven read-only buffers around the environment's map, two buffers of sums.
+fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
+    let buffer = |ty| wgpu::BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    let entry = |binding: u32| {
+        let ty = match binding {
+            0 => buffer(wgpu::BufferBindingType::Uniform),
+            7 => wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            9 | 10 => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+            _ => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
+        };
+        wgpu::BindGroupLayoutEntry {
+            binding,
+            visibility: wgpu::ShaderStages::COMPUTE,
+            ty,
+            count: None,
+        }
+    };
+    (0..=10).map(entry).collect()
+}

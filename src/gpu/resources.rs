@@ -1,0 +1,180 @@
+//! What a job becomes on the GPU.
+
+use std::sync::Arc;
+
+use super::device::{GpuDevice, GpuError};
+use super::layout::{self, Globals};
+use crate::document::job::Job;
+use crate::scene::Geometry;
+use crate::scene::environment::Environment;
+
+/// Buffers and textures of a job; what a new job shares with the old one is kept.
+#[derive(Debug)]
+pub struct Resources {
+    job: Arc<Job>,
+    pub globals: wgpu::Buffer,
+    /// Nodes, triangles, vertices, slots.
+    geometry: [wgpu::Buffer; 4],
+    materials: wgpu::Buffer,
+    tables: wgpu::Buffer,
+    environment_map: wgpu::TextureView,
+    environment_cells: wgpu::Buffer,
+    /// Sums of colours and of statistics since the last flush.
+    pub sums: [wgpu::Buffer; 2],
+    pub bind_group: wgpu::BindGroup,
+}
+
+impl Resources {
+    /// Uploads a job, taking over from `old` what has not changed. The sums are zero.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] where the adapter can't hold a part of it.
+    pub fn new(
+        gpu: &GpuDevice,
+        bindings: &wgpu::BindGroupLayout,
+        job: Arc<Job>,
+        old: Option<Self>,
+    ) -> Result<Self, GpuError> {
+        let old = old.as_ref();
+        let geometry = match old.filter(|old| Arc::ptr_eq(&old.job.geometry, &job.geometry)) {
+            Some(old) => old.geometry.clone(),
+            None => upload_geometry(gpu, &job.geometry)?,
+        };
+        let materials = match old.filter(|old| Arc::ptr_eq(&old.job.materials, &job.materials)) {
+            Some(old) => old.materials.clone(),
+            None => gpu.storage("the materials", bytemuck::cast_slice(&job.materials))?,
+        };
+        let tables = match old.filter(|old| Arc::ptr_eq(&old.job.tables, &job.tables)) {
+            Some(old) => old.tables.clone(),
+            None => gpu.storage("the materials' tables", bytemuck::cast_slice(&job.tables))?,
+        };
+        let (environment_map, environment_cells) =
+            match old.filter(|old| Arc::ptr_eq(&old.job.environment, &job.environment)) {
+                Some(old) => (old.environment_map.clone(), old.environment_cells.clone()),
+                None => upload_environment(gpu, &job.environment)?,
+            };
+        let size_of_sums = pixels(&job) * 16;
+        let sums = match old.filter(|old| pixels(&old.job) == pixels(&job)) {
+            Some(old) => old.sums.clone(),
+            None => [
+                gpu.empty_storage("the picture", size_of_sums)?,
+                gpu.empty_storage("the picture", size_of_sums)?,
+            ],
+        };
+        clear(gpu, &sums);
+        let globals = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("globals"),
+            size: size_of::<Globals>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let [nodes, triangles, vertices, slots] = &geometry;
+        let resources = [
+            globals.as_entire_binding(),
+            nodes.as_entire_binding(),
+            triangles.as_entire_binding(),
+            vertices.as_entire_binding(),
+            slots.as_entire_binding(),
+            materials.as_entire_binding(),
+            tables.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&environment_map),
+            environment_cells.as_entire_binding(),
+            sums[0].as_entire_binding(),
+            sums[1].as_entire_binding(),
+        ];
+        let entries: Vec<_> = (0..)
+            .zip(resources)
+            .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+            .collect();
+        let bind_group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("job"),
+            layout: bindings,
+            entries: &entries,
+        });
+        Ok(Self {
+            job,
+            globals,
+            geometry,
+            materials,
+            tables,
+            environment_map,
+            environment_cells,
+            sums,
+            bind_group,
+        })
+    }
+
+    /// The job that these are of.
+    pub fn job(&self) -> &Job {
+        &self.job
+    }
+
+    /// Sets the sums to zero.
+    pub fn clear_sums(&self, gpu: &GpuDevice) {
+        clear(gpu, &self.sums);
+    }
+}
+
+fn pixels(job: &Job) -> u64 {
+    job.settings.image_size.iter().map(|&x| u64::from(x)).product()
+}
+
+fn clear(gpu: &GpuDevice, buffers: &[wgpu::Buffer]) {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    for buffer in buffers {
+        encoder.clear_buffer(buffer, 0, None);
+    }
+    gpu.queue.submit([encoder.finish()]);
+}
+
+fn upload_geometry(gpu: &GpuDevice, geometry: &Geometry) -> Result<[wgpu::Buffer; 4], GpuError> {
+    Ok([
+        gpu.storage("the hierarchy of boxes", bytemuck::cast_slice(&geometry.bvh.nodes))?,
+        gpu.storage(
+            "the model's triangles",
+            bytemuck::cast_slice(&layout::triangles(geometry)),
+        )?,
+        gpu.storage("the model's vertices", bytemuck::cast_slice(&geometry.vertices))?,
+        gpu.storage("the model's material slots", bytemuck::cast_slice(&geometry.slots))?,
+    ])
+}
+
+fn upload_environment(
+    gpu: &GpuDevice,
+    environment: &Environment,
+) -> Result<(wgpu::TextureView, wgpu::Buffer), GpuError> {
+    let size = wgpu::Extent3d {
+        width: environment.width,
+        height: environment.height,
+        depth_or_array_layers: 1,
+    };
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    if size.width.max(size.height) > limit {
+        return Err(GpuError::Unfit {
+            adapter: gpu.info.name.clone(),
+            reason: format!("the environment {} is wider than {limit} pixels", environment.name),
+        });
+    }
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("environment"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    gpu.queue.write_texture(
+        texture.as_image_copy(),
+        bytemuck::cast_slice(&environment.texels),
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(16 * size.width),
+            rows_per_image: None,
+        },
+        size,
+    );
+    let cells = gpu.storage("the environment's cells", bytemuck::cast_slice(&environment.cells))?;
+    Ok((texture.create_view(&Default::default()), cells))
+}

@@ -1,0 +1,67 @@
+//! What a document names and a session keeps: models, their geometry, environments.
+
+use std::sync::Arc;
+
+use super::session::SessionError;
+use crate::scene::environment::{self, Environment, EnvironmentSource};
+use crate::scene::{self, Geometry, Model, ModelSource};
+
+/// The last of each kind that was asked for: an edit that leaves a source alone costs nothing.
+#[derive(Clone, Debug, Default)]
+pub struct Assets {
+    model: Option<(ModelSource, Arc<Model>)>,
+    geometry: Option<(ModelSource, bool, Arc<Geometry>)>,
+    environment: Option<(EnvironmentSource, Arc<Environment>)>,
+}
+
+impl Assets {
+    /// The model of a source, loaded unless it is the last one.
+    ///
+    /// # Errors
+    /// Names the file, what is wrong with it and what to do.
+    pub fn model(&mut self, source: &ModelSource) -> Result<Arc<Model>, SessionError> {
+        if let Some((_, model)) = self.model.as_ref().filter(|(of, _)| of == source) {
+            return Ok(model.clone());
+        }
+        let model = Arc::new(scene::load(source)?);
+        model.warnings.iter().for_each(|warning| log::warn!("{warning}"));
+        self.model = Some((source.clone(), model.clone()));
+        Ok(model)
+    }
+
+    /// The geometry of a source, with or without ground.
+    ///
+    /// # Errors
+    /// As [`Assets::model`].
+    pub fn geometry(&mut self, source: &ModelSource, ground: bool) -> Result<Arc<Geometry>, SessionError> {
+        let known = self
+            .geometry
+            .as_ref()
+            .filter(|(of, with_ground, _)| of == source && *with_ground == ground);
+        if let Some((_, _, geometry)) = known {
+            return Ok(geometry.clone());
+        }
+        let geometry = Arc::new(Geometry::build(&*self.model(source)?, ground));
+        self.geometry = Some((source.clone(), ground, geometry.clone()));
+        Ok(geometry)
+    }
+
+    /// The environment of a source.
+    ///
+    /// # Errors
+    /// Names the file, what is wrong with it and what to do.
+    pub fn environment(&mut self, source: &EnvironmentSource) -> Result<Arc<Environment>, SessionError> {
+        if let Some((_, environment)) = self.environment.as_ref().filter(|(of, _)| of == source) {
+            return Ok(environment.clone());
+        }
+        let environment = Arc::new(environment::load(source)?);
+        environment.warnings.iter().for_each(|warning| log::warn!("{warning}"));
+        self.environment = Some((source.clone(), environment.clone()));
+        Ok(environment)
+    }
+
+    /// Forgets files, so that they are read again.
+    pub fn reload(&mut self) {
+        *self = Self::default();
+    }
+}

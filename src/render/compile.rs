@@ -1,0 +1,105 @@
+//! Documents compiled to jobs.
+
+use std::sync::Arc;
+
+use super::assets::Assets;
+use super::session::SessionError;
+use crate::document::job::{BackgroundKind, Job, Settings};
+use crate::document::plan::Plan;
+use crate::document::{Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile};
+use crate::optics::material::Material;
+use crate::scene::Geometry;
+use crate::scene::camera::Camera;
+
+/// How much room a framed model is given.
+const FRAME_MARGIN: f64 = 1.05;
+
+/// Compiles documents; remembers the last materials, whose tables take milliseconds.
+#[derive(Debug, Default)]
+pub(super) struct Compiler {
+    materials: Option<(Vec<MaterialSettings>, Arc<Vec<Material<f32>>>, Arc<Vec<f32>>)>,
+}
+
+impl Compiler {
+    pub(super) fn compile(&mut self, document: &Document, assets: &mut Assets) -> Result<Job, SessionError> {
+        let model = assets.model(&document.model)?;
+        let geometry = assets.geometry(&document.model, document.ground)?;
+        let environment = assets.environment(&document.lighting.environment)?;
+        let (materials, tables) = self.materials(slot_materials(document, model.slots.len()));
+        let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
+        let settings = Settings {
+            image_size: [document.render.width, document.render.height],
+            camera: camera(&document.camera, &document.render, &geometry),
+            background: match document.lighting.background {
+                Background::Environment => BackgroundKind::Environment,
+                Background::Transparent => BackgroundKind::Transparent,
+                Background::Color(color) => BackgroundKind::Color(color),
+            },
+            environment_rotation: [rotation_rad.cos(), rotation_rad.sin()],
+            environment_strength: f64::from(document.lighting.strength),
+            bounces: document.render.bounces,
+            sequence: document.render.sequence,
+            strategy: document.render.strategy,
+            seed: document.render.seed,
+        };
+        let plan = Plan::new(&materials, &environment, settings.camera.lens_radius);
+        Ok(Job {
+            geometry,
+            environment,
+            materials,
+            tables,
+            settings,
+            plan,
+        })
+    }
+
+    fn materials(&mut self, wanted: Vec<MaterialSettings>) -> (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>) {
+        if let Some((_, materials, tables)) = self.materials.as_ref().filter(|(of, ..)| *of == wanted) {
+            return (materials.clone(), tables.clone());
+        }
+        let (materials, tables) = compile(&wanted);
+        let (materials, tables) = (Arc::new(materials), Arc::new(tables));
+        self.materials = Some((wanted, materials.clone(), tables.clone()));
+        (materials, tables)
+    }
+}
+
+/// One material a slot, the last one repeated where the document has too few, and the ground's where there is one.
+fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
+    let last = document.materials.last().cloned().unwrap_or_default();
+    let mut materials = document.materials.clone();
+    materials.resize(slots, last);
+    if document.ground {
+        materials.push(MaterialSettings::diffuse("ground", document.lighting.ground_color));
+    }
+    materials
+}
+
+/// The camera in the geometry's units.
+fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometry) -> Camera<f64> {
+    let aspect = f64::from(render.width) / f64::from(render.height.max(1));
+    let units = |place: [f64; 3]| geometry.units_from_world(place.into());
+    let target = settings.target.map_or(glam::DVec3::ZERO, units);
+    let position = settings.position.map(units).unwrap_or_else(|| {
+        let (yaw, pitch) = (settings.yaw_deg.to_radians(), settings.pitch_deg.to_radians());
+        let distance = match settings.distance {
+            Some(distance) => distance / geometry.world_units_per_unit,
+            None => framing_distance(settings.fov_deg, aspect),
+        };
+        target + distance * glam::DVec3::new(pitch.cos() * yaw.sin(), pitch.sin(), pitch.cos() * yaw.cos())
+    });
+    Camera::look_at(
+        position.to_array(),
+        target.to_array(),
+        settings.fov_deg,
+        aspect,
+        render.filter,
+    )
+}
+
+/// The distance at which the bounding sphere, of radius 1, just fits the picture's shorter side.
+fn framing_distance(fov_deg: f64, aspect: f64) -> f64 {
+    let half_height = (0.5 * fov_deg.to_radians()).tan();
+    let half = (half_height * aspect.min(1.0)).atan();
+    FRAME_MARGIN / half.sin()
+}

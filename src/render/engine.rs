@@ -1,0 +1,167 @@
+//! Which engine renders.
+
+use std::fmt;
+use std::str::FromStr;
+use std::sync::Arc;
+use std::time::Duration;
+
+use crate::analysis::film::Film;
+use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
+use crate::cpu::CpuEngine;
+use crate::document::job::Job;
+use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
+
+/// The engine that a user asks for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EngineChoice {
+    /// A hardware GPU if there is one, else the faster of software Vulkan and the processor.
+    #[default]
+    Auto,
+    /// The GPU, software Vulkan included.
+    Gpu,
+    /// The processor.
+    Cpu,
+}
+
+impl FromStr for EngineChoice {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "auto" => Ok(Self::Auto),
+            "gpu" => Ok(Self::Gpu),
+            "cpu" => Ok(Self::Cpu),
+            other => Err(format!("no engine is called {other}: auto, gpu or cpu")),
+        }
+    }
+}
+
+/// What renders, and why it was chosen.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct EngineInfo {
+    /// `gpu` or `cpu`.
+    pub kind: &'static str,
+    /// The adapter's or processor's name.
+    pub adapter: String,
+    /// The adapter's driver; empty for the processor.
+    pub driver: String,
+    /// Why this engine, in words.
+    pub reason: String,
+    /// True where the work is done by the processor, whatever the engine.
+    pub is_software: bool,
+}
+
+impl fmt::Display for EngineInfo {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} on {}", self.kind, self.adapter)
+    }
+}
+
+/// One of the two engines.
+pub(super) enum Engine {
+    Cpu(Box<CpuEngine>),
+    Gpu(Box<GpuEngine>),
+}
+
+impl Engine {
+    /// Opens what was asked for.
+    pub(super) fn open(choice: EngineChoice) -> Result<(Self, EngineInfo), GpuError> {
+        match choice {
+            EngineChoice::Cpu => Ok(cpu("asked for".to_owned())),
+            EngineChoice::Gpu => gpu(GpuDevice::open(AdapterKind::Any)?, "asked for".to_owned()),
+            EngineChoice::Auto => Ok(auto()),
+        }
+    }
+
+    pub(super) fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
+        match self {
+            Engine::Cpu(engine) => {
+                engine.submit(job);
+                Ok(())
+            }
+            Engine::Gpu(engine) => engine.submit(job),
+        }
+    }
+
+    pub(super) fn step(&mut self, budget: Duration, samples: u32) -> Result<(), GpuError> {
+        match self {
+            Engine::Cpu(engine) => {
+                engine.step(budget, samples);
+                Ok(())
+            }
+            Engine::Gpu(engine) => engine.step(budget, samples),
+        }
+    }
+
+    pub(super) fn film(&mut self) -> Result<&Film, GpuError> {
+        match self {
+            Engine::Cpu(engine) => Ok(engine.film()),
+            Engine::Gpu(engine) => engine.film(),
+        }
+    }
+
+    pub(super) fn samples_per_pixel(&self) -> u32 {
+        match self {
+            Engine::Cpu(engine) => engine.samples_per_pixel(),
+            Engine::Gpu(engine) => engine.samples_per_pixel(),
+        }
+    }
+}
+
+pub(super) fn cpu(reason: String) -> (Engine, EngineInfo) {
+    let threads = rayon::current_num_threads();
+    let info = EngineInfo {
+        kind: "cpu",
+        adapter: format!("{} ({threads} threads)", processor_name()),
+        driver: String::new(),
+        reason,
+        is_software: true,
+    };
+    (Engine::Cpu(Box::default()), info)
+}
+
+pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineInfo), GpuError> {
+    let info = EngineInfo {
+        kind: "gpu",
+        adapter: device.info.name.clone(),
+        driver: device.driver(),
+        reason,
+        is_software: device.is_software(),
+    };
+    Ok((Engine::Gpu(Box::new(GpuEngine::new(device)?)), info))
+}
+
+/// The processor's own name where the system tells it.
+fn processor_name() -> String {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    name.map_or_else(
+        || format!("{} processor", std::env::consts::ARCH),
+        |(_, name)| name.trim().to_owned(),
+    )
+}
+
+fn auto() -> (Engine, EngineInfo) {
+    match GpuDevice::open(AdapterKind::Hardware).and_then(|device| gpu(device, "a hardware GPU".to_owned())) {
+        Ok(opened) => opened,
+        Err(_) => super::calibration::fastest_without_hardware(),
+    }
+}
+
+/// Samples of a lobe, drawn by the function that the chosen engine renders with.
+///
+/// # Errors
+/// Where a GPU was asked for and fails.
+pub fn scatter(choice: EngineChoice, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
+    let device = match choice {
+        EngineChoice::Cpu => return Ok(crate::cpu::scatter::scatter(request)),
+        EngineChoice::Gpu => GpuDevice::open(AdapterKind::Any)?,
+        EngineChoice::Auto => match GpuDevice::open(AdapterKind::Hardware) {
+            Ok(device) => device,
+            Err(_) => return Ok(crate::cpu::scatter::scatter(request)),
+        },
+    };
+    crate::gpu::scatter::scatter(&device, request)
+}

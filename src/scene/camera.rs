@@ -1,0 +1,151 @@
+//! The camera: a thin lens, and the pixel filter that its rays are drawn from.
+
+use serde::{Deserialize, Serialize};
+
+use crate::optics::real::Real;
+use crate::optics::vector::Vec3;
+use crate::optics::warp::uniform_disc;
+
+/// How a pixel weighs what is around its centre.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[repr(u32)]
+pub enum PixelFilter {
+    /// The pixel's square, evenly: what other renderers' pictures are compared with.
+    Box = 0,
+    /// A Gaussian of σ = 0.5 pixels, cut off at 1.5: smoother edges.
+    #[default]
+    Gaussian = 1,
+}
+
+impl PixelFilter {
+    /// Every one, in the order of the menus.
+    pub const ALL: &'static [PixelFilter] = &[PixelFilter::Box, PixelFilter::Gaussian];
+
+    /// Name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            PixelFilter::Box => "box",
+            PixelFilter::Gaussian => "gaussian",
+        }
+    }
+    /// Name in the menus.
+    pub fn label(self) -> &'static str {
+        match self {
+            PixelFilter::Box => "Box",
+            PixelFilter::Gaussian => "Gaussian",
+        }
+    }
+    /// What it does to the picture.
+    pub fn help(self) -> &'static str {
+        match self {
+            PixelFilter::Box => "Evenly over the pixel: what to compare renderers with.",
+            PixelFilter::Gaussian => "By a Gaussian of half a pixel's width, cut off at 1.5 pixels: smoother edges.",
+        }
+    }
+}
+
+/// Radius at which the Gaussian is cut off, in pixels.
+const GAUSSIAN_RADIUS: f64 = 1.5;
+/// Its standard deviation in pixels.
+const GAUSSIAN_SIGMA: f64 = 0.5;
+
+/// A camera in the geometry's units; the f32 form is what the GPU reads (`shaders/scene/layout.wgsl`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Camera<T> {
+    /// Centre of the lens.
+    pub origin: Vec3<T>,
+    /// Radius of the lens; 0 is a pinhole.
+    pub lens_radius: T,
+    /// Unit viewing direction.
+    pub forward: Vec3<T>,
+    /// Distance along `forward` of what is sharp.
+    pub focus_distance: T,
+    /// To the right, as long as half the picture is wide at distance 1.
+    pub right: Vec3<T>,
+    /// [`PixelFilter`] as a number.
+    pub filter_kind: u32,
+    /// Upwards, as long as half the picture is high at distance 1.
+    pub up: Vec3<T>,
+    /// Fills the last 16 bytes.
+    pub reserved: u32,
+}
+
+// SAFETY: f32 and u32 fields without padding; any bit pattern is valid.
+unsafe impl bytemuck::Zeroable for Camera<f32> {}
+// SAFETY: as above.
+unsafe impl bytemuck::Pod for Camera<f32> {}
+
+impl Camera<f64> {
+    /// A pinhole at `position` looking at `target` (in the geometry's units), +Y up; `fov_deg` is the vertical field of
+    /// view, `aspect` width over height. Straight up or down, −Z is up in the picture.
+    pub fn look_at(position: [f64; 3], target: [f64; 3], fov_deg: f64, aspect: f64, filter: PixelFilter) -> Self {
+        use glam::DVec3;
+        let (position, target) = (DVec3::from_array(position), DVec3::from_array(target));
+        let forward = (target - position).try_normalize().unwrap_or(DVec3::NEG_Z);
+        let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
+        let up = right.cross(forward);
+        let half_height = (0.5 * fov_deg.to_radians()).tan();
+        Camera {
+            origin: Vec3::from_f64(position.to_array()),
+            lens_radius: 0.0,
+            forward: Vec3::from_f64(forward.to_array()),
+            focus_distance: (target - position).length().max(1e-6),
+            right: Vec3::from_f64((right * half_height * aspect).to_array()),
+            filter_kind: filter as u32,
+            up: Vec3::from_f64((up * half_height).to_array()),
+            reserved: 0,
+        }
+    }
+
+    /// The same camera in another precision.
+    pub fn cast<T: Real>(&self) -> Camera<T> {
+        let vector = |v: Vec3<f64>| Vec3::from_f64(v.to_f64());
+        Camera {
+            origin: vector(self.origin),
+            lens_radius: T::from_f64(self.lens_radius),
+            forward: vector(self.forward),
+            focus_distance: T::from_f64(self.focus_distance),
+            right: vector(self.right),
+            filter_kind: self.filter_kind,
+            up: vector(self.up),
+            reserved: 0,
+        }
+    }
+}
+
+/// Where in the picture a sample lies, relative to its pixel's centre, in pixels: drawn from the filter, so that every
+/// sample counts alike.
+#[inline(always)]
+pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
+    let half = T::from_f64(0.5);
+    if filter_kind == PixelFilter::Box as u32 {
+        return [xi[0] - half, xi[1] - half];
+    }
+    // The radius of a Gaussian cut off at GAUSSIAN_RADIUS, by inversion.
+    let kept = 1.0 - (-0.5 * (GAUSSIAN_RADIUS / GAUSSIAN_SIGMA).powi(2)).exp();
+    let radius =
+        T::from_f64(GAUSSIAN_SIGMA) * (T::from_f64(-2.0) * (T::one() - xi[0] * T::from_f64(kept)).ln()).safe_sqrt();
+    let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[1];
+    [radius * phi_rad.cos(), radius * phi_rad.sin()]
+}
+
+/// The ray through a point of the picture, in pixels from its top left: (origin, unit direction).
+#[inline(always)]
+pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 2], xi_lens: [T; 2]) -> [Vec3<T>; 2] {
+    let two = T::from_f64(2.0);
+    let x = two * place[0] / T::from_f64(f64::from(image_size[0])) - T::one();
+    let y = T::one() - two * place[1] / T::from_f64(f64::from(image_size[1]));
+    let along = camera.forward + camera.right * x + camera.up * y;
+    if camera.lens_radius.to_f64() <= 0.0 {
+        return [camera.origin, along.normalize()];
+    }
+    let disc = uniform_disc(xi_lens);
+    let shift = camera.right.normalize() * (disc[0] * camera.lens_radius)
+        + camera.up.normalize() * (disc[1] * camera.lens_radius);
+    [
+        camera.origin + shift,
+        (along * camera.focus_distance - shift).normalize(),
+    ]
+}

@@ -1,0 +1,202 @@
+//! The density that an environment is sampled with: piecewise constant over cells, drawn through an alias table.
+
+use std::f64::consts::{PI, TAU};
+
+use rayon::prelude::*;
+
+/// More cells than this are merged: 24 MiB of table, and finer cells gain nothing a sample could show.
+const MAX_CELLS: u64 = 2048 * 1024;
+
+/// One cell of the distribution: an entry of the alias table (Walker 1977, Vose 1991) with the cell's density.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Zeroable, bytemuck::Pod)]
+pub struct AliasCell {
+    /// The probability, in [0, 1], that a draw of this cell is kept.
+    pub threshold: f32,
+    /// The cell to take instead when it is not kept.
+    pub alias_index: u32,
+    /// The density inside the cell, per steradian, in the map's own frame.
+    pub density: f32,
+}
+
+/// A borrowed lat-long picture.
+pub(super) struct Map<'a> {
+    pub width: u32,
+    pub height: u32,
+    pub texels: &'a [[f32; 4]],
+}
+
+/// What is told about a map as a whole.
+pub(super) struct Summary {
+    pub mean_radiance: [f32; 3],
+    pub max_luminance: f32,
+}
+
+/// Luminance of a linear Rec. 709 texel (CIE Y).
+fn luminance(texel: &[f32; 4]) -> f64 {
+    0.2126 * f64::from(texel[0]) + 0.7152 * f64::from(texel[1]) + 0.0722 * f64::from(texel[2])
+}
+
+/// The solid angle between rows `top` and `bottom` (possibly fractional) of `height`, all the way round: 2π times the
+/// difference of the cosines, written so that nothing cancels.
+fn band_solid_angle(top: f64, bottom: f64, height: f64) -> f64 {
+    let half_turn = PI / height;
+    let middle_rad = 0.5 * (top + bottom) * half_turn;
+    let half_width_rad = 0.5 * (bottom - top) * half_turn;
+    2.0 * TAU * middle_rad.sin() * half_width_rad.sin()
+}
+
+/// The luminance of the bilinear picture averaged over each texel's cell of a row: neighbours along an axis weigh 1/8,
+/// 3/4, 1/8.
+fn cell_luminances(map: &Map, row: u32) -> Vec<f64> {
+    let width = map.width as usize;
+    let line = |row: u32| &map.texels[row as usize * width..][..width];
+    let above = line(row.saturating_sub(1));
+    let here = line(row);
+    let below = line((row + 1).min(map.height - 1));
+    let columns: Vec<f64> = (0..width)
+        .map(|x| 0.125 * (luminance(&above[x]) + luminance(&below[x])) + 0.75 * luminance(&here[x]))
+        .collect();
+    (0..width)
+        .map(|x| {
+            let left = columns[if x == 0 { width - 1 } else { x - 1 }];
+            let right = columns[if x + 1 == width { 0 } else { x + 1 }];
+            0.125 * (left + right) + 0.75 * columns[x]
+        })
+        .collect()
+}
+
+/// What a texel of a row adds to the integral of the bilinear picture over the sphere: the integral of its hat function,
+/// which stays 1 from the first and last row's centres to the poles.
+pub(super) fn texel_solid_angle(row: u32, width: u32, height: u32) -> f64 {
+    let step_rad = PI / f64::from(height);
+    let polar_rad = (f64::from(row) + 0.5) * step_rad;
+    // ∫ (1 − t / step) sin(start + t) dt over t in [0, step].
+    let ramp = |start_rad: f64| start_rad.cos() - ((start_rad + step_rad).sin() - start_rad.sin()) / step_rad;
+    let above = if row == 0 {
+        1.0 - polar_rad.cos()
+    } else {
+        ramp(PI - polar_rad)
+    };
+    let below = if row + 1 == height {
+        1.0 + polar_rad.cos()
+    } else {
+        ramp(polar_rad)
+    };
+    (above + below) * TAU / f64::from(width)
+}
+
+/// Mean radiance of the bilinear picture over the sphere, and the largest luminance.
+pub(super) fn summarise(map: &Map) -> Summary {
+    let (sum, max) = map
+        .texels
+        .par_chunks(map.width as usize)
+        .enumerate()
+        .map(|(row, texels)| {
+            let solid_angle = texel_solid_angle(row as u32, map.width, map.height);
+            let sum = [0, 1, 2]
+                .map(|channel| solid_angle * texels.iter().map(|texel| f64::from(texel[channel])).sum::<f64>());
+            (sum, texels.iter().map(luminance).fold(0.0, f64::max))
+        })
+        .reduce(
+            || ([0.0; 3], 0.0),
+            |(a, a_max), (b, b_max)| ([a[0] + b[0], a[1] + b[1], a[2] + b[2]], f64::max(a_max, b_max)),
+        );
+    Summary {
+        mean_radiance: sum.map(|sum| (sum / (2.0 * TAU)) as f32),
+        max_luminance: max as f32,
+    }
+}
+
+/// The size of the grid of cells: the map's own, halved while it has more than [`MAX_CELLS`].
+pub(super) fn cells_size(width: u32, height: u32) -> (u32, u32) {
+    let mut size = (width, height);
+    while u64::from(size.0) * u64::from(size.1) > MAX_CELLS {
+        size = (size.0.div_ceil(2), size.1.div_ceil(2));
+    }
+    size
+}
+
+/// The cells of a map. Each weighs its share of the luminance of the bilinear picture times solid angle; all densities
+/// are 0 if that is nothing.
+pub(super) fn build(map: &Map, cells_width: u32, cells_height: u32) -> Vec<AliasCell> {
+    let weights: Vec<f64> = (0..cells_height)
+        .into_par_iter()
+        .flat_map_iter(|row| cell_row_weights(map, row, cells_width, cells_height))
+        .collect();
+    let total: f64 = weights.iter().sum();
+    let mut cells = alias_table(&weights, total);
+    if total > 0.0 {
+        cells
+            .par_chunks_mut(cells_width as usize)
+            .enumerate()
+            .for_each(|(row, cells)| {
+                let band = band_solid_angle(row as f64, (row + 1) as f64, f64::from(cells_height));
+                let solid_angle = band / f64::from(cells_width);
+                let weights = &weights[row * cells_width as usize..];
+                for (cell, weight) in cells.iter_mut().zip(weights) {
+                    cell.density = (weight / total / solid_angle) as f32;
+                }
+            });
+    }
+    cells
+}
+
+/// The weights of one row of cells. A cell that covers a texel's cell in part takes that part of its weight.
+fn cell_row_weights(map: &Map, cell_row: u32, cells_width: u32, cells_height: u32) -> Vec<f64> {
+    let mut weights = vec![0.0; cells_width as usize];
+    for (row, row_share) in overlaps(cell_row, cells_height, map.height) {
+        let band = band_solid_angle(f64::from(row), f64::from(row + 1), f64::from(map.height));
+        let factor = row_share * band / f64::from(map.width);
+        let luminances = cell_luminances(map, row);
+        for (cell, weight) in weights.iter_mut().enumerate() {
+            for (column, share) in overlaps(cell as u32, cells_width, map.width) {
+                *weight += factor * share * luminances[column as usize];
+            }
+        }
+    }
+    weights
+}
+
+/// Which of `fine` equal intervals of [0, 1] overlap interval `index` of `coarse` ones, each with the share of it that
+/// is covered.
+fn overlaps(index: u32, coarse: u32, fine: u32) -> impl Iterator<Item = (u32, f64)> {
+    // In units of 1 / (coarse × fine), where every border is a whole number.
+    let (coarse, fine) = (u64::from(coarse), u64::from(fine));
+    let (begin, end) = (u64::from(index) * fine, (u64::from(index) + 1) * fine);
+    (begin / coarse..end.div_ceil(coarse)).map(move |i| {
+        let covered = end.min((i + 1) * coarse) - begin.max(i * coarse);
+        (i as u32, covered as f64 / coarse as f64)
+    })
+}
+
+/// Vose's table: drawing an entry uniformly and keeping it with probability `threshold` chooses each index in
+/// proportion to its weight. All weights 0 give entries that are always kept.
+fn alias_table(weights: &[f64], total: f64) -> Vec<AliasCell> {
+    let mut cells: Vec<AliasCell> = (0..weights.len())
+        .map(|index| AliasCell {
+            threshold: 1.0,
+            alias_index: index as u32,
+            density: 0.0,
+        })
+        .collect();
+    if total <= 0.0 {
+        return cells;
+    }
+    let scale = weights.len() as f64 / total;
+    let mut scaled: Vec<f64> = weights.iter().map(|weight| weight * scale).collect();
+    let (mut small, mut large): (Vec<u32>, Vec<u32>) =
+        (0..weights.len() as u32).partition(|&index| scaled[index as usize] < 1.0);
+    while let (Some(&giver), Some(taker)) = (large.last(), small.pop()) {
+        let (giver_index, taker_index) = (giver as usize, taker as usize);
+        cells[taker_index].threshold = scaled[taker_index] as f32;
+        cells[taker_index].alias_index = giver;
+        scaled[giver_index] -= 1.0 - scaled[taker_index];
+        if scaled[giver_index] < 1.0 {
+            large.pop();
+            small.push(giver);
+        }
+    }
+    // What is left in either list is 1 but for rounding, and so are the thresholds already.
+    cells
+}

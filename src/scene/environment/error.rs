@@ -1,0 +1,87 @@
+//! What can be wrong with an environment, told in one line each.
+
+use std::path::PathBuf;
+
+/// Why an environment cannot be shown. The message names the file, what is wrong with it and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum EnvironmentError {
+    /// An empty name.
+    #[error("no environment was named: give studio, sky, furnace, or a .hdr or .exr file")]
+    NoName,
+    /// The file system refused.
+    #[error("cannot read the environment {}: {source}; check the path and its permissions", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// Neither .hdr nor .exr.
+    #[error(
+        "the environment {} is neither a .hdr nor an .exr file: convert it to one of them, or use studio, sky or furnace",
+        path.display()
+    )]
+    UnknownExtension {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The content is not what the extension says.
+    #[error(
+        "{} is not {expected} file although its name says so: its first bytes are different; check where it came from",
+        path.display()
+    )]
+    WrongContent {
+        /// The file.
+        path: PathBuf,
+        /// The format, with its article.
+        expected: &'static str,
+    },
+    /// The file ends too early.
+    #[error("{} is cut short: {detail}; copy or download it again", path.display())]
+    Truncated {
+        /// The file.
+        path: PathBuf,
+        /// Where it ends.
+        detail: String,
+    },
+    /// The decoder found a contradiction.
+    #[error("{} is damaged: {detail}; copy or download it again, or re-save it", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What the decoder said.
+        detail: String,
+    },
+    /// A valid file that makes use of what is not supported.
+    #[error("{} uses {feature}, which is not supported: {remedy}", path.display())]
+    Unsupported {
+        /// The file.
+        path: PathBuf,
+        /// What it uses.
+        feature: String,
+        /// What to do instead.
+        remedy: &'static str,
+    },
+    /// Larger than the largest size.
+    #[error(
+        "{} is {width} × {height}, larger than the {} × {} that fit: scale it down",
+        path.display(), super::MAX_WIDTH, super::MAX_HEIGHT
+    )]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its columns.
+        width: u64,
+        /// Its rows.
+        height: u64,
+    },
+    /// No pixels.
+    #[error("the environment {name} has no pixels: it needs at least one; save it again at its full size")]
+    Empty {
+        /// The file or the map's name.
+        name: String,
+    },
+    /// A sky that cannot be.
+    #[error("{0}")]
+    SkyParameter(String),
+}

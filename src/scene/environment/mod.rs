@@ -1,0 +1,285 @@
+//! Light from far away: a lat-long map, looked up bilinearly and sampled in proportion to its luminance.
+//!
+//! The map's own frame is right-handed with +Y up. A direction's place in the map is (u, v), both in [0, 1]:
+//! u = atan2(x, −z) / 2π, so that u = 0 looks along −Z, 0.25 along +X, 0.5 (the centre column) along +Z; v = acos(y) / π,
+//! so that the top row is +Y. Texel (i, j) has its centre at ((i + ½) / width, (j + ½) / height). Rotation and strength
+//! are not part of the map: see [`environment_local_from_world`].
+//!
+//! The functions whose names start with `environment_` have WGSL twins in `shaders/scene/environment.wgsl`.
+
+mod distribution;
+mod error;
+mod file;
+mod open_exr;
+mod procedural;
+mod radiance_hdr;
+mod thumbnail;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::optics::real::{Mask, Real};
+use crate::optics::vector::{Vec3, vec3};
+
+pub use distribution::AliasCell;
+pub use error::EnvironmentError;
+pub use file::{MAX_HEIGHT, MAX_WIDTH};
+pub use procedural::{SkyParams, furnace, sky, studio, sun_direction, sun_irradiance};
+pub use thumbnail::thumbnail;
+
+/// Where an environment comes from. Written `studio`, `sky`, `furnace` or the name of a .hdr or .exr file; a file of one
+/// of those three names is reached as `./studio`.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EnvironmentSource {
+    /// Soft boxes in a dark room.
+    #[default]
+    Studio,
+    /// A clear sky with its sun, see [`SkyParams`].
+    Sky,
+    /// Radiance 1 from everywhere.
+    Furnace,
+    /// A lat-long picture in a .hdr or .exr file.
+    File(PathBuf),
+}
+
+impl FromStr for EnvironmentSource {
+    type Err = EnvironmentError;
+    fn from_str(text: &str) -> Result<Self, EnvironmentError> {
+        match text {
+            "" => Err(EnvironmentError::NoName),
+            "studio" => Ok(Self::Studio),
+            "sky" => Ok(Self::Sky),
+            "furnace" => Ok(Self::Furnace),
+            file => Ok(Self::File(PathBuf::from(file))),
+        }
+    }
+}
+
+impl fmt::Display for EnvironmentSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Studio => f.write_str("studio"),
+            Self::Sky => f.write_str("sky"),
+            Self::Furnace => f.write_str("furnace"),
+            Self::File(path) => path.display().fmt(f),
+        }
+    }
+}
+
+/// A lat-long map with the tables to sample it by, ready to upload.
+#[derive(Clone, Debug)]
+pub struct Environment {
+    /// Columns, at least 1.
+    pub width: u32,
+    /// Rows, at least 1.
+    pub height: u32,
+    /// `width` × `height` linear Rec. 709 radiances, rows from +Y down, finite and not negative; the fourth number is 1.
+    pub texels: Vec<[f32; 4]>,
+    /// `cells_width` × `cells_height` cells of the sampling density, in the order of the texels.
+    pub cells: Vec<AliasCell>,
+    /// Columns of cells: `width`, or halved until the table has at most 2048 × 1024 cells.
+    pub cells_width: u32,
+    /// Rows of cells.
+    pub cells_height: u32,
+    /// What to call it: `studio`, …, or the file's name without folders.
+    pub name: String,
+    /// What was odd about the file but could be mended, one sentence each.
+    pub warnings: Vec<String>,
+    /// Whether all texels are equal, so that there is nothing to gain by sampling it.
+    pub is_constant: bool,
+    /// Whether all texels are black: the density is 0 everywhere.
+    pub is_black: bool,
+    /// Radiance averaged over the sphere, per channel.
+    pub mean_radiance: [f32; 3],
+    /// The largest luminance of any texel.
+    pub max_luminance: f32,
+}
+
+impl Environment {
+    /// Builds the sampling tables over `texels` (`width` × `height`, finite and not negative).
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Empty`] if there are no texels or not `width` × `height` of them.
+    pub fn from_texels(
+        name: impl Into<String>,
+        width: u32,
+        height: u32,
+        texels: Vec<[f32; 4]>,
+    ) -> Result<Self, EnvironmentError> {
+        let name = name.into();
+        if texels.is_empty() || texels.len() as u64 != u64::from(width) * u64::from(height) {
+            return Err(EnvironmentError::Empty { name });
+        }
+        let map = distribution::Map {
+            width,
+            height,
+            texels: &texels,
+        };
+        let summary = distribution::summarise(&map);
+        let (cells_width, cells_height) = distribution::cells_size(width, height);
+        let cells = distribution::build(&map, cells_width, cells_height);
+        Ok(Self {
+            is_constant: texels.iter().all(|texel| *texel == texels[0]),
+            is_black: summary.max_luminance <= 0.0,
+            mean_radiance: summary.mean_radiance,
+            max_luminance: summary.max_luminance,
+            width,
+            height,
+            texels,
+            cells,
+            cells_width,
+            cells_height,
+            name,
+            warnings: Vec::new(),
+        })
+    }
+}
+
+/// Loads or computes an environment. Takes seconds for an 8k file: call it beside the window.
+///
+/// # Errors
+/// One line with the file's name, what is wrong and what to do, for files that cannot be read or shown.
+pub fn load(source: &EnvironmentSource) -> Result<Environment, EnvironmentError> {
+    match source {
+        EnvironmentSource::Studio => studio(),
+        EnvironmentSource::Sky => sky(&SkyParams::default()),
+        EnvironmentSource::Furnace => furnace(),
+        EnvironmentSource::File(path) => file::load(Path::new(path)),
+    }
+}
+
+/// The direction in the map's frame that a direction in the world meets when the map is turned by an angle about +Y,
+/// anticlockwise seen from above (+Z towards +X). `rotation` is the cosine and the sine of the angle.
+pub fn environment_local_from_world<T: Real>(direction_world: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
+    let [cos, sin] = rotation;
+    let d = direction_world;
+    vec3(d.x * cos - d.z * sin, d.y, d.x * sin + d.z * cos)
+}
+
+/// The inverse of [`environment_local_from_world`].
+pub fn environment_world_from_local<T: Real>(direction_local: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
+    let [cos, sin] = rotation;
+    let d = direction_local;
+    vec3(d.x * cos + d.z * sin, d.y, d.z * cos - d.x * sin)
+}
+
+/// Where a unit direction lies in the map: u in [0, 1), v in [0, 1]. At the poles u is 0.
+pub fn environment_uv<T: Real>(direction: Vec3<T>) -> [T; 2] {
+    // atan2 instead of acos: near the poles y is 1 to within rounding and only x and z tell the angle.
+    let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
+    let v = horizontal.atan2(direction.y) * T::from_f64(std::f64::consts::FRAC_1_PI);
+    // atan2(0, 0) is undefined in WGSL.
+    let pole = !T::zero().less(horizontal);
+    let z = T::select(pole, -T::one(), direction.z);
+    let turns = direction.x.atan2(-z) * T::from_f64(0.5 * std::f64::consts::FRAC_1_PI);
+    let u = T::select(turns.less(T::zero()), turns + T::one(), turns);
+    // A tiny negative angle plus one turn rounds to a whole turn.
+    [T::select(u.less(T::one()), u, T::zero()), v.clamp(T::zero(), T::one())]
+}
+
+/// The unit direction of a place in the map, the inverse of [`environment_uv`].
+pub fn environment_direction<T: Real>(uv: [T; 2]) -> Vec3<T> {
+    let polar_rad = uv[1] * T::from_f64(std::f64::consts::PI);
+    environment_direction_from_angles(uv[0], polar_rad.cos(), polar_rad.sin())
+}
+
+/// The unit direction at `u` turns of azimuth with the given cosine and sine of the angle to +Y.
+fn environment_direction_from_angles<T: Real>(u: T, cos_polar: T, sin_polar: T) -> Vec3<T> {
+    // Half a turn back, so that the argument stays in [−π, π], where GPUs promise accuracy.
+    let azimuth_rad = (u - T::from_f64(0.5)) * T::from_f64(std::f64::consts::TAU);
+    vec3(
+        -(azimuth_rad.sin() * sin_polar),
+        cos_polar,
+        azimuth_rad.cos() * sin_polar,
+    )
+}
+
+/// Radiance from a unit direction: bilinear, wrapping in u, clamped at the poles in v.
+pub fn environment_radiance<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> Vec3<T> {
+    let uv = environment_uv(direction_local);
+    let half = T::from_f64(0.5);
+    let x = uv[0] * T::from_f64(f64::from(environment.width)) - half;
+    let y = uv[1] * T::from_f64(f64::from(environment.height)) - half;
+    let (left, top) = (x.floor(), y.floor());
+    let (right_share, bottom_share) = (x - left, y - top);
+    let (width, height) = (i64::from(environment.width), i64::from(environment.height));
+    let texel = |column: i64, row: i64| {
+        let index = row.clamp(0, height - 1) * width + column.rem_euclid(width);
+        let [red, green, blue, _] = environment.texels[index as usize];
+        Vec3::from_f32([red, green, blue])
+    };
+    let (column, row) = (left.to_f64() as i64, top.to_f64() as i64);
+    let upper = texel(column, row).mix(texel(column + 1, row), right_share);
+    let lower = texel(column, row + 1).mix(texel(column + 1, row + 1), right_share);
+    upper.mix(lower, bottom_share)
+}
+
+/// A direction in the map's frame drawn with the density that is returned with it, per steradian, from three uniform
+/// numbers in [0, 1). The density is 0, the direction arbitrary, if the map is black.
+///
+/// `xi.x` and `xi.y` choose the column and the row of a cell and, with what is left of them, the place inside the cell
+/// that is kept or taken instead; `xi.z` alone decides which. One number for the cell would not do: of 24 bits, a table
+/// of 2 million cells leaves three, and a table whose size is no power of two would be off by several per cent.
+pub fn environment_sample<T: Real>(environment: &Environment, xi: Vec3<T>) -> (Vec3<T>, T) {
+    let (width, height) = (environment.cells_width, environment.cells_height);
+    let (column, x) = split(xi.x, width);
+    let (row, y) = split(xi.y, height);
+    let drawn = row * width + column;
+    let cell = environment.cells[drawn as usize];
+    let keep = xi.z.less(T::from_f64(f64::from(cell.threshold)));
+    let chosen = if keep.any() { drawn } else { cell.alias_index };
+    let density = T::from_f64(f64::from(environment.cells[chosen as usize].density));
+    (
+        environment_direction_in_cell(chosen % width, chosen / width, [x, y], width, height),
+        density,
+    )
+}
+
+/// The whole and the fractional part of `xi` × `count`, the whole part below `count`.
+fn split<T: Real>(xi: T, count: u32) -> (u32, T) {
+    let scaled = xi * T::from_f64(f64::from(count));
+    let whole = (scaled.to_f64() as u32).min(count - 1);
+    (whole, (scaled - T::from_f64(f64::from(whole))).min(T::one()))
+}
+
+/// The direction at `place` (in [0, 1]², from the top left) of a cell, uniform in solid angle.
+fn environment_direction_in_cell<T: Real>(
+    column: u32,
+    row: u32,
+    place: [T; 2],
+    cells_width: u32,
+    cells_height: u32,
+) -> Vec3<T> {
+    let number = |value: u32| T::from_f64(f64::from(value));
+    let u = (number(column) + place[0]) / number(cells_width);
+    // sin² of half the angle is uniform in solid angle, and exact near the pole that the angle is counted from: the
+    // nearer one.
+    let is_south = 2 * row >= cells_height;
+    let (row_from_pole, across) = if is_south {
+        (cells_height - 1 - row, T::one() - place[1])
+    } else {
+        (row, place[1])
+    };
+    let quarter_turn = T::from_f64(std::f64::consts::FRAC_PI_2);
+    let near = (quarter_turn * (number(row_from_pole) / number(cells_height))).sin();
+    let far = (quarter_turn * (number(row_from_pole + 1) / number(cells_height))).sin();
+    let near_squared = near * near;
+    let s = near_squared + across * (far * far - near_squared);
+    let cos_from_pole = T::one() - (s + s);
+    let sin_polar = T::from_f64(2.0) * (s * (T::one() - s)).safe_sqrt();
+    environment_direction_from_angles(u, if is_south { -cos_from_pole } else { cos_from_pole }, sin_polar)
+}
+
+/// The density, per steradian, with which [`environment_sample`] draws a unit direction in the map's frame.
+pub fn environment_density<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> T {
+    let uv = environment_uv(direction_local);
+    let (column, _) = split(uv[0], environment.cells_width);
+    let (row, _) = split(uv[1], environment.cells_height);
+    T::from_f64(f64::from(
+        environment.cells[(row * environment.cells_width + column) as usize].density,
+    ))
+}

@@ -1,0 +1,295 @@
+//! OpenEXR files, by the `exr` crate.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use exr::block::UncompressedBlock;
+use exr::block::chunk::Chunk;
+use exr::block::lines::LineRef;
+use exr::block::reader::{ChunksReader, Reader};
+use exr::compression::Compression;
+use exr::error::Error as ExrError;
+use exr::math::Vec2;
+use exr::meta::MetaData;
+use exr::meta::attribute::SampleType;
+use exr::meta::header::Header;
+use exr::prelude::f16;
+use rayon::prelude::*;
+
+use super::EnvironmentError;
+use super::file::{Picture, check_size, io};
+
+const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
+/// The bit of the version field that says that some part is deep.
+const DEEP_FLAG: u32 = 1 << 11;
+/// Deflate cannot do better than 1032 : 1, the other schemes that matter stay below it.
+const MAX_COMPRESSION: u64 = 1500;
+/// Chunks that are decompressed together: enough for every core, little enough to hold in memory.
+const CHUNKS_AT_ONCE: usize = 32;
+
+/// A layer of the file, and which of a texel's red, green and blue each of its channels fills.
+struct Layer {
+    index: usize,
+    components: Vec<[bool; 3]>,
+    warnings: Vec<String>,
+}
+
+/// Reads the first layer that has colour or luminance, at its largest size, into its display window.
+pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
+    // Some damaged files fail assertions inside the crate instead of giving errors.
+    std::panic::catch_unwind(|| read_guarded(path)).unwrap_or_else(|_| {
+        let detail = "its pixels contradict each other".to_owned();
+        Err(EnvironmentError::Damaged {
+            path: path.to_owned(),
+            detail,
+        })
+    })
+}
+
+/// [`read`], where the crate may panic.
+fn read_guarded(path: &Path) -> Result<Picture, EnvironmentError> {
+    let file_bytes = check_preamble(path)?;
+    let file = BufReader::new(io(path, File::open(path))?);
+    let reader = Reader::read_from_buffered(file, false).map_err(|error| exr_error(path, error))?;
+    let layer = choose_layer(path, reader.headers())?;
+    let header = reader.headers()[layer.index].clone();
+    let window = Window::new(path, &header)?;
+    check_supported(path, &header, file_bytes)?;
+
+    let chunks = reader
+        .filter_chunks(false, |_, _, block| {
+            block.layer == layer.index && block.level == Vec2(0, 0)
+        })
+        .map_err(|error| exr_error(path, error))?;
+    let meta_data = chunks.meta_data().clone();
+    // Zeroed memory costs nothing before a row is written: a header's promise alone allocates no pages.
+    let mut texels = vec![[0.0; 4]; window.width as usize * window.height as usize];
+    for_each_block(chunks, &meta_data, |block| {
+        for line in block.lines(&header.channels) {
+            let channel = line.location.channel;
+            let sample_type = header.channels.list[channel].sample_type;
+            write_line(&line, sample_type, &layer.components[channel], &window, &mut texels);
+        }
+    })
+    .map_err(|error| exr_error(path, error))?;
+    Ok(Picture {
+        width: window.width,
+        height: window.height,
+        texels,
+        warnings: layer.warnings,
+    })
+}
+
+/// Looks at the first eight bytes, which the crate's errors do not tell apart; returns the length of the file.
+fn check_preamble(path: &Path) -> Result<u64, EnvironmentError> {
+    let mut file = io(path, File::open(path))?;
+    let length = io(path, file.metadata())?.len();
+    let mut preamble = Vec::new();
+    io(path, file.by_ref().take(8).read_to_end(&mut preamble))?;
+    if preamble.is_empty() {
+        return Err(EnvironmentError::Truncated {
+            path: path.to_owned(),
+            detail: "it has no content".to_owned(),
+        });
+    }
+    let Some(version) = preamble.strip_prefix(&MAGIC) else {
+        return Err(EnvironmentError::WrongContent {
+            path: path.to_owned(),
+            expected: "an OpenEXR",
+        });
+    };
+    if let Ok(version) = <[u8; 4]>::try_from(version)
+        && u32::from_le_bytes(version) & DEEP_FLAG != 0
+    {
+        return Err(EnvironmentError::Unsupported {
+            path: path.to_owned(),
+            feature: "deep pixels".to_owned(),
+            remedy: "flatten it and save it as a scan-line EXR with ZIP or PIZ compression",
+        });
+    }
+    Ok(length)
+}
+
+/// The first layer with red, green and blue, else the first with luminance. In one layer the channels may have a prefix
+/// (`view.R`): the shortest prefix wins.
+fn choose_layer(path: &Path, headers: &[Header]) -> Result<Layer, EnvironmentError> {
+    let names = |header: &Header| -> Vec<String> {
+        header
+            .channels
+            .list
+            .iter()
+            .map(|channel| channel.name.to_string())
+            .collect()
+    };
+    let find = |wanted: &[&str]| {
+        headers.iter().enumerate().find_map(|(index, header)| {
+            let names = names(header);
+            let mut prefixes: Vec<&str> = names.iter().filter_map(|name| name.strip_suffix(wanted[0])).collect();
+            prefixes.retain(|prefix| prefix.is_empty() || prefix.ends_with('.'));
+            prefixes.retain(|prefix| wanted.iter().all(|name| names.contains(&format!("{prefix}{name}"))));
+            prefixes.sort_by_key(|prefix| prefix.len());
+            prefixes.first().map(|prefix| (index, (*prefix).to_owned()))
+        })
+    };
+    let (index, prefix, is_color) = if let Some((index, prefix)) = find(&["R", "G", "B"]) {
+        (index, prefix, true)
+    } else if let Some((index, prefix)) = find(&["Y"]) {
+        (index, prefix, false)
+    } else {
+        let found: Vec<String> = headers.iter().flat_map(names).collect();
+        return Err(EnvironmentError::Unsupported {
+            path: path.to_owned(),
+            feature: format!("only the channels {}", found.join(", ")),
+            remedy: "save it with channels R, G and B, or Y",
+        });
+    };
+    let components = names(&headers[index])
+        .iter()
+        .map(|name| match name.strip_prefix(prefix.as_str()) {
+            Some("R") => [is_color, false, false],
+            Some("G") => [false, is_color, false],
+            Some("B") => [false, false, is_color],
+            Some("Y") => [!is_color; 3],
+            _ => [false; 3],
+        })
+        .collect();
+    let mut warnings = Vec::new();
+    if headers.len() > 1 {
+        warnings.push(format!(
+            "The file has {} layers; number {} is shown.",
+            headers.len(),
+            index + 1
+        ));
+    }
+    Ok(Layer {
+        index,
+        components,
+        warnings,
+    })
+}
+
+/// Refuses what is not to be decoded, and headers that promise more than the file can hold.
+fn check_supported(path: &Path, header: &Header, file_bytes: u64) -> Result<(), EnvironmentError> {
+    let compression = match header.compression {
+        Compression::DWAA(_) => "DWAA compression",
+        Compression::DWAB(_) => "DWAB compression",
+        Compression::HTJ2K32 | Compression::HTJ2K256 => "HTJ2K compression",
+        _ => "",
+    };
+    if !compression.is_empty() {
+        return Err(EnvironmentError::Unsupported {
+            path: path.to_owned(),
+            feature: compression.to_owned(),
+            remedy: "re-save it with ZIP or PIZ compression",
+        });
+    }
+    let promised = (header.layer_size.area() as u64).saturating_mul(header.channels.bytes_per_pixel as u64);
+    let least = match header.compression {
+        Compression::Uncompressed => promised,
+        _ => promised / MAX_COMPRESSION,
+    };
+    if file_bytes < least {
+        return Err(EnvironmentError::Truncated {
+            path: path.to_owned(),
+            detail: format!("it has {file_bytes} bytes, too few for the {promised} that its header promises"),
+        });
+    }
+    Ok(())
+}
+
+/// The display window, and where the stored pixels lie in it.
+struct Window {
+    width: u32,
+    height: u32,
+    /// The place of the first stored pixel; negative where pixels are stored outside of the window.
+    offset: [i64; 2],
+}
+
+impl Window {
+    fn new(path: &Path, header: &Header) -> Result<Self, EnvironmentError> {
+        let display = header.shared_attributes.display_window;
+        let (width, height) = check_size(path, display.size.width() as u64, display.size.height() as u64)?;
+        check_size(
+            path,
+            header.layer_size.width() as u64,
+            header.layer_size.height() as u64,
+        )?;
+        let position = header.own_attributes.layer_position;
+        let offset = [
+            i64::from(position.x()) - i64::from(display.position.x()),
+            i64::from(position.y()) - i64::from(display.position.y()),
+        ];
+        Ok(Self { width, height, offset })
+    }
+}
+
+/// Decompresses all chunks, on all cores, and hands the blocks on in order. (The crate's own parallel reader runs them
+/// as detached tasks, where a panic would end the program.)
+fn for_each_block(
+    mut chunks: impl ChunksReader,
+    meta_data: &MetaData,
+    mut use_block: impl FnMut(&UncompressedBlock),
+) -> Result<(), ExrError> {
+    loop {
+        let batch: Vec<Chunk> = chunks.by_ref().take(CHUNKS_AT_ONCE).collect::<Result<_, _>>()?;
+        if batch.is_empty() {
+            return Ok(());
+        }
+        let blocks: Vec<UncompressedBlock> = batch
+            .into_par_iter()
+            .map(|chunk| UncompressedBlock::decompress_chunk(chunk, meta_data, false))
+            .collect::<Result<_, _>>()?;
+        blocks.iter().for_each(&mut use_block);
+    }
+}
+
+/// Writes what the window shows of one line of one channel to the texels.
+fn write_line(
+    line: &LineRef<'_>,
+    sample_type: SampleType,
+    shown: &[bool; 3],
+    window: &Window,
+    texels: &mut [[f32; 4]],
+) {
+    let row = line.location.position.y() as i64 + window.offset[1];
+    if !(0..i64::from(window.height)).contains(&row) {
+        return;
+    }
+    let first_column = line.location.position.x() as i64 + window.offset[0];
+    let end_column = first_column + line.location.sample_count as i64;
+    let columns = first_column.max(0)..end_column.min(i64::from(window.width));
+    let bytes = |column: i64, size: usize| &line.value[(column - first_column) as usize * size..][..size];
+    let sample = |column: i64| match sample_type {
+        SampleType::F16 => f16::from_bits(bytemuck::pod_read_unaligned(bytes(column, 2))).to_f32(),
+        SampleType::F32 => bytemuck::pod_read_unaligned(bytes(column, 4)),
+        SampleType::U32 => bytemuck::pod_read_unaligned::<u32>(bytes(column, 4)) as f32,
+    };
+    let texels = &mut texels[row as usize * window.width as usize..][..window.width as usize];
+    for (component, _) in shown.iter().enumerate().filter(|(_, shown)| **shown) {
+        for column in columns.clone() {
+            texels[column as usize][component] = sample(column);
+        }
+    }
+}
+
+/// What the crate says, in our words.
+fn exr_error(path: &Path, error: ExrError) -> EnvironmentError {
+    let path = path.to_owned();
+    match error {
+        ExrError::Io(source) => EnvironmentError::Read { path, source },
+        ExrError::NotSupported(feature) => EnvironmentError::Unsupported {
+            path,
+            feature: format!("an OpenEXR feature ({feature})"),
+            remedy: "re-save it as a plain RGB scan-line EXR with ZIP or PIZ compression",
+        },
+        ExrError::Invalid(detail) if detail == "reference to missing bytes" => EnvironmentError::Truncated {
+            path,
+            detail: "bytes that it refers to are missing".to_owned(),
+        },
+        error => EnvironmentError::Damaged {
+            path,
+            detail: error.to_string(),
+        },
+    }
+}

@@ -1,0 +1,67 @@
+//! A small picture of an environment for the panels.
+
+use super::{Environment, environment_direction, environment_radiance};
+
+/// Looks taken along each side of a thumbnail's pixel.
+const TAPS: u32 = 4;
+/// The luminance that the geometric mean is brought to.
+const MIDDLE_GREY: f32 = 0.3;
+
+/// The whole map as `width` × `height` opaque sRGB pixels, rows from the top, exposed to its own geometric mean; what is
+/// brighter than white is rolled off.
+pub fn thumbnail(environment: &Environment, width: u32, height: u32) -> Vec<[u8; 4]> {
+    let pixels: Vec<[f32; 3]> = (0..height)
+        .flat_map(|row| (0..width).map(move |column| [column, row]))
+        .map(|place| pixel_radiance(environment, place, [width, height]))
+        .collect();
+    let exposure = MIDDLE_GREY / geometric_mean_luminance(&pixels);
+    pixels
+        .iter()
+        .map(|pixel| {
+            let [red, green, blue] = pixel.map(|value| {
+                let exposed = value * exposure;
+                // Reinhard's curve with white at 4.
+                srgb_u8(exposed * (1.0 + exposed / 16.0) / (1.0 + exposed))
+            });
+            [red, green, blue, 255]
+        })
+        .collect()
+}
+
+/// The mean radiance over a pixel.
+fn pixel_radiance(environment: &Environment, place: [u32; 2], size: [u32; 2]) -> [f32; 3] {
+    let mut sum = [0.0; 3];
+    for tap in 0..TAPS * TAPS {
+        let offset = [tap % TAPS, tap / TAPS];
+        let uv =
+            [0, 1].map(|axis| (place[axis] as f32 + (offset[axis] as f32 + 0.5) / TAPS as f32) / size[axis] as f32);
+        let radiance = environment_radiance(environment, environment_direction(uv)).to_f32();
+        sum = [0, 1, 2].map(|channel| sum[channel] + radiance[channel]);
+    }
+    sum.map(|value| value / (TAPS * TAPS) as f32)
+}
+
+/// exp(mean(ln luminance)), with black pixels counted as nearly black; 1 if there is no light at all.
+fn geometric_mean_luminance(pixels: &[[f32; 3]]) -> f32 {
+    let luminances = pixels
+        .iter()
+        .map(|[red, green, blue]| 0.2126 * red + 0.7152 * green + 0.0722 * blue);
+    let brightest = luminances.clone().fold(0.0, f32::max);
+    if brightest <= 0.0 {
+        return 1.0;
+    }
+    let floor = brightest * 1e-6;
+    let sum: f32 = luminances.map(|luminance| luminance.max(floor).ln()).sum();
+    (sum / pixels.len() as f32).exp()
+}
+
+/// The sRGB code of a linear value.
+fn srgb_u8(linear: f32) -> u8 {
+    let linear = linear.clamp(0.0, 1.0);
+    let encoded = if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    };
+    (encoded * 255.0 + 0.5) as u8
+}

@@ -1,0 +1,219 @@
+//! Triangles made ready to trace: one f32 coordinate system whatever the model's own scale and place, stored in the
+//! order in which the hierarchy's leaves refer to them.
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+use obvhs::cwbvh::CwBvh;
+
+use super::bvh;
+use super::mesh::{Mesh, any_tangent};
+use super::model::{Model, Slot};
+use super::shapes;
+
+/// The ground's half side in bounding radii.
+const GROUND_HALF_SIDE: f64 = 20.0;
+/// How far the ground is below the lowest point, in bounding radii: enough that flat bottoms do not flicker with it.
+const GROUND_GAP: f64 = 1e-4;
+
+/// What shading needs of a vertex besides its position. 36 bytes, scalars only: the same layout in WGSL.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Vertex {
+    /// Unit shading normal.
+    pub normal: [f32; 3],
+    /// Texture coordinates, v downwards.
+    pub uv: [f32; 2],
+    /// Unit tangent and the sign of the bitangent, see [`Mesh::tangents`].
+    pub tangent: [f32; 4],
+}
+
+/// Geometry ready to trace, in units in which the model's bounding sphere about the origin has radius 1: a place p here
+/// is `center_world + world_units_per_unit · p` in the world (right-handed, +Y up). Models that differ in scale or
+/// place only give the same numbers here, up to the last bit.
+#[derive(Clone, Debug)]
+pub struct Geometry {
+    /// Places of the vertices.
+    pub positions: Vec<[f32; 3]>,
+    /// The other attributes of the vertices, as many as `positions`.
+    pub vertices: Vec<Vertex>,
+    /// The vertices of each triangle, counter-clockwise from outside, in the order of the hierarchy's leaves: leaf
+    /// entry i of `bvh` is triangle i.
+    pub triangles: Vec<[u32; 3]>,
+    /// The material slot of each triangle; the ground's is the number of the model's slots.
+    pub slots: Vec<u32>,
+    /// The hierarchy; without `primitive_indices`, as nothing needs to be looked up. No nodes where there are no
+    /// triangles.
+    pub bvh: CwBvh,
+    /// The middle of the model's bounding box in the world.
+    pub center_world: DVec3,
+    /// The model's bounding radius in the world: from that middle to the farthest vertex of a triangle; 1 where there
+    /// is no triangle.
+    pub world_units_per_unit: f64,
+    /// Lowest and highest coordinates of the model (without ground) in the world.
+    pub bounds_world: [DVec3; 2],
+    /// Triangles left out because a corner is not finite.
+    pub dropped_not_finite: usize,
+    /// Triangles left out because they have no area.
+    pub dropped_no_area: usize,
+}
+
+impl Geometry {
+    /// Makes a model ready to trace; `ground` adds a horizontal square of half side 20 bounding radii at its lowest
+    /// point, in the slot after the model's (see [`Geometry::ground_slot`]).
+    pub fn build(model: &Model, ground: bool) -> Self {
+        let mesh = &model.mesh;
+        let is_finite = |&triangle: &usize| mesh.corners(triangle).iter().all(|corner| corner.is_finite());
+        let finite: Vec<usize> = (0..mesh.triangles.len()).filter(is_finite).collect();
+        let usable: Vec<usize> = finite
+            .iter()
+            .copied()
+            .filter(|&triangle| has_area(mesh.corners(triangle)))
+            .collect();
+        let bounds_world = bounds(mesh, &usable);
+        let center_world = bounds_world[0].midpoint(bounds_world[1]);
+        let world_units_per_unit = bounding_radius(mesh, &usable, center_world);
+        let mut geometry = Self {
+            positions: Vec::new(),
+            vertices: Vec::new(),
+            triangles: Vec::new(),
+            slots: Vec::new(),
+            bvh: CwBvh::default(),
+            center_world,
+            world_units_per_unit,
+            bounds_world,
+            dropped_not_finite: mesh.triangles.len() - finite.len(),
+            dropped_no_area: finite.len() - usable.len(),
+        };
+        let to_units = |place: DVec3| ((place - center_world) / world_units_per_unit).as_vec3().to_array();
+        geometry.add(mesh, usable.into_iter(), to_units);
+        if ground {
+            let lowest = (bounds_world[0].y - center_world.y) / world_units_per_unit - GROUND_GAP;
+            let slot = model.slots.len() as u32;
+            let ground = shapes::square(DVec3::Y * lowest, GROUND_HALF_SIDE, GROUND_HALF_SIDE as f32, slot);
+            geometry.add(&ground, 0..ground.triangles.len(), |place| place.as_vec3().to_array());
+        }
+        geometry.bvh = bvh::build(geometry.triangles.iter().map(|triangle| geometry.corners_of(triangle)));
+        geometry.sort_by_leaves();
+        geometry
+    }
+
+    /// The material of the ground, for the slot after the model's.
+    pub fn ground_slot() -> Slot {
+        Slot::neutral("ground")
+    }
+
+    /// What of the model was left out, one line each.
+    pub fn warnings(&self) -> Vec<String> {
+        let counts = [
+            (self.dropped_not_finite, "a corner that is not finite"),
+            (self.dropped_no_area, "no area"),
+        ];
+        let counts = counts.iter().filter(|(count, _)| *count > 0);
+        counts
+            .map(|(count, reason)| format!("{count} triangles left out: {reason}"))
+            .collect()
+    }
+
+    /// The corners of a triangle.
+    #[inline(always)]
+    pub fn corners(&self, triangle: usize) -> [[f32; 3]; 3] {
+        self.corners_of(&self.triangles[triangle])
+    }
+
+    #[inline(always)]
+    fn corners_of(&self, triangle: &[u32; 3]) -> [[f32; 3]; 3] {
+        triangle.map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// A place in the world of one in the geometry's units.
+    pub fn world_from_units(&self, place: [f32; 3]) -> DVec3 {
+        self.center_world + self.world_units_per_unit * DVec3::from_array(place.map(f64::from))
+    }
+
+    /// A place in the geometry's units of one in the world.
+    pub fn units_from_world(&self, place: DVec3) -> DVec3 {
+        (place - self.center_world) / self.world_units_per_unit
+    }
+
+    /// Adds the chosen triangles of a mesh that have an area.
+    fn add(&mut self, mesh: &Mesh, chosen: impl Iterator<Item = usize>, to_units: impl Fn(DVec3) -> [f32; 3]) {
+        let base = self.positions.len() as u32;
+        for (vertex, &position) in mesh.positions.iter().enumerate() {
+            self.positions.push(to_units(position));
+            let (normal, tangent) = (mesh.normals[vertex], mesh.tangents[vertex]);
+            let tangent = if tangent.is_finite() {
+                tangent
+            } else {
+                any_tangent(normal).extend(1.0)
+            };
+            self.vertices.push(Vertex {
+                normal: normal.to_array(),
+                uv: mesh.uvs[vertex].to_array(),
+                tangent: tangent.to_array(),
+            });
+        }
+        for index in chosen {
+            let triangle = mesh.triangles[index].map(|vertex| vertex + base);
+            // Rounding to f32 may have closed a sliver; corners and their products are exact in f64.
+            if has_area(
+                self.corners_of(&triangle)
+                    .map(|corner| DVec3::from_array(corner.map(f64::from))),
+            ) {
+                self.triangles.push(triangle);
+                self.slots.push(mesh.slots[index]);
+            } else {
+                self.dropped_no_area += 1;
+            }
+        }
+    }
+
+    /// Puts triangles into the order of the leaves and vertices into that of their first use, which keeps what rays
+    /// read together close together; drops vertices that no triangle uses.
+    fn sort_by_leaves(&mut self) {
+        let order = std::mem::take(&mut self.bvh.primitive_indices);
+        self.slots = order.iter().map(|&triangle| self.slots[triangle as usize]).collect();
+        const UNUSED: u32 = u32::MAX;
+        let mut new_of_old = vec![UNUSED; self.positions.len()];
+        let (mut positions, mut vertices) = (Vec::new(), Vec::new());
+        let sorted = order.iter().map(|&triangle| {
+            self.triangles[triangle as usize].map(|vertex| {
+                let new = &mut new_of_old[vertex as usize];
+                if *new == UNUSED {
+                    *new = positions.len() as u32;
+                    positions.push(self.positions[vertex as usize]);
+                    vertices.push(self.vertices[vertex as usize]);
+                }
+                *new
+            })
+        });
+        self.triangles = sorted.collect();
+        self.positions = positions;
+        self.vertices = vertices;
+    }
+}
+
+/// Lowest and highest coordinates of the chosen triangles; zero where there are none.
+fn bounds(mesh: &Mesh, chosen: &[usize]) -> [DVec3; 2] {
+    let corners = || chosen.iter().flat_map(|&triangle| mesh.corners(triangle));
+    match (corners().reduce(DVec3::min), corners().reduce(DVec3::max)) {
+        (Some(low), Some(high)) => [low, high],
+        _ => [DVec3::ZERO; 2],
+    }
+}
+
+/// From `center` to the farthest corner; 1 where that is nothing.
+fn bounding_radius(mesh: &Mesh, chosen: &[usize], center: DVec3) -> f64 {
+    let distances = chosen
+        .iter()
+        .flat_map(|&triangle| mesh.corners(triangle))
+        .map(|corner| corner.distance(center));
+    match distances.fold(0.0, f64::max) {
+        radius if radius > 0.0 && radius.is_finite() => radius,
+        _ => 1.0,
+    }
+}
+
+/// Whether a triangle covers anything.
+fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+    (b - a).cross(c - a) != DVec3::ZERO
+}

@@ -1,0 +1,197 @@
+//! Triangle meshes in model space, before they are made ready to trace.
+
+use std::collections::HashMap;
+
+use glam::{DVec3, Vec2, Vec3, Vec4};
+
+/// Triangles with attributes at their vertices. Counter-clockwise order seen from outside; right-handed, +Y up.
+///
+/// All attribute vectors have the length of `positions`, `slots` has the length of `triangles`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Places in model units. Double precision, so that a small part far from the origin keeps its shape.
+    pub positions: Vec<DVec3>,
+    /// Unit shading normals.
+    pub normals: Vec<Vec3>,
+    /// Texture coordinates, v growing downwards in the image as in glTF; zero where the source has none.
+    pub uvs: Vec<Vec2>,
+    /// Unit tangents along growing u (xyz) and the sign (w, ±1) of the bitangent w · (normal × tangent), which points
+    /// upwards in the image (along falling v), as in glTF.
+    pub tangents: Vec<Vec4>,
+    /// The three vertices of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// The material slot of each triangle.
+    pub slots: Vec<u32>,
+}
+
+impl Mesh {
+    /// Adds one vertex and gives its index.
+    pub fn push_vertex(&mut self, position: DVec3, normal: Vec3, uv: Vec2, tangent: Vec4) -> u32 {
+        let index = self.positions.len() as u32;
+        self.positions.push(position);
+        self.normals.push(normal);
+        self.uvs.push(uv);
+        self.tangents.push(tangent);
+        index
+    }
+
+    /// Adds a triangle unless two of its corners are at the same place.
+    pub fn push_triangle(&mut self, triangle: [u32; 3], slot: u32) {
+        let [a, b, c] = triangle.map(|vertex| self.positions[vertex as usize]);
+        if a != b && b != c && c != a {
+            self.triangles.push(triangle);
+            self.slots.push(slot);
+        }
+    }
+
+    /// Adds all vertices and triangles of `other`, with their slots as they are.
+    pub fn append(&mut self, other: Mesh) {
+        let base = self.positions.len() as u32;
+        self.positions.extend(other.positions);
+        self.normals.extend(other.normals);
+        self.uvs.extend(other.uvs);
+        self.tangents.extend(other.tangents);
+        self.triangles.extend(
+            other
+                .triangles
+                .into_iter()
+                .map(|triangle| triangle.map(|vertex| vertex + base)),
+        );
+        self.slots.extend(other.slots);
+    }
+
+    /// The three corners of a triangle.
+    pub fn corners(&self, triangle: usize) -> [DVec3; 3] {
+        self.triangles[triangle].map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// The enclosed volume, in cubic units, of a mesh whose surfaces are closed; positive where they face outwards.
+    pub fn signed_volume(&self) -> f64 {
+        let origin = self.positions.first().copied().unwrap_or_default();
+        let parallelepipeds = (0..self.triangles.len()).map(|triangle| {
+            let [a, b, c] = self.corners(triangle).map(|corner| corner - origin);
+            a.dot(b.cross(c))
+        });
+        parallelepipeds.sum::<f64>() / 6.0
+    }
+
+    /// Gives every triangle its own three vertices with the normal of its plane: what glTF asks for where a file has
+    /// no normals.
+    pub fn flatten(&mut self) {
+        let mut flat = Mesh::default();
+        for triangle in 0..self.triangles.len() {
+            let normal = plane_normal(self.corners(triangle)).as_vec3();
+            let corners = self.triangles[triangle].map(|vertex| {
+                let vertex = vertex as usize;
+                flat.push_vertex(self.positions[vertex], normal, self.uvs[vertex], self.tangents[vertex])
+            });
+            flat.triangles.push(corners);
+        }
+        flat.slots = std::mem::take(&mut self.slots);
+        *self = flat;
+    }
+
+    /// Replaces normals that are not finite or have no length by that of a triangle at the vertex; the rest are
+    /// scaled to unit length. Gives the number of normals replaced.
+    pub fn repair_normals(&mut self) -> usize {
+        let mut broken = vec![false; self.normals.len()];
+        for (normal, broken) in self.normals.iter_mut().zip(&mut broken) {
+            match normal.as_dvec3().try_normalize() {
+                Some(unit) => *normal = unit.as_vec3(),
+                None => *broken = true,
+            }
+        }
+        let count = broken.iter().filter(|broken| **broken).count();
+        if count > 0 {
+            for triangle in 0..self.triangles.len() {
+                for vertex in self.triangles[triangle].map(|vertex| vertex as usize) {
+                    if broken[vertex] {
+                        self.normals[vertex] = plane_normal(self.corners(triangle)).as_vec3();
+                    }
+                }
+            }
+            // Vertices that no triangle uses.
+            for normal in self
+                .normals
+                .iter_mut()
+                .filter(|normal| normal.try_normalize().is_none())
+            {
+                *normal = Vec3::Y;
+            }
+        }
+        count
+    }
+
+    /// Tangents along growing u, averaged over the triangles at a vertex by their angles there. A vertex whose
+    /// triangles disagree about the handedness of the texture is split; one without usable texture coordinates gets
+    /// any tangent. Needs unit normals.
+    pub fn generate_tangents(&mut self) {
+        let mut sums = vec![DVec3::ZERO; self.positions.len()];
+        let mut signs = vec![0.0f32; self.positions.len()];
+        let mut mirrored: HashMap<u32, u32> = HashMap::new();
+        for triangle in 0..self.triangles.len() {
+            let Some((along_u, sign)) = self.texture_frame(triangle) else {
+                continue;
+            };
+            let corners = self.corners(triangle);
+            for corner in 0..3 {
+                let mut vertex = self.triangles[triangle][corner];
+                if signs[vertex as usize] == -sign {
+                    vertex = *mirrored.entry(vertex).or_insert_with(|| {
+                        sums.push(DVec3::ZERO);
+                        signs.push(sign);
+                        let from = vertex as usize;
+                        self.push_vertex(
+                            self.positions[from],
+                            self.normals[from],
+                            self.uvs[from],
+                            self.tangents[from],
+                        )
+                    });
+                    self.triangles[triangle][corner] = vertex;
+                }
+                signs[vertex as usize] = sign;
+                let normal = self.normals[vertex as usize].as_dvec3();
+                let in_plane = along_u - normal * normal.dot(along_u);
+                let [here, next, last] = [0, 1, 2].map(|step| corners[(corner + step) % 3]);
+                let angle_rad = (next - here).angle_between(last - here);
+                if angle_rad.is_finite() {
+                    sums[vertex as usize] += in_plane.normalize_or_zero() * angle_rad;
+                }
+            }
+        }
+        for (vertex, sum) in sums.into_iter().enumerate() {
+            let normal = self.normals[vertex];
+            self.tangents[vertex] = match sum.try_normalize() {
+                Some(tangent) => tangent.as_vec3().extend(signs[vertex]),
+                None => any_tangent(normal).extend(1.0),
+            };
+        }
+    }
+
+    /// The direction of growing u on a triangle and the sign of its bitangent; nothing where the texture coordinates
+    /// or the triangle are degenerate.
+    fn texture_frame(&self, triangle: usize) -> Option<(DVec3, f32)> {
+        let [a, b, c] = self.corners(triangle);
+        let [uv_a, uv_b, uv_c] = self.triangles[triangle].map(|vertex| self.uvs[vertex as usize].as_dvec2());
+        let (to_b, to_c) = (b - a, c - a);
+        let (uv_to_b, uv_to_c) = (uv_b - uv_a, uv_c - uv_a);
+        let determinant = uv_to_b.perp_dot(uv_to_c);
+        let along_u = (to_b * uv_to_c.y - to_c * uv_to_b.y) * determinant.signum();
+        // v grows downwards: a texture that is not mirrored has a negative determinant seen from outside.
+        let sign = if determinant < 0.0 { 1.0 } else { -1.0 };
+        (determinant != 0.0 && determinant.is_finite()).then_some((along_u.try_normalize()?, sign))
+    }
+}
+
+/// The unit normal of the plane through three points in counter-clockwise order; +Y where they are on one line.
+pub fn plane_normal([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Y)
+}
+
+/// Any unit vector that is perpendicular to a unit normal.
+pub fn any_tangent(normal: Vec3) -> Vec3 {
+    normal
+        .try_normalize()
+        .map_or(Vec3::X, |normal| normal.any_orthonormal_vector())
+}

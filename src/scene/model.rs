@@ -1,0 +1,315 @@
+//! What can be loaded and what loading gives: a mesh, its material slots and their pictures.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::mesh::Mesh;
+use super::{gltf, shapes, teapot};
+
+/// Where a model comes from. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a
+/// path; a file of such a name is written with its folder (`./teapot`).
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(from = "String", into = "String")]
+pub enum ModelSource {
+    /// The Utah teapot, about 40 000 triangles.
+    #[default]
+    Teapot,
+    /// The unit sphere around the origin.
+    Sphere,
+    /// The square [−1, 1]² in the plane y = 0, facing up.
+    Plane,
+    /// A ball with an inset band that shows its core, on a stand.
+    Shaderball,
+    /// A glTF 2.0 file, .gltf or .glb.
+    File(PathBuf),
+}
+
+const BUILT_IN: [(&str, ModelSource); 4] = [
+    ("teapot", ModelSource::Teapot),
+    ("sphere", ModelSource::Sphere),
+    ("plane", ModelSource::Plane),
+    ("shaderball", ModelSource::Shaderball),
+];
+
+impl From<&str> for ModelSource {
+    fn from(text: &str) -> Self {
+        let built_in = BUILT_IN.into_iter().find(|(name, _)| *name == text);
+        built_in.map_or_else(|| Self::File(PathBuf::from(text)), |(_, source)| source)
+    }
+}
+
+impl From<String> for ModelSource {
+    fn from(text: String) -> Self {
+        Self::from(text.as_str())
+    }
+}
+
+impl std::str::FromStr for ModelSource {
+    type Err = std::convert::Infallible;
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(Self::from(text))
+    }
+}
+
+impl fmt::Display for ModelSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File(path) if BUILT_IN.iter().any(|(name, _)| path.as_os_str() == *name) => {
+                write!(f, "./{}", path.display())
+            }
+            Self::File(path) => write!(f, "{}", path.display()),
+            _ => f.write_str(
+                BUILT_IN
+                    .iter()
+                    .find(|(_, source)| source == self)
+                    .map_or("", |(name, _)| name),
+            ),
+        }
+    }
+}
+
+impl From<ModelSource> for String {
+    fn from(source: ModelSource) -> Self {
+        source.to_string()
+    }
+}
+
+/// A mesh with the materials that its file gives it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Model {
+    /// The built-in name, or the file's name without folder and extension.
+    pub name: String,
+    /// The triangles, all nodes of the scene together.
+    pub mesh: Mesh,
+    /// The material slots that `mesh.slots` counts.
+    pub slots: Vec<Slot>,
+    /// The pictures that the slots refer to.
+    pub textures: Vec<Texture>,
+    /// What of the file was left out, one line each.
+    pub warnings: Vec<String>,
+}
+
+/// The parameters of one material as the file gives them (glTF's metallic-roughness model).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slot {
+    /// The material's name.
+    pub name: String,
+    /// Linear Rec. 709, each in [0, 1]; multiplies the texture.
+    pub base_color: [f32; 3],
+    /// In [0, 1]; multiplies the blue channel of the metallic-roughness texture.
+    pub metalness: f32,
+    /// In [0, 1], α = roughness²; multiplies the green channel of the metallic-roughness texture.
+    pub roughness: f32,
+    /// Emitted radiance, linear, at least 0, KHR_materials_emissive_strength included; multiplies the texture.
+    pub emission: [f32; 3],
+    /// In [0, 1]; multiplies the alpha of the base colour texture.
+    pub opacity: f32,
+    /// What opacity means.
+    pub alpha_mode: AlphaMode,
+    /// Below this opacity nothing is there, in [`AlphaMode::Mask`].
+    pub alpha_cutoff: f32,
+    /// Whether the back of a triangle is seen.
+    pub double_sided: bool,
+    /// Index of refraction, at least 1 (KHR_materials_ior).
+    pub ior: f32,
+    /// Fraction of light that is refracted instead of scattered, in [0, 1] (KHR_materials_transmission).
+    pub transmission: f32,
+    /// Colour (sRGB-encoded) and opacity.
+    pub base_color_texture: Option<TextureRef>,
+    /// Roughness in green, metalness in blue (linear values).
+    pub metallic_roughness_texture: Option<TextureRef>,
+    /// Tangent-space normals (linear values, 0…255 for −1…1, green upwards).
+    pub normal_texture: Option<TextureRef>,
+    /// Scales x and y of the normal texture's vectors.
+    pub normal_scale: f32,
+    /// Emission (sRGB-encoded).
+    pub emissive_texture: Option<TextureRef>,
+}
+
+/// glTF's material where a file names none.
+impl Default for Slot {
+    fn default() -> Self {
+        Self {
+            name: "default".to_owned(),
+            base_color: [1.0; 3],
+            metalness: 1.0,
+            roughness: 1.0,
+            emission: [0.0; 3],
+            opacity: 1.0,
+            alpha_mode: AlphaMode::Opaque,
+            alpha_cutoff: 0.5,
+            double_sided: false,
+            ior: 1.5,
+            transmission: 0.0,
+            base_color_texture: None,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            normal_scale: 1.0,
+            emissive_texture: None,
+        }
+    }
+}
+
+impl Slot {
+    /// The neutral grey plastic of the built-in models and the ground.
+    pub fn neutral(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            base_color: [0.6; 3],
+            metalness: 0.0,
+            roughness: 0.5,
+            ..Self::default()
+        }
+    }
+
+    /// The texture references that are set.
+    pub fn texture_refs(&self) -> impl Iterator<Item = &TextureRef> {
+        let refs = [
+            &self.base_color_texture,
+            &self.metallic_roughness_texture,
+            &self.normal_texture,
+            &self.emissive_texture,
+        ];
+        refs.into_iter().flatten()
+    }
+}
+
+/// What a slot's opacity means.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AlphaMode {
+    /// Nothing: the surface is opaque.
+    #[default]
+    Opaque,
+    /// The surface is there where the opacity reaches the cutoff.
+    Mask,
+    /// The fraction of light that the surface stops.
+    Blend,
+}
+
+/// A texture and how the mesh's texture coordinates look into it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureRef {
+    /// Which of [`Model::textures`].
+    pub texture: usize,
+    /// Places in the texture from those of the mesh: (m[0]·u + m[1]·v + m[2], m[3]·u + m[4]·v + m[5])
+    /// (KHR_texture_transform).
+    pub texture_from_mesh_uv: [f32; 6],
+    /// What is beyond 0 and 1 in u and in v.
+    pub wrap: [Wrap; 2],
+}
+
+/// How a texture goes on beyond its edge.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Wrap {
+    /// From the start again.
+    #[default]
+    Repeat,
+    /// Back and forth.
+    MirroredRepeat,
+    /// With the texel at the edge.
+    ClampToEdge,
+}
+
+/// A picture, encoded as in the file: whether the values are sRGB or linear depends on what refers to it.
+#[derive(Clone, PartialEq)]
+pub struct Texture {
+    /// The image's name, its file or its number.
+    pub name: String,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Red, green, blue, opacity of each texel, row by row from the top.
+    pub rgba8: Vec<u8>,
+}
+
+impl fmt::Debug for Texture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Texture({:?}, {} × {})", self.name, self.width, self.height)
+    }
+}
+
+/// Why a model could not be loaded.
+#[derive(Debug, thiserror::Error)]
+pub enum ModelError {
+    /// The file itself cannot be read.
+    #[error("{}: cannot read this model: {source}; check the path and its permissions", path.display())]
+    Read {
+        /// The model file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// Neither GLB nor JSON.
+    #[error("{}: not a glTF 2.0 file ({reason}); export the model as .glb or .gltf", path.display())]
+    NotGltf {
+        /// The model file.
+        path: PathBuf,
+        /// What it looks like instead.
+        reason: String,
+    },
+    /// The file ends too early.
+    #[error("{}: cut short: {actual} bytes of {expected}; copy or download the file again", path.display())]
+    Truncated {
+        /// The model file.
+        path: PathBuf,
+        /// Bytes that its header promises.
+        expected: u64,
+        /// Bytes that are there.
+        actual: u64,
+    },
+    /// Contents that break the rules of the format.
+    #[error("{}: damaged glTF: {reason}; export the model again", path.display())]
+    Invalid {
+        /// The model file.
+        path: PathBuf,
+        /// Which rule.
+        reason: String,
+    },
+    /// The file needs what is not supported.
+    #[error("{}: needs the glTF extension {name}, which is not supported; {remedy}", path.display())]
+    Extension {
+        /// The model file.
+        path: PathBuf,
+        /// The extension.
+        name: String,
+        /// How to get a file without it.
+        remedy: &'static str,
+    },
+    /// A buffer or picture that the file refers to is missing or unreadable.
+    #[error("{}: cannot use {resource}: {reason}; put it beside the model or export as .glb", path.display())]
+    Resource {
+        /// The model file.
+        path: PathBuf,
+        /// The file or image referred to.
+        resource: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+    /// Nothing to draw.
+    #[error("{}: no triangles in its scene; export a mesh with faces", path.display())]
+    NoTriangles {
+        /// The model file.
+        path: PathBuf,
+    },
+}
+
+/// Loads a model. Blocks for as long as reading and decoding take; never panics on a damaged file.
+pub fn load(source: &ModelSource) -> Result<Model, ModelError> {
+    let built_in = |mesh: Mesh, slots: &[&str]| Model {
+        name: source.to_string(),
+        mesh,
+        slots: slots.iter().map(|name| Slot::neutral(name)).collect(),
+        ..Model::default()
+    };
+    Ok(match source {
+        ModelSource::Teapot => built_in(teapot::mesh(teapot::DEFAULT_SEGMENTS), &["teapot"]),
+        ModelSource::Sphere => built_in(shapes::sphere(192, 96), &["sphere"]),
+        ModelSource::Plane => built_in(shapes::plane(), &["plane"]),
+        ModelSource::Shaderball => built_in(shapes::shaderball(), &["body", "stand"]),
+        ModelSource::File(path) => gltf::load(Path::new(path))?,
+    })
+}

@@ -1,0 +1,224 @@
+//! Built-in shapes other than the teapot: surfaces of revolution with analytic normals, and the plane.
+
+use std::f64::consts::TAU;
+
+use glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec4, dvec2};
+
+use super::mesh::Mesh;
+
+/// The unit sphere around the origin, poles at ±Y, in `around` × `down` cells; u runs around from +Z over +X, v from
+/// the upper pole to the lower. Slot 0.
+pub fn sphere(around: u32, down: u32) -> Mesh {
+    let mut profile = Profile::start(dvec2(0.0, 1.0));
+    profile.arc(DVec2::ZERO, 1.0, 90.0, -90.0, down);
+    profile.revolve(around, 0)
+}
+
+/// The square [−1, 1]² in the plane y = 0, facing +Y; u runs along +X, v along +Z. Slot 0.
+pub fn plane() -> Mesh {
+    square(DVec3::ZERO, 1.0, 1.0, 0)
+}
+
+/// A horizontal square around `center` that faces +Y, of two triangles; (u, v) run from −`uv_half_side` to
+/// `uv_half_side` about ½ along +X and +Z.
+pub(super) fn square(center: DVec3, half_side: f64, uv_half_side: f32, slot: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, z)| {
+        let position = center + half_side * DVec3::new(x, 0.0, z);
+        let uv = (Vec2::new(x as f32, z as f32) * uv_half_side + 1.0) * 0.5;
+        mesh.push_vertex(position, Vec3::Y, uv, Vec4::new(1.0, 0.0, 0.0, 1.0))
+    });
+    let [a, b, c, d] = corners;
+    mesh.push_triangle([a, b, c], slot);
+    mesh.push_triangle([a, c, d], slot);
+    mesh
+}
+
+/// Cells around each part of the shader ball.
+const BALL_AROUND: u32 = 144;
+
+/// A hollow ball of radius 1, split by a tilted inset band through which its core is seen (slot 0, the two shells),
+/// with the core and the stand that it hovers on (slot 1). It stands on y = 0. Every part is closed and keeps clear of
+/// the others, so that transparent materials work too.
+pub fn shaderball() -> Mesh {
+    let center = DVec3::new(0.0, 1.12, 0.0);
+    let tilt = DQuat::from_rotation_z(-0.2) * DQuat::from_rotation_x(0.38);
+    let mut ball = upper_shell().revolve(BALL_AROUND, 0);
+    ball.append(lower_shell().revolve(BALL_AROUND, 0));
+    let mut core = Profile::start(dvec2(0.0, CORE));
+    core.arc(DVec2::ZERO, CORE, 90.0, -90.0, 48);
+    ball.append(core.revolve(BALL_AROUND, 1));
+    for (position, (normal, tangent)) in ball
+        .positions
+        .iter_mut()
+        .zip(ball.normals.iter_mut().zip(&mut ball.tangents))
+    {
+        *position = center + tilt * *position;
+        *normal = tilt.as_quat() * *normal;
+        *tangent = (tilt.as_quat() * tangent.truncate()).extend(tangent.w);
+    }
+    ball.append(stand(dvec2(0.0, center.y)).revolve(BALL_AROUND, 1));
+    ball
+}
+
+const CORE: f64 = 0.8;
+const SHELL_INSIDE: f64 = 0.84;
+const EDGE: f64 = 0.025;
+/// The band's edges as degrees above the ball's equator.
+const BAND_DEG: [f64; 2] = [-7.0, 11.0];
+
+/// The place at a distance from the origin, `elevation_deg` above the horizontal.
+fn polar(distance: f64, elevation_deg: f64) -> DVec2 {
+    distance * DVec2::from_angle(elevation_deg.to_radians())
+}
+
+/// Degrees between a wall that points to the centre and the centre of an edge's rounding, `distance` from the centre.
+fn edge_offset_deg(distance: f64) -> f64 {
+    (EDGE / distance).asin().to_degrees()
+}
+
+/// From the top over the outside, the wall of the band and the inside back to the axis.
+fn upper_shell() -> Profile {
+    let wall = BAND_DEG[1];
+    let outer = wall + edge_offset_deg(1.0 - EDGE);
+    let inner = wall + edge_offset_deg(SHELL_INSIDE + EDGE);
+    let mut profile = Profile::start(dvec2(0.0, 1.0));
+    profile.arc(DVec2::ZERO, 1.0, 90.0, outer, 36);
+    profile.arc(polar(1.0 - EDGE, outer), EDGE, outer, wall - 90.0, 8);
+    profile.line(
+        polar(
+            (SHELL_INSIDE + EDGE) * edge_offset_deg(SHELL_INSIDE + EDGE).to_radians().cos(),
+            wall,
+        ),
+        1,
+    );
+    profile.arc(polar(SHELL_INSIDE + EDGE, inner), EDGE, wall - 90.0, inner - 180.0, 8);
+    profile.arc(DVec2::ZERO, SHELL_INSIDE, inner, 90.0, 24);
+    profile
+}
+
+/// From the axis over the inside, the wall of the band and the outside to the lowest point.
+fn lower_shell() -> Profile {
+    let wall = BAND_DEG[0];
+    let outer = wall - edge_offset_deg(1.0 - EDGE);
+    let inner = wall - edge_offset_deg(SHELL_INSIDE + EDGE);
+    let mut profile = Profile::start(dvec2(0.0, -SHELL_INSIDE));
+    profile.arc(DVec2::ZERO, SHELL_INSIDE, -90.0, inner, 24);
+    profile.arc(polar(SHELL_INSIDE + EDGE, inner), EDGE, inner + 180.0, wall + 90.0, 8);
+    profile.line(
+        polar((1.0 - EDGE) * edge_offset_deg(1.0 - EDGE).to_radians().cos(), wall),
+        1,
+    );
+    profile.arc(polar(1.0 - EDGE, outer), EDGE, wall + 90.0, outer, 8);
+    profile.arc(DVec2::ZERO, 1.0, outer, -90.0, 36);
+    profile
+}
+
+/// A cup around the unit ball at `ball`, a hollow throat and a disc on y = 0.
+fn stand(ball: DVec2) -> Profile {
+    let (cup, lip_deg, lip, top) = (1.012, -60.0, 0.02, 0.06);
+    let lip_center = ball + polar(cup + lip, lip_deg);
+    let throat = lip_center.y - top;
+    let mut profile = Profile::start(ball - dvec2(0.0, cup));
+    profile.arc(ball, cup, -90.0, lip_deg, 10);
+    profile.arc(lip_center, lip, lip_deg + 180.0, 0.0, 10);
+    profile.arc(lip_center + dvec2(lip + throat, 0.0), throat, 180.0, 270.0, 16);
+    profile.line(dvec2(0.93, top), 2);
+    profile.arc(dvec2(0.93, top - 0.02), 0.02, 90.0, 0.0, 8);
+    profile.line(dvec2(0.95, 0.012), 1);
+    profile.arc(dvec2(0.938, 0.012), 0.012, 0.0, -90.0, 6);
+    profile.line(DVec2::ZERO, 6);
+    profile
+}
+
+/// A curve in the half plane (distance from the axis, height) that is turned about the Y axis. The outside is to the
+/// left of its direction. Where two pieces meet at an angle the surface has a crease.
+struct Profile {
+    points: Vec<ProfilePoint>,
+    end: DVec2,
+}
+
+#[derive(Clone, Copy)]
+struct ProfilePoint {
+    place: DVec2,
+    normal: DVec2,
+}
+
+impl Profile {
+    fn start(place: DVec2) -> Self {
+        Self {
+            points: Vec::new(),
+            end: place,
+        }
+    }
+
+    /// A part of a circle around `center`, from where the curve has come to, in `steps` steps. With falling angles
+    /// the outside of the circle is outside, with growing ones its inside.
+    fn arc(&mut self, center: DVec2, radius: f64, from_deg: f64, to_deg: f64, steps: u32) {
+        let side = if to_deg < from_deg { 1.0 } else { -1.0 };
+        for step in 0..=steps {
+            let fraction = f64::from(step) / f64::from(steps);
+            let direction = polar(1.0, from_deg + (to_deg - from_deg) * fraction);
+            self.push(step, center + radius * direction, side * direction);
+        }
+    }
+
+    /// A straight piece to `place` in `steps` steps.
+    fn line(&mut self, place: DVec2, steps: u32) {
+        let from = self.end;
+        let normal = (place - from).perp().normalize();
+        for step in 0..=steps {
+            self.push(step, from.lerp(place, f64::from(step) / f64::from(steps)), normal);
+        }
+    }
+
+    /// Step 0 of a piece takes the very place where the last piece ended, so that no crack opens; it is left out where
+    /// the normal goes on unchanged.
+    fn push(&mut self, step: u32, place: DVec2, normal: DVec2) {
+        let on_axis = place.x.abs() < 1e-12;
+        let place = if on_axis { dvec2(0.0, place.y) } else { place };
+        let place = if step == 0 { self.end } else { place };
+        let goes_on = self
+            .points
+            .last()
+            .is_some_and(|last| last.normal.dot(normal) > 1.0 - 1e-9);
+        if step > 0 || !goes_on {
+            self.points.push(ProfilePoint { place, normal });
+        }
+        self.end = place;
+    }
+
+    /// The surface in `around` cells about the axis; u runs around from +Z over +X, v along the curve by length.
+    fn revolve(&self, around: u32, slot: u32) -> Mesh {
+        let mut mesh = Mesh::default();
+        let mut lengths = vec![0.0];
+        for pair in self.points.windows(2) {
+            lengths.push(lengths[lengths.len() - 1] + pair[0].place.distance(pair[1].place));
+        }
+        let total = lengths[lengths.len() - 1];
+        for (point, length) in self.points.iter().zip(&lengths) {
+            for j in 0..=around {
+                // The last column is the first again, to the bit.
+                let (sin, cos) = (TAU * f64::from(j % around) / f64::from(around)).sin_cos();
+                let turn = |v: DVec2| DVec3::new(v.x * sin, v.y, v.x * cos);
+                let uv = dvec2(f64::from(j) / f64::from(around), length / total).as_vec2();
+                let tangent = DVec3::new(cos, 0.0, -sin).as_vec3().extend(1.0);
+                mesh.push_vertex(turn(point.place), turn(point.normal).as_vec3(), uv, tangent);
+            }
+        }
+        let side = around + 1;
+        for i in 0..self.points.len() as u32 - 1 {
+            for j in 0..around {
+                let (a, b, c, d) = (
+                    i * side + j,
+                    (i + 1) * side + j,
+                    (i + 1) * side + j + 1,
+                    i * side + j + 1,
+                );
+                mesh.push_triangle([a, b, c], slot);
+                mesh.push_triangle([a, c, d], slot);
+            }
+        }
+        mesh
+    }
+}

@@ -1,0 +1,88 @@
+//! A ray's hit made into a surface to shade.
+
+use crate::optics::frame::{frame_from_normal, frame_from_tangent};
+use crate::optics::material::{Material, Surface};
+use crate::optics::numeric::normalize_or;
+use crate::optics::real::Real;
+use crate::optics::vector::{Vec3, vec3};
+
+use super::{Geometry, Hit};
+
+/// Rounding of the position's three products and sums, with what the box test and the transforms add.
+const POSITION_ERROR: f64 = 1e-6;
+/// Smallest cosine between shading normal and view: where interpolation leans further away, the normal is bent back.
+const VIEW_COSINE_MIN: f64 = 1e-3;
+
+/// A point on a surface, ready to shade.
+#[derive(Clone, Copy, Debug)]
+pub struct SurfacePoint<T> {
+    /// Frame, geometric normal and view.
+    pub surface: Surface<T>,
+    /// The point, in the geometry's units.
+    pub position: Vec3<T>,
+    /// How far off the true place `position` may be, along the normal.
+    pub error: T,
+    /// Material slot.
+    pub slot: u32,
+}
+
+impl<T: Real> SurfacePoint<T> {
+    /// Where a ray from the surface starts: outside the bound on the position's error.
+    #[inline(always)]
+    pub fn ray_origin(&self) -> Vec3<T> {
+        self.position + self.surface.normal * self.error
+    }
+}
+
+/// The shading normal, bent towards the viewer where interpolation turned it away.
+#[inline(always)]
+pub fn bent_normal<T: Real>(shading: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
+    let lean = shading.dot(wo);
+    let least = T::from_f64(VIEW_COSINE_MIN);
+    let bent = normalize_or(shading + wo * (least - lean), wo);
+    Vec3::select(lean.less(least), bent, shading)
+}
+
+/// The surface where a ray of unit `direction` met the geometry.
+#[inline(always)]
+pub fn surface_at<T: Real>(
+    geometry: &Geometry,
+    materials: &[Material<T>],
+    hit: &Hit,
+    direction: Vec3<T>,
+) -> SurfacePoint<T> {
+    let index = hit.triangle as usize;
+    let [p0, p1, p2] = geometry.corners(index).map(Vec3::from_f32);
+    let (u, v) = (T::from_f64(f64::from(hit.u)), T::from_f64(f64::from(hit.v)));
+    let w = T::one() - u - v;
+    let position = p0 * w + p1 * u + p2 * v;
+    let wo = -direction;
+    let out = normalize_or((p1 - p0).cross(p2 - p0), wo);
+    let normal = Vec3::select(out.dot(wo).less(T::zero()), -out, out);
+    let corners = geometry.triangles[index].map(|vertex| &geometry.vertices[vertex as usize]);
+    let interpolate =
+        |a: [f32; 3], b: [f32; 3], c: [f32; 3]| Vec3::from_f32(a) * w + Vec3::from_f32(b) * u + Vec3::from_f32(c) * v;
+    let interpolated = interpolate(corners[0].normal, corners[1].normal, corners[2].normal);
+    let smoothed = normalize_or(interpolated, normal);
+    let shading = bent_normal(
+        Vec3::select(smoothed.dot(normal).less(T::zero()), -smoothed, smoothed),
+        wo,
+    );
+    let slot = geometry.slots[index];
+    let material = &materials[slot as usize];
+    let frame = if material.anisotropy.to_f64() != 0.0 {
+        let axis = |i: usize| [corners[i].tangent[0], corners[i].tangent[1], corners[i].tangent[2]];
+        frame_from_tangent(shading, interpolate(axis(0), axis(1), axis(2)), material.rotation_rad)
+    } else {
+        frame_from_normal(shading)
+    };
+    let extent = p0.map(T::abs) * w.abs() + p1.map(T::abs) * u.abs() + p2.map(T::abs) * v.abs();
+    let margin = T::from_f64(0.05);
+    let error = T::from_f64(POSITION_ERROR) * normal.map(T::abs).dot(extent + vec3(margin, margin, margin));
+    SurfacePoint {
+        surface: Surface { frame, normal, wo },
+        position,
+        error,
+        slot,
+    }
+}
