@@ -27,7 +27,11 @@ fn main() {
                 Ok((name, rays, samples)) => {
                     let ratio = samples / *first.get_or_insert(samples);
                     let strategy = strategy.name();
-                    println!("| {name} | {strategy} | {:.2} | {:.2} | {ratio:.2} |", rays / 1e6, samples / 1e6);
+                    println!(
+                        "| {name} | {strategy} | {:.2} | {:.2} | {ratio:.2} |",
+                        rays / 1e6,
+                        samples / 1e6
+                    );
                 }
                 Err(error) => println!("| {choice:?} | {} | {error} |||", strategy.name()),
             }
@@ -84,14 +88,22 @@ fn lobes() {
                 count: 0,
                 seed: 0,
             };
-            let (shape, frame, wo) = (request.shape::<f32>(), ScatterRequest::frame::<f32>(), request.wo::<f32>());
+            let (shape, frame, wo) = (
+                request.shape::<f32>(),
+                ScatterRequest::frame::<f32>(),
+                request.wo::<f32>(),
+            );
             let sample = per_call(|i| raw_sample(&shape, &frame, wo, xi(i)).x) - numbers;
             let directions: Vec<_> = (0..4096).map(|i| raw_sample(&shape, &frame, wo, xi(i))).collect();
             let density = per_call(|i| raw_density(&shape, &frame, wo, directions[i as usize % 4096]));
             if lobe == Lobe::Ggx {
                 ggx = density;
             }
-            let name = if lobe == Lobe::Geometric { format!("geometric/{}", curve.name()) } else { lobe.name().to_owned() };
+            let name = if lobe == Lobe::Geometric {
+                format!("geometric/{}", curve.name())
+            } else {
+                lobe.name().to_owned()
+            };
             println!("| {name} | {sample:.1} | {density:.1} | {:.2} |", density / ggx);
         }
     }

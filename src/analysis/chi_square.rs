@@ -44,6 +44,13 @@ impl PolarGrid {
             .filter(|a| *a > 0.0 && *a < PI)
             .collect();
         ring_ends_rad.dedup();
+        // Beyond the pilot's last sample rings that grow by halves: one ring to π would be so wide that its nodes could
+        // miss a narrow lobe's tail.
+        let mut end = angles.last().copied().unwrap_or(PI).max(1e-6);
+        while end < PI {
+            ring_ends_rad.push(end);
+            end *= 1.5;
+        }
         ring_ends_rad.push(PI);
         Self {
             frame,

@@ -3,9 +3,8 @@
 use glossmith::analysis::chi_square::sidak_level;
 use glossmith::analysis::scatter::{ScatterCloud, ScatterRequest};
 use glossmith::cpu;
-use glossmith::gpu::{self, AdapterKind, GpuDevice};
-use glossmith::render::EngineChoice;
 use glossmith::render::check::{CheckOptions, chi_square, run, sample_cases};
+use glossmith::render::{EngineChoice, Sampler};
 use rayon::prelude::*;
 
 /// Fails where a case's samples do not follow its density.
@@ -36,8 +35,8 @@ fn processor_samples_follow_their_densities() {
 
 #[test]
 fn gpu_samples_follow_their_densities() {
-    let device = GpuDevice::open(AdapterKind::Any).expect("a Vulkan driver: install mesa-vulkan-drivers");
-    assert_all_follow(|case| gpu::scatter::scatter(&device, case).unwrap(), false);
+    let sampler = Sampler::open(EngineChoice::Gpu).expect("a Vulkan driver: install mesa-vulkan-drivers");
+    assert_all_follow(|case| sampler.draw(case).unwrap(), false);
 }
 
 /// A density that is off by 2 % on one side and right in total is found.

@@ -4,7 +4,6 @@
 //! The optics integrate one smooth h with a few nodes; hats have kinks, so the range is cut into panels here.
 
 use crate::analysis::lobe_model::NORMAL;
-use crate::optics::numeric::arsinh;
 use crate::optics::vector::Vec3;
 
 /// Positive nodes and weights of the 8-point Gauss–Legendre rule on [−1, 1].
@@ -116,8 +115,8 @@ impl Chord {
         if !(discriminant > 0.0 && tau_first < tau_last) {
             return None;
         }
-        let u_last = arsinh((tau_last - tau_middle) / tau_scale);
-        let u_first = arsinh((tau_first - tau_middle) / tau_scale).max(u_last - RANGE_MAX);
+        let u_last = ((tau_last - tau_middle) / tau_scale).asinh();
+        let u_first = ((tau_first - tau_middle) / tau_scale).asinh().max(u_last - RANGE_MAX);
         Some(Self {
             kappa,
             k,
