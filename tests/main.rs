@@ -20,3 +20,7 @@ mod gltf_damaged;
 mod renders;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/ui.rs"]
+mod ui;
+#[path = "suite/worker.rs"]
+mod worker;
