@@ -42,3 +42,7 @@ mod support;
 mod tone;
 #[path = "suite/tone_twin.rs"]
 mod tone_twin;
+#[path = "suite/ui.rs"]
+mod ui;
+#[path = "suite/worker.rs"]
+mod worker;

@@ -3,9 +3,7 @@
 use std::ops::RangeInclusive;
 
 use egui::text::LayoutJob;
-use egui::{
-    Align, Color32, DragValue, Layout, Rect, Response, RichText, Sense, Shape, TextFormat, TextStyle, Ui, Vec2,
-};
+use egui::{Align, Color32, DragValue, Layout, Rect, Response, RichText, Sense, Shape, TextFormat, TextStyle, Ui, Vec2};
 
 use super::theme::{self, ROW_HEIGHT};
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
@@ -55,14 +53,11 @@ pub(super) struct RowResponse {
 /// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
 pub(super) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
     ui.horizontal(|ui| {
-        let spacing = ui.spacing().item_spacing.x;
         let label_width = (ui.available_width() * LABEL_SHARE).max(LABEL_MIN);
         let label = row_label(ui, name, label_width);
-        let width = (ui.available_width() - spacing * 0.0).max(40.0);
+        let width = ui.available_width().max(40.0);
         let layout = Layout::left_to_right(Align::Center);
-        let control = ui
-            .allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, control)
-            .inner;
+        let control = ui.allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, control).inner;
         let changed = control.changed();
         let control = control.accessible_name(name.full);
         if !name.help.is_empty() {
@@ -122,13 +117,13 @@ pub(super) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style:
     let size = Vec2::new(ui.available_width(), ROW_HEIGHT);
     let rect = Rect::from_min_size(ui.next_widget_position() - Vec2::new(0.0, 0.5 * size.y), size);
     let background = ui.painter().add(Shape::Noop);
-    let speed = style
-        .bar
-        .map_or(style.speed, |[low, high]| (high - low) / f64::from(size.x.max(40.0)));
+    let speed = style.bar.map_or(style.speed, |[low, high]| (high - low) / f64::from(size.x.max(40.0)));
     let fills = ui.visuals().widgets.clone();
-    let share = style
-        .bar
-        .map(|[low, high]| ((value.to_f64() - low) / (high - low)).clamp(0.0, 1.0) as f32);
+    let span = style.bar.map(|[low, high]| {
+        let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
+        // Signed numbers fill from zero.
+        [share(0.0_f64.clamp(low, high)), share(value.to_f64())]
+    });
     let response = ui
         .scope(|ui| {
             let widgets = &mut ui.visuals_mut().widgets;
@@ -138,16 +133,12 @@ pub(super) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style:
             let drag = DragValue::new(value)
                 .range(style.range.clone())
                 .speed(speed)
-                .max_decimals(style.decimals)
+                .custom_formatter(|value, _| trimmed(value, style.decimals))
                 .suffix(style.unit.to_owned());
             ui.add_sized(size, drag)
         })
         .inner;
-    let rect = if response.rect.is_positive() {
-        response.rect
-    } else {
-        rect
-    };
+    let rect = if response.rect.is_positive() { response.rect } else { rect };
     let state = if response.is_pointer_button_down_on() || response.has_focus() {
         &fills.active
     } else if response.hovered() {
@@ -156,24 +147,30 @@ pub(super) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style:
         &fills.inactive
     };
     let mut shapes = vec![Shape::rect_filled(rect, state.corner_radius, state.weak_bg_fill)];
-    if let Some(share) = share {
-        let filled = Rect::from_min_size(rect.min, Vec2::new(rect.width() * share, rect.height()));
+    if let Some([from, to]) = span {
+        let x = |share: f32| egui::lerp(rect.x_range(), share);
+        let filled = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), rect.y_range());
         let color = theme::accent(ui.visuals().dark_mode).gamma_multiply(if response.hovered() { 0.62 } else { 0.5 });
-        // Clipped, so that the bar keeps the field's corners.
         shapes.push(bar(rect, filled, color, state.corner_radius));
     }
     ui.painter().set(background, Shape::Vec(shapes));
     response
 }
 
+/// A number with at most so many decimals, zeros at its end left out as far as two.
+fn trimmed(value: f64, decimals: usize) -> String {
+    let mut text = format!("{value:.decimals$}");
+    let least = text.len().saturating_sub(decimals.saturating_sub(2));
+    while decimals > 2 && text.len() > least && text.ends_with('0') {
+        text.pop();
+    }
+    if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
+}
+
 /// The filled part of a field.
 fn bar(field: Rect, filled: Rect, color: Color32, radius: egui::CornerRadius) -> Shape {
-    let right = if filled.right() >= field.right() - 1.0 {
-        radius.ne
-    } else {
-        0
-    };
-    let left = if filled.width() >= 3.0 { radius.nw } else { 0 };
+    let right = if filled.right() >= field.right() - 1.0 { radius.ne } else { 0 };
+    let left = if filled.left() <= field.left() + 1.0 && filled.width() >= 3.0 { radius.nw } else { 0 };
     let corners = egui::CornerRadius {
         nw: left,
         sw: left,
@@ -253,9 +250,7 @@ pub(super) fn triple(ui: &mut Ui, name: &str, values: &mut [f32; 3], range: Rang
     let mut whole: Option<Response> = None;
     for (value, channel) in values.iter_mut().zip(["red", "green", "blue"]) {
         let drag = DragValue::new(value).range(range.clone()).speed(0.01).max_decimals(3);
-        let response = ui
-            .add_sized(Vec2::new(width, ROW_HEIGHT), drag)
-            .accessible_name(format!("{name}, {channel}"));
+        let response = ui.add_sized(Vec2::new(width, ROW_HEIGHT), drag).accessible_name(format!("{name}, {channel}"));
         whole = Some(match whole {
             Some(whole) => whole.union(response),
             None => response,
@@ -265,12 +260,7 @@ pub(super) fn triple(ui: &mut Ui, name: &str, values: &mut [f32; 3], range: Rang
 }
 
 /// One of several: (value, label, help).
-pub(super) fn choice<T: PartialEq + Clone>(
-    ui: &mut Ui,
-    id: &str,
-    value: &mut T,
-    choices: &[(T, &str, &str)],
-) -> Response {
+pub(super) fn choice<T: PartialEq + Clone>(ui: &mut Ui, id: &str, value: &mut T, choices: &[(T, &str, &str)]) -> Response {
     let current = choices.iter().find(|(choice, ..)| choice == value);
     let mut changed = false;
     let width = ui.available_width();
@@ -281,11 +271,7 @@ pub(super) fn choice<T: PartialEq + Clone>(
         .show_ui(ui, |ui| {
             for (choice, label, help) in choices {
                 let item = ui.selectable_label(choice == value, *label);
-                let item = if help.is_empty() {
-                    item
-                } else {
-                    item.on_hover_text(*help)
-                };
+                let item = if help.is_empty() { item } else { item.on_hover_text(*help) };
                 if item.clicked() && choice != value {
                     *value = choice.clone();
                     changed = true;
@@ -302,17 +288,38 @@ pub(super) fn choice<T: PartialEq + Clone>(
 /// The heading of a group of rows, which opens and closes it.
 pub(super) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
     let header = RichText::new(title).strong();
-    egui::CollapsingHeader::new(header)
-        .id_salt(title)
-        .default_open(true)
-        .show_unindented(ui, |ui| {
-            ui.add_space(2.0);
-            body(ui);
-            ui.add_space(theme::GAP);
-        });
+    egui::CollapsingHeader::new(header).id_salt(title).default_open(true).show_unindented(ui, |ui| {
+        ui.add_space(2.0);
+        body(ui);
+        ui.add_space(theme::GAP);
+    });
 }
 
 /// A note in weak text.
 pub(super) fn note(ui: &mut Ui, text: impl Into<String>) {
     ui.label(RichText::new(text).weak());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_lose_zeros_but_not_digits() {
+        assert_eq!(trimmed(0.3, 3), "0.30");
+        assert_eq!(trimmed(0.305, 3), "0.305");
+        assert_eq!(trimmed(-0.0001, 3), "0.00");
+        assert_eq!(trimmed(12.0, 0), "12");
+        assert_eq!(trimmed(100.0, 0), "100");
+        assert_eq!(trimmed(-4.5, 1), "-4.5");
+    }
+
+    #[test]
+    fn colours_come_back_from_their_codes() {
+        for code in ["#000000", "#ffffff", "#c8a060", "#010203"] {
+            assert_eq!(linear_of(code).map(hex_of).as_deref(), Some(code));
+        }
+        assert_eq!(linear_of("#12345"), None);
+        assert_eq!(linear_of("#+23456"), None);
+    }
 }

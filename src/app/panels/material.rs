@@ -4,6 +4,7 @@ use egui::Ui;
 
 use super::Desk;
 use crate::app::actions::{Action, Command};
+use crate::app::icons::{self, Icon};
 use crate::app::theme;
 use crate::app::widgets::{self, Name, NumberStyle};
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter, Value};
@@ -43,16 +44,10 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
         return;
     }
     widgets::group(ui, "Slots", |ui| {
-        let names: Vec<String> = desk
-            .scene()
-            .map(|scene| scene.model.slots.iter().map(|slot| slot.name.clone()).collect())
-            .unwrap_or_default();
+        let names: Vec<String> =
+            desk.scene().map(|scene| scene.model.slots.iter().map(|slot| slot.name.clone()).collect()).unwrap_or_default();
         for (slot, name) in names.iter().enumerate() {
-            let label = if name.is_empty() {
-                format!("slot {}", slot + 1)
-            } else {
-                name.clone()
-            };
+            let label = if name.is_empty() { format!("slot {}", slot + 1) } else { name.clone() };
             let width = egui::vec2(ui.available_width(), theme::ROW_HEIGHT);
             let item = egui::Button::selectable(slot == desk.state.slot, label).min_size(width);
             if ui.add(item).clicked() {
@@ -64,24 +59,19 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
     ui.horizontal(|ui| {
-        let menu_width = 30.0;
-        let width = ui.available_width() - menu_width - ui.spacing().item_spacing.x;
-        let field = egui::TextEdit::singleline(&mut material.name)
-            .desired_width(width)
-            .margin(egui::vec2(6.0, 4.0));
+        let width = ui.available_width() - theme::ROW_HEIGHT - ui.spacing().item_spacing.x;
+        let field = egui::TextEdit::singleline(&mut material.name).desired_width(width).margin(egui::vec2(6.0, 3.0));
         if ui.add(field).accessible_name("Material name").changed() {
             desk.edits.note("Rename material", "material name");
         }
-        let menu = ui.menu_button("⋯", |ui| {
+        let more = icons::button(ui, Icon::More, "Material menu", "Open, save, reset");
+        egui::Popup::menu(&more).show(|ui| {
             for command in [Command::OpenMaterial, Command::SaveMaterial, Command::ResetMaterial] {
                 if ui.button(command.label()).on_hover_text(command.help()).clicked() {
                     desk.act(command);
                 }
             }
         });
-        menu.response
-            .accessible_name("Material menu")
-            .on_hover_text("Open, save, reset");
     });
 }
 
@@ -107,15 +97,7 @@ fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, mater
 
 fn control(ui: &mut Ui, parameter: &Parameter, full: &str, value: &mut Value) -> egui::Response {
     match (&parameter.kind, value) {
-        (
-            Kind::Number {
-                range,
-                soft_range,
-                unit,
-                step,
-            },
-            Value::Number(number),
-        ) => {
+        (Kind::Number { range, soft_range, unit, step }, Value::Number(number)) => {
             let style = NumberStyle {
                 range: f64::from(range[0])..=f64::from(range[1]),
                 bar: Some(soft_range.map(f64::from)),
@@ -134,10 +116,7 @@ fn control(ui: &mut Ui, parameter: &Parameter, full: &str, value: &mut Value) ->
             widgets::triple(ui, full, values, f64::from(range[0])..=f64::from(range[1]))
         }
         (Kind::Choice(choices), Value::Choice(name)) => {
-            let choices: Vec<_> = choices
-                .iter()
-                .map(|choice| (choice.name, choice.label, choice.help))
-                .collect();
+            let choices: Vec<_> = choices.iter().map(|choice| (choice.name, choice.label, choice.help)).collect();
             widgets::choice(ui, parameter.key, name, &choices)
         }
         (Kind::Toggle, Value::Toggle(is_on)) => ui.checkbox(is_on, ""),
