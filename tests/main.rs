@@ -1,4 +1,5 @@
-//! See docs/ARCHITECTURE.md.
+//! The integration tests, in one binary: see docs/ARCHITECTURE.md.
+#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
 #[path = "suite/check.rs"]
 mod check;
