@@ -52,7 +52,11 @@ impl FrameMeter {
     pub fn summary(&self) -> String {
         let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
         let recent = ms(self.recent_worst());
-        format!("window: {} frames, longest {:.1} ms, of the last 10 s {recent:.1} ms", self.frames, ms(self.worst))
+        format!(
+            "window: {} frames, longest {:.1} ms, of the last 10 s {recent:.1} ms",
+            self.frames,
+            ms(self.worst)
+        )
     }
 
     /// The longest frame since the start, the first few left out.
