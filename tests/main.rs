@@ -35,8 +35,12 @@ mod gltf;
 mod gltf_builder;
 #[path = "suite/gltf_damaged.rs"]
 mod gltf_damaged;
+#[path = "suite/lobe_cases.rs"]
+mod lobe_cases;
 #[path = "suite/renders.rs"]
 mod renders;
+#[path = "suite/statistics.rs"]
+mod statistics;
 #[path = "suite/support.rs"]
 mod support;
 #[path = "suite/tone.rs"]

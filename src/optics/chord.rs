@@ -73,7 +73,6 @@ struct Chord<T> {
 
 /// The density per steradian for roughness `kappa`: `mirror`, `light` and `normal` unit vectors of the unit ball's frame,
 /// a = (1 − κ) `stretch` × `mirror`. `table` holds the custom curve and is not read for the others.
-#[inline(always)]
 pub fn chord_density<T: Real>(
     curve: Curve,
     table: &[f32],
@@ -87,8 +86,8 @@ pub fn chord_density<T: Real>(
     let integral = match curve {
         Curve::Linear => chord_reciprocal_integral(&chord),
         Curve::Sqrt | Curve::Cbrt | Curve::Smooth => chord_polynomial_integral(&chord, chord_polynomial(curve)),
-        Curve::LongTail => chord_quadrature(curve, kappa, &chord),
-        Curve::Custom => chord_table_integral(table, &chord),
+        Curve::LongTail => chord_quadrature(curve, kappa, chord),
+        Curve::Custom => chord_table_integral(table, chord),
     };
     let value = T::from_f64(0.25 * std::f64::consts::FRAC_1_PI) * integral / chord.a_root;
     T::select(chord.nearest.less(chord.last[0]), value.max(T::zero()), T::zero())
@@ -224,8 +223,8 @@ fn chord_polynomial<T: Real>(curve: Curve) -> [T; 3] {
 }
 
 /// ∫ t² h dv by Gauss–Legendre in v, for the curves without a closed form.
-#[inline(always)]
-fn chord_quadrature<T: Real>(curve: Curve, kappa: T, chord: &Chord<T>) -> T {
+fn chord_quadrature<T: Real>(curve: Curve, kappa: T, chord: Chord<T>) -> T {
+    let chord = &chord;
     let half = T::from_f64(0.5);
     let mu = half * chord.odd[0] / chord.a_root;
     let range_max = T::from_f64(RANGE_MAX[0]) + T::from_f64(RANGE_MAX[1]) * mu.max(T::zero());
@@ -258,8 +257,8 @@ fn chord_integrand<T: Real>(curve: Curve, chord: &Chord<T>, mu: T, exp_v: T) -> 
 }
 
 /// ∫ t² h dv for a custom curve: D's density is linear in each interval of its table.
-#[inline(always)]
-fn chord_table_integral<T: Real>(table: &[f32], chord: &Chord<T>) -> T {
+fn chord_table_integral<T: Real>(table: &[f32], chord: Chord<T>) -> T {
+    let chord = &chord;
     let ([last, _], [first, w_first]) = (chord.last, chord.first);
     let mut sum = T::zero();
     // Spheres that are met twice ahead of the surface point: what is odd in W cancels.
@@ -275,7 +274,6 @@ fn chord_table_integral<T: Real>(table: &[f32], chord: &Chord<T>) -> T {
 
 /// The part of [`chord_table_integral`] on one side of the chord's middle, from the end `from` (D and W) to the distance
 /// `to`, with `odd` times what is odd in W.
-#[inline(always)]
 fn chord_table_section<T: Real>(table: &[f32], chord: &Chord<T>, from: [T; 2], to: T, odd: T) -> T {
     let c = T::from_f64;
     let number = |i: usize| c(f64::from(table[i]));
