@@ -28,8 +28,11 @@ pub struct SphereGrid {
 const RING_FIRST: f64 = 1e-5;
 /// Each ring of the first pass is this much wider than the one within.
 const RING_RATIO: f64 = 1.2;
-/// Largest share of any of the functions in a ring of the second pass.
+/// Largest share of any of the functions in a ring of the second pass; rings with less than the least are joined.
 const SHARE_MAX: f64 = 1.0 / 48.0;
+const SHARE_MIN: f64 = 1.0 / 2000.0;
+/// Azimuths on half a circle under a view along the normal.
+const AZIMUTHS: f64 = 14.0;
 /// Nodes and weights of the 2-point Gauss–Legendre rule on [0, 1].
 const NODES: [[f64; 2]; 2] = [[0.211_324_865_405_187_1, 0.5], [0.788_675_134_594_812_9, 0.5]];
 
@@ -47,10 +50,17 @@ impl SphereGrid {
         edges.push(std::f64::consts::PI);
         let shares = ring_shares(&pole, &edges, profiles);
         let mut fine = vec![0.0];
+        let mut joined = 0.0;
         for (pair, share) in edges.windows(2).zip(shares) {
-            let pieces = (share / SHARE_MAX).ceil().max(1.0);
-            let width = (pair[1] - pair[0]) / pieces;
-            fine.extend((1..=pieces as usize).map(|i| pair[0] + width * i as f64));
+            joined += share;
+            if joined < SHARE_MIN && pair[1] < std::f64::consts::PI {
+                continue;
+            }
+            let start = fine[fine.len() - 1];
+            let pieces = (joined / SHARE_MAX).ceil().max(1.0);
+            let width = (pair[1] - start) / pieces;
+            fine.extend((1..=pieces as usize).map(|i| start + width * i as f64));
+            joined = 0.0;
         }
         Self {
             points: fine.windows(2).flat_map(|pair| pole.ring([pair[0], pair[1]])).collect(),
@@ -110,7 +120,7 @@ impl Pole {
         let mirror = view.mirrored_about(NORMAL);
         let (cosine, sine) = (mirror.z, mirror.x);
         // Lobes get thin across the plane of incidence towards grazing angles.
-        let half_circle = (24.0 / cosine.max(0.05)).min(160.0) as usize;
+        let half_circle = (AZIMUTHS / cosine.max(0.1)) as usize;
         let is_round = sine == 0.0 && is_symmetric;
         let (azimuths, span_rad, multiplicity) = match (is_round, is_symmetric) {
             (true, _) => (1, std::f64::consts::PI, 2.0),

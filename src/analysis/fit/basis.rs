@@ -15,9 +15,9 @@ const GAUSS_8: [[f64; 2]; 4] = [
     [0.960_289_856_497_536_3, 0.101_228_536_290_376_79],
 ];
 /// Longest panel in u, the variable in which the integrand is smooth.
-const PANEL_MAX: f64 = 0.7;
+const PANEL_MAX: f64 = 1.0;
 /// Longest range of u worth integrating.
-const RANGE_MAX: f64 = 24.0;
+const RANGE_MAX: f64 = 20.0;
 
 /// Hat functions of h over the distance D.
 #[derive(Clone, Debug)]
@@ -60,13 +60,14 @@ impl Hats {
         let [first, last] = chord.range;
         let panels = ((last - first) / PANEL_MAX).ceil().max(1.0);
         let half = 0.5 * (last - first) / panels;
+        let steps = GAUSS_8.map(|[node, weight]| [(half * node).exp(), half * weight * chord.scale]);
         for panel in 0..panels as usize {
-            let middle = first + half * (2.0 * panel as f64 + 1.0);
-            for [node, weight] in GAUSS_8 {
-                for u in [middle - half * node, middle + half * node] {
-                    let (distance, square) = chord.distance_and_square(u);
+            let middle = (first + half * (2.0 * panel as f64 + 1.0)).exp();
+            for [step, weight] in steps {
+                for exp_u in [middle * step, middle / step] {
+                    let (distance, square) = chord.distance_and_square(exp_u);
                     let (index, share) = self.place(distance);
-                    let value = chord.scale * half * weight * square;
+                    let value = weight * square;
                     densities[index] += value * (1.0 - share);
                     densities[index + 1] += value * share;
                 }
@@ -133,10 +134,11 @@ impl Chord {
         })
     }
 
-    /// D and t² at u.
-    fn distance_and_square(&self, u: f64) -> (f64, f64) {
-        let tau = self.tau_middle + self.tau_scale * u.sinh();
-        let s = self.delta_root * u.cosh();
+    /// D and t² at e^u.
+    fn distance_and_square(&self, exp_u: f64) -> (f64, f64) {
+        let inverse = 1.0 / exp_u;
+        let tau = self.tau_middle + self.tau_scale * 0.5 * (exp_u - inverse);
+        let s = self.delta_root * 0.5 * (exp_u + inverse);
         let lifted = self.kappa * (tau * self.nu - self.m);
         // The root of k D² + 2κ(n·q) D − |q|² = 0 in the form that does not cancel.
         let distance = if lifted > 0.0 {
