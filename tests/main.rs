@@ -1,12 +1,19 @@
-//! The integration tests, in one binary.
-#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
+//! See docs/ARCHITECTURE.md.
 
+#[path = "suite/check.rs"]
+mod check;
+#[path = "suite/document.rs"]
+mod document;
 #[path = "suite/environment.rs"]
 mod environment;
 #[path = "suite/environment_files.rs"]
 mod environment_files;
+#[path = "suite/environment_sampling.rs"]
+mod environment_sampling;
 #[path = "suite/environment_twin.rs"]
 mod environment_twin;
+#[path = "suite/files.rs"]
+mod files;
 #[path = "suite/fit.rs"]
 mod fit;
 #[path = "suite/geometry.rs"]
@@ -17,5 +24,11 @@ mod gltf;
 mod gltf_builder;
 #[path = "suite/gltf_damaged.rs"]
 mod gltf_damaged;
+#[path = "suite/renders.rs"]
+mod renders;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/tone.rs"]
+mod tone;
+#[path = "suite/tone_twin.rs"]
+mod tone_twin;

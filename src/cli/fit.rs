@@ -61,7 +61,10 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     };
     let found = match_look(&target, arguments.lobe, arguments.view_angle).context("--target")?;
     print_match(&found);
-    let mut material = MaterialSettings { name: format!("Like {}", found.target), ..MaterialSettings::default() };
+    let mut material = MaterialSettings {
+        name: format!("Like {}", found.target),
+        ..MaterialSettings::default()
+    };
     found.apply(&mut material);
     save_material(&arguments.output, &material)?;
     eprintln!("wrote {}", arguments.output.display());
@@ -72,14 +75,21 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
 fn print_match(found: &LookMatch) {
     println!("target   {}, view angle {}°", found.target, found.view_angle_deg);
     let line = |word: &str, candidate: &Candidate| {
-        println!("{word:<8} TV {:.4}  {}", candidate.total_variation, candidate.model.name);
+        println!(
+            "{word:<8} TV {:.4}  {}",
+            candidate.total_variation, candidate.model.name
+        );
     };
     line("before", &found.before);
     line("nearest", &found.nearest);
     line("after", &found.after);
     println!("R        {}", found.after.model.roughness);
     if let Some(curve) = &found.curve {
-        let points: Vec<String> = curve.points().iter().map(|[xi, distance]| format!("{xi}:{distance}")).collect();
+        let points: Vec<String> = curve
+            .points()
+            .iter()
+            .map(|[xi, distance]| format!("{xi}:{distance}"))
+            .collect();
         println!("curve    {}", points.join(","));
     }
     if let Some(colors) = &found.colors {

@@ -3,6 +3,7 @@
 //! Exit codes: 0 done; 1 something could not be read, rendered or written (one line on stderr says what and what to
 //! do); 2 the arguments are wrong.
 
+mod check;
 mod fit;
 mod lobe_spec;
 mod names;
@@ -39,6 +40,8 @@ const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, ren
 pub enum Command {
     /// Render a picture.
     Render(Box<render::RenderArguments>),
+    /// Prove on this machine that the renderer is right.
+    Check(check::CheckArguments),
     /// Draw samples of a lobe, as the renderer draws them.
     Scatter(scatter::ScatterArguments),
     /// Match the look of another lobe or of a measured material.
@@ -53,6 +56,7 @@ impl Command {
     pub fn run(self) -> anyhow::Result<()> {
         match self {
             Command::Render(arguments) => render::run(&arguments),
+            Command::Check(arguments) => check::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
         }

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::custom_curve::{CustomCurve, POINTS_MAX, XI_STEP_MIN};
 use super::{MaterialSettings, measured_look};
-use crate::analysis::fit::{CurveFit, CurveTarget, Measure, Merl, fit_curve, nearest_roughness, roughness, total_variation};
+use crate::analysis::fit::{
+    CurveFit, CurveTarget, Measure, Merl, fit_curve, nearest_roughness, roughness, total_variation,
+};
 use crate::analysis::lobe_model::{LobeModel, roughness_min, view_direction};
 use crate::analysis::sphere_grid::Profile;
 use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
@@ -119,7 +121,11 @@ impl<'a> TargetProfile<'a> {
     /// # Errors
     /// [`MatchError`].
     pub fn new(target: &'a Target, view_angle_rad: f64) -> Result<Self, MatchError> {
-        let mut profile = Self { target, wo: view_direction(view_angle_rad), base_albedo: 0.0 };
+        let mut profile = Self {
+            target,
+            wo: view_direction(view_angle_rad),
+            base_albedo: 0.0,
+        };
         match target {
             Target::Lobe(model) if !model.has_density() => Err(MatchError::Mirror {
                 roughness: model.roughness,
@@ -161,7 +167,10 @@ pub fn match_look(target: &Target, lobe: Lobe, view_angle_deg: f64) -> Result<Lo
     };
     let default = MaterialSettings::default();
     let candidate = |roughness: f64| {
-        let model = LobeModel { horizon: default.horizon, ..LobeModel::new(lobe, rounded(roughness), default.curve) };
+        let model = LobeModel {
+            horizon: default.horizon,
+            ..LobeModel::new(lobe, rounded(roughness), default.curve)
+        };
         let total_variation = total_variation(profile, &model, view_angle_rad, Measure::Evaluate);
         Candidate { model, total_variation }
     };
@@ -180,7 +189,15 @@ pub fn match_look(target: &Target, lobe: Lobe, view_angle_deg: f64) -> Result<Lo
         Target::Lobe(_) => None,
         Target::Measured { merl, .. } => Some(measured_look::colors(merl, view_angle_rad, &after.model)),
     };
-    Ok(LookMatch { view_angle_deg, target: name, before: start, nearest, after, curve, colors })
+    Ok(LookMatch {
+        view_angle_deg,
+        target: name,
+        before: start,
+        nearest,
+        after,
+        curve,
+        colors,
+    })
 }
 
 /// To the digits that a file is read by people with.
@@ -203,7 +220,10 @@ fn curve_candidate(profile: Profile, view_angle_rad: f64, start: &LobeModel) -> 
 /// The best curve with distances up to `distance_max`, over all R around `start`.
 fn best_fit(target: &CurveTarget, start: f64, distance_max: f64, horizon: Horizon) -> Option<CurveFit> {
     let fit = |roughness: f64| fit_curve(target, roughness, distance_max, horizon, false);
-    let range = [(0.3 * start / distance_max).max(roughness_min(Lobe::Geometric)), (2.5 * start).min(ROUGHNESS_MAX)];
+    let range = [
+        (0.3 * start / distance_max).max(roughness_min(Lobe::Geometric)),
+        (2.5 * start).min(ROUGHNESS_MAX),
+    ];
     let residual = |roughness: f64| fit(roughness).map_or(1.0, |fit| fit.residual);
     fit(roughness::minimum(range, CURVE_SCAN.0, CURVE_SCAN.1, &residual).roughness)
 }
@@ -218,9 +238,15 @@ fn judged(profile: Profile, view_angle_rad: f64, start: &LobeModel, roughness: f
     };
     let at = |roughness: f64| model.with_roughness(rounded(roughness));
     let distance = |roughness: f64| total_variation(profile, &at(roughness), view_angle_rad, Measure::Evaluate);
-    let range = [(0.93 * roughness).max(roughness_min(Lobe::Geometric)), (1.07 * roughness).min(ROUGHNESS_MAX)];
+    let range = [
+        (0.93 * roughness).max(roughness_min(Lobe::Geometric)),
+        (1.07 * roughness).min(ROUGHNESS_MAX),
+    ];
     let found = roughness::minimum(range, FINAL_SCAN.0, FINAL_SCAN.1, &distance);
-    Candidate { model: at(found.roughness), total_variation: found.total_variation }
+    Candidate {
+        model: at(found.roughness),
+        total_variation: found.total_variation,
+    }
 }
 
 /// The points (ξ, D) of a fitted curve: where the table that the lobe samples has its limits, as far as ξ differs there

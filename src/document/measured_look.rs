@@ -72,7 +72,10 @@ pub fn colors(merl: &Merl, view_angle_rad: f64, model: &LobeModel) -> Colors {
     }
     let channel = |right: [f64; 2]| non_negative_pair(normal, right);
     let [r, g, b] = [0, 1, 2].map(|c| channel([right[0].to_f64()[c], right[1].to_f64()[c]]));
-    Colors { highlight: Vec3::from_f64([r[0], g[0], b[0]]), base: Vec3::from_f64([r[1], g[1], b[1]]) }
+    Colors {
+        highlight: Vec3::from_f64([r[0], g[0], b[0]]),
+        base: Vec3::from_f64([r[1], g[1], b[1]]),
+    }
 }
 
 /// The non-negative solution of a least-squares problem with two unknowns, from its normal equations.

@@ -4,6 +4,7 @@
 
 mod assets;
 mod calibration;
+pub mod check;
 mod compile;
 pub mod display;
 mod engine;

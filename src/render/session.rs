@@ -87,6 +87,17 @@ impl Session {
         &mut self.assets
     }
 
+    /// Forgets what was rendered, so that the next submission starts over even with the same document.
+    pub fn forget(&mut self) {
+        self.document = None;
+    }
+
+    /// Forgets files, too, so that they are read again.
+    pub fn reload(&mut self) {
+        self.assets.reload();
+        self.forget();
+    }
+
     /// The numbers being rendered.
     pub fn job(&self) -> Option<&Arc<Job>> {
         self.job.as_ref()

@@ -38,7 +38,7 @@ fn assert_says(error: &str, parts: &[&str]) {
 
 fn write_bytes(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
     let path = folder.path().join(name);
-    std::fs::write(&path, bytes).unwrap();
+    std::fs::write(&path, bytes).expect("a writable folder");
     path
 }
 
@@ -52,7 +52,9 @@ fn hdr_bytes(width: usize, height: usize) -> Vec<u8> {
         .map(|index| image::Rgb([0, 1, 2].map(|channel| value(index % width, index / width, channel))))
         .collect();
     let mut bytes = Vec::new();
-    HdrEncoder::new(&mut bytes).encode(&pixels, width, height).unwrap();
+    HdrEncoder::new(&mut bytes)
+        .encode(&pixels, width, height)
+        .expect("memory to write to");
     bytes
 }
 
@@ -87,7 +89,10 @@ fn exr_layer(
 fn exr_file(folder: &TempDir, name: &str, names: &[(&str, usize)], kind: &str, compression: Compression) -> PathBuf {
     let path = folder.path().join(name);
     let layer = exr_layer(names, kind, compression, LayerAttributes::default());
-    Image::from_layer(layer).write().to_file(&path).unwrap();
+    Image::from_layer(layer)
+        .write()
+        .to_file(&path)
+        .expect("a writable folder");
     path
 }
 
@@ -166,10 +171,10 @@ fn exr_files_are_read_in_every_supported_compression_and_number_type() {
     for compression in [Compression::PXR24, Compression::B44, Compression::B44A] {
         let environment = load_file(&exr_file(&folder, "lossy.exr", &RGB, "half", compression)).unwrap();
         for (index, texel) in environment.texels.iter().enumerate() {
-            for channel in 0..3 {
+            for (channel, found) in texel[..3].iter().enumerate() {
                 let expected = value(index % WIDTH, index / WIDTH, channel);
-                let error = (texel[channel] - expected).abs();
-                assert!(error < 1.5, "{compression:?}: {} instead of {expected}", texel[channel]);
+                let error = (found - expected).abs();
+                assert!(error < 1.5, "{compression:?}: {found} instead of {expected}");
             }
         }
     }
@@ -369,7 +374,7 @@ fn attribute_offset(bytes: &[u8], name_and_type: &[u8]) -> usize {
     bytes
         .windows(name_and_type.len())
         .position(|window| window == name_and_type)
-        .unwrap()
+        .expect("the attribute")
         + name_and_type.len()
         + 4
 }

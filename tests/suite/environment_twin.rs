@@ -40,7 +40,7 @@ fn map() -> Environment {
             [value(12.9), value(78.2), value(37.7), 1.0]
         })
         .collect();
-    Environment::from_texels("waves", 37, 19, texels).unwrap()
+    Environment::from_texels("waves", 37, 19, texels).expect("a sound map")
 }
 
 /// Random triples and directions, low-discrepancy, the poles and axes among them.
@@ -66,7 +66,8 @@ fn run(environment: &Environment, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
     let adapter = pollster::block_on(instance.request_adapter(&wgpu::RequestAdapterOptions::default()))
         .expect("no GPU adapter: install mesa-vulkan-drivers");
-    let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).unwrap();
+    let (device, queue) =
+        pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor::default())).expect("a device");
     let map = device.create_texture_with_data(
         &queue,
         &wgpu::TextureDescriptor {
@@ -152,9 +153,11 @@ fn run(environment: &Environment, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     drop(pass);
     encoder.copy_buffer_to_buffer(&results, 0, &readback, 0, size);
     queue.submit([encoder.finish()]);
-    readback.map_async(wgpu::MapMode::Read, .., |result| result.unwrap());
-    device.poll(wgpu::PollType::wait_indefinitely()).unwrap();
-    let bytes = readback.get_mapped_range(..).unwrap();
+    readback.map_async(wgpu::MapMode::Read, .., |result| result.expect("mapped memory"));
+    device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .expect("a device that answers");
+    let bytes = readback.get_mapped_range(..).expect("mapped memory");
     bytemuck::cast_slice(&bytes).to_vec()
 }
 
