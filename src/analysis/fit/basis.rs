@@ -3,17 +3,15 @@
 //!
 //! The optics integrate one smooth h with a few nodes; hats have kinks, so the range is cut into panels here.
 
+use std::sync::LazyLock;
+
 use crate::analysis::lobe_model::NORMAL;
+use crate::analysis::quadrature::gauss_legendre;
 use crate::optics::numeric::arsinh;
 use crate::optics::vector::Vec3;
 
-/// Positive nodes and weights of the 8-point Gauss–Legendre rule on [−1, 1].
-const GAUSS_8: [[f64; 2]; 4] = [
-    [0.183_434_642_495_649_8, 0.362_683_783_378_362],
-    [0.525_532_409_916_329, 0.313_706_645_877_887_4],
-    [0.796_666_477_413_626_8, 0.222_381_034_453_374_45],
-    [0.960_289_856_497_536_3, 0.101_228_536_290_376_79],
-];
+/// The rule within a panel.
+static GAUSS_8: LazyLock<Vec<[f64; 2]>> = LazyLock::new(|| gauss_legendre(8));
 /// Longest panel in u, the variable in which the integrand is smooth.
 const PANEL_MAX: f64 = 1.0;
 /// Longest range of u worth integrating.
@@ -60,17 +58,18 @@ impl Hats {
         let [first, last] = chord.range;
         let panels = ((last - first) / PANEL_MAX).ceil().max(1.0);
         let half = 0.5 * (last - first) / panels;
-        let steps = GAUSS_8.map(|[node, weight]| [(half * node).exp(), half * weight * chord.scale]);
+        let steps: Vec<[f64; 2]> = GAUSS_8
+            .iter()
+            .map(|[node, weight]| [(half * node).exp(), half * weight * chord.scale])
+            .collect();
         for panel in 0..panels as usize {
             let middle = (first + half * (2.0 * panel as f64 + 1.0)).exp();
-            for [step, weight] in steps {
-                for exp_u in [middle * step, middle / step] {
-                    let (distance, square) = chord.distance_and_square(exp_u);
-                    let (index, share) = self.place(distance);
-                    let value = weight * square;
-                    densities[index] += value * (1.0 - share);
-                    densities[index + 1] += value * share;
-                }
+            for [step, weight] in &steps {
+                let (distance, square) = chord.distance_and_square(middle * step);
+                let (index, share) = self.place(distance);
+                let value = weight * square;
+                densities[index] += value * (1.0 - share);
+                densities[index + 1] += value * share;
             }
         }
     }
