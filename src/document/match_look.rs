@@ -107,6 +107,25 @@ impl LookMatch {
     }
 }
 
+/// The specular lobe of a material.
+pub fn lobe_of_material(material: &MaterialSettings) -> LobeModel {
+    let is_custom = material.lobe == Lobe::Geometric && material.curve == Curve::Custom;
+    LobeModel {
+        name: material.name.clone(),
+        lobe: material.lobe,
+        curve: material.curve,
+        horizon: material.horizon,
+        roughness: f64::from(material.roughness),
+        anisotropy: f64::from(material.anisotropy),
+        rotation_rad: f64::from(material.rotation_deg).to_radians(),
+        table: if is_custom {
+            material.custom_curve.table()
+        } else {
+            Vec::new()
+        },
+    }
+}
+
 /// The highlight's profile of a target for one view: what is matched, and for a measured one what was left out.
 pub struct TargetProfile<'a> {
     target: &'a Target,
