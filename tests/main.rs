@@ -24,6 +24,8 @@ mod gltf;
 mod gltf_builder;
 #[path = "suite/gltf_damaged.rs"]
 mod gltf_damaged;
+#[path = "suite/lobe_views.rs"]
+mod lobe_views;
 #[path = "suite/renders.rs"]
 mod renders;
 #[path = "suite/support.rs"]

@@ -8,21 +8,25 @@ use crate::analysis::sphere_grid::{Side, SphereGrid, rings};
 use crate::optics::vector::{Vec3, vec3};
 
 /// Pixels along a side of a map.
-const MAP_SIZE: usize = 240;
+const MAP_SIZE: usize = 300;
 /// Decades that a map shows.
 const MAP_DECADES: f64 = 4.0;
 /// Faces around a body.
-const SOLID_AZIMUTHS: usize = 72;
+const SOLID_AZIMUTHS: usize = 48;
 /// Directions whose reflectance is below this share of the largest do not count for the largest reciprocity error.
 const RECIPROCITY_FLOOR: f64 = 0.01;
-/// Closest that a slice comes to the mirror direction, degrees: some curves have an infinite (integrable) peak there.
+/// Closest that a slice comes to the mirror direction, degrees.
 const SLICE_GAP_DEG: f64 = 0.02;
 
 /// The view of lobes under each of the angles, in degrees from 0 to below 90; the lobes must have a density
 /// ([`LobeModel::has_density`]).
 pub fn lobe_view(kind: ViewKind, lobes: &[LobeModel], view_angles_deg: &[f64]) -> LobeView {
     let title = kind.label().to_owned();
-    let each = || lobes.iter().flat_map(|lobe| view_angles_deg.iter().map(move |angle| (lobe, *angle)));
+    let each = || {
+        lobes
+            .iter()
+            .flat_map(|lobe| view_angles_deg.iter().map(move |angle| (lobe, *angle)))
+    };
     match kind {
         ViewKind::Polar => LobeView::Lines(polar(title, each())),
         ViewKind::Hemisphere => LobeView::Maps(maps(title, each())),
@@ -30,14 +34,35 @@ pub fn lobe_view(kind: ViewKind, lobes: &[LobeModel], view_angles_deg: &[f64]) -
             title,
             solids: each().map(|(lobe, angle)| solid(lobe, angle)).collect(),
         }),
-        ViewKind::Albedo => LobeView::Lines(against_angle(title, "Albedo", ["albedo"], lobes, view_angles_deg, albedo)),
+        ViewKind::Albedo => LobeView::Lines(against_angle(
+            title,
+            "Albedo",
+            ["albedo"],
+            lobes,
+            view_angles_deg,
+            albedo,
+        )),
         ViewKind::Horizon => {
             let label = "Share below the horizon";
-            LobeView::Lines(against_angle(title, label, ["fraction_below"], lobes, view_angles_deg, fraction_below))
+            LobeView::Lines(against_angle(
+                title,
+                label,
+                ["fraction_below"],
+                lobes,
+                view_angles_deg,
+                fraction_below,
+            ))
         }
         ViewKind::Reciprocity => {
             let (label, columns) = ("Relative difference of f(a, b) and f(b, a)", ["rms", "max"]);
-            LobeView::Lines(against_angle(title, label, columns, lobes, view_angles_deg, reciprocity_error))
+            LobeView::Lines(against_angle(
+                title,
+                label,
+                columns,
+                lobes,
+                view_angles_deg,
+                reciprocity_error,
+            ))
         }
     }
 }
@@ -53,13 +78,22 @@ fn against_angle<const N: usize>(
 ) -> LinePlot {
     let mut series = Vec::new();
     for (group, lobe) in lobes.iter().enumerate() {
-        let rows: Vec<[f64; N]> = view_angles_deg.par_iter().map(|angle| quantities(lobe, angle.to_radians())).collect();
-        series.extend(columns.iter().enumerate().map(|(column, quantity)| Series {
-            lobe: lobe.name.clone(),
-            view_angle_deg: None,
-            quantity,
-            group,
-            points: view_angles_deg.iter().zip(&rows).map(|(angle, row)| [*angle, row[column]]).collect(),
+        let rows: Vec<[f64; N]> = view_angles_deg
+            .par_iter()
+            .map(|angle| quantities(lobe, angle.to_radians()))
+            .collect();
+        series.extend(columns.iter().enumerate().map(|(column, quantity)| {
+            Series {
+                lobe: lobe.name.clone(),
+                view_angle_deg: None,
+                quantity,
+                group,
+                points: view_angles_deg
+                    .iter()
+                    .zip(&rows)
+                    .map(|(angle, row)| [*angle, row[column]])
+                    .collect(),
+            }
         }));
     }
     let top = largest(&series);
@@ -75,11 +109,19 @@ fn against_angle<const N: usize>(
 }
 
 fn axis(label: &str, range: [f64; 2]) -> Axis {
-    Axis { label: label.to_owned(), range, is_logarithmic: false }
+    Axis {
+        label: label.to_owned(),
+        range,
+        is_logarithmic: false,
+    }
 }
 
 fn largest(series: &[Series]) -> f64 {
-    series.iter().flat_map(|series| &series.points).map(|[_, y]| *y).fold(0.0, f64::max)
+    series
+        .iter()
+        .flat_map(|series| &series.points)
+        .map(|[_, y]| *y)
+        .fold(0.0, f64::max)
 }
 
 /// ∫ evaluate over the hemisphere.
@@ -115,9 +157,15 @@ fn reciprocity_error(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 2] {
         })
         .collect();
     let energies = grid.values(&profile);
-    let squares: Vec<f64> = energies.iter().zip(&means_and_errors).map(|(energy, [_, error])| energy * error * error).collect();
+    let squares: Vec<f64> = energies
+        .iter()
+        .zip(&means_and_errors)
+        .map(|(energy, [_, error])| energy * error * error)
+        .collect();
     let top = means_and_errors.iter().map(|[mean, _]| *mean).fold(0.0, f64::max);
-    let counting = means_and_errors.iter().filter(|[mean, _]| *mean > RECIPROCITY_FLOOR * top);
+    let counting = means_and_errors
+        .iter()
+        .filter(|[mean, _]| *mean > RECIPROCITY_FLOOR * top);
     [
         (grid.integral(&squares) / grid.integral(&energies).max(f64::MIN_POSITIVE)).sqrt(),
         counting.map(|[_, error]| *error).fold(0.0, f64::max),
@@ -130,14 +178,20 @@ fn polar<'a>(title: String, each: impl Iterator<Item = (&'a LobeModel, f64)>) ->
         let wo = view_direction(angle.to_radians());
         let point = |angle_deg: f64| {
             let angle_rad = angle_deg.to_radians();
-            [angle_deg, lobe.evaluate(wo, vec3(angle_rad.sin(), 0.0, angle_rad.cos()))[0]]
+            [
+                angle_deg,
+                lobe.evaluate(wo, vec3(angle_rad.sin(), 0.0, angle_rad.cos()))[0],
+            ]
         };
         Series {
             lobe: lobe.name.clone(),
             view_angle_deg: Some(angle),
             quantity: "value",
             group,
-            points: slice_angles_deg(angle).into_iter().map(point).collect(),
+            points: slice_angles_deg(angle, lobe.peak_radius_rad().to_degrees())
+                .into_iter()
+                .map(point)
+                .collect(),
         }
     };
     let series: Vec<Series> = each.enumerate().map(line).collect();
@@ -152,9 +206,11 @@ fn polar<'a>(title: String, each: impl Iterator<Item = (&'a LobeModel, f64)>) ->
     }
 }
 
-/// Angles from the normal across the hemisphere, dense near the mirror direction, rising.
-pub fn slice_angles_deg(mirror_deg: f64) -> Vec<f64> {
-    let offsets: Vec<f64> = (0..160).map(|i| SLICE_GAP_DEG * 1.055_f64.powi(i)).take_while(|offset| *offset < 180.0).collect();
+/// Angles from the normal across the hemisphere, dense near the mirror direction but not closer than `gap_deg`, rising.
+pub fn slice_angles_deg(mirror_deg: f64, gap_deg: f64) -> Vec<f64> {
+    let gap_deg = gap_deg.max(SLICE_GAP_DEG);
+    let offsets = (0..).map(|i| gap_deg * 1.055_f64.powi(i));
+    let offsets: Vec<f64> = offsets.take_while(|offset| *offset < 180.0).collect();
     let below = offsets.iter().rev().map(|offset| mirror_deg - offset);
     let above = offsets.iter().map(|offset| mirror_deg + offset);
     let inside = below.chain(above).filter(|angle| angle.abs() < 90.0);
@@ -166,7 +222,11 @@ fn maps<'a>(title: String, each: impl Iterator<Item = (&'a LobeModel, f64)>) -> 
     let maps: Vec<DiscMap> = each.map(|(lobe, angle)| map(lobe, angle)).collect();
     let values = maps.iter().flat_map(|map| &map.values);
     let top = values.copied().fold(1e-9, f64::max);
-    MapPlot { title, range: [top * 10.0_f64.powf(-MAP_DECADES), top], maps }
+    MapPlot {
+        title,
+        range: [top * 10.0_f64.powf(-MAP_DECADES), top],
+        maps,
+    }
 }
 
 fn map(lobe: &LobeModel, view_angle_deg: f64) -> DiscMap {
@@ -188,7 +248,13 @@ fn solid(lobe: &LobeModel, view_angle_deg: f64) -> Solid {
     let view_angle_rad = view_angle_deg.to_radians();
     let wo = view_direction(view_angle_rad);
     let profile = |wi: Vec3<f64>| lobe.evaluate(wo, wi)[0];
-    let directions = rings(view_angle_rad, lobe.is_symmetric(), &[&profile], SOLID_AZIMUTHS);
+    let directions = rings(
+        view_angle_rad,
+        lobe.is_symmetric(),
+        &[&profile],
+        SOLID_AZIMUTHS,
+        lobe.peak_radius_rad(),
+    );
     let ring = |ring: &Vec<Vec3<f64>>| ring.iter().map(|wi| (*wi, profile(*wi))).collect();
     Solid {
         lobe: lobe.name.clone(),

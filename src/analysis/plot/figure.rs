@@ -5,6 +5,7 @@ use std::path::Path;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{PlotError, register_fonts};
 
@@ -26,6 +27,10 @@ pub(super) const INK: RGBColor = RGBColor(50, 50, 55);
 /// Lines to read values by.
 pub(super) const FAINT: RGBColor = RGBColor(222, 222, 226);
 
+/// Heights of a figure's title and of a panel's name, pixels.
+pub(super) const TITLE: u32 = 50;
+pub(super) const NAME: u32 = 30;
+
 /// Pictures are drawn at this many times their size and then reduced: plotters smooths no edges itself.
 const OVERSAMPLING: u32 = 2;
 
@@ -42,8 +47,14 @@ pub(super) trait Figure {
 /// Writes a figure as .svg, or else as .png.
 pub(super) fn write(path: &Path, figure: &impl Figure) -> Result<(), PlotError> {
     register_fonts();
-    let is_svg = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
-    let written = if is_svg { write_svg(path, figure) } else { write_png(path, figure) };
+    let is_svg = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+    let written = if is_svg {
+        write_svg(path, figure)
+    } else {
+        write_png(path, figure)
+    };
     written.map_err(|error| PlotError {
         path: path.to_owned(),
         reason: error.to_string(),
@@ -91,6 +102,28 @@ pub(super) fn stroke(color: RGBColor, width: f64, scale: f64) -> ShapeStyle {
     color.stroke_width((width * scale).round().max(1.0) as u32)
 }
 
+/// Writes a title of a size over an area, centred in `height`, and returns what is left below. Lengths in pixels.
+pub(super) fn titled<DB: DrawingBackend>(
+    area: &DrawingArea<DB, Shift>,
+    title: &str,
+    size: f64,
+    height: u32,
+    scale: f64,
+) -> Result<DrawingArea<DB, Shift>, Box<dyn Error>>
+where
+    DB::ErrorType: 'static,
+{
+    let (top, rest) = area.split_vertically(px(f64::from(height), scale));
+    let (width, height) = top.dim_in_pixel();
+    let style = font(size, scale).pos(Pos::new(HPos::Center, VPos::Center));
+    top.draw(&Text::new(
+        title.to_owned(),
+        (width as i32 / 2, height as i32 / 2),
+        style,
+    ))?;
+    Ok(rest)
+}
+
 /// Rows and columns that panels side by side take.
 pub(super) fn panel_grid(count: usize) -> (usize, usize) {
     let columns = match count {
@@ -106,7 +139,11 @@ pub(super) fn round_step(value: f64, parts: f64) -> f64 {
     let rough = value / parts;
     let power = 10.0_f64.powf(rough.log10().floor());
     let steps = [1.0, 2.0, 5.0, 10.0];
-    power * steps.into_iter().find(|step| step * power >= rough * 0.999).unwrap_or(10.0)
+    power
+        * steps
+            .into_iter()
+            .find(|step| step * power >= rough * 0.999)
+            .unwrap_or(10.0)
 }
 
 /// A number as people write it: as many digits as it needs.
