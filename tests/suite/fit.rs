@@ -318,9 +318,9 @@ fn damaged_measurements_are_refused() {
     let file = folder.path().join("long.binary");
     std::fs::write(&file, [whole.as_slice(), &[0]].concat()).unwrap();
     assert!(matches!(Merl::load(&file), Err(MerlError::Length { .. })));
-    // Diffuse only: nothing to fit. On the command line one line that names the file, nothing written.
+    // On the command line one line that names the file, and nothing written.
     let output = folder.path().join("fit.json");
-    for bytes in [&whole[..1000], &black] {
+    for bytes in [&whole[..1000], &black[..]] {
         std::fs::write(&file, bytes).unwrap();
         let run = glossmith(&["fit", "--target", text(&file), "--output", text(&output)]);
         let message = String::from_utf8_lossy(&run.stderr);

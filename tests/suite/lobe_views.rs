@@ -162,9 +162,11 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
         lobe_view_file(&png, &view).unwrap();
         lobe_view_file(&svg, &view).unwrap();
         let picture = image::open(&png).unwrap().to_rgb8();
-        let colored = picture
-            .pixels()
-            .filter(|pixel| pixel.0.iter().max() > pixel.0.iter().min().map(|x| x + 40).as_ref());
+        let spread = |pixel: &image::Rgb<u8>| {
+            let [r, g, b] = pixel.0;
+            r.max(g).max(b) - r.min(g).min(b)
+        };
+        let colored = picture.pixels().filter(|pixel| spread(pixel) > 40);
         assert!(colored.count() > 200, "{}", kind.name());
         assert!(
             std::fs::read_to_string(&svg).unwrap().contains("GGX 0.4"),
