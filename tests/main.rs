@@ -37,6 +37,8 @@ mod gltf_builder;
 mod gltf_damaged;
 #[path = "suite/lobe_cases.rs"]
 mod lobe_cases;
+#[path = "suite/lobe_views.rs"]
+mod lobe_views;
 #[path = "suite/renders.rs"]
 mod renders;
 #[path = "suite/statistics.rs"]

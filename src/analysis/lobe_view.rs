@@ -4,7 +4,7 @@ mod compute;
 
 use std::fmt::Write as _;
 
-pub use compute::lobe_view;
+pub use compute::{lobe_view, slice_angles_deg};
 
 use crate::optics::vector::Vec3;
 
@@ -100,6 +100,29 @@ pub struct LinePlot {
     pub series: Vec<Series>,
 }
 
+impl LinePlot {
+    /// A series' name in the legend: no more than tells it from the others.
+    pub fn label(&self, series: &Series) -> String {
+        let mut label = series.lobe.clone();
+        if let Some(angle_deg) = series.view_angle_deg
+            && self.view_angle_deg().is_none()
+        {
+            let _ = write!(label, ", view {angle_deg}°");
+        }
+        if self.series.iter().any(|other| other.quantity != series.quantity) {
+            let _ = write!(label, ", {}", series.quantity);
+        }
+        label
+    }
+
+    /// The angle of the view, if it is the same for all.
+    pub fn view_angle_deg(&self) -> Option<f64> {
+        let first = self.series.first()?.view_angle_deg?;
+        let is_same = |series: &Series| series.view_angle_deg == Some(first);
+        self.series.iter().all(is_same).then_some(first)
+    }
+}
+
 /// A line.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
@@ -116,19 +139,6 @@ pub struct Series {
 }
 
 impl Series {
-    /// Name in a legend; `quantities` is how many there are in a group.
-    pub fn label(&self, quantities: usize) -> String {
-        let angle = self
-            .view_angle_deg
-            .map_or_else(String::new, |angle| format!(", view {angle}°"));
-        let quantity = if quantities > 1 {
-            format!(", {}", self.quantity)
-        } else {
-            String::new()
-        };
-        format!("{}{angle}{quantity}", self.lobe)
-    }
-
     /// The points of a polar plot as (right, up).
     pub fn polar_points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.points.iter().map(|[angle_deg, value]| {
@@ -179,13 +189,20 @@ impl DiscMap {
     }
 }
 
-/// Bodies with one scale.
+/// Bodies, each drawn to its own scale.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolidPlot {
     /// What it is.
     pub title: String,
     /// The bodies.
     pub solids: Vec<Solid>,
+}
+
+impl Solid {
+    /// The largest value: the scale that it is drawn to.
+    pub fn largest(&self) -> f64 {
+        self.rings.iter().flatten().map(|(_, value)| *value).fold(0.0, f64::max)
+    }
 }
 
 /// A lobe as a body: each direction as far from the origin as much is reflected there.
@@ -201,7 +218,7 @@ pub struct Solid {
 }
 
 impl LobeView {
-    /// The numbers as comma-separated values: a line of column names, then a row a point.
+    /// The numbers as comma-separated values, to the digits of an f32: a line of column names, then a row a point.
     pub fn csv(&self) -> String {
         let mut text = String::new();
         // Writing to a String never fails.
@@ -232,9 +249,9 @@ fn lines_csv(plot: &LinePlot, text: &mut String) -> std::fmt::Result {
             if let Some(angle_deg) = group[0].view_angle_deg {
                 write!(text, ",{angle_deg}")?;
             }
-            write!(text, ",{x}")?;
+            write!(text, ",{}", *x as f32)?;
             for series in group {
-                write!(text, ",{}", series.points[row][1])?;
+                write!(text, ",{}", series.points[row][1] as f32)?;
             }
             writeln!(text)?;
         }
@@ -247,8 +264,9 @@ fn maps_csv(plot: &MapPlot, text: &mut String) -> std::fmt::Result {
     for map in &plot.maps {
         let name = quoted(&map.lobe);
         for (pixel, value) in map.values.iter().enumerate() {
-            if let Some(Vec3 { x, y, z }) = DiscMap::direction(map.size, pixel % map.size, pixel / map.size) {
-                writeln!(text, "{name},{},{x},{y},{z},{value}", map.view_angle_deg)?;
+            if let Some(direction) = DiscMap::direction(map.size, pixel % map.size, pixel / map.size) {
+                let [x, y, z] = direction.to_f32();
+                writeln!(text, "{name},{},{x},{y},{z},{}", map.view_angle_deg, *value as f32)?;
             }
         }
     }
@@ -259,8 +277,9 @@ fn solids_csv(plot: &SolidPlot, text: &mut String) -> std::fmt::Result {
     writeln!(text, "lobe,view_angle_deg,x,y,z,value")?;
     for solid in &plot.solids {
         let name = quoted(&solid.lobe);
-        for (Vec3 { x, y, z }, value) in solid.rings.iter().flatten() {
-            writeln!(text, "{name},{},{x},{y},{z},{value}", solid.view_angle_deg)?;
+        for (direction, value) in solid.rings.iter().flatten() {
+            let [x, y, z] = direction.to_f32();
+            writeln!(text, "{name},{},{x},{y},{z},{}", solid.view_angle_deg, *value as f32)?;
         }
     }
     Ok(())

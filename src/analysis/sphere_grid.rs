@@ -92,8 +92,14 @@ fn ring_edges(pole: &Pole, profiles: &[Profile]) -> Vec<f64> {
 }
 
 /// Directions on rings about the mirror direction, `azimuths` on each all around, the rings as in
-/// [`SphereGrid::adapted`]; where the horizon cuts a ring its directions lie on the horizon.
-pub fn rings(view_angle_rad: f64, is_symmetric: bool, profiles: &[Profile], azimuths: usize) -> Vec<Vec<Vec3<f64>>> {
+/// [`SphereGrid::adapted`] from `innermost_rad` on; where the horizon cuts a ring its directions lie on the horizon.
+pub fn rings(
+    view_angle_rad: f64,
+    is_symmetric: bool,
+    profiles: &[Profile],
+    azimuths: usize,
+    innermost_rad: f64,
+) -> Vec<Vec<Vec3<f64>>> {
     let pole = Pole::new(view_angle_rad, Side::Above, is_symmetric);
     let ring = |edge: &f64| {
         let direction = |i: usize| {
@@ -103,8 +109,12 @@ pub fn rings(view_angle_rad: f64, is_symmetric: bool, profiles: &[Profile], azim
         };
         (0..azimuths).map(direction).collect()
     };
-    // At 0 the profile may be infinite.
-    ring_edges(&pole, profiles)[1..].iter().map(ring).collect()
+    let edges = ring_edges(&pole, profiles).into_iter();
+    let edges = edges.filter(|edge| *edge > innermost_rad.max(RING_FIRST));
+    std::iter::once(innermost_rad.max(RING_FIRST))
+        .chain(edges)
+        .map(|edge| ring(&edge))
+        .collect()
 }
 
 /// For each ring the largest share that one of the profiles has in it.

@@ -1,6 +1,6 @@
 //! `glossmith lobe`: views of lobes as plots or numbers.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use clap::Args;
@@ -8,7 +8,7 @@ use clap::Args;
 use super::lobe_spec::lobe_model;
 use super::names;
 use crate::analysis::lobe_model::LobeModel;
-use crate::analysis::lobe_view::{ViewKind, lobe_view};
+use crate::analysis::lobe_view::{LobeView, ViewKind, lobe_view};
 use crate::analysis::plot::lobe_view_file;
 use crate::document::match_look::lobe_of_material;
 use crate::document::preset;
@@ -51,14 +51,7 @@ fn parse_angle(text: &str) -> Result<f64, String> {
 /// # Errors
 /// A material that can't be read or is a mirror, a file that can't be written.
 pub fn run(arguments: &LobeArguments) -> anyhow::Result<()> {
-    let path = &arguments.output;
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    if !matches!(ending, "png" | "svg" | "csv") {
-        bail!(
-            "{}: plots are written as .png, .svg or .csv; give the file one of these endings",
-            path.display()
-        );
-    }
+    check_ending(&arguments.output)?;
     let lobes = lobes(arguments)?;
     let angles_deg = if arguments.view_angle.is_empty() {
         arguments.plot.view_angles_deg()
@@ -66,10 +59,27 @@ pub fn run(arguments: &LobeArguments) -> anyhow::Result<()> {
         arguments.view_angle.clone()
     };
     let view = lobe_view(arguments.plot, &lobes, &angles_deg);
-    if ending == "csv" {
+    write_view(&arguments.output, &view)
+}
+
+/// Before the work, not after it.
+pub(super) fn check_ending(path: &Path) -> anyhow::Result<()> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if !matches!(ending, "png" | "svg" | "csv") {
+        bail!(
+            "{}: plots are written as .png, .svg or .csv; give the file one of these endings",
+            path.display()
+        );
+    }
+    Ok(())
+}
+
+/// Writes a view in the format that the file's ending says.
+pub(super) fn write_view(path: &Path, view: &LobeView) -> anyhow::Result<()> {
+    if path.extension().is_some_and(|ending| ending == "csv") {
         std::fs::write(path, view.csv()).with_context(|| format!("{}: could not be written", path.display()))?;
     } else {
-        lobe_view_file(path, &view)?;
+        lobe_view_file(path, view)?;
     }
     eprintln!("wrote {}", path.display());
     Ok(())

@@ -8,14 +8,14 @@ use crate::analysis::sphere_grid::{Side, SphereGrid, rings};
 use crate::optics::vector::{Vec3, vec3};
 
 /// Pixels along a side of a map.
-const MAP_SIZE: usize = 240;
+const MAP_SIZE: usize = 300;
 /// Decades that a map shows.
 const MAP_DECADES: f64 = 4.0;
 /// Faces around a body.
-const SOLID_AZIMUTHS: usize = 72;
+const SOLID_AZIMUTHS: usize = 48;
 /// Directions whose reflectance is below this share of the largest do not count for the largest reciprocity error.
 const RECIPROCITY_FLOOR: f64 = 0.01;
-/// Closest that a slice comes to the mirror direction, degrees: some curves have an infinite (integrable) peak there.
+/// Closest that a slice comes to the mirror direction, degrees.
 const SLICE_GAP_DEG: f64 = 0.02;
 
 /// The view of lobes under each of the angles, in degrees from 0 to below 90; the lobes must have a density
@@ -188,7 +188,10 @@ fn polar<'a>(title: String, each: impl Iterator<Item = (&'a LobeModel, f64)>) ->
             view_angle_deg: Some(angle),
             quantity: "value",
             group,
-            points: slice_angles_deg(angle).into_iter().map(point).collect(),
+            points: slice_angles_deg(angle, lobe.peak_radius_rad().to_degrees())
+                .into_iter()
+                .map(point)
+                .collect(),
         }
     };
     let series: Vec<Series> = each.enumerate().map(line).collect();
@@ -203,12 +206,11 @@ fn polar<'a>(title: String, each: impl Iterator<Item = (&'a LobeModel, f64)>) ->
     }
 }
 
-/// Angles from the normal across the hemisphere, dense near the mirror direction, rising.
-pub fn slice_angles_deg(mirror_deg: f64) -> Vec<f64> {
-    let offsets: Vec<f64> = (0..160)
-        .map(|i| SLICE_GAP_DEG * 1.055_f64.powi(i))
-        .take_while(|offset| *offset < 180.0)
-        .collect();
+/// Angles from the normal across the hemisphere, dense near the mirror direction but not closer than `gap_deg`, rising.
+pub fn slice_angles_deg(mirror_deg: f64, gap_deg: f64) -> Vec<f64> {
+    let gap_deg = gap_deg.max(SLICE_GAP_DEG);
+    let offsets = (0..).map(|i| gap_deg * 1.055_f64.powi(i));
+    let offsets: Vec<f64> = offsets.take_while(|offset| *offset < 180.0).collect();
     let below = offsets.iter().rev().map(|offset| mirror_deg - offset);
     let above = offsets.iter().map(|offset| mirror_deg + offset);
     let inside = below.chain(above).filter(|angle| angle.abs() < 90.0);
@@ -246,7 +248,13 @@ fn solid(lobe: &LobeModel, view_angle_deg: f64) -> Solid {
     let view_angle_rad = view_angle_deg.to_radians();
     let wo = view_direction(view_angle_rad);
     let profile = |wi: Vec3<f64>| lobe.evaluate(wo, wi)[0];
-    let directions = rings(view_angle_rad, lobe.is_symmetric(), &[&profile], SOLID_AZIMUTHS);
+    let directions = rings(
+        view_angle_rad,
+        lobe.is_symmetric(),
+        &[&profile],
+        SOLID_AZIMUTHS,
+        lobe.peak_radius_rad(),
+    );
     let ring = |ring: &Vec<Vec3<f64>>| ring.iter().map(|wi| (*wi, profile(*wi))).collect();
     Solid {
         lobe: lobe.name.clone(),

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::{PlotError, register_fonts};
 
@@ -25,6 +26,10 @@ pub(super) const PALETTE: [RGBColor; 7] = [
 pub(super) const INK: RGBColor = RGBColor(50, 50, 55);
 /// Lines to read values by.
 pub(super) const FAINT: RGBColor = RGBColor(222, 222, 226);
+
+/// Heights of a figure's title and of a panel's name, pixels.
+pub(super) const TITLE: u32 = 50;
+pub(super) const NAME: u32 = 30;
 
 /// Pictures are drawn at this many times their size and then reduced: plotters smooths no edges itself.
 const OVERSAMPLING: u32 = 2;
@@ -95,6 +100,28 @@ pub(super) fn font(size: f64, scale: f64) -> TextStyle<'static> {
 /// A line of a colour.
 pub(super) fn stroke(color: RGBColor, width: f64, scale: f64) -> ShapeStyle {
     color.stroke_width((width * scale).round().max(1.0) as u32)
+}
+
+/// Writes a title of a size over an area, centred in `height`, and returns what is left below. Lengths in pixels.
+pub(super) fn titled<DB: DrawingBackend>(
+    area: &DrawingArea<DB, Shift>,
+    title: &str,
+    size: f64,
+    height: u32,
+    scale: f64,
+) -> Result<DrawingArea<DB, Shift>, Box<dyn Error>>
+where
+    DB::ErrorType: 'static,
+{
+    let (top, rest) = area.split_vertically(px(f64::from(height), scale));
+    let (width, height) = top.dim_in_pixel();
+    let style = font(size, scale).pos(Pos::new(HPos::Center, VPos::Center));
+    top.draw(&Text::new(
+        title.to_owned(),
+        (width as i32 / 2, height as i32 / 2),
+        style,
+    ))?;
+    Ok(rest)
 }
 
 /// Rows and columns that panels side by side take.

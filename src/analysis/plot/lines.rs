@@ -11,21 +11,45 @@ use crate::analysis::lobe_view::{Axis, LinePlot, Series};
 /// A chart in plain coordinates.
 type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
+/// Width and height of the plot itself, and of a legend's entry.
+const SIZE: (u32, u32) = (860, 560);
+const ENTRY_HEIGHT: f64 = 24.0;
+/// Width of a letter on average, and of what a legend needs besides letters.
+const LETTER: f64 = 7.4;
+const LEGEND_MARGIN: f64 = 62.0;
+
 impl Figure for LinePlot {
     fn size(&self) -> (u32, u32) {
-        if self.is_polar { (920, 540) } else { (920, 600) }
+        (SIZE.0 + legend_width(self), if self.is_polar { 530 } else { SIZE.1 })
     }
 
     fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
     where
         DB::ErrorType: 'static,
     {
+        let (area, legend) = root.split_horizontally(px(f64::from(SIZE.0), scale));
         if self.is_polar {
-            draw_polar(self, root, scale)
+            draw_polar(self, &area, scale)?;
         } else {
-            draw_cartesian(self, root, scale)
+            draw_cartesian(self, &area, scale)?;
         }
+        draw_legend(self, &legend, scale)
     }
+}
+
+fn legend_width(plot: &LinePlot) -> u32 {
+    let longest = plot
+        .series
+        .iter()
+        .map(|series| plot.label(series).chars().count())
+        .max();
+    (LEGEND_MARGIN + LETTER * longest.unwrap_or(0) as f64) as u32
+}
+
+/// The plot's title, with the view's angle where there is one.
+fn title(plot: &LinePlot) -> String {
+    plot.view_angle_deg()
+        .map_or_else(|| plot.title.clone(), |angle| format!("{}, view {angle}°", plot.title))
 }
 
 /// A value where it is drawn on its axis.
@@ -43,7 +67,7 @@ where
 {
     let [x, y] = [&plot.x, &plot.y].map(|axis| place(axis, axis.range[0])..place(axis, axis.range[1]));
     let mut chart = ChartBuilder::on(root)
-        .caption(&plot.title, font(22.0, scale))
+        .caption(title(plot), font(22.0, scale))
         .margin(px(16.0, scale))
         .x_label_area_size(px(46.0, scale))
         .y_label_area_size(px(66.0, scale))
@@ -74,9 +98,9 @@ where
             .points
             .iter()
             .map(|[x, y]| (place(&plot.x, *x), place(&plot.y, *y)));
-        draw_series(&mut chart, series, rank, plot, points, scale)?;
+        draw_series(&mut chart, series, rank, points, scale)?;
     }
-    draw_legend(&mut chart, SeriesLabelPosition::UpperLeft, scale)
+    Ok(())
 }
 
 /// Each series with its rank in its group.
@@ -86,51 +110,51 @@ fn ranked(series: &[Series]) -> impl Iterator<Item = (&Series, usize)> {
         .flat_map(|group| group.iter().zip(0..))
 }
 
-/// A line and its entry in the legend; those after the first of a group dashed.
+/// The line of a series.
+fn style(series: &Series, scale: f64) -> ShapeStyle {
+    stroke(PALETTE[series.group % PALETTE.len()], 2.2, scale)
+}
+
+/// A line; those after the first of a group dashed.
 fn draw_series<DB: DrawingBackend>(
     chart: &mut Chart<'_, DB>,
     series: &Series,
     rank: usize,
-    plot: &LinePlot,
     points: impl Iterator<Item = (f64, f64)>,
     scale: f64,
 ) -> Outcome
 where
     DB::ErrorType: 'static,
 {
-    let quantities = plot.series.iter().filter(|other| other.group == series.group).count();
-    let style = stroke(PALETTE[series.group % PALETTE.len()], 2.2, scale);
-    let reach = px(22.0, scale);
-    let drawn = if rank == 0 {
-        chart.draw_series(LineSeries::new(points, style))?
+    let style = style(series, scale);
+    if rank == 0 {
+        chart.draw_series(LineSeries::new(points, style))?;
     } else {
         let points: Vec<_> = points.collect();
-        chart.draw_series(DashedLineSeries::new(points, px(7.0, scale), px(5.0, scale), style))?
-    };
-    drawn.label(series.label(quantities)).legend(move |(x, y)| {
-        let to = if rank == 0 { x + reach } else { x + reach / 2 };
-        PathElement::new([(x, y), (to, y)], style)
-    });
+        chart.draw_series(DashedLineSeries::new(points, px(7.0, scale), px(5.0, scale), style))?;
+    }
     Ok(())
 }
 
-fn draw_legend<'a, DB: DrawingBackend + 'a>(
-    chart: &mut Chart<'a, DB>,
-    position: SeriesLabelPosition,
-    scale: f64,
-) -> Outcome
+/// The names beside the plot.
+fn draw_legend<DB: DrawingBackend>(plot: &LinePlot, area: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
 where
     DB::ErrorType: 'static,
 {
-    chart
-        .configure_series_labels()
-        .position(position)
-        .margin(px(10.0, scale))
-        .legend_area_size(px(30.0, scale))
-        .label_font(font(15.0, scale))
-        .background_style(WHITE.mix(0.85))
-        .border_style(FAINT)
-        .draw()?;
+    for ((series, rank), row) in ranked(&plot.series).zip(0..) {
+        let y = 64.0 + ENTRY_HEIGHT * f64::from(row);
+        let at = |x: f64| (px(x, scale), px(y, scale));
+        let dashes: &[[f64; 2]] = if rank == 0 {
+            &[[4.0, 30.0]]
+        } else {
+            &[[4.0, 13.0], [19.0, 28.0]]
+        };
+        for [from, to] in dashes {
+            area.draw(&PathElement::new([at(*from), at(*to)], style(series, scale)))?;
+        }
+        let label = font(15.0, scale).pos(Pos::new(HPos::Left, VPos::Center));
+        area.draw(&Text::new(plot.label(series), at(38.0), label))?;
+    }
     Ok(())
 }
 
@@ -142,22 +166,21 @@ where
     // Room for the angles outside the outermost circle; both axes have the same scale.
     let outer = 1.09 * reach;
     let mut chart = ChartBuilder::on(root)
-        .caption(&plot.title, font(22.0, scale))
+        .caption(title(plot), font(22.0, scale))
         .margin(px(16.0, scale))
         .x_label_area_size(px(34.0, scale))
         .build_cartesian_2d(-outer..outer, 0.0..outer)?;
     draw_polar_net(&mut chart, reach, scale)?;
     for (series, rank) in ranked(&plot.series) {
         let points: Vec<(f64, f64)> = series.polar_points().map(|[x, y]| (x, y)).collect();
-        draw_series(&mut chart, series, rank, plot, points.into_iter(), scale)?;
+        draw_series(&mut chart, series, rank, points.into_iter(), scale)?;
         if let Some(angle_deg) = series.view_angle_deg {
             draw_view(&mut chart, angle_deg, reach, scale)?;
         }
     }
-    draw_legend(&mut chart, SeriesLabelPosition::UpperLeft, scale)?;
     let caption = Text::new(
         plot.y.label.clone(),
-        (root.dim_in_pixel().0 as i32 / 2, px(508.0, scale)),
+        (root.dim_in_pixel().0 as i32 / 2, px(502.0, scale)),
         centred(15.0, scale),
     );
     root.draw(&caption)?;
@@ -176,7 +199,7 @@ where
         )
     };
     let arc = |radius: f64| (-90..=90).map(move |angle| ray(f64::from(angle), radius));
-    let step = round_step(reach, 4.0);
+    let step = round_step(reach, 5.0);
     let circles = (1..).map(|i| step * f64::from(i)).take_while(|radius| *radius <= reach);
     for radius in circles {
         chart.draw_series(LineSeries::new(arc(radius), stroke(FAINT, 1.0, scale)))?;
@@ -213,7 +236,7 @@ where
         px(4.0, scale),
         style,
     ))?;
-    let label = Text::new("view", (px(6.0, scale), 0), font(13.0, scale));
+    let label = Text::new("view", (px(-34.0, scale), px(-4.0, scale)), font(13.0, scale));
     chart.draw_series([EmptyElement::at(end) + label])?;
     Ok(())
 }

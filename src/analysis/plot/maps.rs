@@ -4,13 +4,12 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::figure::{Figure, INK, Outcome, font, number, panel_grid, px, stroke};
+use super::figure::{Figure, INK, NAME, Outcome, TITLE, font, number, panel_grid, px, stroke, titled};
 use crate::analysis::lobe_view::{DiscMap, MapPlot};
 
-/// Side of a panel and width of the scale's strip, pixels.
-const PANEL: u32 = 430;
+/// Side of a panel without its name and width of the scale's strip, pixels.
+const PANEL: u32 = 410;
 const STRIP: u32 = 110;
-const TITLE: u32 = 48;
 /// Colours of the scale from low to high, evenly spaced: dark to light at any colour vision (viridis: van der Walt and
 /// Smith 2015, CC0).
 const SCALE: [[f64; 3]; 9] = [
@@ -39,7 +38,7 @@ fn color(place: f64) -> RGBColor {
 impl Figure for MapPlot {
     fn size(&self) -> (u32, u32) {
         let (rows, columns) = panel_grid(self.maps.len());
-        (columns as u32 * PANEL + STRIP, rows as u32 * PANEL + TITLE)
+        (columns as u32 * PANEL + STRIP, rows as u32 * (PANEL + NAME) + TITLE)
     }
 
     fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
@@ -47,14 +46,7 @@ impl Figure for MapPlot {
         DB::ErrorType: 'static,
     {
         let (rows, columns) = panel_grid(self.maps.len());
-        let centre = font(22.0, scale).pos(Pos::new(HPos::Center, VPos::Top));
-        let (top, rest) = root.split_vertically(px(f64::from(TITLE), scale));
-        let middle = top.dim_in_pixel().0 as i32 / 2;
-        top.draw(&Text::new(
-            format!("{} in 1/sr", self.title),
-            (middle, px(14.0, scale)),
-            centre,
-        ))?;
+        let rest = titled(root, &format!("{} in 1/sr", self.title), 22.0, TITLE, scale)?;
         let (panels, strip) = rest.split_horizontally(px(f64::from(columns as u32 * PANEL), scale));
         for (map, area) in self.maps.iter().zip(panels.split_evenly((rows, columns))) {
             draw_map(self, map, &area, scale)?;
@@ -76,11 +68,11 @@ fn draw_map<DB: DrawingBackend>(plot: &MapPlot, map: &DiscMap, area: &DrawingAre
 where
     DB::ErrorType: 'static,
 {
-    let title = format!("{}, view {}°", map.lobe, map.view_angle_deg);
-    let mut chart = ChartBuilder::on(area)
-        .caption(title, font(16.0, scale))
-        .margin(px(12.0, scale))
-        .build_cartesian_2d(-1.08..1.08, -1.08..1.08)?;
+    let name = format!("{}, view {}°", map.lobe, map.view_angle_deg);
+    let disc = titled(area, &name, 16.0, NAME, scale)?;
+    let mut chart = ChartBuilder::on(&disc)
+        .margin(px(6.0, scale))
+        .build_cartesian_2d(-1.03..1.03, -1.03..1.03)?;
     for row in 0..map.size {
         chart.draw_series(runs(plot, map, row))?;
     }
@@ -162,12 +154,12 @@ where
         area.draw(&PathElement::new([at(26.0, y), at(31.0, y)], stroke(INK, 1.0, scale)))?;
         area.draw(&Text::new(number(10.0_f64.powi(decade)), at(35.0, y), label))?;
     }
-    for (line, text) in ["○ view", "× mirror"].into_iter().enumerate() {
-        area.draw(&Text::new(
-            text,
-            at(8.0, height - 56.0 + 20.0 * line as f64),
-            font(13.0, scale),
-        ))?;
+    let [view, mirror] = [height - 48.0, height - 26.0];
+    area.draw(&Circle::new(at(16.0, view), px(5.0, scale), stroke(INK, 1.5, scale)))?;
+    area.draw(&Cross::new(at(16.0, mirror), px(5.0, scale), stroke(INK, 1.5, scale)))?;
+    for (text, y) in [("view", view), ("mirror", mirror)] {
+        let label = font(13.0, scale).pos(Pos::new(HPos::Left, VPos::Center));
+        area.draw(&Text::new(text, at(30.0, y), label))?;
     }
     Ok(())
 }

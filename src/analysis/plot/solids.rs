@@ -4,13 +4,13 @@ use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::figure::{FAINT, Figure, INK, Outcome, PALETTE, font, panel_grid, px, stroke};
+use super::figure::{FAINT, Figure, INK, NAME, Outcome, PALETTE, TITLE, font, number, panel_grid, px, stroke, titled};
 use crate::analysis::lobe_view::{Solid, SolidPlot};
 use crate::optics::vector::{Vec3, vec3};
 
-/// Side of a panel and height of the title, pixels.
-const PANEL: u32 = 460;
-const TITLE: u32 = 48;
+/// Width and height of a panel without its name, pixels, and what of the projection it shows, in the same proportion.
+const PANEL: (u32, u32) = (440, 312);
+const RANGE: [[f64; 2]; 2] = [[-1.1, 1.1], [-0.48, 1.08]];
 /// Where the eye is: turned out of the plane of incidence's side view, and above the surface.
 const EYE_AZIMUTH_DEG: f64 = -68.0;
 const EYE_ELEVATION_DEG: f64 = 22.0;
@@ -56,7 +56,7 @@ struct Face {
 impl Figure for SolidPlot {
     fn size(&self) -> (u32, u32) {
         let (rows, columns) = panel_grid(self.solids.len());
-        (columns as u32 * PANEL, rows as u32 * PANEL * 3 / 4 + TITLE)
+        (columns as u32 * PANEL.0, rows as u32 * (PANEL.1 + NAME) + TITLE)
     }
 
     fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
@@ -64,34 +64,29 @@ impl Figure for SolidPlot {
         DB::ErrorType: 'static,
     {
         let (rows, columns) = panel_grid(self.solids.len());
-        let rest = root.titled(&self.title, font(22.0, scale))?;
-        let values = self.solids.iter().flat_map(|solid| solid.rings.iter().flatten());
-        let top = values.map(|(_, value)| *value).fold(1e-12, f64::max);
+        let rest = titled(root, &self.title, 22.0, TITLE, scale)?;
         for (i, (solid, area)) in self.solids.iter().zip(rest.split_evenly((rows, columns))).enumerate() {
-            draw_solid(solid, top, PALETTE[i % PALETTE.len()], &area, scale)?;
+            draw_solid(solid, PALETTE[i % PALETTE.len()], &area, scale)?;
         }
         Ok(())
     }
 }
 
-fn draw_solid<DB: DrawingBackend>(
-    solid: &Solid,
-    top: f64,
-    color: RGBColor,
-    area: &DrawingArea<DB, Shift>,
-    scale: f64,
-) -> Outcome
+fn draw_solid<DB: DrawingBackend>(solid: &Solid, color: RGBColor, area: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
 where
     DB::ErrorType: 'static,
 {
     let eye = Eye::new();
-    let mut chart = ChartBuilder::on(area)
-        .caption(
-            format!("{}, view {}°", solid.lobe, solid.view_angle_deg),
-            font(16.0, scale),
-        )
-        .margin(px(10.0, scale))
-        .build_cartesian_2d(-1.1..1.1, -0.48..1.08)?;
+    let top = solid.largest().max(1e-12);
+    let name = format!(
+        "{}, view {}°, radius {} in 1/sr",
+        solid.lobe,
+        solid.view_angle_deg,
+        number(three_digits(top))
+    );
+    let below = titled(area, &name, 16.0, NAME, scale)?;
+    let [x, y] = RANGE.map(|[low, high]| low..high);
+    let mut chart = ChartBuilder::on(&below).build_cartesian_2d(x, y)?;
     draw_surface(&mut chart, &eye, scale)?;
     let angle_rad = solid.view_angle_deg.to_radians();
     let view = vec3(-angle_rad.sin(), 0.0, angle_rad.cos());
@@ -116,6 +111,12 @@ where
         chart.draw_series([PathElement::new(outline, style.stroke_width(1))])?;
     }
     Ok(())
+}
+
+/// Rounded for people.
+fn three_digits(value: f64) -> f64 {
+    let unit = 10.0_f64.powf(value.log10().floor() - 2.0);
+    (value / unit).round() * unit
 }
 
 /// The surface: a disc with circles at a third and two thirds of the largest value.
