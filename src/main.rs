@@ -29,8 +29,8 @@ fn open_window(arguments: Arguments) -> anyhow::Result<()> {
     if has_display() {
         return glossmith::app::run(arguments.files, arguments.engine);
     }
-    eprintln!("There is no display to open a window on: rendering the default scene to glossmith.png instead.");
-    glossmith::cli::render_default_scene(arguments.engine)?;
+    eprintln!("There is no display to open a window on: rendering a quick picture to glossmith.png instead.");
+    glossmith::cli::render_default_scene(&arguments.files, arguments.engine)?;
     eprintln!("Next: `glossmith render --help` lists what can be rendered; on a desktop the editor opens here.");
     Ok(())
 }

@@ -13,15 +13,6 @@ fn log1p(x: f32) -> f32 {
     return select(log(1.0 + x), series, abs(x) < 0.01);
 }
 
-fn arsinh(x: f32) -> f32 {
-    let magnitude = abs(x);
-    // ln(|x| + sqrt(x^2 + 1)) with the part that vanishes at 0 kept apart.
-    let square = magnitude * magnitude;
-    let root = sqrt(square + 1.0);
-    let value = log1p(magnitude + square / (1.0 + root));
-    return select(value, -value, x < 0.0);
-}
-
 fn safe_sqrt(x: f32) -> f32 {
     return sqrt(max(x, 0.0));
 }

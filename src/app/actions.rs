@@ -144,9 +144,12 @@ pub(super) fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option
     // Shift first: a shortcut without it would match, too.
     let mut commands: Vec<_> = Command::ALL.iter().filter_map(|c| Some((*c, c.shortcut()?))).collect();
     commands.sort_by_key(|(_, shortcut)| !shortcut.modifiers.shift);
-    let free = commands.into_iter().filter(|(_, shortcut)| !is_typing || shortcut.modifiers.any());
+    let free = commands
+        .into_iter()
+        .filter(|(_, shortcut)| !is_typing || shortcut.modifiers.any());
     let mut free = free.chain([(Command::Redo, KeyboardShortcut::new(CTRL, Key::Y))]);
-    ctx.input_mut(|input| free.find(|(_, shortcut)| input.consume_shortcut(shortcut))).map(|(command, _)| command)
+    ctx.input_mut(|input| free.find(|(_, shortcut)| input.consume_shortcut(shortcut)))
+        .map(|(command, _)| command)
 }
 
 #[cfg(test)]
@@ -158,7 +161,10 @@ mod tests {
         for (i, a) in Command::ALL.iter().enumerate() {
             for b in &Command::ALL[i + 1..] {
                 assert_ne!(a.label(), b.label());
-                assert!(a.shortcut().is_none() || a.shortcut() != b.shortcut(), "{a:?} and {b:?}");
+                assert!(
+                    a.shortcut().is_none() || a.shortcut() != b.shortcut(),
+                    "{a:?} and {b:?}"
+                );
             }
         }
     }

@@ -40,7 +40,10 @@ impl Purpose {
 
     fn kind(self) -> (&'static str, &'static [&'static str]) {
         match self {
-            Self::Open => ("Projects, materials, models, environments", &["json", "glb", "gltf", "hdr", "exr"]),
+            Self::Open => (
+                "Projects, materials, models, environments",
+                &["json", "glb", "gltf", "hdr", "exr"],
+            ),
             Self::SaveProject => ("Projects", &["json"]),
             Self::OpenModel => ("glTF models", &["glb", "gltf"]),
             Self::OpenEnvironment => ("Environment maps", &["hdr", "exr"]),
@@ -87,7 +90,9 @@ impl Dialogs {
             return;
         }
         let (name, endings) = purpose.kind();
-        let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title()).add_filter(name, endings);
+        let mut dialog = rfd::AsyncFileDialog::new()
+            .set_title(purpose.title())
+            .add_filter(name, endings);
         if let Some(folder) = &self.folder {
             dialog = dialog.set_directory(folder);
         }
@@ -99,18 +104,20 @@ impl Dialogs {
         } else {
             (Some(dialog.pick_file()), None)
         };
-        let spawned = std::thread::Builder::new().name("file dialog".to_owned()).spawn(move || {
-            let chosen = pollster::block_on(async {
-                match (open, save) {
-                    (Some(open), _) => open.await,
-                    (_, Some(save)) => save.await,
-                    _ => None,
-                }
+        let spawned = std::thread::Builder::new()
+            .name("file dialog".to_owned())
+            .spawn(move || {
+                let chosen = pollster::block_on(async {
+                    match (open, save) {
+                        (Some(open), _) => open.await,
+                        (_, Some(save)) => save.await,
+                        _ => None,
+                    }
+                });
+                // Nobody listens where the window was closed meanwhile.
+                let _ = sender.send(chosen.map(|file| file.path().to_owned()));
+                ctx.request_repaint();
             });
-            // Nobody listens where the window was closed meanwhile.
-            let _ = sender.send(chosen.map(|file| file.path().to_owned()));
-            ctx.request_repaint();
-        });
         if spawned.is_ok() {
             self.pending = Some(Pending {
                 purpose,
@@ -124,7 +131,11 @@ impl Dialogs {
     }
 
     fn open_field(&mut self, purpose: Purpose, suggestion: &str) {
-        let folder = self.folder.clone().or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+        let folder = self
+            .folder
+            .clone()
+            .or_else(|| std::env::current_dir().ok())
+            .unwrap_or_default();
         let mut text = folder.join("").display().to_string();
         text.push_str(suggestion);
         self.field = Some(PathField {
@@ -184,12 +195,16 @@ impl PathField {
         let (_, endings) = self.purpose.kind();
         let completions = completions(&self.text, endings);
         let id = ui.make_persistent_id("path");
-        let completes = ui.memory(|memory| memory.has_focus(id)) && ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Tab));
+        let completes = ui.memory(|memory| memory.has_focus(id))
+            && ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Tab));
         if completes && let Some(first) = completions.first() {
             self.text.clone_from(first);
             move_cursor_to_end(ui.ctx(), id, &self.text);
         }
-        let edit = egui::TextEdit::singleline(&mut self.text).id(id).desired_width(f32::INFINITY).lock_focus(true);
+        let edit = egui::TextEdit::singleline(&mut self.text)
+            .id(id)
+            .desired_width(f32::INFINITY)
+            .lock_focus(true);
         let response = ui.add(edit).accessible_name("Path");
         if std::mem::take(&mut self.is_new) {
             response.request_focus();
@@ -197,23 +212,33 @@ impl PathField {
         }
         let is_entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         let height = 22.0 * COMPLETIONS as f32;
-        egui::ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
-            ui.set_min_size(egui::vec2(ui.available_width(), height));
-            for completion in &completions {
-                let name = completion.trim_end_matches(std::path::MAIN_SEPARATOR);
-                let name = Path::new(name).file_name().and_then(|name| name.to_str()).unwrap_or(name);
-                let is_folder = completion.ends_with(std::path::MAIN_SEPARATOR);
-                let label = if is_folder { format!("{name}/") } else { name.to_owned() };
-                if ui.selectable_label(false, label).clicked() {
-                    self.text.clone_from(completion);
-                    response.request_focus();
-                    move_cursor_to_end(ui.ctx(), id, &self.text);
+        egui::ScrollArea::vertical()
+            .max_height(height)
+            .min_scrolled_height(height)
+            .show(ui, |ui| {
+                ui.set_min_size(egui::vec2(ui.available_width(), height));
+                for completion in &completions {
+                    let name = completion.trim_end_matches(std::path::MAIN_SEPARATOR);
+                    let name = Path::new(name)
+                        .file_name()
+                        .and_then(|name| name.to_str())
+                        .unwrap_or(name);
+                    let is_folder = completion.ends_with(std::path::MAIN_SEPARATOR);
+                    let label = if is_folder { format!("{name}/") } else { name.to_owned() };
+                    if ui.selectable_label(false, label).clicked() {
+                        self.text.clone_from(completion);
+                        response.request_focus();
+                        move_cursor_to_end(ui.ctx(), id, &self.text);
+                    }
                 }
-            }
-        });
+            });
         let mut outcome = None;
         let path = PathBuf::from(self.text.trim());
-        let is_usable = if self.purpose.is_saving() { path.file_name().is_some() && !path.is_dir() } else { path.is_file() };
+        let is_usable = if self.purpose.is_saving() {
+            path.file_name().is_some() && !path.is_dir()
+        } else {
+            path.is_file()
+        };
         ui.horizontal(|ui| {
             let verb = if self.purpose.is_saving() { "Save" } else { "Open" };
             let confirmed = ui.add_enabled(is_usable, egui::Button::new(verb)).clicked() || (is_entered && is_usable);
@@ -248,7 +273,11 @@ fn completions(text: &str, endings: &[&str]) -> Vec<String> {
         Some(end) => text.split_at(end + 1),
         None => ("", text),
     };
-    let folder_path = if folder.is_empty() { Path::new(".") } else { Path::new(folder) };
+    let folder_path = if folder.is_empty() {
+        Path::new(".")
+    } else {
+        Path::new(folder)
+    };
     let Ok(entries) = std::fs::read_dir(folder_path) else {
         return Vec::new();
     };

@@ -55,7 +55,9 @@ impl Files {
             ctx.request_repaint();
         };
         let spawned = std::thread::Builder::new().name("save".to_owned()).spawn(body);
-        spawned.map(|_| ()).map_err(|error| format!("the system gives no thread to save on: {error}"))
+        spawned
+            .map(|_| ())
+            .map_err(|error| format!("the system gives no thread to save on: {error}"))
     }
 }
 
@@ -69,7 +71,11 @@ enum FileKind {
 }
 
 fn kind_of(path: &Path) -> FileKind {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let ending = path
+        .extension()
+        .and_then(|ending| ending.to_str())
+        .unwrap_or_default()
+        .to_ascii_lowercase();
     match ending.as_str() {
         "glb" | "gltf" => FileKind::Model,
         "hdr" | "exr" => FileKind::Environment,
@@ -90,7 +96,10 @@ impl App {
             }
             FileKind::Unknown => {
                 let text = "opened are models (.glb, .gltf), environments (.hdr, .exr), materials and projects (.json)";
-                self.say(Level::Error, format!("{}: not a kind of file that can be opened; {text}", path.display()));
+                self.say(
+                    Level::Error,
+                    format!("{}: not a kind of file that can be opened; {text}", path.display()),
+                );
                 return false;
             }
         }
@@ -199,7 +208,11 @@ impl App {
         let begun = self.files.beside(move || {
             output::write(&path, &picture.image, &view).map_err(|error| error.to_string())?;
             let size = format!("{} × {}", picture.width, picture.height);
-            Ok(format!("saved {} ({size}, {} samples a pixel)", path.display(), picture.samples_per_pixel))
+            Ok(format!(
+                "saved {} ({size}, {} samples a pixel)",
+                path.display(),
+                picture.samples_per_pixel
+            ))
         });
         if let Err(error) = begun {
             self.say(Level::Error, error);
@@ -213,11 +226,18 @@ impl App {
         };
         let size = [picture.width as usize, picture.height as usize];
         ctx.copy_image(egui::ColorImage::from_rgba_premultiplied(size, &picture.rgba));
-        self.say(Level::Info, format!("copied the picture ({} × {})", picture.width, picture.height));
+        self.say(
+            Level::Info,
+            format!("copied the picture ({} × {})", picture.width, picture.height),
+        );
     }
 }
 
 /// The path, with an ending where it has none.
 fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
-    if path.extension().is_some() { path } else { path.with_extension(ending) }
+    if path.extension().is_some() {
+        path
+    } else {
+        path.with_extension(ending)
+    }
 }

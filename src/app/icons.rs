@@ -18,9 +18,15 @@ pub(super) fn button(ui: &mut Ui, icon: Icon, name: &str, help: &str) -> Respons
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(ROW_HEIGHT), Sense::click());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, ui.is_enabled(), name));
     let visuals = ui.style().interact(&response);
-    ui.painter().rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
+    ui.painter()
+        .rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
     if response.has_focus() {
-        ui.painter().rect_stroke(rect, visuals.corner_radius, ui.visuals().selection.stroke, egui::StrokeKind::Inside);
+        ui.painter().rect_stroke(
+            rect,
+            visuals.corner_radius,
+            ui.visuals().selection.stroke,
+            egui::StrokeKind::Inside,
+        );
     }
     paint(ui.painter(), icon, rect, visuals.fg_stroke.color);
     response.on_hover_text(help)

@@ -30,8 +30,14 @@ pub enum Pane {
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Self; 6] =
-        [Self::Viewport, Self::Material, Self::Lighting, Self::Camera, Self::Presets, Self::Log];
+    pub const ALL: [Self; 6] = [
+        Self::Viewport,
+        Self::Material,
+        Self::Lighting,
+        Self::Camera,
+        Self::Presets,
+        Self::Log,
+    ];
 
     /// What it is called.
     pub fn title(self) -> &'static str {
@@ -55,8 +61,12 @@ pub(super) fn default_layout() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let mut pane = |pane| tiles.insert_pane(pane);
     let (viewport, material) = (pane(Pane::Viewport), pane(Pane::Material));
-    let (presets, lighting, camera, log) =
-        (pane(Pane::Presets), pane(Pane::Lighting), pane(Pane::Camera), pane(Pane::Log));
+    let (presets, lighting, camera, log) = (
+        pane(Pane::Presets),
+        pane(Pane::Lighting),
+        pane(Pane::Camera),
+        pane(Pane::Log),
+    );
     let upper_left = tiles.insert_tab_tile(vec![presets, log]);
     let lower_left = tiles.insert_tab_tile(vec![lighting, camera]);
     let left = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [upper_left, lower_left], 0.42));
@@ -92,17 +102,20 @@ impl Behavior<Pane> for Panes<'_, '_> {
             return UiResponse::None;
         }
         ui.painter().rect_filled(ui.max_rect(), 0.0, ui.visuals().panel_fill);
-        egui::ScrollArea::vertical().id_salt(pane.title()).auto_shrink(false).show(ui, |ui| {
-            let frame = egui::Frame::new().inner_margin(theme::PANEL_MARGIN);
-            frame.show(ui, |ui| match pane {
-                Pane::Material => panels::material::show(ui, self.desk),
-                Pane::Lighting => panels::lighting::show(ui, self.desk),
-                Pane::Camera => panels::camera::show(ui, self.desk),
-                Pane::Presets => panels::presets::show(ui, self.desk),
-                Pane::Log => panels::log::show(ui, self.desk),
-                Pane::Viewport => {}
+        egui::ScrollArea::vertical()
+            .id_salt(pane.title())
+            .auto_shrink(false)
+            .show(ui, |ui| {
+                let frame = egui::Frame::new().inner_margin(theme::PANEL_MARGIN);
+                frame.show(ui, |ui| match pane {
+                    Pane::Material => panels::material::show(ui, self.desk),
+                    Pane::Lighting => panels::lighting::show(ui, self.desk),
+                    Pane::Camera => panels::camera::show(ui, self.desk),
+                    Pane::Presets => panels::presets::show(ui, self.desk),
+                    Pane::Log => panels::log::show(ui, self.desk),
+                    Pane::Viewport => {}
+                });
             });
-        });
         UiResponse::None
     }
 

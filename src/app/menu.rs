@@ -48,7 +48,9 @@ pub(super) fn bar(ui: &mut Ui, edits: &Edits, actions: &mut Vec<Action>) -> Menu
             });
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let keys = Command::Palette.shortcut().map(|shortcut| ui.ctx().format_shortcut(&shortcut));
+            let keys = Command::Palette
+                .shortcut()
+                .map(|shortcut| ui.ctx().format_shortcut(&shortcut));
             let text = format!("Find a command  {}", keys.unwrap_or_default());
             if ui.button(RichText::new(text).weak()).clicked() {
                 actions.push(Action::Do(Command::Palette));
@@ -68,7 +70,11 @@ fn entry(ui: &mut Ui, command: Command, edits: &Edits, actions: &mut Vec<Action>
     if let Some(shortcut) = command.shortcut() {
         button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
     }
-    if ui.add_enabled(is_enabled, button).on_hover_text(command.help()).clicked() {
+    if ui
+        .add_enabled(is_enabled, button)
+        .on_hover_text(command.help())
+        .clicked()
+    {
         actions.push(Action::Do(command));
     }
 }
@@ -92,7 +98,11 @@ fn panes(ui: &mut Ui, reveal: &mut Option<Pane>) {
 fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.separator();
     for (label, help, choice) in [
-        ("Engine: choose", "A hardware GPU if there is one, else the faster one here.", EngineChoice::Auto),
+        (
+            "Engine: choose",
+            "A hardware GPU if there is one, else the faster one here.",
+            EngineChoice::Auto,
+        ),
         ("Engine: GPU", "The GPU, or Vulkan on the processor.", EngineChoice::Gpu),
         ("Engine: processor", "The processor's cores.", EngineChoice::Cpu),
     ] {
@@ -122,7 +132,9 @@ fn palette(ui: &mut Ui, search: &mut String, selected: &mut usize, actions: &mut
     ui.set_width(420.0);
     let step = |ui: &mut Ui, key| ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key));
     let (up, down) = (step(ui, Key::ArrowUp), step(ui, Key::ArrowDown));
-    let field = egui::TextEdit::singleline(search).hint_text("Find a command").desired_width(f32::INFINITY);
+    let field = egui::TextEdit::singleline(search)
+        .hint_text("Find a command")
+        .desired_width(f32::INFINITY);
     let response = ui.add(field.margin(vec2(8.0, 5.0))).accessible_name("Find a command");
     if response.changed() {
         *selected = 0;
@@ -135,16 +147,28 @@ fn palette(ui: &mut Ui, search: &mut String, selected: &mut usize, actions: &mut
         let text = format!("{} {} {}", command.menu().label(), command.label(), command.help()).to_lowercase();
         words.iter().all(|word| text.contains(word))
     };
-    let found: Vec<Command> = Command::ALL.iter().filter(matches).filter(|c| **c != Command::Palette).copied().collect();
+    let found: Vec<Command> = Command::ALL
+        .iter()
+        .filter(matches)
+        .filter(|c| **c != Command::Palette)
+        .copied()
+        .collect();
     let last = found.len().saturating_sub(1);
-    *selected = (*selected + usize::from(down)).min(last).saturating_sub(usize::from(up));
+    *selected = (*selected + usize::from(down))
+        .min(last)
+        .saturating_sub(usize::from(up));
     let mut chosen = None;
     egui::ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
         ui.set_min_width(ui.available_width());
         for (index, command) in found.iter().enumerate() {
-            let keys = command.shortcut().map(|shortcut| ui.ctx().format_shortcut(&shortcut)).unwrap_or_default();
+            let keys = command
+                .shortcut()
+                .map(|shortcut| ui.ctx().format_shortcut(&shortcut))
+                .unwrap_or_default();
             let button = egui::Button::selectable(index == *selected, command.label()).shortcut_text(keys);
-            let response = ui.add_sized(vec2(ui.available_width(), theme::ROW_HEIGHT), button).on_hover_text(command.help());
+            let response = ui
+                .add_sized(vec2(ui.available_width(), theme::ROW_HEIGHT), button)
+                .on_hover_text(command.help());
             if index == *selected && (up || down) {
                 response.scroll_to_me(None);
             }
@@ -177,20 +201,23 @@ fn shortcuts(ui: &mut Ui) {
     ui.set_width(440.0);
     ui.heading("Keys and mouse");
     ui.add_space(theme::GAP);
-    egui::Grid::new("keys").num_columns(2).spacing(vec2(24.0, 5.0)).show(ui, |ui| {
-        for (how, what) in MOUSE {
-            ui.label(RichText::new(how).strong());
-            ui.label(what);
-            ui.end_row();
-        }
-        for command in Command::ALL {
-            if let Some(shortcut) = command.shortcut() {
-                ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).strong());
-                ui.label(command.label());
+    egui::Grid::new("keys")
+        .num_columns(2)
+        .spacing(vec2(24.0, 5.0))
+        .show(ui, |ui| {
+            for (how, what) in MOUSE {
+                ui.label(RichText::new(how).strong());
+                ui.label(what);
                 ui.end_row();
             }
-        }
-    });
+            for command in Command::ALL {
+                if let Some(shortcut) = command.shortcut() {
+                    ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).strong());
+                    ui.label(command.label());
+                    ui.end_row();
+                }
+            }
+        });
     ui.add_space(theme::GAP);
     if ui.button("Close").clicked() {
         ui.close();

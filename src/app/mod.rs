@@ -227,7 +227,11 @@ impl App {
 
     fn desk_material(&self) -> MaterialSettings {
         let materials = &self.document.materials;
-        materials.get(self.panels.slot).or(materials.last()).cloned().unwrap_or_default()
+        materials
+            .get(self.panels.slot)
+            .or(materials.last())
+            .cloned()
+            .unwrap_or_default()
     }
 
     fn apply(&mut self, ctx: &egui::Context, action: Action) {
@@ -284,7 +288,11 @@ impl App {
             }
             Command::ToggleTheme => {
                 let is_dark = ctx.theme() == egui::Theme::Dark;
-                self.theme = if is_dark { egui::ThemePreference::Light } else { egui::ThemePreference::Dark };
+                self.theme = if is_dark {
+                    egui::ThemePreference::Light
+                } else {
+                    egui::ThemePreference::Dark
+                };
                 ctx.set_theme(self.theme);
             }
             Command::ResetLayout => {
@@ -336,12 +344,17 @@ impl App {
             None if self.panels.resolution != Resolution::Document => return,
             None => {}
         }
-        let change = self.submitted.as_ref().map_or(Change::everything(), |old| Change::between(old, &wanted));
+        let change = self
+            .submitted
+            .as_ref()
+            .map_or(Change::everything(), |old| Change::between(old, &wanted));
         if change.is_none() {
             return;
         }
         let is_moving = is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
-        self.revision = self.worker.submit(&wanted, if is_moving { Pace::Moving } else { Pace::Still });
+        self.revision = self
+            .worker
+            .submit(&wanted, if is_moving { Pace::Moving } else { Pace::Still });
         self.submitted = Some(wanted);
         self.submitted_at = Instant::now();
     }
@@ -349,7 +362,9 @@ impl App {
     fn show(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
         let snapshot = self.worker.snapshot();
         let is_dark = ui.visuals().dark_mode;
-        let bar = egui::Frame::new().fill(ui.visuals().panel_fill).inner_margin(egui::Margin::symmetric(8, 3));
+        let bar = egui::Frame::new()
+            .fill(ui.visuals().panel_fill)
+            .inner_margin(egui::Margin::symmetric(8, 3));
         let answer = egui::Panel::top("menu")
             .frame(bar)
             .show_separator_line(false)
@@ -363,7 +378,9 @@ impl App {
             .show_separator_line(false)
             .exact_size(theme::BAR_HEIGHT)
             .show(ui, |ui| status::show(ui, &snapshot, &self.meter));
-        let ground = egui::Frame::new().fill(theme::ground(is_dark)).inner_margin(egui::Margin::symmetric(0, 3));
+        let ground = egui::Frame::new()
+            .fill(theme::ground(is_dark))
+            .inner_margin(egui::Margin::symmetric(0, 3));
         egui::CentralPanel::default().frame(ground).show(ui, |ui| {
             let mut desk = Desk {
                 document: &mut self.document,
@@ -398,7 +415,8 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let begun = Instant::now();
         let ctx = ui.ctx().clone();
-        self.meter.begin(begun, ctx.requested_repaint_last_pass(), frame.info().cpu_usage);
+        self.meter
+            .begin(begun, ctx.requested_repaint_last_pass(), frame.info().cpu_usage);
         self.take_events();
         let mut actions = std::mem::take(&mut self.queue);
         if self.sheet == Sheet::None && !self.dialogs.is_open() {

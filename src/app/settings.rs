@@ -67,7 +67,10 @@ impl Default for Kept {
 impl Kept {
     /// What the last start left; the defaults where that can't be read any more.
     pub(super) fn load(creation: &eframe::CreationContext<'_>) -> Self {
-        let mut kept: Self = creation.storage.and_then(|storage| eframe::get_value(storage, KEY)).unwrap_or_default();
+        let mut kept: Self = creation
+            .storage
+            .and_then(|storage| eframe::get_value(storage, KEY))
+            .unwrap_or_default();
         kept.layout = kept.layout.filter(layout::is_complete);
         kept
     }

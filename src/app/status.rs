@@ -52,7 +52,11 @@ impl FrameMeter {
     pub fn summary(&self) -> String {
         let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
         let recent = ms(self.recent_worst());
-        format!("window: {} frames, longest {:.1} ms, of the last 10 s {recent:.1} ms", self.frames, ms(self.worst))
+        format!(
+            "window: {} frames, longest {:.1} ms, of the last 10 s {recent:.1} ms",
+            self.frames,
+            ms(self.worst)
+        )
     }
 
     /// The longest frame since the start, the first few left out.
@@ -62,7 +66,11 @@ impl FrameMeter {
 
     /// The longest frame of the last ten seconds.
     pub fn recent_worst(&self) -> Duration {
-        self.recent.iter().map(|(_, duration)| *duration).max().unwrap_or_default()
+        self.recent
+            .iter()
+            .map(|(_, duration)| *duration)
+            .max()
+            .unwrap_or_default()
     }
 
     /// Frames recorded.
@@ -79,18 +87,25 @@ pub(super) fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter) {
         activity(ui, snapshot);
         let progress = &snapshot.progress;
         if progress.samples_wanted > 0 {
-            ui.label(format!("{} / {} samples", progress.samples_per_pixel, progress.samples_wanted))
-                .on_hover_text("Samples a pixel: rendered, and to be rendered");
-            ui.label(format!("{:.1} s", progress.render_seconds)).on_hover_text("Render time of this picture");
+            ui.label(format!(
+                "{} / {} samples",
+                progress.samples_per_pixel, progress.samples_wanted
+            ))
+            .on_hover_text("Samples a pixel: rendered, and to be rendered");
+            ui.label(format!("{:.1} s", progress.render_seconds))
+                .on_hover_text("Render time of this picture");
             ui.label(format!("{} samples/s", short_number(snapshot.samples_per_second)))
                 .on_hover_text("Pixel samples a second, over the whole of this picture");
         }
         if let Some(picture) = &snapshot.picture {
             let size = format!("{} × {}", picture.width, picture.height);
             let reduced = format!("{size} (1/{})", picture.reduction);
-            ui.label(if picture.reduction > 1 { reduced } else { size }).on_hover_text("Size of the picture shown");
+            ui.label(if picture.reduction > 1 { reduced } else { size })
+                .on_hover_text("Size of the picture shown");
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| window_time(ui, meter, snapshot));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            window_time(ui, meter, snapshot)
+        });
     });
 }
 
@@ -112,7 +127,10 @@ fn engine(ui: &mut Ui, snapshot: &Snapshot) {
 }
 
 fn activity(ui: &mut Ui, snapshot: &Snapshot) {
-    let is_busy = matches!(snapshot.activity, Activity::Starting | Activity::Loading(_) | Activity::Preparing);
+    let is_busy = matches!(
+        snapshot.activity,
+        Activity::Starting | Activity::Loading(_) | Activity::Preparing
+    );
     if is_busy {
         ui.add(egui::Spinner::new().size(12.0));
     }
@@ -120,7 +138,11 @@ fn activity(ui: &mut Ui, snapshot: &Snapshot) {
     if snapshot.activity == Activity::Rendering {
         let progress = &snapshot.progress;
         let share = f64::from(progress.samples_per_pixel) / f64::from(progress.samples_wanted.max(1));
-        ui.add(egui::ProgressBar::new(share as f32).desired_width(90.0).desired_height(6.0));
+        ui.add(
+            egui::ProgressBar::new(share as f32)
+                .desired_width(90.0)
+                .desired_height(6.0),
+        );
     }
 }
 
@@ -130,9 +152,16 @@ fn window_time(ui: &mut Ui, meter: &FrameMeter, snapshot: &Snapshot) {
         ui.label("Time of the window's own frames: they are drawn beside the renderer.");
         ui.label(format!("last: {:.1} ms", ms(meter.last)));
         ui.label(format!("longest of the last 10 s: {:.1} ms", ms(meter.recent_worst())));
-        ui.label(format!("longest: {:.1} ms of {} frames", ms(meter.worst()), meter.frames()));
+        ui.label(format!(
+            "longest: {:.1} ms of {} frames",
+            ms(meter.worst()),
+            meter.frames()
+        ));
         if let Some(first) = snapshot.first_picture {
-            ui.label(format!("from the last change to its first picture: {:.0} ms", ms(first)));
+            ui.label(format!(
+                "from the last change to its first picture: {:.0} ms",
+                ms(first)
+            ));
         }
     });
 }

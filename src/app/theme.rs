@@ -138,15 +138,30 @@ fn visuals(palette: &Palette, is_dark: bool) -> Visuals {
         },
         selection: Selection {
             bg_fill: accent.gamma_multiply(if is_dark { 0.55 } else { 0.35 }),
-            stroke: Stroke::new(1.0, if is_dark { Color32::WHITE } else { grey(palette.strong_text) }),
+            stroke: Stroke::new(
+                1.0,
+                if is_dark {
+                    Color32::WHITE
+                } else {
+                    grey(palette.strong_text)
+                },
+            ),
         },
         weak_text_color: Some(grey(palette.weak_text)),
         hyperlink_color: accent,
         faint_bg_color: grey(if is_dark { palette.panel + 5 } else { palette.panel - 8 }),
         extreme_bg_color: grey(palette.well),
         code_bg_color: grey(palette.well),
-        warn_fg_color: if is_dark { Color32::from_rgb(230, 170, 70) } else { Color32::from_rgb(150, 92, 0) },
-        error_fg_color: if is_dark { Color32::from_rgb(240, 110, 100) } else { Color32::from_rgb(180, 30, 20) },
+        warn_fg_color: if is_dark {
+            Color32::from_rgb(230, 170, 70)
+        } else {
+            Color32::from_rgb(150, 92, 0)
+        },
+        error_fg_color: if is_dark {
+            Color32::from_rgb(240, 110, 100)
+        } else {
+            Color32::from_rgb(180, 30, 20)
+        },
         window_corner_radius: CornerRadius::same(6),
         window_shadow: shadow,
         window_fill: grey(palette.panel),

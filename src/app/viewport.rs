@@ -222,7 +222,10 @@ fn slot_at(at: Pos2, place: Rect, scene: &Scene) -> Option<usize> {
     }
     let share = (at - place.min) / place.size();
     let size = scene.job.settings.image_size;
-    let pixel = [f64::from(share.x) * f64::from(size[0]), f64::from(share.y) * f64::from(size[1])];
+    let pixel = [
+        f64::from(share.x) * f64::from(size[0]),
+        f64::from(share.y) * f64::from(size[1]),
+    ];
     let [origin, direction] = camera_ray(&scene.job.settings.camera, pixel, size, [0.5; 2]).map(|v| v.to_f32());
     let hit = scene.job.geometry.intersect(origin, direction, f32::INFINITY)?;
     let slot = *scene.job.geometry.slots.get(hit.triangle as usize)? as usize;
@@ -235,11 +238,18 @@ fn checker(ui: &Ui, place: Rect) {
     let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
     let [light, dark] = if ui.visuals().dark_mode { [70, 54] } else { [206, 182] };
     painter.rect_filled(place, 0.0, Color32::from_gray(dark));
-    let (columns, rows) = ((place.width() / CHECKER).ceil() as u32, (place.height() / CHECKER).ceil() as u32);
+    let (columns, rows) = (
+        (place.width() / CHECKER).ceil() as u32,
+        (place.height() / CHECKER).ceil() as u32,
+    );
     for row in 0..rows {
         for column in (row % 2..columns).step_by(2) {
             let min = place.min + CHECKER * vec2(column as f32, row as f32);
-            painter.rect_filled(Rect::from_min_size(min, Vec2::splat(CHECKER)), 0.0, Color32::from_gray(light));
+            painter.rect_filled(
+                Rect::from_min_size(min, Vec2::splat(CHECKER)),
+                0.0,
+                Color32::from_gray(light),
+            );
         }
     }
 }
@@ -252,7 +262,8 @@ fn waiting(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
     let font = egui::TextStyle::Body.resolve(ui.style());
     let text = desk.snapshot.activity.to_string();
     let color = ui.visuals().text_color();
-    ui.painter().text(center + vec2(0.0, 16.0), egui::Align2::CENTER_CENTER, text, font, color);
+    ui.painter()
+        .text(center + vec2(0.0, 16.0), egui::Align2::CENTER_CENTER, text, font, color);
 }
 
 /// The latest warnings and errors, until they are old or closed.
@@ -260,14 +271,23 @@ fn messages(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     for entry in &mut desk.state.log {
         entry.is_open &= entry.at.elapsed().as_secs_f32() < MESSAGE_SECONDS;
     }
-    let open: Vec<usize> = (0..desk.state.log.len()).filter(|i| desk.state.log[*i].is_open).collect();
+    let open: Vec<usize> = (0..desk.state.log.len())
+        .filter(|i| desk.state.log[*i].is_open)
+        .collect();
     if open.is_empty() {
         return;
     }
     ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
     let width = (area.width() - 32.0).clamp(120.0, 520.0);
-    let rect = Rect::from_min_max(pos2(area.center().x - 0.5 * width, area.top() + 12.0), pos2(area.center().x + 0.5 * width, area.bottom()));
-    let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(rect).layout(egui::Layout::top_down(egui::Align::Center)));
+    let rect = Rect::from_min_max(
+        pos2(area.center().x - 0.5 * width, area.top() + 12.0),
+        pos2(area.center().x + 0.5 * width, area.bottom()),
+    );
+    let mut inside = ui.new_child(
+        egui::UiBuilder::new()
+            .max_rect(rect)
+            .layout(egui::Layout::top_down(egui::Align::Center)),
+    );
     for index in open.into_iter().rev().take(3) {
         let entry = &mut desk.state.log[index];
         let color = match entry.level {
@@ -292,8 +312,14 @@ fn drop_hint(ui: &Ui, area: Rect) {
     }
     let accent = theme::accent(ui.visuals().dark_mode);
     ui.painter().rect_filled(area, 0.0, Color32::from_black_alpha(140));
-    ui.painter().rect_stroke(area.shrink(6.0), 4.0, egui::Stroke::new(2.0, accent), egui::StrokeKind::Inside);
+    ui.painter().rect_stroke(
+        area.shrink(6.0),
+        4.0,
+        egui::Stroke::new(2.0, accent),
+        egui::StrokeKind::Inside,
+    );
     let font = egui::TextStyle::Heading.resolve(ui.style());
     let text = "Drop a model (.glb, .gltf), an environment (.hdr, .exr), a material or a project (.json)";
-    ui.painter().text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
+    ui.painter()
+        .text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
 }

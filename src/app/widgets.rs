@@ -3,7 +3,9 @@
 use std::ops::RangeInclusive;
 
 use egui::text::LayoutJob;
-use egui::{Align, Color32, DragValue, Layout, Rect, Response, RichText, Sense, Shape, TextFormat, TextStyle, Ui, Vec2};
+use egui::{
+    Align, Color32, DragValue, Layout, Rect, Response, RichText, Sense, Shape, TextFormat, TextStyle, Ui, Vec2,
+};
 
 use super::theme::{self, ROW_HEIGHT};
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
@@ -57,7 +59,9 @@ pub(super) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> 
         let label = row_label(ui, name, label_width);
         let width = ui.available_width().max(40.0);
         let layout = Layout::left_to_right(Align::Center);
-        let control = ui.allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, control).inner;
+        let control = ui
+            .allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, control)
+            .inner;
         let changed = control.changed();
         let control = control.accessible_name(name.full);
         if !name.help.is_empty() {
@@ -117,7 +121,9 @@ pub(super) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style:
     let size = Vec2::new(ui.available_width(), ROW_HEIGHT);
     let rect = Rect::from_min_size(ui.next_widget_position() - Vec2::new(0.0, 0.5 * size.y), size);
     let background = ui.painter().add(Shape::Noop);
-    let speed = style.bar.map_or(style.speed, |[low, high]| (high - low) / f64::from(size.x.max(40.0)));
+    let speed = style
+        .bar
+        .map_or(style.speed, |[low, high]| (high - low) / f64::from(size.x.max(40.0)));
     let fills = ui.visuals().widgets.clone();
     let span = style.bar.map(|[low, high]| {
         let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
@@ -138,7 +144,11 @@ pub(super) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style:
             ui.add_sized(size, drag)
         })
         .inner;
-    let rect = if response.rect.is_positive() { response.rect } else { rect };
+    let rect = if response.rect.is_positive() {
+        response.rect
+    } else {
+        rect
+    };
     let state = if response.is_pointer_button_down_on() || response.has_focus() {
         &fills.active
     } else if response.hovered() {
@@ -164,13 +174,25 @@ fn trimmed(value: f64, decimals: usize) -> String {
     while decimals > 2 && text.len() > least && text.ends_with('0') {
         text.pop();
     }
-    if text.trim_start_matches(['-', '0', '.']).is_empty() { text.trim_start_matches('-').to_owned() } else { text }
+    if text.trim_start_matches(['-', '0', '.']).is_empty() {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text
+    }
 }
 
 /// The filled part of a field.
 fn bar(field: Rect, filled: Rect, color: Color32, radius: egui::CornerRadius) -> Shape {
-    let right = if filled.right() >= field.right() - 1.0 { radius.ne } else { 0 };
-    let left = if filled.left() <= field.left() + 1.0 && filled.width() >= 3.0 { radius.nw } else { 0 };
+    let right = if filled.right() >= field.right() - 1.0 {
+        radius.ne
+    } else {
+        0
+    };
+    let left = if filled.left() <= field.left() + 1.0 && filled.width() >= 3.0 {
+        radius.nw
+    } else {
+        0
+    };
     let corners = egui::CornerRadius {
         nw: left,
         sw: left,
@@ -250,7 +272,9 @@ pub(super) fn triple(ui: &mut Ui, name: &str, values: &mut [f32; 3], range: Rang
     let mut whole: Option<Response> = None;
     for (value, channel) in values.iter_mut().zip(["red", "green", "blue"]) {
         let drag = DragValue::new(value).range(range.clone()).speed(0.01).max_decimals(3);
-        let response = ui.add_sized(Vec2::new(width, ROW_HEIGHT), drag).accessible_name(format!("{name}, {channel}"));
+        let response = ui
+            .add_sized(Vec2::new(width, ROW_HEIGHT), drag)
+            .accessible_name(format!("{name}, {channel}"));
         whole = Some(match whole {
             Some(whole) => whole.union(response),
             None => response,
@@ -260,7 +284,12 @@ pub(super) fn triple(ui: &mut Ui, name: &str, values: &mut [f32; 3], range: Rang
 }
 
 /// One of several: (value, label, help).
-pub(super) fn choice<T: PartialEq + Clone>(ui: &mut Ui, id: &str, value: &mut T, choices: &[(T, &str, &str)]) -> Response {
+pub(super) fn choice<T: PartialEq + Clone>(
+    ui: &mut Ui,
+    id: &str,
+    value: &mut T,
+    choices: &[(T, &str, &str)],
+) -> Response {
     let current = choices.iter().find(|(choice, ..)| choice == value);
     let mut changed = false;
     let width = ui.available_width();
@@ -271,7 +300,11 @@ pub(super) fn choice<T: PartialEq + Clone>(ui: &mut Ui, id: &str, value: &mut T,
         .show_ui(ui, |ui| {
             for (choice, label, help) in choices {
                 let item = ui.selectable_label(choice == value, *label);
-                let item = if help.is_empty() { item } else { item.on_hover_text(*help) };
+                let item = if help.is_empty() {
+                    item
+                } else {
+                    item.on_hover_text(*help)
+                };
                 if item.clicked() && choice != value {
                     *value = choice.clone();
                     changed = true;
@@ -288,11 +321,14 @@ pub(super) fn choice<T: PartialEq + Clone>(ui: &mut Ui, id: &str, value: &mut T,
 /// The heading of a group of rows, which opens and closes it.
 pub(super) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
     let header = RichText::new(title).strong();
-    egui::CollapsingHeader::new(header).id_salt(title).default_open(true).show_unindented(ui, |ui| {
-        ui.add_space(2.0);
-        body(ui);
-        ui.add_space(theme::GAP);
-    });
+    egui::CollapsingHeader::new(header)
+        .id_salt(title)
+        .default_open(true)
+        .show_unindented(ui, |ui| {
+            ui.add_space(2.0);
+            body(ui);
+            ui.add_space(theme::GAP);
+        });
 }
 
 /// A note in weak text.

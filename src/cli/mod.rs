@@ -3,7 +3,11 @@
 //! Exit codes: 0 done; 1 something could not be read, rendered or written (one line on stderr says what and what to
 //! do); 2 the arguments are wrong.
 
+mod check;
+mod fit;
+mod lobe_spec;
 mod names;
+mod parse;
 mod render;
 mod scatter;
 
@@ -37,8 +41,12 @@ const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, ren
 pub enum Command {
     /// Render a picture.
     Render(Box<render::RenderArguments>),
+    /// Prove on this machine that the renderer is right.
+    Check(check::CheckArguments),
     /// Draw samples of a lobe, as the renderer draws them.
     Scatter(scatter::ScatterArguments),
+    /// Match the look of another lobe or of a measured material.
+    Fit(fit::FitArguments),
 }
 
 impl Command {
@@ -49,15 +57,18 @@ impl Command {
     pub fn run(self) -> anyhow::Result<()> {
         match self {
             Command::Render(arguments) => render::run(&arguments),
+            Command::Check(arguments) => check::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),
+            Command::Fit(arguments) => fit::run(&arguments),
         }
     }
 }
 
-/// Renders the default scene to a picture and says where it is: what the program does where no window can be opened.
+/// Renders the default scene, with these files in the place of its parts, to a picture and says where it is: what the
+/// program does where no window can be opened.
 ///
 /// # Errors
-/// Where the picture can't be written.
-pub fn render_default_scene(engine: EngineChoice) -> anyhow::Result<()> {
-    render::run_default(engine)
+/// One line that names the file, what is wrong and what to do.
+pub fn render_default_scene(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()> {
+    render::run_default(files, engine)
 }

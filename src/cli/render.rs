@@ -4,23 +4,23 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::names;
-use crate::document::parameter::{assign, parse_color};
-use crate::document::preset;
-use crate::document::{Background, Document, MaterialSettings, PixelFilter, Strategy};
+use super::{names, parse};
+use crate::document::file::{self, Opened};
+use crate::document::{Background, Document, MaterialSettings, PixelFilter, Strategy, assign, preset, range};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
-use crate::render::output::{self, format_of};
-use crate::render::{EngineChoice, Progress, Session};
+use crate::render::{EngineChoice, Progress, Session, SessionError, output};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 
 /// Step of the session between two looks at the clock and the progress bar.
 const STEP: Duration = Duration::from_millis(200);
+/// How long the picture may take that is rendered in the window's place, seconds: as long as one waits gladly.
+const DEFAULT_SCENE_SECONDS: f64 = 8.0;
 
 /// Arguments of `glossmith render`.
 #[derive(Debug, Args)]
@@ -35,49 +35,49 @@ pub struct RenderArguments {
     #[arg(long, default_value = "studio", value_name = "FILE|studio|sky|furnace")]
     environment: EnvironmentSource,
     /// Turn the environment about the vertical axis, anticlockwise seen from above.
-    #[arg(long, default_value_t = 0.0, value_name = "DEG", allow_negative_numbers = true)]
-    environment_rotation: f32,
+    #[arg(long, default_value = "0", value_name = "DEG", value_parser = parse::number_in(range::ROTATION_DEG), allow_negative_numbers = true)]
+    environment_rotation: f64,
     /// Factor of the environment's radiance.
-    #[arg(long, default_value_t = 1.0, value_name = "X")]
-    environment_strength: f32,
+    #[arg(long, default_value = "1", value_name = "X", value_parser = parse::number_in(range::STRENGTH), allow_negative_numbers = true)]
+    environment_strength: f64,
     /// What the camera sees where it meets nothing.
-    #[arg(long, default_value = "environment", value_name = "environment|transparent|#rrggbb", value_parser = parse_background)]
+    #[arg(long, default_value = "environment", value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
     background: Background,
     /// The material of everything: the name of a shipped one, or a .json file. Without it a file's own materials stay.
     #[arg(long, value_name = "FILE|NAME")]
     material: Option<String>,
     /// Set a parameter of every material, such as specular.roughness=0.2. May be repeated.
-    #[arg(long = "set", value_name = "KEY=VALUE")]
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse::assignment)]
     assignments: Vec<String>,
     /// Where the camera is, in degrees around and above its target.
-    #[arg(long, value_name = "YAW,PITCH", value_parser = parse_numbers::<2>, allow_hyphen_values = true, conflicts_with = "camera_position")]
+    #[arg(long, value_name = "YAW,PITCH", value_parser = parse::orbit, allow_hyphen_values = true, conflicts_with = "camera_position")]
     camera_orbit: Option<[f64; 2]>,
     /// How far the camera is from its target, in the model's units. Without it the model fills the picture.
-    #[arg(long, value_name = "X", conflicts_with = "camera_position")]
+    #[arg(long, value_name = "X", value_parser = parse::number_in(range::DISTANCE), allow_negative_numbers = true, conflicts_with = "camera_position")]
     camera_distance: Option<f64>,
     /// What the camera looks at. Without it the centre of the model.
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::place, allow_hyphen_values = true)]
     camera_target: Option<[f64; 3]>,
     /// Where the camera is, instead of orbit and distance.
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_numbers::<3>, allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::place, allow_hyphen_values = true)]
     camera_position: Option<[f64; 3]>,
     /// Vertical field of view.
-    #[arg(long, value_name = "DEG")]
-    fov: Option<f64>,
+    #[arg(long, default_value = "30", value_name = "DEG", value_parser = parse::number_in(range::FOV_DEG), allow_negative_numbers = true)]
+    fov: f64,
     /// Pixel filter: box (to compare with other renderers) or gaussian (smoother edges).
     #[arg(long, default_value = "gaussian", value_name = "box|gaussian", value_parser = names::filter)]
     filter: PixelFilter,
     /// Width and height in pixels.
-    #[arg(long, default_value = "512x512", value_name = "WxH", value_parser = parse_size)]
+    #[arg(long, default_value = "512x512", value_name = "WxH", value_parser = parse::size)]
     size: [u32; 2],
     /// Samples a pixel [default: 256, or no limit with --time].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
     /// Stop after this time of rendering.
-    #[arg(long, value_name = "SECONDS")]
+    #[arg(long, value_name = "SECONDS", value_parser = parse::number_in(range::TIME_S), allow_negative_numbers = true)]
     time: Option<f64>,
     /// Reflections that a path may have, 1 to 64.
-    #[arg(long, default_value_t = 64, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=64))]
+    #[arg(long, default_value_t = 64, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
     bounces: u32,
     /// Random numbers: sobol (Owen-scrambled, less noise) or independent.
     #[arg(long, default_value = "sobol", value_name = "sobol|independent", value_parser = names::sequence)]
@@ -86,7 +86,7 @@ pub struct RenderArguments {
     #[arg(long, default_value = "mis", value_name = "lobe|light|mis", value_parser = names::strategy)]
     strategy: Strategy,
     /// Changes all random numbers.
-    #[arg(long, default_value_t = 0, value_name = "N")]
+    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
     seed: u32,
     /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
@@ -95,11 +95,10 @@ pub struct RenderArguments {
     #[arg(long, default_value = "agx", value_name = "agx|aces|pbr-neutral|none", value_parser = names::tone)]
     tone_map: ToneCurve,
     /// Exposure of .png pictures, in stops.
-    #[arg(long, default_value_t = 0.0, value_name = "EV", allow_negative_numbers = true)]
-    exposure: f32,
-    /// Picture to write: .png (with exposure and tone curve), .exr or .hdr (linear). May be repeated [default:
-    /// glossmith.png].
-    #[arg(long = "output", value_name = "FILE")]
+    #[arg(long, default_value = "0", value_name = "EV", value_parser = parse::number_in(range::EXPOSURE_EV), allow_negative_numbers = true)]
+    exposure: f64,
+    /// Picture to write: .png (with exposure and tone curve), .exr or .hdr (linear). May be repeated.
+    #[arg(long = "output", default_value = "glossmith.png", value_name = "FILE", value_parser = parse::picture)]
     outputs: Vec<PathBuf>,
     /// Write what was rendered, how and how fast, as JSON.
     #[arg(long, value_name = "FILE")]
@@ -111,46 +110,91 @@ pub struct RenderArguments {
 /// # Errors
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
-    let default_output = [PathBuf::from("glossmith.png")];
-    let outputs = if arguments.outputs.is_empty() {
-        &default_output
-    } else {
-        arguments.outputs.as_slice()
-    };
-    // Before the work, not after it.
-    for path in outputs {
-        format_of(path)?;
+    for path in arguments.outputs.iter().chain(&arguments.report) {
+        parse::check_writable(path)?;
     }
     let begun = Instant::now();
     let mut session = Session::open(arguments.engine)?;
     let document = document(arguments, &mut session)?;
-    session.submit(&document)?;
-    render(session, &document, begun, outputs, arguments.report.as_deref())
+    let engine = arguments.engine;
+    render(
+        session,
+        engine,
+        &document,
+        begun,
+        &arguments.outputs,
+        arguments.report.as_deref(),
+    )
 }
 
-/// Renders the default document to `glossmith.png`.
+/// Renders the default scene, with the files given in the place of its parts, to `glossmith.png` in the working folder.
 ///
 /// # Errors
-/// Where the picture can't be written.
-pub fn run_default(engine: EngineChoice) -> anyhow::Result<()> {
+/// One line that names the file, what is wrong and what to do.
+pub fn run_default(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()> {
+    let path = std::path::absolute("glossmith.png")?;
+    parse::check_writable(&path)?;
     let begun = Instant::now();
     let mut session = Session::open(engine)?;
-    let document = Document::default();
-    session.submit(&document)?;
-    render(session, &document, begun, &[PathBuf::from("glossmith.png")], None)
+    let mut document = Document::default();
+    for file in files {
+        open(file, &mut document, &mut session)?;
+    }
+    document.render.time_s = Some(DEFAULT_SCENE_SECONDS);
+    render(session, engine, &document, begun, &[path], None)
 }
 
-/// Renders a submitted document to files.
+/// Puts what a file holds in the document: a model, an environment, a material or a whole project.
+fn open(path: &Path, document: &mut Document, session: &mut Session) -> anyhow::Result<()> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    match ending.to_ascii_lowercase().as_str() {
+        "glb" | "gltf" => {
+            document.model = ModelSource::File(path.to_owned());
+            let model = session.assets().model(&document.model)?;
+            document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
+        }
+        "hdr" | "exr" => document.lighting.environment = EnvironmentSource::File(path.to_owned()),
+        "json" => match file::open(path)? {
+            Opened::Material(material) => {
+                warn(&material.warnings);
+                document.materials = vec![material.value];
+            }
+            Opened::Document(project) => {
+                warn(&project.warnings);
+                *document = project.value;
+            }
+        },
+        _ if !path.exists() => bail!(
+            "{}: no such command or file; `glossmith --help` lists what there is",
+            path.display()
+        ),
+        _ => bail!(
+            "{}: neither a model (.glb, .gltf) nor an environment (.hdr, .exr), material or project (.json); give one \
+             of these",
+            path.display()
+        ),
+    }
+    Ok(())
+}
+
+fn warn(warnings: &[String]) {
+    warnings.iter().for_each(|warning| log::warn!("{warning}"));
+}
+
+/// Renders a document to files.
 fn render(
     mut session: Session,
+    engine: EngineChoice,
     document: &Document,
     begun: Instant,
     outputs: &[PathBuf],
     report: Option<&Path>,
 ) -> anyhow::Result<()> {
-    eprintln!("{}: {}", session.engine(), session.engine().reason);
+    let submitted = session.submit(document).map(|_| ());
+    or_fall_back(submitted, &mut session, engine, document)?;
+    eprintln!("{} ({})", session.engine(), session.engine().reason);
     let setup_seconds = begun.elapsed().as_secs_f64();
-    let progress = step_to_end(&mut session, document)?;
+    let progress = step_to_end(&mut session, engine, document)?;
     let image = session.image()?;
     for path in outputs {
         output::write(path, &image, &document.view)?;
@@ -161,24 +205,55 @@ fn render(
         std::fs::write(path, text + "\n")
             .with_context(|| format!("{}: the report could not be written", path.display()))?;
     }
+    let dropped = session.film()?.dropped;
+    if dropped > 0 {
+        eprintln!("{dropped} samples were left out because they were not finite");
+    }
     Ok(())
 }
 
 /// Steps until the session is done, with a progress bar on a terminal.
-fn step_to_end(session: &mut Session, document: &Document) -> anyhow::Result<Progress> {
-    let bar = if std::io::stderr().is_terminal() && document.render.time_s.is_none() {
-        let style = ProgressStyle::with_template("{bar:40} {pos}/{len} samples a pixel, {eta} left")?;
-        ProgressBar::new(u64::from(document.render.samples)).with_style(style)
+fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document) -> anyhow::Result<Progress> {
+    const BAR_STEPS: f64 = 1000.0;
+    let bar = if std::io::stderr().is_terminal() {
+        let style = ProgressStyle::with_template("{bar:40} {msg} samples a pixel, {eta} left")?;
+        ProgressBar::new(BAR_STEPS as u64).with_style(style)
     } else {
         ProgressBar::hidden()
     };
-    let mut progress = session.progress();
-    while !progress.is_done {
-        progress = session.step(STEP)?;
-        bar.set_position(u64::from(progress.samples_per_pixel));
+    loop {
+        let stepped = session.step(STEP).map(|_| ());
+        or_fall_back(stepped, session, engine, document)?;
+        let progress = session.progress();
+        let by_samples = f64::from(progress.samples_per_pixel) / f64::from(progress.samples_wanted.max(1));
+        let by_time = document
+            .render
+            .time_s
+            .map_or(0.0, |limit| progress.render_seconds / limit);
+        bar.set_position((BAR_STEPS * by_samples.max(by_time)) as u64);
+        bar.set_message(progress.samples_per_pixel.to_string());
+        if progress.is_done {
+            bar.finish_and_clear();
+            return Ok(progress);
+        }
     }
-    bar.finish_and_clear();
-    Ok(progress)
+}
+
+/// Goes on with the processor where the GPU fails, unless the GPU was asked for by name.
+fn or_fall_back(
+    outcome: Result<(), SessionError>,
+    session: &mut Session,
+    engine: EngineChoice,
+    document: &Document,
+) -> Result<(), SessionError> {
+    match outcome {
+        Err(SessionError::Gpu(error)) if engine == EngineChoice::Auto => {
+            log::warn!("{error}; going on with the processor");
+            session.fall_back_to_cpu(&error.to_string());
+            session.submit(document).map(|_| ())
+        }
+        outcome => outcome,
+    }
 }
 
 /// The report of `--report`.
@@ -198,7 +273,6 @@ fn json_report(
         "engine": engine.kind,
         "adapter": engine.adapter,
         "driver": engine.driver,
-        "engine_reason": engine.reason,
         "width": film.width,
         "height": film.height,
         "samples_per_pixel": progress.samples_per_pixel,
@@ -223,20 +297,20 @@ fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Resul
     };
     if let Some(name) = &arguments.material {
         let material = preset::find(name)?;
-        material.warnings.iter().for_each(|warning| log::warn!("{warning}"));
+        warn(&material.warnings);
         document.materials = vec![material.value];
     } else if matches!(arguments.model, ModelSource::File(_)) {
         document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
     }
     for assignment in &arguments.assignments {
         for material in &mut document.materials {
-            assign(material, assignment).with_context(|| format!("--set {assignment}"))?;
+            assign(material, assignment)?;
         }
     }
     let lighting = &mut document.lighting;
     lighting.environment = arguments.environment.clone();
-    lighting.rotation_deg = arguments.environment_rotation;
-    lighting.strength = arguments.environment_strength;
+    lighting.rotation_deg = arguments.environment_rotation as f32;
+    lighting.strength = arguments.environment_strength as f32;
     lighting.background = arguments.background;
     let camera = &mut document.camera;
     if let Some([yaw_deg, pitch_deg]) = arguments.camera_orbit {
@@ -245,9 +319,9 @@ fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Resul
     camera.target = arguments.camera_target;
     camera.distance = arguments.camera_distance;
     camera.position = arguments.camera_position;
-    camera.fov_deg = arguments.fov.unwrap_or(camera.fov_deg);
+    camera.fov_deg = arguments.fov;
     document.view.tone_map = arguments.tone_map;
-    document.view.exposure_ev = arguments.exposure;
+    document.view.exposure_ev = arguments.exposure as f32;
     let render = &mut document.render;
     [render.width, render.height] = arguments.size;
     // With a time limit only, samples are not limited.
@@ -264,42 +338,4 @@ fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Resul
     render.filter = arguments.filter;
     document.check()?;
     Ok(document)
-}
-
-fn parse_background(text: &str) -> Result<Background, String> {
-    match text {
-        "environment" => Ok(Background::Environment),
-        "transparent" => Ok(Background::Transparent),
-        color => parse_color(color)
-            .map(Background::Color)
-            .map_err(|error| error.to_string()),
-    }
-}
-
-fn parse_numbers<const N: usize>(text: &str) -> Result<[f64; N], String> {
-    let parts: Vec<&str> = text.split(',').collect();
-    let numbers: Vec<f64> = parts
-        .iter()
-        .filter_map(|part| part.trim().parse().ok())
-        .filter(|x: &f64| x.is_finite())
-        .collect();
-    let count = parts.len();
-    <[f64; N]>::try_from(numbers)
-        .ok()
-        .filter(|_| count == N)
-        .ok_or_else(|| {
-            format!(
-                "{N} numbers with commas between them are expected, such as {}",
-                ["1"; N].join(",")
-            )
-        })
-}
-
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
-    let parsed = text
-        .split_once(['x', 'X'])
-        .and_then(|(width, height)| Some([width.parse().ok()?, height.parse().ok()?]));
-    parsed
-        .filter(|size: &[u32; 2]| size.iter().all(|side| (1..=65_535).contains(side)))
-        .ok_or_else(|| "a width and a height are expected, such as 640x480".to_owned())
 }

@@ -139,10 +139,67 @@ pub(super) fn version(path: &Path, object: &Map<String, Json>, mark: &str) -> Re
     number.as_u64().map(Some).ok_or_else(error)
 }
 
-/// Pretty JSON with a line break at the end.
+/// JSON to be read by people: a key a line, lists of numbers on one.
 pub(super) fn text(object: &Map<String, Json>) -> String {
-    // Maps with text keys and finite numbers always serialise.
-    format!("{:#}\n", Json::Object(object.clone()))
+    let mut text = String::new();
+    write_object(&mut text, object, 0);
+    text.push('\n');
+    text
+}
+
+fn write_object(text: &mut String, object: &Map<String, Json>, depth: usize) {
+    let entries = object.iter().map(|(key, value)| (Some(key.as_str()), value));
+    write_entries(text, ['{', '}'], entries, depth);
+}
+
+fn write_entries<'a>(
+    text: &mut String,
+    [open, close]: [char; 2],
+    entries: impl Iterator<Item = (Option<&'a str>, &'a Json)>,
+    depth: usize,
+) {
+    let mut is_empty = true;
+    text.push(open);
+    for (key, value) in entries {
+        text.push_str(if is_empty { "\n" } else { ",\n" });
+        text.push_str(&"  ".repeat(depth + 1));
+        if let Some(key) = key {
+            text.push_str(&format!("{}: ", Json::from(key)));
+        }
+        write_value(text, value, depth + 1);
+        is_empty = false;
+    }
+    if !is_empty {
+        text.push('\n');
+        text.push_str(&"  ".repeat(depth));
+    }
+    text.push(close);
+}
+
+fn write_value(text: &mut String, value: &Json, depth: usize) {
+    match value {
+        Json::Object(object) => write_object(text, object, depth),
+        Json::Array(list) if list.iter().any(has_object) => {
+            write_entries(text, ['[', ']'], list.iter().map(|item| (None, item)), depth);
+        }
+        Json::Array(list) => {
+            text.push('[');
+            for (i, item) in list.iter().enumerate() {
+                text.push_str(if i > 0 { ", " } else { "" });
+                write_value(text, item, depth);
+            }
+            text.push(']');
+        }
+        simple => text.push_str(&simple.to_string()),
+    }
+}
+
+fn has_object(value: &Json) -> bool {
+    match value {
+        Json::Object(_) => true,
+        Json::Array(list) => list.iter().any(has_object),
+        _ => false,
+    }
 }
 
 /// Replaces a file's contents at once: whoever reads it, or whatever fails meanwhile, finds the old or the new contents,

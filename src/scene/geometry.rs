@@ -102,6 +102,18 @@ impl Geometry {
         Slot::neutral("ground")
     }
 
+    /// What of the model was left out, one line each.
+    pub fn warnings(&self) -> Vec<String> {
+        let counts = [
+            (self.dropped_not_finite, "a corner that is not finite"),
+            (self.dropped_no_area, "no area"),
+        ];
+        let counts = counts.iter().filter(|(count, _)| *count > 0);
+        counts
+            .map(|(count, reason)| format!("{count} triangles left out: {reason}"))
+            .collect()
+    }
+
     /// The corners of a triangle.
     #[inline(always)]
     pub fn corners(&self, triangle: usize) -> [[f32; 3]; 3] {

@@ -1,6 +1,6 @@
 //! A ray against a triangle.
 
-use glam::Vec3A;
+use glam::{Vec3A, Vec3Swizzles};
 
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,23 +59,20 @@ impl RayFrame {
 /// products as they are (no fused multiply-add, no reordering).
 #[inline(always)]
 pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max: f32) -> Option<(f32, f32, f32)> {
-    let (a, b, c) = (v0 - ray.origin, v1 - ray.origin, v2 - ray.origin);
-    let (ax, ay) = (ray.axis_x.dot(a), ray.axis_y.dot(a));
-    let (bx, by) = (ray.axis_x.dot(b), ray.axis_y.dot(b));
-    let (cx, cy) = (ray.axis_x.dot(c), ray.axis_y.dot(c));
+    let a = v0 - ray.origin;
+    // The projected corners, one a lane.
+    let [x, y, z] = [0, 1, 2].map(|i| Vec3A::new(v0[i], v1[i], v2[i]) - ray.origin[i]);
+    let px = x * ray.axis_x.x + y * ray.axis_x.y + z * ray.axis_x.z;
+    let py = x * ray.axis_y.x + y * ray.axis_y.y + z * ray.axis_y.z;
     // Twice the areas that the ray cuts the projected triangle into, opposite to v0, v1 and v2.
-    let area_a = cx * by - cy * bx;
-    let area_b = ax * cy - ay * cx;
-    let area_c = bx * ay - by * ax;
-    let any_negative = area_a < 0.0 || area_b < 0.0 || area_c < 0.0;
-    let any_positive = area_a > 0.0 || area_b > 0.0 || area_c > 0.0;
-    let area = area_a + area_b + area_c;
-    if (any_negative && any_positive) || area == 0.0 {
+    let areas = px.zxy() * py.yzx() - py.zxy() * px.yzx();
+    let area = areas.x + areas.y + areas.z;
+    if (areas.min_element() < 0.0 && areas.max_element() > 0.0) || area == 0.0 {
         return None;
     }
     // The distance by the plane: exact in sign for planes along the axes, whatever the triangle's size.
     let normal = (v1 - v0).cross(v2 - v0);
     let t = normal.dot(a) / normal.dot(ray.direction);
     // False for NaN, too.
-    (t > 0.0 && t < t_max).then_some((t, area_b / area, area_c / area))
+    (t > 0.0 && t < t_max).then_some((t, areas.y / area, areas.z / area))
 }

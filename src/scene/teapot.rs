@@ -1,4 +1,4 @@
-//! The Utah teapot: 32 bicubic Bézier patches (M. Newell, 1975) and four that seat its lid, tessellated with analytic
+//! The Utah teapot: 32 bicubic Bézier patches (M. Newell, 1975) and five that close it, tessellated with analytic
 //! normals.
 //!
 //! The control points are in `assets/teapot-patches.txt`, z up; here +Y is up, the spout points to +X and the rim is
@@ -24,6 +24,7 @@ type Patch = [[DVec3; 4]; 4];
 static PATCHES: LazyLock<Vec<Patch>> = LazyLock::new(|| {
     let mut patches = parse(include_str!("../../assets/teapot-patches.txt"));
     patches.extend(seat(&patches));
+    patches.push(spout_stop(&patches));
     patches
 });
 
@@ -51,6 +52,17 @@ fn seat(patches: &[Patch]) -> Vec<Patch> {
         Some([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(|t| std::array::from_fn(|i| inner[i].lerp(outer[i], t))))
     };
     lid.into_iter().filter_map(across).collect()
+}
+
+/// The spout's two lip patches in Newell's list.
+const LIP: [usize; 2] = [18, 19];
+
+/// A flat patch that closes the mouth of the spout at the inner edge of its lip: a light trap like the slit at the lid.
+fn spout_stop(patches: &[Patch]) -> Patch {
+    let near = patches[LIP[0]][3];
+    let mut far = patches[LIP[1]][3];
+    far.reverse();
+    [0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0].map(|t| std::array::from_fn(|i| near[i].lerp(far[i], t)))
 }
 
 /// The patches of a list of control points and indices; +Y is made up.

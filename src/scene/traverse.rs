@@ -12,7 +12,7 @@ use super::geometry::Geometry;
 use super::intersect::{Hit, RayFrame, intersect_triangle};
 
 /// Groups of nodes still to be visited. A level adds one at most, and each level divides the triangles by up to eight.
-const STACK_SIZE: usize = 64;
+const STACK_SIZE: usize = 32;
 
 /// Makes up for the rounding of a box's far side (1 + 2γ₃ of Ize, "Robust BVH Ray Traversal", JCGT 2013, rounded up).
 const FAR_MARGIN: f32 = 1.000_000_5;

@@ -63,7 +63,13 @@ fn settle(harness: &mut Harness<'static, App>) {
 
 fn picture(harness: &Harness<'static, App>) -> Vec<[f32; 4]> {
     let snapshot = harness.state().snapshot();
-    snapshot.picture.as_ref().expect("there is a picture").image.pixels.clone()
+    snapshot
+        .picture
+        .as_ref()
+        .expect("there is a picture")
+        .image
+        .pixels
+        .clone()
 }
 
 fn undo(harness: &mut Harness<'static, App>) {
@@ -92,7 +98,9 @@ fn the_editor_opens_and_renders() {
 fn a_slider_changes_the_document_and_the_picture_and_undo_brings_both_back() {
     let mut harness = editor();
     let (document, before) = (harness.state().document().clone(), picture(&harness));
-    harness.get_by_role_and_label(Role::SpinButton, "Specular roughness").set_value_accesskit(0.85);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .set_value_accesskit(0.85);
     settle(&mut harness);
     assert_eq!(harness.state().document().materials[0].roughness, 0.85);
     let rough = picture(&harness);
@@ -108,12 +116,21 @@ fn a_slider_changes_the_document_and_the_picture_and_undo_brings_both_back() {
 #[test]
 fn every_number_of_the_material_panel_can_be_set() {
     let mut harness = editor();
-    for (label, value) in [("Base metalness", 0.25), ("Specular weight", 0.5), ("Specular anisotropy", -0.4)] {
-        harness.get_by_role_and_label(Role::SpinButton, label).set_value_accesskit(value);
+    for (label, value) in [
+        ("Base metalness", 0.25),
+        ("Specular weight", 0.5),
+        ("Specular anisotropy", -0.4),
+    ] {
+        harness
+            .get_by_role_and_label(Role::SpinButton, label)
+            .set_value_accesskit(value);
         harness.run_steps(2);
     }
     let material = harness.state().document().materials[0].clone();
-    assert_eq!((material.metalness, material.specular_weight, material.anisotropy), (0.25, 0.5, -0.4));
+    assert_eq!(
+        (material.metalness, material.specular_weight, material.anisotropy),
+        (0.25, 0.5, -0.4)
+    );
 }
 
 #[test]
@@ -125,7 +142,10 @@ fn a_lobe_is_chosen_from_its_menu_and_what_does_not_apply_goes() {
     let label = glossmith::optics::lobe::Lobe::Ggx.label();
     harness.get_by_role_and_label(Role::Button, label).click();
     settle(&mut harness);
-    assert_eq!(harness.state().document().materials[0].lobe, glossmith::optics::lobe::Lobe::Ggx);
+    assert_eq!(
+        harness.state().document().materials[0].lobe,
+        glossmith::optics::lobe::Lobe::Ggx
+    );
     assert!(harness.query_by_label("Specular curve").is_none(), "GGX has no curve");
 }
 
@@ -137,8 +157,15 @@ fn dragging_in_the_viewport_turns_the_camera_in_one_step() {
     drag(&mut harness, center, Vec2::new(60.0, 20.0));
     settle(&mut harness);
     let after = harness.state().document().camera;
-    assert!(after.yaw_deg < before.yaw_deg - 5.0 && after.pitch_deg > before.pitch_deg + 2.0, "{after:?}");
-    assert_eq!((after.target, after.distance), (None, None), "a turn leaves the framing alone");
+    assert!(
+        after.yaw_deg < before.yaw_deg - 5.0 && after.pitch_deg > before.pitch_deg + 2.0,
+        "{after:?}"
+    );
+    assert_eq!(
+        (after.target, after.distance),
+        (None, None),
+        "a turn leaves the framing alone"
+    );
     undo(&mut harness);
     assert_eq!(harness.state().document().camera, before);
 }
@@ -174,7 +201,12 @@ fn shift_and_drag_turns_the_light_and_the_wheel_zooms() {
         modifiers: Modifiers::NONE,
     });
     harness.run_steps(4);
-    let distance = harness.state().document().camera.distance.expect("zooming sets a distance");
+    let distance = harness
+        .state()
+        .document()
+        .camera
+        .distance
+        .expect("zooming sets a distance");
     harness.key_press(Key::F);
     harness.run_steps(2);
     assert_eq!(harness.state().document().camera.distance, None, "it was {distance}");
@@ -184,7 +216,9 @@ fn shift_and_drag_turns_the_light_and_the_wheel_zooms() {
 fn every_panel_and_sheet_has_named_inputs() {
     let mut harness = editor();
     request(&mut harness, Action::Open("not/there.glb".into()));
-    wait(&mut harness, "the message", |app| app.messages().iter().any(|text| text.contains("not/there.glb")));
+    wait(&mut harness, "the message", |app| {
+        app.messages().iter().any(|text| text.contains("not/there.glb"))
+    });
     for pane in Pane::ALL {
         harness.state_mut().reveal(pane);
         harness.run_steps(3);
@@ -210,7 +244,10 @@ fn a_preset_is_one_click_and_one_undo() {
     let before = harness.state().document().clone();
     harness.get_by_role_and_label(Role::Button, "Rubber").click();
     settle(&mut harness);
-    let rubber = PRESETS.iter().find(|material| material.name == "Rubber").expect("shipped");
+    let rubber = PRESETS
+        .iter()
+        .find(|material| material.name == "Rubber")
+        .expect("shipped");
     assert_eq!(harness.state().document().materials[0], *rubber);
     undo(&mut harness);
     assert_eq!(*harness.state().document(), before);
@@ -222,12 +259,18 @@ fn the_palette_finds_and_does() {
     assert_eq!(harness.ctx.theme(), egui::Theme::Dark);
     harness.key_press_modifiers(Modifiers::COMMAND, Key::K);
     harness.run_steps(2);
-    harness.get_by_role_and_label(Role::TextInput, "Find a command").type_text("light or dark");
+    harness
+        .get_by_role_and_label(Role::TextInput, "Find a command")
+        .type_text("light or dark");
     harness.run_steps(2);
     harness.key_press(Key::Enter);
     harness.run_steps(2);
     assert_eq!(harness.ctx.theme(), egui::Theme::Light);
-    assert!(harness.query_by_role_and_label(Role::TextInput, "Find a command").is_none());
+    assert!(
+        harness
+            .query_by_role_and_label(Role::TextInput, "Find a command")
+            .is_none()
+    );
 }
 
 #[test]
@@ -240,7 +283,10 @@ fn damaged_files_are_named_and_change_nothing() {
     };
     let files = [
         write("text.glb", b"this is no model"),
-        write("short.hdr", b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n\x02\x02"),
+        write(
+            "short.hdr",
+            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n\x02\x02",
+        ),
         write("half.json", b"{\"glossmith\": 1, \"material\": {"),
         write("notes.txt", b"hello"),
     ];
@@ -249,7 +295,9 @@ fn damaged_files_are_named_and_change_nothing() {
     for path in files {
         request(&mut harness, Action::Open(path.clone()));
         let name = path.display().to_string();
-        wait(&mut harness, "a message", |app| app.messages().iter().any(|text| text.contains(&name)));
+        wait(&mut harness, "a message", |app| {
+            app.messages().iter().any(|text| text.contains(&name))
+        });
     }
     settle(&mut harness);
     assert_eq!(*harness.state().document(), document);
@@ -260,19 +308,29 @@ fn damaged_files_are_named_and_change_nothing() {
 fn models_and_environments_are_changed_and_undone() {
     let mut harness = editor();
     let mut document = harness.state().document().clone();
-    harness.get_by_role_and_label(Role::SpinButton, "Specular roughness").set_value_accesskit(0.6);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .set_value_accesskit(0.6);
     harness.run_steps(2);
     let before = harness.state().document().clone();
     request(&mut harness, Action::UseModel(ModelSource::Shaderball));
-    wait(&mut harness, "the model", |app| app.document().model == ModelSource::Shaderball);
+    wait(&mut harness, "the model", |app| {
+        app.document().model == ModelSource::Shaderball
+    });
     settle(&mut harness);
     let materials = &harness.state().document().materials;
-    assert_eq!((materials.len(), materials[0].roughness), (2, 0.6), "the edited material stays");
+    assert_eq!(
+        (materials.len(), materials[0].roughness),
+        (2, 0.6),
+        "the edited material stays"
+    );
     assert!(harness.query_by_label("stand").is_some(), "the slots are listed");
     undo(&mut harness);
     assert_eq!(*harness.state().document(), before);
     request(&mut harness, Action::UseEnvironment(EnvironmentSource::Sky));
-    wait(&mut harness, "the sky", |app| app.document().lighting.environment == EnvironmentSource::Sky);
+    wait(&mut harness, "the sky", |app| {
+        app.document().lighting.environment == EnvironmentSource::Sky
+    });
     document.materials[0].roughness = 0.6;
     document.lighting.environment = EnvironmentSource::Sky;
     assert_eq!(*harness.state().document(), document);
@@ -315,7 +373,9 @@ fn the_picture_is_saved_as_it_is_shown() {
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::Button, "Save").click();
     harness.run_steps(2);
-    wait(&mut harness, "the file", |app| app.messages().iter().any(|text| text.contains("shown.png")));
+    wait(&mut harness, "the file", |app| {
+        app.messages().iter().any(|text| text.contains("shown.png"))
+    });
     let saved = image::open(&path).expect("a picture").to_rgba8();
     let snapshot = harness.state().snapshot();
     assert_eq!(saved.into_raw(), snapshot.picture.as_ref().expect("there is one").rgba);
@@ -329,7 +389,9 @@ fn the_window_paints_the_renderers_pixels() {
     settle(&mut harness);
     harness.step();
     let viewport = harness.get_by_label("Viewport").rect();
-    let window = harness.render().expect("a Vulkan driver: apt install mesa-vulkan-drivers");
+    let window = harness
+        .render()
+        .expect("a Vulkan driver: apt install mesa-vulkan-drivers");
     let shown = harness.state().snapshot().picture.clone().expect("there is one");
     // The picture fills the viewport's width; its left edge is background.
     let at = [viewport.left() + 20.0, viewport.center().y].map(|x| x as u32);

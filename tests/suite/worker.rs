@@ -32,7 +32,11 @@ fn wait(worker: &Worker, what: &str, until: impl Fn(&Snapshot) -> bool) -> Arc<S
         if until(&snapshot) {
             return snapshot;
         }
-        assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}: {:?}", worker.snapshot().activity);
+        assert!(
+            begun.elapsed() < PATIENCE,
+            "waited in vain for {what}: {:?}",
+            worker.snapshot().activity
+        );
         std::thread::sleep(Duration::from_millis(2));
     }
 }
@@ -109,7 +113,10 @@ fn a_steady_stream_of_changes_is_shown_while_it_lasts() {
 
 fn finished_first_look(worker: &Worker, revision: u64) {
     wait(worker, "a first look", |snapshot| {
-        snapshot.picture.as_ref().is_some_and(|picture| picture.revision == revision)
+        snapshot
+            .picture
+            .as_ref()
+            .is_some_and(|picture| picture.revision == revision)
     });
 }
 
@@ -133,7 +140,9 @@ fn more_samples_go_on_where_rendering_stopped() {
     finished(&worker, worker.submit(&document, Pace::Still));
     document.render.samples = 6;
     worker.submit(&document, Pace::Still);
-    let snapshot = wait(&worker, "six samples", |snapshot| snapshot.progress.samples_per_pixel == 6);
+    let snapshot = wait(&worker, "six samples", |snapshot| {
+        snapshot.progress.samples_per_pixel == 6
+    });
     assert_eq!(snapshot.progress.samples_wanted, 6);
 }
 
@@ -156,9 +165,21 @@ fn a_model_that_is_not_there_leaves_the_old_picture_and_is_named() {
     }
     assert!(said.iter().any(|text| text.contains("no/such/model.glb")), "{said:?}");
     let snapshot = wait(&worker, "calm", |snapshot| snapshot.activity == Activity::Done);
-    assert_eq!(snapshot.picture.as_ref().map(|picture| picture.serial), Some(before.serial));
+    assert_eq!(
+        snapshot.picture.as_ref().map(|picture| picture.serial),
+        Some(before.serial)
+    );
     // And it still works.
-    finished(&worker, worker.submit(&Document { ground: true, ..document }, Pace::Still));
+    finished(
+        &worker,
+        worker.submit(
+            &Document {
+                ground: true,
+                ..document
+            },
+            Pace::Still,
+        ),
+    );
 }
 
 #[test]
@@ -176,14 +197,18 @@ fn a_pause_shows_the_first_sample_and_waits() {
     std::thread::sleep(Duration::from_millis(120));
     assert_eq!(worker.snapshot().progress.samples_per_pixel, samples);
     worker.pause(false);
-    wait(&worker, "more samples", |snapshot| snapshot.progress.samples_per_pixel > samples);
+    wait(&worker, "more samples", |snapshot| {
+        snapshot.progress.samples_per_pixel > samples
+    });
 }
 
 #[test]
 fn files_are_opened_beside_the_document() {
     let worker = worker();
     worker.open_model(ModelSource::Shaderball);
-    worker.open_environment(glossmith::scene::environment::EnvironmentSource::File("missing.hdr".into()));
+    worker.open_environment(glossmith::scene::environment::EnvironmentSource::File(
+        "missing.hdr".into(),
+    ));
     let begun = Instant::now();
     let (mut slots, mut why) = (0, String::new());
     while (slots == 0 || why.is_empty()) && begun.elapsed() < PATIENCE {

@@ -23,7 +23,11 @@ pub(in crate::app) struct Thumbnail {
 
 impl std::fmt::Debug for Thumbnail {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "Thumbnail({:?})", self.of.as_ref().map(|environment| &environment.name))
+        write!(
+            f,
+            "Thumbnail({:?})",
+            self.of.as_ref().map(|environment| &environment.name)
+        )
     }
 }
 
@@ -46,7 +50,11 @@ impl Thumbnail {
 pub(in crate::app) const BUILT_IN: [(&str, &str, EnvironmentSource); 3] = [
     ("Studio", "Soft boxes in a dark room.", EnvironmentSource::Studio),
     ("Sky", "A clear sky with its sun.", EnvironmentSource::Sky),
-    ("Furnace", "White light from everywhere: a material that keeps all light vanishes.", EnvironmentSource::Furnace),
+    (
+        "Furnace",
+        "White light from everywhere: a material that keeps all light vanishes.",
+        EnvironmentSource::Furnace,
+    ),
 ];
 
 /// What to call an environment in a menu.
@@ -54,9 +62,10 @@ pub(in crate::app) fn environment_label(source: &EnvironmentSource) -> String {
     let built_in = BUILT_IN.iter().find(|(.., of)| of == source);
     match (built_in, source) {
         (Some((label, ..)), _) => (*label).to_owned(),
-        (None, EnvironmentSource::File(path)) => {
-            path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
-        }
+        (None, EnvironmentSource::File(path)) => path.file_name().map_or_else(
+            || path.display().to_string(),
+            |name| name.to_string_lossy().into_owned(),
+        ),
         (None, other) => other.to_string(),
     }
 }
@@ -66,24 +75,33 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         if let Some(scene) = desk.snapshot.scene.clone() {
             let texture = desk.state.thumbnail.texture(ui.ctx(), &scene.job.environment);
             let width = ui.available_width();
-            let image = egui::Image::new(&texture).fit_to_exact_size(vec2(width, 0.5 * width)).corner_radius(3.0);
+            let image = egui::Image::new(&texture)
+                .fit_to_exact_size(vec2(width, 0.5 * width))
+                .corner_radius(3.0);
             let name = &scene.job.environment.name;
             let size = [scene.job.environment.width, scene.job.environment.height];
-            ui.add(image.alt_text("The environment")).on_hover_text(format!("{name}, {} × {}", size[0], size[1]));
+            ui.add(image.alt_text("The environment"))
+                .on_hover_text(format!("{name}, {} × {}", size[0], size[1]));
         }
         sources(ui, desk);
         numbers(ui, desk);
     });
     widgets::group(ui, "Background", |ui| background(ui, desk));
     widgets::group(ui, "Ground", |ui| {
-        let name = Name::new("Ground", "Ground plane", "A matt plane under the model that catches its shadow.");
+        let name = Name::new(
+            "Ground",
+            "Ground plane",
+            "A matt plane under the model that catches its shadow.",
+        );
         let response = widgets::row(ui, name, |ui| ui.checkbox(&mut desk.document.ground, ""));
         desk.edited(response, "Ground", |document| &mut document.ground);
         if desk.document.ground {
             let name = Name::new("Ground colour", "Colour", "Share of light that the ground gives back.");
             let color = &mut desk.document.lighting.ground_color;
             let response = widgets::row(ui, name, |ui| widgets::color(ui, "Ground colour", color));
-            desk.edited(response, "Ground colour", |document| &mut document.lighting.ground_color);
+            desk.edited(response, "Ground colour", |document| {
+                &mut document.lighting.ground_color
+            });
         }
     });
 }
@@ -98,13 +116,18 @@ fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
             }
         }
         let is_file = matches!(current, EnvironmentSource::File(_));
-        if ui.selectable_label(is_file, "File…").on_hover_text(Command::OpenEnvironment.help()).clicked() {
+        if ui
+            .selectable_label(is_file, "File…")
+            .on_hover_text(Command::OpenEnvironment.help())
+            .clicked()
+        {
             desk.act(Command::OpenEnvironment);
         }
     });
     if let EnvironmentSource::File(path) = &current {
         let name = environment_label(&current);
-        ui.add(egui::Label::new(name).truncate()).on_hover_text(path.display().to_string());
+        ui.add(egui::Label::new(name).truncate())
+            .on_hover_text(path.display().to_string());
     }
     ui.add_space(0.5 * theme::GAP);
 }
@@ -124,7 +147,9 @@ fn numbers(ui: &mut Ui, desk: &mut Desk<'_>) {
         "Turns the light about the vertical axis. In the viewport: drag with shift.",
     );
     let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut lighting.rotation_deg, &style));
-    desk.edited(response, "Environment rotation", |document| &mut document.lighting.rotation_deg);
+    desk.edited(response, "Environment rotation", |document| {
+        &mut document.lighting.rotation_deg
+    });
     let style = NumberStyle {
         range: 0.0..=1e6,
         bar: Some([0.0, 4.0]),
@@ -132,10 +157,16 @@ fn numbers(ui: &mut Ui, desk: &mut Desk<'_>) {
         speed: 0.01,
         decimals: 3,
     };
-    let name = Name::new("Environment strength", "Strength", "Multiplies the environment's light.");
+    let name = Name::new(
+        "Environment strength",
+        "Strength",
+        "Multiplies the environment's light.",
+    );
     let strength = &mut desk.document.lighting.strength;
     let response = widgets::row(ui, name, |ui| widgets::number(ui, strength, &style));
-    desk.edited(response, "Environment strength", |document| &mut document.lighting.strength);
+    desk.edited(response, "Environment strength", |document| {
+        &mut document.lighting.strength
+    });
 }
 
 fn background(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -147,8 +178,16 @@ fn background(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
     let choices = [
         (Kind::Environment, "Environment", "The environment itself."),
-        (Kind::Transparent, "Transparent", "Nothing: the picture's opacity is 0 there."),
-        (Kind::Color, "Colour", "One colour, whatever the light; reflections still show the environment."),
+        (
+            Kind::Transparent,
+            "Transparent",
+            "Nothing: the picture's opacity is 0 there.",
+        ),
+        (
+            Kind::Color,
+            "Colour",
+            "One colour, whatever the light; reflections still show the environment.",
+        ),
     ];
     let mut kind = match desk.document.lighting.background {
         Background::Environment => Kind::Environment,
@@ -166,7 +205,11 @@ fn background(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
     desk.edited(response, "Background", |document| &mut document.lighting.background);
     if let Background::Color(color) = &mut desk.document.lighting.background {
-        let name = Name::new("Background colour", "Colour", "Linear: exposure and tone map apply to it, too.");
+        let name = Name::new(
+            "Background colour",
+            "Colour",
+            "Linear: exposure and tone map apply to it, too.",
+        );
         let response = widgets::row(ui, name, |ui| widgets::color(ui, "Background colour", color));
         if response.reset {
             *color = [0.18; 3];

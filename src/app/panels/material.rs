@@ -44,10 +44,16 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
         return;
     }
     widgets::group(ui, "Slots", |ui| {
-        let names: Vec<String> =
-            desk.scene().map(|scene| scene.model.slots.iter().map(|slot| slot.name.clone()).collect()).unwrap_or_default();
+        let names: Vec<String> = desk
+            .scene()
+            .map(|scene| scene.model.slots.iter().map(|slot| slot.name.clone()).collect())
+            .unwrap_or_default();
         for (slot, name) in names.iter().enumerate() {
-            let label = if name.is_empty() { format!("slot {}", slot + 1) } else { name.clone() };
+            let label = if name.is_empty() {
+                format!("slot {}", slot + 1)
+            } else {
+                name.clone()
+            };
             let width = egui::vec2(ui.available_width(), theme::ROW_HEIGHT);
             let item = egui::Button::selectable(slot == desk.state.slot, label).min_size(width);
             if ui.add(item).clicked() {
@@ -60,7 +66,9 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
 fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
     ui.horizontal(|ui| {
         let width = ui.available_width() - theme::ROW_HEIGHT - ui.spacing().item_spacing.x;
-        let field = egui::TextEdit::singleline(&mut material.name).desired_width(width).margin(egui::vec2(6.0, 3.0));
+        let field = egui::TextEdit::singleline(&mut material.name)
+            .desired_width(width)
+            .margin(egui::vec2(6.0, 3.0));
         if ui.add(field).accessible_name("Material name").changed() {
             desk.edits.note("Rename material", "material name");
         }
@@ -97,7 +105,15 @@ fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, mater
 
 fn control(ui: &mut Ui, parameter: &Parameter, full: &str, value: &mut Value) -> egui::Response {
     match (&parameter.kind, value) {
-        (Kind::Number { range, soft_range, unit, step }, Value::Number(number)) => {
+        (
+            Kind::Number {
+                range,
+                soft_range,
+                unit,
+                step,
+            },
+            Value::Number(number),
+        ) => {
             let style = NumberStyle {
                 range: f64::from(range[0])..=f64::from(range[1]),
                 bar: Some(soft_range.map(f64::from)),
@@ -116,7 +132,10 @@ fn control(ui: &mut Ui, parameter: &Parameter, full: &str, value: &mut Value) ->
             widgets::triple(ui, full, values, f64::from(range[0])..=f64::from(range[1]))
         }
         (Kind::Choice(choices), Value::Choice(name)) => {
-            let choices: Vec<_> = choices.iter().map(|choice| (choice.name, choice.label, choice.help)).collect();
+            let choices: Vec<_> = choices
+                .iter()
+                .map(|choice| (choice.name, choice.label, choice.help))
+                .collect();
             widgets::choice(ui, parameter.key, name, &choices)
         }
         (Kind::Toggle, Value::Toggle(is_on)) => ui.checkbox(is_on, ""),

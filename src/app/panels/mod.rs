@@ -59,7 +59,10 @@ impl Desk<'_> {
 
     /// The scene being rendered, where it is of the document's model.
     pub(super) fn scene(&self) -> Option<&Scene> {
-        self.snapshot.scene.as_deref().filter(|scene| scene.document.model == self.document.model)
+        self.snapshot
+            .scene
+            .as_deref()
+            .filter(|scene| scene.document.model == self.document.model)
     }
 
     /// Material slots of the model, at least 1.
@@ -70,7 +73,11 @@ impl Desk<'_> {
     /// The material of the selected slot.
     pub(super) fn material(&self) -> MaterialSettings {
         let materials = &self.document.materials;
-        materials.get(self.state.slot).or(materials.last()).cloned().unwrap_or_default()
+        materials
+            .get(self.state.slot)
+            .or(materials.last())
+            .cloned()
+            .unwrap_or_default()
     }
 
     /// Replaces the material of the selected slot; slots before it keep what they show.

@@ -17,7 +17,10 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let wanted = desk.state.preset_search.to_lowercase();
     let current = desk.material();
     let mut found = false;
-    for material in PRESETS.iter().filter(|material| material.name.to_lowercase().contains(&wanted)) {
+    for material in PRESETS
+        .iter()
+        .filter(|material| material.name.to_lowercase().contains(&wanted))
+    {
         found = true;
         if entry(ui, material, *material == current) {
             desk.actions.push(Action::UseMaterial(Box::new(material.clone())));
@@ -35,14 +38,22 @@ fn entry(ui: &mut Ui, material: &MaterialSettings, is_current: bool) -> bool {
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_current, &material.name));
     let visuals = ui.style().interact_selectable(&response, is_current);
     if is_current || response.hovered() || response.has_focus() {
-        ui.painter().rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
+        ui.painter()
+            .rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
     }
     let [r, g, b] = widgets::srgb_of(material.base_color);
     let center = rect.left_center() + vec2(14.0, 0.0);
     let radius = 7.0;
-    ui.painter().circle_filled(center, radius, egui::Color32::from_rgb(r, g, b));
+    ui.painter()
+        .circle_filled(center, radius, egui::Color32::from_rgb(r, g, b));
     let font = egui::TextStyle::Body.resolve(ui.style());
     let at = rect.left_center() + vec2(30.0, 0.0);
-    ui.painter().text(at, egui::Align2::LEFT_CENTER, &material.name, font, visuals.text_color());
+    ui.painter().text(
+        at,
+        egui::Align2::LEFT_CENTER,
+        &material.name,
+        font,
+        visuals.text_color(),
+    );
     response.clicked()
 }

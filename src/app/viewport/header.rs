@@ -21,9 +21,10 @@ fn model_label(source: &ModelSource) -> String {
     let built_in = MODELS.iter().find(|(_, of)| of == source);
     match (built_in, source) {
         (Some((label, _)), _) => (*label).to_owned(),
-        (None, ModelSource::File(path)) => {
-            path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
-        }
+        (None, ModelSource::File(path)) => path.file_name().map_or_else(
+            || path.display().to_string(),
+            |name| name.to_string_lossy().into_owned(),
+        ),
         (None, other) => other.to_string(),
     }
 }
@@ -31,7 +32,9 @@ fn model_label(source: &ModelSource) -> String {
 pub(super) fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
     ui.painter().rect_filled(bar, 0.0, ui.visuals().panel_fill);
     let inside = bar.shrink2(vec2(8.0, 0.0));
-    let builder = UiBuilder::new().max_rect(inside).layout(Layout::left_to_right(Align::Center));
+    let builder = UiBuilder::new()
+        .max_rect(inside)
+        .layout(Layout::left_to_right(Align::Center));
     let mut ui = ui.new_child(builder);
     ui.set_clip_rect(bar.intersect(ui.clip_rect()));
     // Narrow viewports keep what is looked at and give up the rest.
@@ -44,7 +47,9 @@ pub(super) fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
 }
 
 fn models(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let combo = egui::ComboBox::from_id_salt("model").width(120.0).selected_text(model_label(&desk.document.model));
+    let combo = egui::ComboBox::from_id_salt("model")
+        .width(120.0)
+        .selected_text(model_label(&desk.document.model));
     let shown = combo.show_ui(ui, |ui| {
         for (label, source) in &MODELS {
             if ui.selectable_label(desk.document.model == *source, *label).clicked() {
@@ -61,11 +66,16 @@ fn models(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
     let current = desk.document.lighting.environment.clone();
-    let combo =
-        egui::ComboBox::from_id_salt("environment").width(120.0).selected_text(lighting::environment_label(&current));
+    let combo = egui::ComboBox::from_id_salt("environment")
+        .width(120.0)
+        .selected_text(lighting::environment_label(&current));
     let shown = combo.show_ui(ui, |ui| {
         for (label, help, source) in &lighting::BUILT_IN {
-            if ui.selectable_label(current == *source, *label).on_hover_text(*help).clicked() {
+            if ui
+                .selectable_label(current == *source, *label)
+                .on_hover_text(*help)
+                .clicked()
+            {
                 desk.actions.push(Action::UseEnvironment(source.clone()));
             }
         }
@@ -74,19 +84,28 @@ fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
             desk.act(Command::OpenEnvironment);
         }
     });
-    shown.response.accessible_name("Environment").on_hover_text("Environment");
+    shown
+        .response
+        .accessible_name("Environment")
+        .on_hover_text("Environment");
 }
 
 /// Added from the right.
 fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
     let is_paused = desk.state.is_paused;
-    let (icon, help) = if is_paused { (Icon::Play, "Go on (space)") } else { (Icon::Pause, "Pause (space)") };
+    let (icon, help) = if is_paused {
+        (Icon::Play, "Go on (space)")
+    } else {
+        (Icon::Pause, "Pause (space)")
+    };
     if icons::button(ui, icon, Command::Pause.label(), help).clicked() {
         desk.act(Command::Pause);
     }
     sized(ui, 104.0, |ui| {
         let response = widgets::choice(ui, "header size", &mut desk.state.resolution, &camera::RESOLUTIONS);
-        response.accessible_name("Resolution").on_hover_text("Size of the picture");
+        response
+            .accessible_name("Resolution")
+            .on_hover_text("Size of the picture");
     });
     sized(ui, 76.0, |ui| {
         let response = widgets::number(ui, &mut desk.document.view.exposure_ev, &camera::exposure_style());
@@ -96,10 +115,15 @@ fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
         if response.changed() || response.double_clicked() {
             desk.edits.note("Exposure", "Exposure");
         }
-        response.accessible_name("Viewport exposure").on_hover_text("Exposure in stops");
+        response
+            .accessible_name("Viewport exposure")
+            .on_hover_text("Exposure in stops");
     });
     sized(ui, 116.0, |ui| {
-        let choices: Vec<_> = ToneCurve::ALL.iter().map(|curve| (*curve, curve.label(), curve.help())).collect();
+        let choices: Vec<_> = ToneCurve::ALL
+            .iter()
+            .map(|curve| (*curve, curve.label(), curve.help()))
+            .collect();
         let response = widgets::choice(ui, "header tone map", &mut desk.document.view.tone_map, &choices);
         if response.changed() {
             desk.edits.note("Tone map", "Tone map");

@@ -88,7 +88,10 @@ impl State<'_> {
             self.restart();
         }
         orders.models.into_iter().for_each(|source| self.load_model(source));
-        orders.environments.into_iter().for_each(|source| self.load_environment(source));
+        orders
+            .environments
+            .into_iter()
+            .for_each(|source| self.load_environment(source));
         if let Some(submission) = orders.submission {
             self.take(submission);
         } else if self.stage.as_ref().is_some_and(Stage::is_settled) {
@@ -118,7 +121,10 @@ impl State<'_> {
             book = waited.unwrap_or_else(std::sync::PoisonError::into_inner).0;
         }
         let mut orders = std::mem::take(&mut book.orders);
-        let must_wait = self.stage.as_ref().is_some_and(|stage| !stage.may_be_replaced(self.taken_at));
+        let must_wait = self
+            .stage
+            .as_ref()
+            .is_some_and(|stage| !stage.may_be_replaced(self.taken_at));
         if must_wait && self.should_render(book.is_paused) {
             book.orders.submission = orders.submission.take();
         }
@@ -297,9 +303,17 @@ impl State<'_> {
         self.session()?.submit(&stage.document())?;
         if let Some(scene) = &self.snapshot.scene {
             let document = stage.submission.document.clone();
-            self.snapshot.scene = Some(Arc::new(Scene { document, ..Scene::clone(scene) }));
+            self.snapshot.scene = Some(Arc::new(Scene {
+                document,
+                ..Scene::clone(scene)
+            }));
         }
-        if let Some(last) = self.snapshot.picture.clone().filter(|_| stage.is_shown && change.display) {
+        if let Some(last) = self
+            .snapshot
+            .picture
+            .clone()
+            .filter(|_| stage.is_shown && change.display)
+        {
             self.publish(last.image.clone(), last.samples_per_pixel);
         }
         Ok(())
@@ -348,11 +362,17 @@ impl State<'_> {
     }
 
     fn is_new_model(&self, source: &ModelSource) -> bool {
-        self.snapshot.scene.as_ref().is_none_or(|scene| scene.document.model != *source)
+        self.snapshot
+            .scene
+            .as_ref()
+            .is_none_or(|scene| scene.document.model != *source)
     }
 
     fn is_new_environment(&self, source: &EnvironmentSource) -> bool {
-        self.snapshot.scene.as_ref().is_none_or(|scene| scene.document.lighting.environment != *source)
+        self.snapshot
+            .scene
+            .as_ref()
+            .is_none_or(|scene| scene.document.lighting.environment != *source)
     }
 
     fn note_scene(&mut self) -> Result<(), SessionError> {
@@ -378,7 +398,11 @@ impl State<'_> {
         if progress.samples_per_pixel > 0 {
             self.snapshot.samples_per_second = progress.samples_per_second(pixels);
             // Averaged, so that resolutions do not flicker while something is dragged.
-            let weight = if self.samples_per_second > 0.0 { SPEED_WEIGHT } else { 1.0 };
+            let weight = if self.samples_per_second > 0.0 {
+                SPEED_WEIGHT
+            } else {
+                1.0
+            };
             self.samples_per_second += weight * (self.snapshot.samples_per_second - self.samples_per_second);
         }
         let age = self.published_at.elapsed();
@@ -456,5 +480,6 @@ fn shown(image: &Image, view: &ViewSettings) -> Vec<u8> {
 
 fn panic_text(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "for an unknown reason".to_owned())
+    text.or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "for an unknown reason".to_owned())
 }
