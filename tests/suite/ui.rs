@@ -56,6 +56,8 @@ fn settle(harness: &mut Harness<'static, App>) {
     // What was just done reaches the renderer with the next frame.
     harness.run_steps(3);
     wait(harness, "a finished picture", App::is_settled);
+    // The panels show what the wait ended with.
+    harness.step();
     harness.check_accessibility();
 }
 
