@@ -83,11 +83,18 @@ pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max
     (t > 0.0 && t < t_max).then_some((t, area_b / area, area_c / area))
 }
 
+/// The direction with every −0 made 0: obvhs takes the sign of a direction in one place by its bit, in another by
+/// comparing it with 0, and would look for boxes on the wrong side.
+#[inline(always)]
+fn without_negative_zero(direction: Vec3A) -> Vec3A {
+    direction + Vec3A::ZERO
+}
+
 impl Geometry {
     /// The nearest triangle along a ray, in the geometry's units, with 0 < t < `t_max`.
     pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
         let frame = RayFrame::new(origin.into(), direction.into());
-        let mut ray = Ray::new(frame.origin, frame.direction, 0.0, t_max);
+        let mut ray = Ray::new(frame.origin, without_negative_zero(frame.direction), 0.0, t_max);
         let mut nearest = None;
         let mut state = self.bvh.new_traversal(ray.direction);
         let mut node;
@@ -109,7 +116,7 @@ impl Geometry {
     /// Whether any triangle is met with 0 < t < `t_max`.
     pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
         let frame = RayFrame::new(origin.into(), direction.into());
-        let ray = Ray::new(frame.origin, frame.direction, 0.0, t_max);
+        let ray = Ray::new(frame.origin, without_negative_zero(frame.direction), 0.0, t_max);
         let mut state = self.bvh.new_traversal(ray.direction);
         let mut node;
         let mut met = false;

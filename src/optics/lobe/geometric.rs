@@ -19,9 +19,9 @@ pub const HEMISPHERICAL: bool = false;
 pub const ANISOTROPIC: bool = true;
 
 /// Roughness up to which eight nodes integrate the density to better than 1e-3 at 99.9 % of the sampled directions.
-const FEW_NODES_ROUGHNESS: f64 = 0.6;
+pub const FEW_NODES_ROUGHNESS: f64 = 0.6;
 /// Longest range of u worth integrating: the integrand falls as e^(2u) towards its lower end.
-const RANGE_MAX: f64 = 14.0;
+pub const RANGE_MAX: f64 = 14.0;
 
 /// Positive nodes and weights of the 8-point Gauss–Legendre rule on [−1, 1].
 const GAUSS_8: [[f64; 2]; 4] = [
