@@ -53,3 +53,10 @@ mod tone_twin;
 mod ui;
 #[path = "suite/worker.rs"]
 mod worker;
+
+#[path = "suite/layouts.rs"]
+mod layouts;
+#[path = "suite/shaders.rs"]
+mod shaders;
+#[path = "suite/twins/mod.rs"]
+mod twins;

@@ -181,7 +181,7 @@ impl DiscMap {
         let square = x * x + y * y;
         // sin θ/ρ = 2 cos(θ/2)/√2.
         let scale = (2.0 - square).max(0.0).sqrt();
-        (square < 1.0).then(|| Vec3 {
+        (square < 1.0).then_some(Vec3 {
             x: x * scale,
             y: y * scale,
             z: 1.0 - square,

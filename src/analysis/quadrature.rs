@@ -14,7 +14,7 @@ const DEPTH_MIN: u32 = 2;
 /// Nodes of the adaptive rule along each coordinate.
 const PATCH_NODES: [[f64; 2]; 3] = [
     [-0.774_596_669_241_483_4, 0.555_555_555_555_555_6],
-    [0.0, 0.888_888_888_888_888_9],
+    [0.0, 8.0 / 9.0],
     [0.774_596_669_241_483_4, 0.555_555_555_555_555_6],
 ];
 
@@ -148,7 +148,8 @@ impl Patch {
 fn jump_azimuths(cut: Vec3<f64>, sine: f64, cosine: f64) -> [Option<f64>; 2] {
     let across = cut.x.hypot(cut.y) * sine;
     let ratio = -cut.z * cosine / across;
-    if !(ratio.abs() < 1.0) {
+    // Also where the ratio is 0/0.
+    if ratio.is_nan() || ratio.abs() >= 1.0 {
         return [None, None];
     }
     let (middle, half) = (cut.y.atan2(cut.x), ratio.acos());

@@ -96,17 +96,6 @@ impl Case {
         }
     }
 
-    pub fn shape_f32(&self) -> LobeShape<'static, f32> {
-        LobeShape {
-            lobe: self.lobe,
-            curve: self.curve,
-            horizon: self.horizon,
-            roughness: self.roughness as f32,
-            anisotropy: self.anisotropy as f32,
-            table: self.table,
-        }
-    }
-
     /// A shading frame in no special position.
     pub fn frame(&self) -> Frame<f64> {
         frame_from_normal(vec3(0.36, -0.48, 0.8))
