@@ -13,7 +13,7 @@ pub mod document;
 pub mod cpu;
 pub mod gpu;
 
-// pub mod render;
+pub mod render;
 
 pub mod app;
 pub mod cli;

@@ -1,8 +1,59 @@
-//! All integration tests: one binary, so that they link once.
+//! The integration tests, in one binary: see docs/ARCHITECTURE.md.
+#![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+#[path = "suite/check.rs"]
+mod check;
+#[path = "suite/cli_errors.rs"]
+mod cli_errors;
+#[path = "suite/cli_render.rs"]
+mod cli_render;
+#[path = "suite/cli_scatter.rs"]
+mod cli_scatter;
+#[path = "suite/cli_support.rs"]
+mod cli_support;
+#[path = "suite/docs.rs"]
+mod docs;
+#[path = "suite/document.rs"]
+mod document;
+#[path = "suite/environment.rs"]
+mod environment;
+#[path = "suite/environment_files.rs"]
+mod environment_files;
+#[path = "suite/environment_sampling.rs"]
+mod environment_sampling;
+#[path = "suite/environment_twin.rs"]
+mod environment_twin;
+#[path = "suite/files.rs"]
+mod files;
+#[path = "suite/fit.rs"]
+mod fit;
+#[path = "suite/geometry.rs"]
+mod geometry;
+#[path = "suite/gltf.rs"]
+mod gltf;
+#[path = "suite/gltf_builder.rs"]
+mod gltf_builder;
+#[path = "suite/gltf_damaged.rs"]
+mod gltf_damaged;
 #[path = "suite/layouts.rs"]
 mod layouts;
+#[path = "suite/lobe_cases.rs"]
+mod lobe_cases;
+#[path = "suite/renders.rs"]
+mod renders;
 #[path = "suite/shaders.rs"]
 mod shaders;
+#[path = "suite/statistics.rs"]
+mod statistics;
+#[path = "suite/support.rs"]
+mod support;
+#[path = "suite/tone.rs"]
+mod tone;
+#[path = "suite/tone_twin.rs"]
+mod tone_twin;
 #[path = "suite/twins/mod.rs"]
 mod twins;
+#[path = "suite/ui.rs"]
+mod ui;
+#[path = "suite/worker.rs"]
+mod worker;

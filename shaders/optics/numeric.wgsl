@@ -13,15 +13,6 @@ fn log1p(x: f32) -> f32 {
     return select(log(1.0 + x), series, abs(x) < 0.01);
 }
 
-fn arsinh(x: f32) -> f32 {
-    let magnitude = abs(x);
-    // ln(|x| + sqrt(x^2 + 1)) with the part that vanishes at 0 kept apart.
-    let square = magnitude * magnitude;
-    let root = sqrt(square + 1.0);
-    let value = log1p(magnitude + square / (1.0 + root));
-    return select(value, -value, x < 0.0);
-}
-
 // The angle of the vector (x, y) in radians, in [-pi, pi], to 2e-7; not for the null vector. Instead of the built-in
 // atan2, which may be 4096 roundings off: a fifth of a texel of an environment's map.
 fn arctan2(y: f32, x: f32) -> f32 {

@@ -47,6 +47,21 @@ impl Film {
         }
     }
 
+    /// Mean luminance of each pixel; NaN where there is no sample.
+    pub fn luminance(&self) -> Vec<f64> {
+        let mean = |(sum, s): (&[f64; 4], &[f64; 2])| (0.2126 * sum[0] + 0.7152 * sum[1] + 0.0722 * sum[2]) / s[1];
+        self.color.iter().zip(&self.statistics).map(mean).collect()
+    }
+
+    /// By how many standard deviations the luminance summed over the whole picture differs from that of another render
+    /// of the same size. The sum over many pixels is nearly normal even where single pixels are skewed. Rounding of f32
+    /// radiance counts as an uncertainty of 1e-4.
+    pub fn difference_in_sigma(&self, other: &Film) -> f64 {
+        let (a, b): (f64, f64) = (self.luminance().iter().sum(), other.luminance().iter().sum());
+        let variance: f64 = self.variance_of_mean().iter().chain(&other.variance_of_mean()).sum();
+        (a - b) / (variance + (1e-4 * a).powi(2)).sqrt()
+    }
+
     /// Variance of the mean luminance of each pixel, unbiased; infinite below two samples.
     pub fn variance_of_mean(&self) -> Vec<f64> {
         let of_pixel = |(sum, s): (&[f64; 4], &[f64; 2])| {

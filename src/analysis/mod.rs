@@ -1,3 +1,16 @@
-//! Numbers about pictures and samples.
+//! Proof by numbers: quadrature, χ² tests of samples against densities, histograms, errors of images; and what is read
+//! off films and clouds of samples.
+//!
+//! The tests are f64 and take plain directions and slices, so that samples of either engine can be tested.
 
+pub mod chi_square;
+pub mod error;
 pub mod film;
+pub mod fit;
+pub mod histogram;
+pub mod lobe_model;
+pub mod lobe_view;
+pub mod plot;
+pub mod quadrature;
+pub mod scatter;
+pub mod sphere_grid;

@@ -1,1 +1,459 @@
-//! See docs/ARCHITECTURE.md.
+//! The editor window.
+//!
+//! State is the document with its history, what panels remember, and a worker that renders. A frame shows the panels,
+//! which change the document or push actions; then actions are applied, the edit is recorded, and a document that
+//! differs from the one last submitted is submitted.
+
+pub mod actions;
+mod dialogs;
+mod edits;
+mod files;
+mod icons;
+pub mod layout;
+mod menu;
+mod orbit;
+mod panels;
+mod settings;
+pub mod status;
+mod theme;
+mod viewport;
+mod widgets;
+
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::Ui;
+use egui_tiles::Tree;
+
+use actions::{Action, Command};
+use dialogs::Dialogs;
+use edits::Edits;
+use layout::Pane;
+use menu::Sheet;
+pub use panels::Resolution;
+use panels::{Desk, PanelState};
+use status::FrameMeter;
+use viewport::Viewport;
+
+use crate::document::{CameraSettings, Change, Document, MaterialSettings};
+use crate::render::EngineChoice;
+use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
+use crate::scene::{Model, ModelSource};
+
+/// Changes that follow each other within this are rendered as moving.
+const MOVING: Duration = Duration::from_millis(150);
+
+/// Opens the editor with files: models, environments, materials, projects. Returns when the window is closed.
+///
+/// # Errors
+/// Where no window can be opened.
+pub fn run(files: Vec<PathBuf>, engine: EngineChoice) -> anyhow::Result<()> {
+    let options = Options {
+        files,
+        engine,
+        ..Options::default()
+    };
+    let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, options)?)));
+    eframe::run_native("Glossmith", settings::native_options(), create).map_err(|error| {
+        anyhow::anyhow!(
+            "the window can't be opened: {error}. `glossmith render` works without one; a window needs a display and a \
+             Vulkan or OpenGL driver (on Debian and Ubuntu: apt install mesa-vulkan-drivers)"
+        )
+    })
+}
+
+/// What the editor starts with.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Files to open.
+    pub files: Vec<PathBuf>,
+    /// The engine.
+    pub engine: EngineChoice,
+    /// The document instead of the default one.
+    pub document: Option<Document>,
+    /// The size of the picture instead of the one remembered.
+    pub resolution: Option<Resolution>,
+}
+
+/// The editor.
+pub struct App {
+    document: Document,
+    edits: Edits,
+    worker: Worker,
+    /// The document as last submitted, with its size.
+    submitted: Option<Document>,
+    submitted_at: Instant,
+    /// The submission's revision.
+    revision: u64,
+    queue: Vec<Action>,
+    /// Files given at the start that are still being loaded: rendering waits for them.
+    awaited: usize,
+    panels: PanelState,
+    layout: Tree<Pane>,
+    is_maximised: bool,
+    viewport: Viewport,
+    dialogs: Dialogs,
+    sheet: Sheet,
+    files: files::Files,
+    meter: FrameMeter,
+    title: String,
+    theme: egui::ThemePreference,
+}
+
+impl App {
+    /// The editor in a window.
+    ///
+    /// # Errors
+    /// If the system gives no thread to render on.
+    pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> io::Result<Self> {
+        theme::install(&creation.egui_ctx);
+        let kept = settings::Kept::load(creation);
+        creation.egui_ctx.set_theme(kept.theme);
+        let ctx = creation.egui_ctx.clone();
+        let worker = Worker::spawn(options.engine, move || ctx.request_repaint())?;
+        let document = options.document.unwrap_or_default();
+        let mut app = Self {
+            edits: Edits::new(document.clone()),
+            document,
+            worker,
+            submitted: None,
+            submitted_at: Instant::now(),
+            revision: 0,
+            queue: Vec::new(),
+            awaited: 0,
+            panels: PanelState {
+                resolution: options.resolution.unwrap_or(kept.resolution),
+                ..PanelState::default()
+            },
+            layout: kept.layout.unwrap_or_else(layout::default_layout),
+            is_maximised: false,
+            viewport: Viewport::default(),
+            dialogs: Dialogs::default(),
+            sheet: Sheet::None,
+            files: files::Files::new(creation.egui_ctx.clone()),
+            meter: FrameMeter::default(),
+            title: String::new(),
+            theme: kept.theme,
+        };
+        for path in options.files {
+            app.awaited += usize::from(app.open(path));
+        }
+        Ok(app)
+    }
+
+    /// The document as edited.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// The renderer's state.
+    pub fn snapshot(&self) -> Arc<Snapshot> {
+        self.worker.snapshot()
+    }
+
+    /// Whether the picture shown is the finished one of the document as it is.
+    pub fn is_settled(&self) -> bool {
+        let snapshot = self.worker.snapshot();
+        let is_current = |picture: &Picture| picture.revision == self.revision && picture.reduction == 1;
+        self.submitted.is_some()
+            && snapshot.activity == Activity::Done
+            && snapshot.picture.as_deref().is_some_and(is_current)
+    }
+
+    /// Has something done in the next frame, as if it had been chosen from a menu.
+    pub fn request(&mut self, action: Action) {
+        self.queue.push(action);
+    }
+
+    /// Brings a panel to the front.
+    pub fn reveal(&mut self, pane: Pane) {
+        layout::reveal(&mut self.layout, pane);
+    }
+
+    /// How long the window's frames take.
+    pub fn meter(&self) -> &FrameMeter {
+        &self.meter
+    }
+
+    /// What was said so far, oldest first.
+    pub fn messages(&self) -> Vec<String> {
+        self.panels.log.iter().map(|entry| entry.text.clone()).collect()
+    }
+
+    fn say(&mut self, level: Level, text: impl Into<String>) {
+        panels::log::add(&mut self.panels.log, level, text.into());
+    }
+
+    fn take_events(&mut self) {
+        for event in self.worker.take_events() {
+            match event {
+                Event::Message(level, text) => self.say(level, text),
+                Event::ModelOpened(source, model) => {
+                    self.adopt_model(source, &model);
+                    self.awaited = self.awaited.saturating_sub(1);
+                }
+                Event::EnvironmentOpened(source, _) => {
+                    self.document.lighting.environment = source;
+                    self.edits.note("Change the environment", "");
+                    self.awaited = self.awaited.saturating_sub(1);
+                }
+                Event::OpenFailed(_, why) => {
+                    self.say(Level::Error, why);
+                    self.awaited = self.awaited.saturating_sub(1);
+                }
+            }
+        }
+        for (level, text) in self.files.take_messages() {
+            self.say(level, text);
+        }
+    }
+
+    /// Takes a loaded model over: a file's materials come with it, a built-in keeps the one that is being edited.
+    fn adopt_model(&mut self, source: ModelSource, model: &Model) {
+        let is_file = matches!(source, ModelSource::File(_));
+        let edited = self.desk_material();
+        self.document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
+        if !is_file && let Some(first) = self.document.materials.first_mut() {
+            *first = edited;
+        }
+        self.panels.slot = 0;
+        self.document.model = source;
+        let camera = &mut self.document.camera;
+        (camera.target, camera.distance, camera.position) = (None, None, None);
+        self.edits.note(format!("Change the model to {}", model.name), "");
+    }
+
+    fn desk_material(&self) -> MaterialSettings {
+        let materials = &self.document.materials;
+        materials
+            .get(self.panels.slot)
+            .or(materials.last())
+            .cloned()
+            .unwrap_or_default()
+    }
+
+    fn apply(&mut self, ctx: &egui::Context, action: Action) {
+        match action {
+            Action::Do(command) => self.command(ctx, command),
+            Action::Open(path) => {
+                self.open(path);
+            }
+            Action::UseModel(source) => self.worker.open_model(source),
+            Action::UseEnvironment(source) => self.worker.open_environment(source),
+            Action::UseMaterial(material) => self.use_material(*material),
+            Action::SelectSlot(slot) => {
+                self.panels.slot = slot;
+                self.edits.seal();
+            }
+            Action::LookFrom(yaw_deg, pitch_deg) => {
+                let camera = &mut self.document.camera;
+                (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
+                self.edits.note("Look from a side", "");
+            }
+            Action::UseEngine(choice) => self.worker.use_engine(choice),
+        }
+    }
+
+    fn command(&mut self, ctx: &egui::Context, command: Command) {
+        match command {
+            Command::Undo => {
+                if let Some(document) = self.edits.undo() {
+                    self.document = document;
+                }
+            }
+            Command::Redo => {
+                if let Some(document) = self.edits.redo() {
+                    self.document = document;
+                }
+            }
+            Command::ResetMaterial => {
+                let name = self.desk_material().name;
+                let default = MaterialSettings::default();
+                self.use_material(MaterialSettings { name, ..default });
+            }
+            Command::ResetCamera => {
+                self.document.camera = CameraSettings::default();
+                self.edits.note("Reset the camera", "");
+            }
+            Command::FrameAll => {
+                let camera = &mut self.document.camera;
+                (camera.target, camera.distance, camera.position) = (None, None, None);
+                self.edits.note("Frame all", "");
+            }
+            Command::Maximise => {
+                self.is_maximised = !self.is_maximised;
+                layout::set_maximised(&mut self.layout, self.is_maximised);
+            }
+            Command::ToggleTheme => {
+                let is_dark = ctx.theme() == egui::Theme::Dark;
+                self.theme = if is_dark {
+                    egui::ThemePreference::Light
+                } else {
+                    egui::ThemePreference::Dark
+                };
+                ctx.set_theme(self.theme);
+            }
+            Command::ResetLayout => {
+                self.layout = layout::default_layout();
+                self.is_maximised = false;
+            }
+            Command::Pause => {
+                self.panels.is_paused = !self.panels.is_paused;
+                self.worker.pause(self.panels.is_paused);
+            }
+            Command::Reload => self.worker.reload(),
+            Command::Restart => self.worker.restart(),
+            Command::Palette => {
+                self.sheet = Sheet::Palette {
+                    search: String::new(),
+                    selected: 0,
+                };
+            }
+            Command::Shortcuts => self.sheet = Sheet::Shortcuts,
+            Command::About => self.sheet = Sheet::About,
+            Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            of_files => self.file_command(ctx, of_files),
+        }
+    }
+
+    fn use_material(&mut self, material: MaterialSettings) {
+        let label = format!("Use {}", material.name);
+        let slot = self.panels.slot;
+        let materials = &mut self.document.materials;
+        if materials.len() <= slot {
+            let last = materials.last().cloned().unwrap_or_default();
+            materials.resize(slot + 1, last);
+        }
+        materials[slot] = material;
+        self.edits.note(label, "");
+    }
+
+    /// Records the frame's edit and hands the renderer what differs from what it has.
+    fn record_and_submit(&mut self, ctx: &egui::Context) {
+        let is_dragging = ctx.input(|input| input.pointer.any_down());
+        self.edits.record(&self.document, is_dragging);
+        if self.awaited > 0 {
+            return;
+        }
+        let mut wanted = self.document.clone();
+        match self.viewport.fill_size(self.panels.resolution) {
+            Some([width, height]) => (wanted.render.width, wanted.render.height) = (width, height),
+            // The first frame has not been laid out: the size would be wrong.
+            None if self.panels.resolution != Resolution::Document => return,
+            None => {}
+        }
+        let change = self
+            .submitted
+            .as_ref()
+            .map_or(Change::everything(), |old| Change::between(old, &wanted));
+        if change.is_none() {
+            return;
+        }
+        let is_moving = is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
+        self.revision = self
+            .worker
+            .submit(&wanted, if is_moving { Pace::Moving } else { Pace::Still });
+        self.submitted = Some(wanted);
+        self.submitted_at = Instant::now();
+    }
+
+    fn show(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+        let snapshot = self.worker.snapshot();
+        let is_dark = ui.visuals().dark_mode;
+        let bar = egui::Frame::new()
+            .fill(ui.visuals().panel_fill)
+            .inner_margin(egui::Margin::symmetric(8, 3));
+        let answer = egui::Panel::top("menu")
+            .frame(bar)
+            .show_separator_line(false)
+            .show(ui, |ui| menu::bar(ui, &self.edits, actions))
+            .inner;
+        if let Some(pane) = answer.reveal {
+            layout::reveal(&mut self.layout, pane);
+        }
+        egui::Panel::bottom("status")
+            .frame(bar)
+            .show_separator_line(false)
+            .exact_size(theme::BAR_HEIGHT)
+            .show(ui, |ui| status::show(ui, &snapshot, &self.meter));
+        let ground = egui::Frame::new()
+            .fill(theme::ground(is_dark))
+            .inner_margin(egui::Margin::symmetric(0, 3));
+        egui::CentralPanel::default().frame(ground).show(ui, |ui| {
+            let mut desk = Desk {
+                document: &mut self.document,
+                snapshot: &snapshot,
+                edits: &mut self.edits,
+                actions,
+                state: &mut self.panels,
+            };
+            let mut panes = layout::Panes {
+                desk: &mut desk,
+                viewport: &mut self.viewport,
+            };
+            self.layout.ui(&mut panes, ui);
+        });
+        menu::sheet(ui.ctx(), &mut self.sheet, actions);
+        if let Some((purpose, path)) = self.dialogs.show(ui) {
+            self.chosen(purpose, path);
+        }
+    }
+
+    fn set_title(&mut self, ctx: &egui::Context) {
+        let mark = if self.edits.is_saved() { "" } else { " *" };
+        let title = format!("{}{mark} – Glossmith", self.files.project_name());
+        if title != self.title {
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
+            self.title = title;
+        }
+    }
+}
+
+impl eframe::App for App {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
+        let begun = Instant::now();
+        let ctx = ui.ctx().clone();
+        self.meter
+            .begin(begun, ctx.requested_repaint_last_pass(), frame.info().cpu_usage);
+        self.take_events();
+        let mut actions = std::mem::take(&mut self.queue);
+        if self.sheet == Sheet::None && !self.dialogs.is_open() {
+            actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
+        }
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        actions.extend(dropped.iter().map(|file| Action::Open(file.path().to_owned())));
+        self.show(ui, &mut actions);
+        for action in actions {
+            self.apply(&ctx, action);
+        }
+        self.record_and_submit(&ctx);
+        self.set_title(&ctx);
+        self.meter.end(begun.elapsed());
+    }
+
+    fn on_exit(&mut self) {
+        log::info!("{}", self.meter.summary());
+    }
+
+    fn save(&mut self, storage: &mut dyn eframe::Storage) {
+        let mut layout = self.layout.clone();
+        layout::set_maximised(&mut layout, false);
+        let kept = settings::Kept {
+            theme: self.theme,
+            layout: Some(layout),
+            resolution: self.panels.resolution,
+        };
+        kept.save(storage);
+    }
+
+    fn clear_color(&self, visuals: &egui::Visuals) -> [f32; 4] {
+        theme::ground(visuals.dark_mode).to_normalized_gamma_f32()
+    }
+
+    // Positions of panels are kept with the layout; egui's own memory would bring back open menus and old sizes.
+    fn persist_egui_memory(&self) -> bool {
+        false
+    }
+}

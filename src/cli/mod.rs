@@ -1,1 +1,78 @@
-//! See docs/ARCHITECTURE.md.
+//! The command line: one module a subcommand.
+//!
+//! Exit codes: 0 done; 1 something could not be read, rendered or written (one line on stderr says what and what to
+//! do); 2 the arguments are wrong.
+
+mod check;
+mod fit;
+mod lobe;
+mod lobe_spec;
+mod names;
+mod parse;
+mod render;
+mod scatter;
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+
+use crate::render::EngineChoice;
+
+/// Glossmith: a material editor around the geometric lobe.
+///
+/// Without a subcommand the editor opens, with the files given: models (.glb, .gltf), environments (.hdr, .exr),
+/// materials (.json).
+#[derive(Debug, Parser)]
+#[command(version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
+pub struct Arguments {
+    /// What to do instead of opening the editor.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// Files to open in the editor.
+    pub files: Vec<PathBuf>,
+    /// The engine that renders: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
+    #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
+    pub engine: EngineChoice,
+}
+
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, rendered or written; 2 wrong arguments.";
+
+/// The subcommands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Render a picture.
+    Render(Box<render::RenderArguments>),
+    /// Prove on this machine that the renderer is right.
+    Check(check::CheckArguments),
+    /// Draw samples of a lobe, as the renderer draws them.
+    Scatter(scatter::ScatterArguments),
+    /// Match the look of another lobe or of a measured material.
+    Fit(fit::FitArguments),
+    /// Show lobes: slices, bodies, densities, albedo, reciprocity, losses.
+    Lobe(lobe::LobeArguments),
+}
+
+impl Command {
+    /// Runs the subcommand.
+    ///
+    /// # Errors
+    /// One line that names the file, what is wrong and what to do.
+    pub fn run(self) -> anyhow::Result<()> {
+        match self {
+            Command::Render(arguments) => render::run(&arguments),
+            Command::Check(arguments) => check::run(&arguments),
+            Command::Scatter(arguments) => scatter::run(&arguments),
+            Command::Fit(arguments) => fit::run(&arguments),
+            Command::Lobe(arguments) => lobe::run(&arguments),
+        }
+    }
+}
+
+/// Renders the default scene, with these files in the place of its parts, to a picture and says where it is: what the
+/// program does where no window can be opened.
+///
+/// # Errors
+/// One line that names the file, what is wrong and what to do.
+pub fn render_default_scene(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()> {
+    render::run_default(files, engine)
+}

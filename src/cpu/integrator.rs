@@ -157,7 +157,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             throughput = throughput * drawn.throughput;
             let strength = throughput.max_component();
             // Also ends paths that are NaN.
-            if !(strength.to_f64() > 0.0) {
+            if strength.to_f64().partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
                 break;
             }
             if bounce >= ROULETTE_START && strength.to_f64() < 1.0 {

@@ -9,6 +9,7 @@ use crate::scene::camera::Camera;
 use crate::scene::environment::Environment;
 
 use super::plan::Plan;
+pub use super::settings::Strategy;
 
 /// Everything that a picture depends on. Cheap to clone.
 #[derive(Clone, Debug)]
@@ -59,18 +60,4 @@ pub enum BackgroundKind {
     Transparent,
     /// A linear colour.
     Color([f32; 3]),
-}
-
-/// How light is found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-#[repr(u32)]
-pub enum Strategy {
-    /// By sampling the lobe and seeing what is there.
-    Lobe = 0,
-    /// By sampling the lights (mirrors excepted, which only the lobe finds).
-    Light = 1,
-    /// Both, weighed against each other (Veach 1997, balance heuristic).
-    #[default]
-    Mis = 2,
 }

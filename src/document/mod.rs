@@ -1,4 +1,85 @@
-//! What is edited and saved, and what it compiles to.
+//! What is edited and saved, as plain values: what is rendered, its materials, light, camera, view and render settings;
+//! their parameters as data; files; differences; history; and what a document compiles to.
 
+pub mod change;
+mod compile;
+pub mod custom_curve;
+pub mod file;
+pub mod history;
 pub mod job;
+pub mod match_look;
+mod material;
+pub mod measured_look;
+pub mod parameter;
 pub mod plan;
+pub mod preset;
+pub mod project;
+mod registry;
+mod settings;
+
+use serde::{Deserialize, Serialize};
+
+pub use change::Change;
+pub use compile::compile;
+pub use custom_curve::CustomCurve;
+pub use file::{FileError, Loaded};
+pub use history::History;
+pub use material::{Conductor, MaterialSettings};
+pub use parameter::{Choice, Kind, Parameter, ParameterError, Value, assign, parameter};
+pub use preset::{PRESETS, load_material, material_by_name, save_material};
+pub use project::{load_document, save_document};
+pub use registry::PARAMETERS;
+pub use settings::{Background, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings, range};
+
+pub use crate::scene::camera::PixelFilter;
+
+use crate::scene::ModelSource;
+
+/// Everything that a picture depends on, except for the contents of the files it names.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Document {
+    /// What is rendered.
+    pub model: ModelSource,
+    /// Whether the model stands on a ground plane.
+    pub ground: bool,
+    /// The materials in the order of the model's slots. A slot beyond the last takes the last one.
+    pub materials: Vec<MaterialSettings>,
+    /// Where the light comes from.
+    pub lighting: Lighting,
+    /// Where it is seen from.
+    pub camera: CameraSettings,
+    /// How radiance becomes a picture.
+    pub view: ViewSettings,
+    /// How, and for how long, it is rendered.
+    pub render: RenderSettings,
+    /// What the file had that this version does not know: written back when saving.
+    #[serde(skip)]
+    pub extra: serde_json::Map<String, serde_json::Value>,
+}
+
+impl Default for Document {
+    fn default() -> Self {
+        Self {
+            model: ModelSource::default(),
+            ground: false,
+            materials: vec![MaterialSettings::default()],
+            lighting: Lighting::default(),
+            camera: CameraSettings::default(),
+            view: ViewSettings::default(),
+            render: RenderSettings::default(),
+            extra: serde_json::Map::new(),
+        }
+    }
+}
+
+impl Document {
+    /// Whether every number lies where the renderer can work with it. Materials need no check: they are set through
+    /// [`PARAMETERS`].
+    ///
+    /// # Errors
+    /// The first setting that is out of range.
+    pub fn check(&self) -> Result<(), SettingError> {
+        settings::check(self)
+    }
+}

@@ -66,6 +66,24 @@ impl Plan {
         }
     }
 
+    /// The names of the effects that are simulated.
+    pub fn effects(&self) -> Vec<&'static str> {
+        let effects = [
+            ("environment", true),
+            ("light-sampling", self.light_sampling),
+            ("specular", self.specular),
+            ("base", self.base),
+            ("anisotropy", self.anisotropy),
+            ("emission", self.emission),
+            ("depth-of-field", self.lens),
+        ];
+        effects
+            .into_iter()
+            .filter(|(_, is_on)| *is_on)
+            .map(|(name, _)| name)
+            .collect()
+    }
+
     /// The override constants of the pipeline, by their names in `shaders/scene/plan.wgsl`.
     pub fn constants(&self) -> [(&'static str, f64); 10] {
         let number = |value: Option<u32>| f64::from(value.unwrap_or(u32::MAX));

@@ -78,15 +78,23 @@ impl GpuDevice {
     /// Says what to install where there is none, or what the adapter lacks.
     pub fn open(kind: AdapterKind) -> Result<Self, GpuError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let mut adapters = block_on(instance.enumerate_adapters(wgpu::Backends::all()));
-        adapters.retain(|adapter| {
-            let is_software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-            match kind {
-                AdapterKind::Any => true,
-                AdapterKind::Hardware => !is_software,
-                AdapterKind::Software => is_software,
-            }
-        });
+        let wanted = |backends| {
+            let mut adapters = block_on(instance.enumerate_adapters(backends));
+            adapters.retain(|adapter| {
+                let is_software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+                match kind {
+                    AdapterKind::Any => true,
+                    AdapterKind::Hardware => !is_software,
+                    AdapterKind::Software => is_software,
+                }
+            });
+            adapters
+        };
+        // OpenGL only where there is nothing else: looking for it takes time and prints errors where it is missing.
+        let mut adapters = wanted(wgpu::Backends::PRIMARY);
+        if adapters.is_empty() && kind != AdapterKind::Software {
+            adapters = wanted(wgpu::Backends::GL);
+        }
         adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
         let adapter = adapters.into_iter().next().ok_or(GpuError::NoAdapter(match kind {
             AdapterKind::Any => "",
@@ -225,14 +233,13 @@ impl GpuDevice {
     }
 }
 
-/// Sorts adapters: real GPUs first, Vulkan and its peers before OpenGL.
-fn rank(info: &wgpu::AdapterInfo) -> (u8, u8) {
-    let kind = match info.device_type {
+/// Sorts adapters: real GPUs first.
+fn rank(info: &wgpu::AdapterInfo) -> u8 {
+    match info.device_type {
         wgpu::DeviceType::DiscreteGpu => 0,
         wgpu::DeviceType::IntegratedGpu => 1,
         wgpu::DeviceType::VirtualGpu => 2,
         wgpu::DeviceType::Other => 3,
         wgpu::DeviceType::Cpu => 4,
-    };
-    (kind, u8::from(info.backend == wgpu::Backend::Gl))
+    }
 }

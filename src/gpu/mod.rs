@@ -5,6 +5,7 @@ mod engine;
 pub mod layout;
 mod pipeline;
 mod resources;
+pub mod scatter;
 pub mod shader;
 
 pub use device::{AdapterKind, GpuDevice, GpuError};

@@ -174,7 +174,6 @@ pub struct Layers<T> {
 
 /// What the base is left with, and how often each layer is sampled: in proportion to the luminance it reflects, each at
 /// least one time in twenty.
-#[inline(always)]
 pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Layers<T> {
     if !material.has_base() {
         return Layers {
@@ -214,7 +213,6 @@ fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
 
 /// Draws a direction: the specular lobe or the base, chosen by `xi_layer`. `wants_density` is false where no other
 /// strategy competes: then the geometric lobe never computes its density.
-#[inline(always)]
 pub fn material_sample<T: Real>(
     material: &Material<T>,
     tables: &[f32],
@@ -255,7 +253,6 @@ pub fn material_sample<T: Real>(
 /// multiplied by its share under multiple importance sampling (Veach 1997, balance heuristic): light_density/
 /// (light_density + `competing` × density of that layer). `competing` is 1, or 0 where light sampling works alone.
 /// Layers weighed as mirrors give nothing: only sampling the lobe finds what they reflect.
-#[inline(always)]
 pub fn material_evaluate<T: Real>(
     material: &Material<T>,
     tables: &[f32],
@@ -281,7 +278,6 @@ pub fn material_evaluate<T: Real>(
 }
 
 /// The specular albedo for a view whose cosine is `cosine`, linear between the table's nodes.
-#[inline(always)]
 pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, cosine: T) -> Vec3<T> {
     let last = T::from_f64(ALBEDO_NODES as f64 - 1.0);
     let position = cosine.clamp(T::zero(), T::one()) * last;

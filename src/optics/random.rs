@@ -18,6 +18,19 @@ pub enum Sequence {
     Independent = 1,
 }
 
+impl Sequence {
+    /// Every sequence, in the order of the menus.
+    pub const ALL: &'static [Sequence] = &[Sequence::Sobol, Sequence::Independent];
+
+    /// Name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Sequence::Sobol => "sobol",
+            Sequence::Independent => "independent",
+        }
+    }
+}
+
 /// The counters from which a path draws its numbers.
 #[derive(Clone, Copy, Debug)]
 pub struct RandomState {

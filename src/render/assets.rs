@@ -34,7 +34,10 @@ impl Assets {
     /// # Errors
     /// As [`Assets::model`].
     pub fn geometry(&mut self, source: &ModelSource, ground: bool) -> Result<Arc<Geometry>, SessionError> {
-        let known = self.geometry.as_ref().filter(|(of, with_ground, _)| of == source && *with_ground == ground);
+        let known = self
+            .geometry
+            .as_ref()
+            .filter(|(of, with_ground, _)| of == source && *with_ground == ground);
         if let Some((_, _, geometry)) = known {
             return Ok(geometry.clone());
         }

@@ -96,7 +96,11 @@ fn samples_per_second(engine: &mut Engine, job: &Arc<Job>) -> Option<f64> {
 }
 
 fn verdict_path() -> Option<PathBuf> {
-    Some(directories::ProjectDirs::from("", "", "glossmith")?.cache_dir().join("engine.json"))
+    Some(
+        directories::ProjectDirs::from("", "", "glossmith")?
+            .cache_dir()
+            .join("engine.json"),
+    )
 }
 
 fn read_verdict(machine: &str) -> Option<Verdict> {

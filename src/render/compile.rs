@@ -14,10 +14,13 @@ use crate::scene::camera::Camera;
 /// How much room a framed model is given.
 const FRAME_MARGIN: f64 = 1.05;
 
+/// Materials and their tables.
+type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
+
 /// Compiles documents; remembers the last materials, whose tables take milliseconds.
 #[derive(Debug, Default)]
 pub(super) struct Compiler {
-    materials: Option<(Vec<MaterialSettings>, Arc<Vec<Material<f32>>>, Arc<Vec<f32>>)>,
+    materials: Option<(Vec<MaterialSettings>, Compiled)>,
 }
 
 impl Compiler {
@@ -43,17 +46,24 @@ impl Compiler {
             seed: document.render.seed,
         };
         let plan = Plan::new(&materials, &environment, settings.camera.lens_radius);
-        Ok(Job { geometry, environment, materials, tables, settings, plan })
+        Ok(Job {
+            geometry,
+            environment,
+            materials,
+            tables,
+            settings,
+            plan,
+        })
     }
 
-    fn materials(&mut self, wanted: Vec<MaterialSettings>) -> (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>) {
-        if let Some((_, materials, tables)) = self.materials.as_ref().filter(|(of, ..)| *of == wanted) {
-            return (materials.clone(), tables.clone());
+    fn materials(&mut self, wanted: Vec<MaterialSettings>) -> Compiled {
+        if let Some((_, compiled)) = self.materials.as_ref().filter(|(of, _)| *of == wanted) {
+            return compiled.clone();
         }
         let (materials, tables) = compile(&wanted);
-        let (materials, tables) = (Arc::new(materials), Arc::new(tables));
-        self.materials = Some((wanted, materials.clone(), tables.clone()));
-        (materials, tables)
+        let compiled = (Arc::new(materials), Arc::new(tables));
+        self.materials = Some((wanted, compiled.clone()));
+        compiled
     }
 }
 
@@ -81,7 +91,13 @@ fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometr
         };
         target + distance * glam::DVec3::new(pitch.cos() * yaw.sin(), pitch.sin(), pitch.cos() * yaw.cos())
     });
-    Camera::look_at(position.to_array(), target.to_array(), settings.fov_deg, aspect, render.filter)
+    Camera::look_at(
+        position.to_array(),
+        target.to_array(),
+        settings.fov_deg,
+        aspect,
+        render.filter,
+    )
 }
 
 /// The distance at which the bounding sphere, of radius 1, just fits the picture's shorter side.

@@ -6,8 +6,10 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use crate::analysis::film::Film;
+use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
 use crate::cpu::CpuEngine;
 use crate::document::job::Job;
+use crate::gpu::scatter::Scatterer;
 use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
 
 /// The engine that a user asks for.
@@ -133,13 +135,55 @@ pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineIn
 /// The processor's own name where the system tells it.
 fn processor_name() -> String {
     let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = text.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
-    name.map_or_else(|| format!("{} processor", std::env::consts::ARCH), |(_, name)| name.trim().to_owned())
+    let name = text
+        .lines()
+        .find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    name.map_or_else(
+        || format!("{} processor", std::env::consts::ARCH),
+        |(_, name)| name.trim().to_owned(),
+    )
 }
 
 fn auto() -> (Engine, EngineInfo) {
     match GpuDevice::open(AdapterKind::Hardware).and_then(|device| gpu(device, "a hardware GPU".to_owned())) {
         Ok(opened) => opened,
         Err(_) => super::calibration::fastest_without_hardware(),
+    }
+}
+
+/// Draws samples of lobes with the function that the chosen engine renders with.
+pub enum Sampler {
+    /// The processor's.
+    Cpu,
+    /// The shader's.
+    Gpu(Box<Scatterer>),
+}
+
+impl Sampler {
+    /// Opens what was asked for; `auto` takes the processor where there is no hardware GPU.
+    ///
+    /// # Errors
+    /// Where a GPU was asked for and fails.
+    pub fn open(choice: EngineChoice) -> Result<Self, GpuError> {
+        let device = match choice {
+            EngineChoice::Cpu => return Ok(Self::Cpu),
+            EngineChoice::Gpu => GpuDevice::open(AdapterKind::Any)?,
+            EngineChoice::Auto => match GpuDevice::open(AdapterKind::Hardware) {
+                Ok(device) => device,
+                Err(_) => return Ok(Self::Cpu),
+            },
+        };
+        Ok(Self::Gpu(Box::new(Scatterer::new(device)?)))
+    }
+
+    /// Draws the samples.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn draw(&self, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
+        match self {
+            Self::Cpu => Ok(crate::cpu::scatter::scatter(request)),
+            Self::Gpu(scatterer) => scatterer.draw(request),
+        }
     }
 }

@@ -4,12 +4,14 @@
 
 mod assets;
 mod calibration;
+pub mod check;
 mod compile;
+pub mod display;
 mod engine;
 pub mod output;
 mod session;
 pub mod worker;
 
 pub use assets::Assets;
-pub use engine::{EngineChoice, EngineInfo};
+pub use engine::{EngineChoice, EngineInfo, Sampler};
 pub use session::{Progress, Session, SessionError};

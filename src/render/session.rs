@@ -87,6 +87,17 @@ impl Session {
         &mut self.assets
     }
 
+    /// Forgets what was rendered, so that the next submission starts over even with the same document.
+    pub fn forget(&mut self) {
+        self.document = None;
+    }
+
+    /// Forgets files, too, so that they are read again.
+    pub fn reload(&mut self) {
+        self.assets.reload();
+        self.forget();
+    }
+
     /// The numbers being rendered.
     pub fn job(&self) -> Option<&Arc<Job>> {
         self.job.as_ref()
@@ -123,7 +134,8 @@ impl Session {
         }
         let left = self.time_limit().map(|limit| limit.saturating_sub(self.render_time));
         let begun = Instant::now();
-        self.engine.step(left.map_or(budget, |left| budget.min(left)), progress.samples_wanted)?;
+        self.engine
+            .step(left.map_or(budget, |left| budget.min(left)), progress.samples_wanted)?;
         self.render_time += begun.elapsed();
         Ok(self.progress())
     }

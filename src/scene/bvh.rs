@@ -14,6 +14,9 @@ const BOX_MARGIN: f32 = 1.0 / (1 << 20) as f32;
 /// Up to this many triangles share a leaf (the format's limit).
 const LEAF_TRIANGLES: u32 = 3;
 
+/// From this many triangles on the time to build counts more than the last 3 % of nodes visited.
+const MANY: usize = 200_000;
+
 /// The hierarchy over triangles given by their corners; its `primitive_indices` are the order of leaves.
 ///
 /// Not by spatial splits: each triangle is in one leaf, so triangles can be stored in the order of leaves.
@@ -30,6 +33,7 @@ pub(super) fn build(corners: impl ExactSizeIterator<Item = [[f32; 3]; 3]>) -> Cw
     let order = (0..boxes.len() as u32).collect();
     let mut binary =
         PlocBuilder::with_capacity(boxes.len()).build(PlocSearchDistance::Medium, &boxes, order, SortPrecision::U64, 3);
-    ReinsertionOptimizer::default().run(&mut binary, 0.05, None);
+    let reinsertion = if boxes.len() < MANY { 0.2 } else { 0.02 };
+    ReinsertionOptimizer::default().run(&mut binary, reinsertion, None);
     bvh2_to_cwbvh(&binary, LEAF_TRIANGLES, true, false)
 }

@@ -18,6 +18,33 @@ pub enum PixelFilter {
     Gaussian = 1,
 }
 
+impl PixelFilter {
+    /// Every one, in the order of the menus.
+    pub const ALL: &'static [PixelFilter] = &[PixelFilter::Box, PixelFilter::Gaussian];
+
+    /// Name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            PixelFilter::Box => "box",
+            PixelFilter::Gaussian => "gaussian",
+        }
+    }
+    /// Name in the menus.
+    pub fn label(self) -> &'static str {
+        match self {
+            PixelFilter::Box => "Box",
+            PixelFilter::Gaussian => "Gaussian",
+        }
+    }
+    /// What it does to the picture.
+    pub fn help(self) -> &'static str {
+        match self {
+            PixelFilter::Box => "Evenly over the pixel: what to compare renderers with.",
+            PixelFilter::Gaussian => "By a Gaussian of half a pixel's width, cut off at 1.5 pixels: smoother edges.",
+        }
+    }
+}
+
 /// Radius at which the Gaussian is cut off, in pixels.
 pub const GAUSSIAN_RADIUS: f64 = 1.5;
 /// Its standard deviation in pixels.

@@ -62,12 +62,16 @@ impl Geometry {
     /// point, in the slot after the model's (see [`Geometry::ground_slot`]).
     pub fn build(model: &Model, ground: bool) -> Self {
         let mesh = &model.mesh;
-        let finite: Vec<usize> = (0..mesh.triangles.len())
-            .filter(|&triangle| mesh.corners(triangle).iter().all(|corner| corner.is_finite()))
+        let is_finite = |&triangle: &usize| mesh.corners(triangle).iter().all(|corner| corner.is_finite());
+        let finite: Vec<usize> = (0..mesh.triangles.len()).filter(is_finite).collect();
+        let usable: Vec<usize> = finite
+            .iter()
+            .copied()
+            .filter(|&triangle| has_area(mesh.corners(triangle)))
             .collect();
-        let bounds_world = bounds(mesh, &finite);
+        let bounds_world = bounds(mesh, &usable);
         let center_world = bounds_world[0].midpoint(bounds_world[1]);
-        let world_units_per_unit = bounding_radius(mesh, &finite, center_world);
+        let world_units_per_unit = bounding_radius(mesh, &usable, center_world);
         let mut geometry = Self {
             positions: Vec::new(),
             vertices: Vec::new(),
@@ -78,10 +82,10 @@ impl Geometry {
             world_units_per_unit,
             bounds_world,
             dropped_not_finite: mesh.triangles.len() - finite.len(),
-            dropped_no_area: 0,
+            dropped_no_area: finite.len() - usable.len(),
         };
         let to_units = |place: DVec3| ((place - center_world) / world_units_per_unit).as_vec3().to_array();
-        geometry.add(mesh, finite.into_iter(), to_units);
+        geometry.add(mesh, usable.into_iter(), to_units);
         if ground {
             let lowest = (bounds_world[0].y - center_world.y) / world_units_per_unit - GROUND_GAP;
             let slot = model.slots.len() as u32;
@@ -96,6 +100,18 @@ impl Geometry {
     /// The material of the ground, for the slot after the model's.
     pub fn ground_slot() -> Slot {
         Slot::neutral("ground")
+    }
+
+    /// What of the model was left out, one line each.
+    pub fn warnings(&self) -> Vec<String> {
+        let counts = [
+            (self.dropped_not_finite, "a corner that is not finite"),
+            (self.dropped_no_area, "no area"),
+        ];
+        let counts = counts.iter().filter(|(count, _)| *count > 0);
+        counts
+            .map(|(count, reason)| format!("{count} triangles left out: {reason}"))
+            .collect()
     }
 
     /// The corners of a triangle.
@@ -138,7 +154,11 @@ impl Geometry {
         }
         for index in chosen {
             let triangle = mesh.triangles[index].map(|vertex| vertex + base);
-            if has_area(self.corners_of(&triangle)) {
+            // Rounding to f32 may have closed a sliver; corners and their products are exact in f64.
+            if has_area(
+                self.corners_of(&triangle)
+                    .map(|corner| DVec3::from_array(corner.map(f64::from))),
+            ) {
                 self.triangles.push(triangle);
                 self.slots.push(mesh.slots[index]);
             } else {
@@ -193,8 +213,7 @@ fn bounding_radius(mesh: &Mesh, chosen: &[usize], center: DVec3) -> f64 {
     }
 }
 
-/// Whether the corners, which are exact in f64, span an area.
-fn has_area(corners: [[f32; 3]; 3]) -> bool {
-    let [a, b, c] = corners.map(|corner| DVec3::from_array(corner.map(f64::from)));
+/// Whether a triangle covers anything.
+fn has_area([a, b, c]: [DVec3; 3]) -> bool {
     (b - a).cross(c - a) != DVec3::ZERO
 }

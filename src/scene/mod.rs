@@ -11,6 +11,7 @@ mod model;
 pub mod shapes;
 pub mod surface;
 pub mod teapot;
+mod traverse;
 
 pub use geometry::{Geometry, Vertex};
 pub use intersect::{Hit, RayFrame, intersect_triangle};

@@ -6,11 +6,13 @@ use glossmith::document::job::{BackgroundKind, Settings, Strategy};
 use glossmith::document::plan::Plan;
 use glossmith::gpu::layout::Globals;
 use glossmith::gpu::shader::{EXTRA, Linked, link, link_with, module_names};
+use glossmith::optics::chord;
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, LONG_TAIL_MAX};
 use glossmith::optics::fresnel::Fresnel;
-use glossmith::optics::lobe::{ALPHA_MIN, Horizon, Lobe, MIRROR_WIDTH, geometric};
+use glossmith::optics::lobe::{ALPHA_MIN, Horizon, Lobe, MIRROR_WIDTH};
 use glossmith::optics::material::ALBEDO_NODES;
 use glossmith::optics::random::Sequence;
+use glossmith::optics::tone::{self, ToneCurve};
 use glossmith::scene::camera::{Camera, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA, PixelFilter};
 use glossmith::scene::surface;
 use naga::back::{hlsl, msl, spv};
@@ -37,7 +39,10 @@ pub fn validate(linked: &Linked) -> Result<(naga::Module, ModuleInfo), String> {
             // From the function down to the expression: the shortest says where.
             let spans = error.spans().filter(|(span, _)| span.is_defined());
             let shortest = spans.min_by_key(|(span, _)| span.to_range().map_or(usize::MAX, |range| range.len()));
-            complaint(shortest.map(|(span, _)| span.location(&linked.source)), error.as_inner())
+            complaint(
+                shortest.map(|(span, _)| span.location(&linked.source)),
+                error.as_inner(),
+            )
         })?;
     Ok((module, info))
 }
@@ -57,7 +62,7 @@ fn numbers(module: &naga::Module, expression: naga::Handle<naga::Expression>) ->
 }
 
 /// Every module with the generated one, each with naga's reading of it.
-fn modules() -> Vec<(String, naga::Module)> {
+pub fn modules() -> Vec<(String, naga::Module)> {
     let mut names = module_names();
     names.push("optics/lobe/registry".into());
     let read = |name: String| {
@@ -76,7 +81,11 @@ fn every_module_links_and_validates_by_itself() {
         }
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));
-    assert!(module_names().iter().any(|name| name == "pass/path_trace"), "{:?}", module_names());
+    assert!(
+        module_names().iter().any(|name| name == "pass/path_trace"),
+        "{:?}",
+        module_names()
+    );
 }
 
 #[test]
@@ -84,16 +93,28 @@ fn a_mistake_is_located_by_module_and_line() {
     let parsed = link_with(&["optics/fresnel"], "\nfn broken() -> f32 {\n    return nothing;\n}").unwrap();
     let message = validate(&parsed).unwrap_err();
     assert!(message.starts_with(&format!("{EXTRA}, line 3:")), "{message}");
-    let typed = link_with(&["optics/fresnel"], "fn broken() -> f32 {\n    return fresnel_f0(1u);\n}").unwrap();
+    let typed = link_with(
+        &["optics/fresnel"],
+        "fn broken() -> f32 {\n    return fresnel_f0(1u);\n}",
+    )
+    .unwrap();
     let message = validate(&typed).unwrap_err();
     assert!(message.starts_with(&format!("{EXTRA}, line 2:")), "{message}");
     let mut linked = link("pass/path_trace").unwrap();
     // A mistake in the middle of a module in the middle.
-    linked.source = linked.source.replace("let t1 = a2_plus_b2 + cos2;", "let t1 = a2_plus_b2 + cos3;");
+    linked.source = linked
+        .source
+        .replace("let t1 = a2_plus_b2 + cos2;", "let t1 = a2_plus_b2 + cos3;");
     let file = std::fs::read_to_string(format!("{}/shaders/optics/fresnel.wgsl", env!("CARGO_MANIFEST_DIR"))).unwrap();
-    let line = 1 + file.lines().position(|line| line.contains("let t1 = a2_plus_b2 + cos2;")).unwrap();
+    let line = 1 + file
+        .lines()
+        .position(|line| line.contains("let t1 = a2_plus_b2 + cos2;"))
+        .unwrap();
     let message = validate(&linked).unwrap_err();
-    assert!(message.starts_with(&format!("optics/fresnel, line {line}:")), "{message}");
+    assert!(
+        message.starts_with(&format!("optics/fresnel, line {line}:")),
+        "{message}"
+    );
     assert!(link("optics/frensel").unwrap_err().contains("optics/frensel"));
 }
 
@@ -110,7 +131,10 @@ fn locate_knows_every_line() {
             continue;
         };
         let original = file.lines().nth(place - 1).unwrap();
-        assert!(line == original || original.starts_with("#import"), "{module}, line {place}: {line:?}");
+        assert!(
+            line == original || original.starts_with("#import"),
+            "{module}, line {place}: {line:?}"
+        );
         compared += 1;
     }
     assert!(compared > 500);
@@ -132,14 +156,25 @@ fn generated_registry_covers_every_lobe() {
                 _ => None,
             })
             .unwrap();
-        assert_eq!(cases.len(), Lobe::ALL.len() + 1, "the cases of raw_{verb} and the default");
+        assert_eq!(
+            cases.len(),
+            Lobe::ALL.len() + 1,
+            "the cases of raw_{verb} and the default"
+        );
         for lobe in Lobe::ALL {
-            let case = cases.iter().find(|case| case.value == naga::SwitchValue::U32(*lobe as u32));
+            let case = cases
+                .iter()
+                .find(|case| case.value == naga::SwitchValue::U32(*lobe as u32));
             let callee = case.unwrap().body.iter().find_map(|statement| match statement {
                 naga::Statement::Call { function, .. } => module.functions[*function].name.clone(),
                 _ => None,
             });
-            assert_eq!(callee, Some(format!("{}_{verb}", lobe.module())), "raw_{verb} of {}", lobe.name());
+            assert_eq!(
+                callee,
+                Some(format!("{}_{verb}", lobe.module())),
+                "raw_{verb} of {}",
+                lobe.name()
+            );
         }
     }
 }
@@ -189,7 +224,10 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
     for lobe in Lobe::ALL {
         number(upper("LOBE", lobe.module()), f64::from(*lobe as u32));
         let is_hemispherical = f64::from(u8::from(lobe.is_hemispherical()));
-        number(format!("{}_HEMISPHERICAL", lobe.module().to_uppercase()), is_hemispherical);
+        number(
+            format!("{}_HEMISPHERICAL", lobe.module().to_uppercase()),
+            is_hemispherical,
+        );
     }
     for curve in Curve::ALL {
         number(upper("CURVE", curve.name()), f64::from(*curve as u32));
@@ -197,10 +235,17 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
     for fresnel in Fresnel::ALL {
         number(upper("FRESNEL", fresnel.name()), f64::from(*fresnel as u32));
     }
+    for curve in ToneCurve::ALL {
+        number(upper("TONE", curve.name()), f64::from(*curve as u32));
+    }
     for horizon in Horizon::ALL {
         number(upper("HORIZON", horizon.name()), f64::from(*horizon as u32));
     }
-    for (name, strategy) in [("LOBE", Strategy::Lobe), ("LIGHT", Strategy::Light), ("MIS", Strategy::Mis)] {
+    for (name, strategy) in [
+        ("LOBE", Strategy::Lobe),
+        ("LIGHT", Strategy::Light),
+        ("MIS", Strategy::Mis),
+    ] {
         number(upper("STRATEGY", name), f64::from(strategy as u32));
     }
     for (name, kind) in [
@@ -223,8 +268,13 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("CUSTOM_INTERVALS", CUSTOM_INTERVALS as f64),
         ("LONG_TAIL_MAX", LONG_TAIL_MAX),
         ("ALBEDO_NODES", ALBEDO_NODES as f64),
-        ("FEW_NODES_ROUGHNESS", geometric::FEW_NODES_ROUGHNESS),
-        ("RANGE_MAX", geometric::RANGE_MAX),
+        ("SHORT_RULE_ROUGHNESS", chord::SHORT_RULE_ROUGHNESS),
+        ("PEAK_RADIUS", chord::PEAK_RADIUS),
+        ("TINY", chord::TINY),
+        ("SCENE_MAX", tone::SCENE_MAX),
+        ("AGX_STOPS_MIN", tone::AGX_STOPS_MIN),
+        ("AGX_STOPS_MAX", tone::AGX_STOPS_MAX),
+        ("NEUTRAL_START", tone::NEUTRAL_START),
         ("GAUSSIAN_SIGMA", GAUSSIAN_SIGMA),
         ("GAUSSIAN_KEPT", kept),
         ("POSITION_ERROR", surface::POSITION_ERROR),
@@ -236,8 +286,9 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
     ] {
         number(name.into(), value);
     }
-    twins.push(("GAUSS_8".into(), gauss_legendre(8)));
-    twins.push(("GAUSS_16".into(), gauss_legendre(16)));
+    twins.push(("RANGE_MAX".into(), chord::RANGE_MAX.into()));
+    twins.push(("GAUSS_12".into(), gauss_legendre(12)));
+    twins.push(("GAUSS_20".into(), gauss_legendre(20)));
     twins
 }
 
@@ -250,7 +301,9 @@ fn constants_equal_their_twins() {
     let mut met = Vec::new();
     for (name, module) in modules() {
         for (_, constant) in module.constants.iter() {
-            let Some(constant_name) = constant.name.as_deref() else { continue };
+            let Some(constant_name) = constant.name.as_deref() else {
+                continue;
+            };
             if WITHOUT_TWIN.contains(&constant_name) {
                 continue;
             }
@@ -278,7 +331,10 @@ fn overrides_are_those_of_the_plan() {
         .map(|(_, o)| (o.name.clone().unwrap_or_default(), numbers(&module, o.init.unwrap())[0]))
         .collect();
     // The defaults are those of the general plan, so that a pipeline without constants leaves nothing out.
-    let mut rust: Vec<_> = Plan::GENERAL.constants().map(|(name, value)| (name.to_owned(), value)).into();
+    let mut rust: Vec<_> = Plan::GENERAL
+        .constants()
+        .map(|(name, value)| (name.to_owned(), value))
+        .into();
     wgsl.sort_by(|a, b| a.0.cmp(&b.0));
     rust.sort_by(|a, b| a.0.cmp(&b.0));
     assert_eq!(wgsl, rust);
@@ -308,10 +364,16 @@ fn passes_translate_for_every_graphics_interface() {
                 let point = (entry.stage, entry.name.as_str());
                 let constants = plan.constants().map(|(name, value)| (name.to_owned(), value));
                 let constants = constants.into_iter().filter(|(name, _)| {
-                    module.overrides.iter().any(|(_, o)| o.name.as_deref() == Some(name.as_str()))
+                    module
+                        .overrides
+                        .iter()
+                        .any(|(_, o)| o.name.as_deref() == Some(name.as_str()))
                 });
                 let (module, info) = naga::back::pipeline_constants::process_overrides(
-                    &module, &info, Some(point), &constants.collect(),
+                    &module,
+                    &info,
+                    Some(point),
+                    &constants.collect(),
                 )
                 .unwrap_or_else(|error| panic!("{name}, {}: {error}", entry.name));
                 translate(&module, &info, point).unwrap_or_else(|message| panic!("{name}, {}: {message}", entry.name));
@@ -325,10 +387,19 @@ fn passes_translate_for_every_graphics_interface() {
 /// Vulkan, Metal, and Direct3D 12 by either of its compilers.
 fn translate(module: &naga::Module, info: &ModuleInfo, entry: (naga::ShaderStage, &str)) -> Result<(), String> {
     let (stage, name) = entry;
-    let options = spv::PipelineOptions { shader_stage: stage, entry_point: name.to_owned() };
+    let options = spv::PipelineOptions {
+        shader_stage: stage,
+        entry_point: name.to_owned(),
+    };
     spv::write_vec(module, info, &spv::Options::default(), Some(&options)).map_err(|e| format!("SPIR-V: {e}"))?;
-    let options = msl::Options { lang_version: (2, 0), ..Default::default() };
-    let pipeline = msl::PipelineOptions { entry_point: Some((stage, name.to_owned())), ..Default::default() };
+    let options = msl::Options {
+        lang_version: (2, 0),
+        ..Default::default()
+    };
+    let pipeline = msl::PipelineOptions {
+        entry_point: Some((stage, name.to_owned())),
+        ..Default::default()
+    };
     let (text, reflected) = msl::write_string(module, info, &options, &pipeline).map_err(|e| format!("Metal: {e}"))?;
     if let Some(Err(error)) = reflected.entry_point_names.first() {
         return Err(format!("Metal: {error}"));
@@ -337,8 +408,14 @@ fn translate(module: &naga::Module, info: &ModuleInfo, entry: (naga::ShaderStage
         return Err("Metal: nothing came out".into());
     }
     for shader_model in [hlsl::ShaderModel::V5_1, hlsl::ShaderModel::V6_0] {
-        let options = hlsl::Options { shader_model, fake_missing_bindings: true, ..Default::default() };
-        let pipeline = hlsl::PipelineOptions { entry_point: Some((stage, name.to_owned())) };
+        let options = hlsl::Options {
+            shader_model,
+            fake_missing_bindings: true,
+            ..Default::default()
+        };
+        let pipeline = hlsl::PipelineOptions {
+            entry_point: Some((stage, name.to_owned())),
+        };
         let mut text = String::new();
         let reflected = hlsl::Writer::new(&mut text, &options, &pipeline)
             .write(module, info, None)

@@ -56,19 +56,16 @@ macro_rules! lobes {
         }
 
         /// The direction that the lobe itself draws, on either side of the horizon.
-        #[inline(always)]
         pub fn raw_sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
             match shape.lobe { $(Lobe::$variant => $module::sample(shape, frame, wo, xi),)* }
         }
 
         /// The density of [`raw_sample`], per steradian, not negative.
-        #[inline(always)]
         pub fn raw_density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
             match shape.lobe { $(Lobe::$variant => $module::density(shape, frame, wo, wi),)* }
         }
 
         /// Evaluate over density for a direction of [`raw_sample`].
-        #[inline(always)]
         pub fn raw_weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
             match shape.lobe { $(Lobe::$variant => $module::weight(shape, frame, wo, wi),)* }
         }
@@ -179,7 +176,6 @@ pub fn is_mirror<T: Real>(shape: &LobeShape<'_, T>) -> T::Mask {
 
 /// Draws a direction. `surface_normal` is the geometric normal, on the side of `wo`: it is its horizon that counts, so
 /// that no ray enters the surface where the shading normal leans. Source of the mirror policy: mathematics, section 3.
-#[inline(always)]
 pub fn lobe_sample<T: Real>(
     shape: &LobeShape<'_, T>,
     frame: &Frame<T>,
@@ -208,7 +204,6 @@ pub fn lobe_sample<T: Real>(
 
 /// (evaluate, density) of [`lobe_sample`] for a direction: evaluate with the cosine included, density per steradian of
 /// what is kept. Both 0 below the horizon, except under [`Horizon::None`].
-#[inline(always)]
 pub fn lobe_evaluate<T: Real>(
     shape: &LobeShape<'_, T>,
     frame: &Frame<T>,
@@ -224,8 +219,8 @@ pub fn lobe_evaluate<T: Real>(
     let [mut value, mut density] = raw_evaluate(shape, frame, wo, wi);
     if shape.horizon == Horizon::Mirror {
         let [folded, folded_density] = raw_evaluate(shape, frame, wo, wi.reflected_at_plane(surface_normal));
-        value = value + folded;
-        density = density + folded_density;
+        value += folded;
+        density += folded_density;
     }
     [
         T::select(visible, value, T::zero()),
@@ -234,7 +229,6 @@ pub fn lobe_evaluate<T: Real>(
 }
 
 /// (evaluate, density) before the horizon policy.
-#[inline(always)]
 fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> [T; 2] {
     if shape.lobe.is_hemispherical() && !T::zero().less(frame.normal.dot(wi)).any() {
         return [T::zero(), T::zero()];

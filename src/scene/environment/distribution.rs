@@ -1,5 +1,7 @@
 //! The density that an environment is sampled with: piecewise constant over cells, drawn through an alias table.
 
+use std::f64::consts::{PI, TAU};
+
 use rayon::prelude::*;
 
 /// More cells than this are merged: 24 MiB of table, and finer cells gain nothing a sample could show.
@@ -31,62 +33,77 @@ pub(super) struct Summary {
 }
 
 /// Luminance of a linear Rec. 709 texel (CIE Y).
-pub(super) fn luminance(texel: &[f32; 4]) -> f64 {
+fn luminance(texel: &[f32; 4]) -> f64 {
     0.2126 * f64::from(texel[0]) + 0.7152 * f64::from(texel[1]) + 0.0722 * f64::from(texel[2])
 }
 
 /// The solid angle between rows `top` and `bottom` (possibly fractional) of `height`, all the way round: 2π times the
 /// difference of the cosines, written so that nothing cancels.
-pub(super) fn band_solid_angle(top: f64, bottom: f64, height: f64) -> f64 {
-    let half_turn = std::f64::consts::PI / height;
+fn band_solid_angle(top: f64, bottom: f64, height: f64) -> f64 {
+    let half_turn = PI / height;
     let middle_rad = 0.5 * (top + bottom) * half_turn;
     let half_width_rad = 0.5 * (bottom - top) * half_turn;
-    2.0 * std::f64::consts::TAU * middle_rad.sin() * half_width_rad.sin()
+    2.0 * TAU * middle_rad.sin() * half_width_rad.sin()
 }
 
-/// The integral over each texel's cell of the row, in units of the cell's area, of the bilinear picture of `value`:
-/// neighbours along an axis weigh 1/8, 3/4, 1/8.
-pub(super) fn bilinear_row_integrals(map: &Map, row: u32, value: impl Fn(&[f32; 4]) -> f64) -> Vec<f64> {
+/// The luminance of the bilinear picture averaged over each texel's cell of a row: neighbours along an axis weigh 1/8,
+/// 3/4, 1/8.
+fn cell_luminances(map: &Map, row: u32) -> Vec<f64> {
     let width = map.width as usize;
     let line = |row: u32| &map.texels[row as usize * width..][..width];
     let above = line(row.saturating_sub(1));
     let here = line(row);
     let below = line((row + 1).min(map.height - 1));
-    let across: Vec<f64> = (0..width)
-        .map(|x| 0.125 * (value(&above[x]) + value(&below[x])) + 0.75 * value(&here[x]))
+    let columns: Vec<f64> = (0..width)
+        .map(|x| 0.125 * (luminance(&above[x]) + luminance(&below[x])) + 0.75 * luminance(&here[x]))
         .collect();
     (0..width)
         .map(|x| {
-            let left = across[if x == 0 { width - 1 } else { x - 1 }];
-            let right = across[if x + 1 == width { 0 } else { x + 1 }];
-            0.125 * (left + right) + 0.75 * across[x]
+            let left = columns[if x == 0 { width - 1 } else { x - 1 }];
+            let right = columns[if x + 1 == width { 0 } else { x + 1 }];
+            0.125 * (left + right) + 0.75 * columns[x]
         })
         .collect()
 }
 
-/// Mean radiance over the sphere, exact for the bilinear picture, and the largest luminance.
+/// What a texel of a row adds to the integral of the bilinear picture over the sphere: the integral of its hat function,
+/// which stays 1 from the first and last row's centres to the poles.
+pub(super) fn texel_solid_angle(row: u32, width: u32, height: u32) -> f64 {
+    let step_rad = PI / f64::from(height);
+    let polar_rad = (f64::from(row) + 0.5) * step_rad;
+    // ∫ (1 − t / step) sin(start + t) dt over t in [0, step].
+    let ramp = |start_rad: f64| start_rad.cos() - ((start_rad + step_rad).sin() - start_rad.sin()) / step_rad;
+    let above = if row == 0 {
+        1.0 - polar_rad.cos()
+    } else {
+        ramp(PI - polar_rad)
+    };
+    let below = if row + 1 == height {
+        1.0 + polar_rad.cos()
+    } else {
+        ramp(polar_rad)
+    };
+    (above + below) * TAU / f64::from(width)
+}
+
+/// Mean radiance of the bilinear picture over the sphere, and the largest luminance.
 pub(super) fn summarise(map: &Map) -> Summary {
-    let (sum, max) = (0..map.height)
-        .into_par_iter()
-        .map(|row| {
-            let solid_angle = band_solid_angle(f64::from(row), f64::from(row + 1), f64::from(map.height));
-            let share = solid_angle / f64::from(map.width);
-            let sum = [0, 1, 2].map(|channel| {
-                share
-                    * bilinear_row_integrals(map, row, |texel| f64::from(texel[channel]))
-                        .iter()
-                        .sum::<f64>()
-            });
-            let line = &map.texels[row as usize * map.width as usize..][..map.width as usize];
-            (sum, line.iter().map(luminance).fold(0.0, f64::max))
+    let (sum, max) = map
+        .texels
+        .par_chunks(map.width as usize)
+        .enumerate()
+        .map(|(row, texels)| {
+            let solid_angle = texel_solid_angle(row as u32, map.width, map.height);
+            let sum = [0, 1, 2]
+                .map(|channel| solid_angle * texels.iter().map(|texel| f64::from(texel[channel])).sum::<f64>());
+            (sum, texels.iter().map(luminance).fold(0.0, f64::max))
         })
         .reduce(
             || ([0.0; 3], 0.0),
             |(a, a_max), (b, b_max)| ([a[0] + b[0], a[1] + b[1], a[2] + b[2]], f64::max(a_max, b_max)),
         );
-    let sphere = 2.0 * std::f64::consts::TAU;
     Summary {
-        mean_radiance: sum.map(|sum| (sum / sphere) as f32),
+        mean_radiance: sum.map(|sum| (sum / (2.0 * TAU)) as f32),
         max_luminance: max as f32,
     }
 }
@@ -131,10 +148,10 @@ fn cell_row_weights(map: &Map, cell_row: u32, cells_width: u32, cells_height: u3
     for (row, row_share) in overlaps(cell_row, cells_height, map.height) {
         let band = band_solid_angle(f64::from(row), f64::from(row + 1), f64::from(map.height));
         let factor = row_share * band / f64::from(map.width);
-        let texel_weights = bilinear_row_integrals(map, row, luminance);
+        let luminances = cell_luminances(map, row);
         for (cell, weight) in weights.iter_mut().enumerate() {
             for (column, share) in overlaps(cell as u32, cells_width, map.width) {
-                *weight += factor * share * texel_weights[column as usize];
+                *weight += factor * share * luminances[column as usize];
             }
         }
     }

@@ -28,7 +28,7 @@ const MAX_COMPRESSION: u64 = 1500;
 /// Chunks that are decompressed together: enough for every core, little enough to hold in memory.
 const CHUNKS_AT_ONCE: usize = 32;
 
-/// Which texel components, as bits, each channel of a layer fills; 0 for those that are not shown.
+/// A layer of the file, and which of a texel's red, green and blue each of its channels fills.
 struct Layer {
     index: usize,
     components: Vec<[bool; 3]>,
@@ -37,6 +37,18 @@ struct Layer {
 
 /// Reads the first layer that has colour or luminance, at its largest size, into its display window.
 pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
+    // Some damaged files fail assertions inside the crate instead of giving errors.
+    std::panic::catch_unwind(|| read_guarded(path)).unwrap_or_else(|_| {
+        let detail = "its pixels contradict each other".to_owned();
+        Err(EnvironmentError::Damaged {
+            path: path.to_owned(),
+            detail,
+        })
+    })
+}
+
+/// [`read`], where the crate may panic.
+fn read_guarded(path: &Path) -> Result<Picture, EnvironmentError> {
     let file_bytes = check_preamble(path)?;
     let file = BufReader::new(io(path, File::open(path))?);
     let reader = Reader::read_from_buffered(file, false).map_err(|error| exr_error(path, error))?;
@@ -55,15 +67,10 @@ pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
     let mut texels = vec![[0.0; 4]; window.width as usize * window.height as usize];
     for_each_block(chunks, &meta_data, |block| {
         for line in block.lines(&header.channels) {
-            write_line(
-                &line,
-                &header,
-                &layer.components[line.location.channel],
-                &window,
-                &mut texels,
-            )?;
+            let channel = line.location.channel;
+            let sample_type = header.channels.list[channel].sample_type;
+            write_line(&line, sample_type, &layer.components[channel], &window, &mut texels);
         }
-        Ok(())
     })
     .map_err(|error| exr_error(path, error))?;
     Ok(Picture {
@@ -86,13 +93,12 @@ fn check_preamble(path: &Path) -> Result<u64, EnvironmentError> {
             detail: "it has no content".to_owned(),
         });
     }
-    let Some((magic, version)) = preamble.split_first_chunk::<4>().filter(|(magic, _)| **magic == MAGIC) else {
+    let Some(version) = preamble.strip_prefix(&MAGIC) else {
         return Err(EnvironmentError::WrongContent {
             path: path.to_owned(),
             expected: "an OpenEXR",
         });
     };
-    debug_assert_eq!(magic, &MAGIC);
     if let Ok(version) = <[u8; 4]>::try_from(version)
         && u32::from_le_bytes(version) & DEEP_FLAG != 0
     {
@@ -219,11 +225,11 @@ impl Window {
 }
 
 /// Decompresses all chunks, on all cores, and hands the blocks on in order. (The crate's own parallel reader runs them
-/// as detached tasks, where a panic over a damaged file would end the program.)
+/// as detached tasks, where a panic would end the program.)
 fn for_each_block(
     mut chunks: impl ChunksReader,
     meta_data: &MetaData,
-    mut use_block: impl FnMut(&UncompressedBlock) -> Result<(), ExrError>,
+    mut use_block: impl FnMut(&UncompressedBlock),
 ) -> Result<(), ExrError> {
     loop {
         let batch: Vec<Chunk> = chunks.by_ref().take(CHUNKS_AT_ONCE).collect::<Result<_, _>>()?;
@@ -234,52 +240,37 @@ fn for_each_block(
             .into_par_iter()
             .map(|chunk| UncompressedBlock::decompress_chunk(chunk, meta_data, false))
             .collect::<Result<_, _>>()?;
-        blocks.iter().try_for_each(&mut use_block)?;
+        blocks.iter().for_each(&mut use_block);
     }
 }
 
-/// Writes one line of one channel to the texels.
+/// Writes what the window shows of one line of one channel to the texels.
 fn write_line(
     line: &LineRef<'_>,
-    header: &Header,
-    components: &[bool; 3],
+    sample_type: SampleType,
+    shown: &[bool; 3],
     window: &Window,
     texels: &mut [[f32; 4]],
-) -> Result<(), ExrError> {
+) {
     let row = line.location.position.y() as i64 + window.offset[1];
+    if !(0..i64::from(window.height)).contains(&row) {
+        return;
+    }
     let first_column = line.location.position.x() as i64 + window.offset[0];
-    if !components.contains(&true) || !(0..i64::from(window.height)).contains(&row) {
-        return Ok(());
-    }
-    let texels = &mut texels[row as usize * window.width as usize..][..window.width as usize];
-    let mut put = |index: usize, value: f32| {
-        let texel = usize::try_from(first_column + index as i64)
-            .ok()
-            .and_then(|column| texels.get_mut(column));
-        if let Some(texel) = texel {
-            for (component, _) in components.iter().enumerate().filter(|(_, shown)| **shown) {
-                texel[component] = value;
-            }
-        }
+    let end_column = first_column + line.location.sample_count as i64;
+    let columns = first_column.max(0)..end_column.min(i64::from(window.width));
+    let bytes = |column: i64, size: usize| &line.value[(column - first_column) as usize * size..][..size];
+    let sample = |column: i64| match sample_type {
+        SampleType::F16 => f16::from_bits(bytemuck::pod_read_unaligned(bytes(column, 2))).to_f32(),
+        SampleType::F32 => bytemuck::pod_read_unaligned(bytes(column, 4)),
+        SampleType::U32 => bytemuck::pod_read_unaligned::<u32>(bytes(column, 4)) as f32,
     };
-    match header.channels.list[line.location.channel].sample_type {
-        SampleType::F16 => {
-            for (index, value) in line.read_samples::<f16>().enumerate() {
-                put(index, value?.to_f32());
-            }
-        }
-        SampleType::F32 => {
-            for (index, value) in line.read_samples::<f32>().enumerate() {
-                put(index, value?);
-            }
-        }
-        SampleType::U32 => {
-            for (index, value) in line.read_samples::<u32>().enumerate() {
-                put(index, value? as f32);
-            }
+    let texels = &mut texels[row as usize * window.width as usize..][..window.width as usize];
+    for (component, _) in shown.iter().enumerate().filter(|(_, shown)| **shown) {
+        for column in columns.clone() {
+            texels[column as usize][component] = sample(column);
         }
     }
-    Ok(())
 }
 
 /// What the crate says, in our words.

@@ -5,7 +5,7 @@ use super::{Environment, environment_direction, environment_radiance};
 /// Looks taken along each side of a thumbnail's pixel.
 const TAPS: u32 = 4;
 /// The luminance that the geometric mean is brought to.
-const MIDDLE_GREY: f32 = 0.18;
+const MIDDLE_GREY: f32 = 0.3;
 
 /// The whole map as `width` × `height` opaque sRGB pixels, rows from the top, exposed to its own geometric mean; what is
 /// brighter than white is rolled off.

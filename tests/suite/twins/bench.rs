@@ -104,7 +104,11 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
     let (base_color, specular_color, eta, k) = (color(0.0, 1.0), color(0.2, 1.0), color(0.1, 3.0), color(0.0, 6.0));
     let metalness = if rng.chance(0.3) { 1.0 } else { rng.range(0.0, 1.0) };
     Material {
-        base_color: if rng.chance(0.1) { vec3(0.0, 0.0, 0.0) } else { base_color },
+        base_color: if rng.chance(0.1) {
+            vec3(0.0, 0.0, 0.0)
+        } else {
+            base_color
+        },
         metalness,
         specular_color,
         specular_weight: if rng.chance(0.1) { 0.0 } else { rng.range(0.1, 1.0) },
@@ -138,7 +142,10 @@ pub struct Bench {
 /// Panics with what to install where there is no adapter: without one nothing here would be tested.
 pub fn bench() -> &'static Bench {
     static BENCH: OnceLock<Result<Bench, GpuError>> = OnceLock::new();
-    BENCH.get_or_init(Bench::open).as_ref().unwrap_or_else(|error| panic!("{error}"))
+    BENCH
+        .get_or_init(Bench::open)
+        .as_ref()
+        .unwrap_or_else(|error| panic!("{error}"))
 }
 
 impl Bench {
@@ -146,7 +153,8 @@ impl Bench {
         let gpu = GpuDevice::open(AdapterKind::Any)?;
         println!("{} ({})", gpu.info.name, gpu.driver());
         let layout_of = |entries: &[wgpu::BindGroupLayoutEntry]| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries })
+            gpu.device
+                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries })
         };
         let scene_entries: Vec<_> = (0..=8).map(scene_entry).collect();
         let rows_entries = [storage_entry(0, true), storage_entry(1, false)];
@@ -157,7 +165,12 @@ impl Bench {
             immediate_size: 0,
         });
         let scene = upload(&gpu, &layouts[0])?;
-        Ok(Self { gpu, layouts, layout, scene })
+        Ok(Self {
+            gpu,
+            layouts,
+            layout,
+            scene,
+        })
     }
 
     /// A shader module; panics where the driver refuses it.
@@ -175,26 +188,37 @@ impl Bench {
 
     /// The general plan's pipeline of an entry point.
     pub fn pipeline(&self, module: &wgpu::ShaderModule, entry_point: &str) -> wgpu::ComputePipeline {
-        self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(entry_point),
-            layout: Some(&self.layout),
-            module,
-            entry_point: Some(entry_point),
-            compilation_options: Default::default(),
-            cache: None,
-        })
+        self.gpu
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry_point),
+                layout: Some(&self.layout),
+                module,
+                entry_point: Some(entry_point),
+                compilation_options: Default::default(),
+                cache: None,
+            })
     }
 
     /// Runs an entry point over rows of inputs, 64 a workgroup: `width` words a row come out.
     pub fn run(&self, pipeline: &wgpu::ComputePipeline, rows: &[u32], count: usize, width: usize) -> Vec<u32> {
         let input = self.gpu.storage("rows of inputs", cast_slice(rows)).unwrap();
-        let output = self.gpu.empty_storage("rows of outputs", (count * width * 4) as u64).unwrap();
+        let output = self
+            .gpu
+            .empty_storage("rows of outputs", (count * width * 4) as u64)
+            .unwrap();
         let group = self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &self.layouts[1],
             entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: input.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: output.as_entire_binding() },
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: input.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: output.as_entire_binding(),
+                },
             ],
         });
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
@@ -215,8 +239,17 @@ fn storage_entry(binding: u32, read_only: bool) -> wgpu::BindGroupLayoutEntry {
 }
 
 fn entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
-    let ty = wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
-    wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None }
+    let ty = wgpu::BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty,
+        count: None,
+    }
 }
 
 /// The bindings of shaders/scene/layout.wgsl that functions read.
@@ -250,7 +283,13 @@ fn settings() -> Settings {
 }
 
 fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindGroup, GpuError> {
-    let Scene { geometry, environment, materials, tables, .. } = &*SCENE;
+    let Scene {
+        geometry,
+        environment,
+        materials,
+        tables,
+        ..
+    } = &*SCENE;
     let cells_size = [environment.cells_width, environment.cells_height];
     let globals = Globals::new(&settings(), geometry.bvh.nodes.len(), cells_size);
     let uniforms = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -277,11 +316,19 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
         .zip(resources)
         .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
         .collect();
-    Ok(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries }))
+    Ok(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout,
+        entries: &entries,
+    }))
 }
 
 fn upload_map(gpu: &GpuDevice, environment: &Environment) -> wgpu::TextureView {
-    let size = wgpu::Extent3d { width: environment.width, height: environment.height, depth_or_array_layers: 1 };
+    let size = wgpu::Extent3d {
+        width: environment.width,
+        height: environment.height,
+        depth_or_array_layers: 1,
+    };
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: None,
         size,
@@ -292,8 +339,12 @@ fn upload_map(gpu: &GpuDevice, environment: &Environment) -> wgpu::TextureView {
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    let lines =
-        wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(16 * environment.width), rows_per_image: None };
-    gpu.queue.write_texture(texture.as_image_copy(), cast_slice(&environment.texels), lines, size);
+    let lines = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(16 * environment.width),
+        rows_per_image: None,
+    };
+    gpu.queue
+        .write_texture(texture.as_image_copy(), cast_slice(&environment.texels), lines, size);
     texture.create_view(&Default::default())
 }

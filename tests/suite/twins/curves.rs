@@ -52,7 +52,11 @@ fn curves_agree() {
         h = h.group(curve.name(), move |rng, _| {
             let table = table(rng);
             let max: f32 = curve_distance_max(curve, &SCENE.tables[table as usize..]);
-            let distance = if rng.chance(0.1) { rng.log_range(1e-7, 0.1) } else { rng.unit() * max };
+            let distance = if rng.chance(0.1) {
+                rng.log_range(1e-7, 0.1)
+            } else {
+                rng.unit() * max
+            };
             inputs![curve as u32, table, distance]
         });
     }
@@ -93,7 +97,17 @@ fn fresnel_factors_agree() {
             let mut color = |high: f32| Value::Vector([(); 3].map(|()| high * rng.unit()));
             let (f0, tint, eta, k) = (color(1.0), color(1.0), color(4.0), color(8.0));
             let (metalness, weight) = (rng.unit(), rng.unit());
-            inputs![model as u32, f0, metalness, tint, weight, ior(rng), eta, k, Value::Unit(rng.unit())]
+            inputs![
+                model as u32,
+                f0,
+                metalness,
+                tint,
+                weight,
+                ior(rng),
+                eta,
+                k,
+                Value::Unit(rng.unit())
+            ]
         });
     }
     check(
@@ -104,18 +118,32 @@ fn fresnel_factors_agree() {
                 "half_vector_cosine",
                 "wo wi",
                 "",
-                twin!(|row| { let (wo, wi) = (row.vector(), row.vector()); row.put(half_vector_cosine(wo, wi)); }),
+                twin!(|row| {
+                    let (wo, wi) = (row.vector(), row.vector());
+                    row.put(half_vector_cosine(wo, wi));
+                }),
             )
             .output("half_vector_cosine(wo, wi)", Output::Number(0.1))
             .group("", |rng, _| inputs![rng.direction(), rng.direction()]),
-            Case::new("fresnel_f0", "ior", "", twin!(|row| { let ior = row.number(); row.put(fresnel_f0(ior)); }))
-                .output("fresnel_f0(ior)", share)
-                .group("", |rng, _| inputs![ior(rng)]),
+            Case::new(
+                "fresnel_f0",
+                "ior",
+                "",
+                twin!(|row| {
+                    let ior = row.number();
+                    row.put(fresnel_f0(ior));
+                }),
+            )
+            .output("fresnel_f0(ior)", share)
+            .group("", |rng, _| inputs![ior(rng)]),
             Case::new(
                 "fresnel_schlick",
                 "f0 cosine",
                 "",
-                twin!(|row| { let (f0, cosine) = (row.vector(), row.number()); row.put_vector(fresnel_schlick(f0, cosine)); }),
+                twin!(|row| {
+                    let (f0, cosine) = (row.vector(), row.number());
+                    row.put_vector(fresnel_schlick(f0, cosine));
+                }),
             )
             .output("fresnel_schlick(f0, cosine)", shares)
             .group("", |rng, _| {
@@ -125,7 +153,10 @@ fn fresnel_factors_agree() {
                 "fresnel_dielectric",
                 "cosine ior",
                 "",
-                twin!(|row| { let [cosine, ior] = row.numbers(); row.put(fresnel_dielectric(cosine, ior)); }),
+                twin!(|row| {
+                    let [cosine, ior] = row.numbers();
+                    row.put(fresnel_dielectric(cosine, ior));
+                }),
             )
             .output("fresnel_dielectric(cosine, ior)", share)
             .group("", |rng, _| inputs![Value::Unit(rng.unit()), ior(rng)]),
@@ -133,11 +164,18 @@ fn fresnel_factors_agree() {
                 "fresnel_conductor",
                 "cosine eta k",
                 "",
-                twin!(|row| { let [cosine, eta, k] = row.numbers(); row.put(fresnel_conductor(cosine, eta, k)); }),
+                twin!(|row| {
+                    let [cosine, eta, k] = row.numbers();
+                    row.put(fresnel_conductor(cosine, eta, k));
+                }),
             )
             .output("fresnel_conductor(cosine, eta, k)", share)
-            .group("metals", |rng, _| inputs![Value::Unit(rng.unit()), rng.range(0.05, 4.0), rng.range(0.5, 9.0)])
-            .group("without absorption", |rng, _| inputs![Value::Unit(rng.unit()), rng.range(1.1, 4.0), 0.0f32]),
+            .group("metals", |rng, _| {
+                inputs![Value::Unit(rng.unit()), rng.range(0.05, 4.0), rng.range(0.5, 9.0)]
+            })
+            .group("without absorption", |rng, _| {
+                inputs![Value::Unit(rng.unit()), rng.range(1.1, 4.0), 0.0f32]
+            }),
         ],
     );
 }

@@ -1,9 +1,7 @@
 //! Elementary functions, random numbers, warps and frames.
 
-use glossmith::optics::frame::{
-    Frame, frame_from_normal, frame_from_tangent, local_from_world, world_from_local,
-};
-use glossmith::optics::numeric::{arsinh, expm1, log1p, normalize_or};
+use glossmith::optics::frame::{Frame, frame_from_normal, frame_from_tangent, local_from_world, world_from_local};
+use glossmith::optics::numeric::{expm1, log1p, normalize_or};
 use glossmith::optics::random::{
     RandomState, Sequence, hash_bits, random_bits, random_pair, random_pair_bits, random_state, scramble_from_low,
     sobol_second_reversed, unit_from_bits,
@@ -25,29 +23,70 @@ fn elementary_functions_agree() {
     check(
         &["optics/numeric"],
         &[
-            Case::new("expm1", "x", "", twin!(|row| { let x = row.number(); row.put(expm1(x)); }))
-                .output("expm1(x)", relative)
-                .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.02)])
-                .group("large", |rng, _| inputs![rng.range(-40.0, 20.0)]),
-            Case::new("log1p", "x", "", twin!(|row| { let x = row.number(); row.put(log1p(x)); }))
-                .output("log1p(x)", relative)
-                .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.02)])
-                .group("large", |rng, _| inputs![rng.log_range(0.01, 1e9)])
-                .group("negative", |rng, _| inputs![-rng.range(0.005, 0.995)]),
-            Case::new("arsinh", "x", "", twin!(|row| { let x = row.number(); row.put(arsinh(x)); }))
-                .output("arsinh(x)", relative)
-                .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.1)])
-                .group("large", |rng, _| inputs![signed(rng, 0.1, 1e12)]),
-            Case::new("arctan2", "y x", "", twin!(|row| { let [y, x] = row.numbers(); row.put(y.atan2(x)); }))
-                .output("arctan2(y, x)", relative)
-                .group("", |rng, _| inputs![signed(rng, 1e-6, 1e3), signed(rng, 1e-6, 1e3)])
-                .group("directions", |rng, _| { let d = rng.direction(); inputs![d.y, d.x + 1e-9] }),
-            Case::new("safe_sqrt", "x", "", twin!(|row| { let x = row.number(); row.put(x.safe_sqrt()); }))
-                .output("safe_sqrt(x)", relative)
-                .group("", |rng, _| inputs![signed(rng, 1e-12, 1e6)]),
-            Case::new("luminance", "colour", "", twin!(|row| { let v = row.vector(); row.put(v.luminance()); }))
-                .output("luminance(colour)", Output::Number(0.01))
-                .group("", |rng, _| inputs![Value::Vector([rng.unit(), rng.unit(), rng.unit()])]),
+            Case::new(
+                "expm1",
+                "x",
+                "",
+                twin!(|row| {
+                    let x = row.number();
+                    row.put(expm1(x));
+                }),
+            )
+            .output("expm1(x)", relative)
+            .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.02)])
+            .group("large", |rng, _| inputs![rng.range(-40.0, 20.0)]),
+            Case::new(
+                "log1p",
+                "x",
+                "",
+                twin!(|row| {
+                    let x = row.number();
+                    row.put(log1p(x));
+                }),
+            )
+            .output("log1p(x)", relative)
+            .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.02)])
+            .group("large", |rng, _| inputs![rng.log_range(0.01, 1e9)])
+            .group("negative", |rng, _| inputs![-rng.range(0.005, 0.995)]),
+            Case::new(
+                "arctan2",
+                "y x",
+                "",
+                twin!(|row| {
+                    let [y, x] = row.numbers();
+                    row.put(y.atan2(x));
+                }),
+            )
+            .output("arctan2(y, x)", relative)
+            .group("", |rng, _| inputs![signed(rng, 1e-6, 1e3), signed(rng, 1e-6, 1e3)])
+            .group("directions", |rng, _| {
+                let d = rng.direction();
+                inputs![d.y, d.x + 1e-9]
+            }),
+            Case::new(
+                "safe_sqrt",
+                "x",
+                "",
+                twin!(|row| {
+                    let x = row.number();
+                    row.put(x.safe_sqrt());
+                }),
+            )
+            .output("safe_sqrt(x)", relative)
+            .group("", |rng, _| inputs![signed(rng, 1e-12, 1e6)]),
+            Case::new(
+                "luminance",
+                "colour",
+                "",
+                twin!(|row| {
+                    let v = row.vector();
+                    row.put(v.luminance());
+                }),
+            )
+            .output("luminance(colour)", Output::Number(0.01))
+            .group("", |rng, _| {
+                inputs![Value::Vector([rng.unit(), rng.unit(), rng.unit()])]
+            }),
             Case::new(
                 "normalize_or",
                 "x y z fallback",
@@ -77,7 +116,11 @@ fn elementary_functions_agree() {
 /// Any state, its sequence the given one.
 fn state<T: Real>(row: &mut Row<'_, T>) -> RandomState {
     let [key, sample, sequence] = [(); 3].map(|()| row.bits());
-    let sequence = if sequence == 0 { Sequence::Sobol } else { Sequence::Independent };
+    let sequence = if sequence == 0 {
+        Sequence::Sobol
+    } else {
+        Sequence::Independent
+    };
     RandomState { key, sample, sequence }
 }
 
@@ -93,9 +136,17 @@ fn random_numbers_are_equal_to_the_bit() {
     check(
         &["optics/random"],
         &[
-            Case::new("hash_bits", "bits", "", twin!(|row| { let x = row.bits(); row.put_bits(hash_bits(x)); }))
-                .output("hash_bits(bits)", Output::Exact)
-                .group("", |rng, _| inputs![counter(rng)]),
+            Case::new(
+                "hash_bits",
+                "bits",
+                "",
+                twin!(|row| {
+                    let x = row.bits();
+                    row.put_bits(hash_bits(x));
+                }),
+            )
+            .output("hash_bits(bits)", Output::Exact)
+            .group("", |rng, _| inputs![counter(rng)]),
             Case::new(
                 "unit_from_bits",
                 "bits",
@@ -122,7 +173,10 @@ fn random_numbers_are_equal_to_the_bit() {
                 "scramble_from_low",
                 "bits seed",
                 "",
-                twin!(|row| { let [bits, seed] = [(); 2].map(|()| row.bits()); row.put_bits(scramble_from_low(bits, seed)); }),
+                twin!(|row| {
+                    let [bits, seed] = [(); 2].map(|()| row.bits());
+                    row.put_bits(scramble_from_low(bits, seed));
+                }),
             )
             .output("scramble_from_low(bits, seed)", Output::Exact)
             .group("", |rng, _| inputs![counter(rng), rng.bits()]),
@@ -130,7 +184,10 @@ fn random_numbers_are_equal_to_the_bit() {
                 "sobol_second_reversed",
                 "index",
                 "",
-                twin!(|row| { let x = row.bits(); row.put_bits(sobol_second_reversed(x)); }),
+                twin!(|row| {
+                    let x = row.bits();
+                    row.put_bits(sobol_second_reversed(x));
+                }),
             )
             .output("sobol_second_reversed(index)", Output::Exact)
             .group("", |rng, _| inputs![counter(rng)]),
@@ -149,7 +206,9 @@ fn random_numbers_are_equal_to_the_bit() {
             .output("s.key", Output::Exact)
             .output("s.sample", Output::Exact)
             .output("s.sequence", Output::Exact)
-            .group("", |rng, _| inputs![rng.bits() >> 16, rng.bits() >> 16, counter(rng), counter(rng)]),
+            .group("", |rng, _| {
+                inputs![rng.bits() >> 16, rng.bits() >> 16, counter(rng), counter(rng)]
+            }),
             Case::new(
                 "random_pair_bits",
                 "key sample sequence dimension",
@@ -171,7 +230,8 @@ fn random_numbers_are_equal_to_the_bit() {
                 twin!(|row| {
                     let state = state(row);
                     let pair: [T; 2] = random_pair(state, row.bits());
-                    pair.into_iter().for_each(|unit| row.put_bits((unit.to_f64() as f32).to_bits()));
+                    pair.into_iter()
+                        .for_each(|unit| row.put_bits((unit.to_f64() as f32).to_bits()));
                 }),
             )
             .output("pair.x", Output::Exact)
@@ -195,7 +255,10 @@ fn warps_agree() {
                 "uniform_sphere",
                 "a b",
                 "",
-                twin!(|row| { let xi = row.numbers(); row.put_vector(uniform_sphere(xi)); }),
+                twin!(|row| {
+                    let xi = row.numbers();
+                    row.put_vector(uniform_sphere(xi));
+                }),
             )
             .output("uniform_sphere(vec2f(a, b))", Output::Vector(1.0))
             .group("", |rng, _| units(rng).into()),
@@ -203,7 +266,10 @@ fn warps_agree() {
                 "uniform_disc",
                 "a b",
                 "let place = uniform_disc(vec2f(a, b));",
-                twin!(|row| { let xi = row.numbers(); row.put_numbers(uniform_disc(xi)); }),
+                twin!(|row| {
+                    let xi = row.numbers();
+                    row.put_numbers(uniform_disc(xi));
+                }),
             )
             .output("place.x", Output::Number(1.0))
             .output("place.y", Output::Number(1.0))
@@ -222,10 +288,12 @@ fn put_frame<T: Real>(row: &mut Row<'_, T>, frame: Frame<T>) {
 fn frames_agree() {
     let unit = Output::Vector(1.0);
     let change = |name, wgsl, twin| {
-        Case::new(name, "tangent bitangent normal world", wgsl, twin).output("changed", unit).group("", |rng, _| {
-            let frame = frame_from_normal(rng.direction());
-            inputs![frame.tangent, frame.bitangent, frame.normal, rng.direction()]
-        })
+        Case::new(name, "tangent bitangent normal world", wgsl, twin)
+            .output("changed", unit)
+            .group("", |rng, _| {
+                let frame = frame_from_normal(rng.direction());
+                inputs![frame.tangent, frame.bitangent, frame.normal, rng.direction()]
+            })
     };
     check(
         &["optics/frame"],
@@ -234,7 +302,10 @@ fn frames_agree() {
                 "frame_from_normal",
                 "normal",
                 "let f = frame_from_normal(normal);",
-                twin!(|row| { let frame = frame_from_normal(row.vector()); put_frame(row, frame); }),
+                twin!(|row| {
+                    let frame = frame_from_normal(row.vector());
+                    put_frame(row, frame);
+                }),
             )
             .output("f.tangent", unit)
             .output("f.bitangent", unit)
@@ -252,12 +323,18 @@ fn frames_agree() {
             .output("f.tangent", unit)
             .output("f.bitangent", unit)
             .output("f.normal", unit)
-            .group("", |rng, _| inputs![rng.direction(), rng.direction(), rng.range(-3.2, 3.2)]),
+            .group("", |rng, _| {
+                inputs![rng.direction(), rng.direction(), rng.range(-3.2, 3.2)]
+            }),
             change(
                 "local_from_world",
                 "let changed = local_from_world(Frame(tangent, bitangent, normal), world);",
                 twin!(|row| {
-                    let frame = Frame { tangent: row.vector(), bitangent: row.vector(), normal: row.vector() };
+                    let frame = Frame {
+                        tangent: row.vector(),
+                        bitangent: row.vector(),
+                        normal: row.vector(),
+                    };
                     let changed = local_from_world(&frame, row.vector());
                     row.put_vector(changed);
                 }),
@@ -266,7 +343,11 @@ fn frames_agree() {
                 "world_from_local",
                 "let changed = world_from_local(Frame(tangent, bitangent, normal), world);",
                 twin!(|row| {
-                    let frame = Frame { tangent: row.vector(), bitangent: row.vector(), normal: row.vector() };
+                    let frame = Frame {
+                        tangent: row.vector(),
+                        bitangent: row.vector(),
+                        normal: row.vector(),
+                    };
                     let changed = world_from_local(&frame, row.vector());
                     row.put_vector(changed);
                 }),
@@ -275,7 +356,10 @@ fn frames_agree() {
                 "mirrored_about",
                 "direction axis",
                 "",
-                twin!(|row| { let (d, axis) = (row.vector(), row.vector()); row.put_vector(d.mirrored_about(axis)); }),
+                twin!(|row| {
+                    let (d, axis) = (row.vector(), row.vector());
+                    row.put_vector(d.mirrored_about(axis));
+                }),
             )
             .output("mirrored_about(direction, axis)", unit)
             .group("", |rng, _| inputs![rng.direction(), rng.direction()]),
@@ -283,7 +367,10 @@ fn frames_agree() {
                 "reflected_at_plane",
                 "direction normal",
                 "",
-                twin!(|row| { let (d, n) = (row.vector(), row.vector()); row.put_vector(d.reflected_at_plane(n)); }),
+                twin!(|row| {
+                    let (d, n) = (row.vector(), row.vector());
+                    row.put_vector(d.reflected_at_plane(n));
+                }),
             )
             .output("reflected_at_plane(direction, normal)", unit)
             .group("", |rng, _| inputs![rng.direction(), rng.direction()]),

@@ -3,8 +3,8 @@
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::camera::{Camera, PixelFilter, camera_ray, filter_offset};
 use glossmith::scene::environment::{
-    environment_density, environment_direction, environment_local_from_world, environment_radiance,
-    environment_sample, environment_uv, environment_world_from_local,
+    environment_density, environment_direction, environment_local_from_world, environment_radiance, environment_sample,
+    environment_uv, environment_world_from_local,
 };
 
 use super::bench::SCENE;
@@ -49,7 +49,10 @@ fn environments_agree() {
                 "environment_uv",
                 "direction",
                 "let uv = environment_uv(direction);",
-                twin!(|row| { let direction = row.vector(); row.put_numbers(environment_uv(direction)); }),
+                twin!(|row| {
+                    let direction = row.vector();
+                    row.put_numbers(environment_uv(direction));
+                }),
             )
             .output("uv.x", Output::Number(1.0))
             .output("uv.y", Output::Number(1.0))
@@ -58,7 +61,10 @@ fn environments_agree() {
                 "environment_direction",
                 "u v",
                 "",
-                twin!(|row| { let uv = row.numbers(); row.put_vector(environment_direction(uv)); }),
+                twin!(|row| {
+                    let uv = row.numbers();
+                    row.put_vector(environment_direction(uv));
+                }),
             )
             .output("environment_direction(vec2f(u, v))", UNIT)
             .group("", |rng, _| inputs![Value::Unit(rng.unit()), Value::Unit(rng.unit())]),
@@ -92,9 +98,15 @@ fn environments_agree() {
                 "environment_density",
                 "direction",
                 "",
-                twin!(|row| { let d: Vec3<T> = row.vector(); row.put(environment_density(&SCENE.environment, d)); }),
+                twin!(|row| {
+                    let d: Vec3<T> = row.vector();
+                    row.put(environment_density(&SCENE.environment, d));
+                }),
             )
-            .output("environment_density(direction, globals.environment_cells_size)", Output::Number(0.0))
+            .output(
+                "environment_density(direction, globals.environment_cells_size)",
+                Output::Number(0.0),
+            )
             .group("", |rng, _| inputs![rng.direction()]),
         ],
     );
@@ -103,10 +115,23 @@ fn environments_agree() {
 /// A camera looking at the origin from somewhere.
 fn random_camera(rng: &mut Rng, lens_radius: f32) -> Camera<f32> {
     let position = rng.direction() * rng.range(2.0, 8.0);
-    let filter = if rng.chance(0.5) { PixelFilter::Box } else { PixelFilter::Gaussian };
+    let filter = if rng.chance(0.5) {
+        PixelFilter::Box
+    } else {
+        PixelFilter::Gaussian
+    };
     let (fov_deg, aspect) = (rng.range(5.0, 90.0), rng.range(0.5, 2.0));
-    let camera = Camera::look_at(position.to_f64(), [0.0; 3], f64::from(fov_deg), f64::from(aspect), filter);
-    Camera { lens_radius, ..camera.cast() }
+    let camera = Camera::look_at(
+        position.to_f64(),
+        [0.0; 3],
+        f64::from(fov_deg),
+        f64::from(aspect),
+        filter,
+    );
+    Camera {
+        lens_radius,
+        ..camera.cast()
+    }
 }
 
 /// A camera, a place in a picture, two numbers for the lens.
@@ -115,8 +140,19 @@ fn camera_inputs(rng: &mut Rng, lens_radius: f32) -> Vec<Value> {
     let size = [1 + rng.below(4096), 1 + rng.below(4096)];
     let place = size.map(|size| rng.range(0.0, size as f32));
     inputs![
-        c.origin, c.lens_radius, c.forward, c.focus_distance, c.right, c.filter_kind, c.up, place[0], place[1],
-        size[0] as u32, size[1] as u32, Value::Unit(rng.unit()), Value::Unit(rng.unit()),
+        c.origin,
+        c.lens_radius,
+        c.forward,
+        c.focus_distance,
+        c.right,
+        c.filter_kind,
+        c.up,
+        place[0],
+        place[1],
+        size[0] as u32,
+        size[1] as u32,
+        Value::Unit(rng.unit()),
+        Value::Unit(rng.unit()),
     ]
 }
 

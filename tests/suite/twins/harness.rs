@@ -145,7 +145,10 @@ pub struct Row<'a, T> {
 
 impl<T: Real> Row<'_, T> {
     fn next(&mut self) -> Value {
-        *self.values.next().expect("the Rust twin takes an input more than there are")
+        *self
+            .values
+            .next()
+            .expect("the Rust twin takes an input more than there are")
     }
     /// ±1 where inputs are moved, else 0.
     fn movement(&mut self) -> f64 {
@@ -274,7 +277,14 @@ pub struct Case {
 impl Case {
     /// `inputs`: names for `wgsl`, WGSL statements before the outputs' expressions.
     pub fn new(name: &'static str, inputs: &'static str, wgsl: &'static str, twin: Twin) -> Self {
-        Self { name, inputs, wgsl, outputs: Vec::new(), twin, groups: Vec::new() }
+        Self {
+            name,
+            inputs,
+            wgsl,
+            outputs: Vec::new(),
+            twin,
+            groups: Vec::new(),
+        }
     }
     /// An expression of WGSL that the twin puts next.
     pub fn output(mut self, expression: &'static str, output: Output) -> Self {
@@ -286,7 +296,12 @@ impl Case {
         self.group_of(name, ROWS, draw)
     }
     /// The same, more of them: where many are ill-conditioned.
-    pub fn group_of(mut self, name: &str, rows: usize, draw: impl Fn(&mut Rng, usize) -> Vec<Value> + Sync + 'static) -> Self {
+    pub fn group_of(
+        mut self,
+        name: &str,
+        rows: usize,
+        draw: impl Fn(&mut Rng, usize) -> Vec<Value> + Sync + 'static,
+    ) -> Self {
         self.groups.push((name.to_owned(), rows, Box::new(draw)));
         self
     }
@@ -313,11 +328,22 @@ impl Case {
             let _ = match value.wgsl_type() {
                 ("u32", _) => writeln!(text, "    let {name} = {};", word(0)),
                 ("f32", _) => writeln!(text, "    let {name} = bitcast<f32>({});", word(0)),
-                _ => writeln!(text, "    let {name} = bitcast<vec3f>(vec3u({}, {}, {}));", word(0), word(1), word(2)),
+                _ => writeln!(
+                    text,
+                    "    let {name} = bitcast<vec3f>(vec3u({}, {}, {}));",
+                    word(0),
+                    word(1),
+                    word(2)
+                ),
             };
             column += value.wgsl_type().1;
         }
-        let _ = writeln!(text, "    {}\n    let row_out = id.x * {}u;", self.wgsl, self.output_words());
+        let _ = writeln!(
+            text,
+            "    {}\n    let row_out = id.x * {}u;",
+            self.wgsl,
+            self.output_words()
+        );
         let mut column = 0;
         for (expression, output) in &self.outputs {
             let _ = match output {
@@ -349,7 +375,10 @@ struct Found {
 
 /// The words of a row as numbers.
 fn decode(case: &Case, words: &[u32]) -> Vec<f64> {
-    let kinds = case.outputs.iter().flat_map(|(_, output)| std::iter::repeat_n(output, output.width()));
+    let kinds = case
+        .outputs
+        .iter()
+        .flat_map(|(_, output)| std::iter::repeat_n(output, output.width()));
     let number = |(kind, &word): (&Output, &u32)| match kind {
         Output::Exact => f64::from(word),
         _ => f64::from(f32::from_bits(word)),
@@ -363,7 +392,11 @@ fn length(a: &[f64]) -> f64 {
 
 fn distance(a: &[f64], b: &[f64]) -> f64 {
     // Equal infinities are at distance 0.
-    a.iter().zip(b).map(|(a, b)| if a == b { 0.0 } else { (a - b) * (a - b) }).sum::<f64>().sqrt()
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| if a == b { 0.0 } else { (a - b) * (a - b) })
+        .sum::<f64>()
+        .sqrt()
 }
 
 fn compare(case: &Case, values: &[Value], words: &[u32]) -> Found {
@@ -371,8 +404,16 @@ fn compare(case: &Case, values: &[Value], words: &[u32]) -> Found {
     let rust = case.twin.in_f32(values);
     let still = case.twin.moved(values, 0);
     let moved: Vec<_> = (1..=MOVES).map(|which| case.twin.moved(values, which)).collect();
-    assert_eq!(rust.len(), wgsl.len(), "{}: numbers from Rust, and from WGSL", case.name);
-    let mut found = Found { is_strict: true, ..Default::default() };
+    assert_eq!(
+        rust.len(),
+        wgsl.len(),
+        "{}: numbers from Rust, and from WGSL",
+        case.name
+    );
+    let mut found = Found {
+        is_strict: true,
+        ..Default::default()
+    };
     let mut first = 0;
     for (expression, output) in &case.outputs {
         let part = first..first + output.width();
@@ -385,20 +426,24 @@ fn compare(case: &Case, values: &[Value], words: &[u32]) -> Found {
                 let size = length(wgsl).max(length(rust)).max(scale);
                 let noise = moved.iter().map(|moved| distance(&moved[part.clone()], still));
                 // NaN counts as infinite.
-                let noise = SAFETY * noise.fold(0.0, |a, b| if b <= a { a } else { b });
+                let noise = SAFETY * noise.fold(0.0, |a: f64, b| if a.is_nan() || b <= a { a } else { b });
                 if noise <= TOLERANCE * size {
                     (TOLERANCE * size, size)
                 } else {
                     found.is_strict = false;
-                    (TOLERANCE * size + if noise.is_nan() { f64::INFINITY } else { noise }, size)
+                    (
+                        TOLERANCE * size + if noise.is_nan() { f64::INFINITY } else { noise },
+                        size,
+                    )
                 }
             }
         };
         if difference > 0.0 {
             found.difference = found.difference.max(difference / size);
         }
-        // Not for NaN.
-        if !(difference <= allowed) && found.failure.is_none() {
+        // False for NaN.
+        let agrees = difference <= allowed;
+        if !agrees && found.failure.is_none() {
             found.failure = Some(format!(
                 "{expression}: WGSL {wgsl:?}, Rust {rust:?} ({} {still:?}): differ by {difference:e}, allowed \
                  {allowed:e}\n      at {}",
@@ -412,7 +457,10 @@ fn compare(case: &Case, values: &[Value], words: &[u32]) -> Found {
 
 fn named(case: &Case, values: &[Value]) -> String {
     let named = case.inputs.split_whitespace().zip(values);
-    named.map(|(name, value)| format!("{name} {value:?}")).collect::<Vec<_>>().join(", ")
+    named
+        .map(|(name, value)| format!("{name} {value:?}"))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Compares all cases, which may use the modules' functions; prints a table and fails with all that differ.
@@ -427,7 +475,10 @@ pub fn check(modules: &[&str], cases: &[Case]) {
     }
     let linked = link_with(modules, &source).unwrap();
     if let Err(message) = validate(&linked) {
-        let numbered: String = (1..).zip(source.lines()).map(|(n, line)| format!("{n:4} {line}\n")).collect();
+        let numbered: String = (1..)
+            .zip(source.lines())
+            .map(|(n, line)| format!("{n:4} {line}\n"))
+            .collect();
         panic!("{message}\n{numbered}");
     }
     let module = bench.module(&linked.source);
@@ -456,20 +507,39 @@ fn compare_group(
     let mut words = Vec::new();
     rows.iter().flatten().for_each(|value| value.words(&mut words));
     let width = case.output_words();
-    let t0=std::time::Instant::now();
     let out = bench.run(pipeline, &words, rows.len(), width);
-    if t0.elapsed().as_secs_f64()>0.1 {println!("run {:?}", t0.elapsed());}
-    let found: Vec<_> =
-        rows.par_iter().zip(out.par_chunks(width)).map(|(row, words)| compare(case, row, words)).collect();
+    let found: Vec<_> = rows
+        .par_iter()
+        .zip(out.par_chunks(width))
+        .map(|(row, words)| compare(case, row, words))
+        .collect();
     let strict = found.iter().filter(|row| row.is_strict).count();
-    let largest = found.iter().filter(|row| row.is_strict).map(|row| row.difference).fold(0.0, f64::max);
-    println!("{:24} {:28} {:6} of {:6}  {largest:.1e}", case.name, group, strict, rows.len());
+    let largest = found
+        .iter()
+        .filter(|row| row.is_strict)
+        .map(|row| row.difference)
+        .fold(0.0, f64::max);
+    println!(
+        "{:24} {:28} {:6} of {:6}  {largest:.1e}",
+        case.name,
+        group,
+        strict,
+        rows.len()
+    );
     if strict < ROWS_STRICT {
-        failures.push(format!("{} ({group}): only {strict} well-conditioned inputs", case.name));
+        failures.push(format!(
+            "{} ({group}): only {strict} well-conditioned inputs",
+            case.name
+        ));
     }
     let failed: Vec<_> = found.iter().filter_map(|row| row.failure.as_ref()).collect();
     if !failed.is_empty() {
-        failures.push(format!("{} ({group}): {} of {} inputs differ:", case.name, failed.len(), rows.len()));
+        failures.push(format!(
+            "{} ({group}): {} of {} inputs differ:",
+            case.name,
+            failed.len(),
+            rows.len()
+        ));
         failures.extend(failed.iter().take(3).map(|message| format!("    {message}")));
     }
 }

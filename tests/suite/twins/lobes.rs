@@ -48,13 +48,24 @@ impl View {
 
     /// Inputs for [`VIEW`].
     pub fn inputs(&self) -> [Value; 5] {
-        [self.frame.tangent, self.frame.bitangent, self.frame.normal, self.normal, self.wo].map(Value::from)
+        [
+            self.frame.tangent,
+            self.frame.bitangent,
+            self.frame.normal,
+            self.normal,
+            self.wo,
+        ]
+        .map(Value::from)
     }
 }
 
 /// What [`read_view`] takes: the frame, the geometric normal, the direction to the viewer.
 pub fn read_view<T: Real>(row: &mut Row<'_, T>) -> (Frame<T>, Vec3<T>, Vec3<T>) {
-    let frame = Frame { tangent: row.vector(), bitangent: row.vector(), normal: row.vector() };
+    let frame = Frame {
+        tangent: row.vector(),
+        bitangent: row.vector(),
+        normal: row.vector(),
+    };
     (frame, row.vector(), row.vector())
 }
 
@@ -71,7 +82,14 @@ struct Shape {
 
 impl Shape {
     fn inputs(&self) -> [Value; 6] {
-        let Self { lobe, curve, horizon, table, roughness, anisotropy } = *self;
+        let Self {
+            lobe,
+            curve,
+            horizon,
+            table,
+            roughness,
+            anisotropy,
+        } = *self;
         [
             (lobe as u32).into(),
             (curve as u32).into(),
@@ -109,14 +127,22 @@ fn read_shape<T: Real>(row: &mut Row<'_, T>) -> LobeShape<'static, T> {
 fn kinds() -> Vec<(String, Lobe, Curve, bool)> {
     let mut kinds = Vec::new();
     for &lobe in Lobe::ALL {
-        let curves = if lobe == Lobe::Geometric { Curve::ALL } else { &[Curve::Sqrt] };
+        let curves = if lobe == Lobe::Geometric {
+            Curve::ALL
+        } else {
+            &[Curve::Sqrt]
+        };
         for &curve in curves {
             for stretched in [false, true] {
                 if stretched && !lobe.is_anisotropic() {
                     continue;
                 }
                 let curve_name = if lobe == Lobe::Geometric { curve.name() } else { "" };
-                let name = format!("{} {curve_name}{}", lobe.name(), if stretched { " stretched" } else { "" });
+                let name = format!(
+                    "{} {curve_name}{}",
+                    lobe.name(),
+                    if stretched { " stretched" } else { "" }
+                );
                 kinds.push((name, lobe, curve, stretched));
             }
         }
@@ -172,7 +198,10 @@ const SHAPE_AND_VIEW: &str = "let shape = LobeShape(lobe, curve, horizon, table,
 
 macro_rules! shape_and_view {
     ($last:literal) => {
-        concat!("lobe curve horizon table roughness anisotropy tangent bitangent shading normal wo ", $last)
+        concat!(
+            "lobe curve horizon table roughness anisotropy tangent bitangent shading normal wo ",
+            $last
+        )
     };
 }
 
@@ -269,7 +298,12 @@ fn shapes_agree() {
     for &lobe in Lobe::ALL {
         mirror = mirror.group(lobe.name(), move |rng, _| {
             let shape = random_shape(rng, lobe, Curve::Sqrt, true);
-            Shape { roughness: rng.log_range(1e-4, 1.0), ..shape }.inputs().into()
+            Shape {
+                roughness: rng.log_range(1e-4, 1.0),
+                ..shape
+            }
+            .inputs()
+            .into()
         });
     }
     check(
@@ -280,7 +314,10 @@ fn shapes_agree() {
                 "alpha_from_roughness",
                 "roughness",
                 "",
-                twin!(|row| { let r = row.number(); row.put(alpha_from_roughness(r)); }),
+                twin!(|row| {
+                    let r = row.number();
+                    row.put(alpha_from_roughness(r));
+                }),
             )
             .output("alpha_from_roughness(roughness)", Output::Number(0.0))
             .group("", |rng, _| inputs![rng.log_range(1e-3, 1.0)]),
@@ -288,7 +325,10 @@ fn shapes_agree() {
                 "stretch_from_anisotropy",
                 "anisotropy",
                 "",
-                twin!(|row| { let s = row.number(); row.put(stretch_from_anisotropy(s)); }),
+                twin!(|row| {
+                    let s = row.number();
+                    row.put(stretch_from_anisotropy(s));
+                }),
             )
             .output("stretch_from_anisotropy(anisotropy)", Output::Number(0.0))
             .group("", |rng, _| inputs![rng.range(-1.2, 1.2)]),
@@ -297,7 +337,10 @@ fn shapes_agree() {
 }
 
 fn read_alpha<T: Real>(row: &mut Row<'_, T>) -> Alpha<T> {
-    Alpha { x: row.number(), y: row.number() }
+    Alpha {
+        x: row.number(),
+        y: row.number(),
+    }
 }
 
 /// Widths and two local directions.
@@ -322,7 +365,9 @@ fn microfacets_agree() {
         })
     };
     let of_widths = |name: &'static str, expression, output, twin| {
-        Case::new(name, "x y w h", "", twin).output(expression, output).group("", |rng, _| widths_and_directions(rng))
+        Case::new(name, "x y w h", "", twin)
+            .output(expression, output)
+            .group("", |rng, _| widths_and_directions(rng))
     };
     const SHAPE: &str = "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy); \
         let alpha = microfacet_alpha(shape); let equal = isotropic_alpha(shape);";
@@ -364,19 +409,34 @@ fn microfacets_agree() {
                 "ggx_distribution",
                 "ggx_distribution(vec2f(x, y), h)",
                 DENSITY,
-                twin!(|row| { let a = read_alpha(row); row.vector(); let h = row.vector(); row.put(ggx_distribution(a, h)); }),
+                twin!(|row| {
+                    let a = read_alpha(row);
+                    row.vector();
+                    let h = row.vector();
+                    row.put(ggx_distribution(a, h));
+                }),
             ),
             of_widths(
                 "smith_length",
                 "smith_length(vec2f(x, y), h)",
                 Output::Number(0.0),
-                twin!(|row| { let a = read_alpha(row); row.vector(); let h = row.vector(); row.put(smith_length(a, h)); }),
+                twin!(|row| {
+                    let a = read_alpha(row);
+                    row.vector();
+                    let h = row.vector();
+                    row.put(smith_length(a, h));
+                }),
             ),
             of_widths(
                 "smith_g1_over_cosine",
                 "smith_g1_over_cosine(vec2f(x, y), h)",
                 Output::Number(0.0),
-                twin!(|row| { let a = read_alpha(row); row.vector(); let h = row.vector(); row.put(smith_g1_over_cosine(a, h)); }),
+                twin!(|row| {
+                    let a = read_alpha(row);
+                    row.vector();
+                    let h = row.vector();
+                    row.put(smith_g1_over_cosine(a, h));
+                }),
             ),
             of_widths(
                 "smith_g2_over_cosine",
@@ -395,7 +455,14 @@ fn microfacets_agree() {
                 twin!(|row| {
                     let a = read_alpha(row);
                     let (wo, wi) = (row.vector(), row.vector());
-                    row.put(distribution_weight(a, Facet { wo, wi, h: (wo + wi).normalize() }));
+                    row.put(distribution_weight(
+                        a,
+                        Facet {
+                            wo,
+                            wi,
+                            h: (wo + wi).normalize(),
+                        },
+                    ));
                 }),
             ),
             shape_of(

@@ -21,7 +21,11 @@ fn read_material_and_surface<T: Real>(row: &mut Row<'_, T>) -> (Material<T>, Sur
 
 /// A material of this lobe.
 fn random_index(rng: &mut Rng, lobe: Lobe) -> u32 {
-    let of_lobe: Vec<u32> = (0..).zip(&SCENE.materials).filter(|(_, m)| m.lobe == lobe as u32).map(|(i, _)| i).collect();
+    let of_lobe: Vec<u32> = (0..)
+        .zip(&SCENE.materials)
+        .filter(|(_, m)| m.lobe == lobe as u32)
+        .map(|(i, _)| i)
+        .collect();
     of_lobe[rng.below(of_lobe.len())]
 }
 

@@ -16,7 +16,11 @@ const UNIT: Output = Output::Vector(1.0);
 fn place_in_triangle(rng: &mut Rng) -> (u32, f32, f32) {
     let triangle = rng.below(SCENE.geometry.triangles.len()) as u32;
     let (u, v) = (rng.unit(), rng.unit());
-    if u + v > 1.0 { (triangle, 1.0 - u, 1.0 - v) } else { (triangle, u, v) }
+    if u + v > 1.0 {
+        (triangle, 1.0 - u, 1.0 - v)
+    } else {
+        (triangle, u, v)
+    }
 }
 
 /// The materials of the geometry's slots.
@@ -67,7 +71,10 @@ fn surfaces_agree() {
                 "bent_normal",
                 "shading wo",
                 "",
-                twin!(|row| { let (shading, wo) = (row.vector(), row.vector()); row.put_vector(bent_normal(shading, wo)); }),
+                twin!(|row| {
+                    let (shading, wo) = (row.vector(), row.vector());
+                    row.put_vector(bent_normal(shading, wo));
+                }),
             )
             .output("bent_normal(shading, wo)", UNIT)
             .group("", |rng, _| inputs![rng.direction(), rng.direction()]),

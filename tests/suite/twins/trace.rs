@@ -58,9 +58,17 @@ fn random_ray(rng: &mut Rng, geometry: &Geometry) -> Ray {
         direction = Vec3::from_f32(along);
         origin = target - direction * rng.range(0.0, 4.0);
     }
-    let direction = if rng.chance(0.5) { direction.normalize() } else { direction };
+    let direction = if rng.chance(0.5) {
+        direction.normalize()
+    } else {
+        direction
+    };
     let t_max = if rng.chance(0.2) { rng.range(0.1, 3.0) } else { 1e30 };
-    Ray { origin: origin.to_f32(), direction: direction.to_f32(), t_max }
+    Ray {
+        origin: origin.to_f32(),
+        direction: direction.to_f32(),
+        t_max,
+    }
 }
 
 #[test]
@@ -78,13 +86,22 @@ fn rays_meet_the_same_triangles() {
     let bench = bench();
     let pipeline = bench.pipeline(&bench.module(&linked.source), "trace_rays");
     let out = bench.run(&pipeline, &words, RAYS, 5);
-    let outcomes: Vec<_> = rays.par_iter().zip(out.par_chunks(5)).map(|(ray, out)| compare(geometry, ray, out)).collect();
+    let outcomes: Vec<_> = rays
+        .par_iter()
+        .zip(out.par_chunks(5))
+        .map(|(ray, out)| compare(geometry, ray, out))
+        .collect();
     let count = |which: fn(&Outcome) -> bool| outcomes.iter().filter(|outcome| which(outcome)).count();
     let (hits, other_triangle) = (count(|o| o.is_hit), count(|o| o.is_other_triangle));
     let largest = outcomes.iter().map(|o| o.difference).fold(0.0, f32::max);
     println!("trace: {hits} of {RAYS} rays hit, {other_triangle} another triangle as far away, t within {largest:.1e}");
     let failures: Vec<_> = outcomes.iter().filter_map(|o| o.failure.clone()).collect();
-    assert!(failures.is_empty(), "{} rays differ:\n{}", failures.len(), failures[..failures.len().min(10)].join("\n"));
+    assert!(
+        failures.is_empty(),
+        "{} rays differ:\n{}",
+        failures.len(),
+        failures[..failures.len().min(10)].join("\n")
+    );
     assert!(hits > RAYS / 4 && hits < RAYS);
 }
 
@@ -102,7 +119,10 @@ fn compare(geometry: &Geometry, ray: &Ray, out: &[u32]) -> Outcome {
     let is_occluded = geometry.occluded(ray.origin, ray.direction, ray.t_max);
     let (triangle, any) = (out[0], out[4]);
     let [t, u, v] = [out[1], out[2], out[3]].map(f32::from_bits);
-    let mut outcome = Outcome { is_hit: rust.is_some(), ..Default::default() };
+    let mut outcome = Outcome {
+        is_hit: rust.is_some(),
+        ..Default::default()
+    };
     let agrees = match rust {
         None => triangle == NO_HIT,
         Some(hit) if triangle != NO_HIT => {

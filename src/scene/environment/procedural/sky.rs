@@ -6,7 +6,7 @@ use hw_skymodel::rgb::{Channel, SkyParams as ModelParams, SkyState};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::super::distribution::{Map, band_solid_angle, bilinear_row_integrals};
+use super::super::distribution::texel_solid_angle;
 use super::super::{Environment, EnvironmentError, environment_direction};
 use crate::optics::vector::{Vec3, vec3};
 
@@ -14,8 +14,9 @@ const WIDTH: u32 = 2048;
 const HEIGHT: u32 = 1024;
 /// The diameter of the sun's disc.
 const SUN_DIAMETER_DEG: f64 = 0.53;
-/// Over this angle below the horizon haze turns into ground.
-const HAZE_DEG: f64 = 4.0;
+/// The optical thickness of the haze between the eye and the ground straight below. The thickness along a flatter ray is
+/// this over the sine of its angle, so that the ground fades into the horizon over some degrees.
+const HAZE_THICKNESS: f64 = 0.035;
 /// Looks per texel side when the share of it that the sun covers is counted.
 const SUN_TAPS: u32 = 32;
 /// The sun's illuminance outside the atmosphere in the sky model's unit, 683 lx: 133 800 lx.
@@ -28,7 +29,7 @@ const WAVELENGTHS_UM: [f64; 3] = [0.612, 0.549, 0.464];
 const OZONE: [f64; 3] = [0.043, 0.030, 0.003];
 /// The model's unit to ours: sun and sky of the default parameters together shine on level ground with irradiance π,
 /// so that a white diffuse table under them has radiance 1.
-const EXPOSURE: f64 = 1.0;
+const EXPOSURE: f64 = 0.0324;
 
 /// A clear sky's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,7 +51,7 @@ impl Default for SkyParams {
             sun_elevation_deg: 40.0,
             sun_azimuth_deg: 222.0,
             turbidity: 3.0,
-            ground_albedo: [0.26, 0.22, 0.17],
+            ground_albedo: [0.23, 0.205, 0.175],
         }
     }
 }
@@ -157,11 +158,14 @@ impl Model {
         sum.map(|sum| sum * PI / f64::from(ROWS * COLUMNS))
     }
 
-    /// The sky above the horizon, the ground below, haze between.
+    /// The sky above the horizon, the ground through the haze below.
     fn radiance_with_ground(&self, direction: Vec3<f64>, ground: [f64; 3]) -> [f64; 3] {
         let above = self.radiance(direction);
-        let depth = (-direction.y.asin().to_degrees() / HAZE_DEG).clamp(0.0, 1.0);
-        let share = depth * depth * (3.0 - 2.0 * depth);
+        let share = if direction.y < 0.0 {
+            (HAZE_THICKNESS / direction.y).exp()
+        } else {
+            0.0
+        };
         [0, 1, 2].map(|channel| above[channel] * (1.0 - share) + ground[channel] * share)
     }
 }
@@ -171,7 +175,10 @@ impl Model {
 fn add_sun(params: &SkyParams, texels: &mut [[f32; 4]]) {
     let direction = sun_direction(params);
     let coverage = sun_coverage(direction);
-    let covered = covered_solid_angle(&coverage);
+    let covered: f64 = coverage
+        .iter()
+        .map(|&(index, share)| share * texel_solid_angle(index as u32 / WIDTH, WIDTH, HEIGHT))
+        .sum();
     let radiance = sun_irradiance(params).map(|irradiance| irradiance / covered);
     for &(index, share) in &coverage {
         for (value, radiance) in texels[index].iter_mut().zip(radiance) {
@@ -213,29 +220,4 @@ fn sun_coverage(sun_direction: Vec3<f64>) -> Vec<(usize, f64)> {
         }
     }
     coverage
-}
-
-/// The solid angle that the bilinear picture of a coverage holds.
-fn covered_solid_angle(coverage: &[(usize, f64)]) -> f64 {
-    let mut texels = vec![[0.0; 4]; (WIDTH * HEIGHT) as usize];
-    for &(index, share) in coverage {
-        texels[index][0] = share as f32;
-    }
-    let map = Map {
-        width: WIDTH,
-        height: HEIGHT,
-        texels: &texels,
-    };
-    let row_of = |entry: Option<&(usize, f64)>| entry.map_or(0, |(index, _)| *index as u32 / WIDTH);
-    let first = row_of(coverage.first()).saturating_sub(1);
-    let last = (row_of(coverage.last()) + 1).min(HEIGHT - 1);
-    (first..=last)
-        .map(|row| {
-            let band = band_solid_angle(f64::from(row), f64::from(row + 1), f64::from(HEIGHT));
-            let sum: f64 = bilinear_row_integrals(&map, row, |texel| f64::from(texel[0]))
-                .iter()
-                .sum();
-            band / f64::from(WIDTH) * sum
-        })
-        .sum()
 }

@@ -25,52 +25,52 @@ struct SoftBox {
 
 /// From the left above, in front: shapes the object.
 const KEY: SoftBox = SoftBox {
-    centre: [-2.9, 2.7, 2.1],
-    half_width: 1.35,
-    half_height: 1.35,
-    radiance: 9.0,
-    corner_share: 0.55,
-    edge: 0.16,
+    centre: [-2.9, 2.8, 2.0],
+    half_width: 1.75,
+    half_height: 1.75,
+    radiance: 7.0,
+    corner_share: 0.4,
+    edge: 0.25,
     tint: [1.0, 0.985, 0.96],
 };
-/// From the right, weak and wide: opens the shadows.
+/// From the right, weak and tall: opens the shadows.
 const FILL: SoftBox = SoftBox {
-    centre: [3.6, 0.9, 2.4],
-    half_width: 1.5,
-    half_height: 1.5,
-    radiance: 0.8,
-    corner_share: 0.5,
-    edge: 0.5,
+    centre: [3.7, 0.9, 1.7],
+    half_width: 1.2,
+    half_height: 1.9,
+    radiance: 0.75,
+    corner_share: 0.25,
+    edge: 0.45,
     tint: [0.97, 0.99, 1.0],
 };
 /// Above, a little behind: draws the upper edges.
 const TOP: SoftBox = SoftBox {
-    centre: [0.5, 3.8, -1.2],
-    half_width: 1.7,
-    half_height: 0.55,
-    radiance: 4.5,
-    corner_share: 0.6,
-    edge: 0.14,
+    centre: [0.4, 3.6, -1.7],
+    half_width: 1.9,
+    half_height: 0.75,
+    radiance: 3.6,
+    corner_share: 0.5,
+    edge: 0.2,
     tint: [1.0, 1.0, 1.0],
 };
 /// Behind on the right, narrow and tall: a rim of light.
 const RIGHT_RIM: SoftBox = SoftBox {
-    centre: [3.3, 1.5, -2.2],
-    half_width: 0.36,
-    half_height: 1.7,
-    radiance: 11.0,
-    corner_share: 0.6,
-    edge: 0.09,
+    centre: [3.3, 1.3, -2.2],
+    half_width: 0.38,
+    half_height: 2.0,
+    radiance: 9.5,
+    corner_share: 0.5,
+    edge: 0.12,
     tint: [0.97, 0.985, 1.0],
 };
 /// Behind on the left, narrower.
 const LEFT_RIM: SoftBox = SoftBox {
-    centre: [-3.5, 1.2, -1.7],
+    centre: [-3.5, 1.1, -1.7],
     half_width: 0.28,
-    half_height: 1.6,
-    radiance: 7.0,
-    corner_share: 0.6,
-    edge: 0.09,
+    half_height: 1.9,
+    radiance: 6.5,
+    corner_share: 0.5,
+    edge: 0.12,
     tint: [0.97, 0.985, 1.0],
 };
 const BOXES: [SoftBox; 5] = [KEY, FILL, TOP, RIGHT_RIM, LEFT_RIM];
@@ -100,16 +100,18 @@ pub fn studio() -> Result<Environment, EnvironmentError> {
     Environment::from_texels("studio", WIDTH, HEIGHT, texels)
 }
 
-/// The empty room: a floor and a ceiling that darken away from the horizon, and a wash of light on the backdrop.
+/// The empty room: a dark ceiling, a floor with a pool of light in front of the object that is lost towards the nadir,
+/// and a glow on the backdrop behind it.
 fn room(direction: Vec3<f64>) -> Vec3<f64> {
-    let height = direction.y;
-    let ceiling = mix(0.085, 0.022, smoothstep(0.0, 0.9, height));
-    let floor = mix(0.085, 0.05, smoothstep(0.0, 0.8, -height));
-    let walls = if height > 0.0 { ceiling } else { floor };
-    let backdrop = vec3(0.0, -0.12, -1.0).normalize();
+    let (height, depth) = (direction.y.max(0.0), (-direction.y).max(0.0));
+    let ceiling = mix(0.05, 0.012, smoothstep(0.0, 0.8, height));
+    let in_front = mix(0.4, 1.0, 0.5 + 0.5 * direction.z);
+    let pool = 0.11 * in_front * smoothstep(0.0, 0.45, depth) * mix(1.0, 0.25, smoothstep(0.45, 1.0, depth));
+    let walls = ceiling + pool;
+    let backdrop = vec3(0.0, -0.05, -1.0).normalize();
     let from_backdrop = 1.0 - direction.dot(backdrop);
-    let wash = 0.24 * (-from_backdrop / 0.22).exp();
-    vec3(1.0, 1.0, 1.015) * (walls + wash)
+    let glow = 0.19 * (-from_backdrop / 0.06).exp() + 0.05 * (-from_backdrop / 0.3).exp();
+    vec3(1.0, 1.0, 1.015) * (walls + glow)
 }
 
 impl SoftBox {

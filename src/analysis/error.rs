@@ -1,0 +1,138 @@
+//! How far an image is from another: relative mean squared error, and a test whether only noise separates them.
+
+use super::chi_square::upper_tail;
+
+/// Keeps dark pixels from ruling the relative error.
+pub const RELATIVE_FLOOR: f64 = 0.01;
+
+/// Relative mean squared error of linear radiance, mean((x − ref)²/(ref² + 0.01)) over all numbers of both slices
+/// (equally long, any number of channels). Unweighted by luminance. 0 for empty slices.
+pub fn relative_mean_squared_error(image: &[f32], reference: &[f32]) -> f64 {
+    let terms = image.iter().zip(reference).map(|(x, reference)| {
+        let (x, reference) = (f64::from(*x), f64::from(*reference));
+        (x - reference).powi(2) / (reference * reference + RELATIVE_FLOOR)
+    });
+    terms.sum::<f64>() / image.len().max(1) as f64
+}
+
+/// Estimates with their uncertainty, one a pixel and channel.
+#[derive(Clone, Copy, Debug)]
+pub struct Estimates<'a> {
+    /// The means.
+    pub mean: &'a [f64],
+    /// The variances of these means: the samples' variance over their number.
+    pub variance: &'a [f64],
+}
+
+/// The outcome of comparing two images pixel by pixel.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct ZTest {
+    /// Share of the numbers that differ by more than three standard deviations; by chance 0.0027.
+    pub beyond_three_sigma: f64,
+    /// Largest difference in standard deviations; infinite where two exact numbers differ.
+    pub max_z: f64,
+    /// Probability that chance alone gives a sum of squares at least this large: small where the images differ.
+    pub p_value: f64,
+    /// Numbers compared; those that are equal and without variance are left out.
+    pub compared: usize,
+}
+
+/// Do two images differ by more than their noise? z = (a − b)/√(variance a + variance b) a number; under equal images
+/// Σz² follows χ². All slices equally long. The variances should rest on a hundred samples or more: with few, z has
+/// heavier tails than assumed here, and a few outliers appear.
+pub fn z_test(a: Estimates<'_>, b: Estimates<'_>) -> ZTest {
+    let (mut sum, mut beyond, mut compared, mut max_z) = (0.0, 0_usize, 0_usize, 0.0_f64);
+    for i in 0..a.mean.len() {
+        let difference = (a.mean[i] - b.mean[i]).abs();
+        let variance = a.variance[i] + b.variance[i];
+        if difference == 0.0 && variance == 0.0 {
+            continue;
+        }
+        let z = difference / variance.sqrt();
+        // NaN, from either image, counts as an infinite difference.
+        let z = if z.is_nan() { f64::INFINITY } else { z };
+        sum += z * z;
+        compared += 1;
+        beyond += usize::from(z > 3.0);
+        max_z = max_z.max(z);
+    }
+    let p_value = match compared {
+        0 => 1.0,
+        _ if sum.is_infinite() => 0.0,
+        _ => upper_tail(sum, compared as f64),
+    };
+    ZTest {
+        beyond_three_sigma: beyond as f64 / compared.max(1) as f64,
+        max_z,
+        p_value,
+        compared,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::random::{Sequence, random_pair, random_state};
+
+    /// Standard normal numbers (Box and Muller).
+    fn noise(pixel: u32, seed: u32) -> f64 {
+        let [a, b]: [f64; 2] = random_pair(random_state(pixel, 0, seed, 0, Sequence::Independent), 0);
+        (-2.0 * (1.0 - a).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
+    }
+
+    #[test]
+    fn relative_error_of_known_images() {
+        // (0.1)²/(0.09 + 0.01) and 0: mean 0.05.
+        let error = relative_mean_squared_error(&[0.4, 2.0], &[0.3, 2.0]);
+        assert!((error - 0.05).abs() < 1e-6, "{error}");
+    }
+
+    #[test]
+    fn z_test_accepts_noise_and_finds_a_bias_below_it() {
+        const PIXELS: u32 = 20_000;
+        let (sigma, variance) = (0.1, vec![0.01; PIXELS as usize]);
+        let image = |seed: u32, offset: f64| -> Vec<f64> {
+            (0..PIXELS)
+                .map(|pixel| 1.0 + offset + sigma * noise(pixel, seed))
+                .collect()
+        };
+        let compare = |offset: f64| {
+            let (a, b) = (image(1, 0.0), image(2, offset));
+            z_test(
+                Estimates {
+                    mean: &a,
+                    variance: &variance,
+                },
+                Estimates {
+                    mean: &b,
+                    variance: &variance,
+                },
+            )
+        };
+        let same = compare(0.0);
+        assert!(same.p_value > 1e-3 && same.p_value < 0.999, "{same:?}");
+        assert!((same.beyond_three_sigma - 0.0027).abs() < 0.0015, "{same:?}");
+        // A third of a standard deviation everywhere is invisible in a pixel and certain over the image.
+        let biased = compare(0.035);
+        assert!(biased.p_value < 1e-6, "{biased:?}");
+    }
+
+    #[test]
+    fn z_test_sees_exact_numbers_that_differ() {
+        let zero = [0.0];
+        let one = |mean: &'static [f64]| Estimates { mean, variance: &[0.0] };
+        assert_eq!(z_test(one(&[1.0]), one(&[1.0])).compared, 0);
+        assert_eq!(z_test(one(&[1.0]), one(&[2.0])).p_value, 0.0);
+        assert_eq!(
+            z_test(
+                one(&[f64::NAN]),
+                Estimates {
+                    mean: &[1.0],
+                    variance: &zero
+                }
+            )
+            .p_value,
+            0.0
+        );
+    }
+}

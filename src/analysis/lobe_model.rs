@@ -1,0 +1,112 @@
+//! A lobe with all its settings in f64: what fits and views compare.
+
+use crate::optics::curve::Curve;
+use crate::optics::frame::{Frame, frame_from_tangent};
+use crate::optics::lobe::{ALPHA_MIN, Horizon, Lobe, LobeShape, MIRROR_WIDTH, lobe_evaluate, raw_density};
+use crate::optics::vector::{Vec3, vec3};
+
+/// A lobe with its settings. Directions are in the frame with the normal +z and the view in the half plane x ≤ 0, as in
+/// [`super::scatter`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct LobeModel {
+    /// Name in legends and columns.
+    pub name: String,
+    /// The lobe.
+    pub lobe: Lobe,
+    /// The geometric lobe's curve.
+    pub curve: Curve,
+    /// What happens below the horizon.
+    pub horizon: Horizon,
+    /// Perceptual roughness in [0, 1].
+    pub roughness: f64,
+    /// Stretch in [−1, 1].
+    pub anisotropy: f64,
+    /// Turn of the tangent out of the plane of incidence, radians.
+    pub rotation_rad: f64,
+    /// The custom curve's table; empty where the curve has a name.
+    pub table: Vec<f32>,
+}
+
+impl LobeModel {
+    /// An isotropic lobe under the mirror policy, named after its settings.
+    pub fn new(lobe: Lobe, roughness: f64, curve: Curve) -> Self {
+        let name = match lobe {
+            Lobe::Lambert => lobe.label().to_owned(),
+            Lobe::Geometric => format!("{} {roughness}, {}", lobe.label(), curve.label().to_lowercase()),
+            _ => format!("{} {roughness}", lobe.label()),
+        };
+        Self {
+            name,
+            lobe,
+            curve,
+            horizon: Horizon::Mirror,
+            roughness,
+            anisotropy: 0.0,
+            rotation_rad: 0.0,
+            table: Vec::new(),
+        }
+    }
+
+    /// The same lobe at another roughness.
+    pub fn with_roughness(&self, roughness: f64) -> Self {
+        Self {
+            roughness,
+            ..self.clone()
+        }
+    }
+
+    /// As the optics take it.
+    pub fn shape(&self) -> LobeShape<'_, f64> {
+        LobeShape {
+            lobe: self.lobe,
+            curve: self.curve,
+            horizon: self.horizon,
+            roughness: self.roughness,
+            anisotropy: self.anisotropy,
+            table: &self.table,
+        }
+    }
+
+    /// The shading frame.
+    pub fn frame(&self) -> Frame<f64> {
+        frame_from_tangent(NORMAL, vec3(1.0, 0.0, 0.0), self.rotation_rad)
+    }
+
+    /// (evaluate with the cosine, density per steradian) for light from `wi`, the horizon policy applied.
+    pub fn evaluate(&self, wo: Vec3<f64>, wi: Vec3<f64>) -> [f64; 2] {
+        lobe_evaluate(&self.shape(), &self.frame(), NORMAL, wo, wi)
+    }
+
+    /// Density of what the lobe draws before the horizon policy, per steradian over the whole sphere.
+    pub fn raw_density(&self, wo: Vec3<f64>, wi: Vec3<f64>) -> f64 {
+        raw_density(&self.shape(), &self.frame(), wo, wi)
+    }
+
+    /// True where the lobe looks the same on both sides of the plane of incidence.
+    pub fn is_symmetric(&self) -> bool {
+        self.anisotropy == 0.0 || !self.lobe.is_anisotropic()
+    }
+
+    /// False where the roughness is so small that the lobe has no density to plot or fit.
+    pub fn has_density(&self) -> bool {
+        self.roughness >= roughness_min(self.lobe)
+    }
+}
+
+/// The surface's normal.
+pub const NORMAL: Vec3<f64> = Vec3 { x: 0.0, y: 0.0, z: 1.0 };
+
+/// Towards the viewer, `view_angle_rad` from the normal.
+pub fn view_direction(view_angle_rad: f64) -> Vec3<f64> {
+    vec3(-view_angle_rad.sin(), 0.0, view_angle_rad.cos())
+}
+
+/// The smallest roughness at which a lobe's density is one: below, it is a mirror.
+pub fn roughness_min(lobe: Lobe) -> f64 {
+    match lobe {
+        Lobe::Geometric => MIRROR_WIDTH,
+        Lobe::Lambert => 0.0,
+        // α is the square of the roughness.
+        _ => ALPHA_MIN.sqrt(),
+    }
+}

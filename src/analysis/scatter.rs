@@ -1,0 +1,82 @@
+//! Clouds of samples: what is asked for and what comes back, whichever engine draws them.
+
+use crate::optics::curve::Curve;
+use crate::optics::frame::Frame;
+use crate::optics::lobe::{Horizon, Lobe, LobeShape};
+use crate::optics::real::Real;
+use crate::optics::vector::{Vec3, vec3};
+
+/// Samples of a lobe to draw, in the local frame with the normal +z and the mirror direction in the x–z half plane
+/// x ≥ 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScatterRequest {
+    /// The lobe.
+    pub lobe: Lobe,
+    /// The geometric lobe's curve.
+    pub curve: Curve,
+    /// What happens below the horizon.
+    pub horizon: Horizon,
+    /// Roughness in [0, 1].
+    pub roughness: f32,
+    /// Stretch in [−1, 1].
+    pub anisotropy: f32,
+    /// The custom curve's table; empty where the curve has a name.
+    pub table: Vec<f32>,
+    /// Angle between view and normal, degrees in [0, 90].
+    pub view_angle_deg: f32,
+    /// How many to draw; absorbed ones count.
+    pub count: u32,
+    /// Changes all random numbers.
+    pub seed: u32,
+}
+
+impl ScatterRequest {
+    /// The lobe in a precision.
+    pub fn shape<T: Real>(&self) -> LobeShape<'_, T> {
+        LobeShape {
+            lobe: self.lobe,
+            curve: self.curve,
+            horizon: self.horizon,
+            roughness: T::from_f64(f64::from(self.roughness)),
+            anisotropy: T::from_f64(f64::from(self.anisotropy)),
+            table: &self.table,
+        }
+    }
+
+    /// Towards the viewer.
+    pub fn wo<T: Real>(&self) -> Vec3<T> {
+        let angle_rad = f64::from(self.view_angle_deg).to_radians();
+        Vec3::from_f64([-angle_rad.sin(), 0.0, angle_rad.cos()])
+    }
+
+    /// The frame: the axes.
+    pub fn frame<T: Real>() -> Frame<T> {
+        let (zero, one) = (T::zero(), T::one());
+        Frame {
+            tangent: vec3(one, zero, zero),
+            bitangent: vec3(zero, one, zero),
+            normal: vec3(zero, zero, one),
+        }
+    }
+}
+
+/// Samples drawn.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ScatterCloud {
+    /// Unit direction, then density per steradian; absorbed samples left out.
+    pub samples: Vec<[f32; 4]>,
+    /// Samples absorbed.
+    pub absorbed: u32,
+}
+
+impl ScatterCloud {
+    /// From samples whose density is negative where they were absorbed.
+    pub fn from_raw(mut samples: Vec<[f32; 4]>) -> Self {
+        let drawn = samples.len();
+        samples.retain(|sample| sample[3] >= 0.0);
+        Self {
+            absorbed: (drawn - samples.len()) as u32,
+            samples,
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! What can be done, declared once: menus, shortcuts and the command palette read the table.
+
+use std::path::PathBuf;
+
+use egui::{Key, KeyboardShortcut, Modifiers};
+
+use crate::document::MaterialSettings;
+use crate::render::EngineChoice;
+use crate::scene::ModelSource;
+use crate::scene::environment::EnvironmentSource;
+
+/// Something for the app to do after the panels have been shown.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// A command without arguments.
+    Do(Command),
+    /// Opens a file by its ending.
+    Open(PathBuf),
+    /// Changes the model.
+    UseModel(ModelSource),
+    /// Changes the environment.
+    UseEnvironment(EnvironmentSource),
+    /// Replaces the selected material, keeping nothing of it.
+    UseMaterial(Box<MaterialSettings>),
+    /// Selects a material slot.
+    SelectSlot(usize),
+    /// Looks from a direction: yaw and pitch in degrees.
+    LookFrom(f64, f64),
+    /// Changes the engine.
+    UseEngine(EngineChoice),
+}
+
+/// Where a command stands in the menus.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Menu {
+    /// Files.
+    File,
+    /// Changes.
+    Edit,
+    /// Looking.
+    View,
+    /// The renderer.
+    Render,
+    /// Finding one's way.
+    Help,
+}
+
+impl Menu {
+    /// All of them, from left to right.
+    pub const ALL: [Self; 5] = [Self::File, Self::Edit, Self::View, Self::Render, Self::Help];
+
+    /// What it is called.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::File => "File",
+            Self::Edit => "Edit",
+            Self::View => "View",
+            Self::Render => "Render",
+            Self::Help => "Help",
+        }
+    }
+}
+
+macro_rules! commands {
+    ($($name:ident, $menu:ident, $label:literal, $help:literal, $shortcut:expr, $group:literal;)*) => {
+        /// What can be done without saying with what.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Command {
+            $(#[doc = $help] $name,)*
+        }
+
+        impl Command {
+            /// Every command, in the order of the menus.
+            pub const ALL: &'static [Command] = &[$(Command::$name),*];
+
+            /// Its menu.
+            pub fn menu(self) -> Menu {
+                match self { $(Self::$name => Menu::$menu,)* }
+            }
+            /// What it is called.
+            pub fn label(self) -> &'static str {
+                match self { $(Self::$name => $label,)* }
+            }
+            /// What it does.
+            pub fn help(self) -> &'static str {
+                match self { $(Self::$name => $help,)* }
+            }
+            /// Its keys.
+            pub fn shortcut(self) -> Option<KeyboardShortcut> {
+                match self { $(Self::$name => $shortcut,)* }
+            }
+            /// Commands of a menu with the same number stand together.
+            pub fn group(self) -> u32 {
+                match self { $(Self::$name => $group,)* }
+            }
+        }
+    };
+}
+
+const CTRL: Modifiers = Modifiers::COMMAND;
+const CTRL_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+const fn keys(modifiers: Modifiers, key: Key) -> Option<KeyboardShortcut> {
+    Some(KeyboardShortcut::new(modifiers, key))
+}
+
+const fn key(key: Key) -> Option<KeyboardShortcut> {
+    keys(Modifiers::NONE, key)
+}
+
+commands! {
+    New, File, "New", "Starts anew, with the default model, light and material.", keys(CTRL, Key::N), 0;
+    Open, File, "Open…", "Opens a project, a material, a model or an environment.", keys(CTRL, Key::O), 0;
+    OpenModel, File, "Open model…", "Opens a glTF model (.glb, .gltf).", None, 0;
+    OpenEnvironment, File, "Open environment…", "Opens an environment map (.hdr, .exr).", keys(CTRL_SHIFT, Key::O), 0;
+    OpenMaterial, File, "Open material…", "Opens a material (.json) into the selected slot.", None, 0;
+    Reload, File, "Reload files", "Reads model and environment again.", keys(CTRL, Key::R), 0;
+    Save, File, "Save project", "Saves materials, light, camera and settings (.json).", keys(CTRL, Key::S), 1;
+    SaveAs, File, "Save project as…", "Saves the project under another name.", keys(CTRL_SHIFT, Key::S), 1;
+    SaveMaterial, File, "Save material…", "Saves the selected material (.json).", None, 1;
+    SavePicture, File, "Save picture…", "Saves what has been rendered so far (.png, .exr, .hdr).", keys(CTRL, Key::E), 1;
+    CopyPicture, File, "Copy picture", "Copies what has been rendered so far to the clipboard.", keys(CTRL_SHIFT, Key::C), 1;
+    Quit, File, "Quit", "Closes the window.", keys(CTRL, Key::Q), 2;
+    Undo, Edit, "Undo", "Takes the last change back.", keys(CTRL, Key::Z), 0;
+    Redo, Edit, "Redo", "Makes the change again that was taken back.", keys(CTRL_SHIFT, Key::Z), 0;
+    ResetMaterial, Edit, "Reset material", "Gives the selected material its defaults, keeping its name.", None, 1;
+    ResetCamera, Edit, "Reset camera", "Puts the camera where it was at first.", None, 1;
+    FrameAll, View, "Frame all", "Moves the camera so that the whole model is seen.", key(Key::F), 0;
+    Maximise, View, "Viewport only", "Hides the panels, or shows them again.", key(Key::F11), 1;
+    ToggleTheme, View, "Light or dark", "Changes between the light and the dark theme.", None, 1;
+    ResetLayout, View, "Reset layout", "Puts all panels back to where they were at first.", None, 1;
+    Pause, Render, "Pause or go on", "Stops rendering, or goes on.", key(Key::Space), 0;
+    Restart, Render, "Start over", "Renders the picture anew.", None, 0;
+    Palette, Help, "Find a command…", "Lists every command; type to search.", keys(CTRL, Key::K), 0;
+    Shortcuts, Help, "Keys and mouse", "Shows what keys and mouse buttons do.", key(Key::F1), 0;
+    About, Help, "About Glossmith", "Version, licence and the paper.", None, 1;
+}
+
+/// The command whose keys were pressed, taken out of the input. Keys without modifiers belong to what has the focus,
+/// unless that is the viewport.
+pub(super) fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option<Command> {
+    let focused = ctx.memory(|memory| memory.focused());
+    let is_typing = focused.is_some() && focused != viewport;
+    // Shift first: a shortcut without it would match, too.
+    let mut commands: Vec<_> = Command::ALL.iter().filter_map(|c| Some((*c, c.shortcut()?))).collect();
+    commands.sort_by_key(|(_, shortcut)| !shortcut.modifiers.shift);
+    let free = commands
+        .into_iter()
+        .filter(|(_, shortcut)| !is_typing || shortcut.modifiers.any());
+    let mut free = free.chain([(Command::Redo, KeyboardShortcut::new(CTRL, Key::Y))]);
+    ctx.input_mut(|input| free.find(|(_, shortcut)| input.consume_shortcut(shortcut)))
+        .map(|(command, _)| command)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_two_commands_share_keys_or_a_name() {
+        for (i, a) in Command::ALL.iter().enumerate() {
+            for b in &Command::ALL[i + 1..] {
+                assert_ne!(a.label(), b.label());
+                assert!(
+                    a.shortcut().is_none() || a.shortcut() != b.shortcut(),
+                    "{a:?} and {b:?}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What was edited in a frame, and its way into the history: a drag is one step.
+
+use std::borrow::Cow;
+use std::time::{Duration, Instant};
+
+use crate::document::Document;
+use crate::document::history::History;
+
+/// Changes with the same key within this of each other are one step even without a drag: arrow keys, the wheel.
+const PAUSE: Duration = Duration::from_millis(600);
+/// Steps that can be undone.
+const STEPS: usize = 500;
+
+/// The documents gone through, and what the frame's edit is called.
+pub(super) struct Edits {
+    history: History<Document>,
+    note: Option<(Cow<'static, str>, Cow<'static, str>)>,
+    last_change: Option<Instant>,
+}
+
+impl Edits {
+    pub(super) fn new(document: Document) -> Self {
+        Self {
+            history: History::new(document, STEPS),
+            note: None,
+            last_change: None,
+        }
+    }
+
+    /// Names the edit of this frame: for the menu, and a key that tells whether the next one belongs to it.
+    pub(super) fn note(&mut self, label: impl Into<Cow<'static, str>>, key: impl Into<Cow<'static, str>>) {
+        self.note = Some((label.into(), key.into()));
+    }
+
+    /// Takes the document as the frame left it; true where it changed.
+    pub(super) fn record(&mut self, document: &Document, is_dragging: bool) -> bool {
+        let is_pause_over = self.last_change.is_some_and(|at| at.elapsed() > PAUSE);
+        if !is_dragging && is_pause_over {
+            self.history.seal();
+            self.last_change = None;
+        }
+        let (label, key) = self.note.take().unwrap_or((Cow::Borrowed("Edit"), Cow::Borrowed("")));
+        if self.history.current() == document {
+            return false;
+        }
+        self.history.push(label, (!key.is_empty()).then_some(key), document);
+        self.last_change = Some(Instant::now());
+        true
+    }
+
+    /// The next change starts a step of its own.
+    pub(super) fn seal(&mut self) {
+        self.history.seal();
+    }
+
+    /// How long ago the last change was, within the pause that ends a step.
+    pub(super) fn is_in_flow(&self) -> bool {
+        self.last_change.is_some_and(|at| at.elapsed() < PAUSE)
+    }
+
+    pub(super) fn undo(&mut self) -> Option<Document> {
+        self.history.undo().cloned()
+    }
+
+    pub(super) fn redo(&mut self) -> Option<Document> {
+        self.history.redo().cloned()
+    }
+
+    pub(super) fn undo_label(&self) -> Option<&str> {
+        self.history.undo_label()
+    }
+
+    pub(super) fn redo_label(&self) -> Option<&str> {
+        self.history.redo_label()
+    }
+
+    pub(super) fn is_saved(&self) -> bool {
+        self.history.is_saved()
+    }
+
+    pub(super) fn mark_saved(&mut self) {
+        self.history.mark_saved();
+    }
+}

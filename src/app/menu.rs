@@ -1,0 +1,238 @@
+//! The menu bar, the command palette and the sheets of help: all read the table of commands.
+
+use egui::{Key, RichText, Ui, vec2};
+
+use super::actions::{Action, Command, Menu};
+use super::edits::Edits;
+use super::layout::Pane;
+use super::theme;
+use crate::render::EngineChoice;
+
+/// What is open over the window.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(super) enum Sheet {
+    #[default]
+    None,
+    Palette {
+        search: String,
+        selected: usize,
+    },
+    Shortcuts,
+    About,
+}
+
+/// Panels to bring to the front, from the menu.
+pub(super) struct MenuAnswer {
+    pub(super) reveal: Option<Pane>,
+}
+
+pub(super) fn bar(ui: &mut Ui, edits: &Edits, actions: &mut Vec<Action>) -> MenuAnswer {
+    let mut reveal = None;
+    egui::MenuBar::new().ui(ui, |ui| {
+        for menu in Menu::ALL {
+            ui.menu_button(menu.label(), |ui| {
+                ui.set_min_width(200.0);
+                let mut group = 0;
+                for command in Command::ALL.iter().filter(|command| command.menu() == menu) {
+                    if command.group() != group {
+                        ui.separator();
+                        group = command.group();
+                    }
+                    entry(ui, *command, edits, actions);
+                }
+                match menu {
+                    Menu::View => panes(ui, &mut reveal),
+                    Menu::Render => engines(ui, actions),
+                    _ => {}
+                }
+            });
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let keys = Command::Palette
+                .shortcut()
+                .map(|shortcut| ui.ctx().format_shortcut(&shortcut));
+            let text = format!("Find a command  {}", keys.unwrap_or_default());
+            if ui.button(RichText::new(text).weak()).clicked() {
+                actions.push(Action::Do(Command::Palette));
+            }
+        });
+    });
+    MenuAnswer { reveal }
+}
+
+fn entry(ui: &mut Ui, command: Command, edits: &Edits, actions: &mut Vec<Action>) {
+    let (label, is_enabled) = match command {
+        Command::Undo => with_step("Undo", edits.undo_label()),
+        Command::Redo => with_step("Redo", edits.redo_label()),
+        _ => (command.label().to_owned(), true),
+    };
+    let mut button = egui::Button::new(label);
+    if let Some(shortcut) = command.shortcut() {
+        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    }
+    if ui
+        .add_enabled(is_enabled, button)
+        .on_hover_text(command.help())
+        .clicked()
+    {
+        actions.push(Action::Do(command));
+    }
+}
+
+fn with_step(verb: &str, step: Option<&str>) -> (String, bool) {
+    match step {
+        Some(step) => (format!("{verb}: {step}"), true),
+        None => (verb.to_owned(), false),
+    }
+}
+
+fn panes(ui: &mut Ui, reveal: &mut Option<Pane>) {
+    ui.separator();
+    for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport) {
+        if ui.button(format!("Show {}", pane.title().to_lowercase())).clicked() {
+            *reveal = Some(pane);
+        }
+    }
+}
+
+fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
+    ui.separator();
+    for (label, help, choice) in [
+        (
+            "Engine: choose",
+            "A hardware GPU if there is one, else the faster one here.",
+            EngineChoice::Auto,
+        ),
+        ("Engine: GPU", "The GPU, or Vulkan on the processor.", EngineChoice::Gpu),
+        ("Engine: processor", "The processor's cores.", EngineChoice::Cpu),
+    ] {
+        if ui.button(label).on_hover_text(help).clicked() {
+            actions.push(Action::UseEngine(choice));
+        }
+    }
+}
+
+/// Shows the sheet that is open.
+pub(super) fn sheet(ctx: &egui::Context, sheet: &mut Sheet, actions: &mut Vec<Action>) {
+    let mut is_done = false;
+    let modal = match sheet {
+        Sheet::None => return,
+        Sheet::Palette { search, selected } => egui::Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
+            is_done = palette(ui, search, selected, actions);
+        }),
+        Sheet::Shortcuts => egui::Modal::new(egui::Id::unique("shortcuts")).show(ctx, shortcuts),
+        Sheet::About => egui::Modal::new(egui::Id::unique("about")).show(ctx, about),
+    };
+    if is_done || modal.should_close() {
+        *sheet = Sheet::None;
+    }
+}
+
+fn palette(ui: &mut Ui, search: &mut String, selected: &mut usize, actions: &mut Vec<Action>) -> bool {
+    ui.set_width(420.0);
+    let step = |ui: &mut Ui, key| ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key));
+    let (up, down) = (step(ui, Key::ArrowUp), step(ui, Key::ArrowDown));
+    let field = egui::TextEdit::singleline(search)
+        .hint_text("Find a command")
+        .desired_width(f32::INFINITY);
+    let response = ui.add(field.margin(vec2(8.0, 5.0))).accessible_name("Find a command");
+    if response.changed() {
+        *selected = 0;
+    }
+    let is_entered = ui.input(|input| input.key_pressed(Key::Enter));
+    response.request_focus();
+    ui.add_space(theme::GAP);
+    let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
+    let matches = |command: &&Command| {
+        let text = format!("{} {} {}", command.menu().label(), command.label(), command.help()).to_lowercase();
+        words.iter().all(|word| text.contains(word))
+    };
+    let found: Vec<Command> = Command::ALL
+        .iter()
+        .filter(matches)
+        .filter(|c| **c != Command::Palette)
+        .copied()
+        .collect();
+    let last = found.len().saturating_sub(1);
+    *selected = (*selected + usize::from(down))
+        .min(last)
+        .saturating_sub(usize::from(up));
+    let mut chosen = None;
+    egui::ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
+        ui.set_min_width(ui.available_width());
+        for (index, command) in found.iter().enumerate() {
+            let keys = command
+                .shortcut()
+                .map(|shortcut| ui.ctx().format_shortcut(&shortcut))
+                .unwrap_or_default();
+            let button = egui::Button::selectable(index == *selected, command.label()).shortcut_text(keys);
+            let response = ui
+                .add_sized(vec2(ui.available_width(), theme::ROW_HEIGHT), button)
+                .on_hover_text(command.help());
+            if index == *selected && (up || down) {
+                response.scroll_to_me(None);
+            }
+            if response.clicked() || (is_entered && index == *selected) {
+                chosen = Some(*command);
+            }
+        }
+        if found.is_empty() {
+            super::widgets::note(ui, "No command like that.");
+        }
+    });
+    if let Some(command) = chosen {
+        actions.push(Action::Do(command));
+    }
+    chosen.is_some()
+}
+
+const MOUSE: [(&str, &str); 8] = [
+    ("Drag", "Turn the camera"),
+    ("Middle drag, or ctrl and drag", "Pan"),
+    ("Wheel, or right drag", "Zoom"),
+    ("Shift and drag", "Turn the light"),
+    ("Click", "Select the material there"),
+    ("Arrows, page up and down", "Turn and zoom, with the viewport focused"),
+    ("Double-click on a label", "Reset the parameter"),
+    ("Shift and drag a number", "Change it finely"),
+];
+
+fn shortcuts(ui: &mut Ui) {
+    ui.set_width(440.0);
+    ui.heading("Keys and mouse");
+    ui.add_space(theme::GAP);
+    egui::Grid::new("keys")
+        .num_columns(2)
+        .spacing(vec2(24.0, 5.0))
+        .show(ui, |ui| {
+            for (how, what) in MOUSE {
+                ui.label(RichText::new(how).strong());
+                ui.label(what);
+                ui.end_row();
+            }
+            for command in Command::ALL {
+                if let Some(shortcut) = command.shortcut() {
+                    ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).strong());
+                    ui.label(command.label());
+                    ui.end_row();
+                }
+            }
+        });
+    ui.add_space(theme::GAP);
+    if ui.button("Close").clicked() {
+        ui.close();
+    }
+}
+
+fn about(ui: &mut Ui) {
+    ui.set_width(420.0);
+    ui.heading(concat!("Glossmith ", env!("CARGO_PKG_VERSION")));
+    ui.add_space(theme::GAP);
+    ui.label(env!("CARGO_PKG_DESCRIPTION"));
+    ui.add_space(theme::GAP);
+    super::widgets::note(ui, concat!("Licence: ", env!("CARGO_PKG_LICENSE")));
+    ui.add_space(theme::GAP);
+    if ui.button("Close").clicked() {
+        ui.close();
+    }
+}

@@ -1,0 +1,257 @@
+//! Camera, view and render settings.
+
+use egui::Ui;
+
+use super::{Desk, Resolution};
+use crate::app::actions::{Action, Command};
+use crate::app::widgets::{self, Name, NumberStyle};
+use crate::document::{PixelFilter, Strategy, range};
+use crate::optics::random::Sequence;
+use crate::optics::tone::ToneCurve;
+
+pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    widgets::group(ui, "Camera", |ui| camera(ui, desk));
+    widgets::group(ui, "View", |ui| view(ui, desk));
+    widgets::group(ui, "Picture", |ui| picture(ui, desk));
+    widgets::group(ui, "Sampling", |ui| sampling(ui, desk));
+}
+
+fn angle(range: std::ops::RangeInclusive<f64>, bar: [f64; 2]) -> NumberStyle<'static> {
+    NumberStyle {
+        range,
+        bar: Some(bar),
+        unit: "°",
+        speed: 1.0,
+        decimals: 1,
+    }
+}
+
+fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let camera = &mut desk.document.camera;
+    let name = Name::new(
+        "Field of view",
+        "Field of view",
+        "Vertical angle of the picture; small is a telephoto lens.",
+    );
+    let response = widgets::row(ui, name, |ui| {
+        widgets::number(ui, &mut camera.fov_deg, &angle(range::FOV_DEG, [5.0, 120.0]))
+    });
+    desk.edited(response, "Field of view", |document| &mut document.camera.fov_deg);
+    let camera = &mut desk.document.camera;
+    let name = Name::new(
+        "Yaw",
+        "Yaw",
+        "Turns the camera about the vertical axis. In the viewport: drag.",
+    );
+    let response = widgets::row(ui, name, |ui| {
+        widgets::number(ui, &mut camera.yaw_deg, &angle(range::YAW_DEG, [-180.0, 180.0]))
+    });
+    desk.edited(response, "Camera yaw", |document| &mut document.camera.yaw_deg);
+    let camera = &mut desk.document.camera;
+    let name = Name::new(
+        "Pitch",
+        "Pitch",
+        "Height of the camera above the horizon. In the viewport: drag.",
+    );
+    let response = widgets::row(ui, name, |ui| {
+        widgets::number(ui, &mut camera.pitch_deg, &angle(range::PITCH_DEG, [-90.0, 90.0]))
+    });
+    desk.edited(response, "Camera pitch", |document| &mut document.camera.pitch_deg);
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Frame all").on_hover_text(Command::FrameAll.help()).clicked() {
+            desk.act(Command::FrameAll);
+        }
+        for (label, yaw_deg, pitch_deg) in [("Front", 0.0, 0.0), ("Side", 90.0, 0.0), ("Top", 0.0, 90.0)] {
+            if ui.button(label).clicked() {
+                desk.actions.push(Action::LookFrom(yaw_deg, pitch_deg));
+            }
+        }
+    });
+}
+
+fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let choices: Vec<_> = ToneCurve::ALL
+        .iter()
+        .map(|curve| (*curve, curve.label(), curve.help()))
+        .collect();
+    let tone_map = &mut desk.document.view.tone_map;
+    let name = Name::new(
+        "Tone map",
+        "Tone map",
+        "How radiance beyond what a screen can show is brought into its range.",
+    );
+    let response = widgets::row(ui, name, |ui| widgets::choice(ui, "tone map", tone_map, &choices));
+    desk.edited(response, "Tone map", |document| &mut document.view.tone_map);
+    let style = exposure_style();
+    let exposure_ev = &mut desk.document.view.exposure_ev;
+    let name = Name::new("Exposure", "Exposure", "Brightness in stops: +1 doubles it.");
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, exposure_ev, &style));
+    desk.edited(response, "Exposure", |document| &mut document.view.exposure_ev);
+}
+
+pub(in crate::app) fn exposure_style() -> NumberStyle<'static> {
+    NumberStyle {
+        range: range::EXPOSURE_EV,
+        bar: Some([-6.0, 6.0]),
+        unit: " EV",
+        speed: 0.05,
+        decimals: 2,
+    }
+}
+
+/// The sizes of the picture to choose from: (value, label, help).
+pub(in crate::app) const RESOLUTIONS: [(Resolution, &str, &str); 4] = [
+    (
+        Resolution::Auto,
+        "Fill",
+        "Fills the viewport: with the screen's pixels on a GPU, with fewer on the processor.",
+    ),
+    (
+        Resolution::Native,
+        "Fill, native",
+        "Fills the viewport with the screen's own pixels.",
+    ),
+    (
+        Resolution::Half,
+        "Fill, half",
+        "Fills the viewport with half as many pixels each way.",
+    ),
+    (
+        Resolution::Document,
+        "Picture size",
+        "Width and height as set below, whatever the viewport's shape.",
+    ),
+];
+
+fn whole(range: std::ops::RangeInclusive<f64>, unit: &'static str) -> NumberStyle<'static> {
+    NumberStyle {
+        range,
+        bar: None,
+        unit,
+        speed: 1.0,
+        decimals: 0,
+    }
+}
+
+fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let name = Name::new("Picture size", "Size", "What the viewport renders, and what is saved.");
+    let response = widgets::row(ui, name, |ui| {
+        widgets::choice(ui, "size", &mut desk.state.resolution, &RESOLUTIONS)
+    });
+    if response.reset {
+        desk.state.resolution = Resolution::default();
+    }
+    if desk.state.resolution == Resolution::Document {
+        let width = &mut desk.document.render.width;
+        let response = widgets::row(ui, Name::new("Width", "Width", ""), |ui| {
+            widgets::number(ui, width, &whole(16.0..=16384.0, " px"))
+        });
+        desk.edited(response, "Picture width", |document| &mut document.render.width);
+        let height = &mut desk.document.render.height;
+        let response = widgets::row(ui, Name::new("Height", "Height", ""), |ui| {
+            widgets::number(ui, height, &whole(16.0..=16384.0, " px"))
+        });
+        desk.edited(response, "Picture height", |document| &mut document.render.height);
+    }
+    let samples = &mut desk.document.render.samples;
+    let name = Name::new(
+        "Samples",
+        "Samples",
+        "Samples a pixel after which rendering stops: noise halves with four times as many.",
+    );
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, samples, &whole(1.0..=1e9, "")));
+    desk.edited(response, "Samples", |document| &mut document.render.samples);
+    let mut is_limited = desk.document.render.time_s.is_some();
+    let name = Name::new("Time limit", "Time limit", "Stops rendering after some seconds.");
+    let response = widgets::row(ui, name, |ui| ui.checkbox(&mut is_limited, ""));
+    if response.changed {
+        desk.document.render.time_s = is_limited.then_some(60.0);
+    }
+    desk.edited(response, "Time limit", |document| &mut document.render.time_s);
+    if let Some(time_s) = &mut desk.document.render.time_s {
+        let style = NumberStyle {
+            decimals: 1,
+            ..whole(0.1..=1e6, " s")
+        };
+        let response = widgets::row(ui, Name::new("Seconds", "Seconds", ""), |ui| {
+            widgets::number(ui, time_s, &style)
+        });
+        if response.changed {
+            desk.edits.note("Time limit", "Time limit");
+        }
+    }
+}
+
+fn sampling(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let style = NumberStyle {
+        bar: Some([1.0, 64.0]),
+        ..whole(range::BOUNCES, "")
+    };
+    let bounces = &mut desk.document.render.bounces;
+    let name = Name::new("Bounces", "Bounces", "Reflections that a path may have.");
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, bounces, &style));
+    desk.edited(response, "Bounces", |document| &mut document.render.bounces);
+    let strategy = &mut desk.document.render.strategy;
+    let choices = [
+        (
+            Strategy::Mis,
+            "Both (MIS)",
+            "Sample both, each weighed by its density (Veach 1997).",
+        ),
+        (
+            Strategy::Lobe,
+            "Lobe",
+            "Sample the material's lobe and see what light it meets.",
+        ),
+        (
+            Strategy::Light,
+            "Light",
+            "Sample the light and see how the material reflects it.",
+        ),
+    ];
+    let name = Name::new(
+        "Strategy",
+        "Strategy",
+        "How light is found. All three converge to the same picture.",
+    );
+    let response = widgets::row(ui, name, |ui| widgets::choice(ui, "strategy", strategy, &choices));
+    desk.edited(response, "Strategy", |document| &mut document.render.strategy);
+    let sequence = &mut desk.document.render.sequence;
+    let choices = [
+        (
+            Sequence::Sobol,
+            "Sobol",
+            "Owen-scrambled Sobol points: less noise for the same time.",
+        ),
+        (
+            Sequence::Independent,
+            "Independent",
+            "Plain random numbers: what statistics assume.",
+        ),
+    ];
+    let name = Name::new("Sequence", "Sequence", "The random numbers that are drawn.");
+    let response = widgets::row(ui, name, |ui| widgets::choice(ui, "sequence", sequence, &choices));
+    desk.edited(response, "Sequence", |document| &mut document.render.sequence);
+    let filter = &mut desk.document.render.filter;
+    let choices = [
+        (PixelFilter::Gaussian, "Gaussian", "Half a pixel wide: smoother edges."),
+        (
+            PixelFilter::Box,
+            "Box",
+            "Evenly over the pixel: what to compare renderers with.",
+        ),
+    ];
+    let name = Name::new(
+        "Pixel filter",
+        "Pixel filter",
+        "How samples are spread over a pixel and its neighbours.",
+    );
+    let response = widgets::row(ui, name, |ui| widgets::choice(ui, "filter", filter, &choices));
+    desk.edited(response, "Pixel filter", |document| &mut document.render.filter);
+    let seed = &mut desk.document.render.seed;
+    let name = Name::new("Seed", "Seed", "Which of the possible pictures' noise.");
+    let response = widgets::row(ui, name, |ui| {
+        widgets::number(ui, seed, &whole(0.0..=4_294_967_295.0, ""))
+    });
+    desk.edited(response, "Seed", |document| &mut document.render.seed);
+}

@@ -1,0 +1,146 @@
+//! The selected material: every parameter of the registry, in its group, with the widget that suits its kind.
+
+use egui::Ui;
+
+use super::Desk;
+use crate::app::actions::{Action, Command};
+use crate::app::icons::{self, Icon};
+use crate::app::theme;
+use crate::app::widgets::{self, Name, NumberStyle};
+use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter, Value};
+
+pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    slots(ui, desk);
+    let before = desk.material();
+    let mut material = before.clone();
+    name(ui, desk, &mut material);
+    ui.add_space(theme::GAP);
+    let mut groups: Vec<&'static str> = Vec::new();
+    for parameter in PARAMETERS.iter() {
+        if !groups.contains(&parameter.group) {
+            groups.push(parameter.group);
+        }
+    }
+    for group in groups {
+        widgets::group(ui, group, |ui| {
+            let of_group = PARAMETERS.iter().filter(|parameter| parameter.group == group);
+            for parameter in of_group.filter(|parameter| (parameter.applies)(&before)) {
+                show_parameter(ui, desk, parameter, &mut material);
+            }
+        });
+    }
+    if material != before {
+        desk.set_material(material);
+    }
+}
+
+/// The model's slots, where there is a choice.
+fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let count = desk.slots();
+    if desk.state.slot >= count {
+        desk.state.slot = 0;
+    }
+    if count < 2 {
+        return;
+    }
+    widgets::group(ui, "Slots", |ui| {
+        let names: Vec<String> = desk
+            .scene()
+            .map(|scene| scene.model.slots.iter().map(|slot| slot.name.clone()).collect())
+            .unwrap_or_default();
+        for (slot, name) in names.iter().enumerate() {
+            let label = if name.is_empty() {
+                format!("slot {}", slot + 1)
+            } else {
+                name.clone()
+            };
+            let width = egui::vec2(ui.available_width(), theme::ROW_HEIGHT);
+            let item = egui::Button::selectable(slot == desk.state.slot, label).min_size(width);
+            if ui.add(item).clicked() {
+                desk.actions.push(Action::SelectSlot(slot));
+            }
+        }
+    });
+}
+
+fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
+    ui.horizontal(|ui| {
+        let width = ui.available_width() - theme::ROW_HEIGHT - ui.spacing().item_spacing.x;
+        let field = egui::TextEdit::singleline(&mut material.name)
+            .desired_width(width)
+            .margin(egui::vec2(6.0, 3.0));
+        if ui.add(field).accessible_name("Material name").changed() {
+            desk.edits.note("Rename material", "material name");
+        }
+        let more = icons::button(ui, Icon::More, "Material menu", "Open, save, reset");
+        egui::Popup::menu(&more).show(|ui| {
+            for command in [Command::OpenMaterial, Command::SaveMaterial, Command::ResetMaterial] {
+                if ui.button(command.label()).on_hover_text(command.help()).clicked() {
+                    desk.act(command);
+                }
+            }
+        });
+    });
+}
+
+fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, material: &mut MaterialSettings) {
+    let full = format!("{} {}", parameter.group, parameter.label.to_lowercase());
+    let name = Name {
+        full: &full,
+        label: parameter.label,
+        symbol: parameter.symbol,
+        help: parameter.help,
+    };
+    let mut value = parameter.get(material);
+    let response = widgets::row(ui, name, |ui| control(ui, parameter, &full, &mut value));
+    if response.reset {
+        value = parameter.default_value();
+    }
+    // A control may leave the range behind for a moment, as a picker does: such a value is not taken.
+    if (response.changed || response.reset) && parameter.set(material, value).is_ok() {
+        let label = format!("{} {}", parameter.group, parameter.label.to_lowercase());
+        desk.edits.note(label, format!("{}/{}", desk.state.slot, parameter.key));
+    }
+}
+
+fn control(ui: &mut Ui, parameter: &Parameter, full: &str, value: &mut Value) -> egui::Response {
+    match (&parameter.kind, value) {
+        (
+            Kind::Number {
+                range,
+                soft_range,
+                unit,
+                step,
+            },
+            Value::Number(number),
+        ) => {
+            let style = NumberStyle {
+                range: f64::from(range[0])..=f64::from(range[1]),
+                bar: Some(soft_range.map(f64::from)),
+                unit,
+                speed: f64::from(*step),
+                decimals: if *step >= 1.0 { 1 } else { 3 },
+            };
+            widgets::number(ui, number, &style)
+        }
+        (Kind::Color, Value::Color(linear)) => {
+            let response = widgets::color(ui, full, linear);
+            *linear = linear.map(|x| x.clamp(0.0, 1.0));
+            response
+        }
+        (Kind::Triple { range }, Value::Triple(values)) => {
+            widgets::triple(ui, full, values, f64::from(range[0])..=f64::from(range[1]))
+        }
+        (Kind::Choice(choices), Value::Choice(name)) => {
+            let choices: Vec<_> = choices
+                .iter()
+                .map(|choice| (choice.name, choice.label, choice.help))
+                .collect();
+            widgets::choice(ui, parameter.key, name, &choices)
+        }
+        (Kind::Toggle, Value::Toggle(is_on)) => ui.checkbox(is_on, ""),
+        (Kind::Curve, Value::Curve(points)) => ui.label(format!("{} points", points.len())),
+        // A registry test keeps kinds and values together.
+        _ => ui.label("not shown"),
+    }
+}

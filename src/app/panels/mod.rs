@@ -1,0 +1,108 @@
+//! The panels, one a file. They change the document, push actions, and read the renderer's state.
+
+pub(super) mod camera;
+pub(super) mod lighting;
+pub(super) mod log;
+pub(super) mod material;
+pub(super) mod presets;
+
+use super::actions::{Action, Command};
+use super::edits::Edits;
+use super::widgets::RowResponse;
+use crate::document::{Document, MaterialSettings};
+use crate::render::worker::{Scene, Snapshot};
+
+/// What panels work on.
+pub(super) struct Desk<'a> {
+    pub(super) document: &'a mut Document,
+    pub(super) snapshot: &'a Snapshot,
+    pub(super) edits: &'a mut Edits,
+    pub(super) actions: &'a mut Vec<Action>,
+    pub(super) state: &'a mut PanelState,
+}
+
+/// What panels remember that is no part of the document.
+#[derive(Clone, Debug, Default)]
+pub(super) struct PanelState {
+    /// The material slot that is edited.
+    pub(super) slot: usize,
+    /// What was said, oldest first.
+    pub(super) log: Vec<log::Entry>,
+    /// The environment's small picture.
+    pub(super) thumbnail: lighting::Thumbnail,
+    /// How large the picture is.
+    pub(super) resolution: Resolution,
+    /// Rendering was stopped by hand.
+    pub(super) is_paused: bool,
+    /// What is searched for among the presets.
+    pub(super) preset_search: String,
+}
+
+/// How large the picture is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum Resolution {
+    /// It fills the viewport: with the screen's pixels on a hardware GPU, else with one a point.
+    #[default]
+    Auto,
+    /// It fills the viewport with the screen's pixels.
+    Native,
+    /// It fills the viewport with half as many pixels each way.
+    Half,
+    /// Width and height as in the document, shown with its own shape.
+    Document,
+}
+
+impl Desk<'_> {
+    pub(super) fn act(&mut self, command: Command) {
+        self.actions.push(Action::Do(command));
+    }
+
+    /// The scene being rendered, where it is of the document's model.
+    pub(super) fn scene(&self) -> Option<&Scene> {
+        self.snapshot
+            .scene
+            .as_deref()
+            .filter(|scene| scene.document.model == self.document.model)
+    }
+
+    /// Material slots of the model, at least 1.
+    pub(super) fn slots(&self) -> usize {
+        self.scene().map_or(1, |scene| scene.model.slots.len()).max(1)
+    }
+
+    /// The material of the selected slot.
+    pub(super) fn material(&self) -> MaterialSettings {
+        let materials = &self.document.materials;
+        materials
+            .get(self.state.slot)
+            .or(materials.last())
+            .cloned()
+            .unwrap_or_default()
+    }
+
+    /// Replaces the material of the selected slot; slots before it keep what they show.
+    pub(super) fn set_material(&mut self, material: MaterialSettings) {
+        let materials = &mut self.document.materials;
+        let last = materials.last().cloned().unwrap_or_default();
+        if materials.len() <= self.state.slot {
+            materials.resize(self.state.slot + 1, last);
+        }
+        materials[self.state.slot] = material;
+    }
+
+    /// Notes an edit of a setting, and resets it where that was asked for.
+    pub(super) fn edited<T: PartialEq + Clone>(
+        &mut self,
+        response: RowResponse,
+        label: &'static str,
+        field: impl Fn(&mut Document) -> &mut T,
+    ) {
+        if response.reset {
+            let default = field(&mut Document::default()).clone();
+            *field(self.document) = default;
+        }
+        if response.changed || response.reset {
+            self.edits.note(label, label);
+        }
+    }
+}

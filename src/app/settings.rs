@@ -1,0 +1,82 @@
+//! What the window is opened with, and what is remembered from one start to the next.
+
+use std::sync::Arc;
+
+use egui::ThemePreference;
+use egui_tiles::Tree;
+use serde::{Deserialize, Serialize};
+
+use super::layout::{self, Pane};
+use super::panels::Resolution;
+
+/// Under which the window's state is stored.
+const KEY: &str = "editor";
+
+/// The window's options.
+pub(super) fn native_options() -> eframe::NativeOptions {
+    let viewport = egui::ViewportBuilder::default()
+        .with_app_id("glossmith")
+        .with_title("Glossmith")
+        .with_inner_size([1440.0, 900.0])
+        .with_min_inner_size([760.0, 480.0]);
+    let mut options = eframe::NativeOptions {
+        viewport,
+        ..eframe::NativeOptions::default()
+    };
+    if let eframe::egui_wgpu::WgpuSetup::CreateNew(setup) = &mut options.wgpu_options.wgpu_setup {
+        setup.device_descriptor = Arc::new(device_descriptor);
+    }
+    options
+}
+
+/// The window only draws triangles with textures: it takes what limits the adapter has, as the defaults ask for compute
+/// that OpenGL may lack, and for less than the largest screens need.
+fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    let offered = adapter.limits();
+    let modest = wgpu::Limits::downlevel_webgl2_defaults();
+    wgpu::DeviceDescriptor {
+        label: Some("glossmith window"),
+        required_limits: wgpu::Limits {
+            max_texture_dimension_2d: offered.max_texture_dimension_2d.min(16_384),
+            max_buffer_size: offered.max_buffer_size.min(1 << 28),
+            ..modest
+        },
+        ..Default::default()
+    }
+}
+
+/// What is remembered.
+#[derive(Serialize, Deserialize)]
+#[serde(default)]
+pub(super) struct Kept {
+    pub(super) theme: ThemePreference,
+    pub(super) layout: Option<Tree<Pane>>,
+    pub(super) resolution: Resolution,
+}
+
+impl Default for Kept {
+    fn default() -> Self {
+        Self {
+            theme: ThemePreference::Dark,
+            layout: None,
+            resolution: Resolution::default(),
+        }
+    }
+}
+
+impl Kept {
+    /// What the last start left; the defaults where that can't be read any more.
+    pub(super) fn load(creation: &eframe::CreationContext<'_>) -> Self {
+        let mut kept: Self = creation
+            .storage
+            .and_then(|storage| eframe::get_value(storage, KEY))
+            .unwrap_or_default();
+        kept.layout = kept.layout.filter(layout::is_complete);
+        kept
+    }
+
+    /// Leaves it for the next start.
+    pub(super) fn save(&self, storage: &mut dyn eframe::Storage) {
+        eframe::set_value(storage, KEY, self);
+    }
+}

@@ -1,0 +1,138 @@
+//! The bar over the picture: what is looked at, in which light, and how it is shown.
+
+use egui::{Align, Layout, Rect, Ui, UiBuilder, vec2};
+
+use crate::app::actions::{Action, Command};
+use crate::app::icons::{self, Icon};
+use crate::app::panels::{Desk, camera, lighting};
+use crate::app::widgets;
+use crate::optics::tone::ToneCurve;
+use crate::scene::ModelSource;
+
+/// The models that come with the program.
+const MODELS: [(&str, ModelSource); 4] = [
+    ("Teapot", ModelSource::Teapot),
+    ("Sphere", ModelSource::Sphere),
+    ("Plane", ModelSource::Plane),
+    ("Shader ball", ModelSource::Shaderball),
+];
+
+fn model_label(source: &ModelSource) -> String {
+    let built_in = MODELS.iter().find(|(_, of)| of == source);
+    match (built_in, source) {
+        (Some((label, _)), _) => (*label).to_owned(),
+        (None, ModelSource::File(path)) => path.file_name().map_or_else(
+            || path.display().to_string(),
+            |name| name.to_string_lossy().into_owned(),
+        ),
+        (None, other) => other.to_string(),
+    }
+}
+
+pub(super) fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
+    ui.painter().rect_filled(bar, 0.0, ui.visuals().panel_fill);
+    let inside = bar.shrink2(vec2(8.0, 0.0));
+    let builder = UiBuilder::new()
+        .max_rect(inside)
+        .layout(Layout::left_to_right(Align::Center));
+    let mut ui = ui.new_child(builder);
+    ui.set_clip_rect(bar.intersect(ui.clip_rect()));
+    // Narrow viewports keep what is looked at and give up the rest.
+    let is_wide = bar.width() > 560.0;
+    models(&mut ui, desk);
+    environments(&mut ui, desk);
+    if is_wide {
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| shown(ui, desk));
+    }
+}
+
+fn models(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let combo = egui::ComboBox::from_id_salt("model")
+        .width(120.0)
+        .selected_text(model_label(&desk.document.model));
+    let shown = combo.show_ui(ui, |ui| {
+        for (label, source) in &MODELS {
+            if ui.selectable_label(desk.document.model == *source, *label).clicked() {
+                desk.actions.push(Action::UseModel(source.clone()));
+            }
+        }
+        ui.separator();
+        if ui.selectable_label(false, "Open…").clicked() {
+            desk.act(Command::OpenModel);
+        }
+    });
+    shown.response.accessible_name("Model").on_hover_text("Model");
+}
+
+fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let current = desk.document.lighting.environment.clone();
+    let combo = egui::ComboBox::from_id_salt("environment")
+        .width(120.0)
+        .selected_text(lighting::environment_label(&current));
+    let shown = combo.show_ui(ui, |ui| {
+        for (label, help, source) in &lighting::BUILT_IN {
+            if ui
+                .selectable_label(current == *source, *label)
+                .on_hover_text(*help)
+                .clicked()
+            {
+                desk.actions.push(Action::UseEnvironment(source.clone()));
+            }
+        }
+        ui.separator();
+        if ui.selectable_label(false, "Open…").clicked() {
+            desk.act(Command::OpenEnvironment);
+        }
+    });
+    shown
+        .response
+        .accessible_name("Environment")
+        .on_hover_text("Environment");
+}
+
+/// Added from the right.
+fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let is_paused = desk.state.is_paused;
+    let (icon, help) = if is_paused {
+        (Icon::Play, "Go on (space)")
+    } else {
+        (Icon::Pause, "Pause (space)")
+    };
+    if icons::button(ui, icon, Command::Pause.label(), help).clicked() {
+        desk.act(Command::Pause);
+    }
+    sized(ui, 104.0, |ui| {
+        let response = widgets::choice(ui, "header size", &mut desk.state.resolution, &camera::RESOLUTIONS);
+        response
+            .accessible_name("Resolution")
+            .on_hover_text("Size of the picture");
+    });
+    sized(ui, 76.0, |ui| {
+        let response = widgets::number(ui, &mut desk.document.view.exposure_ev, &camera::exposure_style());
+        if response.double_clicked() {
+            desk.document.view.exposure_ev = 0.0;
+        }
+        if response.changed() || response.double_clicked() {
+            desk.edits.note("Exposure", "Exposure");
+        }
+        response
+            .accessible_name("Viewport exposure")
+            .on_hover_text("Exposure in stops");
+    });
+    sized(ui, 116.0, |ui| {
+        let choices: Vec<_> = ToneCurve::ALL
+            .iter()
+            .map(|curve| (*curve, curve.label(), curve.help()))
+            .collect();
+        let response = widgets::choice(ui, "header tone map", &mut desk.document.view.tone_map, &choices);
+        if response.changed() {
+            desk.edits.note("Tone map", "Tone map");
+        }
+        response.accessible_name("Viewport tone map").on_hover_text("Tone map");
+    });
+}
+
+fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
+    let layout = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(vec2(width, crate::app::theme::ROW_HEIGHT), layout, add);
+}

@@ -1,0 +1,361 @@
+//! The rows that panels are made of: a label, which explains and resets, and a control, which is named after it.
+
+use std::ops::RangeInclusive;
+
+use egui::text::LayoutJob;
+use egui::{
+    Align, Color32, DragValue, Layout, Rect, Response, RichText, Sense, Shape, TextFormat, TextStyle, Ui, Vec2,
+};
+
+use super::theme::{self, ROW_HEIGHT};
+use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
+use crate::optics::vector::vec3;
+
+/// The share of a row that its label takes.
+const LABEL_SHARE: f32 = 0.40;
+/// The least width of a label, points.
+const LABEL_MIN: f32 = 84.0;
+/// Width of a colour's hexadecimal field, points.
+const HEX_WIDTH: f32 = 68.0;
+
+/// What a row is called and explains.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Name<'a> {
+    /// The name for screen readers and tests; unique in the window.
+    pub(super) full: &'a str,
+    /// The label.
+    pub(super) label: &'a str,
+    /// A symbol behind it, or empty.
+    pub(super) symbol: &'a str,
+    /// What it does to the picture.
+    pub(super) help: &'a str,
+}
+
+impl<'a> Name<'a> {
+    /// Without a symbol.
+    pub(super) fn new(full: &'a str, label: &'a str, help: &'a str) -> Self {
+        Self {
+            full,
+            label,
+            symbol: "",
+            help,
+        }
+    }
+}
+
+/// What happened to a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct RowResponse {
+    /// Its value was changed by the control.
+    pub(super) changed: bool,
+    /// It is to go back to its default.
+    pub(super) reset: bool,
+}
+
+/// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
+pub(super) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
+    ui.horizontal(|ui| {
+        let label_width = (ui.available_width() * LABEL_SHARE).max(LABEL_MIN);
+        let label = row_label(ui, name, label_width);
+        let width = ui.available_width().max(40.0);
+        let layout = Layout::left_to_right(Align::Center);
+        let control = ui
+            .allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, control)
+            .inner;
+        let changed = control.changed();
+        let control = control.accessible_name(name.full);
+        if !name.help.is_empty() {
+            control.on_hover_text(name.help);
+        }
+        let mut reset = label.double_clicked();
+        label.context_menu(|ui| {
+            if ui.button("Reset to default").clicked() {
+                reset = true;
+                ui.close();
+            }
+        });
+        RowResponse { changed, reset }
+    })
+    .inner
+}
+
+fn row_label(ui: &mut Ui, name: Name<'_>, width: f32) -> Response {
+    let mut job = LayoutJob::default();
+    let font = TextStyle::Body.resolve(ui.style());
+    let format = |color: Color32| TextFormat::simple(font.clone(), color);
+    job.append(name.label, 0.0, format(ui.visuals().text_color()));
+    if !name.symbol.is_empty() && name.symbol != name.label {
+        job.append(name.symbol, 6.0, format(ui.visuals().weak_text_color()));
+    }
+    let layout = Layout::left_to_right(Align::Center);
+    let label = egui::Label::new(job).truncate().selectable(false).sense(Sense::click());
+    let response = ui.allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, |ui| {
+        ui.set_min_width(width);
+        ui.add(label)
+    });
+    let help = if name.help.is_empty() { name.label } else { name.help };
+    response.inner.on_hover_ui(|ui| {
+        ui.set_max_width(ui.spacing().tooltip_width);
+        ui.label(help);
+        ui.label(RichText::new("Double-click to reset").weak().small());
+    })
+}
+
+/// How a number is edited.
+#[derive(Clone, Debug)]
+pub(super) struct NumberStyle<'a> {
+    /// The values that it may take.
+    pub(super) range: RangeInclusive<f64>,
+    /// What the bar spans; `None` for no bar.
+    pub(super) bar: Option<[f64; 2]>,
+    /// Unit behind the number, with its space where one belongs.
+    pub(super) unit: &'a str,
+    /// Change per point of dragging where there is no bar.
+    pub(super) speed: f64,
+    /// Most digits behind the point.
+    pub(super) decimals: usize,
+}
+
+/// A number as a bar to drag (with shift: finely) or to type into.
+pub(super) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style: &NumberStyle<'_>) -> Response {
+    let size = Vec2::new(ui.available_width(), ROW_HEIGHT);
+    let rect = Rect::from_min_size(ui.next_widget_position() - Vec2::new(0.0, 0.5 * size.y), size);
+    let background = ui.painter().add(Shape::Noop);
+    let speed = style
+        .bar
+        .map_or(style.speed, |[low, high]| (high - low) / f64::from(size.x.max(40.0)));
+    let fills = ui.visuals().widgets.clone();
+    let span = style.bar.map(|[low, high]| {
+        let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
+        // Signed numbers fill from zero.
+        [share(0.0_f64.clamp(low, high)), share(value.to_f64())]
+    });
+    let response = ui
+        .scope(|ui| {
+            let widgets = &mut ui.visuals_mut().widgets;
+            for state in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
+                state.weak_bg_fill = Color32::TRANSPARENT;
+            }
+            let drag = DragValue::new(value)
+                .range(style.range.clone())
+                .speed(speed)
+                .custom_formatter(|value, _| trimmed(value, style.decimals))
+                .suffix(style.unit.to_owned());
+            ui.add_sized(size, drag)
+        })
+        .inner;
+    let rect = if response.rect.is_positive() {
+        response.rect
+    } else {
+        rect
+    };
+    let state = if response.is_pointer_button_down_on() || response.has_focus() {
+        &fills.active
+    } else if response.hovered() {
+        &fills.hovered
+    } else {
+        &fills.inactive
+    };
+    let mut shapes = vec![Shape::rect_filled(rect, state.corner_radius, state.weak_bg_fill)];
+    if let Some([from, to]) = span {
+        let x = |share: f32| egui::lerp(rect.x_range(), share);
+        let filled = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), rect.y_range());
+        let color = theme::accent(ui.visuals().dark_mode).gamma_multiply(if response.hovered() { 0.62 } else { 0.5 });
+        shapes.push(bar(rect, filled, color, state.corner_radius));
+    }
+    ui.painter().set(background, Shape::Vec(shapes));
+    response
+}
+
+/// A number with at most so many decimals, zeros at its end left out as far as two.
+fn trimmed(value: f64, decimals: usize) -> String {
+    let mut text = format!("{value:.decimals$}");
+    let least = text.len().saturating_sub(decimals.saturating_sub(2));
+    while decimals > 2 && text.len() > least && text.ends_with('0') {
+        text.pop();
+    }
+    if text.trim_start_matches(['-', '0', '.']).is_empty() {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text
+    }
+}
+
+/// The filled part of a field.
+fn bar(field: Rect, filled: Rect, color: Color32, radius: egui::CornerRadius) -> Shape {
+    let right = if filled.right() >= field.right() - 1.0 {
+        radius.ne
+    } else {
+        0
+    };
+    let left = if filled.left() <= field.left() + 1.0 && filled.width() >= 3.0 {
+        radius.nw
+    } else {
+        0
+    };
+    let corners = egui::CornerRadius {
+        nw: left,
+        sw: left,
+        ne: right,
+        se: right,
+    };
+    Shape::rect_filled(filled, corners, color)
+}
+
+/// A linear colour: a swatch that opens a picker, and its sRGB code to type.
+pub(super) fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response {
+    let spacing = ui.spacing().item_spacing.x;
+    let swatch_width = (ui.available_width() - HEX_WIDTH - spacing).max(30.0);
+    let swatch = ui
+        .scope(|ui| {
+            ui.spacing_mut().interact_size.x = swatch_width;
+            ui.color_edit_button_rgb(linear)
+        })
+        .inner;
+    let mut response = swatch.clone();
+    if hex_field(ui, name, linear) {
+        response.mark_changed();
+    }
+    response
+}
+
+fn hex_field(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> bool {
+    let id = ui.make_persistent_id((name, "hex"));
+    let shown = hex_of(*linear);
+    let typed: Option<String> = ui.data(|data| data.get_temp(id));
+    let mut text = typed.unwrap_or_else(|| shown.clone());
+    let field = egui::TextEdit::singleline(&mut text)
+        .id(id.with("field"))
+        .font(TextStyle::Monospace)
+        .desired_width(HEX_WIDTH)
+        .margin(Vec2::new(4.0, 3.0));
+    let response = ui.add(field).accessible_name(format!("{name}, sRGB code"));
+    if response.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, text.clone()));
+    } else {
+        ui.data_mut(|data| data.remove::<String>(id));
+    }
+    let parsed = response.changed().then(|| linear_of(&text)).flatten();
+    if let Some(parsed) = parsed.filter(|parsed| hex_of(*parsed) != shown) {
+        *linear = parsed;
+        return true;
+    }
+    false
+}
+
+/// `#rrggbb` in sRGB.
+pub(super) fn hex_of(linear: [f32; 3]) -> String {
+    let [r, g, b] = srgb_of(linear);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// The sRGB bytes of a linear colour.
+pub(super) fn srgb_of([r, g, b]: [f32; 3]) -> [u8; 3] {
+    let encoded = srgb_from_linear(vec3(r, g, b)).to_f32();
+    encoded.map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8)
+}
+
+fn linear_of(text: &str) -> Option<[f32; 3]> {
+    let digits = text.trim().trim_start_matches('#');
+    if digits.len() != 6 || !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        return None;
+    }
+    let byte = |i: usize| u8::from_str_radix(&digits[2 * i..2 * i + 2], 16).ok();
+    let [r, g, b] = [byte(0)?, byte(1)?, byte(2)?].map(|byte| f32::from(byte) / 255.0);
+    Some(linear_from_srgb(vec3(r, g, b)).to_f32())
+}
+
+/// Three numbers side by side.
+pub(super) fn triple(ui: &mut Ui, name: &str, values: &mut [f32; 3], range: RangeInclusive<f64>) -> Response {
+    let spacing = ui.spacing().item_spacing.x;
+    let width = ((ui.available_width() - 2.0 * spacing) / 3.0).max(30.0);
+    let mut whole: Option<Response> = None;
+    for (value, channel) in values.iter_mut().zip(["red", "green", "blue"]) {
+        let drag = DragValue::new(value).range(range.clone()).speed(0.01).max_decimals(3);
+        let response = ui
+            .add_sized(Vec2::new(width, ROW_HEIGHT), drag)
+            .accessible_name(format!("{name}, {channel}"));
+        whole = Some(match whole {
+            Some(whole) => whole.union(response),
+            None => response,
+        });
+    }
+    whole.unwrap_or_else(|| ui.label(""))
+}
+
+/// One of several: (value, label, help).
+pub(super) fn choice<T: PartialEq + Clone>(
+    ui: &mut Ui,
+    id: &str,
+    value: &mut T,
+    choices: &[(T, &str, &str)],
+) -> Response {
+    let current = choices.iter().find(|(choice, ..)| choice == value);
+    let mut changed = false;
+    let width = ui.available_width();
+    let shown = egui::ComboBox::from_id_salt(id)
+        .width(width)
+        .truncate()
+        .selected_text(current.map_or("", |(_, label, _)| *label).to_owned())
+        .show_ui(ui, |ui| {
+            for (choice, label, help) in choices {
+                let item = ui.selectable_label(choice == value, *label);
+                let item = if help.is_empty() {
+                    item
+                } else {
+                    item.on_hover_text(*help)
+                };
+                if item.clicked() && choice != value {
+                    *value = choice.clone();
+                    changed = true;
+                }
+            }
+        });
+    let mut response = shown.response;
+    if changed {
+        response.mark_changed();
+    }
+    response
+}
+
+/// The heading of a group of rows, which opens and closes it.
+pub(super) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
+    let header = RichText::new(title).strong();
+    egui::CollapsingHeader::new(header)
+        .id_salt(title)
+        .default_open(true)
+        .show_unindented(ui, |ui| {
+            ui.add_space(2.0);
+            body(ui);
+            ui.add_space(theme::GAP);
+        });
+}
+
+/// A note in weak text.
+pub(super) fn note(ui: &mut Ui, text: impl Into<String>) {
+    ui.label(RichText::new(text).weak());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_lose_zeros_but_not_digits() {
+        assert_eq!(trimmed(0.3, 3), "0.30");
+        assert_eq!(trimmed(0.305, 3), "0.305");
+        assert_eq!(trimmed(-0.0001, 3), "0.00");
+        assert_eq!(trimmed(12.0, 0), "12");
+        assert_eq!(trimmed(100.0, 0), "100");
+        assert_eq!(trimmed(-4.5, 1), "-4.5");
+    }
+
+    #[test]
+    fn colours_come_back_from_their_codes() {
+        for code in ["#000000", "#ffffff", "#c8a060", "#010203"] {
+            assert_eq!(linear_of(code).map(hex_of).as_deref(), Some(code));
+        }
+        assert_eq!(linear_of("#12345"), None);
+        assert_eq!(linear_of("#+23456"), None);
+    }
+}

@@ -1,0 +1,100 @@
+//! `glossmith fit`: a material that looks like another lobe or like a measured one.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::Context;
+use clap::Args;
+
+use super::lobe_spec::lobe_model;
+use super::names;
+use crate::analysis::fit::Merl;
+use crate::document::match_look::{Candidate, LookMatch, Target, match_look};
+use crate::document::{MaterialSettings, save_material};
+use crate::optics::lobe::Lobe;
+
+/// Arguments of `glossmith fit`.
+#[derive(Debug, Args)]
+pub struct FitArguments {
+    /// What to come close to: a lobe and its roughness in [0, 1], for the microfacet lobes the square root of α as
+    /// everywhere (or alpha=A itself); or a measured material of the MERL BRDF database.
+    #[arg(long, value_name = "ggx:0.1|ggx:alpha=0.01|FILE.binary", value_parser = parse_target)]
+    target: TargetArgument,
+    /// Angle between the view and the normal at which the two are compared, 0 to 85.
+    #[arg(long, default_value_t = 0.0, value_name = "DEG")]
+    view_angle: f64,
+    /// The lobe to fit. For the geometric one the curve is fitted too.
+    #[arg(long, default_value = "geometric", value_name = "NAME", value_parser = names::lobe)]
+    lobe: Lobe,
+    /// The material to write.
+    #[arg(long, value_name = "MATERIAL.json")]
+    output: PathBuf,
+}
+
+/// A target as it is named.
+#[derive(Clone, Debug)]
+enum TargetArgument {
+    Lobe(Box<crate::analysis::lobe_model::LobeModel>),
+    File(PathBuf),
+}
+
+/// A file where the text looks like one, else a lobe.
+fn parse_target(text: &str) -> Result<TargetArgument, String> {
+    let path = Path::new(text);
+    if path.extension().is_some_and(|ending| ending == "binary") || path.is_file() {
+        return Ok(TargetArgument::File(path.to_owned()));
+    }
+    lobe_model(text).map(|model| TargetArgument::Lobe(Box::new(model)))
+}
+
+/// Fits and writes the material.
+///
+/// # Errors
+/// What is wrong with the target or the file.
+pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
+    let target = match &arguments.target {
+        TargetArgument::Lobe(model) => Target::Lobe((**model).clone()),
+        TargetArgument::File(path) => Target::Measured {
+            name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+            merl: Arc::new(Merl::load(path)?),
+        },
+    };
+    let found = match_look(&target, arguments.lobe, arguments.view_angle).context("--target")?;
+    print_match(&found);
+    let mut material = MaterialSettings {
+        name: format!("Like {}", found.target),
+        ..MaterialSettings::default()
+    };
+    found.apply(&mut material);
+    save_material(&arguments.output, &material)?;
+    eprintln!("wrote {}", arguments.output.display());
+    Ok(())
+}
+
+/// The residuals and what was found, a line each.
+fn print_match(found: &LookMatch) {
+    println!("target   {}, view angle {}°", found.target, found.view_angle_deg);
+    let line = |word: &str, candidate: &Candidate| {
+        println!(
+            "{word:<8} TV {:.4}  {}",
+            candidate.total_variation, candidate.model.name
+        );
+    };
+    line("before", &found.before);
+    line("nearest", &found.nearest);
+    line("after", &found.after);
+    println!("R        {}", found.after.model.roughness);
+    if let Some(curve) = &found.curve {
+        let points: Vec<String> = curve
+            .points()
+            .iter()
+            .map(|[xi, distance]| format!("{xi}:{distance}"))
+            .collect();
+        println!("curve    {}", points.join(","));
+    }
+    if let Some(colors) = &found.colors {
+        let text = |color: crate::optics::vector::Vec3<f64>| color.to_f64().map(|x| format!("{x:.4}")).join(",");
+        println!("base     {}", text(colors.base));
+        println!("specular {}", text(colors.highlight));
+    }
+}

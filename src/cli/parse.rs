@@ -1,0 +1,113 @@
+//! What stands behind an option on the command line: text to value, or a sentence that says what is expected.
+
+use std::fs::OpenOptions;
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+
+use crate::document::parameter::parse_color;
+use crate::document::{Background, MaterialSettings, ParameterError, assign, range};
+use crate::render::output::{OutputError, format_of};
+
+/// Pixels that a picture may have: with 64 bytes each a render stays below 9 GB.
+const PIXELS_MAX: u64 = 1 << 27;
+
+/// A parser for a number in a range; it refuses NaN.
+pub(super) fn number_in(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
+    move |text| {
+        let number = text.trim().parse().ok().filter(|x| range.contains(x));
+        number.ok_or_else(|| format!("give a number from {} to {}", range.start(), range.end()))
+    }
+}
+
+/// A parser for numbers with commas between them, each in its range.
+pub(super) fn numbers_in<const N: usize>(
+    ranges: [RangeInclusive<f64>; N],
+) -> impl Fn(&str) -> Result<[f64; N], String> + Clone + Send + Sync {
+    move |text| {
+        let parts: Vec<&str> = text.split(',').collect();
+        if parts.len() != N {
+            let example = vec!["1"; N].join(",");
+            return Err(format!("give {N} numbers with commas between them, such as {example}"));
+        }
+        let mut numbers = [0.0; N];
+        for ((number, part), range) in numbers.iter_mut().zip(parts).zip(&ranges) {
+            *number = number_in(range.clone())(part).map_err(|expected| format!("{part}: {expected}"))?;
+        }
+        Ok(numbers)
+    }
+}
+
+/// The places and targets of the camera.
+pub(super) fn place(text: &str) -> Result<[f64; 3], String> {
+    numbers_in([range::COORDINATE, range::COORDINATE, range::COORDINATE])(text)
+}
+
+/// Yaw and pitch in degrees.
+pub(super) fn orbit(text: &str) -> Result<[f64; 2], String> {
+    numbers_in([range::YAW_DEG, range::PITCH_DEG])(text)
+}
+
+/// Width and height, as in 640x480.
+pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| text.parse().ok().filter(|side| range::SIZE.contains(&f64::from(*side)));
+    let sides = text.split_once(['x', 'X']);
+    let size: Option<[u32; 2]> = sides.and_then(|(width, height)| Some([side(width)?, side(height)?]));
+    match size {
+        Some([width, height]) if u64::from(width) * u64::from(height) > PIXELS_MAX => Err(format!(
+            "that is more than {} million pixels; render it in parts or smaller",
+            PIXELS_MAX / 1_000_000
+        )),
+        Some(size) => Ok(size),
+        None => Err(format!(
+            "give a width and a height from {} to {}, such as 640x480",
+            range::SIZE.start(),
+            range::SIZE.end()
+        )),
+    }
+}
+
+/// What the camera sees where it meets nothing.
+pub(super) fn background(text: &str) -> Result<Background, String> {
+    match text {
+        "environment" => Ok(Background::Environment),
+        "transparent" => Ok(Background::Transparent),
+        color => parse_color(color)
+            .map(Background::Color)
+            .map_err(|_| "give environment, transparent or a colour such as #808080".to_owned()),
+    }
+}
+
+/// `KEY=VALUE`, checked: whether a parameter takes a value does not depend on the material.
+pub(super) fn assignment(text: &str) -> Result<String, ParameterError> {
+    assign(&mut MaterialSettings::default(), text)?;
+    Ok(text.to_owned())
+}
+
+/// The name of a picture; its ending is one of those that are written.
+pub(super) fn picture(text: &str) -> Result<PathBuf, OutputError> {
+    let path = PathBuf::from(text);
+    format_of(&path)?;
+    Ok(path)
+}
+
+/// Whether a file can be written there, asked before the work that fills it. What is there stays as it is.
+///
+/// # Errors
+/// What the system says.
+pub(super) fn check_writable(path: &Path) -> anyhow::Result<()> {
+    let existed = path.exists();
+    let opened = OpenOptions::new().append(true).create(true).open(path);
+    opened.with_context(|| {
+        format!(
+            "{}: cannot be written; check the folder and its permissions",
+            path.display()
+        )
+    })?;
+    if !existed {
+        // Whatever is left is about to be overwritten.
+        let _ = std::fs::remove_file(path);
+    }
+    Ok(())
+}

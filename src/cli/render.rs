@@ -1,0 +1,341 @@
+//! `glossmith render`: a document from arguments, a picture in a file.
+
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, bail};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::{names, parse};
+use crate::document::file::{self, Opened};
+use crate::document::{Background, Document, MaterialSettings, PixelFilter, Strategy, assign, preset, range};
+use crate::optics::random::Sequence;
+use crate::optics::tone::ToneCurve;
+use crate::render::{EngineChoice, Progress, Session, SessionError, output};
+use crate::scene::ModelSource;
+use crate::scene::environment::EnvironmentSource;
+
+/// Step of the session between two looks at the clock and the progress bar.
+const STEP: Duration = Duration::from_millis(200);
+/// How long the picture may take that is rendered in the window's place, seconds: as long as one waits gladly.
+const DEFAULT_SCENE_SECONDS: f64 = 8.0;
+
+/// Arguments of `glossmith render`.
+#[derive(Debug, Args)]
+pub struct RenderArguments {
+    /// What to render: a built-in model or a .glb or .gltf file.
+    #[arg(long, default_value = "teapot", value_name = "FILE|teapot|sphere|plane|shaderball")]
+    model: ModelSource,
+    /// Put the model on a ground plane.
+    #[arg(long)]
+    ground: bool,
+    /// Where the light comes from: a built-in environment or a .hdr or .exr file.
+    #[arg(long, default_value = "studio", value_name = "FILE|studio|sky|furnace")]
+    environment: EnvironmentSource,
+    /// Turn the environment about the vertical axis, anticlockwise seen from above.
+    #[arg(long, default_value = "0", value_name = "DEG", value_parser = parse::number_in(range::ROTATION_DEG), allow_negative_numbers = true)]
+    environment_rotation: f64,
+    /// Factor of the environment's radiance.
+    #[arg(long, default_value = "1", value_name = "X", value_parser = parse::number_in(range::STRENGTH), allow_negative_numbers = true)]
+    environment_strength: f64,
+    /// What the camera sees where it meets nothing.
+    #[arg(long, default_value = "environment", value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
+    background: Background,
+    /// The material of everything: the name of a shipped one, or a .json file. Without it a file's own materials stay.
+    #[arg(long, value_name = "FILE|NAME")]
+    material: Option<String>,
+    /// Set a parameter of every material, such as specular.roughness=0.2. May be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse::assignment)]
+    assignments: Vec<String>,
+    /// Where the camera is, in degrees around and above its target.
+    #[arg(long, value_name = "YAW,PITCH", value_parser = parse::orbit, allow_hyphen_values = true, conflicts_with = "camera_position")]
+    camera_orbit: Option<[f64; 2]>,
+    /// How far the camera is from its target, in the model's units. Without it the model fills the picture.
+    #[arg(long, value_name = "X", value_parser = parse::number_in(range::DISTANCE), allow_negative_numbers = true, conflicts_with = "camera_position")]
+    camera_distance: Option<f64>,
+    /// What the camera looks at. Without it the centre of the model.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::place, allow_hyphen_values = true)]
+    camera_target: Option<[f64; 3]>,
+    /// Where the camera is, instead of orbit and distance.
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse::place, allow_hyphen_values = true)]
+    camera_position: Option<[f64; 3]>,
+    /// Vertical field of view.
+    #[arg(long, default_value = "30", value_name = "DEG", value_parser = parse::number_in(range::FOV_DEG), allow_negative_numbers = true)]
+    fov: f64,
+    /// Pixel filter: box (to compare with other renderers) or gaussian (smoother edges).
+    #[arg(long, default_value = "gaussian", value_name = "box|gaussian", value_parser = names::filter)]
+    filter: PixelFilter,
+    /// Width and height in pixels.
+    #[arg(long, default_value = "512x512", value_name = "WxH", value_parser = parse::size)]
+    size: [u32; 2],
+    /// Samples a pixel [default: 256, or no limit with --time].
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
+    samples: Option<u32>,
+    /// Stop after this time of rendering.
+    #[arg(long, value_name = "SECONDS", value_parser = parse::number_in(range::TIME_S), allow_negative_numbers = true)]
+    time: Option<f64>,
+    /// Reflections that a path may have, 1 to 64.
+    #[arg(long, default_value_t = 64, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
+    bounces: u32,
+    /// Random numbers: sobol (Owen-scrambled, less noise) or independent.
+    #[arg(long, default_value = "sobol", value_name = "sobol|independent", value_parser = names::sequence)]
+    sequence: Sequence,
+    /// How light is found: by sampling the lobe, the light, or both weighed against each other.
+    #[arg(long, default_value = "mis", value_name = "lobe|light|mis", value_parser = names::strategy)]
+    strategy: Strategy,
+    /// Changes all random numbers.
+    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
+    seed: u32,
+    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
+    #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
+    engine: EngineChoice,
+    /// Tone curve of .png pictures.
+    #[arg(long, default_value = "agx", value_name = "agx|aces|pbr-neutral|none", value_parser = names::tone)]
+    tone_map: ToneCurve,
+    /// Exposure of .png pictures, in stops.
+    #[arg(long, default_value = "0", value_name = "EV", value_parser = parse::number_in(range::EXPOSURE_EV), allow_negative_numbers = true)]
+    exposure: f64,
+    /// Picture to write: .png (with exposure and tone curve), .exr or .hdr (linear). May be repeated.
+    #[arg(long = "output", default_value = "glossmith.png", value_name = "FILE", value_parser = parse::picture)]
+    outputs: Vec<PathBuf>,
+    /// Write what was rendered, how and how fast, as JSON.
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+}
+
+/// Renders as the arguments say.
+///
+/// # Errors
+/// One line that names the file, what is wrong and what to do.
+pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
+    for path in arguments.outputs.iter().chain(&arguments.report) {
+        parse::check_writable(path)?;
+    }
+    let begun = Instant::now();
+    let mut session = Session::open(arguments.engine)?;
+    let document = document(arguments, &mut session)?;
+    let engine = arguments.engine;
+    render(
+        session,
+        engine,
+        &document,
+        begun,
+        &arguments.outputs,
+        arguments.report.as_deref(),
+    )
+}
+
+/// Renders the default scene, with the files given in the place of its parts, to `glossmith.png` in the working folder.
+///
+/// # Errors
+/// One line that names the file, what is wrong and what to do.
+pub fn run_default(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()> {
+    let path = std::path::absolute("glossmith.png")?;
+    parse::check_writable(&path)?;
+    let begun = Instant::now();
+    let mut session = Session::open(engine)?;
+    let mut document = Document::default();
+    for file in files {
+        open(file, &mut document, &mut session)?;
+    }
+    document.render.time_s = Some(DEFAULT_SCENE_SECONDS);
+    render(session, engine, &document, begun, &[path], None)
+}
+
+/// Puts what a file holds in the document: a model, an environment, a material or a whole project.
+fn open(path: &Path, document: &mut Document, session: &mut Session) -> anyhow::Result<()> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    match ending.to_ascii_lowercase().as_str() {
+        "glb" | "gltf" => {
+            document.model = ModelSource::File(path.to_owned());
+            let model = session.assets().model(&document.model)?;
+            document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
+        }
+        "hdr" | "exr" => document.lighting.environment = EnvironmentSource::File(path.to_owned()),
+        "json" => match file::open(path)? {
+            Opened::Material(material) => {
+                warn(&material.warnings);
+                document.materials = vec![material.value];
+            }
+            Opened::Document(project) => {
+                warn(&project.warnings);
+                *document = project.value;
+            }
+        },
+        _ if !path.exists() => bail!(
+            "{}: no such command or file; `glossmith --help` lists what there is",
+            path.display()
+        ),
+        _ => bail!(
+            "{}: neither a model (.glb, .gltf) nor an environment (.hdr, .exr), material or project (.json); give one \
+             of these",
+            path.display()
+        ),
+    }
+    Ok(())
+}
+
+fn warn(warnings: &[String]) {
+    warnings.iter().for_each(|warning| log::warn!("{warning}"));
+}
+
+/// Renders a document to files.
+fn render(
+    mut session: Session,
+    engine: EngineChoice,
+    document: &Document,
+    begun: Instant,
+    outputs: &[PathBuf],
+    report: Option<&Path>,
+) -> anyhow::Result<()> {
+    let submitted = session.submit(document).map(|_| ());
+    or_fall_back(submitted, &mut session, engine, document)?;
+    eprintln!("{} ({})", session.engine(), session.engine().reason);
+    let setup_seconds = begun.elapsed().as_secs_f64();
+    let progress = step_to_end(&mut session, engine, document)?;
+    let image = session.image()?;
+    for path in outputs {
+        output::write(path, &image, &document.view)?;
+        eprintln!("wrote {}", path.display());
+    }
+    if let Some(path) = report {
+        let text = serde_json::to_string_pretty(&json_report(&mut session, document, setup_seconds, progress)?)?;
+        std::fs::write(path, text + "\n")
+            .with_context(|| format!("{}: the report could not be written", path.display()))?;
+    }
+    let dropped = session.film()?.dropped;
+    if dropped > 0 {
+        eprintln!("{dropped} samples were left out because they were not finite");
+    }
+    Ok(())
+}
+
+/// Steps until the session is done, with a progress bar on a terminal.
+fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document) -> anyhow::Result<Progress> {
+    const BAR_STEPS: f64 = 1000.0;
+    let bar = if std::io::stderr().is_terminal() {
+        let style = ProgressStyle::with_template("{bar:40} {msg} samples a pixel, {eta} left")?;
+        ProgressBar::new(BAR_STEPS as u64).with_style(style)
+    } else {
+        ProgressBar::hidden()
+    };
+    loop {
+        let stepped = session.step(STEP).map(|_| ());
+        or_fall_back(stepped, session, engine, document)?;
+        let progress = session.progress();
+        let by_samples = f64::from(progress.samples_per_pixel) / f64::from(progress.samples_wanted.max(1));
+        let by_time = document
+            .render
+            .time_s
+            .map_or(0.0, |limit| progress.render_seconds / limit);
+        bar.set_position((BAR_STEPS * by_samples.max(by_time)) as u64);
+        bar.set_message(progress.samples_per_pixel.to_string());
+        if progress.is_done {
+            bar.finish_and_clear();
+            return Ok(progress);
+        }
+    }
+}
+
+/// Goes on with the processor where the GPU fails, unless the GPU was asked for by name.
+fn or_fall_back(
+    outcome: Result<(), SessionError>,
+    session: &mut Session,
+    engine: EngineChoice,
+    document: &Document,
+) -> Result<(), SessionError> {
+    match outcome {
+        Err(SessionError::Gpu(error)) if engine == EngineChoice::Auto => {
+            log::warn!("{error}; going on with the processor");
+            session.fall_back_to_cpu(&error.to_string());
+            session.submit(document).map(|_| ())
+        }
+        outcome => outcome,
+    }
+}
+
+/// The report of `--report`.
+fn json_report(
+    session: &mut Session,
+    document: &Document,
+    setup_seconds: f64,
+    progress: Progress,
+) -> anyhow::Result<serde_json::Value> {
+    let engine = session.engine().clone();
+    let effects = session.job().map(|job| job.plan.effects()).unwrap_or_default();
+    let film = session.film()?;
+    let seconds = progress.render_seconds.max(1e-9);
+    let samples = film.samples() + film.dropped;
+    Ok(serde_json::json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "engine": engine.kind,
+        "adapter": engine.adapter,
+        "driver": engine.driver,
+        "width": film.width,
+        "height": film.height,
+        "samples_per_pixel": progress.samples_per_pixel,
+        "setup_seconds": setup_seconds,
+        "render_seconds": progress.render_seconds,
+        "samples_per_second": samples as f64 / seconds,
+        "rays": film.rays,
+        "rays_per_second": film.rays as f64 / seconds,
+        "dropped_samples": film.dropped,
+        "effects": effects,
+        "seed": document.render.seed,
+    }))
+}
+
+/// The document that the arguments describe.
+fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Result<Document> {
+    let model = session.assets().model(&arguments.model)?;
+    let mut document = Document {
+        model: arguments.model.clone(),
+        ground: arguments.ground,
+        ..Document::default()
+    };
+    if let Some(name) = &arguments.material {
+        let material = preset::find(name)?;
+        warn(&material.warnings);
+        document.materials = vec![material.value];
+    } else if matches!(arguments.model, ModelSource::File(_)) {
+        document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
+    }
+    for assignment in &arguments.assignments {
+        for material in &mut document.materials {
+            assign(material, assignment)?;
+        }
+    }
+    let lighting = &mut document.lighting;
+    lighting.environment = arguments.environment.clone();
+    lighting.rotation_deg = arguments.environment_rotation as f32;
+    lighting.strength = arguments.environment_strength as f32;
+    lighting.background = arguments.background;
+    let camera = &mut document.camera;
+    if let Some([yaw_deg, pitch_deg]) = arguments.camera_orbit {
+        (camera.yaw_deg, camera.pitch_deg) = (yaw_deg, pitch_deg);
+    }
+    camera.target = arguments.camera_target;
+    camera.distance = arguments.camera_distance;
+    camera.position = arguments.camera_position;
+    camera.fov_deg = arguments.fov;
+    document.view.tone_map = arguments.tone_map;
+    document.view.exposure_ev = arguments.exposure as f32;
+    let render = &mut document.render;
+    [render.width, render.height] = arguments.size;
+    // With a time limit only, samples are not limited.
+    render.samples = arguments.samples.unwrap_or(if arguments.time.is_some() {
+        u32::MAX
+    } else {
+        render.samples
+    });
+    render.time_s = arguments.time;
+    render.bounces = arguments.bounces;
+    render.sequence = arguments.sequence;
+    render.strategy = arguments.strategy;
+    render.seed = arguments.seed;
+    render.filter = arguments.filter;
+    document.check()?;
+    Ok(document)
+}

@@ -1,0 +1,125 @@
+//! `glossmith scatter`: samples of a lobe as numbers or as a picture.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write as _};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use clap::Args;
+
+use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
+use crate::optics::curve::Curve;
+use crate::optics::lobe::{Horizon, Lobe};
+use crate::render::EngineChoice;
+
+use super::names::{curve, horizon, lobe};
+use super::parse::{check_writable, number_in};
+
+/// Samples that fit in memory on any machine of today.
+const COUNT_MAX: i64 = 100_000_000;
+
+/// Arguments of `glossmith scatter`.
+#[derive(Debug, Args)]
+pub struct ScatterArguments {
+    /// The lobe.
+    #[arg(long, value_name = "NAME", value_parser = lobe)]
+    lobe: Lobe,
+    /// The geometric lobe's curve D(ξ).
+    #[arg(long, default_value = "smooth", value_name = "NAME", value_parser = named_curve)]
+    curve: Curve,
+    /// Roughness in [0, 1].
+    #[arg(long, default_value = "0.3", value_name = "R", value_parser = number_in(0.0..=1.0), allow_negative_numbers = true)]
+    roughness: f64,
+    /// What happens to samples below the surface.
+    #[arg(long, default_value = "mirror", value_name = "mirror|absorb|none", value_parser = horizon)]
+    horizon: Horizon,
+    /// Angle between the view and the normal, 0 to 90.
+    #[arg(long, default_value = "45", value_name = "DEG", value_parser = number_in(0.0..=90.0), allow_negative_numbers = true)]
+    view_angle: f64,
+    /// Samples to draw; absorbed ones count.
+    #[arg(long, default_value_t = 10_000, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=COUNT_MAX))]
+    count: u32,
+    /// Changes all random numbers.
+    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
+    seed: u32,
+    /// The engine whose function draws.
+    #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
+    engine: EngineChoice,
+    /// .csv: columns x,y,z,density, a row a sample; .png: the samples seen from the mirror direction.
+    #[arg(long, value_name = "FILE.csv|FILE.png", value_parser = parse_output)]
+    output: PathBuf,
+}
+
+/// Draws and writes the samples.
+///
+/// # Errors
+/// An argument out of range, a GPU that fails, a file that can't be written.
+pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
+    check_writable(&arguments.output)?;
+    let request = ScatterRequest {
+        lobe: arguments.lobe,
+        curve: arguments.curve,
+        horizon: arguments.horizon,
+        roughness: arguments.roughness as f32,
+        anisotropy: 0.0,
+        table: Vec::new(),
+        view_angle_deg: arguments.view_angle as f32,
+        count: arguments.count,
+        seed: arguments.seed,
+    };
+    let cloud = crate::render::Sampler::open(arguments.engine)?.draw(&request)?;
+    if cloud.absorbed > 0 {
+        eprintln!(
+            "{} of {} samples were absorbed at the horizon",
+            cloud.absorbed, request.count
+        );
+    }
+    match format_of(&arguments.output)? {
+        Format::Csv => write_csv(&arguments.output, &cloud)
+            .with_context(|| format!("{}: could not be written; is there room?", arguments.output.display()))?,
+        Format::Png => crate::analysis::plot::scatter_png(&arguments.output, &request, &cloud)?,
+    }
+    eprintln!("wrote {}", arguments.output.display());
+    Ok(())
+}
+
+fn write_csv(path: &Path, cloud: &ScatterCloud) -> io::Result<()> {
+    let mut file = BufWriter::new(File::create(path)?);
+    writeln!(file, "x,y,z,density")?;
+    for [x, y, z, density] in &cloud.samples {
+        writeln!(file, "{x},{y},{z},{density}")?;
+    }
+    file.flush()
+}
+
+/// How samples are written.
+enum Format {
+    Csv,
+    Png,
+}
+
+fn format_of(path: &Path) -> anyhow::Result<Format> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    match ending.to_ascii_lowercase().as_str() {
+        "csv" => Ok(Format::Csv),
+        "png" => Ok(Format::Png),
+        _ => bail!(
+            "{}: samples are written as .csv or .png; give the file one of these endings",
+            path.display()
+        ),
+    }
+}
+
+/// A custom curve's points have no place on the command line.
+fn named_curve(text: &str) -> Result<Curve, String> {
+    match curve(text)? {
+        Curve::Custom => Err("it has no points here; draw it in the editor, or choose a named curve".to_owned()),
+        named => Ok(named),
+    }
+}
+
+fn parse_output(text: &str) -> anyhow::Result<PathBuf> {
+    let path = PathBuf::from(text);
+    format_of(&path)?;
+    Ok(path)
+}

@@ -1,0 +1,111 @@
+//! What differs between two documents, and what follows from it.
+
+use super::{Document, PARAMETERS};
+
+/// What differs between two documents.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Change {
+    /// Tone curve or exposure: how what has been rendered is shown.
+    pub display: bool,
+    /// The camera.
+    pub camera: bool,
+    /// Width or height of the picture.
+    pub size: bool,
+    /// Another environment map.
+    pub environment: bool,
+    /// Rotation or strength of the environment, or the background.
+    pub lighting: bool,
+    /// A material or the ground's colour.
+    pub materials: bool,
+    /// The model, or whether there is a ground.
+    pub geometry: bool,
+    /// Bounces, sequence, strategy, seed, pixel filter.
+    pub sampling: bool,
+    /// Samples or seconds to reach.
+    pub target: bool,
+}
+
+impl Change {
+    /// What differs from `old` in `new`. Names and whatever else no picture depends on do not count.
+    pub fn between(old: &Document, new: &Document) -> Self {
+        let (light, other_light) = (&old.lighting, &new.lighting);
+        let (render, other) = (&old.render, &new.render);
+        Self {
+            display: old.view != new.view,
+            camera: old.camera != new.camera,
+            size: (render.width, render.height) != (other.width, other.height),
+            environment: light.environment != other_light.environment,
+            lighting: (light.rotation_deg, light.strength, light.background)
+                != (other_light.rotation_deg, other_light.strength, other_light.background),
+            materials: light.ground_color != other_light.ground_color || !look_alike(old, new),
+            geometry: (&old.model, old.ground) != (&new.model, new.ground),
+            sampling: (
+                render.bounces,
+                render.sequence,
+                render.strategy,
+                render.seed,
+                render.filter,
+            ) != (other.bounces, other.sequence, other.strategy, other.seed, other.filter),
+            target: (render.samples, render.time_s) != (other.samples, other.time_s),
+        }
+    }
+
+    /// As if nothing had been rendered yet.
+    pub fn everything() -> Self {
+        Self {
+            display: true,
+            camera: true,
+            size: true,
+            environment: true,
+            lighting: true,
+            materials: true,
+            geometry: true,
+            sampling: true,
+            target: true,
+        }
+    }
+
+    /// True where the picture and the way to it stay as they are.
+    pub fn is_none(self) -> bool {
+        self == Self::default()
+    }
+
+    /// True where what has been rendered no longer counts.
+    pub fn restarts(self) -> bool {
+        let stays = Self {
+            display: self.display,
+            target: self.target,
+            ..Self::default()
+        };
+        self != stays
+    }
+
+    /// True where geometry must be loaded or built.
+    pub fn needs_geometry(self) -> bool {
+        self.geometry
+    }
+
+    /// True where an environment must be loaded.
+    pub fn needs_environment(self) -> bool {
+        self.environment
+    }
+
+    /// True where materials must be compiled; a model brings its own number of slots.
+    pub fn needs_materials(self) -> bool {
+        self.materials || self.geometry
+    }
+
+    /// True where the picture must be shown anew.
+    pub fn needs_display(self) -> bool {
+        self.display || self.restarts()
+    }
+}
+
+fn look_alike(old: &Document, new: &Document) -> bool {
+    old.materials.len() == new.materials.len()
+        && std::iter::zip(&old.materials, &new.materials).all(|(old, new)| {
+            PARAMETERS
+                .iter()
+                .all(|parameter| parameter.get(old) == parameter.get(new))
+        })
+}

@@ -1,0 +1,176 @@
+//! A material as it is edited.
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value as Json};
+
+use super::CustomCurve;
+use crate::optics::curve::Curve;
+use crate::optics::fresnel::{Fresnel, METALS, Metal};
+use crate::optics::lobe::{Horizon, Lobe};
+use crate::scene::Slot;
+
+/// A material as it is edited. Ranges, labels and meanings of the fields: [`super::PARAMETERS`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Map<String, Json>", into = "Map<String, Json>")]
+pub struct MaterialSettings {
+    /// Name in lists and files.
+    pub name: String,
+    /// Linear RGB in [0, 1].
+    pub base_color: [f32; 3],
+    /// In [0, 1].
+    pub metalness: f32,
+    /// In [0, 1].
+    pub specular_weight: f32,
+    /// The specular lobe.
+    pub lobe: Lobe,
+    /// In [0, 1].
+    pub roughness: f32,
+    /// In [−1, 1].
+    pub anisotropy: f32,
+    /// Turn of the tangent, degrees.
+    pub rotation_deg: f32,
+    /// The geometric lobe's curve.
+    pub curve: Curve,
+    /// The curve where `curve` is custom.
+    pub custom_curve: CustomCurve,
+    /// What happens below the surface.
+    pub horizon: Horizon,
+    /// The Fresnel model.
+    pub fresnel: Fresnel,
+    /// The dielectric's index of refraction, in [1, 4].
+    pub ior: f32,
+    /// Tint of the reflection, linear RGB in [0, 1].
+    pub specular_color: [f32; 3],
+    /// Where `eta` and `k` come from.
+    pub conductor: Conductor,
+    /// Real part of the conductor's index of refraction at about 650, 550 and 450 nm, in [0, 20].
+    pub eta: [f32; 3],
+    /// Imaginary part, in [0, 20].
+    pub k: [f32; 3],
+    /// Linear RGB in [0, 1].
+    pub emission_color: [f32; 3],
+    /// Emitted radiance is `emission_color` times this.
+    pub emission_strength: f32,
+    /// What the file's "material" had that this version does not know.
+    pub extra: Map<String, Json>,
+    /// What the file had beside it.
+    pub file_extra: Map<String, Json>,
+}
+
+/// A grey metal with the geometric lobe.
+impl Default for MaterialSettings {
+    fn default() -> Self {
+        let mut material = Self {
+            name: "material".to_owned(),
+            base_color: [0.8; 3],
+            metalness: 1.0,
+            specular_weight: 1.0,
+            lobe: Lobe::Geometric,
+            roughness: 0.3,
+            anisotropy: 0.0,
+            rotation_deg: 0.0,
+            curve: Curve::Smooth,
+            custom_curve: CustomCurve::default(),
+            horizon: Horizon::Mirror,
+            fresnel: Fresnel::Schlick,
+            ior: 1.5,
+            specular_color: [1.0; 3],
+            conductor: Conductor::Custom,
+            eta: [1.0; 3],
+            k: [1.0; 3],
+            emission_color: [1.0; 3],
+            emission_strength: 0.0,
+            extra: Map::new(),
+            file_extra: Map::new(),
+        };
+        material.set_conductor(Conductor::named("aluminium"));
+        material
+    }
+}
+
+impl MaterialSettings {
+    /// A Lambertian surface; `color` is its albedo, linear RGB in [0, 1].
+    pub fn diffuse(name: &str, color: [f32; 3]) -> Self {
+        Self {
+            name: name.to_owned(),
+            base_color: color,
+            metalness: 0.0,
+            specular_weight: 0.0,
+            ..Self::default()
+        }
+    }
+
+    /// The material that a model's file gives one of its slots, its textures left aside. What is out of range is
+    /// brought into it.
+    pub fn from_slot(slot: &Slot) -> Self {
+        let unit = |x: f32| x.clamp(0.0, 1.0);
+        let strength = slot.emission.into_iter().fold(0.0_f32, f32::max);
+        let mut material = Self {
+            name: slot.name.clone(),
+            base_color: slot.base_color.map(unit),
+            metalness: unit(slot.metalness),
+            roughness: unit(slot.roughness),
+            ior: slot.ior.clamp(1.0, 4.0),
+            ..Self::default()
+        };
+        if strength > 0.0 {
+            material.emission_color = slot.emission.map(|x| unit(x / strength));
+            material.emission_strength = strength.min(1e6);
+        }
+        material
+    }
+
+    /// Takes a metal's η and k over; [`Conductor::Custom`] leaves them as they are.
+    pub fn set_conductor(&mut self, conductor: Conductor) {
+        self.conductor = conductor;
+        if let Some(metal) = conductor.metal() {
+            self.eta = metal.eta.map(|x| x as f32);
+            self.k = metal.k.map(|x| x as f32);
+        }
+    }
+
+    /// Sets η and k. The conductor turns custom unless nothing changes.
+    pub fn set_eta_and_k(&mut self, eta: [f32; 3], k: [f32; 3]) {
+        if (eta, k) != (self.eta, self.k) {
+            self.conductor = Conductor::Custom;
+        }
+        (self.eta, self.k) = (eta, k);
+    }
+}
+
+/// Where the conductor's η and k come from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Conductor {
+    /// Numbers of the user's own.
+    #[default]
+    Custom,
+    /// The metal with this index in [`METALS`].
+    Metal(usize),
+}
+
+impl Conductor {
+    /// Every choice, in the order of the menus.
+    pub fn all() -> impl Iterator<Item = Self> {
+        std::iter::once(Self::Custom).chain((0..METALS.len()).map(Self::Metal))
+    }
+
+    /// The metal; `None` where the numbers are custom.
+    pub fn metal(self) -> Option<&'static Metal> {
+        match self {
+            Self::Custom => None,
+            Self::Metal(index) => METALS.get(index),
+        }
+    }
+
+    /// Name in files and on the command line.
+    pub fn name(self) -> &'static str {
+        self.metal().map_or("custom", |metal| metal.name)
+    }
+
+    /// The metal of that name; custom where there is none.
+    pub fn named(name: &str) -> Self {
+        Self::all()
+            .find(|conductor| conductor.name() == name)
+            .unwrap_or_default()
+    }
+}

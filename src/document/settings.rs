@@ -1,0 +1,267 @@
+//! Light, camera, view and render settings, and the ranges of their numbers.
+
+use serde::{Deserialize, Serialize};
+
+use super::Document;
+use crate::optics::random::Sequence;
+use crate::optics::tone::ToneCurve;
+use crate::scene::camera::PixelFilter;
+use crate::scene::environment::EnvironmentSource;
+
+/// The ranges of the settings, both ends included.
+pub mod range {
+    use std::ops::RangeInclusive;
+
+    /// Factor on the environment's radiance.
+    pub const STRENGTH: RangeInclusive<f64> = 0.0..=1e6;
+    /// Turn of the environment, degrees.
+    pub const ROTATION_DEG: RangeInclusive<f64> = -3600.0..=3600.0;
+    /// Coordinates and distances of the camera, scene units.
+    pub const COORDINATE: RangeInclusive<f64> = -1e9..=1e9;
+    /// Distance of the camera from its target, scene units.
+    pub const DISTANCE: RangeInclusive<f64> = 1e-6..=1e9;
+    /// Azimuth of the camera, degrees.
+    pub const YAW_DEG: RangeInclusive<f64> = -3600.0..=3600.0;
+    /// Height of the camera, degrees.
+    pub const PITCH_DEG: RangeInclusive<f64> = -90.0..=90.0;
+    /// Vertical field of view, degrees.
+    pub const FOV_DEG: RangeInclusive<f64> = 0.1..=170.0;
+    /// Exposure, stops.
+    pub const EXPOSURE_EV: RangeInclusive<f64> = -32.0..=32.0;
+    /// Width and height, pixels; the random numbers' counters have 16 bits for each.
+    pub const SIZE: RangeInclusive<f64> = 1.0..=65535.0;
+    /// Samples a pixel.
+    pub const SAMPLES: RangeInclusive<f64> = 1.0..=4_294_967_295.0;
+    /// Render time, seconds.
+    pub const TIME_S: RangeInclusive<f64> = 0.001..=1e9;
+    /// Longest path, bounces.
+    pub const BOUNCES: RangeInclusive<f64> = 1.0..=64.0;
+    /// Linear colours of things that do not emit.
+    pub const COLOR: RangeInclusive<f64> = 0.0..=1.0;
+}
+
+/// Where the light comes from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Lighting {
+    /// The environment map.
+    pub environment: EnvironmentSource,
+    /// Turn of the map about +Y, anticlockwise seen from above, degrees.
+    pub rotation_deg: f32,
+    /// Factor on its radiance, at least 0.
+    pub strength: f32,
+    /// What the camera sees beside the model.
+    pub background: Background,
+    /// Albedo of the ground plane, linear RGB in [0, 1].
+    pub ground_color: [f32; 3],
+}
+
+impl Default for Lighting {
+    fn default() -> Self {
+        Self {
+            environment: EnvironmentSource::default(),
+            rotation_deg: 0.0,
+            strength: 1.0,
+            background: Background::default(),
+            ground_color: [0.3; 3],
+        }
+    }
+}
+
+/// What the camera sees where no surface is. Reflections always show the environment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Background {
+    /// The environment.
+    #[default]
+    Environment,
+    /// Nothing: opacity 0.
+    Transparent,
+    /// A linear RGB colour, not touched by the environment's strength.
+    Color([f32; 3]),
+}
+
+/// Where the scene is seen from. Yaw 0, pitch 0 looks along −Z from a place on the +Z side of the target; the yaw goes
+/// towards +X, the pitch towards +Y, which is up.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CameraSettings {
+    /// What is looked at; `None`: the centre of the model.
+    pub target: Option<[f64; 3]>,
+    /// Azimuth of the camera around the target, degrees.
+    pub yaw_deg: f64,
+    /// Height of the camera above the target's horizon, degrees in [−90, 90].
+    pub pitch_deg: f64,
+    /// Distance from the target, scene units; `None`: so far that the model fills the picture.
+    pub distance: Option<f64>,
+    /// The camera's place; replaces yaw, pitch and distance.
+    pub position: Option<[f64; 3]>,
+    /// Vertical field of view, degrees.
+    pub fov_deg: f64,
+}
+
+impl Default for CameraSettings {
+    fn default() -> Self {
+        Self {
+            target: None,
+            yaw_deg: 25.0,
+            pitch_deg: 20.0,
+            distance: None,
+            position: None,
+            fov_deg: 30.0,
+        }
+    }
+}
+
+/// How radiance becomes a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ViewSettings {
+    /// The tone curve.
+    pub tone_map: ToneCurve,
+    /// Stops by which radiance is multiplied before it: 2^exposure.
+    pub exposure_ev: f32,
+}
+
+/// How, and for how long, the picture is rendered.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct RenderSettings {
+    /// Columns of pixels.
+    pub width: u32,
+    /// Rows of pixels.
+    pub height: u32,
+    /// Samples a pixel after which rendering stops.
+    pub samples: u32,
+    /// Seconds after which it stops earlier.
+    pub time_s: Option<f64>,
+    /// Longest path, 1 to 64 bounces.
+    pub bounces: u32,
+    /// Which random numbers are drawn.
+    pub sequence: Sequence,
+    /// How light is found.
+    pub strategy: Strategy,
+    /// Which of the possible pictures' noise: any number.
+    pub seed: u32,
+    /// How samples are spread over a pixel and its neighbours.
+    pub filter: PixelFilter,
+}
+
+impl Default for RenderSettings {
+    fn default() -> Self {
+        Self {
+            width: 512,
+            height: 512,
+            samples: 256,
+            time_s: None,
+            bounces: 64,
+            sequence: Sequence::default(),
+            strategy: Strategy::default(),
+            seed: 0,
+            filter: PixelFilter::default(),
+        }
+    }
+}
+
+macro_rules! named {
+    ($(#[$doc:meta])* $type:ident { $($(#[$attribute:meta])* $variant:ident = $index:literal, $name:literal, $label:literal, $help:literal;)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[repr(u32)]
+        pub enum $type {
+            $(#[doc = $help] #[serde(rename = $name)] $(#[$attribute])* $variant = $index,)*
+        }
+
+        impl $type {
+            /// Every one, in the order of the menus.
+            pub const ALL: &'static [$type] = &[$($type::$variant),*];
+
+            /// Name in files and on the command line.
+            pub fn name(self) -> &'static str {
+                match self { $($type::$variant => $name,)* }
+            }
+            /// Name in the menus.
+            pub fn label(self) -> &'static str {
+                match self { $($type::$variant => $label,)* }
+            }
+            /// What it means.
+            pub fn help(self) -> &'static str {
+                match self { $($type::$variant => $help,)* }
+            }
+        }
+    };
+}
+
+named! {
+    /// How light is found. All three converge to the same picture.
+    Strategy {
+        Lobe = 0, "lobe", "Lobe", "Sample the material's lobe and see what light it meets.";
+        Light = 1, "light", "Light", "Sample the light and see how the material reflects it.";
+        #[default]
+        Mis = 2, "mis", "Both (MIS)", "Sample both, each weighed by its density (Veach 1997).";
+    }
+}
+
+/// A setting out of its range.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{name} is {value}; it must lie between {low} and {high}")]
+pub struct SettingError {
+    /// The setting as it is called in files.
+    pub name: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// The least value it takes.
+    pub low: f64,
+    /// The largest value it takes.
+    pub high: f64,
+}
+
+/// See [`Document::check`].
+pub(super) fn check(document: &Document) -> Result<(), SettingError> {
+    use range as r;
+    let Document {
+        lighting,
+        camera,
+        view,
+        render,
+        ..
+    } = document;
+    let colors = match lighting.background {
+        Background::Color(color) => [color, lighting.ground_color],
+        _ => [lighting.ground_color; 2],
+    };
+    let single = [
+        (
+            "lighting.rotation_deg",
+            f64::from(lighting.rotation_deg),
+            r::ROTATION_DEG,
+        ),
+        ("lighting.strength", f64::from(lighting.strength), r::STRENGTH),
+        ("camera.yaw_deg", camera.yaw_deg, r::YAW_DEG),
+        ("camera.pitch_deg", camera.pitch_deg, r::PITCH_DEG),
+        ("camera.fov_deg", camera.fov_deg, r::FOV_DEG),
+        ("camera.distance", camera.distance.unwrap_or(1.0), r::DISTANCE),
+        ("view.exposure_ev", f64::from(view.exposure_ev), r::EXPOSURE_EV),
+        ("render.width", f64::from(render.width), r::SIZE),
+        ("render.height", f64::from(render.height), r::SIZE),
+        ("render.samples", f64::from(render.samples), r::SAMPLES),
+        ("render.time_s", render.time_s.unwrap_or(1.0), r::TIME_S),
+        ("render.bounces", f64::from(render.bounces), r::BOUNCES),
+    ];
+    let triples = [
+        ("lighting.background", colors[0].map(f64::from), r::COLOR),
+        ("lighting.ground_color", colors[1].map(f64::from), r::COLOR),
+        ("camera.target", camera.target.unwrap_or_default(), r::COORDINATE),
+        ("camera.position", camera.position.unwrap_or_default(), r::COORDINATE),
+    ];
+    let components = triples
+        .into_iter()
+        .flat_map(|(name, values, range)| values.map(|value| (name, value, range.clone())));
+    for (name, value, range) in single.into_iter().chain(components) {
+        if !range.contains(&value) {
+            let (low, high) = range.into_inner();
+            return Err(SettingError { name, value, low, high });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,184 @@
+//! Tone curves: from scene-referred to display-referred linear Rec. 709, and sRGB's encoding.
+//!
+//! To add a curve: a function here, one of the same name in `shaders/optics/tone.wgsl`, a line in the registry and in
+//! the shader's switch.
+
+use serde::{Deserialize, Serialize};
+
+use super::real::Real;
+use super::vector::{Vec3, vec3};
+
+macro_rules! tone_curves {
+    ($($(#[$attribute:meta])* $variant:ident = $index:literal, $function:ident, $name:literal, $label:literal, $help:literal;)*) => {
+        /// The tone curve.
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+        #[repr(u32)]
+        pub enum ToneCurve {
+            $(#[doc = $help] #[serde(rename = $name)] $(#[$attribute])* $variant = $index,)*
+        }
+
+        impl ToneCurve {
+            /// Every curve, in the order of the menus.
+            pub const ALL: &'static [ToneCurve] = &[$(ToneCurve::$variant),*];
+
+            /// Name in files and on the command line.
+            pub fn name(self) -> &'static str {
+                match self { $(ToneCurve::$variant => $name,)* }
+            }
+            /// Name in the menus.
+            pub fn label(self) -> &'static str {
+                match self { $(ToneCurve::$variant => $label,)* }
+            }
+            /// When to choose it.
+            pub fn help(self) -> &'static str {
+                match self { $(ToneCurve::$variant => $help,)* }
+            }
+        }
+
+        /// Display-referred linear Rec. 709 in [0, 1] from exposed scene-referred linear Rec. 709. What is negative or
+        /// not a number counts as 0, what is beyond [`SCENE_MAX`] as that.
+        #[inline(always)]
+        pub fn tone_map<T: Real>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
+            let scene = rgb_linear.map(|x| x.clamp(T::zero(), T::from_f64(SCENE_MAX)));
+            let display = match curve { $(ToneCurve::$variant => $function(scene),)* };
+            display.map(|x| x.clamp(T::zero(), T::one()))
+        }
+    };
+}
+
+tone_curves! {
+    #[default]
+    Agx = 0, tone_agx, "agx", "AgX", "Bright colours fade to white as on film: for any picture with strong light.";
+    Aces = 1, tone_aces, "aces", "ACES", "Strong contrast and saturation, as in films and games (Hill's fit of ACES 1.0).";
+    PbrNeutral = 2, tone_pbr_neutral, "pbr-neutral", "PBR Neutral", "Colours below the highlights stay exactly as they are: for product pictures.";
+    None = 3, tone_none, "none", "None", "Cut off at white: for comparing numbers.";
+}
+
+/// The largest scene-referred value told from others: the largest half float.
+pub const SCENE_MAX: f64 = 65504.0;
+
+/// AgX (Sobotka 2022) in the form of Filament and three.js: its inset in Rec. 2020, here one matrix with the change of
+/// primaries; Wrensch's polynomial fit of the sigmoid over 16.5 stops around middle grey ("Minimal AgX implementation",
+/// 2023); the outset; display gamma 2.2.
+#[inline(always)]
+pub fn tone_agx<T: Real>(scene: Vec3<T>) -> Vec3<T> {
+    let c = T::from_f64;
+    let inset = transform(AGX_INSET_FROM_REC709, scene);
+    let log = inset.map(|x| {
+        let stops = x.max(c(1e-10)).ln() * c(std::f64::consts::LOG2_E);
+        ((stops - c(AGX_STOPS_MIN)) / c(AGX_STOPS_MAX - AGX_STOPS_MIN)).clamp(T::zero(), T::one())
+    });
+    let encoded = transform(AGX_OUTSET, log.map(agx_contrast));
+    let linear = encoded.map(|x| x.max(c(1e-10)).powf(c(2.2)));
+    transform(REC709_FROM_REC2020, linear)
+}
+
+/// Stops below which AgX is black: ten below middle grey.
+pub const AGX_STOPS_MIN: f64 = -12.47393;
+/// Stops above which AgX is white: 6.5 above middle grey.
+pub const AGX_STOPS_MAX: f64 = 4.026069;
+
+/// AgX's sigmoid on [0, 1].
+#[inline(always)]
+fn agx_contrast<T: Real>(x: T) -> T {
+    let c = T::from_f64;
+    let high = c(31.96) + x * (c(-40.14) + x * c(15.5));
+    c(-0.00232) + x * (c(0.1191) + x * (c(0.4298) + x * (c(-6.868) + x * high)))
+}
+
+/// Hill's fit of the ACES 1.0 reference rendering and output transforms for sRGB displays (BakingLab, 2016), without
+/// the exposure of 1/0.6 that some programs put before it.
+#[inline(always)]
+pub fn tone_aces<T: Real>(scene: Vec3<T>) -> Vec3<T> {
+    let c = T::from_f64;
+    let fitted = transform(ACES_INPUT, scene).map(|x| {
+        let a = x * (x + c(0.0245786)) - c(0.000090537);
+        let b = x * (c(0.983729) * x + c(0.432951)) + c(0.238081);
+        a / b
+    });
+    transform(ACES_OUTPUT, fitted)
+}
+
+/// The Khronos PBR Neutral tone mapper (Khronos 3D Commerce, 2024), as specified.
+#[inline(always)]
+pub fn tone_pbr_neutral<T: Real>(scene: Vec3<T>) -> Vec3<T> {
+    let c = T::from_f64;
+    let darkest = scene.x.min(scene.y).min(scene.z);
+    // Takes away the reflectance of 0.04 that every dielectric adds to its base colour.
+    let offset = T::select(darkest.less(c(0.08)), darkest - c(6.25) * darkest * darkest, c(0.04));
+    let color = scene - Vec3::splat(offset);
+    let peak = color.max_component();
+    let room = c(1.0 - NEUTRAL_START);
+    let compressed_peak = T::one() - room * room / (peak + room - c(NEUTRAL_START)).max(room);
+    let whiteness = T::one() - T::one() / (c(0.15) * (peak - compressed_peak) + T::one());
+    let compressed = color * (compressed_peak / peak.max(c(NEUTRAL_START)));
+    let faded = compressed.mix(Vec3::splat(compressed_peak), whiteness);
+    Vec3::select(peak.less(c(NEUTRAL_START)), color, faded)
+}
+
+/// Peak above which PBR Neutral compresses.
+pub const NEUTRAL_START: f64 = 0.8 - 0.04;
+
+/// As it is, cut off by [`tone_map`].
+#[inline(always)]
+pub fn tone_none<T: Real>(scene: Vec3<T>) -> Vec3<T> {
+    scene
+}
+
+/// sRGB-encoded from linear, both in [0, 1] (IEC 61966-2-1).
+#[inline(always)]
+pub fn srgb_from_linear<T: Real>(linear: Vec3<T>) -> Vec3<T> {
+    let c = T::from_f64;
+    linear.map(|x| {
+        let bright = c(1.055) * x.max(c(0.0031308)).powf(c(1.0 / 2.4)) - c(0.055);
+        T::select(c(0.0031308).less(x), bright, c(12.92) * x)
+    })
+}
+
+/// Linear from sRGB-encoded, both in [0, 1] (IEC 61966-2-1).
+#[inline(always)]
+pub fn linear_from_srgb<T: Real>(srgb: Vec3<T>) -> Vec3<T> {
+    let c = T::from_f64;
+    srgb.map(|x| {
+        let bright = ((x.max(c(0.04045)) + c(0.055)) / c(1.055)).powf(c(2.4));
+        T::select(c(0.04045).less(x), bright, x / c(12.92))
+    })
+}
+
+/// Rows of a matrix applied to a colour.
+#[inline(always)]
+fn transform<T: Real>(rows: [[f64; 3]; 3], color: Vec3<T>) -> Vec3<T> {
+    let [x, y, z] = rows.map(|row| Vec3::from_f64(row).dot(color));
+    vec3(x, y, z)
+}
+
+/// AgX's inset after the change from Rec. 709's to Rec. 2020's primaries.
+const AGX_INSET_FROM_REC709: [[f64; 3]; 3] = [
+    [0.544814746, 0.373787398, 0.081397855],
+    [0.140416948, 0.754137555, 0.105445497],
+    [0.088810420, 0.178871756, 0.732317824],
+];
+/// AgX's outset.
+const AGX_OUTSET: [[f64; 3]; 3] = [
+    [1.127100582, -0.110606643, -0.016493939],
+    [-0.141329763, 1.157823702, -0.016493939],
+    [-0.141329763, -0.110606643, 1.251936407],
+];
+/// From Rec. 2020's to Rec. 709's primaries (ITU-R BT.2407).
+const REC709_FROM_REC2020: [[f64; 3]; 3] = [
+    [1.660491002, -0.587641139, -0.072849863],
+    [-0.124550475, 1.132899897, -0.008349423],
+    [-0.018150763, -0.100578898, 1.118729661],
+];
+/// Rec. 709 to ACES AP1 with the reference rendering's saturation.
+const ACES_INPUT: [[f64; 3]; 3] = [
+    [0.59719, 0.35458, 0.04823],
+    [0.07600, 0.90834, 0.01566],
+    [0.02840, 0.13383, 0.83777],
+];
+/// The output transform's saturation, then AP1 to Rec. 709.
+const ACES_OUTPUT: [[f64; 3]; 3] = [
+    [1.60475, -0.53108, -0.07367],
+    [-0.10208, 1.10813, -0.00605],
+    [-0.00327, -0.07276, 1.07602],
+];

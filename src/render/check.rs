@@ -1,0 +1,334 @@
+//! Proof on the user's own machine: samples against densities, energy, engines and strategies against each other.
+
+use std::time::Duration;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::engine::{EngineChoice, Sampler};
+use super::session::{Session, SessionError};
+use crate::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
+use crate::analysis::film::Film;
+use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
+use crate::document::{Background, Document, PixelFilter, Strategy};
+use crate::optics::curve::Curve;
+use crate::optics::frame::frame_from_normal;
+use crate::optics::lobe::{Horizon, Lobe, lobe_evaluate, lobe_sample};
+use crate::optics::random::{Sequence, random_pair, random_state};
+use crate::optics::vector::Vec3;
+use crate::scene::ModelSource;
+use crate::scene::environment::EnvironmentSource;
+
+/// Probability that a run fails by chance although everything is right, for each group of tests.
+const LEVEL: f64 = 1e-3;
+/// Roughness and view angles of the full grid.
+const ROUGHNESS: [f32; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
+const VIEW_ANGLES_DEG: [f32; 5] = [0.0, 30.0, 60.0, 80.0, 89.0];
+
+/// One thing that was checked.
+#[derive(Clone, Debug, Serialize)]
+pub struct Check {
+    /// Which kind of check: `samples`, `energy`, `furnace`, `engines`, `strategies`, `soundness`.
+    pub group: &'static str,
+    /// What was checked.
+    pub name: String,
+    /// What the value is: `p`, `error`, `sigma`, `count`.
+    pub measure: &'static str,
+    /// What came out.
+    pub value: f64,
+    /// What it is held against.
+    pub limit: f64,
+    /// Whether it is on the right side of it.
+    pub passed: bool,
+}
+
+/// What to check.
+#[derive(Clone, Copy, Debug)]
+pub struct CheckOptions {
+    /// The engine to check.
+    pub engine: EngineChoice,
+    /// The whole grid of lobes, roughnesses and angles with more samples, not a part of it.
+    pub thorough: bool,
+}
+
+/// A case of the χ² tests.
+pub fn sample_cases(thorough: bool) -> Vec<ScatterRequest> {
+    let lobes = Lobe::ALL.iter().flat_map(|&lobe| {
+        let named = Curve::ALL.iter().copied().filter(|curve| *curve != Curve::Custom);
+        let curves: Vec<Curve> = if lobe == Lobe::Geometric {
+            named.collect()
+        } else {
+            vec![Curve::Sqrt]
+        };
+        curves.into_iter().map(move |curve| (lobe, curve))
+    });
+    let mut cases = Vec::new();
+    for (lobe, curve) in lobes {
+        for (i, &roughness) in ROUGHNESS.iter().enumerate() {
+            for (j, &view_angle_deg) in VIEW_ANGLES_DEG.iter().enumerate() {
+                for horizon in [Horizon::Mirror, Horizon::Absorb] {
+                    let stretched: &[f32] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
+                    for &anisotropy in stretched {
+                        let number = cases.len();
+                        // A fifth of the grid, each column and row met, unless all of it is wanted.
+                        if !thorough && !(i + 2 * j + number / 35).is_multiple_of(5) {
+                            continue;
+                        }
+                        cases.push(ScatterRequest {
+                            lobe,
+                            curve,
+                            horizon,
+                            roughness,
+                            anisotropy,
+                            table: Vec::new(),
+                            view_angle_deg,
+                            count: if thorough { 60_000 } else { 20_000 },
+                            seed: number as u32,
+                        });
+                    }
+                }
+            }
+        }
+    }
+    cases
+}
+
+/// The p-value of a cloud of samples under the density of the f64 twin, times `density_factor` (1, but for tests of the
+/// test itself).
+pub fn chi_square(
+    request: &ScatterRequest,
+    cloud: &ScatterCloud,
+    density_factor: impl Fn(Vec3<f64>) -> f64 + Sync,
+) -> f64 {
+    let shape = request.shape::<f64>();
+    let frame = ScatterRequest::frame::<f64>();
+    let wo = request.wo::<f64>();
+    let mirror = wo.mirrored_about(frame.normal);
+    // The rings follow the lobe: equal shares of a pilot drawn by the twin.
+    let pilot = (0..4000).map(|i| {
+        let state = random_state(1, 0, request.seed, i, Sequence::Independent);
+        let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
+        lobe_sample(&shape, &frame, frame.normal, wo, [a, b, c]).wi
+    });
+    let grid = PolarGrid::following(frame_from_normal(mirror), 12, 12, pilot);
+    let mut samples: Vec<_> = cloud
+        .samples
+        .iter()
+        .map(|&[x, y, z, _]| Some(Vec3::from_f32([x, y, z]).normalize()))
+        .collect();
+    samples.resize(samples.len() + cloud.absorbed as usize, None);
+    let density = |wi: Vec3<f64>| {
+        // What the model itself loses below the horizon counts as absorbed, not as density.
+        let [value, density] = lobe_evaluate(&shape, &frame, frame.normal, wo, wi);
+        if value > 0.0 { density * density_factor(wi) } else { 0.0 }
+    };
+    test_samples(&grid, &samples, &[frame.normal], density).p_value
+}
+
+/// Runs the checks; `progress` is told the name of each group before it starts.
+///
+/// # Errors
+/// Where the engine can't be opened or fails.
+pub fn run(options: CheckOptions, progress: impl Fn(&str)) -> Result<Vec<Check>, SessionError> {
+    let mut checks = Vec::new();
+    progress("samples against densities");
+    checks.extend(samples(options)?);
+    progress("energy");
+    checks.extend(energy());
+    progress("white furnace");
+    checks.extend(furnace(options)?);
+    progress("engines and strategies");
+    checks.extend(pictures(options)?);
+    Ok(checks)
+}
+
+fn samples(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
+    let cases = sample_cases(options.thorough);
+    let sampler = Sampler::open(options.engine)?;
+    let clouds = cases
+        .iter()
+        .map(|case| sampler.draw(case))
+        .collect::<Result<Vec<_>, _>>()?;
+    let limit = sidak_level(LEVEL, cases.len());
+    let check = |(case, cloud): (&ScatterRequest, &ScatterCloud)| {
+        let value = chi_square(case, cloud, |_| 1.0);
+        Check {
+            group: "samples",
+            name: describe(case),
+            measure: "p",
+            value,
+            limit,
+            passed: value > limit,
+        }
+    };
+    Ok(cases.par_iter().zip(&clouds).map(check).collect())
+}
+
+/// The name of a case.
+fn describe(case: &ScatterRequest) -> String {
+    let curve = if case.lobe == Lobe::Geometric {
+        format!("/{}", case.curve.name())
+    } else {
+        String::new()
+    };
+    let stretch = if case.anisotropy == 0.0 {
+        String::new()
+    } else {
+        format!(" stretched {}", case.anisotropy)
+    };
+    format!(
+        "{}{curve} {} roughness {}{stretch} view {}°",
+        case.lobe.name(),
+        case.horizon.name(),
+        case.roughness,
+        case.view_angle_deg
+    )
+}
+
+/// The mean weight of the samples: 1 for the geometric lobe under the mirror policy, never above 1.
+fn energy() -> Vec<Check> {
+    let cases = sample_cases(true);
+    let check = |case: &ScatterRequest| {
+        let shape = case.shape::<f64>();
+        let frame = ScatterRequest::frame::<f64>();
+        let weight = |i: u32| {
+            let state = random_state(2, 0, case.seed, i, Sequence::Sobol);
+            let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
+            lobe_sample(&shape, &frame, frame.normal, case.wo(), [a, b, c]).weight
+        };
+        let mean = (0..4096).map(weight).sum::<f64>() / 4096.0;
+        let is_conserving = case.lobe == Lobe::Geometric && case.horizon == Horizon::Mirror;
+        let value = if is_conserving {
+            (mean - 1.0).abs()
+        } else {
+            (mean - 1.0).max(0.0)
+        };
+        // ggx-ndf's weights are noisy at grazing angles.
+        let limit = if case.lobe == Lobe::GgxNdf || case.lobe == Lobe::BlinnPhong {
+            0.15
+        } else {
+            2e-3
+        };
+        (
+            value <= limit,
+            Check {
+                group: "energy",
+                name: describe(case),
+                measure: "error",
+                value,
+                limit,
+                passed: value <= limit,
+            },
+        )
+    };
+    let all: Vec<_> = cases.par_iter().map(check).collect();
+    // Only failures are listed one by one; the rest is summed up by its worst.
+    let worst = all
+        .iter()
+        .map(|(_, check)| check.value / check.limit)
+        .fold(0.0, f64::max);
+    let mut checks: Vec<Check> = all
+        .into_iter()
+        .filter(|(passed, _)| !passed)
+        .map(|(_, check)| check)
+        .collect();
+    checks.push(Check {
+        group: "energy",
+        name: format!("mean weight over {} cases, worst share of its limit", cases.len()),
+        measure: "error",
+        value: worst,
+        limit: 1.0,
+        passed: worst <= 1.0,
+    });
+    checks
+}
+
+/// A small document under a light, with honest variances: box filter, independent samples.
+fn document(model: ModelSource, light: EnvironmentSource, samples: u32) -> Document {
+    let mut document = Document {
+        model,
+        ..Document::default()
+    };
+    document.lighting.environment = light;
+    (document.render.width, document.render.height) = (48, 48);
+    document.render.samples = samples;
+    document.render.filter = PixelFilter::Box;
+    document.render.sequence = Sequence::Independent;
+    document
+}
+
+fn film(engine: EngineChoice, document: &Document) -> Result<Film, SessionError> {
+    let mut session = Session::open(engine)?;
+    session.submit(document)?;
+    while !session.step(Duration::from_secs(1))?.is_done {}
+    Ok(session.film()?.clone())
+}
+
+fn furnace(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
+    let check = |roughness: f32| {
+        let mut document = document(ModelSource::Teapot, EnvironmentSource::Furnace, 4);
+        document.materials[0].roughness = roughness;
+        document.materials[0].fresnel = crate::optics::fresnel::Fresnel::None;
+        let image = film(options.engine, &document)?.image();
+        let error = |pixel: &[f32; 4]| f64::from((pixel[1] - 1.0).abs());
+        let value = image.pixels.iter().map(error).fold(0.0, f64::max);
+        let name = format!("teapot, geometric, roughness {roughness}: worst pixel");
+        Ok(Check {
+            group: "furnace",
+            name,
+            measure: "error",
+            value,
+            limit: 5e-3,
+            passed: value <= 5e-3,
+        })
+    };
+    [0.0, 0.1, 0.5, 1.0].into_iter().map(check).collect()
+}
+
+fn pictures(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
+    let samples = if options.thorough { 1024 } else { 128 };
+    let mut subject = document(ModelSource::Teapot, EnvironmentSource::Studio, samples);
+    subject.materials[0].roughness = 0.5;
+    subject.lighting.background = Background::Transparent;
+    let with = |strategy: Strategy, seed: u32| {
+        let mut document = subject.clone();
+        (document.render.strategy, document.render.seed) = (strategy, seed);
+        document
+    };
+    let mis = film(options.engine, &with(Strategy::Mis, 0))?;
+    let lobe = film(options.engine, &with(Strategy::Lobe, 1))?;
+    let light = film(options.engine, &with(Strategy::Light, 2))?;
+    let processor = film(EngineChoice::Cpu, &with(Strategy::Mis, 3))?;
+    let compare = |group, name: &str, other: &Film| {
+        let value = mis.difference_in_sigma(other).abs();
+        Check {
+            group,
+            name: name.to_owned(),
+            measure: "sigma",
+            value,
+            limit: 4.0,
+            passed: value <= 4.0,
+        }
+    };
+    let dropped = [&mis, &lobe, &light, &processor]
+        .iter()
+        .map(|film| film.dropped)
+        .sum::<u64>() as f64;
+    Ok(vec![
+        compare(
+            "engines",
+            "this engine against the processor, whole picture",
+            &processor,
+        ),
+        compare("strategies", "mis against lobe, whole picture", &lobe),
+        compare("strategies", "mis against light, whole picture", &light),
+        Check {
+            group: "soundness",
+            name: "samples dropped because they were not finite".to_owned(),
+            measure: "count",
+            value: dropped,
+            limit: 0.0,
+            passed: dropped == 0.0,
+        },
+    ])
+}

@@ -1,0 +1,101 @@
+//! Pictures written to files.
+
+use std::path::{Path, PathBuf};
+
+use super::display::display;
+use crate::analysis::film::Image;
+use crate::document::ViewSettings;
+
+/// Why a picture can't be written.
+#[derive(Debug, thiserror::Error)]
+pub enum OutputError {
+    /// The name's ending says no format that is written.
+    #[error("{}: pictures are written as .png, .exr or .hdr; give the file one of these endings", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file could not be written.
+    #[error("{}: could not be written: {reason}. Is there room, and may the folder be written to?", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+/// The formats, by a file's ending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Display-referred sRGB of 8 bits, with exposure and tone curve.
+    Png,
+    /// Linear, full float, alpha premultiplied.
+    Exr,
+    /// Linear, shared exponents, no alpha.
+    Hdr,
+}
+
+/// The format that a file's ending asks for.
+///
+/// # Errors
+/// [`OutputError::Format`] for another ending: ask before hours of rendering.
+pub fn format_of(path: &Path) -> Result<Format, OutputError> {
+    let ending = path
+        .extension()
+        .and_then(|ending| ending.to_str())
+        .unwrap_or_default()
+        .to_ascii_lowercase();
+    match ending.as_str() {
+        "png" => Ok(Format::Png),
+        "exr" => Ok(Format::Exr),
+        "hdr" => Ok(Format::Hdr),
+        _ => Err(OutputError::Format { path: path.to_owned() }),
+    }
+}
+
+/// Writes a picture in the format of the file's ending.
+///
+/// # Errors
+/// [`OutputError`] naming the file.
+pub fn write(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), OutputError> {
+    let written = match format_of(path)? {
+        Format::Png => write_png(path, image, view),
+        Format::Exr => write_exr(path, image),
+        Format::Hdr => write_hdr(path, image),
+    };
+    written.map_err(|reason| OutputError::Write {
+        path: path.to_owned(),
+        reason,
+    })
+}
+
+fn write_png(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), String> {
+    let pixels = display(image, view);
+    image::save_buffer_with_format(
+        path,
+        &pixels,
+        image.width,
+        image.height,
+        image::ExtendedColorType::Rgba8,
+        image::ImageFormat::Png,
+    )
+    .map_err(|error| error.to_string())
+}
+
+fn write_exr(path: &Path, image: &Image) -> Result<(), String> {
+    let pixel = |x: usize, y: usize| {
+        let [r, g, b, a] = image.pixels[y * image.width as usize + x];
+        (r, g, b, a)
+    };
+    exr::prelude::write_rgba_file(path, image.width as usize, image.height as usize, pixel)
+        .map_err(|error| error.to_string())
+}
+
+fn write_hdr(path: &Path, image: &Image) -> Result<(), String> {
+    let file = std::fs::File::create(path).map_err(|error| error.to_string())?;
+    let pixels: Vec<_> = image.pixels.iter().map(|&[r, g, b, _]| image::Rgb([r, g, b])).collect();
+    image::codecs::hdr::HdrEncoder::new(std::io::BufWriter::new(file))
+        .encode(&pixels, image.width as usize, image.height as usize)
+        .map_err(|error| error.to_string())
+}

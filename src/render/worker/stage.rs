@@ -1,0 +1,87 @@
+//! At which resolution a submission is rendered, and until when.
+
+use std::time::{Duration, Instant};
+
+use super::{Pace, Submission};
+use crate::document::Document;
+
+/// From the last change to the full resolution.
+const SETTLE: Duration = Duration::from_millis(150);
+/// A full picture that is there within this needs no smaller one before it.
+const QUICK: Duration = Duration::from_millis(40);
+/// A moving picture that has not been completed within this makes way for the next.
+const STALE: Duration = Duration::from_millis(250);
+/// The factors by which width and height are reduced.
+const REDUCTIONS: [u32; 6] = [1, 2, 3, 4, 6, 8];
+/// What an engine is assumed to do before it was measured, pixel samples a second.
+const FIRST_GUESS: f64 = 5e5;
+/// Pictures smaller than this are not reduced further: nothing could be told from them.
+const SIDE_MIN_PX: u32 = 96;
+
+/// A submission in the course of being shown: first small and soon, then full.
+#[derive(Clone, Debug)]
+pub(super) struct Stage {
+    pub(super) submission: Submission,
+    /// By how much smaller it is being rendered.
+    pub(super) reduction: u32,
+    /// Whether a picture of it has been published.
+    pub(super) is_shown: bool,
+}
+
+impl Stage {
+    /// The first stage of a submission, for an engine that is this fast (pixel samples a second; 0 is unknown).
+    pub(super) fn first(submission: Submission, samples_per_second: f64) -> Self {
+        let speed = if samples_per_second > 0.0 {
+            samples_per_second
+        } else {
+            FIRST_GUESS
+        };
+        let render = &submission.document.render;
+        let pixels = f64::from(render.width) * f64::from(render.height);
+        let most = REDUCTIONS
+            .into_iter()
+            .take_while(|n| *n == 1 || render.width.min(render.height) / n >= SIDE_MIN_PX);
+        let is_quick = |n: u32| pixels / f64::from(n * n) / speed <= QUICK.as_secs_f64();
+        let mut reduction = 1;
+        for candidate in most {
+            reduction = candidate;
+            if is_quick(candidate) {
+                break;
+            }
+        }
+        Self {
+            submission,
+            reduction,
+            is_shown: false,
+        }
+    }
+
+    /// The document at the stage's resolution.
+    pub(super) fn document(&self) -> Document {
+        let mut document = self.submission.document.clone();
+        document.render.width = document.render.width.div_ceil(self.reduction);
+        document.render.height = document.render.height.div_ceil(self.reduction);
+        document
+    }
+
+    /// Whether the full resolution is due: at once after the first picture, or after a rest where more changes are to
+    /// be expected.
+    pub(super) fn is_settled(&self) -> bool {
+        let has_rested = match self.submission.pace {
+            Pace::Moving => self.submission.at.elapsed() >= SETTLE,
+            Pace::Still => true,
+        };
+        self.reduction > 1 && self.is_shown && has_rested
+    }
+
+    /// When to look at [`Stage::is_settled`] again if nothing else happens.
+    pub(super) fn rest_left(&self) -> Option<Duration> {
+        (self.reduction > 1 && self.is_shown).then(|| SETTLE.saturating_sub(self.submission.at.elapsed()))
+    }
+
+    /// Whether another submission may take its place. One that moves is shown first: otherwise a steady stream of
+    /// changes would never show anything.
+    pub(super) fn may_be_replaced(&self, taken_at: Instant) -> bool {
+        self.is_shown || self.submission.pace == Pace::Still || taken_at.elapsed() >= STALE
+    }
+}

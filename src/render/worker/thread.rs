@@ -1,0 +1,485 @@
+//! The worker's thread: takes orders, steps the session, publishes what comes of it.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::stage::Stage;
+use super::{Activity, Event, Level, Orders, Picture, STEP, Scene, Shared, Snapshot, Submission, lock};
+use crate::analysis::film::Image;
+use crate::document::{Change, Document, ViewSettings};
+use crate::render::display::display;
+use crate::render::engine::EngineChoice;
+use crate::render::session::{Session, SessionError};
+use crate::scene::ModelSource;
+use crate::scene::environment::EnvironmentSource;
+
+/// Shortest and longest time between two pictures of the same render.
+const PUBLISH_INTERVAL: [Duration; 2] = [Duration::from_millis(100), Duration::from_millis(500)];
+/// The interval grows with this share of the render's age.
+const PUBLISH_SHARE: f64 = 0.1;
+/// Publishing takes at most one part in this many of the time.
+const PUBLISH_COST: u32 = 8;
+/// Weight of the latest measurement in the mean speed.
+const SPEED_WEIGHT: f64 = 0.1;
+/// How often progress without a picture is told.
+const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
+
+/// The thread's body.
+pub(super) fn run(shared: &Shared, choice: EngineChoice, repaint: &dyn Fn()) {
+    let mut state = State {
+        shared,
+        repaint,
+        session: None,
+        snapshot: Snapshot::default(),
+        stage: None,
+        taken_at: Instant::now(),
+        samples_per_second: 0.0,
+        published_at: Instant::now(),
+        published_samples: 0,
+        publish_cost: Duration::ZERO,
+        told_at: Instant::now(),
+        serial: 0,
+    };
+    state.open(choice);
+    while state.turn().is_some() {}
+}
+
+struct State<'a> {
+    shared: &'a Shared,
+    repaint: &'a dyn Fn(),
+    session: Option<Session>,
+    snapshot: Snapshot,
+    stage: Option<Stage>,
+    /// When the stage's submission was taken.
+    taken_at: Instant,
+    /// Measured, to choose resolutions by; 0 before.
+    samples_per_second: f64,
+    published_at: Instant,
+    published_samples: u32,
+    publish_cost: Duration,
+    told_at: Instant,
+    serial: u64,
+}
+
+impl State<'_> {
+    /// Orders, then a step; `None` when it is time to go.
+    fn turn(&mut self) -> Option<()> {
+        let (orders, is_paused) = self.await_orders();
+        if orders.quit {
+            return None;
+        }
+        if let Some(choice) = orders.engine {
+            self.open(choice);
+            self.restart();
+        }
+        if orders.reload || orders.restart {
+            self.guarded(|state| {
+                let session = state.session()?;
+                if orders.reload {
+                    session.reload();
+                } else {
+                    session.forget();
+                }
+                Ok(())
+            });
+            self.restart();
+        }
+        orders.models.into_iter().for_each(|source| self.load_model(source));
+        orders
+            .environments
+            .into_iter()
+            .for_each(|source| self.load_environment(source));
+        if let Some(submission) = orders.submission {
+            self.take(submission);
+        } else if self.stage.as_ref().is_some_and(Stage::is_settled) {
+            self.settle();
+        }
+        if self.should_render(is_paused) {
+            self.guarded(Self::step);
+        } else {
+            self.rest(is_paused);
+        }
+        Some(())
+    }
+
+    /// Reads the orders; waits for some where there is nothing to render. A submission is left lying while the one
+    /// before it must still be shown.
+    fn await_orders(&self) -> (Orders, bool) {
+        let mut book = lock(&self.shared.orders);
+        loop {
+            let is_busy = self.should_render(book.is_paused);
+            let rest_left = self.stage.as_ref().and_then(Stage::rest_left);
+            let has_news = self.activity(book.is_paused) != self.snapshot.activity;
+            if is_busy || has_news || !book.orders.is_empty() || rest_left.is_some_and(|left| left.is_zero()) {
+                break;
+            }
+            let wait = rest_left.unwrap_or(Duration::from_secs(3600));
+            let waited = self.shared.ordered.wait_timeout(book, wait);
+            book = waited.unwrap_or_else(std::sync::PoisonError::into_inner).0;
+        }
+        let mut orders = std::mem::take(&mut book.orders);
+        let must_wait = self
+            .stage
+            .as_ref()
+            .is_some_and(|stage| !stage.may_be_replaced(self.taken_at));
+        if must_wait && self.should_render(book.is_paused) {
+            book.orders.submission = orders.submission.take();
+        }
+        (orders, book.is_paused)
+    }
+
+    /// Whether there is something to step: when paused, only what has not been shown at all.
+    fn should_render(&self, is_paused: bool) -> bool {
+        let (Some(stage), Some(session)) = (&self.stage, &self.session) else {
+            return false;
+        };
+        !session.progress().is_done && (!is_paused || !stage.is_shown)
+    }
+
+    /// What there is to do now that orders have been followed.
+    fn activity(&self, is_paused: bool) -> Activity {
+        match (&self.stage, &self.session) {
+            (Some(_), Some(session)) if session.progress().is_done => Activity::Done,
+            (Some(_), Some(_)) if is_paused => Activity::Paused,
+            (Some(_), Some(_)) => Activity::Rendering,
+            _ => Activity::Idle,
+        }
+    }
+
+    /// What an order or the step before left to tell.
+    fn rest(&mut self, is_paused: bool) {
+        let activity = self.activity(is_paused);
+        let is_news = self.snapshot.activity != activity;
+        let is_unseen = self.stage.as_ref().is_some_and(|stage| !stage.is_shown);
+        if activity == Activity::Done && is_unseen {
+            // Its time was over before its first sample.
+            self.guarded(Self::publish_picture);
+        }
+        if is_news {
+            self.tell(activity);
+        }
+    }
+
+    fn session(&mut self) -> Result<&mut Session, SessionError> {
+        let session = match self.session.take() {
+            Some(session) => session,
+            None => Session::open(EngineChoice::Cpu)?,
+        };
+        Ok(self.session.insert(session))
+    }
+
+    /// Opens an engine; where that fails the processor's.
+    fn open(&mut self, choice: EngineChoice) {
+        self.session = None;
+        self.snapshot.engine = None;
+        self.samples_per_second = 0.0;
+        self.tell(Activity::Starting);
+        let opened = catch_unwind(|| Session::open(choice)).map_err(|panic| panic_text(&*panic));
+        let why = match opened {
+            Ok(Ok(session)) => {
+                self.session = Some(session);
+                None
+            }
+            Ok(Err(error)) => Some(error.to_string()),
+            Err(panic) => Some(panic),
+        };
+        if let Some(why) = why {
+            self.say(Level::Error, format!("{why} (going on with the processor)"));
+            self.guarded(|state| state.session().map(|_| ()));
+        }
+        self.note_engine();
+    }
+
+    fn note_engine(&mut self) {
+        self.snapshot.engine = self.session.as_ref().map(|session| session.engine().clone());
+        if let Some(engine) = self.snapshot.engine.clone() {
+            self.say(Level::Info, format!("rendering with {engine}: {}", engine.reason));
+        }
+    }
+
+    /// Runs what may fail. Where the GPU does, or something panics, the processor takes over with the same document;
+    /// anything else is said and leaves what was there.
+    fn guarded(&mut self, work: impl FnOnce(&mut Self) -> Result<(), SessionError>) -> bool {
+        let why = match catch_unwind(AssertUnwindSafe(|| work(self))) {
+            Ok(Ok(())) => return true,
+            Ok(Err(SessionError::Gpu(error))) => error.to_string(),
+            Ok(Err(error)) => {
+                self.say(Level::Error, error.to_string());
+                return false;
+            }
+            Err(panic) => panic_text(&*panic),
+        };
+        let was_cpu = self.snapshot.engine.as_ref().is_some_and(|engine| engine.kind == "cpu");
+        self.say(Level::Error, format!("the renderer failed: {why}"));
+        self.session = None;
+        if was_cpu {
+            // A mistake of ours: the same document would bring it about again.
+            self.stage = None;
+            return false;
+        }
+        self.say(Level::Warning, "going on with the processor".to_owned());
+        let opened = Session::open(EngineChoice::Cpu).and_then(|mut session| {
+            if let Some(stage) = &self.stage {
+                session.submit(&stage.document())?;
+            }
+            Ok(session)
+        });
+        match opened {
+            Ok(session) => self.session = Some(session),
+            Err(error) => self.say(Level::Error, error.to_string()),
+        }
+        self.samples_per_second = 0.0;
+        self.note_engine();
+        false
+    }
+
+    fn load_model(&mut self, source: ModelSource) {
+        self.tell(Activity::Loading(source.to_string()));
+        let path = PathBuf::from(source.to_string());
+        self.loaded(path, |state| {
+            let model = state.session()?.assets().model(&source)?;
+            for warning in &model.warnings {
+                state.say(Level::Warning, warning.clone());
+            }
+            Ok(Event::ModelOpened(source, model))
+        });
+    }
+
+    fn load_environment(&mut self, source: EnvironmentSource) {
+        self.tell(Activity::Loading(source.to_string()));
+        let path = PathBuf::from(source.to_string());
+        self.loaded(path, |state| {
+            let environment = state.session()?.assets().environment(&source)?;
+            for warning in &environment.warnings {
+                state.say(Level::Warning, warning.clone());
+            }
+            Ok(Event::EnvironmentOpened(source, environment))
+        });
+    }
+
+    /// Tells how loading went; what is being rendered is not touched by a failure.
+    fn loaded(&mut self, path: PathBuf, work: impl FnOnce(&mut Self) -> Result<Event, SessionError>) {
+        let event = match catch_unwind(AssertUnwindSafe(|| work(self))) {
+            Ok(Ok(event)) => event,
+            Ok(Err(error)) => Event::OpenFailed(path, error.to_string()),
+            Err(panic) => {
+                let why = format!("{}: reading it failed: {}", path.display(), panic_text(&*panic));
+                Event::OpenFailed(path, why)
+            }
+        };
+        lock(&self.shared.events).push(event);
+        (self.repaint)();
+    }
+
+    /// The stage's document once more, as after a change of engine.
+    fn restart(&mut self) {
+        self.snapshot.scene = None;
+        if let Some(stage) = self.stage.take() {
+            self.take(stage.submission);
+        }
+    }
+
+    /// Starts on a submission.
+    fn take(&mut self, submission: Submission) {
+        if let Some(stage) = &mut self.stage {
+            let change = Change::between(&stage.submission.document, &submission.document);
+            if !change.restarts() {
+                stage.submission = submission;
+                self.guarded(|state| state.go_on(change));
+                return;
+            }
+        }
+        self.taken_at = Instant::now();
+        self.snapshot.first_picture = None;
+        self.begin(Stage::first(submission, self.samples_per_second));
+    }
+
+    /// What has been rendered counts, but is shown in another way or has another aim.
+    fn go_on(&mut self, change: Change) -> Result<(), SessionError> {
+        let Some(stage) = self.stage.clone() else { return Ok(()) };
+        self.session()?.submit(&stage.document())?;
+        if let Some(scene) = &self.snapshot.scene {
+            let document = stage.submission.document.clone();
+            self.snapshot.scene = Some(Arc::new(Scene {
+                document,
+                ..Scene::clone(scene)
+            }));
+        }
+        if let Some(last) = self
+            .snapshot
+            .picture
+            .clone()
+            .filter(|_| stage.is_shown && change.display)
+        {
+            self.publish(last.image.clone(), last.samples_per_pixel);
+        }
+        Ok(())
+    }
+
+    /// From the small picture to the full one.
+    fn settle(&mut self) {
+        if let Some(mut stage) = self.stage.clone() {
+            stage.reduction = 1;
+            self.begin(stage);
+        }
+    }
+
+    /// Hands a stage to the session. Where that fails, what was being rendered goes on.
+    fn begin(&mut self, stage: Stage) {
+        let document = stage.document();
+        let engine = self.snapshot.engine.clone();
+        let is_taken = self.guarded(|state| state.hand_over(&document))
+            // The GPU could not: the processor gets its chance.
+            || (self.snapshot.engine != engine && self.guarded(|state| state.hand_over(&document)));
+        if !is_taken {
+            return;
+        }
+        let is_first_look = !stage.is_shown;
+        self.stage = Some(stage);
+        self.published_samples = 0;
+        self.published_at = Instant::now();
+        if is_first_look {
+            self.guarded(Self::note_scene);
+        }
+    }
+
+    fn hand_over(&mut self, document: &Document) -> Result<(), SessionError> {
+        if self.is_new_model(&document.model) {
+            self.tell(Activity::Loading(document.model.to_string()));
+            self.session()?.assets().model(&document.model)?;
+            self.tell(Activity::Preparing);
+        }
+        let environment = &document.lighting.environment;
+        if self.is_new_environment(environment) {
+            self.tell(Activity::Loading(environment.to_string()));
+            self.session()?.assets().environment(environment)?;
+        }
+        self.session()?.submit(document)?;
+        Ok(())
+    }
+
+    fn is_new_model(&self, source: &ModelSource) -> bool {
+        self.snapshot
+            .scene
+            .as_ref()
+            .is_none_or(|scene| scene.document.model != *source)
+    }
+
+    fn is_new_environment(&self, source: &EnvironmentSource) -> bool {
+        self.snapshot
+            .scene
+            .as_ref()
+            .is_none_or(|scene| scene.document.lighting.environment != *source)
+    }
+
+    fn note_scene(&mut self) -> Result<(), SessionError> {
+        let Some(document) = self.stage.as_ref().map(|stage| stage.submission.document.clone()) else {
+            return Ok(());
+        };
+        let session = self.session()?;
+        let model = session.assets().model(&document.model)?;
+        if let Some(job) = session.job().cloned() {
+            self.snapshot.scene = Some(Arc::new(Scene { document, job, model }));
+        }
+        Ok(())
+    }
+
+    /// Renders a little, and publishes when that is due.
+    fn step(&mut self) -> Result<(), SessionError> {
+        let progress = self.session()?.step(STEP)?;
+        let Some(stage) = &self.stage else { return Ok(()) };
+        let document = stage.document();
+        let pixels = u64::from(document.render.width) * u64::from(document.render.height);
+        self.snapshot.progress = progress;
+        self.snapshot.reduction = stage.reduction;
+        if progress.samples_per_pixel > 0 {
+            self.snapshot.samples_per_second = progress.samples_per_second(pixels);
+            // Averaged, so that resolutions do not flicker while something is dragged.
+            let weight = if self.samples_per_second > 0.0 {
+                SPEED_WEIGHT
+            } else {
+                1.0
+            };
+            self.samples_per_second += weight * (self.snapshot.samples_per_second - self.samples_per_second);
+        }
+        let age = self.published_at.elapsed();
+        let interval = Duration::from_secs_f64(PUBLISH_SHARE * progress.render_seconds)
+            .clamp(PUBLISH_INTERVAL[0], PUBLISH_INTERVAL[1])
+            .max(PUBLISH_COST * self.publish_cost);
+        let is_first = self.published_samples == 0 && progress.samples_per_pixel > 0;
+        let is_fresh = progress.samples_per_pixel > self.published_samples;
+        if is_fresh && (is_first || progress.is_done || age >= interval) {
+            self.publish_picture()?;
+        }
+        if self.told_at.elapsed() >= PROGRESS_INTERVAL || self.snapshot.activity != Activity::Rendering {
+            self.tell(Activity::Rendering);
+        }
+        Ok(())
+    }
+
+    fn publish_picture(&mut self) -> Result<(), SessionError> {
+        let begun = Instant::now();
+        let image = Arc::new(self.session()?.image()?);
+        let progress = self.session()?.progress();
+        self.publish(image, progress.samples_per_pixel);
+        self.published_samples = progress.samples_per_pixel;
+        self.published_at = Instant::now();
+        self.publish_cost = begun.elapsed();
+        Ok(())
+    }
+
+    fn publish(&mut self, image: Arc<Image>, samples_per_pixel: u32) {
+        let Some(stage) = &mut self.stage else { return };
+        self.serial += 1;
+        let rgba = shown(&image, &stage.submission.document.view);
+        stage.is_shown = true;
+        if self.snapshot.first_picture.is_none() {
+            self.snapshot.first_picture = Some(stage.submission.at.elapsed());
+        }
+        self.snapshot.picture = Some(Arc::new(Picture {
+            width: image.width,
+            height: image.height,
+            rgba,
+            image,
+            serial: self.serial,
+            revision: stage.submission.revision,
+            reduction: stage.reduction,
+            samples_per_pixel,
+        }));
+        self.tell(Activity::Rendering);
+    }
+
+    /// Publishes the snapshot.
+    fn tell(&mut self, activity: Activity) {
+        self.snapshot.activity = activity;
+        self.told_at = Instant::now();
+        *lock(&self.shared.snapshot) = Arc::new(self.snapshot.clone());
+        (self.repaint)();
+    }
+
+    fn say(&self, level: Level, text: String) {
+        lock(&self.shared.events).push(Event::Message(level, text));
+        (self.repaint)();
+    }
+}
+
+/// Display-referred bytes, premultiplied as windows blend them.
+fn shown(image: &Image, view: &ViewSettings) -> Vec<u8> {
+    let mut rgba = display(image, view);
+    for pixel in rgba.chunks_exact_mut(4).filter(|pixel| pixel[3] < 255) {
+        let alpha = u16::from(pixel[3]);
+        for channel in &mut pixel[..3] {
+            *channel = ((u16::from(*channel) * alpha + 127) / 255) as u8;
+        }
+    }
+    rgba
+}
+
+fn panic_text(panic: &(dyn Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "for an unknown reason".to_owned())
+}

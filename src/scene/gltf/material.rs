@@ -1,0 +1,226 @@
+//! Materials as slots, and their pictures.
+
+use std::collections::HashMap;
+use std::io::Cursor;
+
+use gltf::json;
+use image::ImageReader;
+use json::extensions::texture::TextureTransform;
+use json::material::Material;
+use json::texture::WrappingMode;
+use json::validation::Checked;
+
+use super::container::Document;
+use crate::scene::model::{AlphaMode, ModelError, Slot, Texture, TextureRef, Wrap};
+
+/// The materials that primitives have asked for so far.
+pub(super) struct Materials<'a> {
+    document: &'a Document,
+    /// Slot of a material, none for the default one.
+    slot_of: HashMap<Option<usize>, u32>,
+    slots: Vec<(Slot, u32)>,
+    /// The images in use; a texture's number is its place here.
+    images: Vec<usize>,
+    /// What was left out.
+    pub warnings: Vec<String>,
+}
+
+impl<'a> Materials<'a> {
+    pub fn new(document: &'a Document) -> Self {
+        Self {
+            document,
+            slot_of: HashMap::new(),
+            slots: Vec::new(),
+            images: Vec::new(),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// The slot of a material, or of the default material.
+    pub fn slot(&mut self, material: Option<usize>) -> u32 {
+        if let Some(&slot) = self.slot_of.get(&material) {
+            return slot;
+        }
+        let read = match material {
+            Some(index) => self.read(index),
+            None => (Slot::default(), 0),
+        };
+        let slot = self.slots.len() as u32;
+        self.slots.push(read);
+        self.slot_of.insert(material, slot);
+        slot
+    }
+
+    /// Which set of texture coordinates a slot's pictures use.
+    pub fn uv_set(&self, slot: u32) -> u32 {
+        self.slots[slot as usize].1
+    }
+
+    /// The slots with their pictures decoded; forgets the warnings.
+    pub fn finish(self) -> Result<(Vec<Slot>, Vec<Texture>), ModelError> {
+        let textures = self
+            .images
+            .iter()
+            .map(|&image| decode(self.document, image))
+            .collect::<Result<_, _>>()?;
+        Ok((self.slots.into_iter().map(|(slot, _)| slot).collect(), textures))
+    }
+
+    /// A material and the set of texture coordinates of its pictures: that of the first that it has; pictures on
+    /// another set are left out.
+    fn read(&mut self, index: usize) -> (Slot, u32) {
+        let root = &self.document.root;
+        let material = &root.materials[index];
+        let pbr = &material.pbr_metallic_roughness;
+        let extensions = material.extensions.as_ref();
+        let [red, green, blue, opacity] = pbr.base_color_factor.0;
+        let strength = extensions
+            .and_then(|e| e.emissive_strength.as_ref())
+            .map_or(1.0, |e| e.emissive_strength.0);
+        let mut uv_set = None;
+        let info = |info: &Option<json::texture::Info>| {
+            let info = info.as_ref()?;
+            let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
+            Some((info.index.value(), info.tex_coord, transform))
+        };
+        let normal = material.normal_texture.as_ref();
+        let slot = Slot {
+            name: material.name.clone().unwrap_or_else(|| format!("material {index}")),
+            base_color: [red, green, blue].map(unit),
+            metalness: unit(pbr.metallic_factor.0),
+            roughness: unit(pbr.roughness_factor.0),
+            emission: material.emissive_factor.0.map(|factor| not_negative(factor * strength)),
+            opacity: unit(opacity),
+            alpha_mode: alpha_mode(material),
+            alpha_cutoff: material.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0),
+            double_sided: material.double_sided,
+            ior: extensions
+                .and_then(|e| e.ior.as_ref())
+                .map_or(1.5, |e| e.ior.0.clamp(1.0, 100.0)),
+            transmission: extensions
+                .and_then(|e| e.transmission.as_ref())
+                .map_or(0.0, |e| unit(e.transmission_factor.0)),
+            base_color_texture: self.texture(info(&pbr.base_color_texture), &mut uv_set),
+            metallic_roughness_texture: self.texture(info(&pbr.metallic_roughness_texture), &mut uv_set),
+            normal_texture: self.texture(
+                normal.map(|normal| (normal.index.value(), normal.tex_coord, self.normal_transform(index))),
+                &mut uv_set,
+            ),
+            normal_scale: normal.map_or(1.0, |normal| normal.scale),
+            emissive_texture: self.texture(info(&material.emissive_texture), &mut uv_set),
+        };
+        (slot, uv_set.unwrap_or(0))
+    }
+
+    /// A reference to the picture of a texture, given as (texture, set of coordinates, transform).
+    fn texture(
+        &mut self,
+        reference: Option<(usize, u32, Option<TextureTransform>)>,
+        uv_set: &mut Option<u32>,
+    ) -> Option<TextureRef> {
+        let (texture, set, transform) = reference?;
+        let set = transform
+            .as_ref()
+            .and_then(|transform| transform.tex_coord)
+            .unwrap_or(set);
+        if *uv_set.get_or_insert(set) != set {
+            self.warnings
+                .push(format!("a texture on TEXCOORD_{set} beside others is left out"));
+            return None;
+        }
+        let texture = &self.document.root.textures[texture];
+        let image = texture.source.value();
+        let place = self.images.iter().position(|&known| known == image).unwrap_or_else(|| {
+            self.images.push(image);
+            self.images.len() - 1
+        });
+        let sampler = texture
+            .sampler
+            .map(|sampler| &self.document.root.samplers[sampler.value()]);
+        let wrap = sampler.map_or([Wrap::Repeat; 2], |sampler| {
+            [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]
+        });
+        Some(TextureRef {
+            texture: place,
+            texture_from_mesh_uv: affine(&transform.unwrap_or_default()),
+            wrap,
+        })
+    }
+
+    /// The crate knows no KHR_texture_transform on normal textures.
+    fn normal_transform(&self, material: usize) -> Option<TextureTransform> {
+        let extensions = &self.document.raw["materials"][material]["normalTexture"]["extensions"];
+        serde_json::from_value(extensions.get("KHR_texture_transform")?.clone()).ok()
+    }
+}
+
+fn unit(value: f32) -> f32 {
+    value.clamp(0.0, 1.0)
+}
+
+fn not_negative(value: f32) -> f32 {
+    if value.is_finite() { value.max(0.0) } else { 0.0 }
+}
+
+fn alpha_mode(material: &Material) -> AlphaMode {
+    match material.alpha_mode {
+        Checked::Valid(json::material::AlphaMode::Mask) => AlphaMode::Mask,
+        Checked::Valid(json::material::AlphaMode::Blend) => AlphaMode::Blend,
+        _ => AlphaMode::Opaque,
+    }
+}
+
+fn wrap(mode: Checked<WrappingMode>) -> Wrap {
+    match mode {
+        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::ClampToEdge,
+        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::MirroredRepeat,
+        _ => Wrap::Repeat,
+    }
+}
+
+/// Offset · rotation · scale, as KHR_texture_transform defines them.
+fn affine(transform: &TextureTransform) -> [f32; 6] {
+    let (sin, cos) = transform.rotation.0.sin_cos();
+    let ([scale_u, scale_v], [offset_u, offset_v]) = (transform.scale.0, transform.offset.0);
+    [
+        cos * scale_u,
+        sin * scale_v,
+        offset_u,
+        -sin * scale_u,
+        cos * scale_v,
+        offset_v,
+    ]
+}
+
+/// A picture of the file or beside it, as 8-bit RGBA.
+fn decode(document: &Document, index: usize) -> Result<Texture, ModelError> {
+    let image = &document.root.images[index];
+    let external = image.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
+    let name = image
+        .name
+        .clone()
+        .or(external.map(str::to_owned))
+        .unwrap_or_else(|| format!("image {index}"));
+    let owned;
+    let bytes = match (&image.uri, image.buffer_view) {
+        (Some(uri), _) => {
+            owned = document.read_uri(&name, uri)?;
+            &owned
+        }
+        (None, Some(view)) => document.view(view.value())?,
+        (None, None) => return Err(document.invalid(format!("{name} has no data"))),
+    };
+    let picture = ImageReader::new(Cursor::new(bytes))
+        .with_guessed_format()
+        .map_err(image::ImageError::from);
+    let picture = picture
+        .and_then(ImageReader::decode)
+        .map_err(|error| document.resource(&name, error))?
+        .into_rgba8();
+    Ok(Texture {
+        name,
+        width: picture.width(),
+        height: picture.height(),
+        rgba8: picture.into_raw(),
+    })
+}

@@ -1,0 +1,203 @@
+//! What a user can get wrong, from the command line: one clear line, the right exit code, no panic.
+
+use crate::cli_support::{Workplace, write_exr, write_hdr};
+use crate::gltf_builder::{glb, square};
+
+fn grey(_: usize, _: usize) -> [f32; 3] {
+    [0.5; 3]
+}
+
+const QUICK: &str = "render --engine cpu --size 4x4 --samples 1 --output p.png";
+
+#[test]
+fn bad_models_are_refused() {
+    let place = Workplace::new();
+    let (buffer, mut document) = square();
+    let whole = glb(&document, &buffer.bytes);
+    place.write("cut.glb", &whole[..whole.len() * 2 / 3]);
+    place.write("text.glb", b"This is a shopping list: milk, bread, two lemons.\n");
+    place.write("empty.glb", b"");
+    document["extensionsRequired"] = serde_json::json!(["KHR_draco_mesh_compression"]);
+    document["extensionsUsed"] = document["extensionsRequired"].clone();
+    place.write("draco.glb", &glb(&document, &buffer.bytes));
+    for (file, words) in [
+        ("cut.glb", ["cut short", "download the file again"]),
+        ("text.glb", ["not a glTF 2.0 file", "export the model as .glb"]),
+        ("empty.glb", ["not a glTF 2.0 file", "export the model as .glb"]),
+        ("draco.glb", ["KHR_draco_mesh_compression", "not supported"]),
+        ("missing.glb", ["cannot read", "check the path"]),
+    ] {
+        place.refused(1, &format!("{QUICK} --model {file}"), &[file, words[0], words[1]]);
+        // The same where the window would open it.
+        place.refused(1, &format!("--engine cpu {file}"), &[file, words[0], words[1]]);
+    }
+    assert!(!place.path("p.png").exists(), "a picture of nothing was written");
+}
+
+#[test]
+fn bad_environments_are_refused() {
+    let place = Workplace::new();
+    write_hdr(&place.path("whole.hdr"), 32, 16, grey);
+    let hdr = std::fs::read(place.path("whole.hdr")).unwrap();
+    place.write("cut.hdr", &hdr[..hdr.len() / 2]);
+    place.write("text.hdr", b"not a picture at all\n");
+    write_exr(&place.path("whole.exr"), 32, 16, grey);
+    place.done(&format!("{QUICK} --environment whole.exr"));
+    let mut exr = std::fs::read(place.path("whole.exr")).unwrap();
+    place.write("cut.exr", &exr[..exr.len() / 2]);
+    // Both compressions put these 16 rows in one chunk. The attribute's name, its type and its length of 1 come before its value: DWAA is 8.
+    let name = b"compression\0compression\0\x01\0\0\0";
+    let value = exr.windows(name.len()).position(|window| window == name).unwrap() + name.len();
+    exr[value] = 8;
+    place.write("dwa.exr", &exr);
+    for (file, words) in [
+        ("cut.hdr", ["cut short", "again"]),
+        ("text.hdr", ["not a", "check where it came from"]),
+        ("cut.exr", ["cut short", "again"]),
+        ("dwa.exr", ["DWA", "not supported"]),
+        ("missing.hdr", ["cannot read", "check the path"]),
+        ("picture.jpg", ["neither a .hdr nor an .exr", "convert"]),
+    ] {
+        place.refused(
+            1,
+            &format!("{QUICK} --model sphere --environment {file}"),
+            &[file, words[0], words[1]],
+        );
+    }
+}
+
+#[test]
+fn bad_materials_are_refused() {
+    let place = Workplace::new();
+    place.write("broken.json", b"{\"glossmith\": 1, \"material\": ");
+    place.write(
+        "rough.json",
+        b"{\"glossmith\": 1, \"material\": {\"specular.roughness\": 7}}",
+    );
+    place.write("other.json", b"{\"colour\": \"blue\"}");
+    for (material, words) in [
+        ("broken.json", ["not valid JSON", "save the file again"]),
+        ("rough.json", ["specular.roughness does not take 7", "from 0 to 1"]),
+        ("other.json", ["not a Glossmith material", "choose a file"]),
+        ("missing.json", ["cannot be read", "check the path"]),
+        ("unobtainium", ["no material is called", "porcelain"]),
+    ] {
+        place.refused(
+            1,
+            &format!("{QUICK} --model sphere --material {material}"),
+            &[material, words[0], words[1]],
+        );
+    }
+}
+
+#[test]
+fn places_that_cannot_be_written_are_refused_before_the_work() {
+    let place = Workplace::new();
+    place.write("file", b"");
+    // A billion samples: only an early refusal ends this test.
+    let long = "render --engine cpu --model sphere --samples 1000000000";
+    for output in ["nowhere/p.png", "file/p.exr"] {
+        place.refused(
+            1,
+            &format!("{long} --output {output}"),
+            &[output, "cannot be written", "check the folder"],
+        );
+    }
+    place.refused(
+        1,
+        &format!("{long} --report nowhere/r.json"),
+        &["nowhere/r.json", "check the folder"],
+    );
+    std::fs::create_dir(place.path("folder.png")).unwrap();
+    place.refused(
+        1,
+        &format!("{long} --output folder.png"),
+        &["folder.png", "cannot be written"],
+    );
+    place.refused(
+        1,
+        "scatter --lobe ggx --output nowhere/s.csv",
+        &["nowhere/s.csv", "check the folder"],
+    );
+}
+
+#[test]
+fn wrong_arguments_are_refused() {
+    let place = Workplace::new();
+    for (arguments, words) in [
+        ("--output p.jpg", ["p.jpg", ".png, .exr or .hdr"]),
+        ("--output picture", ["picture", ".png, .exr or .hdr"]),
+        (
+            "--set specular.roughnes=0.3",
+            ["specular.roughnes", "did you mean specular.roughness"],
+        ),
+        ("--set specular.roughness=1.5", ["specular.roughness", "from 0 to 1"]),
+        ("--set specular.roughness=nan", ["specular.roughness", "from 0 to 1"]),
+        ("--set specular.roughness=", ["specular.roughness", "from 0 to 1"]),
+        ("--set specular.lobe=gloss", ["specular.lobe", "geometric"]),
+        ("--set base.color=reddish", ["base.color", "#rrggbb"]),
+        ("--set roughness", ["--set", "KEY=VALUE"]),
+        ("--size 0x0", ["--size", "640x480"]),
+        ("--size 640", ["--size", "640x480"]),
+        ("--size 65535x65535", ["--size", "smaller"]),
+        ("--size 70000x10", ["--size", "640x480"]),
+        ("--samples 0", ["--samples", "1"]),
+        ("--time nan", ["--time", "0.001"]),
+        ("--time -3", ["--time", "0.001"]),
+        ("--bounces 65", ["--bounces", "64"]),
+        ("--fov nan", ["--fov", "0.1 to 170"]),
+        ("--fov 180", ["--fov", "0.1 to 170"]),
+        ("--exposure inf", ["--exposure", "-32 to 32"]),
+        ("--environment-strength -1", ["--environment-strength", "from 0"]),
+        (
+            "--environment-rotation nan",
+            ["--environment-rotation", "-3600 to 3600"],
+        ),
+        ("--camera-orbit nan,0", ["--camera-orbit", "give a number"]),
+        ("--camera-orbit 10", ["--camera-orbit", "2 numbers"]),
+        ("--camera-orbit 0,91", ["--camera-orbit", "-90 to 90"]),
+        ("--camera-target 0,0,inf", ["--camera-target", "give a number"]),
+        ("--camera-position 1,2", ["--camera-position", "3 numbers"]),
+        ("--camera-distance 0", ["--camera-distance", "give a number"]),
+        (
+            "--camera-position 1,2,3 --camera-orbit 1,2",
+            ["--camera-orbit", "--camera-position"],
+        ),
+        ("--background plaid", ["--background", "transparent"]),
+        ("--filter tent", ["--filter", "gaussian"]),
+        ("--tone-map gamma", ["--tone-map", "agx"]),
+        ("--sequence halton", ["--sequence", "sobol"]),
+        ("--engine abacus", ["--engine", "auto, gpu or cpu"]),
+        ("--seed -1", ["--seed", "-1"]),
+    ] {
+        place.refused(2, &format!("render {arguments}"), &words);
+    }
+    for (arguments, words) in [
+        ("--lobe gloss --output s.csv", ["--lobe", "geometric"]),
+        ("--lobe ggx --output s.txt", ["s.txt", ".csv or .png"]),
+        (
+            "--lobe geometric --curve custom --output s.csv",
+            ["--curve", "named curve"],
+        ),
+        ("--lobe geometric --curve round --output s.csv", ["--curve", "smooth"]),
+        (
+            "--lobe ggx --roughness nan --output s.csv",
+            ["--roughness", "from 0 to 1"],
+        ),
+        (
+            "--lobe ggx --roughness -0.1 --output s.csv",
+            ["--roughness", "from 0 to 1"],
+        ),
+        (
+            "--lobe ggx --view-angle 91 --output s.csv",
+            ["--view-angle", "from 0 to 90"],
+        ),
+        ("--lobe ggx --count 0 --output s.csv", ["--count", "1"]),
+        ("--lobe ggx --horizon bounce --output s.csv", ["--horizon", "absorb"]),
+    ] {
+        place.refused(2, &format!("scatter {arguments}"), &words);
+    }
+    place.refused(1, "paint", &["paint", "no such command or file", "--help"]);
+    place.write("notes.txt", b"milk, bread");
+    place.refused(1, "--engine cpu notes.txt", &["notes.txt", ".glb"]);
+}

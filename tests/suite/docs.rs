@@ -1,0 +1,251 @@
+//! The parts of the user's guide that are made from the registries: they are what the program knows, to the letter.
+//! `UPDATE_DOCS=1 cargo test docs` writes them anew.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use clap::{Arg, ArgAction, Command, CommandFactory};
+use glossmith::cli::Arguments;
+use glossmith::document::preset::command_line_name;
+use glossmith::document::{Kind, PARAMETERS, PRESETS, Value, parameter};
+use glossmith::optics::curve::Curve;
+use glossmith::optics::fresnel::Fresnel;
+use glossmith::optics::lobe::Lobe;
+use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear};
+use glossmith::optics::vector::Vec3;
+
+const BEGIN: &str = "<!-- made from the program: ";
+const END: &str = "<!-- end -->";
+
+/// Text that may stand in a cell of a table.
+fn cell(text: &str) -> String {
+    text.replace('|', "\\|").replace('\n', " ")
+}
+
+fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let mut text = format!("| {} |\n|{}\n", head.join(" | "), " --- |".repeat(head.len()));
+    for row in rows {
+        let cells: Vec<_> = row.iter().map(|text| cell(text)).collect();
+        let _ = writeln!(text, "| {} |", cells.join(" | "));
+    }
+    text
+}
+
+fn parameters() -> String {
+    let row = |parameter: &'static glossmith::document::Parameter| {
+        let expected = parameter.expected();
+        let default = parameter.text(&parameter.default_value());
+        vec![
+            format!("`{}`", parameter.key),
+            expected.strip_prefix("give ").unwrap_or(&expected).to_owned(),
+            if default.chars().count() > 24 {
+                String::new()
+            } else {
+                format!("`{default}`")
+            },
+            parameter.help.to_owned(),
+        ]
+    };
+    table(&["key", "takes", "default", "what it does"], PARAMETERS.iter().map(row))
+}
+
+fn choices(entries: impl Iterator<Item = (&'static str, &'static str)>) -> String {
+    table(
+        &["name", "what it is"],
+        entries.map(|(name, help)| vec![format!("`{name}`"), help.to_owned()]),
+    )
+}
+
+fn curves() -> String {
+    let row = |curve: &Curve| {
+        vec![
+            format!("`{}`", curve.name()),
+            curve.formula().to_owned(),
+            curve.help().to_owned(),
+        ]
+    };
+    table(&["name", "D(ξ)", "what it does"], Curve::ALL.iter().map(row))
+}
+
+fn horizons() -> String {
+    match &parameter("specular.horizon").unwrap().kind {
+        Kind::Choice(all) => choices(all.iter().map(|choice| (choice.name, choice.help))),
+        _ => panic!("the horizon is a choice"),
+    }
+}
+
+fn presets() -> String {
+    let row = |material: &glossmith::document::MaterialSettings| {
+        let text = |key: &str| {
+            let parameter = parameter(key).unwrap();
+            parameter.text(&parameter.get(material))
+        };
+        let color = Value::Color(material.base_color);
+        vec![
+            format!("`{}`", command_line_name(&material.name)),
+            match color {
+                Value::Color(color) => hex(color),
+                _ => String::new(),
+            },
+            text("base.metalness"),
+            if material.specular_weight > 0.0 {
+                text("specular.roughness")
+            } else {
+                "–".to_owned()
+            },
+            if material.specular_weight > 0.0 {
+                text("specular.fresnel")
+            } else {
+                "–".to_owned()
+            },
+        ]
+    };
+    table(
+        &["name", "base colour", "metalness", "roughness", "Fresnel"],
+        PRESETS.iter().map(row),
+    )
+}
+
+/// `#rrggbb` in sRGB of a linear colour.
+fn hex(color: [f32; 3]) -> String {
+    let srgb = srgb_from_linear(Vec3::<f32>::from_f32(color)).to_f32();
+    let [r, g, b] = srgb.map(|x| (255.0 * x).round() as u8);
+    format!("`#{r:02x}{g:02x}{b:02x}`")
+}
+
+/// The options of a subcommand; of the program itself where there is no such name.
+fn options(name: &str) -> String {
+    let root = Arguments::command();
+    let command = root.get_subcommands().find(|command| command.get_name() == name);
+    let is_shown = |argument: &&Arg| !matches!(argument.get_action(), ArgAction::Help | ArgAction::Version);
+    let row = |argument: &Arg| {
+        let values: Vec<_> = argument
+            .get_value_names()
+            .into_iter()
+            .flatten()
+            .map(|name| name.to_string())
+            .collect();
+        let long = argument.get_long().map_or_else(String::new, |long| format!("--{long}"));
+        let values = if argument.get_action().takes_values() {
+            values.join(" ")
+        } else {
+            String::new()
+        };
+        let defaults: Vec<_> = argument
+            .get_default_values()
+            .iter()
+            .map(|value| value.to_string_lossy())
+            .collect();
+        let default = defaults.join(" ");
+        let is_flag = default.is_empty() || !argument.get_action().takes_values();
+        vec![
+            format!("`{}`", format!("{long} {values}").trim()),
+            if is_flag { String::new() } else { format!("`{default}`") },
+            argument.get_help().map(ToString::to_string).unwrap_or_default(),
+        ]
+    };
+    let command = command.unwrap_or(&root);
+    table(
+        &["option", "default", "what it does"],
+        command.get_arguments().filter(is_shown).map(row),
+    )
+}
+
+fn block(name: &str) -> String {
+    match name {
+        "parameters" => parameters(),
+        "lobes" => choices(Lobe::ALL.iter().map(|lobe| (lobe.name(), lobe.help()))),
+        "curves" => curves(),
+        "fresnel" => choices(Fresnel::ALL.iter().map(|fresnel| (fresnel.name(), fresnel.help()))),
+        "horizons" => horizons(),
+        "tone curves" => choices(ToneCurve::ALL.iter().map(|tone| (tone.name(), tone.help()))),
+        "presets" => presets(),
+        name => match name.strip_prefix("options of glossmith") {
+            Some(command) => options(command.trim()),
+            None => panic!("the guide asks for '{name}', which nobody makes"),
+        },
+    }
+}
+
+/// The guide with its made parts as they should be.
+fn made_anew(guide: &str) -> String {
+    let mut parts = guide.split(BEGIN);
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (name, rest) = part.split_once(" -->").expect("a name ends with -->");
+        let (_, rest) = rest.split_once(END).expect("a made part ends with <!-- end -->");
+        let _ = write!(text, "{BEGIN}{name} -->\n\n{}\n{END}{rest}", block(name));
+    }
+    text
+}
+
+#[test]
+fn the_guide_tells_what_the_program_knows() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/GUIDE.md");
+    let guide = std::fs::read_to_string(&path).unwrap();
+    let expected = made_anew(&guide);
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        std::fs::write(&path, &expected).unwrap();
+        return;
+    }
+    for (line, (found, expected)) in guide.lines().zip(expected.lines()).enumerate() {
+        assert_eq!(
+            found,
+            expected,
+            "docs/GUIDE.md, line {}: run UPDATE_DOCS=1 cargo test docs",
+            line + 1
+        );
+    }
+    assert!(
+        guide == expected,
+        "docs/GUIDE.md ends elsewhere: run UPDATE_DOCS=1 cargo test docs"
+    );
+}
+
+#[test]
+fn the_guide_has_every_part() {
+    let guide = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/GUIDE.md")).unwrap();
+    let named = |command: &Command| format!("options of glossmith {}", command.get_name());
+    let mut wanted: Vec<String> = Arguments::command().get_subcommands().map(named).collect();
+    wanted.extend(
+        [
+            "parameters",
+            "lobes",
+            "curves",
+            "fresnel",
+            "horizons",
+            "tone curves",
+            "presets",
+        ]
+        .map(String::from),
+    );
+    for name in wanted {
+        assert!(
+            guide.contains(&format!("{BEGIN}{name} -->")),
+            "docs/GUIDE.md lacks the part '{name}'"
+        );
+    }
+}
+
+#[test]
+fn pictures_that_the_documents_show_exist() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for document in ["README.md", "docs/GUIDE.md"] {
+        let path = root.join(document);
+        let text = std::fs::read_to_string(&path).unwrap();
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let is_local = !link.contains("://") && !link.starts_with('#');
+            let target = path.parent().unwrap().join(link.split('#').next().unwrap_or_default());
+            assert!(
+                !is_local || target.exists(),
+                "{document} refers to {link}, which is not there"
+            );
+        }
+    }
+}
+
+#[test]
+fn colours_of_the_table_are_the_presets_own() {
+    let [r, g, b] = linear_from_srgb(Vec3::<f64>::from_f64([1.0, 0.5, 0.0])).to_f32();
+    assert_eq!(hex([r, g, b]), "`#ff8000`");
+}

@@ -1,0 +1,514 @@
+//! Documents: parameters, differences, history, compilation.
+
+use glossmith::document::custom_curve::CustomCurve;
+use glossmith::document::history::History;
+use glossmith::document::parameter::{Kind, Parameter, Value, assign, parameter, parse_color};
+use glossmith::document::{
+    Background, Change, Conductor, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy, compile, preset,
+};
+use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};
+use glossmith::optics::lobe::Lobe;
+use glossmith::optics::material::{ALBEDO_LENGTH, albedo_table};
+use glossmith::optics::random::Sequence;
+use glossmith::optics::tone::ToneCurve;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::{ModelSource, Slot};
+use proptest::prelude::{Just, ProptestConfig, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
+
+/// Values that a parameter takes: both ends and something between, every choice.
+pub(crate) fn valid_values(parameter: &Parameter) -> Vec<Value> {
+    match &parameter.kind {
+        Kind::Number {
+            range: [low, high],
+            soft_range,
+            ..
+        } => {
+            let between = soft_range[0] + 0.317 * (soft_range[1] - soft_range[0]);
+            [*low, between, *high].map(Value::Number).to_vec()
+        }
+        Kind::Color => vec![Value::Color([0.0, 1.0, 0.123_456_7]), Value::Color([0.9; 3])],
+        Kind::Triple { range: [low, high] } => {
+            vec![Value::Triple([*low, *high, 0.765_432_1]), Value::Triple([*low; 3])]
+        }
+        Kind::Choice(choices) => choices.iter().map(|choice| Value::Choice(choice.name)).collect(),
+        Kind::Toggle => vec![Value::Toggle(false), Value::Toggle(true)],
+        Kind::Curve => vec![
+            Value::Curve(vec![[0.0, 0.0], [1.0, 1.0]]),
+            Value::Curve(vec![[0.0, 0.25], [0.333, 0.25], [0.9, 7.1], [1.0, 20.0]]),
+        ],
+    }
+}
+
+/// Texts that a parameter refuses.
+fn invalid_texts(parameter: &Parameter) -> Vec<String> {
+    let texts: &[&str] = match &parameter.kind {
+        Kind::Number { range: [low, high], .. } => {
+            let beyond = [low - 1.0, high * 2.0 + 1.0].map(|x| x.to_string()).into_iter();
+            let odd = ["NaN", "inf", "1e99", "much", ""].map(str::to_owned);
+            return beyond.chain(odd).collect();
+        }
+        Kind::Color => &[
+            "#12345", "#+1+2+3", "#äöü", "1,1", "1,1,1,1", "-0.1,0,0", "1.1,0,0", "red", "NaN,0,0", "",
+        ],
+        Kind::Triple { .. } => &["1", "1,2", "1,2,x", "-1,0,0", "21,0,0", "inf,0,0"],
+        Kind::Choice(_) => &["", "no such", "Geometric"],
+        Kind::Toggle => &["", "1", "yes"],
+        Kind::Curve => &[
+            "",
+            "0:0",
+            "0:0,1",
+            "0:0,0.5:2,1:1",
+            "0.1:0,1:1",
+            "0:0,1:21",
+            "0:0,1:0",
+            "0:0,0.5:0.5,0.5:0.6,1:1",
+            "0:-1,1:1",
+            "0:0,1:NaN",
+        ],
+    };
+    texts.iter().map(|text| (*text).to_owned()).collect()
+}
+
+pub(crate) fn is_in_range(material: &MaterialSettings) -> bool {
+    PARAMETERS
+        .iter()
+        .all(|parameter| parameter.check(&parameter.get(material)).is_ok())
+}
+
+#[test]
+fn every_parameter_is_described_and_its_default_is_in_range() {
+    let mut keys: Vec<_> = PARAMETERS.iter().map(|parameter| parameter.key).collect();
+    for key in ["color", "metalness"] {
+        assert!(keys.contains(&format!("base.{key}").as_str()), "{key}");
+    }
+    for key in ["lobe", "roughness", "curve", "horizon", "fresnel", "ior", "color"] {
+        assert!(keys.contains(&format!("specular.{key}").as_str()), "{key}");
+    }
+    keys.sort_unstable();
+    let count = keys.len();
+    keys.dedup();
+    assert_eq!(keys.len(), count, "keys are unique");
+    for parameter in PARAMETERS.iter() {
+        assert!(
+            !parameter.label.is_empty() && parameter.help.ends_with('.'),
+            "{}",
+            parameter.key
+        );
+        assert_eq!(parameter.check(&parameter.default_value()), Ok(()), "{}", parameter.key);
+        if let Kind::Number {
+            range,
+            soft_range,
+            step,
+            ..
+        } = &parameter.kind
+        {
+            assert!(range[0] <= soft_range[0] && soft_range[0] < soft_range[1] && soft_range[1] <= range[1]);
+            assert!(
+                *step > 0.0 && *step < soft_range[1] - soft_range[0],
+                "{}",
+                parameter.key
+            );
+        }
+    }
+}
+
+#[test]
+fn every_value_survives_the_material_the_text_and_the_file() {
+    for parameter in PARAMETERS.iter() {
+        for value in valid_values(parameter) {
+            let key = parameter.key;
+            let mut material = MaterialSettings::default();
+            parameter.set(&mut material, value.clone()).expect(key);
+            assert_eq!(parameter.get(&material), value, "{key}");
+
+            let mut from_text = MaterialSettings::default();
+            assign(&mut from_text, &format!(" {key} = {} ", parameter.text(&value))).expect(key);
+            assert_eq!(from_text, material, "{key}");
+
+            let json = serde_json::from_str(&parameter.json_from_value(&value).to_string()).expect(key);
+            assert_eq!(parameter.value_from_json(&json), Ok(value), "{key}");
+
+            let text = preset::material_text(&material);
+            let loaded = preset::parse_material("x.json".as_ref(), text.as_bytes()).expect(key);
+            assert_eq!((loaded.value, loaded.warnings), (material, vec![]), "{key}");
+        }
+    }
+}
+
+#[test]
+fn what_a_parameter_does_not_take_leaves_the_material_alone() {
+    for parameter in PARAMETERS.iter() {
+        for text in invalid_texts(parameter) {
+            let mut material = MaterialSettings::default();
+            let error = assign(&mut material, &format!("{}={text}", parameter.key))
+                .expect_err(&text)
+                .to_string();
+            assert!(
+                error.starts_with(&format!("{} does not take ", parameter.key)),
+                "{error}"
+            );
+            assert!(error.contains("; give ") || error.contains("; let "), "{error}");
+            assert_eq!(material, MaterialSettings::default(), "{} = {text}", parameter.key);
+        }
+        for other in PARAMETERS.iter() {
+            let value = other.default_value();
+            if std::mem::discriminant(&value) != std::mem::discriminant(&parameter.default_value()) {
+                assert!(
+                    parameter.check(&value).is_err(),
+                    "{} takes {}'s",
+                    parameter.key,
+                    other.key
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn errors_say_what_would_be_right() {
+    let error = |assignment: &str| {
+        assign(&mut MaterialSettings::default(), assignment)
+            .expect_err(assignment)
+            .to_string()
+    };
+    let expected = "specular.roughness does not take 1.5; give a number from 0 to 1";
+    assert_eq!(error("specular.roughness=1.5"), expected);
+    let expected = "specular.horizon does not take up; give one of mirror, absorb, none";
+    assert_eq!(error("specular.horizon=up"), expected);
+    let expected = "specular.rotation does not take 400; give a number from -360 to 360 °";
+    assert_eq!(error("specular.rotation=400"), expected);
+    assert!(error("specular.rougness=1").ends_with("did you mean specular.roughness?"));
+    assert!(error("roughness=1").ends_with("did you mean specular.roughness?"));
+    assert!(error("metalnes=1").ends_with("did you mean base.metalness?"));
+    assert!(error("qqqqqqqq=1").contains("the parameters are base.color, "));
+    assert!(error("specular.roughness").contains("KEY=VALUE"));
+    assert!(error(&format!("specular.lobe={}", "x".repeat(5000))).len() < 300);
+    assert!(parameter("specular.roughness").is_ok() && parameter("specular.Roughness").is_err());
+}
+
+#[test]
+fn hexadecimal_colours_are_srgb_and_triples_linear() {
+    assert_eq!(parse_color("#ffffff"), Ok([1.0; 3]));
+    assert_eq!(parse_color("0.5,0.25,1"), Ok([0.5, 0.25, 1.0]));
+    let [r, g, b] = parse_color("#0A80FF").expect("a colour");
+    // IEC 61966-2-1: 10/255 lies on the straight part, 128/255 decodes to 0.2158605.
+    assert!((r - 10.0 / 255.0 / 12.92).abs() < 1e-7 && (g - 0.215_860_5).abs() < 1e-6 && b == 1.0);
+}
+
+#[test]
+fn a_metal_brings_its_indices_and_indices_of_ones_own_are_custom() {
+    let mut material = MaterialSettings::default();
+    assign(&mut material, "specular.conductor=gold").expect("gold");
+    assert_eq!(material.eta, [0.143, 0.375, 1.442]);
+    assert_eq!(material.k, [3.983, 2.386, 1.603]);
+    assign(&mut material, "specular.eta=0.143,0.375,1.442").expect("its own");
+    assert_eq!(material.conductor.name(), "gold");
+    assign(&mut material, "specular.k=1,2,3").expect("another");
+    assert_eq!(
+        (material.conductor, material.eta),
+        (Conductor::Custom, [0.143, 0.375, 1.442])
+    );
+    let text = br#"{"glossmith": 1, "material": {"specular.k": [1, 2, 3], "specular.conductor": "gold"}}"#;
+    let loaded = preset::parse_material("x.json".as_ref(), text).expect("valid").value;
+    assert_eq!(
+        loaded.k,
+        [1.0, 2.0, 3.0],
+        "the file's k wins over its metal's, in whatever order"
+    );
+    assert_eq!(loaded.conductor, Conductor::Custom);
+}
+
+#[test]
+fn slots_of_a_model_become_materials_in_range() {
+    let slot = Slot {
+        emission: [10.0, 5.0, 0.0],
+        ior: 9.0,
+        roughness: 0.4,
+        ..Slot::neutral("lamp")
+    };
+    let material = MaterialSettings::from_slot(&slot);
+    assert!(is_in_range(&material));
+    assert_eq!(
+        (material.emission_color, material.emission_strength),
+        ([1.0, 0.5, 0.0], 10.0)
+    );
+    assert_eq!(
+        (material.name.as_str(), material.roughness, material.lobe),
+        ("lamp", 0.4, Lobe::Geometric)
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn custom_curves_are_monotone_and_their_tables_sample_them(
+        steps in prop::collection::vec((0.01_f32..1.0, prop_oneof![Just(0.0_f32), 0.0_f32..1.0]), 1..12),
+        start in prop_oneof![Just(0.0_f32), 0.0_f32..0.5],
+    ) {
+        let total: f32 = steps.iter().map(|(step, _)| step).sum();
+        let mut points = vec![[0.0, start]];
+        let (mut xi, mut distance) = (0.0, start);
+        for (step, rise) in &steps {
+            xi += step / total;
+            distance += rise;
+            points.push([xi, distance]);
+        }
+        let end = distance + 0.01;
+        let last = points.len() - 1;
+        points[last] = [1.0, end];
+        let curve = CustomCurve::try_from(points.clone()).expect("a valid curve");
+        let table = curve.table();
+        prop_assert_eq!(table.len(), CUSTOM_LENGTH);
+        prop_assert!(table.iter().all(|x| x.is_finite() && *x >= 0.0));
+        let end = f64::from(end);
+        let mut before = 0.0;
+        for i in 0..=1000 {
+            let exact = curve.distance(f64::from(i) / 1000.0);
+            prop_assert!(exact >= before - 1e-9 && exact <= end + 1e-9, "{} after {}", exact, before);
+            before = exact;
+        }
+        for [xi, distance] in points {
+            prop_assert!((curve.distance(f64::from(xi)) - f64::from(distance)).abs() < 1e-6);
+        }
+        // The table moves a sample by little more than a cell.
+        for i in 0..200 {
+            let xi = (f64::from(i) + 0.5) / 200.0;
+            let drawn: f64 = curve_distance(Curve::Custom, &table, xi);
+            prop_assert!((drawn - curve.distance(xi)).abs() < 1.5 * end / 64.0, "{}: {}", xi, drawn);
+        }
+    }
+}
+
+#[test]
+fn a_curve_drawn_like_a_named_one_samples_like_it() {
+    let straight = CustomCurve::try_from(vec![[0.0, 0.0], [1.0, 1.0]])
+        .expect("valid")
+        .table();
+    // Uniform: density 1 at every node.
+    let exact = custom_table(1.0, &[1.0; 65]).expect("positive");
+    for (a, b) in straight.iter().zip(exact) {
+        assert!((a - b).abs() < 1e-6, "{a} {b}");
+    }
+    let points = (0..=32)
+        .map(|i| i as f32 / 32.0)
+        .map(|xi| [xi, xi.sqrt()])
+        .collect::<Vec<_>>();
+    let drawn = CustomCurve::try_from(points).expect("valid").table();
+    for i in 10..100 {
+        let xi = f64::from(i) / 100.0;
+        let (a, b): (f64, f64) = (curve_distance(Curve::Custom, &drawn, xi), xi.sqrt());
+        assert!((a - b).abs() < 2e-3, "{xi}: {a} {b}");
+    }
+}
+
+#[test]
+fn compiled_materials_refer_to_their_tables() {
+    let (materials, tables) = compile(&[]);
+    assert!(materials.is_empty() && tables == [0.0]);
+    let (_, tables) = compile(&[MaterialSettings::default(), MaterialSettings::diffuse("x", [0.5; 3])]);
+    assert_eq!(tables, [0.0], "neither a metal nor a Lambertian surface needs a table");
+
+    let custom = MaterialSettings {
+        curve: Curve::Custom,
+        metalness: 0.25,
+        ..MaterialSettings::default()
+    };
+    let glazed = preset::material_by_name("porcelain").expect("shipped").clone();
+    let (materials, tables) = compile(&[custom.clone(), MaterialSettings::default(), glazed]);
+    assert_eq!(materials.len(), 3);
+    assert_eq!(tables.len(), CUSTOM_LENGTH + 2 * ALBEDO_LENGTH);
+    assert_eq!(materials[0].albedo_table as usize, CUSTOM_LENGTH);
+    assert_eq!(materials[2].albedo_table as usize, CUSTOM_LENGTH + ALBEDO_LENGTH);
+    assert_eq!(tables[..CUSTOM_LENGTH], custom.custom_curve.table());
+    for material in [&materials[0], &materials[2]] {
+        let expected = albedo_table(&material.cast::<f64>(), &tables, 1024);
+        let first = material.albedo_table as usize;
+        assert_eq!(
+            tables[first..first + ALBEDO_LENGTH],
+            expected,
+            "the remembered table is the right one"
+        );
+    }
+}
+
+#[test]
+fn albedo_tables_follow_what_they_depend_on() {
+    let material = MaterialSettings {
+        metalness: 0.25,
+        ..MaterialSettings::default()
+    };
+    let table = |edit: fn(&mut MaterialSettings)| {
+        let mut edited = material.clone();
+        edit(&mut edited);
+        compile(&[edited]).1
+    };
+    let plain = table(|_| {});
+    assert_eq!(plain.len(), ALBEDO_LENGTH);
+    assert_eq!(plain, table(|m| m.emission_strength = 1.0));
+    assert_eq!(plain, table(|m| m.rotation_deg = 30.0));
+    assert_ne!(plain, table(|m| m.roughness = 0.8));
+    assert_ne!(plain, table(|m| m.base_color = [0.9, 0.1, 0.1]));
+    assert_ne!(plain, table(|m| m.ior = 2.0));
+    assert_ne!(plain, table(|m| m.lobe = Lobe::Ggx));
+    let dielectric = |color| MaterialSettings {
+        metalness: 0.0,
+        base_color: color,
+        ..MaterialSettings::default()
+    };
+    assert_eq!(compile(&[dielectric([0.1; 3])]).1, compile(&[dielectric([0.9; 3])]).1);
+}
+
+#[test]
+fn every_edit_is_the_change_that_it_is() {
+    let old = Document::default();
+    let change = |edit: fn(&mut Document)| {
+        let mut new = old.clone();
+        edit(&mut new);
+        Change::between(&old, &new)
+    };
+    let none = Change::default();
+    assert_eq!(change(|_| {}), none);
+    assert_eq!(change(|d| d.materials[0].name = "x".into()), none);
+    assert_eq!(change(|d| d.view.exposure_ev = 1.0), Change { display: true, ..none });
+    assert_eq!(
+        change(|d| d.view.tone_map = ToneCurve::None),
+        Change { display: true, ..none }
+    );
+    assert_eq!(change(|d| d.camera.yaw_deg = 1.0), Change { camera: true, ..none });
+    assert_eq!(change(|d| d.render.width = 1), Change { size: true, ..none });
+    assert_eq!(
+        change(|d| d.lighting.environment = EnvironmentSource::Sky),
+        Change {
+            environment: true,
+            ..none
+        }
+    );
+    assert_eq!(
+        change(|d| d.lighting.rotation_deg = 1.0),
+        Change { lighting: true, ..none }
+    );
+    assert_eq!(change(|d| d.lighting.strength = 2.0), Change { lighting: true, ..none });
+    assert_eq!(
+        change(|d| d.lighting.background = Background::Transparent),
+        Change { lighting: true, ..none }
+    );
+    assert_eq!(
+        change(|d| d.lighting.ground_color = [1.0; 3]),
+        Change {
+            materials: true,
+            ..none
+        }
+    );
+    assert_eq!(
+        change(|d| d.materials.push(MaterialSettings::default())),
+        Change {
+            materials: true,
+            ..none
+        }
+    );
+    assert_eq!(
+        change(|d| d.model = ModelSource::Sphere),
+        Change { geometry: true, ..none }
+    );
+    assert_eq!(change(|d| d.ground = true), Change { geometry: true, ..none });
+    assert_eq!(change(|d| d.render.samples = 1), Change { target: true, ..none });
+    assert_eq!(change(|d| d.render.time_s = Some(1.0)), Change { target: true, ..none });
+    let sampling = Change { sampling: true, ..none };
+    assert_eq!(change(|d| d.render.bounces = 1), sampling);
+    assert_eq!(change(|d| d.render.seed = 1), sampling);
+    assert_eq!(change(|d| d.render.strategy = Strategy::Lobe), sampling);
+    assert_eq!(change(|d| d.render.filter = PixelFilter::Box), sampling);
+    assert_eq!(change(|d| d.render.sequence = Sequence::Independent), sampling);
+    for parameter in PARAMETERS.iter() {
+        let other = valid_values(parameter)
+            .into_iter()
+            .find(|value| *value != parameter.default_value());
+        let mut new = old.clone();
+        parameter
+            .set(&mut new.materials[0], other.expect("two values"))
+            .expect("valid");
+        assert_eq!(
+            Change::between(&old, &new),
+            Change {
+                materials: true,
+                ..none
+            },
+            "{}",
+            parameter.key
+        );
+    }
+}
+
+#[test]
+fn changes_say_what_follows() {
+    let (none, all) = (Change::default(), Change::everything());
+    assert!(none.is_none() && !none.restarts() && !none.needs_display());
+    assert!(all.restarts() && all.needs_geometry() && all.needs_environment() && all.needs_materials());
+    let display = Change { display: true, ..none };
+    assert!(!display.restarts() && display.needs_display());
+    let target = Change { target: true, ..none };
+    assert!(!target.restarts() && !target.is_none() && !target.needs_display());
+    let geometry = Change { geometry: true, ..none };
+    assert!(geometry.restarts() && geometry.needs_geometry() && geometry.needs_materials() && geometry.needs_display());
+    assert!(!geometry.needs_environment());
+    let camera = Change { camera: true, ..none };
+    assert!(camera.restarts() && !camera.needs_geometry() && !camera.needs_materials());
+}
+
+#[test]
+fn a_drag_is_one_step_of_the_history() {
+    let mut history = History::new(0, 100);
+    assert!(history.undo().is_none() && history.redo().is_none() && history.undo_label().is_none());
+    for value in 1..=9 {
+        history.push("Roughness", Some("roughness".into()), &value);
+    }
+    history.seal();
+    history.push("Roughness", Some("roughness".into()), &20);
+    history.push("Metalness", Some("metalness".into()), &30);
+    history.push("Preset", None, &40);
+    history.push("Preset", None, &50);
+    history.push("Nothing", None, &50);
+    assert_eq!(history.undo_label(), Some("Preset"));
+    let undone: Vec<_> = std::iter::from_fn(|| history.undo().copied()).collect();
+    assert_eq!(undone, [40, 30, 20, 9, 0]);
+    assert_eq!(history.redo_label(), Some("Roughness"));
+    assert_eq!(history.redo(), Some(&9));
+    assert_eq!((history.undo_label(), history.current()), (Some("Roughness"), &9));
+    // The same key after an undo or redo is a new step, and what was undone is gone.
+    history.push("Roughness", Some("roughness".into()), &10);
+    assert_eq!(history.redo(), None);
+    assert_eq!(history.undo(), Some(&9));
+}
+
+#[test]
+fn a_drag_back_to_where_it_began_is_no_step() {
+    let mut history = History::new(5, 100);
+    for value in [6, 7, 5] {
+        history.push("Roughness", Some("r".into()), &value);
+    }
+    assert_eq!(history.undo(), None);
+    assert_eq!(history.current(), &5);
+    assert!(history.is_saved());
+}
+
+#[test]
+fn a_history_has_a_limit_and_knows_what_is_saved() {
+    let mut history = History::new(0, 3);
+    for value in 1..=10 {
+        history.push("Edit", None, &value);
+    }
+    let undone: Vec<_> = std::iter::from_fn(|| history.undo().copied()).collect();
+    assert_eq!(undone, [9, 8, 7]);
+    assert!(!history.is_saved(), "the saved value has dropped out");
+    history.mark_saved();
+    assert!(history.is_saved());
+    assert!(history.redo().is_some() && !history.is_saved());
+    assert!(history.undo().is_some() && history.is_saved());
+    history.push("Drag", Some("k".into()), &70);
+    history.mark_saved();
+    history.push("Drag", Some("k".into()), &71);
+    assert!(!history.is_saved(), "a drag that goes on after saving is an edit");
+    assert_eq!(history.undo(), Some(&70));
+    assert!(history.is_saved());
+}

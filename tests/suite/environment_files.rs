@@ -1,0 +1,455 @@
+//! Environments from files: what is read right, what is mended, and what is refused in one clear line.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use exr::prelude::{
+    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, ImageAttributes, IntegerBounds, Layer,
+    LayerAttributes, LineOrder, SmallVec, Vec2, WritableImage, f16,
+};
+use glossmith::scene::environment::{Environment, EnvironmentError, EnvironmentSource, load};
+use image::codecs::hdr::HdrEncoder;
+use proptest::prelude::{ProptestConfig, any, proptest};
+use tempfile::TempDir;
+
+const WIDTH: usize = 16;
+const HEIGHT: usize = 8;
+
+fn load_file(path: &Path) -> Result<Environment, EnvironmentError> {
+    load(&EnvironmentSource::File(path.to_owned()))
+}
+
+/// The error of loading a file, after checking that it is one line that names the file.
+fn refusal(path: &Path) -> String {
+    let error = match load_file(path) {
+        Ok(_) => panic!("{} was accepted", path.display()),
+        Err(error) => error.to_string(),
+    };
+    assert!(error.contains(&path.display().to_string()), "no file name in: {error}");
+    assert!(!error.contains('\n'), "more than a line: {error}");
+    error
+}
+
+fn assert_says(error: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(error.contains(part), "'{part}' is not in: {error}");
+    }
+}
+
+fn write_bytes(folder: &TempDir, name: &str, bytes: &[u8]) -> PathBuf {
+    let path = folder.path().join(name);
+    std::fs::write(&path, bytes).expect("a writable folder");
+    path
+}
+
+/// Values that RGBE holds exactly.
+fn value(column: usize, row: usize, channel: usize) -> f32 {
+    0.25 * (1 + (column * 5 + row * 3 + channel) % 64) as f32
+}
+
+fn hdr_bytes(width: usize, height: usize) -> Vec<u8> {
+    let pixels: Vec<_> = (0..width * height)
+        .map(|index| image::Rgb([0, 1, 2].map(|channel| value(index % width, index / width, channel))))
+        .collect();
+    let mut bytes = Vec::new();
+    HdrEncoder::new(&mut bytes)
+        .encode(&pixels, width, height)
+        .expect("memory to write to");
+    bytes
+}
+
+/// One channel of the test picture.
+fn samples(channel: usize, kind: &str) -> FlatSamples {
+    let values = (0..WIDTH * HEIGHT).map(|index| value(index % WIDTH, index / WIDTH, channel));
+    match kind {
+        "half" => FlatSamples::F16(values.map(f16::from_f32).collect()),
+        "uint" => FlatSamples::U32(values.map(|value| (value * 4.0) as u32).collect()),
+        _ => FlatSamples::F32(values.collect()),
+    }
+}
+
+fn exr_layer(
+    names: &[(&str, usize)],
+    kind: &str,
+    compression: Compression,
+    attributes: LayerAttributes,
+) -> Layer<AnyChannels<FlatSamples>> {
+    let list: SmallVec<_> = names
+        .iter()
+        .map(|&(name, channel)| AnyChannel::new(name, samples(channel, kind)))
+        .collect();
+    let encoding = Encoding {
+        compression,
+        line_order: LineOrder::Increasing,
+        ..Encoding::UNCOMPRESSED
+    };
+    Layer::new((WIDTH, HEIGHT), attributes, encoding, AnyChannels::sort(list))
+}
+
+fn exr_file(folder: &TempDir, name: &str, names: &[(&str, usize)], kind: &str, compression: Compression) -> PathBuf {
+    let path = folder.path().join(name);
+    let layer = exr_layer(names, kind, compression, LayerAttributes::default());
+    Image::from_layer(layer)
+        .write()
+        .to_file(&path)
+        .expect("a writable folder");
+    path
+}
+
+fn assert_shows(environment: &Environment, factor: f32, channels: [usize; 3]) {
+    assert_eq!(
+        (environment.width as usize, environment.height as usize),
+        (WIDTH, HEIGHT)
+    );
+    assert!(environment.warnings.is_empty(), "{:?}", environment.warnings);
+    for (index, texel) in environment.texels.iter().enumerate() {
+        let expected = channels.map(|channel| factor * value(index % WIDTH, index / WIDTH, channel));
+        assert_eq!(*texel, [expected[0], expected[1], expected[2], 1.0], "texel {index}");
+    }
+}
+
+const RGB: [(&str, usize); 3] = [("R", 0), ("G", 1), ("B", 2)];
+
+#[test]
+fn names_are_read_and_written() {
+    for (text, expected) in [
+        ("studio", EnvironmentSource::Studio),
+        ("sky", EnvironmentSource::Sky),
+        ("furnace", EnvironmentSource::Furnace),
+        ("./sky", EnvironmentSource::File("./sky".into())),
+        ("a b.hdr", EnvironmentSource::File("a b.hdr".into())),
+    ] {
+        let source: EnvironmentSource = text.parse().unwrap();
+        assert_eq!(source, expected);
+        assert_eq!(source.to_string(), text);
+        let json = serde_json::to_string(&source).unwrap();
+        assert_eq!(
+            serde_json::from_str::<EnvironmentSource>(&json).unwrap(),
+            source,
+            "{json}"
+        );
+    }
+    assert!("".parse::<EnvironmentSource>().is_err());
+}
+
+#[test]
+fn hdr_files_are_read() {
+    let folder = TempDir::new().unwrap();
+    let bytes = hdr_bytes(WIDTH, HEIGHT);
+    let environment = load_file(&write_bytes(&folder, "a.hdr", &bytes)).unwrap();
+    assert_shows(&environment, 1.0, [0, 1, 2]);
+    assert_eq!(environment.name, "a.hdr");
+    // Other programs sign differently, and spell the extension in capitals.
+    let signed: Vec<u8> = [
+        b"#?RGBE\n",
+        &bytes[bytes.iter().position(|byte| *byte == b'\n').unwrap() + 1..],
+    ]
+    .concat();
+    assert_shows(
+        &load_file(&write_bytes(&folder, "b.HDR", &signed)).unwrap(),
+        1.0,
+        [0, 1, 2],
+    );
+}
+
+#[test]
+fn exr_files_are_read_in_every_supported_compression_and_number_type() {
+    let folder = TempDir::new().unwrap();
+    let lossless = [
+        Compression::Uncompressed,
+        Compression::RLE,
+        Compression::ZIP1,
+        Compression::ZIP16,
+        Compression::PIZ,
+    ];
+    for compression in lossless {
+        for (kind, factor) in [("half", 1.0), ("float", 1.0), ("uint", 4.0)] {
+            let path = exr_file(&folder, "a.exr", &RGB, kind, compression);
+            assert_shows(&load_file(&path).unwrap(), factor, [0, 1, 2]);
+        }
+    }
+    for compression in [Compression::PXR24, Compression::B44, Compression::B44A] {
+        let environment = load_file(&exr_file(&folder, "lossy.exr", &RGB, "half", compression)).unwrap();
+        for (index, texel) in environment.texels.iter().enumerate() {
+            for (channel, found) in texel[..3].iter().enumerate() {
+                let expected = value(index % WIDTH, index / WIDTH, channel);
+                let error = (found - expected).abs();
+                assert!(error < 1.5, "{compression:?}: {found} instead of {expected}");
+            }
+        }
+    }
+}
+
+#[test]
+fn exr_channels_are_chosen() {
+    let folder = TempDir::new().unwrap();
+    let zip = Compression::ZIP16;
+    let with_alpha = exr_file(
+        &folder,
+        "a.exr",
+        &[("R", 0), ("G", 1), ("B", 2), ("A", 7), ("Z", 8)],
+        "half",
+        zip,
+    );
+    assert_shows(&load_file(&with_alpha).unwrap(), 1.0, [0, 1, 2]);
+    let luminance = exr_file(&folder, "b.exr", &[("Y", 3)], "float", zip);
+    assert_shows(&load_file(&luminance).unwrap(), 1.0, [3, 3, 3]);
+    let prefixed = [
+        ("a.b.B", 5),
+        ("a.b.G", 6),
+        ("a.b.R", 7),
+        ("v.B", 2),
+        ("v.G", 1),
+        ("v.R", 0),
+        ("Y", 9),
+    ];
+    assert_shows(
+        &load_file(&exr_file(&folder, "c.exr", &prefixed, "half", zip)).unwrap(),
+        1.0,
+        [0, 1, 2],
+    );
+    let depth = exr_file(&folder, "d.exr", &[("Z", 0), ("N.X", 1)], "float", zip);
+    assert_says(&refusal(&depth), &["only the channels N.X, Z", "R, G and B"]);
+}
+
+#[test]
+fn the_first_exr_layer_with_colour_is_taken() {
+    let folder = TempDir::new().unwrap();
+    let layer = |name: &str, channels: &[(&str, usize)]| {
+        exr_layer(channels, "half", Compression::ZIP16, LayerAttributes::named(name))
+    };
+    let layers: Vec<_> = vec![
+        layer("depth", &[("Z", 5)]),
+        layer("grey", &[("Y", 4)]),
+        layer("color", &[("R", 0), ("G", 1), ("B", 2)]),
+        layer("later", &[("R", 7), ("G", 8), ("B", 9)]),
+    ];
+    let path = folder.path().join("layers.exr");
+    let window = ImageAttributes::new(IntegerBounds::from_dimensions((WIDTH, HEIGHT)));
+    Image::from_layers(window, layers).write().to_file(&path).unwrap();
+    let mut environment = load_file(&path).unwrap();
+    assert_eq!(environment.warnings.len(), 1, "{:?}", environment.warnings);
+    environment.warnings.clear();
+    assert_shows(&environment, 1.0, [0, 1, 2]);
+}
+
+#[test]
+fn exr_pixels_go_where_the_windows_say() {
+    let folder = TempDir::new().unwrap();
+    let attributes = LayerAttributes::default().with_position(Vec2(7, -3));
+    let layer = exr_layer(&RGB, "float", Compression::ZIP16, attributes);
+    let path = folder.path().join("window.exr");
+    // A display window of 20 × 10 whose corner is at (5, −1): two columns are missing on the left, two rows above it.
+    let display = IntegerBounds::new(Vec2(5, -1), Vec2(20, 10));
+    Image::new(ImageAttributes::new(display), layer)
+        .write()
+        .to_file(&path)
+        .unwrap();
+    let environment = load_file(&path).unwrap();
+    assert_eq!((environment.width, environment.height), (20, 10));
+    for (index, texel) in environment.texels.iter().enumerate() {
+        let (column, row) = (index as i32 % 20 - 2, index as i32 / 20 + 2);
+        let is_stored = (0..WIDTH as i32).contains(&column) && (0..HEIGHT as i32).contains(&row);
+        let expected = [0, 1, 2].map(|channel| {
+            if is_stored {
+                value(column as usize, row as usize, channel)
+            } else {
+                0.0
+            }
+        });
+        assert_eq!(texel[..3], expected, "texel {index}");
+    }
+}
+
+#[test]
+fn values_that_are_no_radiance_are_replaced_and_counted() {
+    let folder = TempDir::new().unwrap();
+    let mut values = vec![2.0_f32; WIDTH * HEIGHT];
+    values[0] = f32::NAN;
+    values[1] = -1.0;
+    values[2] = f32::INFINITY;
+    values[3] = f32::NEG_INFINITY;
+    values[4] = 7.0;
+    values[5] = -0.0;
+    let channels = AnyChannels::sort(SmallVec::from_vec(vec![AnyChannel::new("Y", FlatSamples::F32(values))]));
+    let layer = Layer::new(
+        (WIDTH, HEIGHT),
+        LayerAttributes::default(),
+        Encoding::UNCOMPRESSED,
+        channels,
+    );
+    let path = folder.path().join("odd.exr");
+    Image::from_layer(layer).write().to_file(&path).unwrap();
+    let environment = load_file(&path).unwrap();
+    let found: Vec<f32> = environment.texels[..6].iter().map(|texel| texel[0]).collect();
+    assert_eq!(found, [0.0, 0.0, 7.0, 0.0, 7.0, 0.0]);
+    let warnings = environment.warnings.join(" ");
+    assert_says(
+        &warnings,
+        &["3 not-a-number", "6 negative", "3 infinite", "finite one, 7"],
+    );
+    assert!(environment.cells.iter().all(|cell| cell.density.is_finite()));
+}
+
+#[test]
+fn odd_shapes_are_shown_with_a_warning() {
+    let folder = TempDir::new().unwrap();
+    let square = load_file(&write_bytes(&folder, "square.hdr", &hdr_bytes(12, 12))).unwrap();
+    assert_says(&square.warnings.join(" "), &["12 × 12", "twice as wide"]);
+    let dot = load_file(&write_bytes(&folder, "dot.hdr", &hdr_bytes(1, 1))).unwrap();
+    assert_eq!((dot.cells.len(), dot.is_constant), (1, true));
+}
+
+#[test]
+fn every_truncation_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let hdr = hdr_bytes(WIDTH, HEIGHT);
+    for length in 0..hdr.len() {
+        refusal(&write_bytes(&folder, "cut.hdr", &hdr[..length]));
+    }
+    let cut = write_bytes(&folder, "cut.hdr", &hdr[..hdr.len() * 2 / 3]);
+    assert_says(&refusal(&cut), &["cut short", "row ", "of 8", "download it again"]);
+    for compression in [Compression::Uncompressed, Compression::ZIP16, Compression::PIZ] {
+        let exr = std::fs::read(exr_file(&folder, "whole.exr", &RGB, "half", compression)).unwrap();
+        for length in 0..exr.len() {
+            refusal(&write_bytes(&folder, "cut.exr", &exr[..length]));
+        }
+        let cut = write_bytes(&folder, "cut.exr", &exr[..exr.len() - 40]);
+        assert_says(&refusal(&cut), &["cut short", "download it again"]);
+    }
+}
+
+#[test]
+fn what_is_no_environment_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let text = b"Dear reader, this is a letter and no picture.\n";
+    assert_says(
+        &refusal(&write_bytes(&folder, "text.exr", text)),
+        &["not an OpenEXR file", "first bytes"],
+    );
+    assert_says(
+        &refusal(&write_bytes(&folder, "text.hdr", text)),
+        &["not a Radiance .hdr file", "first bytes"],
+    );
+    assert_says(&refusal(&write_bytes(&folder, "empty.hdr", b"")), &["no content"]);
+    assert_says(&refusal(&write_bytes(&folder, "empty.exr", b"")), &["no content"]);
+    assert_says(
+        &refusal(&write_bytes(&folder, "a.jpg", text)),
+        &["neither a .hdr nor an .exr", "convert"],
+    );
+    assert_says(
+        &refusal(&write_bytes(&folder, "none", text)),
+        &["neither a .hdr nor an .exr"],
+    );
+    assert_says(
+        &refusal(&folder.path().join("missing.hdr")),
+        &["cannot read", "check the path"],
+    );
+    assert_says(
+        &refusal(&folder.path().join("missing.exr")),
+        &["cannot read", "check the path"],
+    );
+    std::fs::create_dir(folder.path().join("folder.hdr")).unwrap();
+    assert_says(&refusal(&folder.path().join("folder.hdr")), &["cannot read"]);
+}
+
+#[test]
+fn sizes_that_cannot_be_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let header = |size: &str| format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n").into_bytes();
+    let refused = |size: &str| refusal(&write_bytes(&folder, "size.hdr", &header(size)));
+    assert_says(&refused("-Y 0 +X 0"), &["no pixels"]);
+    assert_says(
+        &refused("-Y 4097 +X 8192"),
+        &["8192 × 4097", "8192 × 4096", "scale it down"],
+    );
+    assert_says(&refused("-Y 4096 +X 8193"), &["scale it down"]);
+    assert_says(&refused("-Y 4294967295 +X 4294967295"), &["not supported"]);
+    assert_says(&refused("-Y 4096 +X 8192"), &["cut short", "row 1 of 4096"]);
+    assert_says(&refused("+Y 4 +X 8"), &["Orientation", "rows from the top"]);
+}
+
+/// The offset of an attribute's value in an EXR header.
+fn attribute_offset(bytes: &[u8], name_and_type: &[u8]) -> usize {
+    bytes
+        .windows(name_and_type.len())
+        .position(|window| window == name_and_type)
+        .expect("the attribute")
+        + name_and_type.len()
+        + 4
+}
+
+#[test]
+fn exr_features_beyond_reach_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let exr = std::fs::read(exr_file(&folder, "a.exr", &RGB, "half", Compression::ZIP16)).unwrap();
+    let compression = attribute_offset(&exr, b"compression\0compression\0");
+    for (code, name) in [(8, "DWAA compression"), (9, "DWAB compression")] {
+        let mut bytes = exr.clone();
+        bytes[compression] = code;
+        let error = refusal(&write_bytes(&folder, "dwa.exr", &bytes));
+        assert_says(&error, &[name, "not supported", "re-save it with ZIP or PIZ"]);
+    }
+    let mut bytes = exr.clone();
+    bytes[5] |= 8;
+    assert_says(
+        &refusal(&write_bytes(&folder, "deep.exr", &bytes)),
+        &["deep pixels", "flatten"],
+    );
+}
+
+#[test]
+fn an_exr_header_that_promises_too_much_is_refused() {
+    let folder = TempDir::new().unwrap();
+    for compression in [Compression::Uncompressed, Compression::ZIP16] {
+        let exr = std::fs::read(exr_file(&folder, "a.exr", &RGB, "float", compression)).unwrap();
+        let promise = |width: i32, height: i32| {
+            let mut bytes = exr.clone();
+            let chunks = height.div_euclid(compression.scan_lines_per_block() as i32);
+            let chunk_count = attribute_offset(&bytes, b"chunkCount\0int\0");
+            bytes[chunk_count..chunk_count + 4].copy_from_slice(&chunks.to_le_bytes());
+            for window in [b"dataWindow\0box2i\0".as_slice(), b"displayWindow\0box2i\0"] {
+                let corner = attribute_offset(&bytes, window) + 8;
+                bytes[corner..corner + 4].copy_from_slice(&(width - 1).to_le_bytes());
+                bytes[corner + 4..corner + 8].copy_from_slice(&(height - 1).to_le_bytes());
+            }
+            refusal(&write_bytes(&folder, "promise.exr", &bytes))
+        };
+        assert_says(&promise(8192, 4096), &["cut short", "header promises"]);
+        assert_says(&promise(10_000, 4096), &["10000 × 4096", "scale it down"]);
+        promise(i32::MAX / 2, i32::MAX / 2);
+        promise(0, 0);
+        promise(-5, 3);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Whatever the damage: a picture that can be rendered or an error, no panic.
+    #[test]
+    fn damaged_files_never_panic(kind in 0..8_usize, damage in any::<[(u16, u8); 3]>()) {
+        let folder = TempDir::new().unwrap();
+        let exr_kinds = [
+            Compression::Uncompressed, Compression::RLE, Compression::ZIP1, Compression::ZIP16, Compression::PIZ,
+            Compression::PXR24, Compression::B44A,
+        ];
+        let (name, mut bytes) = match exr_kinds.get(kind) {
+            Some(compression) => {
+                ("a.exr", std::fs::read(exr_file(&folder, "a.exr", &RGB, "half", *compression)).unwrap())
+            }
+            None => ("a.hdr", hdr_bytes(WIDTH, HEIGHT)),
+        };
+        for (place, byte) in damage {
+            let place = usize::from(place) % bytes.len();
+            bytes[place] = byte;
+        }
+        let mut file = std::fs::File::create(folder.path().join(name)).unwrap();
+        file.write_all(&bytes).unwrap();
+        drop(file);
+        if let Ok(environment) = load_file(&folder.path().join(name)) {
+            assert!(environment.texels.iter().flatten().all(|value| value.is_finite() && *value >= 0.0));
+            assert!(environment.cells.iter().all(|cell| cell.density.is_finite() && cell.density >= 0.0));
+        }
+    }
+}

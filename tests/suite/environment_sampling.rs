@@ -1,0 +1,259 @@
+//! Environments: the density that they are sampled with, against quadrature and statistics.
+
+use std::f64::consts::{PI, TAU};
+
+use glossmith::optics::real::Real;
+use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::scene::environment::{
+    Environment, EnvironmentSource, SkyParams, environment_density, environment_direction, environment_radiance,
+    environment_sample, environment_uv, furnace, load, sky, thumbnail,
+};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::environment::{assert_near, constant_map, random_direction, random_map, sun_map, triple};
+use crate::support::Random;
+
+#[test]
+fn density_is_the_luminance_of_the_bilinear_picture() {
+    let environment = random_map(12, 6);
+    let mut ratios = Vec::new();
+    for row in 0..6 {
+        for column in 0..12 {
+            // The midpoint rule with an even number of points is exact for pieces that are linear.
+            const POINTS: u32 = 16;
+            let sum: f64 = (0..POINTS * POINTS)
+                .map(|point| {
+                    let x = f64::from(column) + (f64::from(point % POINTS) + 0.5) / f64::from(POINTS);
+                    let y = f64::from(row) + (f64::from(point / POINTS) + 0.5) / f64::from(POINTS);
+                    environment_radiance(&environment, environment_direction([x / 12.0, y / 6.0])).luminance()
+                })
+                .sum();
+            let density = f64::from(environment.cells[(row * 12 + column) as usize].density);
+            ratios.push(density / (sum / f64::from(POINTS * POINTS)));
+        }
+    }
+    for ratio in &ratios {
+        assert_near(ratio / ratios[0], 1.0, 1e-6, "density over mean luminance of a cell");
+    }
+}
+
+/// ∫ density over the sphere: midpoints in azimuth and in the cosine, which is uniform in solid angle.
+fn density_integral(environment: &Environment, columns: u32, rows: u32) -> f64 {
+    let mut sum = 0.0;
+    for row in 0..rows {
+        let y = 1.0 - 2.0 * (f64::from(row) + 0.5) / f64::from(rows);
+        for column in 0..columns {
+            let azimuth = TAU * (f64::from(column) + 0.5) / f64::from(columns);
+            let horizontal = (1.0 - y * y).sqrt();
+            sum += environment_density(
+                environment,
+                vec3(horizontal * azimuth.sin(), y, -horizontal * azimuth.cos()),
+            );
+        }
+    }
+    sum * 4.0 * PI / (f64::from(columns) * f64::from(rows))
+}
+
+#[test]
+fn density_integrates_to_one() {
+    // The error is that of borders between cells that fall between midpoints: it goes with 1 / rows.
+    assert_near(
+        density_integral(&random_map(37, 19), 37 * 4, 40_000),
+        1.0,
+        2e-4,
+        "random 37 × 19",
+    );
+    assert_near(density_integral(&sun_map(), 256, 40_000), 1.0, 1e-3, "sun");
+    assert_near(density_integral(&constant_map(1, 1, 3.0), 8, 8), 1.0, 1e-6, "one texel");
+    assert_near(density_integral(&furnace().unwrap(), 8, 8), 1.0, 1e-6, "furnace");
+}
+
+#[test]
+fn a_large_map_has_merged_cells() {
+    let (width, height) = (3001, 1401);
+    let environment = random_map(width, height);
+    assert_eq!((environment.cells_width, environment.cells_height), (1501, 701));
+    let total: f64 = (0..environment.cells.len())
+        .map(|index| f64::from(environment.cells[index].density) * cell_solid_angle(&environment, index))
+        .sum();
+    assert_near(total, 1.0, 1e-5, "sum of density times solid angle");
+    // A merged cell is black only where the picture is.
+    let mut random = Random::new(3);
+    for _ in 0..20_000 {
+        let direction = random_direction(&mut random);
+        if environment_radiance(&environment, direction).luminance() > 0.0 {
+            assert!(
+                environment_density(&environment, direction) > 0.0,
+                "light without density at {direction:?}"
+            );
+        }
+    }
+    let p = chi_square_p::<f32>(&environment, [19, 19], 400_000, |_| 1.0);
+    assert!(p > 1e-3, "p = {p}");
+}
+
+/// The solid angle of a cell, told by the cosines of its borders.
+fn cell_solid_angle(environment: &Environment, index: usize) -> f64 {
+    let row = (index as u32 / environment.cells_width) as f64;
+    let cosine = |border: f64| (PI * border / f64::from(environment.cells_height)).cos();
+    TAU / f64::from(environment.cells_width) * (cosine(row) - cosine(row + 1.0))
+}
+
+/// The p-value of `count` samples against the integral of the density over blocks of cells, each expectation times
+/// `tamper(block)`.
+fn chi_square_p<T: Real>(environment: &Environment, block: [u32; 2], count: u32, tamper: impl Fn(usize) -> f64) -> f64 {
+    let columns = environment.cells_width.div_ceil(block[0]) as usize;
+    let rows = environment.cells_height.div_ceil(block[1]) as usize;
+    let block_of = |cell: [u32; 2]| (cell[1] / block[1]) as usize * columns + (cell[0] / block[0]) as usize;
+    let mut expected = vec![0.0; columns * rows];
+    for (index, cell) in environment.cells.iter().enumerate() {
+        let index_u32 = index as u32;
+        let place = [index_u32 % environment.cells_width, index_u32 / environment.cells_width];
+        expected[block_of(place)] += f64::from(cell.density) * cell_solid_angle(environment, index) * f64::from(count);
+    }
+    let mut found = vec![0.0; columns * rows];
+    let mut random = Random::new(11);
+    for _ in 0..count {
+        let (direction, density) = environment_sample::<T>(environment, triple(&mut random));
+        assert!(density.to_f64() > 0.0 && density.to_f64().is_finite());
+        assert_near(direction.length().to_f64(), 1.0, 1e-6, "length");
+        let uv = environment_uv(Vec3::<f64>::from_f64(direction.to_f64()));
+        let size = [environment.cells_width, environment.cells_height];
+        found[block_of([0, 1].map(|axis| ((uv[axis] * f64::from(size[axis])) as u32).min(size[axis] - 1)))] += 1.0;
+    }
+    let (mut statistic, mut cells, mut pooled) = (0.0, 0, (0.0, 0.0));
+    for (block, (found, expected)) in found.iter().zip(&expected).enumerate() {
+        let expected = expected * tamper(block);
+        if expected < 10.0 {
+            pooled = (pooled.0 + found, pooled.1 + expected);
+        } else {
+            statistic += (found - expected) * (found - expected) / expected;
+            cells += 1;
+        }
+    }
+    if pooled.1 >= 1.0 {
+        statistic += (pooled.0 - pooled.1) * (pooled.0 - pooled.1) / pooled.1;
+        cells += 1;
+    } else {
+        assert!(pooled.0 < 12.0, "{} samples where {} were expected", pooled.0, pooled.1);
+    }
+    ChiSquared::new(f64::from(cells - 1))
+        .expect("more than one block")
+        .sf(statistic)
+}
+
+#[test]
+fn samples_follow_the_density() {
+    let cases = [
+        ("random 37 × 19", random_map(37, 19), [1, 1]),
+        ("random 2000 × 1000", random_map(2000, 1000), [40, 40]),
+        ("single sun", sun_map(), [2, 2]),
+        ("sky", load(&EnvironmentSource::Sky).unwrap(), [32, 32]),
+        ("studio", load(&EnvironmentSource::Studio).unwrap(), [16, 16]),
+    ];
+    for (name, environment, block) in &cases {
+        let double = chi_square_p::<f64>(environment, *block, 1_000_000, |_| 1.0);
+        assert!(double > 1e-3, "{name} in f64: p = {double}");
+        let single = chi_square_p::<f32>(environment, *block, 1_000_000, |_| 1.0);
+        assert!(single > 1e-3, "{name} in f32: p = {single}");
+        // The test sees a density that is off by two per cent.
+        let tampered = chi_square_p::<f32>(
+            environment,
+            *block,
+            1_000_000,
+            |block| if block % 2 == 0 { 1.02 } else { 0.98 },
+        );
+        assert!(tampered < 1e-6, "{name}: a tampered density passed with p = {tampered}");
+    }
+}
+
+#[test]
+fn samples_are_uniform_inside_a_cell() {
+    for environment in [constant_map(1, 1, 2.0), furnace().unwrap(), constant_map(3, 3, 1.0)] {
+        const ROWS: usize = 24;
+        const COLUMNS: usize = 48;
+        let mut found = vec![0.0; ROWS * COLUMNS];
+        let mut random = Random::new(5);
+        let count = 500_000;
+        for _ in 0..count {
+            let (direction, density) = environment_sample::<f32>(&environment, triple(&mut random));
+            assert_near(density.into(), 0.25 / PI, 1e-6, "density");
+            let row = ((1.0 - direction.y) / 2.0 * ROWS as f32) as usize;
+            let column = environment_uv(direction)[0] * COLUMNS as f32;
+            found[row.min(ROWS - 1) * COLUMNS + column as usize] += 1.0;
+        }
+        let expected = f64::from(count) / (ROWS * COLUMNS) as f64;
+        let statistic: f64 = found
+            .iter()
+            .map(|found: &f64| (found - expected).powi(2) / expected)
+            .sum();
+        let p = ChiSquared::new((ROWS * COLUMNS - 1) as f64).unwrap().sf(statistic);
+        assert!(p > 1e-3, "{} × {}: p = {p}", environment.width, environment.height);
+    }
+}
+
+#[test]
+fn the_density_of_a_sampled_direction_is_the_one_it_was_drawn_with() {
+    for environment in [random_map(37, 19), sun_map(), sky(&SkyParams::default()).unwrap()] {
+        let mut random = Random::new(13);
+        let size = [environment.cells_width, environment.cells_height].map(f64::from);
+        let mut strays = 0;
+        for _ in 0..200_000 {
+            let (direction, density) = environment_sample::<f32>(&environment, triple(&mut random));
+            if environment_density(&environment, direction) == density {
+                continue;
+            }
+            strays += 1;
+            let uv = environment_uv(Vec3::<f64>::from_f64(direction.to_f64()));
+            let to_border = [0, 1].map(|axis| {
+                let place = uv[axis] * size[axis];
+                (place - place.round()).abs()
+            });
+            // Near a pole a step of 1e-7 in the direction is a long way in azimuth.
+            let horizontal = f64::from(direction.x).hypot(direction.z.into());
+            let reach = 2e-7 * size[0];
+            assert!(
+                to_border[0] < reach / horizontal || to_border[1] < reach,
+                "{}: {direction:?}, {to_border:?} from the border",
+                environment.name
+            );
+        }
+        assert!(strays < 200, "{}: {strays} strays", environment.name);
+    }
+}
+
+#[test]
+fn extreme_random_numbers_give_sound_samples() {
+    let last = 1.0 - f32::EPSILON / 2.0;
+    for environment in [
+        random_map(37, 19),
+        sun_map(),
+        constant_map(1, 1, 1.0),
+        constant_map(2000, 3, 1.0),
+    ] {
+        for corner in 0..8 {
+            let xi = [0, 1, 2].map(|bit| if corner >> bit & 1 == 0 { 0.0 } else { last });
+            let (direction, density) = environment_sample::<f32>(&environment, vec3(xi[0], xi[1], xi[2]));
+            assert_near(direction.length().into(), 1.0, 1e-6, "length");
+            assert!(density > 0.0 && density.is_finite());
+        }
+    }
+}
+
+#[test]
+fn a_black_map_has_no_density_and_no_trouble() {
+    let environment = constant_map(6, 3, 0.0);
+    assert!(environment.is_black && environment.is_constant);
+    let mut random = Random::new(17);
+    for _ in 0..1000 {
+        let (direction, density) = environment_sample::<f32>(&environment, triple(&mut random));
+        assert_eq!(density, 0.0);
+        assert_near(direction.length().into(), 1.0, 1e-6, "length");
+        assert_eq!(environment_density(&environment, direction), 0.0);
+    }
+    assert!(
+        thumbnail(&environment, 4, 2)
+            .iter()
+            .all(|pixel| *pixel == [0, 0, 0, 255])
+    );
+}

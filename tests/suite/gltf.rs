@@ -1,0 +1,379 @@
+//! What is read from glTF files.
+
+use std::fs;
+use std::path::Path;
+
+use glam::{DVec3, Vec2, Vec3};
+use glossmith::scene::{AlphaMode, Geometry, Wrap};
+use serde_json::{Value, json};
+
+use super::gltf_builder::{Buffer, Folder, SQUARE, glb, png, square};
+use super::support::Random;
+
+#[test]
+fn a_square_is_read_as_it_is() {
+    let (buffer, document) = square();
+    let model = Folder::new().load_glb(&document, &buffer).expect("loads");
+    assert_eq!((model.name.as_str(), model.mesh.triangles.len()), ("model", 2));
+    assert_eq!(model.mesh.positions[2], DVec3::new(1.0, 1.0, 0.0));
+    assert_eq!(model.mesh.uvs[2], Vec2::new(1.0, 0.0));
+    // u grows along +X, v against +Y: nothing is mirrored.
+    assert!(model.mesh.normals.iter().all(|normal| *normal == Vec3::Z));
+    assert!(
+        model
+            .mesh
+            .tangents
+            .iter()
+            .all(|tangent| *tangent == Vec3::X.extend(1.0)),
+        "{:?}",
+        model.mesh.tangents
+    );
+    assert_eq!(
+        (model.slots.len(), model.slots[0].metalness, model.slots[0].roughness),
+        (1, 1.0, 1.0)
+    );
+    assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+}
+
+#[test]
+fn nodes_move_turn_mirror_and_nest() {
+    let (buffer, mut document) = square();
+    // A quarter turn about +Y takes +Z to +X; below it a mirror in x and a shear-like scale in z.
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    document["nodes"] = json!([
+        {"children": [1, 2], "rotation": [0.0, half, 0.0, half], "translation": [10.0, 0.0, 0.0]},
+        {"mesh": 0},
+        {"mesh": 0, "matrix": [-2.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 3.0, 0.0, 0.0, 5.0, 0.0, 1.0]},
+    ]);
+    let mesh = Folder::new().load_glb(&document, &buffer).expect("loads").mesh;
+    assert_eq!(mesh.triangles.len(), 4);
+    let near = |a: DVec3, b: DVec3| assert!(a.distance(b) < 1e-6, "{a} is not {b}");
+    near(mesh.positions[1], DVec3::new(10.0, 0.0, -1.0));
+    near(mesh.positions[5], DVec3::new(10.0, 5.0, 2.0));
+    for (triangle, vertices) in mesh.triangles.iter().enumerate() {
+        let [a, b, c] = mesh.corners(triangle);
+        let normal = (b - a).cross(c - a).normalize();
+        near(normal, DVec3::X);
+        for vertex in vertices {
+            near(mesh.normals[*vertex as usize].as_dvec3(), DVec3::X);
+        }
+    }
+    assert_eq!(
+        (mesh.tangents[0].w, mesh.tangents[4].w),
+        (1.0, -1.0),
+        "a mirror turns the bitangent"
+    );
+}
+
+#[test]
+fn flattening_and_shearing_nodes_keep_normals() {
+    let (buffer, mut document) = square();
+    for (scale, expected) in [
+        ([1.0, 1.0, 0.0], Vec3::Z),
+        ([1e-20, 1e-20, 1e-20], Vec3::Z),
+        ([0.0, 0.0, 0.0], Vec3::Y),
+    ] {
+        document["nodes"] = json!([{"mesh": 0, "scale": scale}]);
+        let mesh = Folder::new().load_glb(&document, &buffer).expect("loads").mesh;
+        assert!(
+            mesh.normals.iter().all(|normal| normal.distance(expected) < 1e-6),
+            "{scale:?}: {:?}",
+            mesh.normals
+        );
+    }
+    // x += y: the square's plane stays, a slanted plane's normal follows the inverse transpose.
+    let mut slanted = Buffer::default();
+    let positions = slanted.floats(&[[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [-1.0, 1.0, 0.0]]);
+    let mut document = slanted.document(json!([{"attributes": {"POSITION": positions}}]));
+    document["nodes"] = json!([{"mesh": 0, "matrix": [1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]);
+    let mesh = Folder::new().load_glb(&document, &slanted).expect("loads").mesh;
+    let [a, b, c] = mesh.corners(0);
+    let expected = (b - a).cross(c - a).normalize().as_vec3();
+    assert!(
+        mesh.normals.iter().all(|normal| normal.distance(expected) < 1e-6),
+        "{:?} {expected}",
+        mesh.normals
+    );
+}
+
+#[test]
+fn lists_strips_and_fans_without_normals_are_flat() {
+    for (mode, order, expected) in [
+        (4, vec![0u16, 1, 2, 0, 2, 3, 0], 2),
+        (5, vec![0, 1, 3, 2], 2),
+        (6, vec![0, 1, 2, 3], 2),
+    ] {
+        let mut buffer = Buffer::default();
+        let positions = buffer.floats(&SQUARE);
+        let indices = buffer.indices(&order);
+        let primitive = json!({"attributes": {"POSITION": positions}, "indices": indices, "mode": mode});
+        let mesh = Folder::new()
+            .load_glb(&buffer.document(json!([primitive])), &buffer)
+            .expect("loads")
+            .mesh;
+        assert_eq!(
+            (mesh.triangles.len(), mesh.positions.len()),
+            (expected, 3 * expected),
+            "mode {mode}"
+        );
+        assert!(
+            mesh.normals.iter().all(|normal| *normal == Vec3::Z),
+            "mode {mode}: {:?}",
+            mesh.normals
+        );
+        let area: f64 = (0..expected)
+            .map(|t| mesh.corners(t))
+            .map(|[a, b, c]| (b - a).cross(c - a).z / 2.0)
+            .sum();
+        assert!((area - 1.0).abs() < 1e-12, "mode {mode}: area {area}");
+    }
+}
+
+#[test]
+fn sparse_interleaved_and_quantised_accessors_are_read() {
+    let mut buffer = Buffer::default();
+    // Signed bytes with a stride of 4, normalised: 127 is 1.
+    let view = buffer.view(&[0u8, 0, 0, 99, 127, 0, 0, 99, 127, 127, 0, 99, 0, 127, 0, 99]);
+    buffer.views[view]["byteStride"] = json!(4);
+    let places = buffer.view(&[2]);
+    let values = buffer.view(&[127u8, 129, 127]);
+    buffer.accessors.push(json!({
+        "bufferView": view, "componentType": 5120, "normalized": true, "count": 4, "type": "VEC3",
+        "min": [0, -1, 0], "max": [1, 1, 1],
+        "sparse": {"count": 1, "indices": {"bufferView": places, "componentType": 5121}, "values": {"bufferView": values}},
+    }));
+    let mut document = buffer.document(json!([{"attributes": {"POSITION": 0}, "mode": 6}]));
+    document["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    document["extensionsUsed"] = json!(["KHR_mesh_quantization"]);
+    let mesh = Folder::new().load_glb(&document, &buffer).expect("loads").mesh;
+    let [a, b, c] = mesh.corners(0);
+    assert_eq!([a, b, c], [DVec3::X, DVec3::new(1.0, -1.0, 1.0), DVec3::ZERO]);
+}
+
+#[test]
+fn vertices_where_the_texture_is_mirrored_are_split() {
+    let mut buffer = Buffer::default();
+    // A strip of two squares, the texture of the right one mirrored about their common edge.
+    let positions: Vec<[f32; 3]> = (0..6).map(|i| [(i % 3) as f32, (i / 3) as f32, 0.0]).collect();
+    let uvs: Vec<[f32; 2]> = (0..6).map(|i| [[0.0, 1.0, 0.0][i % 3], 1.0 - (i / 3) as f32]).collect();
+    let (positions, uvs) = (buffer.floats(&positions), buffer.floats(&uvs));
+    let normals = buffer.floats(&[[0.0, 0.0, 1.0]; 6]);
+    let indices = buffer.indices(&[0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]);
+    let attributes = json!({"POSITION": positions, "NORMAL": normals, "TEXCOORD_0": uvs});
+    let document = buffer.document(json!([{"attributes": attributes, "indices": indices}]));
+    let mesh = Folder::new().load_glb(&document, &buffer).expect("loads").mesh;
+    assert_eq!(
+        mesh.positions.len(),
+        8,
+        "the two vertices of the common edge are there twice"
+    );
+    for triangle in 0..4 {
+        let expected = if triangle < 2 {
+            Vec3::X.extend(1.0)
+        } else {
+            (-Vec3::X).extend(-1.0)
+        };
+        for vertex in mesh.triangles[triangle] {
+            assert_eq!(mesh.tangents[vertex as usize], expected, "triangle {triangle}");
+        }
+    }
+}
+
+#[test]
+fn materials_and_textures_become_slots() {
+    let (mut buffer, _) = square();
+    let picture = buffer.view(&png());
+    let primitive = |material: Value| {
+        let mut primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3});
+        if material != Value::Null {
+            primitive["material"] = material;
+        }
+        primitive
+    };
+    let mut document = buffer.document(json!([
+        primitive(json!(1)),
+        primitive(Value::Null),
+        primitive(json!(1))
+    ]));
+    document["images"] = json!([{"bufferView": picture, "mimeType": "image/png", "name": "two texels"}]);
+    document["samplers"] = json!([{"wrapS": 33071, "wrapT": 33648}]);
+    document["textures"] = json!([{"source": 0, "sampler": 0}, {"source": 0}]);
+    let turn = json!({"KHR_texture_transform": {"rotation": 0.5, "scale": [2.0, 3.0], "offset": [0.25, 0.5]}});
+    document["materials"] = json!([{"name": "unused"}, {
+        "name": "Lamp", "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true,
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [0.5, 0.25, 1.0, 0.75], "metallicFactor": 0.125, "roughnessFactor": 0.375,
+            "baseColorTexture": {"index": 0},
+        },
+        "normalTexture": {"index": 1, "scale": 0.5, "extensions": turn},
+        "emissiveFactor": [1.0, 0.5, 0.0],
+        "extensions": {
+            "KHR_materials_emissive_strength": {"emissiveStrength": 20.0},
+            "KHR_materials_ior": {"ior": 1.75}, "KHR_materials_transmission": {"transmissionFactor": 0.875},
+        },
+    }]);
+    let model = Folder::new().load_glb(&document, &buffer).expect("loads");
+    assert_eq!(model.mesh.slots, [0, 0, 1, 1, 0, 0]);
+    let [lamp, default] = &model.slots[..] else {
+        panic!("two slots, not {}", model.slots.len())
+    };
+    assert_eq!((lamp.name.as_str(), default.name.as_str()), ("Lamp", "default"));
+    assert_eq!(
+        (lamp.base_color, lamp.metalness, lamp.roughness),
+        ([0.5, 0.25, 1.0], 0.125, 0.375)
+    );
+    assert_eq!(
+        (lamp.opacity, lamp.alpha_mode, lamp.alpha_cutoff),
+        (0.75, AlphaMode::Mask, 0.25)
+    );
+    assert_eq!(
+        (lamp.emission, lamp.ior, lamp.transmission),
+        ([20.0, 10.0, 0.0], 1.75, 0.875)
+    );
+    assert!(lamp.double_sided && !default.double_sided);
+    let color = lamp.base_color_texture.expect("a colour texture");
+    assert_eq!(
+        (color.wrap, color.texture_from_mesh_uv),
+        (
+            [Wrap::ClampToEdge, Wrap::MirroredRepeat],
+            [1.0, 0.0, 0.0, 0.0, 1.0, 0.0]
+        )
+    );
+    let normal = lamp.normal_texture.expect("a normal texture");
+    let (sin, cos) = 0.5f32.sin_cos();
+    let expected = [2.0 * cos, 3.0 * sin, 0.25, -2.0 * sin, 3.0 * cos, 0.5];
+    assert_eq!(
+        (normal.wrap, normal.texture_from_mesh_uv, lamp.normal_scale),
+        ([Wrap::Repeat; 2], expected, 0.5)
+    );
+    assert_eq!(
+        (color.texture, normal.texture, model.textures.len()),
+        (0, 0, 1),
+        "one picture, used twice"
+    );
+    let texture = &model.textures[0];
+    assert_eq!(
+        (texture.name.as_str(), texture.width, texture.height),
+        ("two texels", 2, 1)
+    );
+    assert_eq!(texture.rgba8, [10, 20, 30, 255, 10, 20, 30, 128]);
+}
+
+#[test]
+fn buffers_and_pictures_may_be_beside_the_file_or_in_its_text() {
+    let folder = Folder::new();
+    let (buffer, mut document) = square();
+    fs::write(folder.path("my data.bin"), &buffer.bytes).expect("write");
+    fs::write(folder.path("picture.png"), png()).expect("write");
+    document["buffers"][0]["uri"] = json!("my%20data.bin");
+    document["images"] = json!([{"uri": "picture.png"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"] = json!([{"emissiveTexture": {"index": 0}}]);
+    document["meshes"][0]["primitives"][0]["material"] = json!(0);
+    let model = folder
+        .load("beside.gltf", document.to_string().as_bytes())
+        .expect("loads");
+    assert_eq!(
+        (model.mesh.triangles.len(), model.textures[0].name.as_str()),
+        (2, "picture.png")
+    );
+
+    fs::remove_file(folder.path("picture.png")).expect("remove");
+    let error = folder
+        .load("beside.gltf", document.to_string().as_bytes())
+        .expect_err("no picture");
+    assert!(
+        error.to_string().contains("beside.gltf") && error.to_string().contains("picture.png"),
+        "{error}"
+    );
+
+    // Three vertices at 0, +X and +Y in base 64.
+    document = json!({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "buffers": [{"byteLength": 36, "uri":
+            "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+            "min": [0, 0, 0], "max": [1, 1, 0]}],
+    });
+    let model = folder
+        .load("inside.gltf", document.to_string().as_bytes())
+        .expect("loads");
+    assert_eq!(model.mesh.corners(0), [DVec3::ZERO, DVec3::X, DVec3::Y]);
+}
+
+/// A soup of triangles in a box of 2, moved and scaled by a node.
+fn soup_geometry(folder: &Folder, scale: f64, translation: [f64; 3]) -> Geometry {
+    let mut random = Random::new(21);
+    let positions: Vec<[f32; 3]> = (0..600).map(|_| random.in_ball().to_array()).collect();
+    let mut buffer = Buffer::default();
+    let positions = buffer.floats(&positions);
+    let mut document = buffer.document(json!([{"attributes": {"POSITION": positions}}]));
+    document["nodes"] = json!([
+        {"children": [1], "translation": translation},
+        {"mesh": 0, "scale": [scale, scale, scale]},
+    ]);
+    Geometry::build(&folder.load_glb(&document, &buffer).expect("loads"), false)
+}
+
+#[test]
+fn scale_and_place_do_not_change_the_geometry() {
+    let folder = Folder::new();
+    let sorted = |geometry: &Geometry| {
+        let mut positions = geometry.positions.clone();
+        positions.sort_by(|a, b| a.partial_cmp(b).expect("finite"));
+        positions
+    };
+    let plain = soup_geometry(&folder, 1.0, [0.0; 3]);
+    let expected = sorted(&plain);
+    for (scale, translation) in [
+        (1e-6, [0.0; 3]),
+        (1e6, [0.0; 3]),
+        (1.0, [1e5, -1e5, 3e4]),
+        (1e-3, [1e2, 50.0, -7.0]),
+        (3.0, [0.0; 3]),
+    ] {
+        let geometry = soup_geometry(&folder, scale, translation);
+        let actual = sorted(&geometry);
+        assert_eq!(actual.len(), expected.len());
+        let same = actual.iter().zip(&expected).filter(|(a, b)| a == b).count();
+        for (a, b) in actual.iter().zip(&expected) {
+            assert!(
+                Vec3::from_array(*a).distance(Vec3::from_array(*b)) < 1.3e-7,
+                "{a:?} is not {b:?}"
+            );
+        }
+        assert!(
+            same * 100 > expected.len() * 95,
+            "scale {scale}: only {same} of {} are the same",
+            expected.len()
+        );
+        let ratio = geometry.world_units_per_unit / plain.world_units_per_unit / f64::from(scale as f32);
+        assert!(
+            (ratio - 1.0).abs() < 1e-9,
+            "scale {scale}: radius {}",
+            geometry.world_units_per_unit
+        );
+        let moved = geometry.center_world - plain.center_world * f64::from(scale as f32);
+        let expected_move = Vec3::from_array(translation.map(|x| x as f32)).as_dvec3();
+        assert!(
+            moved.distance(expected_move) < 1e-9 * (1.0 + expected_move.length()),
+            "moved by {moved}"
+        );
+    }
+}
+
+#[test]
+fn file_names_are_given_to_the_model() {
+    let (buffer, document) = square();
+    let folder = Folder::new();
+    let model = folder
+        .load("My Part.v2.glb", &glb(&document, &buffer.bytes))
+        .expect("loads");
+    assert_eq!(model.name, "My Part.v2");
+    assert_eq!(
+        Path::new("My Part.v2.glb").file_stem().and_then(|stem| stem.to_str()),
+        Some(model.name.as_str())
+    );
+}

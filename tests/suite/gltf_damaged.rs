@@ -1,0 +1,173 @@
+//! What is said about files that cannot be loaded; that no file makes the loader panic.
+
+use glossmith::scene::{Geometry, Model, ModelError, ModelSource, load};
+use serde_json::{Value, json};
+
+use super::gltf_builder::{Folder, glb, png, square};
+use super::support::Random;
+
+/// Every refusal is one line that names the file and says what and what to do.
+fn refused(result: Result<Model, ModelError>, words: &[&str]) {
+    let message = result.expect_err("refused").to_string();
+    for word in words {
+        assert!(message.contains(word), "\"{message}\" does not say \"{word}\"");
+    }
+    assert!(!message.contains('\n') && message.contains(';'), "\"{message}\"");
+}
+
+#[test]
+fn files_that_are_no_models_are_refused_with_a_reason() {
+    let folder = Folder::new();
+    refused(
+        load(&ModelSource::File(folder.path("nowhere.glb"))),
+        &["nowhere.glb", "cannot read"],
+    );
+    refused(load(&ModelSource::File(folder.0.path().to_owned())), &["cannot read"]);
+    refused(
+        folder.load("text.glb", b"Dear Sir,\n"),
+        &["text.glb", "some other text", "export"],
+    );
+    refused(folder.load("empty.glb", b""), &["empty.glb", "empty"]);
+    refused(
+        folder.load("noise.glb", &[0x89, b'P', b'N', b'G', 0xff]),
+        &["noise.glb", "not a glTF"],
+    );
+    refused(
+        folder.load("cut.gltf", b"{\"asset\": {\"version\""),
+        &["cut.gltf", "cut short"],
+    );
+    refused(
+        folder.load("old.gltf", b"{\"asset\": {\"version\": \"1.0\"}}"),
+        &["old.gltf", "1.0"],
+    );
+    refused(
+        folder.load("bare.gltf", b"{\"asset\": {\"version\": \"2.0\"}}"),
+        &["bare.gltf", "no triangles"],
+    );
+    let (buffer, document) = square();
+    let whole = glb(&document, &buffer.bytes);
+    refused(
+        folder.load("cut.glb", &whole[..whole.len() / 2]),
+        &["cut.glb", "cut short", &whole.len().to_string()],
+    );
+    for length in 0..whole.len() {
+        assert!(
+            folder.load("prefix.glb", &whole[..length]).is_err(),
+            "{length} of {} bytes load",
+            whole.len()
+        );
+    }
+    let mut old = whole.clone();
+    old[4] = 1;
+    refused(folder.load("old.glb", &old), &["old.glb", "version 1"]);
+}
+
+#[test]
+fn damaged_documents_are_refused_with_a_reason() {
+    let folder = Folder::new();
+    let check = |change: &dyn Fn(&mut Value), words: &[&str]| {
+        let (buffer, mut document) = square();
+        change(&mut document);
+        refused(folder.load_glb(&document, &buffer), words);
+    };
+    check(
+        &|d| d["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]),
+        &["KHR_draco_mesh_compression", "without Draco"],
+    );
+    check(
+        &|d| d["extensionsRequired"] = json!(["KHR_texture_basisu"]),
+        &["KHR_texture_basisu", "PNG"],
+    );
+    check(
+        &|d| d["extensionsRequired"] = json!(["EXT_meshopt_compression"]),
+        &["EXT_meshopt_compression", "gltfpack"],
+    );
+    check(
+        &|d| d["extensionsRequired"] = json!(["ACME_thing", "KHR_texture_transform"]),
+        &["ACME_thing", "export without"],
+    );
+    check(
+        &|d| d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = json!(77),
+        &["model.glb", "beyond the 4"],
+    );
+    check(
+        &|d| d["accessors"][0]["count"] = json!(4_000_000_000u64),
+        &["POSITION", "beyond its data"],
+    );
+    check(&|d| d["accessors"][0]["count"] = json!(3), &["NORMAL", "4", "3"]);
+    check(
+        &|d| d["accessors"][0]["type"] = json!("VEC2"),
+        &["POSITION", "3 components"],
+    );
+    check(
+        &|d| d["accessors"][0]["byteOffset"] = json!(u64::MAX),
+        &["POSITION", "beyond its data"],
+    );
+    check(&|d| d["bufferViews"][0]["byteOffset"] = json!(u64::MAX), &["POSITION"]);
+    check(&|d| d["bufferViews"][0]["byteLength"] = json!(u64::MAX), &["POSITION"]);
+    check(
+        &|d| d["buffers"][0]["byteLength"] = json!(1_000_000),
+        &["buffer 0", "1000000"],
+    );
+    check(&|d| d["accessors"][3]["componentType"] = json!(5126), &["indices"]);
+    check(
+        &|d| d["nodes"] = json!([{"mesh": 0, "children": [0]}]),
+        &["node 0", "ancestor"],
+    );
+    check(&|d| d["nodes"] = json!([{"mesh": 9}]), &["out of bounds"]);
+    check(
+        &|d| d["meshes"][0]["primitives"][0]["mode"] = json!(1),
+        &["no triangles"],
+    );
+    check(&|d| d["scenes"][0]["nodes"] = json!([]), &["no triangles"]);
+    let (mut buffer, _) = square();
+    let far = buffer.indices(&[0, 1, 4]);
+    let document = buffer.document(json!([{"attributes": {"POSITION": 0}, "indices": far}]));
+    refused(folder.load_glb(&document, &buffer), &["Part", "index 4", "4 vertices"]);
+    let (buffer, mut document) = square();
+    document["images"] = json!([{"bufferView": 0, "mimeType": "image/png", "name": "broken"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"] = json!([{"emissiveTexture": {"index": 0}}]);
+    document["meshes"][0]["primitives"][0]["material"] = json!(0);
+    refused(folder.load_glb(&document, &buffer), &["broken", "export"]);
+    document["textures"] = json!([{"extensions": {"KHR_texture_basisu": {"source": 0}}}]);
+    document["extensionsUsed"] = json!(["KHR_texture_basisu"]);
+    refused(folder.load_glb(&document, &buffer), &["KHR_texture_basisu", "PNG"]);
+}
+
+#[test]
+fn random_damage_never_panics() {
+    let folder = Folder::new();
+    let (mut buffer, _) = square();
+    let picture = buffer.view(&png());
+    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 0});
+    let mut document = buffer.document(json!([primitive]));
+    document["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"] = json!([{"emissiveTexture": {"index": 0}}]);
+    let whole = glb(&document, &buffer.bytes);
+    folder.load("whole.glb", &whole).expect("loads undamaged");
+    let mut random = Random::new(1);
+    let (mut loaded, mut refused) = (0, 0);
+    for _ in 0..4000 {
+        let mut bytes = whole.clone();
+        for _ in 0..1 + random.below(3) {
+            let at = random.below(bytes.len());
+            // Mostly digits, which stay valid JSON and change what it means.
+            bytes[at] = if bytes[at].is_ascii_digit() {
+                b'0' + random.below(10) as u8
+            } else {
+                random.bits() as u8
+            };
+        }
+        match folder.load("damaged.glb", &bytes) {
+            Ok(model) => {
+                let geometry = Geometry::build(&model, random.below(2) == 0);
+                geometry.occluded([0.3, 0.2, -2.0], [0.01, 0.02, 1.0], f32::INFINITY);
+                loaded += 1;
+            }
+            Err(_) => refused += 1,
+        }
+    }
+    assert!(loaded > 100 && refused > 100, "{loaded} loaded, {refused} refused");
+}

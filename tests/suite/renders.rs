@@ -1,0 +1,339 @@
+//! Pictures: the engines against each other, against analytic values, and the strategies against each other.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use glossmith::analysis::error::{Estimates, z_test};
+use glossmith::analysis::film::Film;
+use glossmith::document::job::Job;
+use glossmith::document::{Background, Document, MaterialSettings, PixelFilter, Strategy, assign};
+use glossmith::optics::random::Sequence;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::{self, Environment, EnvironmentSource};
+
+/// A small document: one material from assignments, box filter, independent samples (so that variances are honest).
+fn document(model: ModelSource, light: EnvironmentSource, assignments: &[&str]) -> Document {
+    let mut material = MaterialSettings::default();
+    for assignment in assignments {
+        assign(&mut material, assignment).unwrap();
+    }
+    let mut document = Document {
+        model,
+        materials: vec![material],
+        ..Document::default()
+    };
+    document.lighting.environment = light;
+    document.render.width = 64;
+    document.render.height = 64;
+    document.render.samples = 64;
+    document.render.filter = PixelFilter::Box;
+    document.render.sequence = Sequence::Independent;
+    document
+}
+
+/// Renders to the end.
+fn render(choice: EngineChoice, document: &Document) -> Film {
+    let mut session = Session::open(choice).unwrap();
+    session.submit(document).unwrap();
+    while !session.step(Duration::from_secs(1)).unwrap().is_done {}
+    session.film().unwrap().clone()
+}
+
+/// The share of pixels whose luminances differ by more than three standard deviations of their noise.
+fn beyond_three_sigma(a: &Film, b: &Film) -> f64 {
+    let (mean_a, mean_b) = (a.luminance(), b.luminance());
+    // Rounding of f32 radiance beside the noise.
+    let floored = |film: &Film, mean: &[f64]| -> Vec<f64> {
+        let floor = |(variance, mean): (f64, &f64)| variance + (1e-4 * mean.max(1e-3)).powi(2);
+        film.variance_of_mean().into_iter().zip(mean).map(floor).collect()
+    };
+    let (variance_a, variance_b) = (floored(a, &mean_a), floored(b, &mean_b));
+    let (a, b) = (
+        Estimates {
+            mean: &mean_a,
+            variance: &variance_a,
+        },
+        Estimates {
+            mean: &mean_b,
+            variance: &variance_b,
+        },
+    );
+    z_test(a, b).beyond_three_sigma
+}
+
+/// Fails unless two films show the same picture: their sums agree, few pixels are beyond 3 standard deviations.
+#[track_caller]
+fn assert_same_picture(a: &Film, b: &Film, what: &str) {
+    let whole = a.difference_in_sigma(b);
+    assert!(
+        whole.abs() < 4.0,
+        "{what}: the whole picture is off by {whole:.1} sigma"
+    );
+    // Pixels with few bright hits are skewed, so the tails are wider than a normal's 0.27 %.
+    let beyond = beyond_three_sigma(a, b);
+    assert!(
+        beyond < 0.02,
+        "{what}: {:.2} % of pixels beyond 3 sigma",
+        100.0 * beyond
+    );
+}
+
+fn with_strategy(document: &Document, strategy: Strategy, seed: u32) -> Document {
+    let mut document = document.clone();
+    document.render.strategy = strategy;
+    document.render.seed = seed;
+    document
+}
+
+#[test]
+fn engines_converge_to_the_same_picture() {
+    for assignments in [
+        &["specular.roughness=0.4", "base.metalness=1"][..],
+        &[
+            "specular.roughness=0.2",
+            "base.metalness=0",
+            "specular.fresnel=dielectric",
+        ],
+        &[
+            "specular.lobe=ggx",
+            "specular.anisotropy=0.6",
+            "specular.fresnel=conductor",
+        ],
+        &["specular.curve=long-tail", "specular.horizon=absorb"],
+    ] {
+        let document = document(ModelSource::Teapot, EnvironmentSource::Studio, assignments);
+        let cpu = render(EngineChoice::Cpu, &document);
+        let gpu = render(EngineChoice::Gpu, &with_strategy(&document, Strategy::Mis, 7));
+        assert_eq!((cpu.dropped, gpu.dropped), (0, 0));
+        assert_same_picture(&cpu, &gpu, &format!("cpu against gpu, {assignments:?}"));
+    }
+}
+
+/// Sees the z-test fail: another roughness is found.
+#[test]
+fn a_different_material_is_a_different_picture() {
+    let one = document(
+        ModelSource::Teapot,
+        EnvironmentSource::Studio,
+        &["specular.roughness=0.4"],
+    );
+    let other = document(
+        ModelSource::Teapot,
+        EnvironmentSource::Studio,
+        &["specular.roughness=0.6"],
+    );
+    let other = render(EngineChoice::Cpu, &with_strategy(&other, Strategy::Mis, 3));
+    let beyond = beyond_three_sigma(&render(EngineChoice::Cpu, &one), &other);
+    assert!(beyond > 0.02, "only {:.2} % of pixels differ", 100.0 * beyond);
+}
+
+#[test]
+fn strategies_converge_to_the_same_picture() {
+    for (light, assignments) in [
+        (EnvironmentSource::Studio, &["specular.roughness=0.6"][..]),
+        (
+            EnvironmentSource::Studio,
+            &["base.metalness=0", "specular.roughness=0.7", "specular.lobe=ggx"],
+        ),
+        (
+            EnvironmentSource::Sky,
+            &["base.metalness=0", "specular.weight=0", "base.color=0.7,0.7,0.7"],
+        ),
+    ] {
+        let mut document = document(ModelSource::Teapot, light, assignments);
+        // The sun is found by chance only: the lobe strategy needs a broad lobe and many samples to have an honest
+        // variance, so it is compared where there is no sun.
+        let has_sun = document.lighting.environment == EnvironmentSource::Sky;
+        document.lighting.background = Background::Transparent;
+        document.render.samples = 256;
+        let mis = render(EngineChoice::Cpu, &document);
+        let light = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Light, 1));
+        assert_same_picture(&mis, &light, &format!("mis against light, {assignments:?}"));
+        if !has_sun {
+            let lobe = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Lobe, 2));
+            assert_same_picture(&mis, &lobe, &format!("mis against lobe, {assignments:?}"));
+        }
+    }
+}
+
+/// Issue 2's furnace: F = 1 under a constant environment, geometric lobe, mirror policy, every pixel 1 ± 0.5 %.
+#[test]
+fn white_furnace_is_white() {
+    for choice in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        for curve in ["smooth", "sqrt", "long-tail"] {
+            for roughness in ["0", "0.001", "0.1", "0.5", "0.9", "1"] {
+                let assignments = [
+                    &format!("specular.curve={curve}")[..],
+                    &format!("specular.roughness={roughness}"),
+                    "specular.fresnel=none",
+                ];
+                let mut document = document(ModelSource::Teapot, EnvironmentSource::Furnace, &assignments);
+                document.render.samples = 8;
+                let film = render(choice, &document);
+                assert_eq!(film.dropped, 0);
+                for (i, pixel) in film.image().pixels.iter().enumerate() {
+                    let worst = pixel[..3].iter().map(|x| (x - 1.0).abs()).fold(0.0, f32::max);
+                    assert!(worst < 0.005, "{choice:?}, {assignments:?}: pixel {i} is {pixel:?}");
+                }
+            }
+        }
+    }
+}
+
+/// A white dielectric neither loses nor makes light: its base gets what its lobe leaves over.
+#[test]
+fn a_white_dielectric_is_white_in_the_furnace() {
+    let assignments = [
+        "base.metalness=0",
+        "base.color=1,1,1",
+        "specular.roughness=0.3",
+        "specular.fresnel=dielectric",
+    ];
+    let mut document = document(ModelSource::Teapot, EnvironmentSource::Furnace, &assignments);
+    document.render.samples = 256;
+    let film = render(EngineChoice::Cpu, &document);
+    let n = film.color.len() as f64;
+    let mean = film
+        .color
+        .iter()
+        .zip(&film.statistics)
+        .map(|(c, s)| c[1] / s[1])
+        .sum::<f64>()
+        / n;
+    assert!((mean - 1.0).abs() < 0.003, "mean {mean}");
+}
+
+/// A convex Lambertian body under a constant sky: exactly albedo × radiance.
+#[test]
+fn lambert_sphere_under_a_constant_sky() {
+    let assignments = ["base.metalness=0", "specular.weight=0", "base.color=0.6,0.3,0.1"];
+    for choice in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &assignments);
+        document.lighting.strength = 2.0;
+        document.lighting.background = Background::Transparent;
+        document.render.samples = 8;
+        for pixel in render(choice, &document).image().pixels {
+            let [r, g, b, alpha] = pixel;
+            for (value, albedo) in [(r, 0.6), (g, 0.3), (b, 0.1)] {
+                assert!((value - 2.0 * albedo * alpha).abs() < 2e-4, "{pixel:?}");
+            }
+        }
+    }
+}
+
+/// A mirror sphere shows the environment where the mirrored ray points: against a direct look-up.
+#[test]
+fn mirror_sphere_shows_the_environment() {
+    // A smooth map of our own: bright in +X, so that a turned or mirrored map is noticed.
+    let texel = |i: u32| {
+        let u = (f64::from(i % 256) + 0.5) / 256.0 * std::f64::consts::TAU;
+        [
+            (1.5 + u.sin()) as f32,
+            (1.5 + u.cos()) as f32,
+            (0.5 + f64::from(i / 256) / 128.0) as f32,
+            1.0,
+        ]
+    };
+    let map = Environment::from_texels("test", 256, 128, (0..256 * 128).map(texel).collect()).unwrap();
+    let mut document = document(
+        ModelSource::Sphere,
+        EnvironmentSource::Furnace,
+        &["specular.roughness=0", "specular.fresnel=none"],
+    );
+    document.lighting.rotation_deg = 30.0;
+    document.render.samples = 64;
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(&document).unwrap();
+    let job = Job {
+        environment: Arc::new(map.clone()),
+        ..Job::clone(session.job().unwrap())
+    };
+    let mut engine = glossmith::cpu::CpuEngine::default();
+    let camera = job.settings.camera;
+    let rotation = job.settings.environment_rotation;
+    engine.submit(Arc::new(job));
+    engine.step(Duration::from_secs(100), 64);
+    let image = engine.film().image();
+    // The pixel in the middle of the picture's upper half: its ray meets the unit sphere analytically.
+    for (x, y) in [(32, 20), (20, 32), (44, 32), (32, 32), (32, 44)] {
+        let place = [f64::from(x) + 0.5, f64::from(y) + 0.5];
+        let [origin, direction] = glossmith::scene::camera::camera_ray(&camera, place, [64, 64], [0.0, 0.0]);
+        let b = origin.dot(direction);
+        let hit = origin + direction * (-b - (b * b - origin.dot(origin) + 1.0).sqrt());
+        let mirrored = -direction.reflected_at_plane(hit) * -1.0;
+        let local = environment::environment_local_from_world(mirrored, rotation);
+        let expected = environment::environment_radiance(&map, local).to_f64();
+        let pixel = image.pixels[y as usize * 64 + x as usize];
+        for i in 0..3 {
+            let error = (f64::from(pixel[i]) - expected[i]).abs();
+            assert!(error < 0.02, "pixel {x},{y}: {pixel:?}, expected {expected:?}");
+        }
+    }
+}
+
+/// Single-scattering GGX on a sphere in the furnace, seen from distance 4: the mean over the disc without its outermost
+/// 1/64 of the picture's half width, against the quadrature of the height-correlated model.
+#[test]
+fn ggx_sphere_in_the_furnace() {
+    const SIDE: u32 = 128;
+    let half_picture = (22.5_f64).to_radians().tan();
+    let edge = (0.25_f64).asin().tan() / half_picture - 1.0 / 64.0;
+    for (alpha, expected) in [(0.1, 0.9753), (0.3, 0.8452), (0.6, 0.6232), (1.0, 0.3970)] {
+        let roughness = format!("specular.roughness={}", f64::sqrt(alpha));
+        let assignments = ["specular.lobe=ggx", "specular.fresnel=none", &roughness];
+        let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &assignments);
+        document.lighting.background = Background::Transparent;
+        document.camera.distance = Some(4.0);
+        document.camera.fov_deg = 45.0;
+        (document.render.width, document.render.height) = (SIDE, SIDE);
+        document.render.samples = 128;
+        document.render.sequence = Sequence::Sobol;
+        let film = render(EngineChoice::Cpu, &document);
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (i, (color, statistics)) in (0..).zip(film.color.iter().zip(&film.statistics)) {
+            let centred = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE) * 2.0 - 1.0;
+            if centred(i % SIDE).hypot(centred(i / SIDE)) < edge {
+                sum += color[1] / statistics[1];
+                count += 1.0;
+            }
+        }
+        let mean = sum / count;
+        assert!(
+            (mean - expected).abs() < 1e-3,
+            "alpha {alpha}: {mean}, expected {expected}"
+        );
+    }
+}
+
+/// Sums do not stall: the mean of a constant picture after many flushes is what it was after one sample.
+#[test]
+fn sums_do_not_stall() {
+    let mut document = document(
+        ModelSource::Sphere,
+        EnvironmentSource::Furnace,
+        &["specular.fresnel=none"],
+    );
+    (document.render.width, document.render.height) = (8, 8);
+    document.lighting.strength = 0.1;
+    document.render.samples = 20_000;
+    for choice in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let film = render(choice, &document);
+        for (color, statistics) in film.color.iter().zip(&film.statistics) {
+            let mean = color[1] / statistics[1];
+            assert!((mean / 0.1 - 1.0).abs() < 1e-5, "{choice:?}: {mean}");
+        }
+    }
+}
+
+/// A picture does not depend on how the work was cut into steps, on the CPU to the bit.
+#[test]
+fn steps_do_not_change_the_picture() {
+    let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, &[]);
+    document.render.samples = 3;
+    let whole = render(EngineChoice::Cpu, &document);
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(&document).unwrap();
+    while !session.step(Duration::from_micros(200)).unwrap().is_done {}
+    assert_eq!(&whole, session.film().unwrap());
+}

@@ -1,0 +1,135 @@
+//! Tone curves and sRGB's encoding.
+
+use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear, tone_map};
+use glossmith::optics::vector::{Vec3, vec3};
+
+fn mapped(curve: ToneCurve, rgb: [f64; 3]) -> [f64; 3] {
+    tone_map(curve, Vec3::<f64>::from_f64(rgb)).to_f64()
+}
+
+fn assert_near(actual: [f64; 3], expected: [f64; 3], tolerance: f64) {
+    let is_near = actual.iter().zip(expected).all(|(a, e)| (a - e).abs() <= tolerance);
+    assert!(is_near, "{actual:?} instead of {expected:?}");
+}
+
+/// Greys and colours over 38 stops.
+fn scene_colors() -> impl Iterator<Item = [f64; 3]> {
+    (-20..=18).flat_map(|stop| {
+        let hues = [
+            [1.0; 3],
+            [1.0, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            [0.0, 0.0, 1.0],
+            [1.0, 0.5, 0.1],
+            [0.2, 0.9, 1.0],
+        ];
+        hues.map(|hue| hue.map(|x| x * f64::from(stop).exp2()))
+    })
+}
+
+#[test]
+fn every_curve_stays_in_range_in_both_precisions() {
+    for &curve in ToneCurve::ALL {
+        for color in scene_colors() {
+            let display = mapped(curve, color);
+            assert!(
+                display.iter().all(|x| (0.0..=1.0).contains(x)),
+                "{curve:?} {color:?} {display:?}"
+            );
+            let single = tone_map(curve, Vec3::<f32>::from_f64(color)).to_f64();
+            assert_near(single, display, 1e-5);
+        }
+    }
+}
+
+#[test]
+fn every_curve_keeps_grey_grey_and_in_order() {
+    for &curve in ToneCurve::ALL {
+        let mut before = 0.0;
+        for step in 0..=3000 {
+            let grey = (-12.0 + f64::from(step) * 0.009).exp2();
+            let [r, g, b] = mapped(curve, [grey; 3]);
+            // The rows of ACES's published matrices add to 1 within 1e-5 and 2e-4.
+            assert!(
+                (r - g).abs() < 3e-4 && (b - g).abs() < 3e-4,
+                "{curve:?} {grey} {r} {g} {b}"
+            );
+            assert!(g >= before, "{curve:?} at {grey}: {g} after {before}");
+            before = g;
+        }
+        assert!(before > 0.99, "{curve:?} ends white, not at {before}");
+        assert_near(mapped(curve, [0.0; 3]), [0.0; 3], 1e-9);
+    }
+}
+
+#[test]
+fn what_is_no_colour_becomes_one() {
+    for &curve in ToneCurve::ALL {
+        for odd in [f32::NAN, f32::INFINITY, -1.0, f32::MIN, f32::MAX] {
+            let display = tone_map(curve, vec3(odd, 0.5, 0.5)).to_f32();
+            assert!(
+                display.iter().all(|x| (0.0..=1.0).contains(x)),
+                "{curve:?} {odd} {display:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn none_cuts_off() {
+    assert_eq!(mapped(ToneCurve::None, [0.25, 1.5, -3.0]), [0.25, 1.0, 0.0]);
+}
+
+#[test]
+fn pbr_neutral_is_what_khronos_specifies() {
+    let neutral = |rgb| mapped(ToneCurve::PbrNeutral, rgb);
+    // Below 0.76 only the reflectance of 0.04 is taken off, near black along the parabola 6.25 x².
+    assert_near(neutral([0.5, 0.4, 0.3]), [0.46, 0.36, 0.26], 1e-12);
+    assert_near(neutral([0.04; 3]), [0.01; 3], 1e-12);
+    assert_near(neutral([0.8 - 1e-9; 3]), [0.76; 3], 1e-8);
+    // A grey of 1.04: peak 1 goes to 1 − 0.24²/(1 + 0.24 − 0.76) = 0.88.
+    assert_near(neutral([1.04; 3]), [0.88; 3], 1e-12);
+    // A red of 5, no offset: peak to 1 − 0.0576/4.48, faded by 1 − 1/(0.15 (5 − peak) + 1).
+    let peak = 1.0 - 0.0576 / 4.48;
+    let faded = 1.0 - 1.0 / (0.15 * (5.0 - peak) + 1.0);
+    assert_near(neutral([5.0, 0.0, 0.0]), [peak, peak * faded, peak * faded], 1e-12);
+}
+
+#[test]
+fn agx_and_aces_have_their_published_values() {
+    // Hill's fit, which greys pass without the matrices.
+    let fit = |x: f64| (x * (x + 0.0245786) - 0.000090537) / (x * (0.983729 * x + 0.432951) + 0.238081);
+    for grey in [0.18, 1.0] {
+        assert_near(mapped(ToneCurve::Aces, [grey; 3]), [fit(grey); 3], 1e-3);
+    }
+    // AgX: grey passes the matrices; middle grey lies 10 of 16.5 stops up, white at the end.
+    let x = (0.18_f64.log2() + 12.47393) / (4.026069 + 12.47393);
+    let powers = [-0.00232, 0.1191, 0.4298, -6.868, 31.96, -40.14, 15.5];
+    let sigmoid: f64 = powers
+        .iter()
+        .enumerate()
+        .map(|(power, factor)| factor * x.powi(power as i32))
+        .sum();
+    assert_near(mapped(ToneCurve::Agx, [0.18; 3]), [sigmoid.powf(2.2); 3], 1e-6);
+    assert_near(
+        mapped(ToneCurve::Agx, [0.18 * 6.5_f64.exp2(); 3]),
+        [0.99858_f64.powf(2.2); 3],
+        1e-4,
+    );
+    // Bright pure colours fade towards white.
+    let [r, g, b] = mapped(ToneCurve::Agx, [100.0, 0.0, 0.0]);
+    assert!(r > 0.9 && g > 0.3 && b > 0.3, "{r} {g} {b}");
+}
+
+#[test]
+fn srgb_is_the_standards() {
+    let encoded = srgb_from_linear(Vec3::<f64>::from_f64([0.0, 0.0031308, 0.214_041_14])).to_f64();
+    assert_near(encoded, [0.0, 0.04045, 0.5], 1e-5);
+    for byte in 0..=255 {
+        let srgb = f64::from(byte) / 255.0;
+        let back = srgb_from_linear(linear_from_srgb(Vec3::splat(srgb as f32))).to_f64();
+        assert_near(back, [srgb; 3], 2e-6);
+        let back = srgb_from_linear(linear_from_srgb(Vec3::splat(srgb))).to_f64();
+        assert_near(back, [srgb; 3], 1e-7);
+    }
+}
