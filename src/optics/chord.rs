@@ -15,14 +15,14 @@ use super::real::{Mask, Real};
 use super::vector::Vec3;
 
 /// Closest to the mirror direction, in radians, that f32 tells apart: within it a density's peak is cut off.
-const PEAK_RADIUS: f64 = 1e-7;
+pub const PEAK_RADIUS: f64 = 1e-7;
 /// Keeps |a⊥|² from vanishing where the lobe is Lambertian; its square is still a normal f32.
-const TINY: f64 = 1e-18;
+pub const TINY: f64 = 1e-18;
 /// Longest range of v worth integrating where the lobe is Lambertian, and its growth with μ: there the integrand falls as
 /// e^(2v) towards its lower end, else it is level in between.
-const RANGE_MAX: [f64; 2] = [20.0, 1000.0];
+pub const RANGE_MAX: [f64; 2] = [20.0, 1000.0];
 /// Roughness up to which the shorter rule integrates the long tail to better than 1e-3.
-const SHORT_RULE_ROUGHNESS: f64 = 0.5;
+pub const SHORT_RULE_ROUGHNESS: f64 = 0.5;
 
 /// Positive nodes and weights of the 12-point Gauss–Legendre rule on [−1, 1].
 const GAUSS_12: [[f64; 2]; 6] = [

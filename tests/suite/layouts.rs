@@ -3,13 +3,13 @@
 use std::mem::offset_of;
 
 use glossmith::gpu::layout::{Globals, Triangle};
-use glossmith::gpu::shader::link;
+use glossmith::gpu::scatter::Scatter;
 use glossmith::optics::material::Material;
 use glossmith::scene::Vertex;
 use glossmith::scene::camera::Camera;
 use glossmith::scene::environment::AliasCell;
 
-use super::shaders::validate;
+use super::shaders::modules;
 
 /// A structure as Rust lays it out.
 struct Layout {
@@ -53,33 +53,39 @@ fn rust_layouts() -> Vec<Layout> {
         }),
         layout!(Triangle: Triangle { corners }),
         layout!(Vertex: Vertex { normal, uv, tangent }),
+        layout!(Scatter: Scatter {
+            wo, roughness, anisotropy, lobe, curve, horizon, seed, first, count, reserved,
+        }),
         layout!(AliasCell: AliasCell { threshold, alias_index, density }),
     ]
 }
 
 #[test]
 fn members_lie_alike_in_rust_and_wgsl() {
-    let (module, _) = validate(&link("scene/layout").unwrap()).unwrap();
-    let mut layouter = naga::proc::Layouter::default();
-    layouter.update(module.to_ctx()).unwrap();
+    let modules = modules();
     for rust in rust_layouts() {
-        let (handle, found) = module
-            .types
+        let named = |module: &naga::Module| {
+            let found = module
+                .types
+                .iter()
+                .find(|(_, found)| found.name.as_deref() == Some(rust.name));
+            found.map(|(handle, _)| handle)
+        };
+        let mut places = modules
             .iter()
-            .find(|(_, found)| found.name.as_deref() == Some(rust.name))
+            .filter_map(|(_, module)| named(module).map(|handle| (module, handle)));
+        let (module, handle) = places
+            .next()
             .unwrap_or_else(|| panic!("no structure {} in the shaders", rust.name));
-        let naga::TypeInner::Struct { members, span } = &found.inner else {
+        let naga::TypeInner::Struct { members, span } = &module.types[handle].inner else {
             panic!("{} is no structure in the shaders", rust.name);
         };
         let wgsl: Vec<_> = members
             .iter()
             .map(|member| {
                 let size = module.types[member.ty].inner.size(module.to_ctx());
-                (
-                    member.name.as_deref().unwrap_or_default(),
-                    member.offset as usize,
-                    size as usize,
-                )
+                let name = member.name.as_deref().unwrap_or_default();
+                (name, member.offset as usize, size as usize)
             })
             .collect();
         assert_eq!(
@@ -89,6 +95,8 @@ fn members_lie_alike_in_rust_and_wgsl() {
         );
         assert_eq!(*span as usize, rust.size, "{}: size in WGSL and in Rust", rust.name);
         // The distance of an array's elements.
+        let mut layouter = naga::proc::Layouter::default();
+        layouter.update(module.to_ctx()).unwrap();
         assert_eq!(
             layouter[handle].to_stride() as usize,
             rust.size,
@@ -121,12 +129,13 @@ fn collect_structures(module: &naga::Module, ty: naga::Handle<naga::Type>, names
 
 #[test]
 fn every_bound_structure_is_compared() {
-    let (module, _) = validate(&link("scene/layout").unwrap()).unwrap();
-    let mut bound = Vec::new();
-    for (_, variable) in module.global_variables.iter().filter(|(_, v)| v.binding.is_some()) {
-        collect_structures(&module, variable.ty, &mut bound);
-    }
     let compared: Vec<_> = rust_layouts().iter().map(|layout| layout.name.to_owned()).collect();
+    let mut bound = Vec::new();
+    for (_, module) in modules() {
+        for (_, variable) in module.global_variables.iter().filter(|(_, v)| v.binding.is_some()) {
+            collect_structures(&module, variable.ty, &mut bound);
+        }
+    }
     assert!(!bound.is_empty());
     for name in bound {
         assert!(

@@ -6,11 +6,13 @@ use glossmith::document::job::{BackgroundKind, Settings, Strategy};
 use glossmith::document::plan::Plan;
 use glossmith::gpu::layout::Globals;
 use glossmith::gpu::shader::{EXTRA, Linked, link, link_with, module_names};
+use glossmith::optics::chord;
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, LONG_TAIL_MAX};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::{ALPHA_MIN, Horizon, Lobe, MIRROR_WIDTH};
 use glossmith::optics::material::ALBEDO_NODES;
 use glossmith::optics::random::Sequence;
+use glossmith::optics::tone::{self, ToneCurve};
 use glossmith::scene::camera::{Camera, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA, PixelFilter};
 use glossmith::scene::surface;
 use naga::back::{hlsl, msl, spv};
@@ -60,7 +62,7 @@ fn numbers(module: &naga::Module, expression: naga::Handle<naga::Expression>) ->
 }
 
 /// Every module with the generated one, each with naga's reading of it.
-fn modules() -> Vec<(String, naga::Module)> {
+pub fn modules() -> Vec<(String, naga::Module)> {
     let mut names = module_names();
     names.push("optics/lobe/registry".into());
     let read = |name: String| {
@@ -233,6 +235,9 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
     for fresnel in Fresnel::ALL {
         number(upper("FRESNEL", fresnel.name()), f64::from(*fresnel as u32));
     }
+    for curve in ToneCurve::ALL {
+        number(upper("TONE", curve.name()), f64::from(*curve as u32));
+    }
     for horizon in Horizon::ALL {
         number(upper("HORIZON", horizon.name()), f64::from(*horizon as u32));
     }
@@ -263,6 +268,13 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("CUSTOM_INTERVALS", CUSTOM_INTERVALS as f64),
         ("LONG_TAIL_MAX", LONG_TAIL_MAX),
         ("ALBEDO_NODES", ALBEDO_NODES as f64),
+        ("SHORT_RULE_ROUGHNESS", chord::SHORT_RULE_ROUGHNESS),
+        ("PEAK_RADIUS", chord::PEAK_RADIUS),
+        ("TINY", chord::TINY),
+        ("SCENE_MAX", tone::SCENE_MAX),
+        ("AGX_STOPS_MIN", tone::AGX_STOPS_MIN),
+        ("AGX_STOPS_MAX", tone::AGX_STOPS_MAX),
+        ("NEUTRAL_START", tone::NEUTRAL_START),
         ("GAUSSIAN_SIGMA", GAUSSIAN_SIGMA),
         ("GAUSSIAN_KEPT", kept),
         ("POSITION_ERROR", surface::POSITION_ERROR),
@@ -274,8 +286,9 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
     ] {
         number(name.into(), value);
     }
-    twins.push(("GAUSS_8".into(), gauss_legendre(8)));
-    twins.push(("GAUSS_16".into(), gauss_legendre(16)));
+    twins.push(("RANGE_MAX".into(), chord::RANGE_MAX.into()));
+    twins.push(("GAUSS_12".into(), gauss_legendre(12)));
+    twins.push(("GAUSS_20".into(), gauss_legendre(20)));
     twins
 }
 

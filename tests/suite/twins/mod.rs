@@ -15,4 +15,5 @@ mod harness;
 mod lobes;
 mod material;
 mod surface;
+mod tone;
 mod trace;
