@@ -1,6 +1,6 @@
 //! The wide hierarchy of boxes (CWBVH, Ylitie, Karras and Laine 2017) that rays find triangles by, built by obvhs.
 
-use glam::{UVec3, Vec3A};
+use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
@@ -59,8 +59,10 @@ impl Clusters {
             let cells_per_axis = (1 << 21) as f32;
             // From [−1, 1]; the ground's centres are beyond and meet in the outermost cells.
             let place = ((aabb.min + aabb.max) * 0.25 + 0.5) * cells_per_axis;
-            let [x, y, z] =
-                UVec3::from(place.clamp(Vec3A::ZERO, Vec3A::splat(cells_per_axis - 1.0)).as_uvec3()).to_array();
+            let [x, y, z] = place
+                .clamp(Vec3A::ZERO, Vec3A::splat(cells_per_axis - 1.0))
+                .as_uvec3()
+                .to_array();
             u64::from(x) | u64::from(y) << 21 | u64::from(z) << 42
         };
         let mut keyed: Vec<(u64, u32)> = boxes.par_iter().map(cell_of).zip(0..boxes.len() as u32).collect();
