@@ -53,9 +53,12 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
     let reach = points.clone().map(|(x, y)| x.abs().max(y.abs())).fold(0.01, f32::max) * 1.05;
     let root = BitMapBackend::new(path, (800, 860)).into_drawing_area();
     root.fill(&WHITE)?;
+    let lobe = match request.lobe {
+        Lobe::Geometric => format!("Geometric, {}", request.curve.label().to_lowercase()),
+        lobe => lobe.label().to_owned(),
+    };
     let caption = format!(
-        "{}, roughness {}, view {}°",
-        request.lobe.label(),
+        "{lobe}, roughness {}, view {}°",
         request.roughness,
         request.view_angle_deg
     );
