@@ -51,7 +51,7 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
         .iter()
         .map(|&[x, y, z, _]| (across.dot(Vec3::from_f32([x, y, z])), y));
     let reach = points.clone().map(|(x, y)| x.abs().max(y.abs())).fold(0.01, f32::max) * 1.05;
-    let root = BitMapBackend::new(path, (800, 860)).into_drawing_area();
+    let root = BitMapBackend::new(path, (800, 810)).into_drawing_area();
     root.fill(&WHITE)?;
     let lobe = match request.lobe {
         Lobe::Geometric => format!("Geometric, {}", request.curve.label().to_lowercase()),
