@@ -59,8 +59,7 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
     };
     let caption = format!(
         "{lobe}, roughness {}, view {}°",
-        request.roughness,
-        request.view_angle_deg
+        request.roughness, request.view_angle_deg
     );
     let mut chart = ChartBuilder::on(&root)
         .caption(caption, ("sans-serif", 26))
