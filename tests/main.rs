@@ -35,11 +35,28 @@ mod gltf;
 mod gltf_builder;
 #[path = "suite/gltf_damaged.rs"]
 mod gltf_damaged;
+#[path = "suite/lobe_cases.rs"]
+mod lobe_cases;
+#[path = "suite/lobe_views.rs"]
+mod lobe_views;
 #[path = "suite/renders.rs"]
 mod renders;
+#[path = "suite/statistics.rs"]
+mod statistics;
 #[path = "suite/support.rs"]
 mod support;
 #[path = "suite/tone.rs"]
 mod tone;
 #[path = "suite/tone_twin.rs"]
 mod tone_twin;
+#[path = "suite/ui.rs"]
+mod ui;
+#[path = "suite/worker.rs"]
+mod worker;
+
+#[path = "suite/layouts.rs"]
+mod layouts;
+#[path = "suite/shaders.rs"]
+mod shaders;
+#[path = "suite/twins/mod.rs"]
+mod twins;

@@ -1,9 +1,8 @@
 // Light from far away: a lat-long map, looked up bilinearly and sampled in proportion to its luminance.
 // Twin of src/scene/environment/mod.rs, which tells the conventions. The map is rgba32float and read by textureLoad, the
-// cells come from src/scene/environment/distribution.rs; both are bound by the importing layout as
-//   environment_map: texture_2d<f32>, environment_cells: array<AliasCell>.
-
-const ENVIRONMENT_PI: f32 = 3.14159265358979;
+// cells come from src/scene/environment/distribution.rs.
+#import "optics/numeric"
+#import "scene/layout"
 
 // One cell of the distribution: an entry of the alias table with the cell's density per steradian.
 struct AliasCell {
@@ -32,25 +31,25 @@ fn environment_world_from_local(direction_local: vec3f, rotation: vec2f) -> vec3
 }
 
 fn environment_uv(direction: vec3f) -> vec2f {
-    // atan2 instead of acos: near the poles y is 1 to within rounding and only x and z tell the angle.
+    // An arctangent instead of acos: near the poles y is 1 to within rounding and only x and z tell the angle.
     let horizontal = sqrt(direction.x * direction.x + direction.z * direction.z);
-    let v = atan2(horizontal, direction.y) / ENVIRONMENT_PI;
-    // atan2(0, 0) is undefined.
+    let v = arctan2(horizontal, direction.y) / PI;
+    // The null vector has no angle.
     let z = select(direction.z, -1.0, !(horizontal > 0.0));
-    let turns = atan2(direction.x, -z) / (2.0 * ENVIRONMENT_PI);
+    let turns = arctan2(direction.x, -z) / (2.0 * PI);
     let u = select(turns, turns + 1.0, turns < 0.0);
     // A tiny negative angle plus one turn rounds to a whole turn.
     return vec2f(select(0.0, u, u < 1.0), clamp(v, 0.0, 1.0));
 }
 
 fn environment_direction(uv: vec2f) -> vec3f {
-    let polar_rad = uv.y * ENVIRONMENT_PI;
+    let polar_rad = uv.y * PI;
     return environment_direction_from_angles(uv.x, cos(polar_rad), sin(polar_rad));
 }
 
 fn environment_direction_from_angles(u: f32, cos_polar: f32, sin_polar: f32) -> vec3f {
     // Half a turn back, so that the argument stays in [-pi, pi], where GPUs promise accuracy.
-    let azimuth_rad = (u - 0.5) * (2.0 * ENVIRONMENT_PI);
+    let azimuth_rad = (u - 0.5) * (2.0 * PI);
     return vec3f(-(sin(azimuth_rad) * sin_polar), cos_polar, cos(azimuth_rad) * sin_polar);
 }
 
@@ -99,7 +98,7 @@ fn environment_direction_in_cell(cell: vec2u, place: vec2f, cells_size: vec2u) -
     let is_south = 2u * cell.y >= cells_size.y;
     let row_from_pole = f32(select(cell.y, cells_size.y - 1u - cell.y, is_south));
     let across = select(place.y, 1.0 - place.y, is_south);
-    let half_turn_per_row = 0.5 * ENVIRONMENT_PI / f32(cells_size.y);
+    let half_turn_per_row = 0.5 * PI / f32(cells_size.y);
     let near = sin(half_turn_per_row * row_from_pole);
     let far = sin(half_turn_per_row * (row_from_pole + 1.0));
     let s = near * near + across * (far * far - near * near);

@@ -34,8 +34,7 @@ struct Globals {
     strategy: u32,
     seed: u32,
     node_count: u32,
-    reserved_a: u32,
-    reserved_b: u32,
+    reserved: vec2u,
 }
 
 struct Material {

@@ -17,7 +17,7 @@ const VIEW_COSINE_MIN: f32 = 1e-3;
 
 fn bent_normal(shading: vec3f, wo: vec3f) -> vec3f {
     let lean = dot(shading, wo);
-    let bent = normalize(shading + wo * (VIEW_COSINE_MIN - lean));
+    let bent = normalize_or(shading + wo * (VIEW_COSINE_MIN - lean), wo);
     return select(shading, bent, lean < VIEW_COSINE_MIN);
 }
 

@@ -44,6 +44,13 @@ impl PolarGrid {
             .filter(|a| *a > 0.0 && *a < PI)
             .collect();
         ring_ends_rad.dedup();
+        // Beyond the pilot's last sample rings that grow by halves: one ring to π would be so wide that its nodes could
+        // miss a narrow lobe's tail.
+        let mut end = angles.last().copied().unwrap_or(PI).max(1e-6);
+        while end < PI {
+            ring_ends_rad.push(end);
+            end *= 1.5;
+        }
         ring_ends_rad.push(PI);
         Self {
             frame,
@@ -99,10 +106,21 @@ impl PolarGrid {
             f: density,
         };
         let absolute = CELL_TOLERANCE * EXPECTATION_MIN / samples.max(1) as f64;
-        (0..self.cells())
-            .map(|cell| function.integrate(self.patch(cell), CELL_TOLERANCE, absolute))
-            .collect()
+        let integral = |patch: Patch| function.integrate(patch, CELL_TOLERANCE, absolute);
+        let cell = |cell| narrow_rings(self.patch(cell)).map(integral).sum();
+        (0..self.cells()).map(cell).collect()
     }
+}
+
+/// The patch cut into rings that end at one and a half times the angle at which they begin: the outermost ring may begin
+/// within a hundredth of a degree, and all that is in it may lie there.
+fn narrow_rings(patch: Patch) -> impl Iterator<Item = Patch> {
+    let [start, end] = patch.polar_rad;
+    let next = move |from: f64| if from > 0.0 { (1.5 * from).min(end) } else { end };
+    std::iter::successors(Some([start, next(start)]), move |[_, to]| {
+        (*to < end).then(|| [*to, next(*to)])
+    })
+    .map(move |polar_rad| Patch { polar_rad, ..patch })
 }
 
 /// Angle to the frame's normal in radians, exact near 0.

@@ -87,6 +87,15 @@ impl LobeModel {
         self.anisotropy == 0.0 || !self.lobe.is_anisotropic()
     }
 
+    /// Radius about the mirror direction, in radians, that plots leave out: the geometric lobe's density has an
+    /// (integrable) infinite peak there, whose height would be that of the nearest point drawn.
+    pub fn peak_radius_rad(&self) -> f64 {
+        match self.lobe {
+            Lobe::Geometric => 0.03 * self.roughness,
+            _ => 0.0,
+        }
+    }
+
     /// False where the roughness is so small that the lobe has no density to plot or fit.
     pub fn has_density(&self) -> bool {
         self.roughness >= roughness_min(self.lobe)

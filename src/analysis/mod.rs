@@ -9,6 +9,7 @@ pub mod film;
 pub mod fit;
 pub mod histogram;
 pub mod lobe_model;
+pub mod lobe_view;
 pub mod plot;
 pub mod quadrature;
 pub mod scatter;

@@ -1,11 +1,17 @@
 //! Plots as files: PNG and SVG by plotters, with the fonts that the window uses.
 
+mod figure;
+mod lines;
+mod maps;
+mod solids;
+
 use std::path::{Path, PathBuf};
 use std::sync::Once;
 
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
+use super::lobe_view::{LinePlot, LobeView};
 use super::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::lobe::Lobe;
 use crate::optics::vector::Vec3;
@@ -25,6 +31,26 @@ fn register_fonts() {
         // Fails only for broken font data; labels are left out then.
         let _ = register_font("sans-serif", FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
     });
+}
+
+/// A view of lobes as .svg, or else as .png.
+///
+/// # Errors
+/// Where the file can't be written.
+pub fn lobe_view_file(path: &Path, view: &LobeView) -> Result<(), PlotError> {
+    match view {
+        LobeView::Lines(plot) => line_plot_file(path, plot),
+        LobeView::Maps(plot) => figure::write(path, plot),
+        LobeView::Solids(plot) => figure::write(path, plot),
+    }
+}
+
+/// A line plot as .svg, or else as .png.
+///
+/// # Errors
+/// Where the file can't be written.
+pub fn line_plot_file(path: &Path, plot: &LinePlot) -> Result<(), PlotError> {
+    figure::write(path, plot)
 }
 
 /// The samples seen from the mirror direction, as in the paper's Fig. 1: the plane's horizontal axis lies in the plane of

@@ -182,7 +182,7 @@ pub(super) fn set_maximised(tree: &mut Tree<Pane>, is_maximised: bool) {
     let Some(root) = tree.root() else { return };
     let viewport = viewport_tile(tree);
     let others: Vec<TileId> = match tree.tiles.get_container(root) {
-        Some(Container::Linear(linear)) => linear.children.iter().copied().collect(),
+        Some(Container::Linear(linear)) => linear.children.to_vec(),
         _ => Vec::new(),
     };
     for tile in others.into_iter().filter(|tile| Some(*tile) != viewport) {

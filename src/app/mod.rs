@@ -8,6 +8,7 @@ pub mod actions;
 mod dialogs;
 mod edits;
 mod files;
+mod icons;
 pub mod layout;
 mod menu;
 mod orbit;
@@ -38,7 +39,7 @@ use viewport::Viewport;
 
 use crate::document::{CameraSettings, Change, Document, MaterialSettings};
 use crate::render::EngineChoice;
-use crate::render::worker::{Event, Level, Pace, Snapshot, Worker};
+use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 use crate::scene::{Model, ModelSource};
 
 /// Changes that follow each other within this are rendered as moving.
@@ -84,6 +85,9 @@ pub struct App {
     /// The document as last submitted, with its size.
     submitted: Option<Document>,
     submitted_at: Instant,
+    /// The submission's revision.
+    revision: u64,
+    queue: Vec<Action>,
     /// Files given at the start that are still being loaded: rendering waits for them.
     awaited: usize,
     panels: PanelState,
@@ -116,6 +120,8 @@ impl App {
             worker,
             submitted: None,
             submitted_at: Instant::now(),
+            revision: 0,
+            queue: Vec::new(),
             awaited: 0,
             panels: PanelState {
                 resolution: options.resolution.unwrap_or(kept.resolution),
@@ -145,6 +151,25 @@ impl App {
     /// The renderer's state.
     pub fn snapshot(&self) -> Arc<Snapshot> {
         self.worker.snapshot()
+    }
+
+    /// Whether the picture shown is the finished one of the document as it is.
+    pub fn is_settled(&self) -> bool {
+        let snapshot = self.worker.snapshot();
+        let is_current = |picture: &Picture| picture.revision == self.revision && picture.reduction == 1;
+        self.submitted.is_some()
+            && snapshot.activity == Activity::Done
+            && snapshot.picture.as_deref().is_some_and(is_current)
+    }
+
+    /// Has something done in the next frame, as if it had been chosen from a menu.
+    pub fn request(&mut self, action: Action) {
+        self.queue.push(action);
+    }
+
+    /// Brings a panel to the front.
+    pub fn reveal(&mut self, pane: Pane) {
+        layout::reveal(&mut self.layout, pane);
     }
 
     /// How long the window's frames take.
@@ -327,7 +352,8 @@ impl App {
             return;
         }
         let is_moving = is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
-        self.worker
+        self.revision = self
+            .worker
             .submit(&wanted, if is_moving { Pace::Moving } else { Pace::Still });
         self.submitted = Some(wanted);
         self.submitted_at = Instant::now();
@@ -386,11 +412,13 @@ impl App {
 }
 
 impl eframe::App for App {
-    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let begun = Instant::now();
         let ctx = ui.ctx().clone();
+        self.meter
+            .begin(begun, ctx.requested_repaint_last_pass(), frame.info().cpu_usage);
         self.take_events();
-        let mut actions: Vec<Action> = Vec::new();
+        let mut actions = std::mem::take(&mut self.queue);
         if self.sheet == Sheet::None && !self.dialogs.is_open() {
             actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
         }
@@ -402,7 +430,11 @@ impl eframe::App for App {
         }
         self.record_and_submit(&ctx);
         self.set_title(&ctx);
-        self.meter.record(begun.elapsed());
+        self.meter.end(begun.elapsed());
+    }
+
+    fn on_exit(&mut self) {
+        log::info!("{}", self.meter.summary());
     }
 
     fn save(&mut self, storage: &mut dyn eframe::Storage) {

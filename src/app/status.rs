@@ -11,26 +11,52 @@ const RECENT: Duration = Duration::from_secs(10);
 /// Frames left out of the worst: at the start, fonts and pipelines are made.
 const WARM_UP_FRAMES: u64 = 10;
 
-/// How long the window's frames take, from the first line of ours to what is handed to the system.
+/// How long the window's frames take: what eframe counts of its last one, and where frames follow each other without a
+/// pause, as while something moves, all that lies between them.
 #[derive(Clone, Debug, Default)]
 pub struct FrameMeter {
     frames: u64,
+    begun: Option<Instant>,
     last: Duration,
     worst: Duration,
     recent: Vec<(Instant, Duration)>,
 }
 
 impl FrameMeter {
-    /// Records a frame.
-    pub(super) fn record(&mut self, duration: Duration) {
+    /// A frame begins, which tells how long the last one was. `is_running`: it was asked for by the last one.
+    pub(super) fn begin(&mut self, now: Instant, is_running: bool, cpu_seconds: Option<f32>) {
+        let between = self.begun.filter(|_| is_running).map(|begun| now.duration_since(begun));
+        let counted = cpu_seconds.map(|seconds| Duration::from_secs_f32(seconds.clamp(0.0, 1e3)));
+        if let Some(last) = between.max(counted) {
+            self.record(now, last);
+        }
+        self.begun = Some(now);
+    }
+
+    /// The panels took this long.
+    pub(super) fn end(&mut self, duration: Duration) {
+        self.record(Instant::now(), duration);
         self.frames += 1;
+    }
+
+    fn record(&mut self, now: Instant, duration: Duration) {
         self.last = duration;
-        let now = Instant::now();
         self.recent.retain(|(at, _)| now.duration_since(*at) < RECENT);
         self.recent.push((now, duration));
         if self.frames > WARM_UP_FRAMES {
             self.worst = self.worst.max(duration);
         }
+    }
+
+    /// One line for the log.
+    pub fn summary(&self) -> String {
+        let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
+        let recent = ms(self.recent_worst());
+        format!(
+            "window: {} frames, longest {:.1} ms, of the last 10 s {recent:.1} ms",
+            self.frames,
+            ms(self.worst)
+        )
     }
 
     /// The longest frame since the start, the first few left out.
@@ -170,13 +196,19 @@ mod tests {
     }
 
     #[test]
-    fn the_worst_frame_leaves_out_the_first_ones() {
+    fn frames_that_follow_each_other_count_whole_and_the_first_ones_not_at_all() {
         let mut meter = FrameMeter::default();
-        meter.record(Duration::from_secs(3));
-        for _ in 0..20 {
-            meter.record(Duration::from_millis(5));
+        let begun = Instant::now();
+        let at = |ms: u64| begun + Duration::from_millis(ms);
+        meter.begin(at(0), true, None);
+        meter.end(Duration::from_secs(3));
+        for frame in 1..=20 {
+            meter.begin(at(40 * frame), true, Some(0.005));
+            meter.end(Duration::from_millis(5));
         }
-        assert_eq!(meter.worst(), Duration::from_millis(5));
+        assert_eq!(meter.worst(), Duration::from_millis(40));
         assert_eq!(meter.recent_worst(), Duration::from_secs(3));
+        meter.begin(at(5000), false, Some(0.012));
+        assert_eq!(meter.last, Duration::from_secs_f32(0.012));
     }
 }

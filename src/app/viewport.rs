@@ -13,6 +13,7 @@ use egui::{
     TextureOptions, Ui, Vec2, pos2, vec2,
 };
 
+use super::icons::{self, Icon};
 use super::orbit::Orbit;
 use super::panels::{Desk, Resolution};
 use super::theme;
@@ -298,9 +299,7 @@ fn messages(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
             ui.horizontal_top(|ui| {
                 let text = egui::Label::new(egui::RichText::new(&entry.text).color(color)).wrap();
                 ui.allocate_ui(vec2(width - 60.0, 0.0), |ui| ui.add(text));
-                let close = ui
-                    .add(egui::Button::new("×").frame(false))
-                    .accessible_name("Close this message");
+                let close = icons::button(ui, Icon::Close, &format!("Close message {index}"), "Close");
                 entry.is_open &= !close.clicked();
             });
         });

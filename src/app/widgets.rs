@@ -55,10 +55,9 @@ pub(super) struct RowResponse {
 /// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
 pub(super) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
     ui.horizontal(|ui| {
-        let spacing = ui.spacing().item_spacing.x;
         let label_width = (ui.available_width() * LABEL_SHARE).max(LABEL_MIN);
         let label = row_label(ui, name, label_width);
-        let width = (ui.available_width() - spacing * 0.0).max(40.0);
+        let width = ui.available_width().max(40.0);
         let layout = Layout::left_to_right(Align::Center);
         let control = ui
             .allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, control)
@@ -126,9 +125,11 @@ pub(super) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style:
         .bar
         .map_or(style.speed, |[low, high]| (high - low) / f64::from(size.x.max(40.0)));
     let fills = ui.visuals().widgets.clone();
-    let share = style
-        .bar
-        .map(|[low, high]| ((value.to_f64() - low) / (high - low)).clamp(0.0, 1.0) as f32);
+    let span = style.bar.map(|[low, high]| {
+        let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
+        // Signed numbers fill from zero.
+        [share(0.0_f64.clamp(low, high)), share(value.to_f64())]
+    });
     let response = ui
         .scope(|ui| {
             let widgets = &mut ui.visuals_mut().widgets;
@@ -138,7 +139,7 @@ pub(super) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style:
             let drag = DragValue::new(value)
                 .range(style.range.clone())
                 .speed(speed)
-                .max_decimals(style.decimals)
+                .custom_formatter(|value, _| trimmed(value, style.decimals))
                 .suffix(style.unit.to_owned());
             ui.add_sized(size, drag)
         })
@@ -156,14 +157,28 @@ pub(super) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style:
         &fills.inactive
     };
     let mut shapes = vec![Shape::rect_filled(rect, state.corner_radius, state.weak_bg_fill)];
-    if let Some(share) = share {
-        let filled = Rect::from_min_size(rect.min, Vec2::new(rect.width() * share, rect.height()));
+    if let Some([from, to]) = span {
+        let x = |share: f32| egui::lerp(rect.x_range(), share);
+        let filled = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), rect.y_range());
         let color = theme::accent(ui.visuals().dark_mode).gamma_multiply(if response.hovered() { 0.62 } else { 0.5 });
-        // Clipped, so that the bar keeps the field's corners.
         shapes.push(bar(rect, filled, color, state.corner_radius));
     }
     ui.painter().set(background, Shape::Vec(shapes));
     response
+}
+
+/// A number with at most so many decimals, zeros at its end left out as far as two.
+fn trimmed(value: f64, decimals: usize) -> String {
+    let mut text = format!("{value:.decimals$}");
+    let least = text.len().saturating_sub(decimals.saturating_sub(2));
+    while decimals > 2 && text.len() > least && text.ends_with('0') {
+        text.pop();
+    }
+    if text.trim_start_matches(['-', '0', '.']).is_empty() {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text
+    }
 }
 
 /// The filled part of a field.
@@ -173,7 +188,11 @@ fn bar(field: Rect, filled: Rect, color: Color32, radius: egui::CornerRadius) ->
     } else {
         0
     };
-    let left = if filled.width() >= 3.0 { radius.nw } else { 0 };
+    let left = if filled.left() <= field.left() + 1.0 && filled.width() >= 3.0 {
+        radius.nw
+    } else {
+        0
+    };
     let corners = egui::CornerRadius {
         nw: left,
         sw: left,
@@ -315,4 +334,28 @@ pub(super) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
 /// A note in weak text.
 pub(super) fn note(ui: &mut Ui, text: impl Into<String>) {
     ui.label(RichText::new(text).weak());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_lose_zeros_but_not_digits() {
+        assert_eq!(trimmed(0.3, 3), "0.30");
+        assert_eq!(trimmed(0.305, 3), "0.305");
+        assert_eq!(trimmed(-0.0001, 3), "0.00");
+        assert_eq!(trimmed(12.0, 0), "12");
+        assert_eq!(trimmed(100.0, 0), "100");
+        assert_eq!(trimmed(-4.5, 1), "-4.5");
+    }
+
+    #[test]
+    fn colours_come_back_from_their_codes() {
+        for code in ["#000000", "#ffffff", "#c8a060", "#010203"] {
+            assert_eq!(linear_of(code).map(hex_of).as_deref(), Some(code));
+        }
+        assert_eq!(linear_of("#12345"), None);
+        assert_eq!(linear_of("#+23456"), None);
+    }
 }

@@ -3,15 +3,22 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::Context;
 use clap::Args;
 
+use super::lobe::{check_ending, write_view};
 use super::lobe_spec::lobe_model;
 use super::names;
 use crate::analysis::fit::Merl;
-use crate::document::match_look::{Candidate, LookMatch, Target, match_look};
+use crate::analysis::lobe_model::LobeModel;
+use crate::analysis::lobe_view::LobeView;
+use crate::document::match_look::{Candidate, LookMatch, Target, comparison, match_look};
 use crate::document::{MaterialSettings, save_material};
 use crate::optics::lobe::Lobe;
+use crate::optics::vector::Vec3;
+
+/// View angles where none is given.
+const VIEW_ANGLE_DEG: f64 = 0.0;
+const VIEW_ANGLE_MEASURED_DEG: f64 = 30.0;
 
 /// Arguments of `glossmith fit`.
 #[derive(Debug, Args)]
@@ -20,21 +27,25 @@ pub struct FitArguments {
     /// everywhere (or alpha=A itself); or a measured material of the MERL BRDF database.
     #[arg(long, value_name = "ggx:0.1|ggx:alpha=0.01|FILE.binary", value_parser = parse_target)]
     target: TargetArgument,
-    /// Angle between the view and the normal at which the two are compared, 0 to 85.
-    #[arg(long, default_value_t = 0.0, value_name = "DEG")]
-    view_angle: f64,
+    /// Angle between the view and the normal at which the two are compared, 0 to 85 [default: 0 for a lobe, 30 for a
+    /// measured material, whose data are weakest where the view hides the light].
+    #[arg(long, value_name = "DEG")]
+    view_angle: Option<f64>,
     /// The lobe to fit. For the geometric one the curve is fitted too.
     #[arg(long, default_value = "geometric", value_name = "NAME", value_parser = names::lobe)]
     lobe: Lobe,
     /// The material to write.
     #[arg(long, value_name = "MATERIAL.json")]
     output: PathBuf,
+    /// Also write target and fits, before and after, in the plane of incidence.
+    #[arg(long, value_name = "FILE.png|FILE.svg|FILE.csv")]
+    plot: Option<PathBuf>,
 }
 
 /// A target as it is named.
 #[derive(Clone, Debug)]
 enum TargetArgument {
-    Lobe(Box<crate::analysis::lobe_model::LobeModel>),
+    Lobe(Box<LobeModel>),
     File(PathBuf),
 }
 
@@ -52,14 +63,18 @@ fn parse_target(text: &str) -> Result<TargetArgument, String> {
 /// # Errors
 /// What is wrong with the target or the file.
 pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
-    let target = match &arguments.target {
-        TargetArgument::Lobe(model) => Target::Lobe((**model).clone()),
-        TargetArgument::File(path) => Target::Measured {
-            name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
-            merl: Arc::new(Merl::load(path)?),
-        },
+    if let Some(path) = &arguments.plot {
+        check_ending(path)?;
+    }
+    let (target, view_angle_deg) = match &arguments.target {
+        TargetArgument::Lobe(model) => (Target::Lobe((**model).clone()), VIEW_ANGLE_DEG),
+        TargetArgument::File(path) => {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let merl = Arc::new(Merl::load(path)?);
+            (Target::Measured { name, merl }, VIEW_ANGLE_MEASURED_DEG)
+        }
     };
-    let found = match_look(&target, arguments.lobe, arguments.view_angle).context("--target")?;
+    let found = match_look(&target, arguments.lobe, arguments.view_angle.unwrap_or(view_angle_deg))?;
     print_match(&found);
     let mut material = MaterialSettings {
         name: format!("Like {}", found.target),
@@ -68,6 +83,9 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     found.apply(&mut material);
     save_material(&arguments.output, &material)?;
     eprintln!("wrote {}", arguments.output.display());
+    if let Some(path) = &arguments.plot {
+        write_view(path, &LobeView::Lines(comparison(&target, &found)?))?;
+    }
     Ok(())
 }
 
@@ -93,7 +111,7 @@ fn print_match(found: &LookMatch) {
         println!("curve    {}", points.join(","));
     }
     if let Some(colors) = &found.colors {
-        let text = |color: crate::optics::vector::Vec3<f64>| color.to_f64().map(|x| format!("{x:.4}")).join(",");
+        let text = |color: Vec3<f64>| color.to_f64().map(|x| format!("{x:.4}")).join(",");
         println!("base     {}", text(colors.base));
         println!("specular {}", text(colors.highlight));
     }

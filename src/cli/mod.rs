@@ -5,6 +5,7 @@
 
 mod check;
 mod fit;
+mod lobe;
 mod lobe_spec;
 mod names;
 mod parse;
@@ -47,6 +48,8 @@ pub enum Command {
     Scatter(scatter::ScatterArguments),
     /// Match the look of another lobe or of a measured material.
     Fit(fit::FitArguments),
+    /// Show lobes: slices, bodies, densities, albedo, reciprocity, losses.
+    Lobe(lobe::LobeArguments),
 }
 
 impl Command {
@@ -60,6 +63,7 @@ impl Command {
             Command::Check(arguments) => check::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
+            Command::Lobe(arguments) => lobe::run(&arguments),
         }
     }
 }

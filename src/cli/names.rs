@@ -1,5 +1,6 @@
 //! Names on the command line, looked up in the registries.
 
+use crate::analysis::lobe_view::ViewKind;
 use crate::document::{PixelFilter, Strategy};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::{Horizon, Lobe};
@@ -35,4 +36,5 @@ parsers! {
     lobe: Lobe;
     curve: Curve;
     horizon: Horizon;
+    view_kind: ViewKind;
 }

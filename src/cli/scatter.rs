@@ -67,7 +67,7 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
         count: arguments.count,
         seed: arguments.seed,
     };
-    let cloud = crate::render::scatter(arguments.engine, &request)?;
+    let cloud = crate::render::Sampler::open(arguments.engine)?.draw(&request)?;
     if cloud.absorbed > 0 {
         eprintln!(
             "{} of {} samples were absorbed at the horizon",

@@ -14,13 +14,13 @@ use crate::scene::surface::{SurfacePoint, surface_at};
 use crate::scene::{Geometry, Hit};
 
 /// Pairs of numbers before the first bounce: pixel, lens.
-const FIRST_DIMENSION: u32 = 2;
+pub const FIRST_DIMENSION: u32 = 2;
 /// Pairs of numbers a bounce: lobe twice, light twice.
-const BOUNCE_DIMENSIONS: u32 = 4;
+pub const BOUNCE_DIMENSIONS: u32 = 4;
 /// Bounces before Russian roulette.
-const ROULETTE_START: u32 = 3;
+pub const ROULETTE_START: u32 = 3;
 /// Beyond it the square would overflow f32: dropped and counted.
-const RADIANCE_MAX: f64 = 1e18;
+pub const RADIANCE_MAX: f64 = 1e18;
 
 /// What one path found.
 #[derive(Clone, Copy, Debug)]
@@ -157,7 +157,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             throughput = throughput * drawn.throughput;
             let strength = throughput.max_component();
             // Also ends paths that are NaN.
-            if !(strength.to_f64() > 0.0) {
+            if strength.to_f64().partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
                 break;
             }
             if bounce >= ROULETTE_START && strength.to_f64() < 1.0 {

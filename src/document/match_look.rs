@@ -8,10 +8,11 @@ use crate::analysis::fit::{
     CurveFit, CurveTarget, Measure, Merl, fit_curve, nearest_roughness, roughness, total_variation,
 };
 use crate::analysis::lobe_model::{LobeModel, roughness_min, view_direction};
-use crate::analysis::sphere_grid::Profile;
+use crate::analysis::lobe_view::{Axis, LinePlot, Series, slice_angles_deg};
+use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
 use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
 use crate::optics::lobe::{Horizon, Lobe};
-use crate::optics::vector::Vec3;
+use crate::optics::vector::{Vec3, vec3};
 
 /// Largest distances that a fitted curve may have: long tails need more than 1.
 const DISTANCES_MAX: [f64; 6] = [1.0, 1.5, 2.5, 4.0, 7.0, 12.0];
@@ -23,6 +24,8 @@ const FINAL_SCAN: (usize, f64) = (4, 1e-3);
 const ROUGHNESS_MAX: f64 = 0.99;
 /// Roughness that a measured material is compared at before the fit.
 const ROUGHNESS_BEFORE: f64 = 0.3;
+/// Share of the largest value below which a target is not shown.
+const SHOWN_FLOOR: f64 = 1e-3;
 /// Largest angle of the view, degrees.
 pub const VIEW_ANGLE_MAX_DEG: f64 = 85.0;
 
@@ -104,6 +107,25 @@ impl LookMatch {
         if let Some(colors) = &self.colors {
             colors.apply(material);
         }
+    }
+}
+
+/// The specular lobe of a material.
+pub fn lobe_of_material(material: &MaterialSettings) -> LobeModel {
+    let is_custom = material.lobe == Lobe::Geometric && material.curve == Curve::Custom;
+    LobeModel {
+        name: material.name.clone(),
+        lobe: material.lobe,
+        curve: material.curve,
+        horizon: material.horizon,
+        roughness: f64::from(material.roughness),
+        anisotropy: f64::from(material.anisotropy),
+        rotation_rad: f64::from(material.rotation_deg).to_radians(),
+        table: if is_custom {
+            material.custom_curve.table()
+        } else {
+            Vec::new()
+        },
     }
 }
 
@@ -197,6 +219,83 @@ pub fn match_look(target: &Target, lobe: Lobe, view_angle_deg: f64) -> Result<Lo
         after,
         curve,
         colors,
+    })
+}
+
+/// Target and candidates side by side: the normalised profiles in the plane of incidence, around the mirror direction
+/// as far as the target is not negligible.
+///
+/// # Errors
+/// [`MatchError`].
+pub fn comparison(target: &Target, found: &LookMatch) -> Result<LinePlot, MatchError> {
+    let view_angle_rad = found.view_angle_deg.to_radians();
+    let wo = view_direction(view_angle_rad);
+    let target_profile = TargetProfile::new(target, view_angle_rad)?;
+    let line = |group: usize, name: String, profile: Profile, gap_rad: f64| {
+        let grid = SphereGrid::adapted(view_angle_rad, Side::Above, true, &[profile]);
+        let total = grid.integral(&grid.values(profile)).max(f64::MIN_POSITIVE);
+        let point = |angle_deg: f64| {
+            let angle_rad = angle_deg.to_radians();
+            [angle_deg, profile(vec3(angle_rad.sin(), 0.0, angle_rad.cos())) / total]
+        };
+        Series {
+            lobe: name,
+            view_angle_deg: Some(found.view_angle_deg),
+            quantity: "density",
+            group,
+            points: slice_angles_deg(found.view_angle_deg, gap_rad.to_degrees())
+                .into_iter()
+                .map(point)
+                .collect(),
+        }
+    };
+    let mut series = vec![line(0, found.target.clone(), &|wi| target_profile.value(wi), 0.0)];
+    let mut candidates = vec![("before", &found.before), ("nearest", &found.nearest)];
+    if found.curve.is_some() {
+        candidates.push(("after", &found.after));
+    }
+    for (word, candidate) in candidates {
+        let model = &candidate.model;
+        let name = format!("{word}: {}, TV {:.3}", model.name, candidate.total_variation);
+        series.push(line(
+            series.len(),
+            name,
+            &|wi| model.evaluate(wo, wi)[0],
+            model.peak_radius_rad(),
+        ));
+    }
+    let top = series[0].points.iter().map(|[_, y]| *y).fold(0.0, f64::max);
+    let seen = series[0]
+        .points
+        .iter()
+        .filter(|[_, y]| *y > SHOWN_FLOOR * top)
+        .map(|[x, _]| *x);
+    let range = [seen.clone().fold(90.0, f64::min), seen.fold(-90.0, f64::max)];
+    let axis = |label: &str, range: [f64; 2], is_logarithmic| Axis {
+        label: label.to_owned(),
+        range,
+        is_logarithmic,
+    };
+    let highest = series
+        .iter()
+        .flat_map(|series| &series.points)
+        .map(|[_, y]| *y)
+        .fold(top, f64::max);
+    // Only what lies on the plot.
+    for series in &mut series {
+        series.points.retain(|[x, _]| (range[0]..=range[1]).contains(x));
+    }
+    Ok(LinePlot {
+        title: "Matched look".to_owned(),
+        x: axis("Angle to the normal in degrees", range, false),
+        y: axis(
+            "Share of the highlight in 1/sr",
+            [SHOWN_FLOOR * top, 1.5 * highest],
+            true,
+        ),
+        is_polar: false,
+        x_column: "angle_deg",
+        series,
     })
 }
 

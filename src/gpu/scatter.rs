@@ -37,44 +37,62 @@ pub struct Scatter {
     pub reserved: u32,
 }
 
-/// Draws the samples.
-///
-/// # Errors
-/// If the shader does not compile or the device fails.
-pub fn scatter(gpu: &GpuDevice, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
-    let table: &[f32] = if request.table.is_empty() {
-        &[0.0]
-    } else {
-        &request.table
-    };
-    let tables = gpu.storage("the curve", bytemuck::cast_slice(table))?;
-    let out = gpu.empty_storage("the samples", u64::from(request.count.min(BATCH)) * 16)?;
-    let pipeline = pipeline(gpu)?;
-    let mut samples = Vec::with_capacity(request.count as usize);
-    for first in (0..request.count).step_by(BATCH as usize) {
-        let count = (request.count - first).min(BATCH);
-        let uniforms = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("scatter"),
-            contents: bytemuck::bytes_of(&uniforms(request, first, count)),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let groups = [
-            bind_group(gpu, &pipeline, 0, &[(6, &tables)]),
-            bind_group(gpu, &pipeline, 1, &[(0, &uniforms), (1, &out)]),
-        ];
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(&pipeline);
-            for (index, group) in (0..).zip(&groups) {
-                pass.set_bind_group(index, group, &[]);
-            }
-            pass.dispatch_workgroups(count.div_ceil(64), 1, 1);
-        }
-        gpu.queue.submit([encoder.finish()]);
-        samples.extend(gpu.read::<[f32; 4]>(&out, count as usize)?);
+/// The shader that draws, compiled.
+#[derive(Debug)]
+pub struct Scatterer {
+    gpu: GpuDevice,
+    pipeline: wgpu::ComputePipeline,
+}
+
+impl Scatterer {
+    /// Compiles the shader.
+    ///
+    /// # Errors
+    /// [`GpuError::Shader`] where the driver refuses it.
+    pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
+        let pipeline = pipeline(&gpu)?;
+        Ok(Self { gpu, pipeline })
     }
-    Ok(ScatterCloud::from_raw(samples))
+
+    /// Draws the samples.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn draw(&self, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
+        let gpu = &self.gpu;
+        let table: &[f32] = if request.table.is_empty() {
+            &[0.0]
+        } else {
+            &request.table
+        };
+        let tables = gpu.storage("the curve", bytemuck::cast_slice(table))?;
+        let out = gpu.empty_storage("the samples", u64::from(request.count.min(BATCH)) * 16)?;
+        let mut samples = Vec::with_capacity(request.count as usize);
+        for first in (0..request.count).step_by(BATCH as usize) {
+            let count = (request.count - first).min(BATCH);
+            let uniforms = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+                label: Some("scatter"),
+                contents: bytemuck::bytes_of(&uniforms(request, first, count)),
+                usage: wgpu::BufferUsages::UNIFORM,
+            });
+            let groups = [
+                bind_group(gpu, &self.pipeline, 0, &[(6, &tables)]),
+                bind_group(gpu, &self.pipeline, 1, &[(0, &uniforms), (1, &out)]),
+            ];
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            {
+                let mut pass = encoder.begin_compute_pass(&Default::default());
+                pass.set_pipeline(&self.pipeline);
+                for (index, group) in (0..).zip(&groups) {
+                    pass.set_bind_group(index, group, &[]);
+                }
+                pass.dispatch_workgroups(count.div_ceil(64), 1, 1);
+            }
+            gpu.queue.submit([encoder.finish()]);
+            samples.extend(gpu.read::<[f32; 4]>(&out, count as usize)?);
+        }
+        Ok(ScatterCloud::from_raw(samples))
+    }
 }
 
 fn uniforms(request: &ScatterRequest, first: u32, count: u32) -> Scatter {

@@ -25,6 +25,17 @@ impl Linked {
         begun.map_or(("", line), |(module, first)| (module.as_str(), line - first + 1))
     }
 
+    /// Appends WGSL as a module of this name; each of its lines becomes one line.
+    fn append(&mut self, module: &str, text: &str) {
+        self.modules.push((module.to_owned(), self.source.lines().count() + 1));
+        for line in text.lines() {
+            // An import leaves an empty line behind: line numbers stay those of the file.
+            self.source
+                .push_str(if line.starts_with("#import") { "" } else { line });
+            self.source.push('\n');
+        }
+    }
+
     fn add(&mut self, module: &str) -> Result<(), String> {
         if self.modules.iter().any(|(name, _)| name == module) {
             return Ok(());
@@ -37,13 +48,7 @@ impl Linked {
             self.add(line.trim_end().trim_end_matches('"'))?;
         }
         self.modules.remove(place);
-        self.modules.push((module.to_owned(), self.source.lines().count() + 1));
-        for line in text.lines() {
-            // An import leaves an empty line behind: line numbers stay those of the file.
-            self.source
-                .push_str(if line.starts_with("#import") { "" } else { line });
-            self.source.push('\n');
-        }
+        self.append(module, &text);
         Ok(())
     }
 }
@@ -53,8 +58,23 @@ impl Linked {
 /// # Errors
 /// Names the module that does not exist.
 pub fn link(module: &str) -> Result<Linked, String> {
+    link_with(&[module], "")
+}
+
+/// What [`Linked::locate`] calls the source that came on top of the modules.
+pub const EXTRA: &str = "extra source";
+
+/// Modules of `shaders/` with everything that they import, then `extra_source`, which may use all of it: an entry point
+/// around functions that have none.
+///
+/// # Errors
+/// Names the module that does not exist.
+pub fn link_with(modules: &[&str], extra_source: &str) -> Result<Linked, String> {
     let mut linked = Linked::default();
-    linked.add(module)?;
+    for module in modules {
+        linked.add(module)?;
+    }
+    linked.append(EXTRA, extra_source);
     Ok(linked)
 }
 

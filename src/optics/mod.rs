@@ -5,6 +5,7 @@
 //! pointing away from the surface; `wo` is towards the viewer, `wi` towards the light; evaluating a lobe includes the
 //! cosine; a density is per steradian.
 
+pub mod chord;
 pub mod curve;
 pub mod frame;
 pub mod fresnel;

@@ -19,17 +19,6 @@ pub fn log1p<T: Real>(x: T) -> T {
     T::select(x.abs().less(c(0.01)), series, (T::one() + x).ln())
 }
 
-/// The inverse of sinh, odd to the last bit.
-#[inline(always)]
-pub fn arsinh<T: Real>(x: T) -> T {
-    let magnitude = x.abs();
-    // ln(|x| + √(x² + 1)) with the part that vanishes at 0 kept apart.
-    let square = magnitude * magnitude;
-    let root = (square + T::one()).sqrt();
-    let value = log1p(magnitude + square / (T::one() + root));
-    T::select(x.less(T::zero()), -value, value)
-}
-
 /// `v` scaled to length 1, or `fallback` where `v` is so short that its direction is rounding noise.
 #[inline(always)]
 pub fn normalize_or<T: Real>(v: Vec3<T>, fallback: Vec3<T>) -> Vec3<T> {

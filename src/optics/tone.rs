@@ -74,9 +74,9 @@ pub fn tone_agx<T: Real>(scene: Vec3<T>) -> Vec3<T> {
 }
 
 /// Stops below which AgX is black: ten below middle grey.
-const AGX_STOPS_MIN: f64 = -12.47393;
+pub const AGX_STOPS_MIN: f64 = -12.47393;
 /// Stops above which AgX is white: 6.5 above middle grey.
-const AGX_STOPS_MAX: f64 = 4.026069;
+pub const AGX_STOPS_MAX: f64 = 4.026069;
 
 /// AgX's sigmoid on [0, 1].
 #[inline(always)]
@@ -117,7 +117,7 @@ pub fn tone_pbr_neutral<T: Real>(scene: Vec3<T>) -> Vec3<T> {
 }
 
 /// Peak above which PBR Neutral compresses.
-const NEUTRAL_START: f64 = 0.8 - 0.04;
+pub const NEUTRAL_START: f64 = 0.8 - 0.04;
 
 /// As it is, cut off by [`tone_map`].
 #[inline(always)]

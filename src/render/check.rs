@@ -5,7 +5,7 @@ use std::time::Duration;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::engine::{EngineChoice, scatter};
+use super::engine::{EngineChoice, Sampler};
 use super::session::{Session, SessionError};
 use crate::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
 use crate::analysis::film::Film;
@@ -144,9 +144,10 @@ pub fn run(options: CheckOptions, progress: impl Fn(&str)) -> Result<Vec<Check>,
 
 fn samples(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
     let cases = sample_cases(options.thorough);
+    let sampler = Sampler::open(options.engine)?;
     let clouds = cases
         .iter()
-        .map(|case| scatter(options.engine, case))
+        .map(|case| sampler.draw(case))
         .collect::<Result<Vec<_>, _>>()?;
     let limit = sidak_level(LEVEL, cases.len());
     let check = |(case, cloud): (&ScatterRequest, &ScatterCloud)| {

@@ -14,10 +14,13 @@ use crate::scene::camera::Camera;
 /// How much room a framed model is given.
 const FRAME_MARGIN: f64 = 1.05;
 
+/// Materials and their tables.
+type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
+
 /// Compiles documents; remembers the last materials, whose tables take milliseconds.
 #[derive(Debug, Default)]
 pub(super) struct Compiler {
-    materials: Option<(Vec<MaterialSettings>, Arc<Vec<Material<f32>>>, Arc<Vec<f32>>)>,
+    materials: Option<(Vec<MaterialSettings>, Compiled)>,
 }
 
 impl Compiler {
@@ -53,14 +56,14 @@ impl Compiler {
         })
     }
 
-    fn materials(&mut self, wanted: Vec<MaterialSettings>) -> (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>) {
-        if let Some((_, materials, tables)) = self.materials.as_ref().filter(|(of, ..)| *of == wanted) {
-            return (materials.clone(), tables.clone());
+    fn materials(&mut self, wanted: Vec<MaterialSettings>) -> Compiled {
+        if let Some((_, compiled)) = self.materials.as_ref().filter(|(of, _)| *of == wanted) {
+            return compiled.clone();
         }
         let (materials, tables) = compile(&wanted);
-        let (materials, tables) = (Arc::new(materials), Arc::new(tables));
-        self.materials = Some((wanted, materials.clone(), tables.clone()));
-        (materials, tables)
+        let compiled = (Arc::new(materials), Arc::new(tables));
+        self.materials = Some((wanted, compiled.clone()));
+        compiled
     }
 }
 

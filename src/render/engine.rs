@@ -9,6 +9,7 @@ use crate::analysis::film::Film;
 use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
 use crate::cpu::CpuEngine;
 use crate::document::job::Job;
+use crate::gpu::scatter::Scatterer;
 use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
 
 /// The engine that a user asks for.
@@ -150,18 +151,39 @@ fn auto() -> (Engine, EngineInfo) {
     }
 }
 
-/// Samples of a lobe, drawn by the function that the chosen engine renders with.
-///
-/// # Errors
-/// Where a GPU was asked for and fails.
-pub fn scatter(choice: EngineChoice, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
-    let device = match choice {
-        EngineChoice::Cpu => return Ok(crate::cpu::scatter::scatter(request)),
-        EngineChoice::Gpu => GpuDevice::open(AdapterKind::Any)?,
-        EngineChoice::Auto => match GpuDevice::open(AdapterKind::Hardware) {
-            Ok(device) => device,
-            Err(_) => return Ok(crate::cpu::scatter::scatter(request)),
-        },
-    };
-    crate::gpu::scatter::scatter(&device, request)
+/// Draws samples of lobes with the function that the chosen engine renders with.
+pub enum Sampler {
+    /// The processor's.
+    Cpu,
+    /// The shader's.
+    Gpu(Box<Scatterer>),
+}
+
+impl Sampler {
+    /// Opens what was asked for; `auto` takes the processor where there is no hardware GPU.
+    ///
+    /// # Errors
+    /// Where a GPU was asked for and fails.
+    pub fn open(choice: EngineChoice) -> Result<Self, GpuError> {
+        let device = match choice {
+            EngineChoice::Cpu => return Ok(Self::Cpu),
+            EngineChoice::Gpu => GpuDevice::open(AdapterKind::Any)?,
+            EngineChoice::Auto => match GpuDevice::open(AdapterKind::Hardware) {
+                Ok(device) => device,
+                Err(_) => return Ok(Self::Cpu),
+            },
+        };
+        Ok(Self::Gpu(Box::new(Scatterer::new(device)?)))
+    }
+
+    /// Draws the samples.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn draw(&self, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
+        match self {
+            Self::Cpu => Ok(crate::cpu::scatter::scatter(request)),
+            Self::Gpu(scatterer) => scatterer.draw(request),
+        }
+    }
 }

@@ -13,5 +13,5 @@ mod session;
 pub mod worker;
 
 pub use assets::Assets;
-pub use engine::{EngineChoice, EngineInfo, scatter};
+pub use engine::{EngineChoice, EngineInfo, Sampler};
 pub use session::{Progress, Session, SessionError};

@@ -1,11 +1,14 @@
 //! The wide hierarchy of boxes (CWBVH, Ylitie, Karras and Laine 2017) that rays find triangles by, built by obvhs.
 
-use glam::Vec3A;
+use glam::{UVec3, Vec3A};
 use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
+use rayon::prelude::*;
 
 /// Boxes are grown by this on every side, in units of the bounding radius (some 16 roundings of a coordinate of 1), so
 /// that rounding in a ray's test against a box never loses a triangle in it.
@@ -17,7 +20,8 @@ const LEAF_TRIANGLES: u32 = 3;
 /// From this many triangles on the time to build counts more than the last 3 % of nodes visited.
 const MANY: usize = 200_000;
 
-/// The hierarchy over triangles given by their corners; its `primitive_indices` are the order of leaves.
+/// The hierarchy over triangles given by their corners, in units of the bounding radius; its `primitive_indices` are
+/// the order of leaves.
 ///
 /// Not by spatial splits: each triangle is in one leaf, so triangles can be stored in the order of leaves.
 pub(super) fn build(corners: impl ExactSizeIterator<Item = [[f32; 3]; 3]>) -> CwBvh {
@@ -30,10 +34,93 @@ pub(super) fn build(corners: impl ExactSizeIterator<Item = [[f32; 3]; 3]>) -> Cw
     if boxes.is_empty() {
         return CwBvh::default();
     }
-    let order = (0..boxes.len() as u32).collect();
-    let mut binary =
-        PlocBuilder::with_capacity(boxes.len()).build(PlocSearchDistance::Medium, &boxes, order, SortPrecision::U64, 3);
+    let clusters = Clusters::new(&boxes);
+    let mut binary = clusters.build_binary(&boxes);
     let reinsertion = if boxes.len() < MANY { 0.2 } else { 0.02 };
     ReinsertionOptimizer::default().run(&mut binary, reinsertion, None);
+    clusters.expand(&mut binary, &boxes);
     bvh2_to_cwbvh(&binary, LEAF_TRIANGLES, true, false)
+}
+
+/// Triangles whose centres are in the same cell of a very fine grid, such as duplicates.
+///
+/// The builder pairs nearest neighbours and makes hardly any pairs where all are equally near: thousands of equal boxes
+/// would take it quadratic time. It sees each cluster as one box; below that come balanced trees.
+struct Clusters {
+    /// The triangles, cluster by cluster.
+    members: Vec<u32>,
+    /// Where in `members` each cluster begins, and its end.
+    starts: Vec<u32>,
+}
+
+impl Clusters {
+    fn new(boxes: &[Aabb]) -> Self {
+        let cell_of = |aabb: &Aabb| {
+            let cells_per_axis = (1 << 21) as f32;
+            // From [−1, 1]; the ground's centres are beyond and meet in the outermost cells.
+            let place = ((aabb.min + aabb.max) * 0.25 + 0.5) * cells_per_axis;
+            let [x, y, z] =
+                UVec3::from(place.clamp(Vec3A::ZERO, Vec3A::splat(cells_per_axis - 1.0)).as_uvec3()).to_array();
+            u64::from(x) | u64::from(y) << 21 | u64::from(z) << 42
+        };
+        let mut keyed: Vec<(u64, u32)> = boxes.par_iter().map(cell_of).zip(0..boxes.len() as u32).collect();
+        keyed.par_sort_unstable();
+        let is_start = |&i: &usize| i == 0 || i == keyed.len() || keyed[i].0 != keyed[i - 1].0;
+        let starts = (0..=keyed.len()).filter(is_start).map(|i| i as u32).collect();
+        Self {
+            members: keyed.into_iter().map(|(_, triangle)| triangle).collect(),
+            starts,
+        }
+    }
+
+    fn members(&self, cluster: u32) -> &[u32] {
+        let [start, end] = [0, 1].map(|i| self.starts[cluster as usize + i] as usize);
+        &self.members[start..end]
+    }
+
+    /// A binary hierarchy over the clusters.
+    fn build_binary(&self, boxes: &[Aabb]) -> Bvh2 {
+        let count = self.starts.len() as u32 - 1;
+        let cluster_boxes: Vec<Aabb> = (0..count).map(|cluster| union(self.members(cluster), boxes)).collect();
+        PlocBuilder::with_capacity(cluster_boxes.len()).build(
+            PlocSearchDistance::Medium,
+            &cluster_boxes,
+            (0..count).collect(),
+            SortPrecision::U64,
+            3,
+        )
+    }
+
+    /// Replaces leaves that are clusters by leaves that are triangles.
+    fn expand(&self, binary: &mut Bvh2, boxes: &[Aabb]) {
+        for node in 0..binary.nodes.len() {
+            if binary.nodes[node].is_leaf() {
+                let cluster = binary.primitive_indices[binary.nodes[node].first_index as usize];
+                split(&mut binary.nodes, node, self.members(cluster), boxes);
+            }
+        }
+        binary.primitive_indices = (0..boxes.len() as u32).collect();
+    }
+}
+
+/// Makes a node the root of a balanced tree over triangles.
+fn split(nodes: &mut Vec<Bvh2Node>, node: usize, triangles: &[u32], boxes: &[Aabb]) {
+    let aabb = union(triangles, boxes);
+    if let [triangle] = triangles {
+        nodes[node] = Bvh2Node::new(aabb, 1, *triangle);
+        return;
+    }
+    let children = nodes.len();
+    nodes[node] = Bvh2Node::new(aabb, 0, children as u32);
+    nodes.extend([Bvh2Node::default(); 2]);
+    let (left, right) = triangles.split_at(triangles.len() / 2);
+    split(nodes, children, left, boxes);
+    split(nodes, children + 1, right, boxes);
+}
+
+fn union(triangles: &[u32], boxes: &[Aabb]) -> Aabb {
+    triangles
+        .iter()
+        .map(|&triangle| boxes[triangle as usize])
+        .fold(Aabb::INVALID, |all, aabb| all.union(&aabb))
 }

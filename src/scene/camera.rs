@@ -46,9 +46,9 @@ impl PixelFilter {
 }
 
 /// Radius at which the Gaussian is cut off, in pixels.
-const GAUSSIAN_RADIUS: f64 = 1.5;
+pub const GAUSSIAN_RADIUS: f64 = 1.5;
 /// Its standard deviation in pixels.
-const GAUSSIAN_SIGMA: f64 = 0.5;
+pub const GAUSSIAN_SIGMA: f64 = 0.5;
 
 /// A camera in the geometry's units; the f32 form is what the GPU reads (`shaders/scene/layout.wgsl`).
 #[derive(Clone, Copy, Debug, PartialEq)]

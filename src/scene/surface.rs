@@ -9,9 +9,9 @@ use crate::optics::vector::{Vec3, vec3};
 use super::{Geometry, Hit};
 
 /// Rounding of the position's three products and sums, with what the box test and the transforms add.
-const POSITION_ERROR: f64 = 1e-6;
+pub const POSITION_ERROR: f64 = 1e-6;
 /// Smallest cosine between shading normal and view: where interpolation leans further away, the normal is bent back.
-const VIEW_COSINE_MIN: f64 = 1e-3;
+pub const VIEW_COSINE_MIN: f64 = 1e-3;
 
 /// A point on a surface, ready to shade.
 #[derive(Clone, Copy, Debug)]

@@ -1,5 +1,6 @@
 //! The environment's WGSL functions against their Rust twins, on the first adapter there is.
 
+use glossmith::gpu::shader::link_with;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::environment::{
     Environment, environment_density, environment_direction, environment_local_from_world, environment_radiance,
@@ -12,10 +13,8 @@ const COUNT: usize = 10_000;
 const RESULTS: usize = 5;
 
 const HARNESS: &str = "
-    @group(0) @binding(0) var environment_map: texture_2d<f32>;
-    @group(0) @binding(1) var<storage, read> environment_cells: array<AliasCell>;
-    @group(0) @binding(2) var<storage, read> inputs: array<vec4f>;
-    @group(0) @binding(3) var<storage, read_write> results: array<vec4f>;
+    @group(1) @binding(0) var<storage, read> inputs: array<vec4f>;
+    @group(1) @binding(1) var<storage, read_write> results: array<vec4f>;
 
     @compute @workgroup_size(64)
     fn main(@builtin(global_invocation_id) id: vec3u) {
@@ -109,7 +108,9 @@ fn run(environment: &Environment, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let results = buffer(wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC);
     let readback = buffer(wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST);
 
-    let source = include_str!("../../shaders/scene/environment.wgsl").to_owned() + HARNESS;
+    let source = link_with(&["scene/environment"], HARNESS)
+        .expect("modules that exist")
+        .source;
     let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
         label: None,
         source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -128,19 +129,25 @@ fn run(environment: &Environment, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
         layout: &pipeline.get_bind_group_layout(0),
         entries: &[
             wgpu::BindGroupEntry {
-                binding: 0,
+                binding: 7,
                 resource: wgpu::BindingResource::TextureView(&view),
             },
             wgpu::BindGroupEntry {
-                binding: 1,
+                binding: 8,
                 resource: cells.as_entire_binding(),
             },
+        ],
+    });
+    let rows = device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout: &pipeline.get_bind_group_layout(1),
+        entries: &[
             wgpu::BindGroupEntry {
-                binding: 2,
+                binding: 0,
                 resource: inputs.as_entire_binding(),
             },
             wgpu::BindGroupEntry {
-                binding: 3,
+                binding: 1,
                 resource: results.as_entire_binding(),
             },
         ],
@@ -149,6 +156,7 @@ fn run(environment: &Environment, inputs: &[[f32; 4]]) -> Vec<[f32; 4]> {
     let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
     pass.set_pipeline(&pipeline);
     pass.set_bind_group(0, &group, &[]);
+    pass.set_bind_group(1, &rows, &[]);
     pass.dispatch_workgroups(COUNT.div_ceil(64) as u32, 1, 1);
     drop(pass);
     encoder.copy_buffer_to_buffer(&results, 0, &readback, 0, size);

@@ -1,9 +1,21 @@
 //! Match look and lobe views against known values.
 
-use glossmith::analysis::fit::{Measure, Nearest, nearest_roughness};
-use glossmith::analysis::lobe_model::{LobeModel, view_direction};
+use std::path::Path;
+use std::process::{Command, Output};
+
+use glossmith::analysis::fit::basis::Hats;
+use glossmith::analysis::fit::merl::{CELLS, SCALES};
+use glossmith::analysis::fit::{
+    CurveTarget, Measure, Merl, MerlError, Nearest, fit_curve, nearest_roughness, total_variation,
+};
+use glossmith::analysis::lobe_model::{LobeModel, NORMAL, view_direction};
+use glossmith::document::match_look::{Candidate, MatchError, Target, curve_from_fit, match_look};
+use glossmith::document::{MaterialSettings, load_material};
 use glossmith::optics::curve::Curve;
-use glossmith::optics::lobe::{Lobe, phong};
+use glossmith::optics::lobe::{Horizon, Lobe, phong};
+use glossmith::optics::vector::{Vec3, vec3};
+
+use crate::support::Random;
 
 /// The roughness of `lobe` nearest to a target, at normal incidence unless said otherwise.
 fn nearest(target: &LobeModel, lobe: Lobe, view_angle_deg: f64, measure: Measure) -> Nearest {
@@ -45,5 +57,321 @@ fn table_of_equal_looks_is_reproduced() {
         assert!((ggx.roughness.powi(2) - alpha).abs() < 0.001, "{case}");
         assert!((phong.total_variation - phong_tv).abs() < 0.001, "{case}");
         assert!((ggx.total_variation - ggx_tv).abs() < 0.0055, "{case}");
+    }
+}
+
+#[test]
+fn hats_add_to_the_density_of_the_optics() {
+    // h = 2 of the square root curve is twice the sum of all hats; h = 3 D of the cube root lies on them too.
+    let hats = Hats::new(22, 1.0);
+    let mut random = Random::new(7);
+    for _ in 0..2000 {
+        let roughness = 0.02 + 0.95 * f64::from(random.unit());
+        let wo = view_direction(1.4 * f64::from(random.unit()));
+        let mirror = wo.mirrored_about(NORMAL);
+        let ball = random.in_ball().to_array().map(f64::from);
+        let wi = (mirror + Vec3::from_f64(ball) * roughness).normalize();
+        let mut densities = vec![0.0; hats.nodes.len()];
+        hats.add_densities(roughness, mirror, wi, &mut densities);
+        let h = |of: fn(f64) -> f64| {
+            hats.nodes
+                .iter()
+                .zip(&densities)
+                .map(|(node, p)| of(*node) * p)
+                .sum::<f64>()
+        };
+        for (curve, value) in [(Curve::Sqrt, h(|_| 2.0)), (Curve::Cbrt, h(|distance| 3.0 * distance))] {
+            let expected = LobeModel::new(Lobe::Geometric, roughness, curve).raw_density(wo, wi);
+            let tolerance = 2e-3 * expected + 1e-6;
+            assert!(
+                (value - expected).abs() < tolerance,
+                "{curve:?} R {roughness} {wi:?}: {value} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn least_squares_recover_known_curves() {
+    for (curve, view_angle_deg) in [(Curve::Smooth, 0.0_f64), (Curve::Cbrt, 0.0), (Curve::Smooth, 40.0)] {
+        let view_angle_rad = view_angle_deg.to_radians();
+        let model = LobeModel::new(Lobe::Geometric, 0.3, curve);
+        let wo = view_direction(view_angle_rad);
+        let profile = |wi| model.evaluate(wo, wi)[0];
+        let target = CurveTarget::new(&profile, view_angle_rad).unwrap();
+        let fit = fit_curve(&target, 0.3, 1.0, Horizon::Mirror, false).unwrap();
+        assert!(fit.residual < 0.004, "{curve:?} {view_angle_deg}: {}", fit.residual);
+        // What the document stores of it.
+        let table = curve_from_fit(&fit).unwrap().table();
+        let stored = LobeModel {
+            curve: Curve::Custom,
+            table,
+            ..model.clone()
+        };
+        let distance = total_variation(&profile, &stored, view_angle_rad, Measure::Evaluate);
+        assert!(distance < 0.01, "{curve:?} {view_angle_deg}: {distance}");
+    }
+}
+
+#[test]
+fn own_curve_comes_closer_to_ggx_than_any_named_one() {
+    let wo = view_direction(0.0);
+    for (roughness, limit) in [(0.1, 0.02), (0.3, 0.01), (0.6, 0.02)] {
+        let ggx = LobeModel::new(Lobe::Ggx, roughness, Curve::Smooth);
+        let profile = |wi| ggx.evaluate(wo, wi)[0];
+        let found = match_look(&Target::Lobe(ggx.clone()), Lobe::Geometric, 0.0).unwrap();
+        assert!(
+            found.after.total_variation < limit,
+            "{roughness}: {}",
+            found.after.total_variation
+        );
+        assert!(found.nearest.total_variation <= found.before.total_variation + 1e-6);
+        for curve in Curve::ALL.iter().copied().filter(|curve| *curve != Curve::Custom) {
+            let model = LobeModel::new(Lobe::Geometric, 0.3, curve);
+            let named = nearest_roughness(&profile, &model, 0.0, Measure::Evaluate);
+            assert!(
+                found.after.total_variation < 0.5 * named.total_variation,
+                "{roughness} {curve:?}: {named:?}"
+            );
+        }
+        // The residual is that of the material, read back.
+        let mut material = MaterialSettings::default();
+        found.apply(&mut material);
+        let model = glossmith::document::match_look::lobe_of_material(&material);
+        let distance = total_variation(&profile, &model, 0.0, Measure::Evaluate);
+        assert!(
+            (distance - found.after.total_variation).abs() < 1e-4,
+            "{distance} {}",
+            found.after.total_variation
+        );
+    }
+}
+
+#[test]
+fn lobe_is_matched_to_itself() {
+    for (lobe, roughness) in [
+        (Lobe::Ggx, 0.25),
+        (Lobe::Phong, 0.4),
+        (Lobe::BlinnPhong, 0.5),
+        (Lobe::Geometric, 0.2),
+    ] {
+        let target = Target::Lobe(LobeModel::new(lobe, roughness, Curve::Smooth));
+        let Candidate { model, total_variation } = match_look(&target, lobe, 30.0).unwrap().after;
+        assert!(
+            (model.roughness / roughness - 1.0).abs() < 2e-3,
+            "{lobe:?} {}",
+            model.roughness
+        );
+        assert!(total_variation < 2e-3, "{lobe:?} {total_variation}");
+    }
+}
+
+#[test]
+fn what_cannot_be_matched_is_told() {
+    let ggx = LobeModel::new(Lobe::Ggx, 0.3, Curve::Smooth);
+    let mirror = Target::Lobe(ggx.with_roughness(0.001));
+    assert!(matches!(
+        match_look(&mirror, Lobe::Geometric, 0.0),
+        Err(MatchError::Mirror { .. })
+    ));
+    let stretched = Target::Lobe(LobeModel {
+        anisotropy: 0.5,
+        ..ggx.clone()
+    });
+    assert_eq!(
+        match_look(&stretched, Lobe::Geometric, 0.0),
+        Err(MatchError::Anisotropic)
+    );
+    for angle in [-1.0, 90.0, f64::NAN] {
+        let outcome = match_look(&Target::Lobe(ggx.clone()), Lobe::Geometric, angle);
+        assert!(matches!(outcome, Err(MatchError::ViewAngle(_))), "{angle}");
+    }
+}
+
+/// A MERL file of a Lambertian base under a lobe, both coloured.
+fn merl_file(base: [f64; 3], highlight: [f64; 3], lobe: &LobeModel) -> Vec<u8> {
+    let mut bytes: Vec<u8> = CELLS.iter().flat_map(|count| (*count as i32).to_le_bytes()).collect();
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let mut lobe_values = Vec::new();
+    for cell in 0..CELLS.iter().product() {
+        let index = [
+            cell / (CELLS[1] * CELLS[2]),
+            cell / CELLS[2] % CELLS[1],
+            cell % CELLS[2],
+        ];
+        let place = |axis: usize| (index[axis] as f64 + 0.5) / CELLS[axis] as f64;
+        let (theta_h, theta_d, phi_d) = (quarter * place(0).powi(2), quarter * place(1), 2.0 * quarter * place(2));
+        let half = vec3(theta_h.sin(), 0.0, theta_h.cos());
+        let across = vec3(theta_h.cos(), 0.0, -theta_h.sin());
+        let around = across * phi_d.cos() + vec3(0.0, phi_d.sin(), 0.0);
+        let wi = half * theta_d.cos() + around * theta_d.sin();
+        let wo = wi.mirrored_about(half);
+        let is_above = wi.z > 1e-3 && wo.z > 1e-3;
+        // Below the horizon the database has negative numbers.
+        lobe_values.push(if is_above {
+            lobe.evaluate(wo, wi)[0] / wi.z
+        } else {
+            f64::NAN
+        });
+    }
+    for channel in 0..3 {
+        for value in &lobe_values {
+            let reflectance = base[channel] / std::f64::consts::PI + highlight[channel] * value;
+            let stored = if reflectance.is_nan() {
+                -1.0
+            } else {
+                reflectance / SCALES[channel]
+            };
+            bytes.extend(stored.to_le_bytes());
+        }
+    }
+    bytes
+}
+
+fn glossmith(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn text(path: &Path) -> &str {
+    path.to_str().unwrap()
+}
+
+#[test]
+fn measured_ggx_is_found_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, output) = (folder.path().join("red-plastic.binary"), folder.path().join("fit.json"));
+    let ggx = LobeModel::new(Lobe::Ggx, 0.3, Curve::Smooth);
+    std::fs::write(&file, merl_file([0.4, 0.1, 0.05], [0.04; 3], &ggx)).unwrap();
+    let merl = Merl::load(&file).unwrap();
+    let (wo, wi) = (view_direction(0.5), vec3(0.3, 0.2, 0.9).normalize());
+    let expected = 0.4 / std::f64::consts::PI + 0.04 * ggx.evaluate(wo, wi)[0] / wi.z;
+    assert!((merl.reflectance(wo, wi).x / expected - 1.0).abs() < 0.02);
+    let run = glossmith(&[
+        "fit",
+        "--target",
+        text(&file),
+        "--lobe",
+        "ggx",
+        "--output",
+        text(&output),
+    ]);
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let material = load_material(&output).unwrap().value;
+    assert_eq!((material.lobe, material.metalness), (Lobe::Ggx, 0.0));
+    assert!((material.roughness / 0.3 - 1.0).abs() < 0.03, "{}", material.roughness);
+    assert!((material.ior - 1.5).abs() < 0.03, "{}", material.ior);
+    for (found, expected) in material.base_color.into_iter().zip([0.4, 0.1, 0.05]) {
+        // The base gets what the highlight leaves over.
+        assert!(
+            (found * 0.96 / expected - 1.0).abs() < 0.06,
+            "{:?}",
+            material.base_color
+        );
+    }
+    // The geometric lobe, its curve free, and a metal.
+    let gold = [0.9, 0.6, 0.2];
+    let merl = Merl::parse(&file, &merl_file([0.0; 3], gold, &ggx)).unwrap();
+    let target = Target::Measured {
+        name: "gold".to_owned(),
+        merl: merl.into(),
+    };
+    let found = match_look(&target, Lobe::Geometric, 30.0).unwrap();
+    assert!(found.after.total_variation < 0.08, "{}", found.after.total_variation);
+    assert!(found.after.total_variation < 0.5 * found.nearest.total_variation);
+    let mut material = MaterialSettings::default();
+    found.apply(&mut material);
+    assert_eq!(material.metalness, 1.0);
+    for (found, expected) in material.base_color.into_iter().zip(gold) {
+        assert!(
+            (f64::from(found) / expected - 1.0).abs() < 0.08,
+            "{:?}",
+            material.base_color
+        );
+    }
+}
+
+#[test]
+fn damaged_measurements_are_refused() {
+    let path = Path::new("x.binary");
+    let lambert = LobeModel::new(Lobe::Lambert, 1.0, Curve::Smooth);
+    let whole = merl_file([0.5; 3], [0.0; 3], &lambert);
+    assert!(Merl::parse(path, &whole).is_ok());
+    assert!(matches!(
+        Merl::parse(path, &whole[..whole.len() - 8]),
+        Err(MerlError::Length { .. })
+    ));
+    assert!(matches!(Merl::parse(path, &[]), Err(MerlError::Header { .. })));
+    assert!(matches!(
+        Merl::parse(path, b"a text file, not a measurement"),
+        Err(MerlError::Header { .. })
+    ));
+    let mut other = whole.clone();
+    other[4] = 45;
+    assert!(matches!(Merl::parse(path, &other), Err(MerlError::Header { .. })));
+    let mut black = whole.clone();
+    black[12..].fill(0);
+    assert!(matches!(Merl::parse(path, &black), Err(MerlError::Empty { .. })));
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("long.binary");
+    std::fs::write(&file, [whole.as_slice(), &[0]].concat()).unwrap();
+    assert!(matches!(Merl::load(&file), Err(MerlError::Length { .. })));
+    // On the command line one line that names the file, and nothing written.
+    let output = folder.path().join("fit.json");
+    for bytes in [&whole[..1000], &black[..]] {
+        std::fs::write(&file, bytes).unwrap();
+        let run = glossmith(&["fit", "--target", text(&file), "--output", text(&output)]);
+        let message = String::from_utf8_lossy(&run.stderr);
+        assert_eq!(run.status.code(), Some(1), "{message}");
+        assert!(
+            message.contains("long.binary") && message.lines().count() == 1,
+            "{message}"
+        );
+        assert!(!output.exists());
+    }
+}
+
+#[test]
+fn command_line_fits_and_plots() {
+    let folder = tempfile::tempdir().unwrap();
+    let (output, plot) = (folder.path().join("fit.json"), folder.path().join("fit.csv"));
+    let alpha = [
+        "fit",
+        "--target",
+        "ggx:alpha=0.09",
+        "--output",
+        text(&output),
+        "--plot",
+        text(&plot),
+    ];
+    let run = glossmith(&alpha);
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let printed = String::from_utf8_lossy(&run.stdout).into_owned();
+    for word in [
+        "target   GGX 0.3",
+        "before   TV",
+        "nearest  TV",
+        "after    TV",
+        "R        ",
+        "curve    0:0,",
+    ] {
+        assert!(printed.contains(word), "{word}: {printed}");
+    }
+    let material = load_material(&output).unwrap().value;
+    assert_eq!((material.lobe, material.curve), (Lobe::Geometric, Curve::Custom));
+    let rows = std::fs::read_to_string(&plot).unwrap();
+    assert!(rows.starts_with("lobe,view_angle_deg,angle_deg,density\n"), "{rows}");
+    for wrong in [
+        "ggx:2",
+        "ggx:0",
+        "nothing",
+        "geometric:alpha=0.1",
+        "ggx:0.3/sqrt",
+        "geometric:0.3/custom",
+    ] {
+        let run = glossmith(&["fit", "--target", wrong, "--output", text(&output)]);
+        assert_eq!(run.status.code(), Some(2), "{wrong}");
     }
 }

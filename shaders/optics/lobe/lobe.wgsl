@@ -1,6 +1,7 @@
 // What all lobes share, and what happens below the horizon. Twin of src/optics/lobe/mod.rs.
-// raw_sample, raw_density, raw_weight and is_hemispherical are generated from the registry ("optics/lobe/registry").
+// raw_sample, raw_density, raw_weight, is_hemispherical and LOBE_* are generated from the registry.
 #import "optics/frame"
+#import "optics/lobe/registry"
 
 const HORIZON_MIRROR: u32 = 0u;
 const HORIZON_ABSORB: u32 = 1u;
@@ -55,15 +56,16 @@ fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f,
 
 // (evaluate, density), the cosine included.
 fn lobe_evaluate(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f, wi: vec3f) -> vec2f {
-    if shape.horizon == HORIZON_NONE {
-        return raw_evaluate(shape, frame, wo, wi);
+    if shape.horizon != HORIZON_NONE && !(dot(surface_normal, wi) > 0.0) {
+        return vec2f(0.0);
     }
+    // A loop, so that the lobes' code is there once: drivers inline, and compile in more than proportion to the size.
     var result = vec2f(0.0);
-    if dot(surface_normal, wi) > 0.0 {
-        result = raw_evaluate(shape, frame, wo, wi);
-        if shape.horizon == HORIZON_MIRROR {
-            result += raw_evaluate(shape, frame, wo, reflected_at_plane(wi, surface_normal));
-        }
+    var direction = wi;
+    let count = select(1u, 2u, shape.horizon == HORIZON_MIRROR);
+    for (var i = 0u; i < count; i++) {
+        result += raw_evaluate(shape, frame, wo, direction);
+        direction = reflected_at_plane(wi, surface_normal);
     }
     return result;
 }

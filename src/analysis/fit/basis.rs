@@ -3,21 +3,18 @@
 //!
 //! The optics integrate one smooth h with a few nodes; hats have kinks, so the range is cut into panels here.
 
+use std::sync::LazyLock;
+
 use crate::analysis::lobe_model::NORMAL;
-use crate::optics::numeric::arsinh;
+use crate::analysis::quadrature::gauss_legendre;
 use crate::optics::vector::Vec3;
 
-/// Positive nodes and weights of the 8-point Gauss–Legendre rule on [−1, 1].
-const GAUSS_8: [[f64; 2]; 4] = [
-    [0.183_434_642_495_649_8, 0.362_683_783_378_362],
-    [0.525_532_409_916_329, 0.313_706_645_877_887_4],
-    [0.796_666_477_413_626_8, 0.222_381_034_453_374_45],
-    [0.960_289_856_497_536_3, 0.101_228_536_290_376_79],
-];
+/// The rule within a panel.
+static GAUSS_8: LazyLock<Vec<[f64; 2]>> = LazyLock::new(|| gauss_legendre(8));
 /// Longest panel in u, the variable in which the integrand is smooth.
-const PANEL_MAX: f64 = 0.7;
+const PANEL_MAX: f64 = 1.0;
 /// Longest range of u worth integrating.
-const RANGE_MAX: f64 = 24.0;
+const RANGE_MAX: f64 = 20.0;
 
 /// Hat functions of h over the distance D.
 #[derive(Clone, Debug)]
@@ -60,16 +57,18 @@ impl Hats {
         let [first, last] = chord.range;
         let panels = ((last - first) / PANEL_MAX).ceil().max(1.0);
         let half = 0.5 * (last - first) / panels;
+        let steps: Vec<[f64; 2]> = GAUSS_8
+            .iter()
+            .map(|[node, weight]| [(half * node).exp(), half * weight * chord.scale])
+            .collect();
         for panel in 0..panels as usize {
-            let middle = first + half * (2.0 * panel as f64 + 1.0);
-            for [node, weight] in GAUSS_8 {
-                for u in [middle - half * node, middle + half * node] {
-                    let (distance, square) = chord.distance_and_square(u);
-                    let (index, share) = self.place(distance);
-                    let value = chord.scale * half * weight * square;
-                    densities[index] += value * (1.0 - share);
-                    densities[index + 1] += value * share;
-                }
+            let middle = (first + half * (2.0 * panel as f64 + 1.0)).exp();
+            for [step, weight] in &steps {
+                let (distance, square) = chord.distance_and_square(middle * step);
+                let (index, share) = self.place(distance);
+                let value = weight * square;
+                densities[index] += value * (1.0 - share);
+                densities[index + 1] += value * share;
             }
         }
     }
@@ -116,8 +115,8 @@ impl Chord {
         if !(discriminant > 0.0 && tau_first < tau_last) {
             return None;
         }
-        let u_last = arsinh((tau_last - tau_middle) / tau_scale);
-        let u_first = arsinh((tau_first - tau_middle) / tau_scale).max(u_last - RANGE_MAX);
+        let u_last = ((tau_last - tau_middle) / tau_scale).asinh();
+        let u_first = ((tau_first - tau_middle) / tau_scale).asinh().max(u_last - RANGE_MAX);
         Some(Self {
             kappa,
             k,
@@ -133,10 +132,11 @@ impl Chord {
         })
     }
 
-    /// D and t² at u.
-    fn distance_and_square(&self, u: f64) -> (f64, f64) {
-        let tau = self.tau_middle + self.tau_scale * u.sinh();
-        let s = self.delta_root * u.cosh();
+    /// D and t² at e^u.
+    fn distance_and_square(&self, exp_u: f64) -> (f64, f64) {
+        let inverse = 1.0 / exp_u;
+        let tau = self.tau_middle + self.tau_scale * 0.5 * (exp_u - inverse);
+        let s = self.delta_root * 0.5 * (exp_u + inverse);
         let lifted = self.kappa * (tau * self.nu - self.m);
         // The root of k D² + 2κ(n·q) D − |q|² = 0 in the form that does not cancel.
         let distance = if lifted > 0.0 {

@@ -17,7 +17,7 @@ use crate::optics::vector::Vec3;
 /// Hat functions of h.
 const HATS: usize = 22;
 /// Solutions with corrected weights.
-const REWEIGHTINGS: usize = 6;
+const REWEIGHTINGS: usize = 5;
 /// Density per steradian below which differences do not matter more than others.
 const DENSITY_FLOOR: f64 = 1e-3;
 

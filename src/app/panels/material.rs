@@ -4,6 +4,7 @@ use egui::Ui;
 
 use super::Desk;
 use crate::app::actions::{Action, Command};
+use crate::app::icons::{self, Icon};
 use crate::app::theme;
 use crate::app::widgets::{self, Name, NumberStyle};
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter, Value};
@@ -64,24 +65,21 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
     ui.horizontal(|ui| {
-        let menu_width = 30.0;
-        let width = ui.available_width() - menu_width - ui.spacing().item_spacing.x;
+        let width = ui.available_width() - theme::ROW_HEIGHT - ui.spacing().item_spacing.x;
         let field = egui::TextEdit::singleline(&mut material.name)
             .desired_width(width)
-            .margin(egui::vec2(6.0, 4.0));
+            .margin(egui::vec2(6.0, 3.0));
         if ui.add(field).accessible_name("Material name").changed() {
             desk.edits.note("Rename material", "material name");
         }
-        let menu = ui.menu_button("⋯", |ui| {
+        let more = icons::button(ui, Icon::More, "Material menu", "Open, save, reset");
+        egui::Popup::menu(&more).show(|ui| {
             for command in [Command::OpenMaterial, Command::SaveMaterial, Command::ResetMaterial] {
                 if ui.button(command.label()).on_hover_text(command.help()).clicked() {
                     desk.act(command);
                 }
             }
         });
-        menu.response
-            .accessible_name("Material menu")
-            .on_hover_text("Open, save, reset");
     });
 }
 

@@ -3,6 +3,7 @@
 use egui::{Align, Layout, Rect, Ui, UiBuilder, vec2};
 
 use crate::app::actions::{Action, Command};
+use crate::app::icons::{self, Icon};
 use crate::app::panels::{Desk, camera, lighting};
 use crate::app::widgets;
 use crate::optics::tone::ToneCurve;
@@ -92,12 +93,12 @@ fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
 /// Added from the right.
 fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
     let is_paused = desk.state.is_paused;
-    let pause = ui.add(egui::Button::new(if is_paused { "▶" } else { "⏸" }).min_size(vec2(26.0, 0.0)));
-    let pause = pause.accessible_name(Command::Pause.label());
-    if pause
-        .on_hover_text(if is_paused { "Go on (space)" } else { "Pause (space)" })
-        .clicked()
-    {
+    let (icon, help) = if is_paused {
+        (Icon::Play, "Go on (space)")
+    } else {
+        (Icon::Pause, "Pause (space)")
+    };
+    if icons::button(ui, icon, Command::Pause.label(), help).clicked() {
         desk.act(Command::Pause);
     }
     sized(ui, 104.0, |ui| {

@@ -219,8 +219,8 @@ pub fn lobe_evaluate<T: Real>(
     let [mut value, mut density] = raw_evaluate(shape, frame, wo, wi);
     if shape.horizon == Horizon::Mirror {
         let [folded, folded_density] = raw_evaluate(shape, frame, wo, wi.reflected_at_plane(surface_normal));
-        value = value + folded;
-        density = density + folded_density;
+        value += folded;
+        density += folded_density;
     }
     [
         T::select(visible, value, T::zero()),

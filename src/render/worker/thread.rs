@@ -112,11 +112,8 @@ impl State<'_> {
         loop {
             let is_busy = self.should_render(book.is_paused);
             let rest_left = self.stage.as_ref().and_then(Stage::rest_left);
-            if is_busy || !book.orders.is_empty() || rest_left.is_some_and(|left| left.is_zero()) {
-                break;
-            }
-            let resumes = self.snapshot.activity == Activity::Paused && !book.is_paused;
-            if resumes {
+            let has_news = self.activity(book.is_paused) != self.snapshot.activity;
+            if is_busy || has_news || !book.orders.is_empty() || rest_left.is_some_and(|left| left.is_zero()) {
                 break;
             }
             let wait = rest_left.unwrap_or(Duration::from_secs(3600));
@@ -142,14 +139,19 @@ impl State<'_> {
         !session.progress().is_done && (!is_paused || !stage.is_shown)
     }
 
-    /// What an order or the step before left to tell.
-    fn rest(&mut self, is_paused: bool) {
-        let activity = match (&self.stage, &self.session) {
+    /// What there is to do now that orders have been followed.
+    fn activity(&self, is_paused: bool) -> Activity {
+        match (&self.stage, &self.session) {
             (Some(_), Some(session)) if session.progress().is_done => Activity::Done,
             (Some(_), Some(_)) if is_paused => Activity::Paused,
             (Some(_), Some(_)) => Activity::Rendering,
             _ => Activity::Idle,
-        };
+        }
+    }
+
+    /// What an order or the step before left to tell.
+    fn rest(&mut self, is_paused: bool) {
+        let activity = self.activity(is_paused);
         let is_news = self.snapshot.activity != activity;
         let is_unseen = self.stage.as_ref().is_some_and(|stage| !stage.is_shown);
         if activity == Activity::Done && is_unseen {

@@ -1,0 +1,264 @@
+//! The numbers of the views.
+
+use rayon::prelude::*;
+
+use super::{Axis, DiscMap, LinePlot, LobeView, MapPlot, Series, Solid, SolidPlot, ViewKind};
+use crate::analysis::lobe_model::{LobeModel, view_direction};
+use crate::analysis::sphere_grid::{Side, SphereGrid, rings};
+use crate::optics::vector::{Vec3, vec3};
+
+/// Pixels along a side of a map.
+const MAP_SIZE: usize = 300;
+/// Decades that a map shows.
+const MAP_DECADES: f64 = 4.0;
+/// Faces around a body.
+const SOLID_AZIMUTHS: usize = 48;
+/// Directions whose reflectance is below this share of the largest do not count for the largest reciprocity error.
+const RECIPROCITY_FLOOR: f64 = 0.01;
+/// Closest that a slice comes to the mirror direction, degrees.
+const SLICE_GAP_DEG: f64 = 0.02;
+
+/// The view of lobes under each of the angles, in degrees from 0 to below 90; the lobes must have a density
+/// ([`LobeModel::has_density`]).
+pub fn lobe_view(kind: ViewKind, lobes: &[LobeModel], view_angles_deg: &[f64]) -> LobeView {
+    let title = kind.label().to_owned();
+    let each = || {
+        lobes
+            .iter()
+            .flat_map(|lobe| view_angles_deg.iter().map(move |angle| (lobe, *angle)))
+    };
+    match kind {
+        ViewKind::Polar => LobeView::Lines(polar(title, each())),
+        ViewKind::Hemisphere => LobeView::Maps(maps(title, each())),
+        ViewKind::Solid => LobeView::Solids(SolidPlot {
+            title,
+            solids: each().map(|(lobe, angle)| solid(lobe, angle)).collect(),
+        }),
+        ViewKind::Albedo => LobeView::Lines(against_angle(
+            title,
+            "Albedo",
+            ["albedo"],
+            lobes,
+            view_angles_deg,
+            albedo,
+        )),
+        ViewKind::Horizon => {
+            let label = "Share below the horizon";
+            LobeView::Lines(against_angle(
+                title,
+                label,
+                ["fraction_below"],
+                lobes,
+                view_angles_deg,
+                fraction_below,
+            ))
+        }
+        ViewKind::Reciprocity => {
+            let (label, columns) = ("Relative difference of f(a, b) and f(b, a)", ["rms", "max"]);
+            LobeView::Lines(against_angle(
+                title,
+                label,
+                columns,
+                lobes,
+                view_angles_deg,
+                reciprocity_error,
+            ))
+        }
+    }
+}
+
+/// Lines over the angle of the view, one for each quantity.
+fn against_angle<const N: usize>(
+    title: String,
+    label: &str,
+    columns: [&'static str; N],
+    lobes: &[LobeModel],
+    view_angles_deg: &[f64],
+    quantities: fn(&LobeModel, f64) -> [f64; N],
+) -> LinePlot {
+    let mut series = Vec::new();
+    for (group, lobe) in lobes.iter().enumerate() {
+        let rows: Vec<[f64; N]> = view_angles_deg
+            .par_iter()
+            .map(|angle| quantities(lobe, angle.to_radians()))
+            .collect();
+        series.extend(columns.iter().enumerate().map(|(column, quantity)| {
+            Series {
+                lobe: lobe.name.clone(),
+                view_angle_deg: None,
+                quantity,
+                group,
+                points: view_angles_deg
+                    .iter()
+                    .zip(&rows)
+                    .map(|(angle, row)| [*angle, row[column]])
+                    .collect(),
+            }
+        }));
+    }
+    let top = largest(&series);
+    LinePlot {
+        title,
+        x: axis("Angle of the view to the normal in degrees", [0.0, 90.0]),
+        // Rounding noise must not fill the picture.
+        y: axis(label, [0.0, if top > 1e-6 { 1.05 * top } else { 1.0 }]),
+        is_polar: false,
+        x_column: "view_angle_deg",
+        series,
+    }
+}
+
+fn axis(label: &str, range: [f64; 2]) -> Axis {
+    Axis {
+        label: label.to_owned(),
+        range,
+        is_logarithmic: false,
+    }
+}
+
+fn largest(series: &[Series]) -> f64 {
+    series
+        .iter()
+        .flat_map(|series| &series.points)
+        .map(|[_, y]| *y)
+        .fold(0.0, f64::max)
+}
+
+/// ∫ evaluate over the hemisphere.
+fn albedo(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 1] {
+    let wo = view_direction(view_angle_rad);
+    let profile = |wi| lobe.evaluate(wo, wi)[0];
+    let grid = SphereGrid::adapted(view_angle_rad, Side::Above, lobe.is_symmetric(), &[&profile]);
+    [grid.integral(&grid.values(&profile))]
+}
+
+/// ∫ density over the lower hemisphere, before the policy.
+fn fraction_below(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 1] {
+    let wo = view_direction(view_angle_rad);
+    let profile = |wi| lobe.raw_density(wo, wi);
+    let grid = SphereGrid::adapted(view_angle_rad, Side::Below, lobe.is_symmetric(), &[&profile]);
+    [grid.integral(&grid.values(&profile))]
+}
+
+/// Of |f(a, b) − f(b, a)| over the mean of the two, a the view, b over the hemisphere, f the reflectance without the
+/// cosine: the root of the mean square, each b counting as the light that it gets, and the largest where f is not
+/// negligible. In [0, 2].
+fn reciprocity_error(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 2] {
+    let a = view_direction(view_angle_rad);
+    let profile = |b| lobe.evaluate(a, b)[0];
+    let grid = SphereGrid::adapted(view_angle_rad, Side::Above, lobe.is_symmetric(), &[&profile]);
+    let means_and_errors: Vec<[f64; 2]> = grid
+        .points
+        .iter()
+        .map(|(b, _)| {
+            let (there, back) = (profile(*b) / b.z, lobe.evaluate(*b, a)[0] / a.z);
+            let mean = 0.5 * (there + back);
+            [mean, if mean > 0.0 { (there - back).abs() / mean } else { 0.0 }]
+        })
+        .collect();
+    let energies = grid.values(&profile);
+    let squares: Vec<f64> = energies
+        .iter()
+        .zip(&means_and_errors)
+        .map(|(energy, [_, error])| energy * error * error)
+        .collect();
+    let top = means_and_errors.iter().map(|[mean, _]| *mean).fold(0.0, f64::max);
+    let counting = means_and_errors
+        .iter()
+        .filter(|[mean, _]| *mean > RECIPROCITY_FLOOR * top);
+    [
+        (grid.integral(&squares) / grid.integral(&energies).max(f64::MIN_POSITIVE)).sqrt(),
+        counting.map(|[_, error]| *error).fold(0.0, f64::max),
+    ]
+}
+
+/// Evaluate in the plane of incidence.
+fn polar<'a>(title: String, each: impl Iterator<Item = (&'a LobeModel, f64)>) -> LinePlot {
+    let line = |(group, (lobe, angle)): (usize, (&LobeModel, f64))| {
+        let wo = view_direction(angle.to_radians());
+        let point = |angle_deg: f64| {
+            let angle_rad = angle_deg.to_radians();
+            [
+                angle_deg,
+                lobe.evaluate(wo, vec3(angle_rad.sin(), 0.0, angle_rad.cos()))[0],
+            ]
+        };
+        Series {
+            lobe: lobe.name.clone(),
+            view_angle_deg: Some(angle),
+            quantity: "value",
+            group,
+            points: slice_angles_deg(angle, lobe.peak_radius_rad().to_degrees())
+                .into_iter()
+                .map(point)
+                .collect(),
+        }
+    };
+    let series: Vec<Series> = each.enumerate().map(line).collect();
+    let top = largest(&series);
+    LinePlot {
+        title,
+        x: axis("Angle to the normal in degrees", [-90.0, 90.0]),
+        y: axis("Reflectance × cosine in 1/sr", [0.0, 1.05 * top]),
+        is_polar: true,
+        x_column: "angle_deg",
+        series,
+    }
+}
+
+/// Angles from the normal across the hemisphere, dense near the mirror direction but not closer than `gap_deg`, rising.
+pub fn slice_angles_deg(mirror_deg: f64, gap_deg: f64) -> Vec<f64> {
+    let gap_deg = gap_deg.max(SLICE_GAP_DEG);
+    let offsets = (0..).map(|i| gap_deg * 1.055_f64.powi(i));
+    let offsets: Vec<f64> = offsets.take_while(|offset| *offset < 180.0).collect();
+    let below = offsets.iter().rev().map(|offset| mirror_deg - offset);
+    let above = offsets.iter().map(|offset| mirror_deg + offset);
+    let inside = below.chain(above).filter(|angle| angle.abs() < 90.0);
+    std::iter::once(-90.0).chain(inside).chain([90.0]).collect()
+}
+
+/// The density of what is kept, in pixels.
+fn maps<'a>(title: String, each: impl Iterator<Item = (&'a LobeModel, f64)>) -> MapPlot {
+    let maps: Vec<DiscMap> = each.map(|(lobe, angle)| map(lobe, angle)).collect();
+    let values = maps.iter().flat_map(|map| &map.values);
+    let top = values.copied().fold(1e-9, f64::max);
+    MapPlot {
+        title,
+        range: [top * 10.0_f64.powf(-MAP_DECADES), top],
+        maps,
+    }
+}
+
+fn map(lobe: &LobeModel, view_angle_deg: f64) -> DiscMap {
+    let wo = view_direction(view_angle_deg.to_radians());
+    let pixel = |pixel: usize| {
+        let direction = DiscMap::direction(MAP_SIZE, pixel % MAP_SIZE, pixel / MAP_SIZE);
+        direction.map_or(f64::NAN, |wi| lobe.evaluate(wo, wi)[1])
+    };
+    DiscMap {
+        lobe: lobe.name.clone(),
+        view_angle_deg,
+        size: MAP_SIZE,
+        values: (0..MAP_SIZE * MAP_SIZE).into_par_iter().map(pixel).collect(),
+    }
+}
+
+/// Evaluate along rings about the mirror direction.
+fn solid(lobe: &LobeModel, view_angle_deg: f64) -> Solid {
+    let view_angle_rad = view_angle_deg.to_radians();
+    let wo = view_direction(view_angle_rad);
+    let profile = |wi: Vec3<f64>| lobe.evaluate(wo, wi)[0];
+    let directions = rings(
+        view_angle_rad,
+        lobe.is_symmetric(),
+        &[&profile],
+        SOLID_AZIMUTHS,
+        lobe.peak_radius_rad(),
+    );
+    let ring = |ring: &Vec<Vec3<f64>>| ring.iter().map(|wi| (*wi, profile(*wi))).collect();
+    Solid {
+        lobe: lobe.name.clone(),
+        view_angle_deg,
+        rings: directions.par_iter().map(ring).collect(),
+    }
+}

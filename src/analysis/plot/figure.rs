@@ -1,0 +1,157 @@
+//! What all figures share: files, fonts, colours.
+
+use std::error::Error;
+use std::path::Path;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::{PlotError, register_fonts};
+
+/// What drawing may fail with.
+pub(super) type Outcome = Result<(), Box<dyn Error>>;
+
+/// Colours of lines and bodies, told apart by people of any colour vision (Okabe and Ito 2008).
+pub(super) const PALETTE: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(70, 70, 70),
+];
+/// Text and axes.
+pub(super) const INK: RGBColor = RGBColor(50, 50, 55);
+/// Lines to read values by.
+pub(super) const FAINT: RGBColor = RGBColor(222, 222, 226);
+
+/// Heights of a figure's title and of a panel's name, pixels.
+pub(super) const TITLE: u32 = 50;
+pub(super) const NAME: u32 = 30;
+
+/// Pictures are drawn at this many times their size and then reduced: plotters smooths no edges itself.
+const OVERSAMPLING: u32 = 2;
+
+/// A figure that can be drawn at any scale.
+pub(super) trait Figure {
+    /// Width and height in pixels.
+    fn size(&self) -> (u32, u32);
+    /// Draws it, every length `scale` times as large.
+    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+    where
+        DB::ErrorType: 'static;
+}
+
+/// Writes a figure as .svg, or else as .png.
+pub(super) fn write(path: &Path, figure: &impl Figure) -> Result<(), PlotError> {
+    register_fonts();
+    let is_svg = path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
+    let written = if is_svg {
+        write_svg(path, figure)
+    } else {
+        write_png(path, figure)
+    };
+    written.map_err(|error| PlotError {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    })
+}
+
+fn write_svg(path: &Path, figure: &impl Figure) -> Outcome {
+    let mut text = String::new();
+    {
+        let root = SVGBackend::with_string(&mut text, figure.size()).into_drawing_area();
+        root.fill(&WHITE)?;
+        figure.draw(&root, 1.0)?;
+        root.present()?;
+    }
+    Ok(std::fs::write(path, text)?)
+}
+
+fn write_png(path: &Path, figure: &impl Figure) -> Outcome {
+    let (width, height) = figure.size();
+    let large = (width * OVERSAMPLING, height * OVERSAMPLING);
+    let mut pixels = vec![0; 3 * large.0 as usize * large.1 as usize];
+    {
+        let root = BitMapBackend::with_buffer(&mut pixels, large).into_drawing_area();
+        root.fill(&WHITE)?;
+        figure.draw(&root, f64::from(OVERSAMPLING))?;
+        root.present()?;
+    }
+    let picture = image::RgbImage::from_raw(large.0, large.1, pixels).ok_or("the picture is too large")?;
+    let reduced = image::imageops::resize(&picture, width, height, image::imageops::FilterType::Triangle);
+    Ok(reduced.save_with_format(path, image::ImageFormat::Png)?)
+}
+
+/// A length in pixels at a scale.
+pub(super) fn px(length: f64, scale: f64) -> i32 {
+    (length * scale).round() as i32
+}
+
+/// The font at a size in pixels.
+pub(super) fn font(size: f64, scale: f64) -> TextStyle<'static> {
+    TextStyle::from(("sans-serif", size * scale).into_font()).color(&INK)
+}
+
+/// A line of a colour.
+pub(super) fn stroke(color: RGBColor, width: f64, scale: f64) -> ShapeStyle {
+    color.stroke_width((width * scale).round().max(1.0) as u32)
+}
+
+/// Writes a title of a size over an area, centred in `height`, and returns what is left below. Lengths in pixels.
+pub(super) fn titled<DB: DrawingBackend>(
+    area: &DrawingArea<DB, Shift>,
+    title: &str,
+    size: f64,
+    height: u32,
+    scale: f64,
+) -> Result<DrawingArea<DB, Shift>, Box<dyn Error>>
+where
+    DB::ErrorType: 'static,
+{
+    let (top, rest) = area.split_vertically(px(f64::from(height), scale));
+    let (width, height) = top.dim_in_pixel();
+    let style = font(size, scale).pos(Pos::new(HPos::Center, VPos::Center));
+    top.draw(&Text::new(
+        title.to_owned(),
+        (width as i32 / 2, height as i32 / 2),
+        style,
+    ))?;
+    Ok(rest)
+}
+
+/// Rows and columns that panels side by side take.
+pub(super) fn panel_grid(count: usize) -> (usize, usize) {
+    let columns = match count {
+        0..=3 => count.max(1),
+        4 => 2,
+        _ => 3,
+    };
+    (count.div_ceil(columns), columns)
+}
+
+/// A round number not below `value`/`parts`: 1, 2 or 5 times a power of ten.
+pub(super) fn round_step(value: f64, parts: f64) -> f64 {
+    let rough = value / parts;
+    let power = 10.0_f64.powf(rough.log10().floor());
+    let steps = [1.0, 2.0, 5.0, 10.0];
+    power
+        * steps
+            .into_iter()
+            .find(|step| step * power >= rough * 0.999)
+            .unwrap_or(10.0)
+}
+
+/// A number as people write it: as many digits as it needs.
+pub(super) fn number(value: f64) -> String {
+    let size = value.abs();
+    if size != 0.0 && !(1e-3..1e5).contains(&size) {
+        return format!("{value:.0e}");
+    }
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

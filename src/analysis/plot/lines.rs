@@ -1,0 +1,247 @@
+//! Line plots, over an axis or around a point.
+
+use plotters::coord::Shift;
+use plotters::coord::types::RangedCoordf64;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+use super::figure::{FAINT, Figure, INK, Outcome, PALETTE, font, number, px, round_step, stroke};
+use crate::analysis::lobe_view::{Axis, LinePlot, Series};
+
+/// A chart in plain coordinates.
+type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Width and height of the plot itself, and of a legend's entry.
+const SIZE: (u32, u32) = (860, 560);
+const ENTRY_HEIGHT: f64 = 24.0;
+/// Width of a letter on average, and of what a legend needs besides letters.
+const LETTER: f64 = 7.4;
+const LEGEND_MARGIN: f64 = 62.0;
+
+impl Figure for LinePlot {
+    fn size(&self) -> (u32, u32) {
+        (SIZE.0 + legend_width(self), if self.is_polar { 530 } else { SIZE.1 })
+    }
+
+    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+    where
+        DB::ErrorType: 'static,
+    {
+        let (area, legend) = root.split_horizontally(px(f64::from(SIZE.0), scale));
+        if self.is_polar {
+            draw_polar(self, &area, scale)?;
+        } else {
+            draw_cartesian(self, &area, scale)?;
+        }
+        draw_legend(self, &legend, scale)
+    }
+}
+
+fn legend_width(plot: &LinePlot) -> u32 {
+    let longest = plot
+        .series
+        .iter()
+        .map(|series| plot.label(series).chars().count())
+        .max();
+    (LEGEND_MARGIN + LETTER * longest.unwrap_or(0) as f64) as u32
+}
+
+/// The plot's title, with the view's angle where there is one.
+fn title(plot: &LinePlot) -> String {
+    plot.view_angle_deg()
+        .map_or_else(|| plot.title.clone(), |angle| format!("{}, view {angle}°", plot.title))
+}
+
+/// A value where it is drawn on its axis.
+fn place(axis: &Axis, value: f64) -> f64 {
+    if axis.is_logarithmic {
+        value.max(axis.range[0]).log10()
+    } else {
+        value
+    }
+}
+
+fn draw_cartesian<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+where
+    DB::ErrorType: 'static,
+{
+    let [x, y] = [&plot.x, &plot.y].map(|axis| place(axis, axis.range[0])..place(axis, axis.range[1]));
+    let mut chart = ChartBuilder::on(root)
+        .caption(title(plot), font(22.0, scale))
+        .margin(px(16.0, scale))
+        .x_label_area_size(px(46.0, scale))
+        .y_label_area_size(px(66.0, scale))
+        .build_cartesian_2d(x, y)?;
+    let label = |axis: &Axis, place: f64| {
+        number(if axis.is_logarithmic {
+            10.0_f64.powf(place)
+        } else {
+            place
+        })
+    };
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(stroke(FAINT, 1.0, scale))
+        .axis_style(stroke(INK, 1.0, scale))
+        .label_style(font(14.0, scale))
+        .axis_desc_style(font(15.0, scale))
+        .x_labels(10)
+        .y_labels(8)
+        .x_label_formatter(&|place| label(&plot.x, *place))
+        .y_label_formatter(&|place| label(&plot.y, *place))
+        .x_desc(&plot.x.label)
+        .y_desc(&plot.y.label)
+        .draw()?;
+    for (series, rank) in ranked(&plot.series) {
+        let points = series
+            .points
+            .iter()
+            .map(|[x, y]| (place(&plot.x, *x), place(&plot.y, *y)));
+        draw_series(&mut chart, series, rank, points, scale)?;
+    }
+    Ok(())
+}
+
+/// Each series with its rank in its group.
+fn ranked(series: &[Series]) -> impl Iterator<Item = (&Series, usize)> {
+    series
+        .chunk_by(|a, b| a.group == b.group)
+        .flat_map(|group| group.iter().zip(0..))
+}
+
+/// The line of a series.
+fn style(series: &Series, scale: f64) -> ShapeStyle {
+    stroke(PALETTE[series.group % PALETTE.len()], 2.2, scale)
+}
+
+/// A line; those after the first of a group dashed.
+fn draw_series<DB: DrawingBackend>(
+    chart: &mut Chart<'_, DB>,
+    series: &Series,
+    rank: usize,
+    points: impl Iterator<Item = (f64, f64)>,
+    scale: f64,
+) -> Outcome
+where
+    DB::ErrorType: 'static,
+{
+    let style = style(series, scale);
+    if rank == 0 {
+        chart.draw_series(LineSeries::new(points, style))?;
+    } else {
+        let points: Vec<_> = points.collect();
+        chart.draw_series(DashedLineSeries::new(points, px(7.0, scale), px(5.0, scale), style))?;
+    }
+    Ok(())
+}
+
+/// The names beside the plot.
+fn draw_legend<DB: DrawingBackend>(plot: &LinePlot, area: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+where
+    DB::ErrorType: 'static,
+{
+    for ((series, rank), row) in ranked(&plot.series).zip(0..) {
+        let y = 64.0 + ENTRY_HEIGHT * f64::from(row);
+        let at = |x: f64| (px(x, scale), px(y, scale));
+        let dashes: &[[f64; 2]] = if rank == 0 {
+            &[[4.0, 30.0]]
+        } else {
+            &[[4.0, 13.0], [19.0, 28.0]]
+        };
+        for [from, to] in dashes {
+            area.draw(&PathElement::new([at(*from), at(*to)], style(series, scale)))?;
+        }
+        let label = font(15.0, scale).pos(Pos::new(HPos::Left, VPos::Center));
+        area.draw(&Text::new(plot.label(series), at(38.0), label))?;
+    }
+    Ok(())
+}
+
+fn draw_polar<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+where
+    DB::ErrorType: 'static,
+{
+    let reach = plot.y.range[1].max(1e-9);
+    // Room for the angles outside the outermost circle; both axes have the same scale.
+    let outer = 1.09 * reach;
+    let mut chart = ChartBuilder::on(root)
+        .caption(title(plot), font(22.0, scale))
+        .margin(px(16.0, scale))
+        .x_label_area_size(px(34.0, scale))
+        .build_cartesian_2d(-outer..outer, 0.0..outer)?;
+    draw_polar_net(&mut chart, reach, scale)?;
+    for (series, rank) in ranked(&plot.series) {
+        let points: Vec<(f64, f64)> = series.polar_points().map(|[x, y]| (x, y)).collect();
+        draw_series(&mut chart, series, rank, points.into_iter(), scale)?;
+        if let Some(angle_deg) = series.view_angle_deg {
+            draw_view(&mut chart, angle_deg, reach, scale)?;
+        }
+    }
+    let caption = Text::new(
+        plot.y.label.clone(),
+        (root.dim_in_pixel().0 as i32 / 2, px(502.0, scale)),
+        centred(15.0, scale),
+    );
+    root.draw(&caption)?;
+    Ok(())
+}
+
+/// Circles of equal value and rays of equal angle.
+fn draw_polar_net<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, reach: f64, scale: f64) -> Outcome
+where
+    DB::ErrorType: 'static,
+{
+    let ray = |angle_deg: f64, radius: f64| {
+        (
+            radius * angle_deg.to_radians().sin(),
+            radius * angle_deg.to_radians().cos(),
+        )
+    };
+    let arc = |radius: f64| (-90..=90).map(move |angle| ray(f64::from(angle), radius));
+    let step = round_step(reach, 5.0);
+    let circles = (1..).map(|i| step * f64::from(i)).take_while(|radius| *radius <= reach);
+    for radius in circles {
+        chart.draw_series(LineSeries::new(arc(radius), stroke(FAINT, 1.0, scale)))?;
+        let at = (radius, 0.0);
+        let label = EmptyElement::at(at) + Text::new(number(radius), (0, px(5.0, scale)), centred(13.0, scale));
+        chart.draw_series([label])?;
+    }
+    for angle_deg in [-60.0, -30.0, 0.0, 30.0, 60.0] {
+        let line = [(0.0, 0.0), ray(angle_deg, reach)];
+        chart.draw_series(LineSeries::new(line, stroke(FAINT, 1.0, scale)))?;
+        let label = Text::new(
+            format!("{}°", angle_deg.abs()),
+            (0, px(-8.0, scale)),
+            centred(13.0, scale),
+        );
+        chart.draw_series([EmptyElement::at(ray(angle_deg, 1.035 * reach)) + label])?;
+    }
+    chart.draw_series(LineSeries::new(arc(reach), stroke(FAINT, 1.0, scale)))?;
+    chart.draw_series(LineSeries::new([(-reach, 0.0), (reach, 0.0)], stroke(INK, 1.5, scale)))?;
+    Ok(())
+}
+
+/// Where the view comes from, as a dashed ray.
+fn draw_view<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, angle_deg: f64, reach: f64, scale: f64) -> Outcome
+where
+    DB::ErrorType: 'static,
+{
+    let angle_rad = angle_deg.to_radians();
+    let end = (-0.98 * reach * angle_rad.sin(), 0.98 * reach * angle_rad.cos());
+    let style = stroke(INK, 1.2, scale);
+    chart.draw_series(DashedLineSeries::new(
+        [(0.0, 0.0), end],
+        px(3.0, scale),
+        px(4.0, scale),
+        style,
+    ))?;
+    let label = Text::new("view", (px(-34.0, scale), px(-4.0, scale)), font(13.0, scale));
+    chart.draw_series([EmptyElement::at(end) + label])?;
+    Ok(())
+}
+
+/// The font, centred on its place.
+fn centred(size: f64, scale: f64) -> TextStyle<'static> {
+    font(size, scale).pos(Pos::new(HPos::Center, VPos::Top))
+}

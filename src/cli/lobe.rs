@@ -1,0 +1,110 @@
+//! `glossmith lobe`: views of lobes as plots or numbers.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use clap::Args;
+
+use super::lobe_spec::lobe_model;
+use super::names;
+use crate::analysis::lobe_model::LobeModel;
+use crate::analysis::lobe_view::{LobeView, ViewKind, lobe_view};
+use crate::analysis::plot::lobe_view_file;
+use crate::document::match_look::lobe_of_material;
+use crate::document::preset;
+use crate::optics::lobe::Horizon;
+
+/// Arguments of `glossmith lobe`.
+#[derive(Debug, Args)]
+pub struct LobeArguments {
+    /// What is shown: a slice in the plane of incidence, the lobe in space, the density over the hemisphere, the albedo,
+    /// the reciprocity error, the share of the samples below the horizon.
+    #[arg(long, value_name = "polar|3d|hemisphere|albedo|reciprocity|horizon", value_parser = names::view_kind)]
+    plot: ViewKind,
+    /// A lobe, its roughness in [0, 1] (for the microfacet lobes the square root of α, or alpha=A itself; 0.3 without
+    /// one) and the geometric lobe's curve, such as geometric:0.3/sqrt. May be repeated to compare.
+    #[arg(long = "lobe", value_name = "NAME[:ROUGHNESS][/CURVE]", value_parser = lobe_model)]
+    lobes: Vec<LobeModel>,
+    /// The specular lobe of a material, its Fresnel factor left aside. May be repeated.
+    #[arg(long = "material", value_name = "FILE|NAME")]
+    materials: Vec<String>,
+    /// What happens to samples below the surface, for the lobes of --lobe.
+    #[arg(long, default_value = "mirror", value_name = "mirror|absorb|none", value_parser = names::horizon)]
+    horizon: Horizon,
+    /// Angles between view and normal, from 0 to below 90 [default: 45, or all where the plot is against the angle].
+    #[arg(long, value_name = "DEG[,DEG…]", value_delimiter = ',', value_parser = parse_angle)]
+    view_angle: Vec<f64>,
+    /// The plot, or its numbers.
+    #[arg(long, value_name = "FILE.png|FILE.svg|FILE.csv")]
+    output: PathBuf,
+}
+
+fn parse_angle(text: &str) -> Result<f64, String> {
+    let angle = text.trim().parse().ok();
+    angle
+        .filter(|angle: &f64| (0.0..=89.9).contains(angle))
+        .ok_or_else(|| format!("{text} is no angle of a view; give degrees from 0 to 89.9"))
+}
+
+/// Computes and writes the view.
+///
+/// # Errors
+/// A material that can't be read or is a mirror, a file that can't be written.
+pub fn run(arguments: &LobeArguments) -> anyhow::Result<()> {
+    check_ending(&arguments.output)?;
+    let lobes = lobes(arguments)?;
+    let angles_deg = if arguments.view_angle.is_empty() {
+        arguments.plot.view_angles_deg()
+    } else {
+        arguments.view_angle.clone()
+    };
+    let view = lobe_view(arguments.plot, &lobes, &angles_deg);
+    write_view(&arguments.output, &view)
+}
+
+/// Before the work, not after it.
+pub(super) fn check_ending(path: &Path) -> anyhow::Result<()> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if !matches!(ending, "png" | "svg" | "csv") {
+        bail!(
+            "{}: plots are written as .png, .svg or .csv; give the file one of these endings",
+            path.display()
+        );
+    }
+    Ok(())
+}
+
+/// Writes a view in the format that the file's ending says.
+pub(super) fn write_view(path: &Path, view: &LobeView) -> anyhow::Result<()> {
+    if path.extension().is_some_and(|ending| ending == "csv") {
+        std::fs::write(path, view.csv()).with_context(|| format!("{}: could not be written", path.display()))?;
+    } else {
+        lobe_view_file(path, view)?;
+    }
+    eprintln!("wrote {}", path.display());
+    Ok(())
+}
+
+/// The lobes of both kinds of arguments.
+fn lobes(arguments: &LobeArguments) -> anyhow::Result<Vec<LobeModel>> {
+    let mut lobes = arguments.lobes.clone();
+    for lobe in &mut lobes {
+        lobe.horizon = arguments.horizon;
+    }
+    for name in &arguments.materials {
+        let loaded = preset::find(name)?;
+        loaded.warnings.iter().for_each(|warning| log::warn!("{warning}"));
+        let lobe = lobe_of_material(&loaded.value);
+        if !lobe.has_density() {
+            bail!(
+                "--material {name}: its roughness of {} is a mirror's, which has no density; choose a rougher one",
+                lobe.roughness
+            );
+        }
+        lobes.push(lobe);
+    }
+    if lobes.is_empty() {
+        bail!("there is no lobe to show; give --lobe NAME or --material NAME");
+    }
+    Ok(lobes)
+}

@@ -1,0 +1,147 @@
+//! The grid of lobes, roughnesses and view angles that the statistical tests loop over.
+
+use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
+use glossmith::optics::frame::{Frame, frame_from_normal};
+use glossmith::optics::lobe::{Horizon, Lobe, LobeShape};
+use glossmith::optics::vector::{Vec3, vec3};
+
+/// Mirror-like, glossy, rough, nearly Lambertian, Lambertian.
+pub const ROUGHNESS: [f64; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
+/// From above to grazing.
+pub const ANGLES_DEG: [f64; 5] = [0.0, 30.0, 60.0, 80.0, 89.0];
+
+/// A lobe, seen from somewhere.
+#[derive(Clone)]
+pub struct Case {
+    pub lobe: Lobe,
+    pub curve: Curve,
+    pub horizon: Horizon,
+    pub roughness: f64,
+    pub anisotropy: f64,
+    pub angle_deg: f64,
+    /// Angle of the geometric normal to the shading normal, towards the viewer where positive.
+    pub lean_deg: f64,
+    /// Different for each case of a grid.
+    pub seed: u32,
+    table: &'static [f32],
+}
+
+impl std::fmt::Debug for Case {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let (lobe, curve, horizon) = (self.lobe.name(), self.curve.name(), self.horizon.name());
+        let Self {
+            roughness,
+            anisotropy,
+            angle_deg,
+            lean_deg,
+            ..
+        } = self;
+        write!(
+            f,
+            "{lobe}/{curve} {horizon} roughness {roughness}/{anisotropy} view {angle_deg}° leaning {lean_deg}°"
+        )
+    }
+}
+
+impl Case {
+    pub fn new(lobe: Lobe, curve: Curve, horizon: Horizon, roughness: f64, angle_deg: f64) -> Self {
+        let table = if curve == Curve::Custom { custom() } else { &[] };
+        Self {
+            lobe,
+            curve,
+            horizon,
+            roughness,
+            anisotropy: 0.0,
+            angle_deg,
+            lean_deg: 0.0,
+            seed: 0,
+            table,
+        }
+    }
+
+    /// Every combination of the last three.
+    pub fn grid(
+        lobe: Lobe,
+        curve: Curve,
+        horizon: Horizon,
+        anisotropies: &[f64],
+        roughnesses: &[f64],
+        angles_deg: &[f64],
+    ) -> Vec<Self> {
+        let mut cases = Vec::new();
+        for &anisotropy in anisotropies {
+            for &roughness in roughnesses {
+                for &angle_deg in angles_deg {
+                    let number = ((lobe as u32 * 8 + curve as u32) * 4 + horizon as u32) * 256 + cases.len() as u32;
+                    let case = Self::new(lobe, curve, horizon, roughness, angle_deg);
+                    cases.push(Self {
+                        anisotropy,
+                        seed: number,
+                        ..case
+                    });
+                }
+            }
+        }
+        cases
+    }
+
+    pub fn shape(&self) -> LobeShape<'static, f64> {
+        LobeShape {
+            lobe: self.lobe,
+            curve: self.curve,
+            horizon: self.horizon,
+            roughness: self.roughness,
+            anisotropy: self.anisotropy,
+            table: self.table,
+        }
+    }
+
+    /// A shading frame in no special position.
+    pub fn frame(&self) -> Frame<f64> {
+        frame_from_normal(vec3(0.36, -0.48, 0.8))
+    }
+
+    /// Towards the viewer, in a plane between tangent and bitangent.
+    pub fn wo(&self) -> Vec3<f64> {
+        self.in_view_plane(self.angle_deg)
+    }
+
+    /// The geometric normal.
+    pub fn surface_normal(&self) -> Vec3<f64> {
+        self.in_view_plane(self.lean_deg)
+    }
+
+    fn in_view_plane(&self, angle_deg: f64) -> Vec3<f64> {
+        let frame = self.frame();
+        let (sine, cosine) = angle_deg.to_radians().sin_cos();
+        frame.normal * cosine + (frame.tangent * 0.8 + frame.bitangent * 0.6) * sine
+    }
+}
+
+/// Every lobe; the geometric one with every curve.
+pub fn lobes_and_curves() -> Vec<(Lobe, Curve)> {
+    let curves = |lobe| {
+        if lobe == Lobe::Geometric {
+            Curve::ALL
+        } else {
+            &[Curve::Sqrt]
+        }
+    };
+    Lobe::ALL
+        .iter()
+        .flat_map(|&lobe| curves(lobe).iter().map(move |&curve| (lobe, curve)))
+        .collect()
+}
+
+/// A custom curve with a crowded middle, a gap and a ring: nothing that one rule of quadrature would meet by chance.
+pub fn custom() -> &'static [f32] {
+    static TABLE: std::sync::OnceLock<Vec<f32>> = std::sync::OnceLock::new();
+    TABLE.get_or_init(|| {
+        let node = |i: usize| {
+            let d = i as f64 / CUSTOM_INTERVALS as f64;
+            (0.3 - d).max(0.0) + 0.6 * (0.1 - (d - 0.75).abs()).max(0.0) + if i % 8 == 4 { 0.1 } else { 0.0 }
+        };
+        let density: Vec<f64> = (0..=CUSTOM_INTERVALS).map(node).collect();
+        custom_table(1.5, &density).expect("a density")
+    })
+}

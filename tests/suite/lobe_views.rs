@@ -1,0 +1,195 @@
+//! Views of lobes: their numbers against known ones, their files.
+
+use std::path::Path;
+
+use glossmith::analysis::lobe_model::{LobeModel, NORMAL, view_direction};
+use glossmith::analysis::lobe_view::{LinePlot, LobeView, ViewKind, lobe_view};
+use glossmith::analysis::plot::lobe_view_file;
+use glossmith::optics::curve::Curve;
+use glossmith::optics::lobe::{Horizon, Lobe, lobe_sample};
+
+use crate::support::Random;
+
+fn lines(kind: ViewKind, lobe: &LobeModel, angles_deg: &[f64]) -> LinePlot {
+    match lobe_view(kind, std::slice::from_ref(lobe), angles_deg) {
+        LobeView::Lines(plot) => plot,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The values of a series.
+fn values(plot: &LinePlot, quantity: &str) -> Vec<f64> {
+    let series = plot.series.iter().find(|series| series.quantity == quantity).unwrap();
+    series.points.iter().map(|[_, y]| *y).collect()
+}
+
+#[test]
+fn geometric_lobe_with_mirror_policy_loses_nothing() {
+    for curve in [Curve::Sqrt, Curve::Cbrt, Curve::Smooth, Curve::LongTail] {
+        for roughness in [0.05, 0.3, 0.7, 0.95] {
+            let lobe = LobeModel::new(Lobe::Geometric, roughness, curve);
+            let albedo = values(
+                &lines(ViewKind::Albedo, &lobe, &[0.0, 30.0, 60.0, 80.0, 88.0]),
+                "albedo",
+            );
+            assert!(
+                albedo.iter().all(|albedo| (albedo - 1.0).abs() < 3e-3),
+                "{curve:?} {roughness}: {albedo:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn albedo_is_the_mean_weight_of_samples() {
+    let absorbing = LobeModel {
+        horizon: Horizon::Absorb,
+        ..LobeModel::new(Lobe::Geometric, 0.6, Curve::Sqrt)
+    };
+    let anisotropic = LobeModel {
+        anisotropy: 0.6,
+        rotation_rad: 0.5,
+        ..LobeModel::new(Lobe::Ggx, 0.5, Curve::Smooth)
+    };
+    let others = [
+        (Lobe::Ggx, 1.0),
+        (Lobe::Ggx, 0.2),
+        (Lobe::Phong, 0.5),
+        (Lobe::BlinnPhong, 0.6),
+        (Lobe::Lambert, 1.0),
+    ];
+    let others = others.map(|(lobe, roughness)| LobeModel::new(lobe, roughness, Curve::Smooth));
+    let mut random = Random::new(11);
+    for lobe in others.iter().chain([&absorbing, &anisotropic]) {
+        for angle_deg in [0.0_f64, 50.0, 80.0] {
+            let wo = view_direction(angle_deg.to_radians());
+            let count = 40_000;
+            let draw = |_| {
+                let xi = [random.unit(), random.unit(), random.unit()].map(f64::from);
+                lobe_sample(&lobe.shape(), &lobe.frame(), NORMAL, wo, xi).weight
+            };
+            let weights: Vec<f64> = (0..count).map(draw).collect();
+            let mean = weights.iter().sum::<f64>() / f64::from(count);
+            let variance = weights.iter().map(|weight| (weight - mean).powi(2)).sum::<f64>() / f64::from(count);
+            let error = (variance / f64::from(count)).sqrt();
+            let albedo = values(&lines(ViewKind::Albedo, lobe, &[angle_deg]), "albedo")[0];
+            assert!(
+                (albedo - mean).abs() < 4.5 * error + 2e-3,
+                "{} {angle_deg}: {albedo} {mean} ± {error}",
+                lobe.name
+            );
+        }
+    }
+}
+
+#[test]
+fn share_below_the_horizon_is_the_measured_one() {
+    // docs/MATHEMATICS.md, section 3, in percent at 80 degrees.
+    let cases = [
+        (Curve::Sqrt, 0.3, 6.2),
+        (Curve::Sqrt, 0.6, 10.1),
+        (Curve::Cbrt, 0.6, 11.5),
+        (Curve::Smooth, 0.6, 6.5),
+    ];
+    for (curve, roughness, percent) in cases {
+        let lobe = LobeModel::new(Lobe::Geometric, roughness, curve);
+        let below = values(&lines(ViewKind::Horizon, &lobe, &[80.0, 20.0]), "fraction_below");
+        assert!(
+            (100.0 * below[0] - percent).abs() < 0.1,
+            "{curve:?} {roughness}: {below:?}"
+        );
+        assert_eq!(below[1], 0.0);
+    }
+}
+
+#[test]
+fn reciprocity_holds_for_ggx_and_fails_for_the_geometric_lobe() {
+    let angles = [0.0, 30.0, 60.0, 85.0];
+    for lobe in [Lobe::Ggx, Lobe::Phong, Lobe::Lambert] {
+        let plot = lines(
+            ViewKind::Reciprocity,
+            &LobeModel::new(lobe, 0.4, Curve::Smooth),
+            &angles,
+        );
+        assert!(values(&plot, "max").into_iter().all(|error| error < 1e-9), "{lobe:?}");
+    }
+    let plot = lines(
+        ViewKind::Reciprocity,
+        &LobeModel::new(Lobe::Geometric, 0.4, Curve::Smooth),
+        &angles,
+    );
+    let (rms, max) = (values(&plot, "rms"), values(&plot, "max"));
+    assert!(
+        rms.iter()
+            .zip(&max)
+            .all(|(rms, max)| 0.05 < *rms && rms <= max && *max <= 2.0),
+        "{rms:?} {max:?}"
+    );
+}
+
+#[test]
+fn csv_has_its_columns_and_every_view_is_drawn() {
+    let lobes = [
+        LobeModel::new(Lobe::Geometric, 0.3, Curve::Sqrt),
+        LobeModel::new(Lobe::Ggx, 0.4, Curve::Smooth),
+    ];
+    let columns = [
+        (ViewKind::Polar, "lobe,view_angle_deg,angle_deg,value"),
+        (ViewKind::Solid, "lobe,view_angle_deg,x,y,z,value"),
+        (ViewKind::Hemisphere, "lobe,view_angle_deg,x,y,z,density"),
+        (ViewKind::Albedo, "lobe,view_angle_deg,albedo"),
+        (ViewKind::Reciprocity, "lobe,view_angle_deg,rms,max"),
+        (ViewKind::Horizon, "lobe,view_angle_deg,fraction_below"),
+    ];
+    assert_eq!(columns.map(|(kind, _)| kind), ViewKind::ALL);
+    let folder = tempfile::tempdir().unwrap();
+    for (kind, header) in columns {
+        let view = lobe_view(kind, &lobes, &[20.0, 60.0]);
+        let csv = view.csv();
+        let mut rows = csv.lines();
+        assert_eq!(rows.next(), Some(header));
+        let count = header.split(',').count();
+        for row in rows {
+            // The first field is quoted and has a comma.
+            let numbers = row.rsplit_once("\",").unwrap().1;
+            assert_eq!(
+                numbers.split(',').filter(|x| x.parse::<f64>().is_ok()).count(),
+                count - 1,
+                "{row}"
+            );
+        }
+        let [png, svg] = ["png", "svg"].map(|ending| folder.path().join(format!("{}.{ending}", kind.name())));
+        lobe_view_file(&png, &view).unwrap();
+        lobe_view_file(&svg, &view).unwrap();
+        let picture = image::open(&png).unwrap().to_rgb8();
+        let spread = |pixel: &image::Rgb<u8>| {
+            let [r, g, b] = pixel.0;
+            r.max(g).max(b) - r.min(g).min(b)
+        };
+        let colored = picture.pixels().filter(|pixel| spread(pixel) > 40);
+        assert!(colored.count() > 200, "{}", kind.name());
+        assert!(
+            std::fs::read_to_string(&svg).unwrap().contains("GGX 0.4"),
+            "{}",
+            kind.name()
+        );
+    }
+    let error = lobe_view_file(
+        Path::new("/no such folder/x.png"),
+        &lobe_view(ViewKind::Polar, &lobes, &[0.0]),
+    );
+    assert!(error.unwrap_err().to_string().contains("/no such folder/x.png"));
+}
+
+#[test]
+fn densities_of_a_map_add_to_one() {
+    let lobe = LobeModel::new(Lobe::Geometric, 0.5, Curve::Smooth);
+    let LobeView::Maps(plot) = lobe_view(ViewKind::Hemisphere, &[lobe], &[30.0]) else {
+        panic!("no map");
+    };
+    let map = &plot.maps[0];
+    // Equal areas: each pixel stands for 2π over the disc's π/4 of the square.
+    let solid_angle = 8.0 / (map.size * map.size) as f64;
+    let sum: f64 = map.values.iter().filter(|value| value.is_finite()).sum::<f64>() * solid_angle;
+    assert!((sum - 1.0).abs() < 0.01, "{sum}");
+}

@@ -1,0 +1,428 @@
+//! Every shader module links and validates by itself, says where it is wrong, translates to the other graphics
+//! interfaces, and has the constants of its Rust twin.
+
+use glossmith::cpu::integrator;
+use glossmith::document::job::{BackgroundKind, Settings, Strategy};
+use glossmith::document::plan::Plan;
+use glossmith::gpu::layout::Globals;
+use glossmith::gpu::shader::{EXTRA, Linked, link, link_with, module_names};
+use glossmith::optics::chord;
+use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, LONG_TAIL_MAX};
+use glossmith::optics::fresnel::Fresnel;
+use glossmith::optics::lobe::{ALPHA_MIN, Horizon, Lobe, MIRROR_WIDTH};
+use glossmith::optics::material::ALBEDO_NODES;
+use glossmith::optics::random::Sequence;
+use glossmith::optics::tone::{self, ToneCurve};
+use glossmith::scene::camera::{Camera, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA, PixelFilter};
+use glossmith::scene::surface;
+use naga::back::{hlsl, msl, spv};
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+
+/// naga's reading of a shader, or its first complaint with the module and the line in it.
+pub fn validate(linked: &Linked) -> Result<(naga::Module, ModuleInfo), String> {
+    let complaint = |location: Option<naga::SourceLocation>, error: &dyn std::error::Error| {
+        let (module, line) = linked.locate(location.map_or(1, |location| location.line_number as usize));
+        let mut text = format!("{module}, line {line}: {error}");
+        let mut cause = error.source();
+        while let Some(inner) = cause {
+            text += &format!(": {inner}");
+            cause = inner.source();
+        }
+        text
+    };
+    let module = naga::front::wgsl::parse_str(&linked.source)
+        .map_err(|error| complaint(error.location(&linked.source), &error))?;
+    // No capability beyond WGSL's core: any adapter can take the shaders.
+    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+        .validate(&module)
+        .map_err(|error| {
+            // From the function down to the expression: the shortest says where.
+            let spans = error.spans().filter(|(span, _)| span.is_defined());
+            let shortest = spans.min_by_key(|(span, _)| span.to_range().map_or(usize::MAX, |range| range.len()));
+            complaint(
+                shortest.map(|(span, _)| span.location(&linked.source)),
+                error.as_inner(),
+            )
+        })?;
+    Ok((module, info))
+}
+
+/// The numbers of a constant expression, arrays and vectors flattened.
+fn numbers(module: &naga::Module, expression: naga::Handle<naga::Expression>) -> Vec<f64> {
+    use naga::{Expression, Literal};
+    match &module.global_expressions[expression] {
+        Expression::Literal(Literal::F32(x)) => vec![f64::from(*x)],
+        Expression::Literal(Literal::U32(x)) => vec![f64::from(*x)],
+        Expression::Literal(Literal::I32(x)) => vec![f64::from(*x)],
+        Expression::Literal(Literal::Bool(x)) => vec![f64::from(u8::from(*x))],
+        Expression::Compose { components, .. } => components.iter().flat_map(|&part| numbers(module, part)).collect(),
+        Expression::Constant(constant) => numbers(module, module.constants[*constant].init),
+        other => panic!("a constant of an unforeseen form: {other:?}"),
+    }
+}
+
+/// Every module with the generated one, each with naga's reading of it.
+pub fn modules() -> Vec<(String, naga::Module)> {
+    let mut names = module_names();
+    names.push("optics/lobe/registry".into());
+    let read = |name: String| {
+        let module = validate(&link(&name).unwrap()).unwrap().0;
+        (name, module)
+    };
+    names.into_iter().map(read).collect()
+}
+
+#[test]
+fn every_module_links_and_validates_by_itself() {
+    let mut failures = Vec::new();
+    for name in module_names() {
+        if let Err(message) = link(&name).and_then(|linked| validate(&linked)) {
+            failures.push(format!("{name}: {message}"));
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    assert!(
+        module_names().iter().any(|name| name == "pass/path_trace"),
+        "{:?}",
+        module_names()
+    );
+}
+
+#[test]
+fn a_mistake_is_located_by_module_and_line() {
+    let parsed = link_with(&["optics/fresnel"], "\nfn broken() -> f32 {\n    return nothing;\n}").unwrap();
+    let message = validate(&parsed).unwrap_err();
+    assert!(message.starts_with(&format!("{EXTRA}, line 3:")), "{message}");
+    let typed = link_with(
+        &["optics/fresnel"],
+        "fn broken() -> f32 {\n    return fresnel_f0(1u);\n}",
+    )
+    .unwrap();
+    let message = validate(&typed).unwrap_err();
+    assert!(message.starts_with(&format!("{EXTRA}, line 2:")), "{message}");
+    let mut linked = link("pass/path_trace").unwrap();
+    // A mistake in the middle of a module in the middle.
+    linked.source = linked
+        .source
+        .replace("let t1 = a2_plus_b2 + cos2;", "let t1 = a2_plus_b2 + cos3;");
+    let file = std::fs::read_to_string(format!("{}/shaders/optics/fresnel.wgsl", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let line = 1 + file
+        .lines()
+        .position(|line| line.contains("let t1 = a2_plus_b2 + cos2;"))
+        .unwrap();
+    let message = validate(&linked).unwrap_err();
+    assert!(
+        message.starts_with(&format!("optics/fresnel, line {line}:")),
+        "{message}"
+    );
+    assert!(link("optics/frensel").unwrap_err().contains("optics/frensel"));
+}
+
+#[test]
+fn locate_knows_every_line() {
+    let linked = link("pass/path_trace").unwrap();
+    let mut compared = 0;
+    for (number, line) in (1..).zip(linked.source.lines()) {
+        let (module, place) = linked.locate(number);
+        let path = format!("{}/shaders/{module}.wgsl", env!("CARGO_MANIFEST_DIR"));
+        let Ok(file) = std::fs::read_to_string(path) else {
+            // Only the registry of lobes is not a file.
+            assert_eq!(module, "optics/lobe/registry");
+            continue;
+        };
+        let original = file.lines().nth(place - 1).unwrap();
+        assert!(
+            line == original || original.starts_with("#import"),
+            "{module}, line {place}: {line:?}"
+        );
+        compared += 1;
+    }
+    assert!(compared > 500);
+}
+
+#[test]
+fn generated_registry_covers_every_lobe() {
+    let (module, _) = validate(&link("optics/lobe/registry").unwrap()).unwrap();
+    let function = |name: &str| {
+        let found = module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(name));
+        found.unwrap_or_else(|| panic!("no function {name}")).1
+    };
+    for verb in ["sample", "density", "weight"] {
+        let body = &function(&format!("raw_{verb}")).body;
+        let cases = body
+            .iter()
+            .find_map(|statement| match statement {
+                naga::Statement::Switch { cases, .. } => Some(cases),
+                _ => None,
+            })
+            .unwrap();
+        assert_eq!(
+            cases.len(),
+            Lobe::ALL.len() + 1,
+            "the cases of raw_{verb} and the default"
+        );
+        for lobe in Lobe::ALL {
+            let case = cases
+                .iter()
+                .find(|case| case.value == naga::SwitchValue::U32(*lobe as u32));
+            let callee = case.unwrap().body.iter().find_map(|statement| match statement {
+                naga::Statement::Call { function, .. } => module.functions[*function].name.clone(),
+                _ => None,
+            });
+            assert_eq!(
+                callee,
+                Some(format!("{}_{verb}", lobe.module())),
+                "raw_{verb} of {}",
+                lobe.name()
+            );
+        }
+    }
+}
+
+/// Nodes above 0 and weights of the Gauss–Legendre rule of `count` points, by Newton's method on the polynomial.
+fn gauss_legendre(count: usize) -> Vec<f64> {
+    let n = count as f64;
+    let mut rule = Vec::new();
+    for i in (1..=count / 2).rev() {
+        let mut x = (std::f64::consts::PI * (i as f64 - 0.25) / (n + 0.5)).cos();
+        let mut slope = 0.0;
+        for _ in 0..20 {
+            let (mut before, mut value) = (1.0, x);
+            for k in 2..=count {
+                let k = k as f64;
+                (before, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * before) / k);
+            }
+            slope = n * (x * value - before) / (x * x - 1.0);
+            x -= value / slope;
+        }
+        rule.extend([x, 2.0 / ((1.0 - x * x) * slope * slope)]);
+    }
+    rule
+}
+
+/// What the shader is told of a background.
+fn background_number(background: BackgroundKind) -> u32 {
+    let settings = Settings {
+        image_size: [1, 1],
+        camera: Camera::look_at([0.0, 0.0, 1.0], [0.0; 3], 30.0, 1.0, PixelFilter::Box),
+        background,
+        environment_rotation: [1.0, 0.0],
+        environment_strength: 1.0,
+        bounces: 1,
+        sequence: Sequence::Sobol,
+        strategy: Strategy::Mis,
+        seed: 0,
+    };
+    Globals::new(&settings, 0, [1, 1]).background_kind
+}
+
+/// The constants that both languages have, by their names in WGSL, from the Rust side.
+fn twin_constants() -> Vec<(String, Vec<f64>)> {
+    let upper = |prefix: &str, name: &str| format!("{prefix}_{}", name.to_uppercase().replace('-', "_"));
+    let mut twins = Vec::new();
+    let mut number = |name: String, value: f64| twins.push((name, vec![value]));
+    for lobe in Lobe::ALL {
+        number(upper("LOBE", lobe.module()), f64::from(*lobe as u32));
+        let is_hemispherical = f64::from(u8::from(lobe.is_hemispherical()));
+        number(
+            format!("{}_HEMISPHERICAL", lobe.module().to_uppercase()),
+            is_hemispherical,
+        );
+    }
+    for curve in Curve::ALL {
+        number(upper("CURVE", curve.name()), f64::from(*curve as u32));
+    }
+    for fresnel in Fresnel::ALL {
+        number(upper("FRESNEL", fresnel.name()), f64::from(*fresnel as u32));
+    }
+    for curve in ToneCurve::ALL {
+        number(upper("TONE", curve.name()), f64::from(*curve as u32));
+    }
+    for horizon in Horizon::ALL {
+        number(upper("HORIZON", horizon.name()), f64::from(*horizon as u32));
+    }
+    for (name, strategy) in [
+        ("LOBE", Strategy::Lobe),
+        ("LIGHT", Strategy::Light),
+        ("MIS", Strategy::Mis),
+    ] {
+        number(upper("STRATEGY", name), f64::from(strategy as u32));
+    }
+    for (name, kind) in [
+        ("ENVIRONMENT", BackgroundKind::Environment),
+        ("TRANSPARENT", BackgroundKind::Transparent),
+        ("COLOR", BackgroundKind::Color([0.0; 3])),
+    ] {
+        number(upper("BACKGROUND", name), f64::from(background_number(kind)));
+    }
+    let kept = 1.0 - (-0.5 * (GAUSSIAN_RADIUS / GAUSSIAN_SIGMA).powi(2)).exp();
+    for (name, value) in [
+        ("SEQUENCE_SOBOL", f64::from(Sequence::Sobol as u32)),
+        ("SEQUENCE_INDEPENDENT", f64::from(Sequence::Independent as u32)),
+        ("FILTER_BOX", f64::from(PixelFilter::Box as u32)),
+        ("FILTER_GAUSSIAN", f64::from(PixelFilter::Gaussian as u32)),
+        ("PI", std::f64::consts::PI),
+        ("INV_PI", std::f64::consts::FRAC_1_PI),
+        ("ALPHA_MIN", ALPHA_MIN),
+        ("MIRROR_WIDTH", MIRROR_WIDTH),
+        ("CUSTOM_INTERVALS", CUSTOM_INTERVALS as f64),
+        ("LONG_TAIL_MAX", LONG_TAIL_MAX),
+        ("ALBEDO_NODES", ALBEDO_NODES as f64),
+        ("SHORT_RULE_ROUGHNESS", chord::SHORT_RULE_ROUGHNESS),
+        ("PEAK_RADIUS", chord::PEAK_RADIUS),
+        ("TINY", chord::TINY),
+        ("SCENE_MAX", tone::SCENE_MAX),
+        ("AGX_STOPS_MIN", tone::AGX_STOPS_MIN),
+        ("AGX_STOPS_MAX", tone::AGX_STOPS_MAX),
+        ("NEUTRAL_START", tone::NEUTRAL_START),
+        ("GAUSSIAN_SIGMA", GAUSSIAN_SIGMA),
+        ("GAUSSIAN_KEPT", kept),
+        ("POSITION_ERROR", surface::POSITION_ERROR),
+        ("VIEW_COSINE_MIN", surface::VIEW_COSINE_MIN),
+        ("FIRST_DIMENSION", f64::from(integrator::FIRST_DIMENSION)),
+        ("BOUNCE_DIMENSIONS", f64::from(integrator::BOUNCE_DIMENSIONS)),
+        ("ROULETTE_START", f64::from(integrator::ROULETTE_START)),
+        ("RADIANCE_MAX", integrator::RADIANCE_MAX),
+    ] {
+        number(name.into(), value);
+    }
+    twins.push(("RANGE_MAX".into(), chord::RANGE_MAX.into()));
+    twins.push(("GAUSS_12".into(), gauss_legendre(12)));
+    twins.push(("GAUSS_20".into(), gauss_legendre(20)));
+    twins
+}
+
+/// Constants that only shaders need.
+const WITHOUT_TWIN: &[&str] = &["ANY", "NO_HIT", "STACK_SIZE"];
+
+#[test]
+fn constants_equal_their_twins() {
+    let twins = twin_constants();
+    let mut met = Vec::new();
+    for (name, module) in modules() {
+        for (_, constant) in module.constants.iter() {
+            let Some(constant_name) = constant.name.as_deref() else {
+                continue;
+            };
+            if WITHOUT_TWIN.contains(&constant_name) {
+                continue;
+            }
+            let twin = twins.iter().find(|(twin, _)| twin == constant_name);
+            let (_, expected) = twin.unwrap_or_else(|| panic!("{constant_name} in {name} is compared with nothing"));
+            let expected: Vec<_> = expected.iter().map(|&x| x as f32).collect();
+            let found: Vec<_> = numbers(&module, constant.init).iter().map(|&x| x as f32).collect();
+            assert_eq!(found, expected, "{constant_name} in {name}, and in Rust");
+            met.push(constant_name.to_owned());
+        }
+    }
+    for lobe in Lobe::ALL {
+        let name = format!("LOBE_{}", lobe.module().to_uppercase());
+        assert!(met.contains(&name), "no constant {name}");
+    }
+    assert!(met.len() > 50);
+}
+
+#[test]
+fn overrides_are_those_of_the_plan() {
+    let (module, _) = validate(&link("scene/plan").unwrap()).unwrap();
+    let mut wgsl: Vec<_> = module
+        .overrides
+        .iter()
+        .map(|(_, o)| (o.name.clone().unwrap_or_default(), numbers(&module, o.init.unwrap())[0]))
+        .collect();
+    // The defaults are those of the general plan, so that a pipeline without constants leaves nothing out.
+    let mut rust: Vec<_> = Plan::GENERAL
+        .constants()
+        .map(|(name, value)| (name.to_owned(), value))
+        .into();
+    wgsl.sort_by(|a, b| a.0.cmp(&b.0));
+    rust.sort_by(|a, b| a.0.cmp(&b.0));
+    assert_eq!(wgsl, rust);
+}
+
+/// A plan that fixes all that a plan can fix.
+const NARROW_PLAN: Plan = Plan {
+    lobe: Some(Lobe::Geometric as u32),
+    curve: Some(Curve::Smooth as u32),
+    horizon: Some(Horizon::Mirror as u32),
+    fresnel: Some(Fresnel::Conductor as u32),
+    anisotropy: false,
+    base: false,
+    specular: true,
+    emission: false,
+    light_sampling: true,
+    lens: false,
+};
+
+#[test]
+fn passes_translate_for_every_graphics_interface() {
+    let mut translated = 0;
+    for name in module_names() {
+        let (module, info) = validate(&link(&name).unwrap()).unwrap();
+        for entry in &module.entry_points {
+            for plan in [Plan::GENERAL, NARROW_PLAN] {
+                let point = (entry.stage, entry.name.as_str());
+                let constants = plan.constants().map(|(name, value)| (name.to_owned(), value));
+                let constants = constants.into_iter().filter(|(name, _)| {
+                    module
+                        .overrides
+                        .iter()
+                        .any(|(_, o)| o.name.as_deref() == Some(name.as_str()))
+                });
+                let (module, info) = naga::back::pipeline_constants::process_overrides(
+                    &module,
+                    &info,
+                    Some(point),
+                    &constants.collect(),
+                )
+                .unwrap_or_else(|error| panic!("{name}, {}: {error}", entry.name));
+                translate(&module, &info, point).unwrap_or_else(|message| panic!("{name}, {}: {message}", entry.name));
+                translated += 1;
+            }
+        }
+    }
+    assert!(translated >= 2);
+}
+
+/// Vulkan, Metal, and Direct3D 12 by either of its compilers.
+fn translate(module: &naga::Module, info: &ModuleInfo, entry: (naga::ShaderStage, &str)) -> Result<(), String> {
+    let (stage, name) = entry;
+    let options = spv::PipelineOptions {
+        shader_stage: stage,
+        entry_point: name.to_owned(),
+    };
+    spv::write_vec(module, info, &spv::Options::default(), Some(&options)).map_err(|e| format!("SPIR-V: {e}"))?;
+    let options = msl::Options {
+        lang_version: (2, 0),
+        ..Default::default()
+    };
+    let pipeline = msl::PipelineOptions {
+        entry_point: Some((stage, name.to_owned())),
+        ..Default::default()
+    };
+    let (text, reflected) = msl::write_string(module, info, &options, &pipeline).map_err(|e| format!("Metal: {e}"))?;
+    if let Some(Err(error)) = reflected.entry_point_names.first() {
+        return Err(format!("Metal: {error}"));
+    }
+    if text.is_empty() {
+        return Err("Metal: nothing came out".into());
+    }
+    for shader_model in [hlsl::ShaderModel::V5_1, hlsl::ShaderModel::V6_0] {
+        let options = hlsl::Options {
+            shader_model,
+            fake_missing_bindings: true,
+            ..Default::default()
+        };
+        let pipeline = hlsl::PipelineOptions {
+            entry_point: Some((stage, name.to_owned())),
+        };
+        let mut text = String::new();
+        let reflected = hlsl::Writer::new(&mut text, &options, &pipeline)
+            .write(module, info, None)
+            .map_err(|e| format!("HLSL {shader_model:?}: {e}"))?;
+        if let Some(Err(error)) = reflected.entry_point_names.first() {
+            return Err(format!("HLSL {shader_model:?}: {error}"));
+        }
+    }
+    Ok(())
+}

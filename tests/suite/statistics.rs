@@ -1,0 +1,238 @@
+//! χ² of every sampler against its density, in f64, and proof that the test finds a density that is wrong by 2 %.
+
+use glossmith::analysis::chi_square::{ChiSquare, PolarGrid, sidak_level, test_counts, test_samples};
+use glossmith::optics::curve::Curve;
+use glossmith::optics::frame::frame_from_normal;
+use glossmith::optics::lobe::{Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample, raw_weight};
+use glossmith::optics::random::{Sequence, random_pair, random_state};
+use glossmith::optics::vector::{Vec3, vec3};
+use rayon::prelude::*;
+
+use crate::lobe_cases::{ANGLES_DEG, Case, ROUGHNESS, lobes_and_curves};
+
+/// Probability that chance alone fails a right sampler, over all cases of a test.
+const LEVEL: f64 = 1e-3;
+/// Samples of a case: enough for some 140 a cell.
+const SAMPLES: u32 = 20_000;
+
+/// Sample number `i` of a case.
+fn draw(case: &Case, i: u32) -> LobeSample<f64> {
+    let state = random_state(11, 0, case.seed, i, Sequence::Independent);
+    let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
+    lobe_sample(
+        &case.shape(),
+        &case.frame(),
+        case.surface_normal(),
+        case.wo(),
+        [a, b, c],
+    )
+}
+
+/// The test of `count` samples against the density times `factor`, of the lobe with `roughness_factor` times the
+/// roughness.
+fn chi_square(case: &Case, count: u32, roughness_factor: f64, factor: impl Fn(Vec3<f64>) -> f64) -> ChiSquare {
+    let kept = |sample: LobeSample<f64>| (sample.weight != 0.0).then_some(sample.wi);
+    let samples: Vec<_> = (0..count).map(|i| kept(draw(case, i))).collect();
+    let mirror = case.wo().mirrored_about(case.frame().normal);
+    let grid = PolarGrid::following(
+        frame_from_normal(mirror),
+        12,
+        12,
+        samples.iter().flatten().take(4000).copied(),
+    );
+    let mut shape = case.shape();
+    shape.roughness *= roughness_factor;
+    let (frame, normal, wo) = (case.frame(), case.surface_normal(), case.wo());
+    // Both horizons, the plane at which Phong's lobe ends, and what the mirror policy makes of them.
+    let folded = |plane: Vec3<f64>| plane.reflected_at_plane(normal);
+    let cuts = [normal, frame.normal, mirror, folded(frame.normal), folded(mirror)];
+    test_samples(&grid, &samples, &cuts, |wi| {
+        lobe_evaluate(&shape, &frame, normal, wo, wi)[1] * factor(wi)
+    })
+}
+
+/// Fails with the cases whose samples do not follow their density.
+fn assert_all_follow(cases: &[Case]) {
+    let limit = sidak_level(LEVEL, cases.len());
+    let outcomes: Vec<_> = cases
+        .par_iter()
+        .map(|case| (case, chi_square(case, SAMPLES, 1.0, |_| 1.0)))
+        .collect();
+    let failed = outcomes.iter().filter(|(_, outcome)| outcome.p_value <= limit);
+    let failed: Vec<String> = failed.map(|(case, outcome)| format!("{case:?} {outcome:?}")).collect();
+    assert!(
+        failed.is_empty(),
+        "{} of {} cases fail:\n{}",
+        failed.len(),
+        cases.len(),
+        failed.join("\n")
+    );
+    // Had pooling left nothing to test, nothing could have failed.
+    let tested = outcomes
+        .iter()
+        .filter(|(_, outcome)| outcome.degrees_of_freedom >= 40)
+        .count();
+    assert!(
+        tested * 10 >= cases.len() * 9,
+        "only {tested} of {} cases have cells enough",
+        cases.len()
+    );
+    // Right p-values are uniform: as many below a half as above, and not all of them at 1.
+    let small = outcomes.iter().filter(|(_, outcome)| outcome.p_value < 0.5).count() as f64;
+    let (middle, sigma) = (0.5 * cases.len() as f64, 0.5 * (cases.len() as f64).sqrt());
+    assert!(
+        (small - middle).abs() < 5.0 * sigma,
+        "{small} of {} p-values are below a half",
+        cases.len()
+    );
+}
+
+#[test]
+fn samples_follow_their_densities() {
+    let mut cases = Vec::new();
+    for (lobe, curve) in lobes_and_curves() {
+        // Above a flat surface the policies differ only for the lobe that draws below it.
+        let policies = if lobe == Lobe::Geometric {
+            Horizon::ALL
+        } else {
+            &[Horizon::Mirror]
+        };
+        for &horizon in policies {
+            cases.extend(Case::grid(lobe, curve, horizon, &[0.0], &ROUGHNESS, &ANGLES_DEG));
+        }
+    }
+    assert_all_follow(&cases);
+}
+
+#[test]
+fn stretched_samples_follow_their_densities() {
+    let mut cases = Vec::new();
+    for (lobe, curve) in lobes_and_curves().into_iter().filter(|(lobe, _)| lobe.is_anisotropic()) {
+        cases.extend(Case::grid(
+            lobe,
+            curve,
+            Horizon::Mirror,
+            &[-0.7, 0.7],
+            &ROUGHNESS,
+            &ANGLES_DEG,
+        ));
+    }
+    assert_all_follow(&cases);
+}
+
+/// Where the shading normal leans, samples cross either of two horizons.
+#[test]
+fn samples_over_a_leaning_normal_follow_their_densities() {
+    let mut cases = Vec::new();
+    for (lobe, curve) in lobes_and_curves() {
+        for horizon in [Horizon::Mirror, Horizon::Absorb] {
+            for mut case in Case::grid(lobe, curve, horizon, &[0.0], &[0.1, 0.6, 1.0], &[0.0, 45.0, 70.0]) {
+                case.lean_deg = if case.seed % 2 == 0 { 20.0 } else { -15.0 };
+                cases.push(case);
+            }
+        }
+    }
+    assert_all_follow(&cases);
+}
+
+/// Evaluate over density is the weight that the sampler hands out.
+#[test]
+fn weights_are_evaluate_over_density() {
+    for (lobe, curve) in lobes_and_curves() {
+        for case in Case::grid(lobe, curve, Horizon::Mirror, &[0.0, 0.5], &ROUGHNESS, &ANGLES_DEG) {
+            for i in 0..50 {
+                let sample = draw(&case, i);
+                let (shape, frame) = (case.shape(), case.frame());
+                let [value, density] = lobe_evaluate(&shape, &frame, frame.normal, case.wo(), sample.wi);
+                if sample.weight > 0.0 {
+                    let error = (value - sample.weight * density).abs();
+                    assert!(
+                        error <= 1e-9 * value.max(1e-9),
+                        "{case:?}: {value} {density} {sample:?}"
+                    );
+                    // Were both computed from a weight of 1, the check above would prove nothing.
+                    let weight = raw_weight(&shape, &frame, case.wo(), sample.wi);
+                    assert!((weight - sample.weight).abs() <= 1e-12 * weight, "{case:?}");
+                }
+            }
+        }
+    }
+}
+
+/// A density that is too high by 2 % on one side and too low on the other, and one of a roughness 2 % too high: both are
+/// found with enough samples, and the right one still passes with as many.
+#[test]
+fn a_density_off_by_two_per_cent_fails() {
+    const MANY: u32 = 1_000_000;
+    let lobes = [
+        (Lobe::Geometric, Curve::Smooth),
+        (Lobe::Geometric, Curve::Custom),
+        (Lobe::Geometric, Curve::LongTail),
+        (Lobe::Ggx, Curve::Sqrt),
+        (Lobe::BlinnPhong, Curve::Sqrt),
+        (Lobe::Phong, Curve::Sqrt),
+    ];
+    lobes.into_par_iter().for_each(|(lobe, curve)| {
+        for case in Case::grid(lobe, curve, Horizon::Mirror, &[0.0], &[0.3], &[30.0]) {
+            let tilted = chi_square(&case, MANY, 1.0, |wi| if wi.y > 0.0 { 1.02 } else { 0.98 });
+            assert!(tilted.p_value < 1e-6, "{case:?}: {tilted:?}");
+            let wide = chi_square(&case, MANY, 1.02, |_| 1.0);
+            assert!(wide.p_value < 1e-6, "{case:?}: {wide:?}");
+            let right = chi_square(&case, MANY, 1.0, |_| 1.0);
+            assert!(right.p_value > 1e-5, "{case:?}: {right:?}");
+        }
+    });
+}
+
+/// A density that misses 2 % of the samples is found even where it is right in shape.
+#[test]
+fn a_density_that_adds_to_less_than_one_fails() {
+    let case = Case::new(Lobe::Geometric, Curve::Sqrt, Horizon::Mirror, 0.6, 60.0);
+    let dimmed = chi_square(&case, 50_000, 1.0, |_| 0.98);
+    assert!(dimmed.p_value < 1e-9, "{dimmed:?}");
+}
+
+#[test]
+fn cells_cover_the_sphere_once() {
+    let frame = frame_from_normal(vec3(0.6, 0.0, 0.8));
+    let pilot = (0..1000).map(|i| {
+        let z: f64 = 1.0 - (f64::from(i) / 1000.0).powi(2);
+        vec3((1.0 - z * z).sqrt(), 0.0, z)
+    });
+    for grid in [
+        PolarGrid::following(frame, 9, 7, pilot),
+        PolarGrid::equal_area(frame, 9, 7),
+    ] {
+        let uniform = 0.25 * std::f64::consts::FRAC_1_PI;
+        let total: f64 = grid.probabilities(100_000, &[], |_| uniform).iter().sum();
+        assert!((total - 1.0).abs() < 1e-4, "{total}");
+        // Each cell's middle lies in that cell.
+        for cell in 0..grid.cells() {
+            let patch = grid.patch(cell);
+            let (polar, azimuth) = (middle(patch.polar_rad), middle(patch.azimuth_rad));
+            let local = vec3(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos());
+            let direction = glossmith::optics::frame::world_from_local(&frame, local);
+            assert_eq!(grid.cell(direction), cell, "{patch:?}");
+        }
+    }
+}
+
+fn middle([low, high]: [f64; 2]) -> f64 {
+    0.5 * (low + high)
+}
+
+#[test]
+fn pearson_statistic_of_known_counts() {
+    // (8² + 8²)/50 = 2.56 with one degree of freedom: p = 0.1096 (tables).
+    let outcome = test_counts(&[58, 42], &[50.0, 50.0]);
+    assert!(
+        (outcome.statistic - 2.56).abs() < 1e-12 && outcome.degrees_of_freedom == 1,
+        "{outcome:?}"
+    );
+    assert!((outcome.p_value - 0.1096).abs() < 1e-4, "{outcome:?}");
+    // Small cells are pooled: three cells of 2 make one of 6.
+    assert_eq!(test_counts(&[6, 0, 0, 50], &[2.0, 2.0, 2.0, 50.0]).statistic, 0.0);
+    assert_eq!(test_counts(&[10, 90], &[f64::NAN, 90.0]).p_value, 0.0);
+    assert!((sidak_level(0.01, 1) - 0.01).abs() < 1e-15);
+    assert!((1.0 - (1.0 - sidak_level(0.01, 500)).powi(500) - 0.01).abs() < 1e-12);
+}

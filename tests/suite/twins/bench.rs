@@ -1,0 +1,350 @@
+//! The adapter with a scene bound as the passes bind theirs, and the same scene for the Rust twins.
+
+use std::sync::{LazyLock, OnceLock};
+
+use bytemuck::{bytes_of, cast_slice};
+use glossmith::document::job::{BackgroundKind, Settings, Strategy};
+use glossmith::gpu::layout::{Globals, triangles};
+use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
+use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
+use glossmith::optics::fresnel::Fresnel;
+use glossmith::optics::lobe::{Horizon, Lobe};
+use glossmith::optics::material::{Material, albedo_table};
+use glossmith::optics::random::Sequence;
+use glossmith::optics::real::Real;
+use glossmith::optics::vector::vec3;
+use glossmith::scene::camera::{Camera, PixelFilter};
+use glossmith::scene::environment::{self, Environment};
+use glossmith::scene::{self, Geometry, ModelSource};
+
+use super::harness::Rng;
+
+/// Custom curves in the tables.
+pub const CUSTOM_CURVES: usize = 3;
+/// Samples a node of the materials' albedo tables: their noise is the same for both twins.
+const ALBEDO_SAMPLES: u32 = 16;
+
+/// What the functions under test read besides their inputs.
+pub struct Scene {
+    pub geometry: Geometry,
+    pub environment: Environment,
+    /// Where each custom curve begins in the tables.
+    pub curves: Vec<u32>,
+    pub materials: Vec<Material<f32>>,
+    pub tables: Vec<f32>,
+}
+
+/// The teapot on its ground in the studio, with a material for each combination of lobe, curve and Fresnel model.
+pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
+    let model = scene::load(&ModelSource::Teapot).unwrap();
+    let mut rng = Rng::new(7);
+    let mut tables = Vec::new();
+    let mut curves = Vec::new();
+    for curve in 0..CUSTOM_CURVES {
+        curves.push(tables.len() as u32);
+        // Waves, then a density that falls to 0 at the end, then one that is 0 at both ends and in a gap. None whose
+        // neighbouring nodes differ by several times: at roughness 1 the distance is rounded to 1e-6, and the density
+        // to that times its slope.
+        let density = |i: usize| {
+            let x = i as f64 / CUSTOM_INTERVALS as f64;
+            match curve {
+                0 => 1.0 + 0.8 * (9.0 * x + 1.0).sin(),
+                1 => 1.0 - x,
+                _ => (x * (1.0 - x) * (x - 0.4).max(0.0)).max(x * (0.3 - x)).max(0.0),
+            }
+        };
+        let density: Vec<f64> = (0..=CUSTOM_INTERVALS).map(density).collect();
+        tables.extend(custom_table([1.0, 1.7, 0.6][curve], &density).unwrap());
+    }
+    let mut materials = Vec::new();
+    for lobe in Lobe::ALL {
+        for curve in Curve::ALL {
+            for fresnel in Fresnel::ALL {
+                let mut material = random_material(&mut rng, *lobe, *curve, *fresnel);
+                material.curve_table = curves[rng.below(CUSTOM_CURVES)];
+                materials.push(material);
+            }
+        }
+    }
+    // The materials of the geometry's slots: the teapot's stretched, the ground's not.
+    materials[0].anisotropy = 0.6;
+    materials[1].anisotropy = 0.0;
+    for material in &mut materials {
+        let albedo = albedo_table(&material.cast(), &tables, ALBEDO_SAMPLES);
+        material.albedo_table = tables.len() as u32;
+        tables.extend(albedo);
+    }
+    Scene {
+        geometry: Geometry::build(&model, true),
+        environment: environment::studio().unwrap(),
+        curves,
+        materials,
+        tables,
+    }
+});
+
+impl Scene {
+    /// A material in the precision of a twin.
+    pub fn material<T: Real>(&self, index: u32) -> Material<T> {
+        self.materials[index as usize].cast()
+    }
+}
+
+/// Mostly rough enough for f32 to tell directions in the lobe apart; sometimes narrow, a mirror or the limits.
+pub fn random_roughness(rng: &mut Rng) -> f32 {
+    match rng.below(32) {
+        0 => 1.0,
+        1 => rng.log_range(1e-3, 0.1),
+        _ => rng.range(0.1, 1.0),
+    }
+}
+
+fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) -> Material<f32> {
+    let mut color = |low: f32, high: f32| vec3(rng.range(low, high), rng.range(low, high), rng.range(low, high));
+    let (base_color, specular_color, eta, k) = (color(0.0, 1.0), color(0.2, 1.0), color(0.1, 3.0), color(0.0, 6.0));
+    let metalness = if rng.chance(0.3) { 1.0 } else { rng.range(0.0, 1.0) };
+    Material {
+        base_color: if rng.chance(0.1) {
+            vec3(0.0, 0.0, 0.0)
+        } else {
+            base_color
+        },
+        metalness,
+        specular_color,
+        specular_weight: if rng.chance(0.1) { 0.0 } else { rng.range(0.1, 1.0) },
+        eta,
+        ior: rng.range(1.01, 2.5),
+        k,
+        roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
+        emission: vec3(0.0, 0.0, 0.0),
+        anisotropy: if rng.chance(0.5) { rng.range(-1.0, 1.0) } else { 0.0 },
+        rotation_rad: rng.range(-3.0, 3.0),
+        lobe: lobe as u32,
+        curve: curve as u32,
+        horizon: Horizon::ALL[rng.below(Horizon::ALL.len())] as u32,
+        fresnel: fresnel as u32,
+        curve_table: 0,
+        albedo_table: 0,
+        reserved: 0,
+    }
+}
+
+/// The adapter with the scene's buffers.
+pub struct Bench {
+    gpu: GpuDevice,
+    layouts: [wgpu::BindGroupLayout; 2],
+    layout: wgpu::PipelineLayout,
+    scene: wgpu::BindGroup,
+}
+
+/// The bench, opened once for all tests.
+///
+/// Panics with what to install where there is no adapter: without one nothing here would be tested.
+pub fn bench() -> &'static Bench {
+    static BENCH: OnceLock<Result<Bench, GpuError>> = OnceLock::new();
+    BENCH
+        .get_or_init(Bench::open)
+        .as_ref()
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+impl Bench {
+    fn open() -> Result<Self, GpuError> {
+        let gpu = GpuDevice::open(AdapterKind::Any)?;
+        println!("{} ({})", gpu.info.name, gpu.driver());
+        let layout_of = |entries: &[wgpu::BindGroupLayoutEntry]| {
+            gpu.device
+                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries })
+        };
+        let scene_entries: Vec<_> = (0..=8).map(scene_entry).collect();
+        let rows_entries = [storage_entry(0, true), storage_entry(1, false)];
+        let layouts = [layout_of(&scene_entries), layout_of(&rows_entries)];
+        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: None,
+            bind_group_layouts: &[Some(&layouts[0]), Some(&layouts[1])],
+            immediate_size: 0,
+        });
+        let scene = upload(&gpu, &layouts[0])?;
+        Ok(Self {
+            gpu,
+            layouts,
+            layout,
+            scene,
+        })
+    }
+
+    /// A shader module; panics where the driver refuses it.
+    pub fn module(&self, source: &str) -> wgpu::ShaderModule {
+        let scope = self.gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let module = self.gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: None,
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        });
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            panic!("{error}");
+        }
+        module
+    }
+
+    /// The general plan's pipeline of an entry point.
+    pub fn pipeline(&self, module: &wgpu::ShaderModule, entry_point: &str) -> wgpu::ComputePipeline {
+        self.gpu
+            .device
+            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry_point),
+                layout: Some(&self.layout),
+                module,
+                entry_point: Some(entry_point),
+                compilation_options: Default::default(),
+                cache: None,
+            })
+    }
+
+    /// Runs an entry point over rows of inputs, 64 a workgroup: `width` words a row come out.
+    pub fn run(&self, pipeline: &wgpu::ComputePipeline, rows: &[u32], count: usize, width: usize) -> Vec<u32> {
+        let input = self.gpu.storage("rows of inputs", cast_slice(rows)).unwrap();
+        let output = self
+            .gpu
+            .empty_storage("rows of outputs", (count * width * 4) as u64)
+            .unwrap();
+        let group = self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: None,
+            layout: &self.layouts[1],
+            entries: &[
+                wgpu::BindGroupEntry {
+                    binding: 0,
+                    resource: input.as_entire_binding(),
+                },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: output.as_entire_binding(),
+                },
+            ],
+        });
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &self.scene, &[]);
+            pass.set_bind_group(1, &group, &[]);
+            pass.dispatch_workgroups(count.div_ceil(64) as u32, 1, 1);
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        self.gpu.read(&output, count * width).unwrap()
+    }
+}
+
+fn storage_entry(binding: u32, read_only: bool) -> wgpu::BindGroupLayoutEntry {
+    entry(binding, wgpu::BufferBindingType::Storage { read_only })
+}
+
+fn entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
+    let ty = wgpu::BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    };
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty,
+        count: None,
+    }
+}
+
+/// The bindings of shaders/scene/layout.wgsl that functions read.
+fn scene_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
+    match binding {
+        0 => entry(0, wgpu::BufferBindingType::Uniform),
+        7 => wgpu::BindGroupLayoutEntry {
+            ty: wgpu::BindingType::Texture {
+                sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                view_dimension: wgpu::TextureViewDimension::D2,
+                multisampled: false,
+            },
+            ..storage_entry(7, true)
+        },
+        _ => storage_entry(binding, true),
+    }
+}
+
+fn settings() -> Settings {
+    Settings {
+        image_size: [64, 48],
+        camera: Camera::look_at([0.0, 1.0, 4.0], [0.0; 3], 30.0, 4.0 / 3.0, PixelFilter::Gaussian),
+        background: BackgroundKind::Environment,
+        environment_rotation: [1.0, 0.0],
+        environment_strength: 1.0,
+        bounces: 8,
+        sequence: Sequence::Sobol,
+        strategy: Strategy::Mis,
+        seed: 0,
+    }
+}
+
+fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindGroup, GpuError> {
+    let Scene {
+        geometry,
+        environment,
+        materials,
+        tables,
+        ..
+    } = &*SCENE;
+    let cells_size = [environment.cells_width, environment.cells_height];
+    let globals = Globals::new(&settings(), geometry.bvh.nodes.len(), cells_size);
+    let uniforms = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: size_of::<Globals>() as u64,
+        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    gpu.queue.write_buffer(&uniforms, 0, bytes_of(&globals));
+    let map = upload_map(gpu, environment);
+    let buffers = [
+        gpu.storage("nodes", cast_slice(&geometry.bvh.nodes))?,
+        gpu.storage("triangles", cast_slice(&triangles(geometry)))?,
+        gpu.storage("vertices", cast_slice(&geometry.vertices))?,
+        gpu.storage("slots", cast_slice(&geometry.slots))?,
+        gpu.storage("materials", cast_slice(materials))?,
+        gpu.storage("tables", cast_slice(tables))?,
+        gpu.storage("cells", cast_slice(&environment.cells))?,
+    ];
+    let mut resources: Vec<_> = buffers.iter().map(wgpu::Buffer::as_entire_binding).collect();
+    resources.insert(0, uniforms.as_entire_binding());
+    resources.insert(7, wgpu::BindingResource::TextureView(&map));
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+        .collect();
+    Ok(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout,
+        entries: &entries,
+    }))
+}
+
+fn upload_map(gpu: &GpuDevice, environment: &Environment) -> wgpu::TextureView {
+    let size = wgpu::Extent3d {
+        width: environment.width,
+        height: environment.height,
+        depth_or_array_layers: 1,
+    };
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let lines = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(16 * environment.width),
+        rows_per_image: None,
+    };
+    gpu.queue
+        .write_texture(texture.as_image_copy(), cast_slice(&environment.texels), lines, size);
+    texture.create_view(&Default::default())
+}

@@ -1,0 +1,129 @@
+//! The layered material with real albedo tables, for every lobe.
+
+use glossmith::optics::lobe::{Lobe, raw_sample};
+use glossmith::optics::material::{
+    Material, Surface, albedo_lookup, material_evaluate, material_layers, material_sample,
+};
+use glossmith::optics::real::Real;
+
+use super::bench::SCENE;
+use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};
+use super::lobes::{DENSITY, View, read_view};
+
+/// Colours that a material multiplies by are about 1.
+const COLOUR: Output = Output::Vector(0.1);
+
+fn read_material_and_surface<T: Real>(row: &mut Row<'_, T>) -> (Material<T>, Surface<T>) {
+    let material = SCENE.material(row.bits());
+    let (frame, normal, wo) = read_view(row);
+    (material, Surface { frame, normal, wo })
+}
+
+/// A material of this lobe.
+fn random_index(rng: &mut Rng, lobe: Lobe) -> u32 {
+    let of_lobe: Vec<u32> = (0..)
+        .zip(&SCENE.materials)
+        .filter(|(_, m)| m.lobe == lobe as u32)
+        .map(|(i, _)| i)
+        .collect();
+    of_lobe[rng.below(of_lobe.len())]
+}
+
+const SURFACE: &str = "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo);";
+
+#[test]
+fn materials_agree() {
+    let mut layers = Case::new(
+        "material_layers",
+        "material tangent bitangent shading normal wo",
+        "let l = material_layers(materials[material], Surface(Frame(tangent, bitangent, shading), normal, wo));",
+        twin!(|row| {
+            let (material, surface) = read_material_and_surface(row);
+            let layers = material_layers(&material, &SCENE.tables, &surface);
+            row.put_vector(layers.base);
+            row.put(layers.specular_probability);
+        }),
+    )
+    .output("l.base", COLOUR)
+    .output("l.specular_probability", Output::Number(0.05));
+    let mut sample = Case::new(
+        "material_sample",
+        "material tangent bitangent shading normal wo a b c layer wants_density",
+        "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo); \
+         let s = material_sample(materials[material], surface, vec3f(a, b, c), layer, wants_density == 1u);",
+        twin!(|row| {
+            let (material, surface) = read_material_and_surface(row);
+            let (xi, layer) = (row.numbers(), row.number());
+            let wants_density = row.bits() == 1;
+            let drawn = material_sample(&material, &SCENE.tables, &surface, xi, layer, wants_density);
+            row.put_vector(drawn.wi);
+            row.put_vector(drawn.throughput);
+            row.put(drawn.density);
+            row.put(if drawn.is_mirror { T::one() } else { T::zero() });
+        }),
+    )
+    .output("s.wi", Output::Vector(1.0))
+    .output("s.throughput", COLOUR)
+    .output("s.density", DENSITY)
+    .output("f32(s.is_mirror)", Output::Number(1.0));
+    let mut evaluate = Case::new(
+        "material_evaluate",
+        "material tangent bitangent shading normal wo wi light_density competing",
+        SURFACE,
+        twin!(|row| {
+            let (material, surface) = read_material_and_surface(row);
+            let (wi, [light_density, competing]) = (row.vector(), row.numbers());
+            let value = material_evaluate(&material, &SCENE.tables, &surface, wi, light_density, competing);
+            row.put_vector(value);
+        }),
+    )
+    // As of a density.
+    .output(
+        "material_evaluate(materials[material], surface, wi, light_density, competing)",
+        Output::Vector(0.08),
+    );
+    for &lobe in Lobe::ALL {
+        layers = layers.group(lobe.name(), move |rng, _| {
+            [&[random_index(rng, lobe).into()][..], &View::random(rng).inputs()].concat()
+        });
+        sample = sample.group_of(lobe.name(), 16_000, move |rng, _| {
+            let xi = [(); 4].map(|()| Value::Unit(rng.unit()));
+            let start = [random_index(rng, lobe).into()];
+            [&start[..], &View::random(rng).inputs(), &xi, &[(rng.bits() & 1).into()]].concat()
+        });
+        evaluate = evaluate.group_of(lobe.name(), 16_000, move |rng, index| {
+            let (material, view) = (random_index(rng, lobe), View::random(rng));
+            let wi = if index % 2 == 0 {
+                let shape = SCENE.materials[material as usize].shape(&SCENE.tables);
+                raw_sample(&shape, &view.frame, view.wo, [(); 3].map(|()| rng.unit()))
+            } else {
+                rng.direction()
+            };
+            let competing: f32 = if rng.chance(0.5) { 1.0 } else { 0.0 };
+            let last = inputs![wi, rng.log_range(1e-3, 1e3), competing];
+            [&[material.into()][..], &view.inputs(), &last].concat()
+        });
+    }
+    check(
+        &["optics/material"],
+        &[
+            layers,
+            sample,
+            evaluate,
+            Case::new(
+                "albedo_lookup",
+                "material cosine",
+                "",
+                twin!(|row| {
+                    let material: Material<T> = SCENE.material(row.bits());
+                    let cosine = row.number();
+                    row.put_vector(albedo_lookup(&SCENE.tables, material.albedo_table, cosine));
+                }),
+            )
+            .output("albedo_lookup(materials[material].albedo_table, cosine)", COLOUR)
+            .group("", |rng, _| {
+                inputs![rng.below(SCENE.materials.len()) as u32, Value::Unit(rng.unit())]
+            }),
+        ],
+    );
+}

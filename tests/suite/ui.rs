@@ -1,0 +1,403 @@
+//! The editor as a person uses it, with the real renderer behind it, in few pixels.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Pos2, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::layout::Pane;
+use glossmith::app::{App, Options, Resolution};
+use glossmith::document::{Document, PRESETS, save_document, save_material};
+use glossmith::render::EngineChoice;
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+
+use super::worker::small_document;
+
+const PATIENCE: Duration = Duration::from_secs(120);
+
+fn editor_with(document: Document, files: Vec<PathBuf>) -> Harness<'static, App> {
+    let options = Options {
+        files,
+        engine: EngineChoice::Cpu,
+        document: Some(document),
+        resolution: Some(Resolution::Document),
+    };
+    Harness::builder()
+        .with_size(Vec2::new(1400.0, 1000.0))
+        .build_eframe(move |creation| App::new(creation, options).expect("a thread to render on"))
+}
+
+/// An editor whose first picture is finished.
+fn editor() -> Harness<'static, App> {
+    let mut harness = editor_with(small_document(), Vec::new());
+    settle(&mut harness);
+    harness
+}
+
+fn wait(harness: &mut Harness<'static, App>, what: &str, until: impl Fn(&App) -> bool) {
+    let begun = Instant::now();
+    loop {
+        harness.step();
+        if until(harness.state()) {
+            return;
+        }
+        let app = harness.state();
+        let state = (app.snapshot().activity.clone(), app.messages());
+        assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}: {state:?}");
+        std::thread::sleep(Duration::from_millis(3));
+    }
+}
+
+fn settle(harness: &mut Harness<'static, App>) {
+    // What was just done reaches the renderer with the next frame.
+    harness.run_steps(3);
+    wait(harness, "a finished picture", App::is_settled);
+    // The panels show what the wait ended with.
+    harness.step();
+    harness.check_accessibility();
+}
+
+fn picture(harness: &Harness<'static, App>) -> Vec<[f32; 4]> {
+    let snapshot = harness.state().snapshot();
+    snapshot
+        .picture
+        .as_ref()
+        .expect("there is a picture")
+        .image
+        .pixels
+        .clone()
+}
+
+fn undo(harness: &mut Harness<'static, App>) {
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    settle(harness);
+}
+
+fn request(harness: &mut Harness<'static, App>, action: Action) {
+    harness.state_mut().request(action);
+    harness.run_steps(2);
+}
+
+#[test]
+fn the_editor_opens_and_renders() {
+    let harness = editor();
+    let snapshot = harness.state().snapshot();
+    let picture = snapshot.picture.as_ref().expect("it was waited for");
+    assert_eq!((picture.width, picture.height, picture.samples_per_pixel), (40, 24, 3));
+    let bright = picture.rgba.iter().filter(|byte| **byte > 40).count();
+    assert!(bright > picture.rgba.len() / 3, "the picture is almost black");
+    assert!(harness.query_by_label("rendering").is_none());
+    assert!(harness.query_by_label("done").is_some());
+}
+
+#[test]
+fn a_slider_changes_the_document_and_the_picture_and_undo_brings_both_back() {
+    let mut harness = editor();
+    let (document, before) = (harness.state().document().clone(), picture(&harness));
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .set_value_accesskit(0.85);
+    settle(&mut harness);
+    assert_eq!(harness.state().document().materials[0].roughness, 0.85);
+    let rough = picture(&harness);
+    assert_ne!(rough, before);
+    undo(&mut harness);
+    assert_eq!(*harness.state().document(), document);
+    assert_eq!(picture(&harness), before);
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    settle(&mut harness);
+    assert_eq!(picture(&harness), rough);
+}
+
+#[test]
+fn every_number_of_the_material_panel_can_be_set() {
+    let mut harness = editor();
+    for (label, value) in [
+        ("Base metalness", 0.25),
+        ("Specular weight", 0.5),
+        ("Specular anisotropy", -0.4),
+    ] {
+        harness
+            .get_by_role_and_label(Role::SpinButton, label)
+            .set_value_accesskit(value);
+        harness.run_steps(2);
+    }
+    let material = harness.state().document().materials[0].clone();
+    assert_eq!(
+        (material.metalness, material.specular_weight, material.anisotropy),
+        (0.25, 0.5, -0.4)
+    );
+}
+
+#[test]
+fn a_lobe_is_chosen_from_its_menu_and_what_does_not_apply_goes() {
+    let mut harness = editor();
+    assert!(harness.query_by_label("Specular curve").is_some());
+    harness.get_by_role_and_label(Role::ComboBox, "Specular lobe").click();
+    harness.run_steps(2);
+    let label = glossmith::optics::lobe::Lobe::Ggx.label();
+    harness.get_by_role_and_label(Role::Button, label).click();
+    settle(&mut harness);
+    assert_eq!(
+        harness.state().document().materials[0].lobe,
+        glossmith::optics::lobe::Lobe::Ggx
+    );
+    assert!(harness.query_by_label("Specular curve").is_none(), "GGX has no curve");
+}
+
+#[test]
+fn dragging_in_the_viewport_turns_the_camera_in_one_step() {
+    let mut harness = editor();
+    let before = harness.state().document().camera;
+    let center = harness.get_by_label("Viewport").rect().center();
+    drag(&mut harness, center, Vec2::new(60.0, 20.0));
+    settle(&mut harness);
+    let after = harness.state().document().camera;
+    assert!(
+        after.yaw_deg < before.yaw_deg - 5.0 && after.pitch_deg > before.pitch_deg + 2.0,
+        "{after:?}"
+    );
+    assert_eq!(
+        (after.target, after.distance),
+        (None, None),
+        "a turn leaves the framing alone"
+    );
+    undo(&mut harness);
+    assert_eq!(harness.state().document().camera, before);
+}
+
+fn drag(harness: &mut Harness<'static, App>, from: Pos2, by: Vec2) {
+    harness.hover_at(from);
+    harness.step();
+    harness.drag_at(from);
+    for step in 1..=6 {
+        harness.step();
+        harness.hover_at(from + by * (step as f32 / 6.0));
+    }
+    harness.step();
+    harness.drop_at(from + by);
+    harness.run_steps(2);
+}
+
+#[test]
+fn shift_and_drag_turns_the_light_and_the_wheel_zooms() {
+    let mut harness = editor();
+    let center = harness.get_by_label("Viewport").rect().center();
+    harness.event(egui::Event::ModifiersChanged(Modifiers::SHIFT));
+    drag(&mut harness, center, Vec2::new(50.0, 0.0));
+    harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    assert!(harness.state().document().lighting.rotation_deg > 10.0);
+    assert_eq!(harness.state().document().camera, Document::default().camera);
+    harness.hover_at(center);
+    harness.event(egui::Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: Vec2::new(0.0, 120.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::NONE,
+    });
+    harness.run_steps(4);
+    let distance = harness
+        .state()
+        .document()
+        .camera
+        .distance
+        .expect("zooming sets a distance");
+    harness.key_press(Key::F);
+    harness.run_steps(2);
+    assert_eq!(harness.state().document().camera.distance, None, "it was {distance}");
+}
+
+#[test]
+fn every_panel_and_sheet_has_named_inputs() {
+    let mut harness = editor();
+    request(&mut harness, Action::Open("not/there.glb".into()));
+    wait(&mut harness, "the message", |app| {
+        app.messages().iter().any(|text| text.contains("not/there.glb"))
+    });
+    for pane in Pane::ALL {
+        harness.state_mut().reveal(pane);
+        harness.run_steps(3);
+        harness.check_accessibility();
+    }
+    for command in [Command::Palette, Command::Shortcuts, Command::About] {
+        request(&mut harness, Action::Do(command));
+        harness.run_steps(2);
+        harness.check_accessibility();
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
+    }
+    for theme in 0..2 {
+        request(&mut harness, Action::Do(Command::ToggleTheme));
+        harness.check_accessibility();
+        assert_eq!(harness.ctx.theme() == egui::Theme::Dark, theme == 1);
+    }
+}
+
+#[test]
+fn a_preset_is_one_click_and_one_undo() {
+    let mut harness = editor();
+    let before = harness.state().document().clone();
+    harness.get_by_role_and_label(Role::Button, "Rubber").click();
+    settle(&mut harness);
+    let rubber = PRESETS
+        .iter()
+        .find(|material| material.name == "Rubber")
+        .expect("shipped");
+    assert_eq!(harness.state().document().materials[0], *rubber);
+    undo(&mut harness);
+    assert_eq!(*harness.state().document(), before);
+}
+
+#[test]
+fn the_palette_finds_and_does() {
+    let mut harness = editor();
+    assert_eq!(harness.ctx.theme(), egui::Theme::Dark);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::TextInput, "Find a command")
+        .type_text("light or dark");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(2);
+    assert_eq!(harness.ctx.theme(), egui::Theme::Light);
+    assert!(
+        harness
+            .query_by_role_and_label(Role::TextInput, "Find a command")
+            .is_none()
+    );
+}
+
+#[test]
+fn damaged_files_are_named_and_change_nothing() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).expect("a temporary file");
+        path
+    };
+    let files = [
+        write("text.glb", b"this is no model"),
+        write(
+            "short.hdr",
+            b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 64 +X 128\n\x02\x02",
+        ),
+        write("half.json", b"{\"glossmith\": 1, \"material\": {"),
+        write("notes.txt", b"hello"),
+    ];
+    let mut harness = editor();
+    let (document, before) = (harness.state().document().clone(), picture(&harness));
+    for path in files {
+        request(&mut harness, Action::Open(path.clone()));
+        let name = path.display().to_string();
+        wait(&mut harness, "a message", |app| {
+            app.messages().iter().any(|text| text.contains(&name))
+        });
+    }
+    settle(&mut harness);
+    assert_eq!(*harness.state().document(), document);
+    assert_eq!(picture(&harness), before);
+}
+
+#[test]
+fn models_and_environments_are_changed_and_undone() {
+    let mut harness = editor();
+    let mut document = harness.state().document().clone();
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .set_value_accesskit(0.6);
+    harness.run_steps(2);
+    let before = harness.state().document().clone();
+    request(&mut harness, Action::UseModel(ModelSource::Shaderball));
+    wait(&mut harness, "the model", |app| {
+        app.document().model == ModelSource::Shaderball
+    });
+    settle(&mut harness);
+    let materials = &harness.state().document().materials;
+    assert_eq!(
+        (materials.len(), materials[0].roughness),
+        (2, 0.6),
+        "the edited material stays"
+    );
+    assert!(harness.query_by_label("stand").is_some(), "the slots are listed");
+    undo(&mut harness);
+    assert_eq!(*harness.state().document(), before);
+    request(&mut harness, Action::UseEnvironment(EnvironmentSource::Sky));
+    wait(&mut harness, "the sky", |app| {
+        app.document().lighting.environment == EnvironmentSource::Sky
+    });
+    document.materials[0].roughness = 0.6;
+    document.lighting.environment = EnvironmentSource::Sky;
+    assert_eq!(*harness.state().document(), document);
+}
+
+#[test]
+fn projects_and_materials_come_back_from_their_files() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut document = small_document();
+    document.camera.yaw_deg = -70.0;
+    document.materials[0] = PRESETS[5].clone();
+    let project = folder.path().join("project.json");
+    save_document(&project, &document).expect("a temporary file");
+    let material = folder.path().join("material.json");
+    save_material(&material, &PRESETS[3]).expect("a temporary file");
+    let mut harness = editor_with(small_document(), vec![project]);
+    settle(&mut harness);
+    assert_eq!(*harness.state().document(), document);
+    request(&mut harness, Action::Open(material));
+    settle(&mut harness);
+    assert_eq!(harness.state().document().materials[0], PRESETS[3]);
+}
+
+#[test]
+fn the_picture_is_saved_as_it_is_shown() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut harness = editor();
+    // There is no file dialog here: the path field takes its place.
+    request(&mut harness, Action::Do(Command::SavePicture));
+    let begun = Instant::now();
+    while harness.query_by_role_and_label(Role::TextInput, "Path").is_none() {
+        assert!(begun.elapsed() < PATIENCE, "no path field came");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    harness.check_accessibility();
+    let path = folder.path().join("shown.png");
+    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
+    field.set_text_value_accesskit(&path.display().to_string());
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Save").click();
+    harness.run_steps(2);
+    wait(&mut harness, "the file", |app| {
+        app.messages().iter().any(|text| text.contains("shown.png"))
+    });
+    let saved = image::open(&path).expect("a picture").to_rgba8();
+    let snapshot = harness.state().snapshot();
+    assert_eq!(saved.into_raw(), snapshot.picture.as_ref().expect("there is one").rgba);
+}
+
+#[test]
+fn the_window_paints_the_renderers_pixels() {
+    let mut document = small_document();
+    document.lighting.background = glossmith::document::Background::Color([0.9, 0.02, 0.02]);
+    let mut harness = editor_with(document, Vec::new());
+    settle(&mut harness);
+    harness.step();
+    let viewport = harness.get_by_label("Viewport").rect();
+    let window = harness
+        .render()
+        .expect("a Vulkan driver: apt install mesa-vulkan-drivers");
+    let shown = harness.state().snapshot().picture.clone().expect("there is one");
+    // The picture fills the viewport's width; its left edge is background.
+    let at = [viewport.left() + 20.0, viewport.center().y].map(|x| x as u32);
+    let painted = window.get_pixel(at[0], at[1]).0;
+    let expected = &shown.rgba[4 * 40 * 12..][..4];
+    let difference = painted.iter().zip(expected).map(|(a, b)| a.abs_diff(*b)).max();
+    assert!(difference <= Some(3), "painted {painted:?}, rendered {expected:?}");
+    assert!(expected[0] > 2 * expected[1], "the background is red");
+}
