@@ -77,13 +77,15 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
         .iter()
         .map(|&[x, y, z, _]| (across.dot(Vec3::from_f32([x, y, z])), y));
     let reach = points.clone().map(|(x, y)| x.abs().max(y.abs())).fold(0.01, f32::max) * 1.05;
-    let root = BitMapBackend::new(path, (800, 860)).into_drawing_area();
+    let root = BitMapBackend::new(path, (800, 810)).into_drawing_area();
     root.fill(&WHITE)?;
+    let lobe = match request.lobe {
+        Lobe::Geometric => format!("Geometric, {}", request.curve.label().to_lowercase()),
+        lobe => lobe.label().to_owned(),
+    };
     let caption = format!(
-        "{}, roughness {}, view {}°",
-        request.lobe.label(),
-        request.roughness,
-        request.view_angle_deg
+        "{lobe}, roughness {}, view {}°",
+        request.roughness, request.view_angle_deg
     );
     let mut chart = ChartBuilder::on(&root)
         .caption(caption, ("sans-serif", 26))

@@ -1,6 +1,12 @@
 //! Pictures written to files.
 
+use std::fs::File;
+use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
+
+use image::codecs::hdr::HdrEncoder;
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder as _, Rgb};
 
 use super::display::display;
 use crate::analysis::film::Image;
@@ -72,15 +78,26 @@ pub fn write(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), Outp
 
 fn write_png(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), String> {
     let pixels = display(image, view);
-    image::save_buffer_with_format(
-        path,
-        &pixels,
-        image.width,
-        image.height,
-        image::ExtendedColorType::Rgba8,
-        image::ImageFormat::Png,
-    )
-    .map_err(|error| error.to_string())
+    // Not the encoder's fastest setting: what noise there is makes files half as large again with it.
+    let (compression, filter) = (CompressionType::Default, FilterType::Adaptive);
+    write_buffered(path, |file| {
+        PngEncoder::new_with_quality(file, compression, filter).write_image(
+            &pixels,
+            image.width,
+            image.height,
+            ExtendedColorType::Rgba8,
+        )
+    })
+}
+
+/// Writes a file through a buffer, and notices where the last of it does not fit on the disc.
+fn write_buffered(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> image::ImageResult<()>,
+) -> Result<(), String> {
+    let mut file = BufWriter::new(File::create(path).map_err(|error| error.to_string())?);
+    write(&mut file).map_err(|error| error.to_string())?;
+    file.flush().map_err(|error| error.to_string())
 }
 
 fn write_exr(path: &Path, image: &Image) -> Result<(), String> {
@@ -93,9 +110,7 @@ fn write_exr(path: &Path, image: &Image) -> Result<(), String> {
 }
 
 fn write_hdr(path: &Path, image: &Image) -> Result<(), String> {
-    let file = std::fs::File::create(path).map_err(|error| error.to_string())?;
-    let pixels: Vec<_> = image.pixels.iter().map(|&[r, g, b, _]| image::Rgb([r, g, b])).collect();
-    image::codecs::hdr::HdrEncoder::new(std::io::BufWriter::new(file))
-        .encode(&pixels, image.width as usize, image.height as usize)
-        .map_err(|error| error.to_string())
+    let pixels: Vec<_> = image.pixels.iter().map(|&[r, g, b, _]| Rgb([r, g, b])).collect();
+    let (width, height) = (image.width as usize, image.height as usize);
+    write_buffered(path, |file| HdrEncoder::new(file).encode(&pixels, width, height))
 }
