@@ -55,6 +55,7 @@ pub fn run(files: Vec<PathBuf>, engine: EngineChoice) -> anyhow::Result<()> {
         engine,
         ..Options::default()
     };
+    crate::render::priority::let_rendering_give_way();
     let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, options)?)));
     eframe::run_native("Glossmith", settings::native_options(), create).map_err(|error| {
         anyhow::anyhow!(

@@ -13,6 +13,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::engine::{EngineChoice, EngineInfo};
+use super::priority::lower_thread_priority;
 use super::session::Progress;
 use crate::analysis::film::Image;
 use crate::document::Document;
@@ -212,9 +213,10 @@ impl Worker {
     pub fn spawn(choice: EngineChoice, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let of_thread = shared.clone();
-        let thread = std::thread::Builder::new()
-            .name("render".to_owned())
-            .spawn(move || thread::run(&of_thread, choice, &repaint))?;
+        let thread = std::thread::Builder::new().name("render".to_owned()).spawn(move || {
+            lower_thread_priority();
+            thread::run(&of_thread, choice, &repaint);
+        })?;
         Ok(Self {
             shared,
             thread: Some(thread),

@@ -175,11 +175,14 @@ impl Grid {
         let rows_value = patch.map(|row| combine(&across.value, &row));
         let rows_slope = patch.map(|row| combine(&across.slope, &row));
         let mut du = combine(&along.value, &rows_slope);
-        let dv = combine(&along.slope, &rows_value);
+        let mut dv = combine(&along.slope, &rows_value);
+        // Where a border shrinks to a point, the direction along it is the limit from the inside.
+        let mixed = combine(&along.slope, &rows_slope);
         if du.length() < 1e-9 {
-            // The pole: the row shrinks to a point. The direction around it is the limit from the inside.
-            let inwards = if i == 0 { 1.0 } else { -1.0 };
-            du = combine(&along.slope, &rows_slope) * inwards;
+            du = if i == 0 { mixed } else { -mixed };
+        }
+        if dv.length() < 1e-9 {
+            dv = if j == 0 { mixed } else { -mixed };
         }
         let tangent = du.normalize_or(DVec3::X);
         (self.position(patch, i, j), du.cross(dv).normalize_or(DVec3::Y), tangent)

@@ -227,7 +227,10 @@ fn tessellation_scales_linearly() {
     let seconds = |segments: u32| {
         let start = std::time::Instant::now();
         let mesh = teapot::mesh(segments);
-        assert_eq!(mesh.triangles.len(), (64 * segments * segments - 8 * segments) as usize);
+        assert_eq!(
+            mesh.triangles.len(),
+            (74 * segments * segments - 10 * segments) as usize
+        );
         start.elapsed().as_secs_f64()
     };
     seconds(20);

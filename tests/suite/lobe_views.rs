@@ -33,7 +33,7 @@ fn geometric_lobe_with_mirror_policy_loses_nothing() {
                 "albedo",
             );
             assert!(
-                albedo.iter().all(|albedo| (albedo - 1.0).abs() < 3e-3),
+                albedo.iter().all(|albedo| (albedo - 1.0).abs() < 6e-3),
                 "{curve:?} {roughness}: {albedo:?}"
             );
         }
@@ -98,7 +98,7 @@ fn share_below_the_horizon_is_the_measured_one() {
             (100.0 * below[0] - percent).abs() < 0.1,
             "{curve:?} {roughness}: {below:?}"
         );
-        assert_eq!(below[1], 0.0);
+        assert!(below[1] < 1e-12, "{curve:?} {roughness}: {below:?}");
     }
 }
 

@@ -17,7 +17,7 @@ const MOVE: f64 = 1.0 / (1 << 21) as f64;
 /// How often they are moved.
 const MOVES: u64 = 4;
 /// Results of moved inputs count this many times: the few that are tried are not the worst ones.
-const SAFETY: f64 = 2.0;
+const SAFETY: f64 = 4.0;
 /// Rows drawn for each group, and how many of them must be well-conditioned.
 const ROWS: usize = 12_000;
 const ROWS_STRICT: usize = 10_000;
