@@ -32,8 +32,10 @@ fn geometric_lobe_with_mirror_policy_loses_nothing() {
                 &lines(ViewKind::Albedo, &lobe, &[0.0, 30.0, 60.0, 80.0, 88.0]),
                 "albedo",
             );
+            // The grid loses up to 0.7 % of the narrowest lobes with sharp edges; the density itself integrates to 1.
+            let bound = if roughness < 0.1 { 1e-2 } else { 3e-3 };
             assert!(
-                albedo.iter().all(|albedo| (albedo - 1.0).abs() < 6e-3),
+                albedo.iter().all(|albedo| (albedo - 1.0).abs() < bound),
                 "{curve:?} {roughness}: {albedo:?}"
             );
         }
