@@ -9,6 +9,7 @@ mod compile;
 pub mod display;
 mod engine;
 pub mod output;
+pub mod samples;
 mod session;
 pub mod worker;
 
