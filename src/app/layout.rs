@@ -18,6 +18,10 @@ pub enum Pane {
     Viewport,
     /// The material's parameters.
     Material,
+    /// The geometric lobe's curve.
+    Curve,
+    /// What the lobe draws.
+    Samples,
     /// Environment, background, ground.
     Lighting,
     /// Camera, view and render settings.
@@ -44,6 +48,8 @@ impl Pane {
         match self {
             Self::Viewport => "Viewport",
             Self::Material => "Material",
+            Self::Curve => "Curve",
+            Self::Samples => "Samples",
             Self::Lighting => "Light",
             Self::Camera => "Camera & picture",
             Self::Presets => "Presets",
@@ -56,7 +62,7 @@ impl Pane {
 const LEFT_SHARE: f32 = 0.19;
 const RIGHT_SHARE: f32 = 0.25;
 
-/// The layout at first: presets over light and camera on the left, the picture, the material on the right.
+/// The layout at first: presets over light and camera on the left, the picture, the material over its plots on the right.
 pub(super) fn default_layout() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let mut pane = |pane| tiles.insert_pane(pane);
@@ -67,10 +73,17 @@ pub(super) fn default_layout() -> Tree<Pane> {
         pane(Pane::Camera),
         pane(Pane::Log),
     );
+    let (curve, samples) = (pane(Pane::Curve), pane(Pane::Samples));
     let upper_left = tiles.insert_tab_tile(vec![presets, log]);
     let lower_left = tiles.insert_tab_tile(vec![lighting, camera]);
     let left = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [upper_left, lower_left], 0.42));
-    let right = tiles.insert_tab_tile(vec![material]);
+    let upper_right = tiles.insert_tab_tile(vec![material]);
+    let lower_right = tiles.insert_tab_tile(vec![curve, samples]);
+    let right = tiles.insert_container(Linear::new_binary(
+        LinearDir::Vertical,
+        [upper_right, lower_right],
+        0.56,
+    ));
     let mut across = Linear::new(LinearDir::Horizontal, vec![left, viewport, right]);
     across.shares.set_share(left, LEFT_SHARE);
     across.shares.set_share(viewport, 1.0 - LEFT_SHARE - RIGHT_SHARE);
@@ -109,6 +122,8 @@ impl Behavior<Pane> for Panes<'_, '_> {
                 let frame = egui::Frame::new().inner_margin(theme::PANEL_MARGIN);
                 frame.show(ui, |ui| match pane {
                     Pane::Material => panels::material::show(ui, self.desk),
+                    Pane::Curve => panels::curve::show(ui, self.desk),
+                    Pane::Samples => panels::samples::show(ui, self.desk),
                     Pane::Lighting => panels::lighting::show(ui, self.desk),
                     Pane::Camera => panels::camera::show(ui, self.desk),
                     Pane::Presets => panels::presets::show(ui, self.desk),

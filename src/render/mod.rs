@@ -10,6 +10,7 @@ pub mod display;
 mod engine;
 pub mod output;
 pub mod priority;
+pub mod samples;
 mod session;
 pub mod worker;
 

@@ -1,10 +1,12 @@
 //! The panels, one a file. They change the document, push actions, and read the renderer's state.
 
 pub(super) mod camera;
+pub(super) mod curve;
 pub(super) mod lighting;
 pub(super) mod log;
 pub(super) mod material;
 pub(super) mod presets;
+pub(super) mod samples;
 
 use super::actions::{Action, Command};
 use super::edits::Edits;
@@ -22,7 +24,7 @@ pub(super) struct Desk<'a> {
 }
 
 /// What panels remember that is no part of the document.
-#[derive(Clone, Debug, Default)]
+#[derive(Default)]
 pub(super) struct PanelState {
     /// The material slot that is edited.
     pub(super) slot: usize,
@@ -32,6 +34,10 @@ pub(super) struct PanelState {
     pub(super) thumbnail: lighting::Thumbnail,
     /// How large the picture is.
     pub(super) resolution: Resolution,
+    /// The curve editor's.
+    pub(super) curve: curve::CurveState,
+    /// The sample plots'.
+    pub(super) samples: samples::SampleState,
     /// Rendering was stopped by hand.
     pub(super) is_paused: bool,
     /// What is searched for among the presets.

@@ -1,0 +1,416 @@
+//! What the renderer draws: the samples of the selected material's lobe, out of the engine's own function.
+
+use std::sync::Arc;
+
+use egui::{Color32, ColorImage, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions, Ui, Vec2, pos2, vec2};
+use egui_plot::{Bar, BarChart, Legend, Line, Plot, PlotPoints};
+
+use super::Desk;
+use crate::analysis::scatter::ScatterRequest;
+use crate::app::status::short_number;
+use crate::app::theme;
+use crate::app::widgets::{self, Name, NumberStyle};
+use crate::optics::lobe::{Horizon, Lobe};
+use crate::optics::vector::Vec3;
+use crate::render::EngineChoice;
+use crate::render::samples::{SampleQuery, SampleReport, SampleWorker, mirror_direction};
+
+/// From where the samples are looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::app) enum Look {
+    #[default]
+    Mirror,
+    Above,
+    Side,
+    Angle,
+}
+
+const LOOKS: [(Look, &str, &str); 4] = [
+    (
+        Look::Mirror,
+        "From r",
+        "From the mirror direction, as in the paper's Fig. 1; the circle has the radius of the roughness.",
+    ),
+    (Look::Above, "Above", "Down the normal: the circle is the horizon."),
+    (
+        Look::Side,
+        "Side",
+        "Across the plane of incidence: the line is the surface.",
+    ),
+    (
+        Look::Angle,
+        "Angle",
+        "How often each angle α to the mirror direction is drawn, as in the paper's Fig. 3.",
+    ),
+];
+
+/// Numbers of samples to choose from.
+const COUNTS: [(u32, &str, &str); 4] = [
+    (2_000, "2 k", ""),
+    (20_000, "20 k", ""),
+    (200_000, "200 k", ""),
+    (1_000_000, "1 M", ""),
+];
+
+/// What the panel remembers.
+#[derive(Default)]
+pub(in crate::app) struct SampleState {
+    worker: Option<SampleWorker>,
+    asked: Option<SampleQuery>,
+    pub(in crate::app) view_angle_deg: Option<f32>,
+    count: Option<u32>,
+    look: Look,
+    compare: bool,
+    drawn: Option<Drawn>,
+}
+
+/// The points as a picture, and of what.
+struct Drawn {
+    report: Arc<SampleReport>,
+    look: Look,
+    side: usize,
+    color: Color32,
+    reach: f32,
+    texture: TextureHandle,
+}
+
+/// The angle between view and normal at first.
+const VIEW_ANGLE_DEG: f32 = 45.0;
+
+pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let Some(query) = query(desk) else {
+        widgets::note(ui, "The engine is being opened.");
+        return;
+    };
+    controls(ui, &mut desk.state.samples);
+    let state = &mut desk.state.samples;
+    if state.worker.is_none() {
+        let ctx = ui.ctx().clone();
+        state.worker = SampleWorker::spawn(move || ctx.request_repaint()).ok();
+    }
+    let Some(worker) = &state.worker else {
+        widgets::note(ui, "The system gives no thread to draw samples on.");
+        return;
+    };
+    if state.asked.as_ref() != Some(&query) {
+        worker.ask(query.clone());
+        state.asked = Some(query);
+    }
+    match worker.latest() {
+        None => {
+            ui.add(egui::Spinner::new());
+        }
+        Some(Err(why)) => {
+            ui.colored_label(ui.visuals().error_fg_color, why);
+        }
+        Some(Ok(report)) => {
+            if state.look == Look::Angle {
+                angle_plot(ui, &report);
+            } else {
+                cloud(ui, state, &report);
+            }
+            numbers(ui, &report);
+        }
+    }
+}
+
+/// What the plots are of: the selected material's specular lobe.
+fn query(desk: &Desk<'_>) -> Option<SampleQuery> {
+    let engine = desk.snapshot.engine.as_ref()?;
+    let state = &desk.state.samples;
+    let material = desk.material();
+    let is_custom = material.lobe == Lobe::Geometric && material.curve == crate::optics::curve::Curve::Custom;
+    let request = ScatterRequest {
+        lobe: material.lobe,
+        curve: material.curve,
+        horizon: material.horizon,
+        roughness: material.roughness,
+        anisotropy: if material.lobe.is_anisotropic() {
+            material.anisotropy
+        } else {
+            0.0
+        },
+        table: if is_custom {
+            material.custom_curve.table()
+        } else {
+            Vec::new()
+        },
+        view_angle_deg: state.view_angle_deg.unwrap_or(VIEW_ANGLE_DEG),
+        count: state.count.unwrap_or(COUNTS[1].0),
+        seed: desk.document.render.seed,
+    };
+    Some(SampleQuery {
+        engine: if engine.kind == "gpu" {
+            EngineChoice::Gpu
+        } else {
+            EngineChoice::Cpu
+        },
+        request,
+        compare: state.look == Look::Angle && state.compare,
+    })
+}
+
+fn controls(ui: &mut Ui, state: &mut SampleState) {
+    ui.horizontal_wrapped(|ui| {
+        for (look, label, help) in LOOKS {
+            if ui
+                .selectable_label(state.look == look, label)
+                .on_hover_text(help)
+                .clicked()
+            {
+                state.look = look;
+            }
+        }
+    });
+    let mut view_angle_deg = state.view_angle_deg.unwrap_or(VIEW_ANGLE_DEG);
+    let style = NumberStyle {
+        range: 0.0..=89.9,
+        bar: Some([0.0, 89.9]),
+        unit: "°",
+        speed: 0.5,
+        decimals: 1,
+    };
+    let name = Name {
+        full: "Samples view angle",
+        label: "View angle",
+        symbol: "θ",
+        help: "Between the view and the normal. A click in the viewport takes the angle of the place there.",
+    };
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut view_angle_deg, &style));
+    if response.changed {
+        state.view_angle_deg = Some(view_angle_deg);
+    }
+    if response.reset {
+        state.view_angle_deg = None;
+    }
+    let mut count = state.count.unwrap_or(COUNTS[1].0);
+    let name = Name::new("Samples drawn", "Samples", "How many are drawn for the plot.");
+    if widgets::row(ui, name, |ui| widgets::choice(ui, "sample count", &mut count, &COUNTS)).changed {
+        state.count = Some(count);
+    }
+    if state.look == Look::Angle {
+        let help = "Looks for the roughness at which Phong and GGX come closest, by the total variation distance.";
+        widgets::row(ui, Name::new("Compare lobes", "Phong and GGX", help), |ui| {
+            ui.checkbox(&mut state.compare, "")
+        });
+    }
+    ui.add_space(4.0);
+}
+
+/// Where a direction lies in a view, in [−1, 1]² (x to the right, y up).
+fn project(look: Look, direction: Vec3<f32>, mirror: Vec3<f32>) -> [f32; 2] {
+    match look {
+        Look::Above => [direction.x, direction.y],
+        Look::Side => [direction.x, direction.z],
+        Look::Mirror | Look::Angle => {
+            // To the right: away from the normal, in the plane of incidence.
+            let across = Vec3::from_f32([mirror.z, 0.0, -mirror.x]);
+            [across.dot(direction), direction.y]
+        }
+    }
+}
+
+fn cloud(ui: &mut Ui, state: &mut SampleState, report: &Arc<SampleReport>) {
+    let side = ui.available_width().min(420.0);
+    let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "The samples"));
+    ui.painter().rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
+    let pixels = (side * ui.ctx().pixels_per_point()) as usize;
+    let color = theme::accent(ui.visuals().dark_mode);
+    let is_current = |drawn: &Drawn| {
+        Arc::ptr_eq(&drawn.report, report) && drawn.look == state.look && drawn.side == pixels && drawn.color == color
+    };
+    if !state.drawn.as_ref().is_some_and(is_current) {
+        let reach = reach(report, state.look);
+        let image = splat(report, state.look, reach, pixels, color);
+        let texture = match state.drawn.take() {
+            Some(mut drawn) => {
+                drawn.texture.set(image, TextureOptions::LINEAR);
+                drawn.texture
+            }
+            None => ui.ctx().load_texture("samples", image, TextureOptions::LINEAR),
+        };
+        state.drawn = Some(Drawn {
+            report: report.clone(),
+            look: state.look,
+            side: pixels,
+            color,
+            reach,
+            texture,
+        });
+    }
+    if let Some(drawn) = &state.drawn {
+        egui::Image::new(&drawn.texture).paint_at(ui, rect);
+        marks(ui, rect, drawn);
+    }
+}
+
+/// Half of what a view spans.
+fn reach(report: &SampleReport, look: Look) -> f32 {
+    if look != Look::Mirror {
+        return 1.08;
+    }
+    let mirror = Vec3::from_f32(mirror_direction(&report.query.request).to_f32());
+    let extents = report.cloud.samples.iter().map(|&[x, y, z, _]| {
+        let [x, y] = project(look, Vec3::from_f32([x, y, z]), mirror);
+        x.abs().max(y.abs())
+    });
+    (1.08 * extents.fold(0.02, f32::max)).min(1.08)
+}
+
+/// The points as a picture whose opacity grows with their number.
+fn splat(report: &SampleReport, look: Look, reach: f32, side: usize, color: Color32) -> ColorImage {
+    let mirror = Vec3::from_f32(mirror_direction(&report.query.request).to_f32());
+    let mut counts = vec![0_u32; side * side];
+    for &[x, y, z, _] in &report.cloud.samples {
+        let [x, y] = project(look, Vec3::from_f32([x, y, z]), mirror);
+        let place = |t: f32| ((0.5 + 0.5 * t / reach) * side as f32) as isize;
+        let (column, row) = (place(x), place(-y));
+        if (0..side as isize).contains(&column) && (0..side as isize).contains(&row) {
+            counts[row as usize * side + column as usize] += 1;
+        }
+    }
+    // A lone point is seen among few and does not drown many.
+    let lone = (6000.0 / report.cloud.samples.len().max(1) as f32).clamp(0.03, 0.9);
+    let opacity = |count: u32| 1.0 - (1.0 - lone).powi(count.min(10_000) as i32);
+    let pixels = counts.into_iter().map(|count| {
+        if count == 0 {
+            Color32::TRANSPARENT
+        } else {
+            color.gamma_multiply(opacity(count))
+        }
+    });
+    ColorImage::new([side, side], pixels.collect())
+}
+
+/// Circles, lines and letters over the points.
+fn marks(ui: &Ui, rect: Rect, drawn: &Drawn) {
+    let request = &drawn.report.query.request;
+    let mirror = Vec3::from_f32(mirror_direction(request).to_f32());
+    let scale = 0.5 * rect.width() / drawn.reach;
+    let at = |[x, y]: [f32; 2]| rect.center() + scale * vec2(x, -y);
+    let stroke = Stroke::new(1.0, ui.visuals().weak_text_color());
+    let painter = ui.painter().with_clip_rect(rect);
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let color = ui.visuals().text_color();
+    let letter = |place: Pos2, text: &str| {
+        painter.circle_filled(place, 2.0, color);
+        painter.text(
+            place + vec2(5.0, -5.0),
+            egui::Align2::LEFT_BOTTOM,
+            text,
+            font.clone(),
+            color,
+        );
+    };
+    match drawn.look {
+        Look::Mirror | Look::Angle => {
+            if request.lobe == Lobe::Geometric {
+                painter.circle_stroke(rect.center(), scale * request.roughness, stroke);
+            }
+            letter(rect.center(), "r");
+        }
+        Look::Above => {
+            painter.circle_stroke(rect.center(), scale, stroke);
+            letter(rect.center(), "n");
+            letter(at([mirror.x, mirror.y]), "r");
+            letter(at([-mirror.x, mirror.y]), "v");
+        }
+        Look::Side => {
+            painter.circle_stroke(rect.center(), scale, stroke);
+            painter.line_segment(
+                [pos2(rect.left(), rect.center().y), pos2(rect.right(), rect.center().y)],
+                stroke,
+            );
+            letter(at([0.0, 1.0]), "n");
+            letter(at([mirror.x, mirror.z]), "r");
+            letter(at([-mirror.x, mirror.z]), "v");
+        }
+    }
+}
+
+fn angle_plot(ui: &mut Ui, report: &SampleReport) {
+    let visuals = ui.visuals().clone();
+    let accent = theme::accent(visuals.dark_mode);
+    let degrees = |line: &[[f64; 2]]| -> Vec<[f64; 2]> {
+        // Per degree, as the axis is.
+        line.iter()
+            .map(|[alpha_rad, density]| [alpha_rad.to_degrees(), density.to_radians()])
+            .collect()
+    };
+    let counted = degrees(&report.angle.counted);
+    let width = 180.0 / counted.len().max(1) as f64;
+    let bars: Vec<Bar> = counted.iter().map(|[x, y]| Bar::new(*x, *y).width(width)).collect();
+    let last = counted
+        .iter()
+        .rev()
+        .find(|[_, y]| *y > 0.0)
+        .map_or(90.0, |[x, _]| (1.15 * x).clamp(5.0, 180.0));
+    let height = (0.8 * ui.available_width()).clamp(160.0, 320.0);
+    let shown = Plot::new("angle")
+        .height(height)
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .show_background(false)
+        .x_axis_label("α: angle to the mirror direction, degrees")
+        .legend(Legend::default())
+        .include_y(0.0)
+        .include_x(0.0)
+        .default_x_bounds(0.0, last)
+        .show(ui, |plot_ui| {
+            plot_ui.set_plot_bounds_x(0.0..=last);
+            plot_ui.bar_chart(BarChart::new("drawn", bars).color(accent.gamma_multiply(0.45)));
+            let analytic = degrees(&report.angle.analytic);
+            if !analytic.is_empty() {
+                plot_ui.line(
+                    Line::new("density", PlotPoints::from(analytic))
+                        .color(accent)
+                        .width(2.0),
+                );
+            }
+            let greys = [visuals.strong_text_color(), visuals.weak_text_color()];
+            for (other, color) in report.angle.others.iter().zip(greys) {
+                let name = format!("{} {:.2}", other.lobe.label(), other.nearest.roughness);
+                plot_ui.line(
+                    Line::new(name, PlotPoints::from(degrees(&other.analytic)))
+                        .color(color)
+                        .width(1.5),
+                );
+            }
+        });
+    shown.response.accessible_name("How often each angle is drawn");
+}
+
+fn numbers(ui: &mut Ui, report: &SampleReport) {
+    ui.add_space(4.0);
+    let request = &report.query.request;
+    let mut text = format!("{} samples", short_number(report.cloud.samples.len() as f64));
+    if report.cloud.absorbed > 0 {
+        let share = f64::from(report.cloud.absorbed) / f64::from(request.count.max(1));
+        text += &format!(", {:.1} % absorbed", 100.0 * share);
+    }
+    ui.label(text);
+    let what = match request.horizon {
+        Horizon::Mirror => "mirrored at the surface",
+        Horizon::Absorb => "absorbed",
+        Horizon::None => "kept",
+    };
+    ui.label(format!(
+        "{:.2} % fall below the surface and are {what}",
+        100.0 * report.below_share
+    ));
+    for other in &report.angle.others {
+        let [roughness, apart] = [other.nearest.roughness, 100.0 * other.nearest.total_variation];
+        ui.label(format!(
+            "nearest {}: roughness {roughness:.3}, {apart:.1} % apart",
+            other.lobe.label()
+        ));
+    }
+    let engine = match report.query.engine {
+        EngineChoice::Gpu => "Drawn by the shader's own function.",
+        _ => "Drawn by the processor engine's own function.",
+    };
+    widgets::note(ui, engine);
+}
