@@ -3,7 +3,10 @@
 mod sky;
 mod studio;
 
-use super::{Environment, EnvironmentError};
+use rayon::prelude::*;
+
+use super::{Environment, EnvironmentError, environment_direction};
+use crate::optics::vector::Vec3;
 
 pub use sky::{SkyParams, sky, sun_direction, sun_irradiance};
 pub use studio::studio;
@@ -14,4 +17,20 @@ pub use studio::studio;
 /// None in practice; the signature is that of the other environments.
 pub fn furnace() -> Result<Environment, EnvironmentError> {
     Environment::from_texels("furnace", 4, 2, vec![[1.0; 4]; 8])
+}
+
+/// The texels of a map whose radiance is a function of the direction, taken at the texels' centres.
+fn texels_of(width: u32, height: u32, radiance: impl Fn(Vec3<f64>) -> [f32; 3] + Sync) -> Vec<[f32; 4]> {
+    let mut texels = vec![[0.0, 0.0, 0.0, 1.0]; (width * height) as usize];
+    let rows = texels.par_chunks_mut(width as usize).enumerate();
+    rows.for_each(|(row, texels)| {
+        for (column, texel) in texels.iter_mut().enumerate() {
+            let uv = [
+                (column as f64 + 0.5) / f64::from(width),
+                (row as f64 + 0.5) / f64::from(height),
+            ];
+            texel[..3].copy_from_slice(&radiance(environment_direction(uv)));
+        }
+    });
+    texels
 }

@@ -3,11 +3,11 @@
 use std::f64::consts::PI;
 
 use hw_skymodel::rgb::{Channel, SkyParams as ModelParams, SkyState};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::super::distribution::texel_solid_angle;
 use super::super::{Environment, EnvironmentError, environment_direction};
+use super::texels_of;
 use crate::optics::vector::{Vec3, vec3};
 
 const WIDTH: u32 = 2048;
@@ -81,20 +81,9 @@ pub fn sun_irradiance(params: &SkyParams) -> [f64; 3] {
 pub fn sky(params: &SkyParams) -> Result<Environment, EnvironmentError> {
     let model = Model::new(params)?;
     let ground = model.ground_radiance(params);
-    let mut texels = vec![[0.0, 0.0, 0.0, 1.0]; (WIDTH * HEIGHT) as usize];
-    texels
-        .par_chunks_mut(WIDTH as usize)
-        .enumerate()
-        .for_each(|(row, texels)| {
-            for (column, texel) in texels.iter_mut().enumerate() {
-                let uv = [
-                    (column as f64 + 0.5) / f64::from(WIDTH),
-                    (row as f64 + 0.5) / f64::from(HEIGHT),
-                ];
-                let radiance = model.radiance_with_ground(environment_direction(uv), ground);
-                texel[..3].copy_from_slice(&radiance.map(|value| value as f32));
-            }
-        });
+    let mut texels = texels_of(WIDTH, HEIGHT, |direction| {
+        model.radiance_with_ground(direction, ground).map(|value| value as f32)
+    });
     add_sun(params, &mut texels);
     Environment::from_texels("sky", WIDTH, HEIGHT, texels)
 }

@@ -1,9 +1,8 @@
 //! A photographer's studio: soft boxes around a dark room, made for a glossy object of about unit size at the origin
 //! that is seen from +Z, slightly above.
 
-use rayon::prelude::*;
-
-use super::super::{Environment, EnvironmentError, environment_direction};
+use super::super::{Environment, EnvironmentError};
+use super::texels_of;
 use crate::optics::vector::{Vec3, vec3};
 
 const WIDTH: u32 = 1024;
@@ -80,23 +79,10 @@ const BOXES: [SoftBox; 5] = [KEY, FILL, TOP, RIGHT_RIM, LEFT_RIM];
 /// # Errors
 /// None in practice; the signature is that of the other environments.
 pub fn studio() -> Result<Environment, EnvironmentError> {
-    let mut texels = vec![[1.0_f32; 4]; (WIDTH * HEIGHT) as usize];
-    texels
-        .par_chunks_mut(WIDTH as usize)
-        .enumerate()
-        .for_each(|(row, texels)| {
-            for (column, texel) in texels.iter_mut().enumerate() {
-                let uv = [
-                    (column as f64 + 0.5) / f64::from(WIDTH),
-                    (row as f64 + 0.5) / f64::from(HEIGHT),
-                ];
-                let direction = environment_direction(uv);
-                let radiance = BOXES
-                    .iter()
-                    .fold(room(direction), |behind, soft_box| soft_box.over(behind, direction));
-                texel[..3].copy_from_slice(&radiance.to_f32());
-            }
-        });
+    let texels = texels_of(WIDTH, HEIGHT, |direction| {
+        let over = |behind, soft_box: &SoftBox| soft_box.over(behind, direction);
+        BOXES.iter().fold(room(direction), over).to_f32()
+    });
     Environment::from_texels("studio", WIDTH, HEIGHT, texels)
 }
 
