@@ -3,6 +3,7 @@
 #import "optics/random"
 #import "scene/camera"
 #import "scene/environment"
+#import "scene/light"
 #import "scene/surface"
 
 const STRATEGY_LOBE: u32 = 0u;
@@ -39,15 +40,56 @@ fn far_light(direction: vec3f, lobe_density: f32, is_mirror: bool) -> vec3f {
         return vec3f(0.0);
     }
     let local = environment_local_from_world(direction, globals.environment_rotation);
-    let light_density = environment_density(local, globals.environment_cells_size);
-    return radiance * (lobe_density / max(lobe_density + light_density, 1e-30));
+    let light_density = globals.environment_probability * environment_density(local, globals.environment_cells_size);
+    return radiance * lobe_share(lobe_density, light_density);
 }
 
-// Light that arrives straight from the environment, one direction drawn from it.
+// What a surface emits that a path met at `distance`, weighed against light sampling.
+fn emitted_light(point: SurfacePoint, distance: f32, lobe_density: f32, is_mirror: bool) -> vec3f {
+    let emission = materials[point.slot].emission;
+    if PLAN_EMITTER_SAMPLING == 0u || is_mirror || globals.strategy == STRATEGY_LOBE {
+        return emission;
+    }
+    if globals.strategy == STRATEGY_LIGHT {
+        return vec3f(0.0);
+    }
+    let cosine = dot(point.surface.normal, point.surface.wo);
+    return emission * lobe_share(lobe_density, light_density(emission, cosine, distance));
+}
+
+// The share of the lobe under the balance heuristic (Veach 1997) where it met light by itself.
+fn lobe_share(lobe_density: f32, light_density: f32) -> f32 {
+    return lobe_density / max(lobe_density + light_density, 1e-30);
+}
+
+// Whether light is sampled at all.
+fn samples_light() -> bool {
+    return (PLAN_LIGHT_SAMPLING == 1u || PLAN_EMITTER_SAMPLING == 1u) && globals.strategy != STRATEGY_LOBE;
+}
+
+// Whether one light sample is drawn from the environment, not from the triangles that emit.
+fn is_from_afar(xi: f32) -> bool {
+    return PLAN_EMITTER_SAMPLING == 0u || (PLAN_LIGHT_SAMPLING == 1u && xi < globals.environment_probability);
+}
+
+// A direction drawn from the triangles that emit or from the environment, whose radiance is looked up once it is known
+// to arrive.
+fn draw_light(origin: vec3f, xi: vec3f) -> LightSample {
+    let share = globals.environment_probability;
+    if !is_from_afar(xi.z) {
+        return light_sample(origin, vec3f(xi.xy, (xi.z - share) / (1.0 - share)));
+    }
+    let drawn = environment_sample(vec3f(xi.xy, xi.z / share), globals.environment_cells_size);
+    let direction = environment_world_from_local(drawn.direction, globals.environment_rotation);
+    return LightSample(direction, drawn.density * share, vec3f(0.0), 1e30);
+}
+
+// Light that arrives straight from the environment or from what emits, one direction drawn.
 fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: ptr<function, u32>) -> vec3f {
     let xi = vec3f(random_pair(state, dimension), random_pair(state, dimension + 1u).x);
-    let light = environment_sample(xi, globals.environment_cells_size);
-    let wi = environment_world_from_local(light.direction, globals.environment_rotation);
+    let origin = ray_origin(point);
+    let light = draw_light(origin, xi);
+    let wi = light.direction;
     if light.density <= 0.0 || dot(point.surface.normal, wi) <= 0.0 {
         return vec3f(0.0);
     }
@@ -57,10 +99,13 @@ fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: p
         return vec3f(0.0);
     }
     *rays += 1u;
-    if trace(ray_origin(point), wi, 1e30, true).triangle != NO_HIT {
+    if trace(origin, wi, light.distance, true).triangle != NO_HIT {
         return vec3f(0.0);
     }
-    return value * far_radiance(wi) / light.density;
+    if is_from_afar(xi.z) {
+        return value * far_radiance(wi) / light.density;
+    }
+    return value * light.radiance / light.density;
 }
 
 fn camera_background(direction: vec3f, rays: u32) -> PathResult {
@@ -95,17 +140,17 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         let point = surface_at(hit, ray.direction);
         let material = materials[point.slot];
         if PLAN_EMISSION == 1u {
-            radiance += throughput * material.emission;
+            radiance += throughput * emitted_light(point, hit.t, lobe_density, was_mirror);
         }
         if bounce >= globals.bounces {
             break;
         }
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
-        if PLAN_LIGHT_SAMPLING == 1u && globals.strategy != STRATEGY_LOBE {
+        if samples_light() {
             radiance += throughput * direct_light(point, state, dimension + 2u, &rays);
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
-        let wants_density = PLAN_LIGHT_SAMPLING == 1u && globals.strategy == STRATEGY_MIS;
+        let wants_density = samples_light() && globals.strategy == STRATEGY_MIS;
         let drawn = material_sample(material, point.surface, xi.xyz, xi.w, wants_density);
         throughput *= drawn.throughput;
         let strength = max(max(throughput.x, throughput.y), throughput.z);

@@ -2,6 +2,7 @@
 // Twin of src/scene/environment/mod.rs, which tells the conventions. The map is rgba32float and read by textureLoad, the
 // cells come from src/scene/environment/distribution.rs.
 #import "optics/numeric"
+#import "scene/alias"
 #import "scene/layout"
 
 // One cell of the distribution: an entry of the alias table with the cell's density per steradian.
@@ -77,15 +78,12 @@ fn environment_radiance(direction_local: vec3f) -> vec3f {
 // A direction drawn with the density that is returned with it. xi.xy choose the cell and the place in it, xi.z whether
 // the cell or its alias is taken: see the twin for why one number would not do. cells_size: columns and rows of cells.
 fn environment_sample(xi: vec3f, cells_size: vec2u) -> EnvironmentSample {
-    let scaled = xi.xy * vec2f(cells_size);
-    let drawn_cell = min(vec2u(scaled), cells_size - 1u);
-    let place = min(scaled - vec2f(drawn_cell), vec2f(1.0));
-    let drawn = drawn_cell.y * cells_size.x + drawn_cell.x;
-    let cell = environment_cells[drawn];
-    let chosen = select(cell.alias_index, drawn, xi.z < cell.threshold);
+    let drawn = grid_place(xi.xy, cells_size);
+    let cell = environment_cells[drawn.index];
+    let chosen = select(cell.alias_index, drawn.index, xi.z < cell.threshold);
     let chosen_cell = vec2u(chosen % cells_size.x, chosen / cells_size.x);
     return EnvironmentSample(
-        environment_direction_in_cell(chosen_cell, place, cells_size),
+        environment_direction_in_cell(chosen_cell, drawn.place, cells_size),
         environment_cells[chosen].density,
     );
 }
@@ -109,6 +107,5 @@ fn environment_direction_in_cell(cell: vec2u, place: vec2f, cells_size: vec2u) -
 
 // The density, per steradian, with which environment_sample draws a direction.
 fn environment_density(direction_local: vec3f, cells_size: vec2u) -> f32 {
-    let cell = min(vec2u(environment_uv(direction_local) * vec2f(cells_size)), cells_size - 1u);
-    return environment_cells[cell.y * cells_size.x + cell.x].density;
+    return environment_cells[grid_place(environment_uv(direction_local), cells_size).index].density;
 }

@@ -34,6 +34,12 @@ struct Globals {
     strategy: u32,
     seed: u32,
     node_count: u32,
+    // Columns and rows of the table of emitting triangles.
+    light_cells_size: vec2u,
+    // Probability that the environment is sampled, not an emitting triangle.
+    environment_probability: f32,
+    // Density per area of the emitting triangles over the luminance of their emission.
+    density_per_luminance: f32,
     reserved: vec2u,
 }
 
@@ -70,6 +76,13 @@ struct Vertex {
     tangent: array<f32, 4>,
 }
 
+// An entry of the alias table over the triangles that emit.
+struct LightCell {
+    threshold: f32,
+    alias_index: u32,
+    triangle: u32,
+}
+
 @group(0) @binding(0) var<uniform> globals: Globals;
 // Five vec4u a node (80 bytes, CWBVH).
 @group(0) @binding(1) var<storage, read> nodes: array<vec4u>;
@@ -85,3 +98,4 @@ struct Vertex {
 @group(0) @binding(9) var<storage, read_write> color_sums: array<vec4f>;
 // The same of luminance squared; samples kept; samples dropped; rays traced.
 @group(0) @binding(10) var<storage, read_write> statistics: array<vec4f>;
+@group(0) @binding(11) var<storage, read> light_cells: array<LightCell>;

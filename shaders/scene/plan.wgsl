@@ -17,6 +17,8 @@ override PLAN_SPECULAR: u32 = 1u;
 override PLAN_EMISSION: u32 = 1u;
 // 1: the environment is sampled.
 override PLAN_LIGHT_SAMPLING: u32 = 1u;
+// 1: some triangle may emit, and is sampled.
+override PLAN_EMITTER_SAMPLING: u32 = 1u;
 // 1: the lens may be open.
 override PLAN_LENS: u32 = 1u;
 

@@ -51,9 +51,14 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
         );
         frame = frame_from_tangent(shading, tangent, materials[slot].rotation_rad);
     }
-    let extent = abs(p0) * abs(w) + abs(p1) * abs(hit.u) + abs(p2) * abs(hit.v);
-    let error = POSITION_ERROR * dot(abs(normal), extent + vec3f(0.05));
+    let error = position_error(p0, p1, p2, vec3f(w, hit.u, hit.v), normal);
     return SurfacePoint(Surface(frame, normal, wo), position, error, slot);
+}
+
+// How far off its plane, along the normal, the place may be that is interpolated between a triangle's corners.
+fn position_error(p0: vec3f, p1: vec3f, p2: vec3f, weights: vec3f, normal: vec3f) -> f32 {
+    let w = abs(weights);
+    return POSITION_ERROR * dot(abs(normal), abs(p0) * w.x + abs(p1) * w.y + abs(p2) * w.z + vec3f(0.05));
 }
 
 // Where a ray from the surface starts: outside the bound on the position's error.

@@ -3,13 +3,14 @@
 use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
 use crate::optics::material::{Material, material_evaluate, material_sample};
 use crate::optics::random::{RandomState, random_pair, random_state};
-use crate::optics::real::Real;
+use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::camera::{Camera, camera_ray, filter_offset};
 use crate::scene::environment::{
     Environment, environment_density, environment_local_from_world, environment_radiance, environment_sample,
     environment_world_from_local,
 };
+use crate::scene::light::{LightSample, Lights, light_density, light_sample};
 use crate::scene::surface::{SurfacePoint, surface_at};
 use crate::scene::{Geometry, Hit};
 
@@ -42,12 +43,18 @@ pub struct Integrator<'a, T> {
     materials: Vec<Material<T>>,
     camera: Camera<T>,
     rotation: [T; 2],
-    samples_light: bool,
+    lights: &'a Lights,
+    environment_probability: T,
+    density_per_luminance: T,
+    samples_environment: bool,
+    samples_emitters: bool,
 }
 
 impl<'a, T: Real> Integrator<'a, T> {
     /// Reads the job.
     pub fn new(job: &'a Job) -> Self {
+        let samples_light = job.settings.strategy != Strategy::Lobe;
+        let choice = job.settings.light_choice;
         Self {
             geometry: &job.geometry,
             environment: &job.environment,
@@ -56,7 +63,11 @@ impl<'a, T: Real> Integrator<'a, T> {
             materials: job.materials.iter().map(Material::cast).collect(),
             camera: job.settings.camera.cast(),
             rotation: job.settings.environment_rotation.map(T::from_f64),
-            samples_light: job.plan.light_sampling && job.settings.strategy != Strategy::Lobe,
+            lights: &job.lights,
+            environment_probability: T::from_f64(choice.environment_probability),
+            density_per_luminance: T::from_f64(choice.density_per_luminance),
+            samples_environment: job.plan.light_sampling && samples_light,
+            samples_emitters: job.plan.emitter_sampling && samples_light,
         }
     }
 
@@ -69,23 +80,58 @@ impl<'a, T: Real> Integrator<'a, T> {
     /// What a path that left the scene sees, weighed against light sampling.
     fn far_light(&self, direction: Vec3<T>, lobe_density: T, is_mirror: bool) -> Vec3<T> {
         let radiance = self.far_radiance(direction);
-        if !self.samples_light || is_mirror {
+        if !self.samples_environment || is_mirror {
             return radiance;
         }
         if self.settings.strategy == Strategy::Light {
             return Vec3::zero();
         }
         let local = environment_local_from_world(direction, self.rotation);
-        let light_density: T = environment_density(self.environment, local);
-        radiance * (lobe_density / (lobe_density + light_density).max(T::from_f64(1e-30)))
+        let light_density = self.environment_probability * environment_density(self.environment, local);
+        radiance * lobe_share(lobe_density, light_density)
     }
 
-    /// Light that arrives straight from the environment, one direction drawn from it.
+    /// What a surface emits that a path met at `distance`, weighed against light sampling.
+    fn emitted_light(&self, point: &SurfacePoint<T>, distance: T, lobe_density: T, is_mirror: bool) -> Vec3<T> {
+        let emission = self.materials[point.slot as usize].emission;
+        if !self.samples_emitters || is_mirror {
+            return emission;
+        }
+        if self.settings.strategy == Strategy::Light {
+            return Vec3::zero();
+        }
+        let cosine = point.surface.normal.dot(point.surface.wo);
+        let light_density = light_density(emission, cosine, distance, self.density_per_luminance);
+        emission * lobe_share(lobe_density, light_density)
+    }
+
+    /// A direction drawn from the triangles that emit or from the environment; true for the latter, whose radiance is
+    /// looked up once it is known to arrive.
+    fn draw_light(&self, origin: Vec3<T>, xi: Vec3<T>) -> (LightSample<T>, bool) {
+        let share = self.environment_probability;
+        if self.samples_emitters && !(self.samples_environment && xi.z.less(share).any()) {
+            let xi = vec3(xi.x, xi.y, (xi.z - share) / (T::one() - share));
+            let (materials, density) = (&self.materials, self.density_per_luminance);
+            let sample = light_sample(self.geometry, materials, self.lights, density, origin, xi);
+            return (sample, false);
+        }
+        let (local, density) = environment_sample(self.environment, vec3(xi.x, xi.y, xi.z / share));
+        let sample = LightSample {
+            direction: environment_world_from_local(local, self.rotation),
+            density: density * share,
+            distance: T::from_f64(f64::from(f32::MAX)),
+            radiance: Vec3::zero(),
+        };
+        (sample, true)
+    }
+
+    /// Light that arrives straight from the environment or from what emits, one direction drawn.
     fn direct_light(&self, point: &SurfacePoint<T>, state: RandomState, dimension: u32, rays: &mut u32) -> Vec3<T> {
         let [a, b] = random_pair(state, dimension);
         let [c, _] = random_pair(state, dimension + 1);
-        let (local, density) = environment_sample(self.environment, vec3(a, b, c));
-        let wi = environment_world_from_local(local, self.rotation);
+        let origin = point.ray_origin();
+        let (light, is_far) = self.draw_light(origin, vec3(a, b, c));
+        let (wi, density) = (light.direction, light.density);
         if density.to_f64() <= 0.0 || point.surface.normal.dot(wi).to_f64() <= 0.0 {
             return Vec3::zero();
         }
@@ -100,13 +146,12 @@ impl<'a, T: Real> Integrator<'a, T> {
             return Vec3::zero();
         }
         *rays += 1;
-        if self
-            .geometry
-            .occluded(point.ray_origin().to_f32(), wi.to_f32(), f32::MAX)
-        {
+        let distance = light.distance.to_f64() as f32;
+        if self.geometry.occluded(origin.to_f32(), wi.to_f32(), distance) {
             return Vec3::zero();
         }
-        value * self.far_radiance(wi) / density
+        let radiance = if is_far { self.far_radiance(wi) } else { light.radiance };
+        value * radiance / density
     }
 
     fn camera_background(&self, direction: Vec3<T>, rays: u32) -> PathResult<T> {
@@ -126,6 +171,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         let half = T::from_f64(0.5);
         let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
         let [mut origin, mut direction] = camera_ray(&self.camera, place, settings.image_size, random_pair(state, 1));
+        let samples_light = self.samples_environment || self.samples_emitters;
         let mut throughput = Vec3::splat(T::one());
         let mut radiance = Vec3::zero();
         let mut lobe_density = T::zero();
@@ -142,17 +188,18 @@ impl<'a, T: Real> Integrator<'a, T> {
             };
             let point = self.surface(&hit, direction);
             let material = &self.materials[point.slot as usize];
-            radiance += throughput * material.emission;
+            let distance = T::from_f64(f64::from(hit.t));
+            radiance += throughput * self.emitted_light(&point, distance, lobe_density, was_mirror);
             if bounce >= settings.bounces {
                 break;
             }
             let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
-            if self.samples_light {
+            if samples_light {
                 radiance += throughput * self.direct_light(&point, state, dimension + 2, &mut rays);
             }
             let [a, b] = random_pair(state, dimension);
             let [c, layer] = random_pair(state, dimension + 1);
-            let wants_density = self.samples_light && settings.strategy == Strategy::Mis;
+            let wants_density = samples_light && settings.strategy == Strategy::Mis;
             let drawn = material_sample(material, self.tables, &point.surface, [a, b, c], layer, wants_density);
             throughput = throughput * drawn.throughput;
             let strength = throughput.max_component();
@@ -181,6 +228,11 @@ impl<'a, T: Real> Integrator<'a, T> {
     fn surface(&self, hit: &Hit, direction: Vec3<T>) -> SurfacePoint<T> {
         surface_at(self.geometry, &self.materials, hit, direction)
     }
+}
+
+/// The share of the lobe under the balance heuristic (Veach 1997) where it met light by itself.
+fn lobe_share<T: Real>(lobe_density: T, light_density: T) -> T {
+    lobe_density / (lobe_density + light_density).max(T::from_f64(1e-30))
 }
 
 /// Finite and not negative: what may be added to the picture.

@@ -1,6 +1,6 @@
 //! What differs between two documents, and what follows from it.
 
-use super::{Document, PARAMETERS};
+use super::{AreaLight, Document, PARAMETERS};
 
 /// What differs between two documents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -15,9 +15,9 @@ pub struct Change {
     pub environment: bool,
     /// Rotation or strength of the environment, or the background.
     pub lighting: bool,
-    /// A material or the ground's colour.
+    /// A material, or the colour of the ground or of an area light.
     pub materials: bool,
-    /// The model, or whether there is a ground.
+    /// The model, whether there is a ground, or the place of an area light.
     pub geometry: bool,
     /// Bounces, sequence, strategy, seed, pixel filter.
     pub sampling: bool,
@@ -37,8 +37,11 @@ impl Change {
             environment: light.environment != other_light.environment,
             lighting: (light.rotation_deg, light.strength, light.background)
                 != (other_light.rotation_deg, other_light.strength, other_light.background),
-            materials: light.ground_color != other_light.ground_color || !look_alike(old, new),
-            geometry: (&old.model, old.ground) != (&new.model, new.ground),
+            materials: light.ground_color != other_light.ground_color
+                || !look_alike(old, new)
+                || !shine_alike(&light.area_lights, &other_light.area_lights),
+            geometry: (&old.model, old.ground) != (&new.model, new.ground)
+                || !stand_alike(&light.area_lights, &other_light.area_lights),
             sampling: (
                 render.bounces,
                 render.sequence,
@@ -99,6 +102,15 @@ impl Change {
     pub fn needs_display(self) -> bool {
         self.display || self.restarts()
     }
+}
+
+fn shine_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
+    let shine = |light: &AreaLight| (light.color, light.strength);
+    old.iter().map(shine).eq(new.iter().map(shine))
+}
+
+fn stand_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
+    old.iter().map(AreaLight::shape).eq(new.iter().map(AreaLight::shape))
 }
 
 fn look_alike(old: &Document, new: &Document) -> bool {

@@ -7,6 +7,7 @@ use crate::optics::random::Sequence;
 use crate::scene::Geometry;
 use crate::scene::camera::Camera;
 use crate::scene::environment::Environment;
+use crate::scene::light::{LightChoice, Lights};
 
 use super::plan::Plan;
 pub use super::settings::Strategy;
@@ -18,7 +19,9 @@ pub struct Job {
     pub geometry: Arc<Geometry>,
     /// What they see far away.
     pub environment: Arc<Environment>,
-    /// The materials by slot, the ground's last.
+    /// What of the geometry emits.
+    pub lights: Arc<Lights>,
+    /// The materials by slot: the model's, the ground's, the area lights'.
     pub materials: Arc<Vec<Material<f32>>>,
     /// Custom curves and albedo tables; never empty.
     pub tables: Arc<Vec<f32>>,
@@ -41,6 +44,8 @@ pub struct Settings {
     pub environment_rotation: [f64; 2],
     /// Factor of the environment's radiance.
     pub environment_strength: f64,
+    /// How one light sample is shared out.
+    pub light_choice: LightChoice,
     /// Reflections a path may have.
     pub bounces: u32,
     /// Random numbers.

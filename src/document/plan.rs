@@ -3,7 +3,7 @@
 
 use crate::optics::lobe::Lobe;
 use crate::optics::material::Material;
-use crate::scene::environment::Environment;
+use crate::scene::light::LightChoice;
 
 /// What every material of the scene has in common, and what can be left out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -26,6 +26,8 @@ pub struct Plan {
     pub emission: bool,
     /// The environment is sampled: not where it is equally bright everywhere or black.
     pub light_sampling: bool,
+    /// Emitting triangles are sampled.
+    pub emitter_sampling: bool,
     /// The lens is open.
     pub lens: bool,
 }
@@ -42,11 +44,12 @@ impl Plan {
         specular: true,
         emission: true,
         light_sampling: true,
+        emitter_sampling: true,
         lens: true,
     };
 
-    /// What these materials under this environment call for.
-    pub fn new(materials: &[Material<f32>], environment: &Environment, lens_radius: f64) -> Self {
+    /// What these materials call for under light that is shared out like this.
+    pub fn new(materials: &[Material<f32>], light: &LightChoice, lens_radius: f64) -> Self {
         let specular: Vec<_> = materials.iter().filter(|m| m.has_specular()).collect();
         let shared = |number: fn(&Material<f32>) -> u32| {
             let first = specular.first().map(|m| number(m))?;
@@ -61,7 +64,8 @@ impl Plan {
             base: materials.iter().any(Material::has_base),
             specular: !specular.is_empty(),
             emission: materials.iter().any(|m| m.emission.max_component() > 0.0),
-            light_sampling: !environment.is_constant && !environment.is_black,
+            light_sampling: light.environment_probability > 0.0,
+            emitter_sampling: light.density_per_luminance > 0.0,
             lens: lens_radius > 0.0,
         }
     }
@@ -71,6 +75,7 @@ impl Plan {
         let effects = [
             ("environment", true),
             ("light-sampling", self.light_sampling),
+            ("emitter-sampling", self.emitter_sampling),
             ("specular", self.specular),
             ("base", self.base),
             ("anisotropy", self.anisotropy),
@@ -85,7 +90,7 @@ impl Plan {
     }
 
     /// The override constants of the pipeline, by their names in `shaders/scene/plan.wgsl`.
-    pub fn constants(&self) -> [(&'static str, f64); 10] {
+    pub fn constants(&self) -> [(&'static str, f64); 11] {
         let number = |value: Option<u32>| f64::from(value.unwrap_or(u32::MAX));
         let flag = |value: bool| f64::from(u8::from(value));
         [
@@ -98,6 +103,7 @@ impl Plan {
             ("PLAN_SPECULAR", flag(self.specular)),
             ("PLAN_EMISSION", flag(self.emission)),
             ("PLAN_LIGHT_SAMPLING", flag(self.light_sampling)),
+            ("PLAN_EMITTER_SAMPLING", flag(self.emitter_sampling)),
             ("PLAN_LENS", flag(self.lens)),
         ]
     }

@@ -1,12 +1,15 @@
 //! Light, camera, view and render settings, and the ranges of their numbers.
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 
-use super::Document;
+use super::{Document, MaterialSettings};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 use crate::scene::camera::PixelFilter;
 use crate::scene::environment::EnvironmentSource;
+use crate::scene::light::AreaShape;
 
 /// The ranges of the settings, both ends included.
 pub mod range {
@@ -36,6 +39,10 @@ pub mod range {
     pub const TIME_S: RangeInclusive<f64> = 0.001..=1e9;
     /// Longest path, bounces.
     pub const BOUNCES: RangeInclusive<f64> = 1.0..=64.0;
+    /// Distance and sides of an area light, bounding radii.
+    pub const AREA_LENGTH: RangeInclusive<f64> = 1e-3..=1e3;
+    /// How many area lights there may be.
+    pub const AREA_LIGHTS: RangeInclusive<f64> = 0.0..=8.0;
     /// Linear colours of things that do not emit.
     pub const COLOR: RangeInclusive<f64> = 0.0..=1.0;
 }
@@ -54,6 +61,8 @@ pub struct Lighting {
     pub background: Background,
     /// Albedo of the ground plane, linear RGB in [0, 1].
     pub ground_color: [f32; 3],
+    /// Rectangles that shine, at most 8.
+    pub area_lights: Vec<AreaLight>,
 }
 
 impl Default for Lighting {
@@ -64,6 +73,65 @@ impl Default for Lighting {
             strength: 1.0,
             background: Background::default(),
             ground_color: [0.3; 3],
+            area_lights: Vec::new(),
+        }
+    }
+}
+
+/// A rectangle that shines with the same radiance from both sides, seen by the camera like anything else. It looks at
+/// the centre of the model's bounding box, around which yaw and pitch turn as a camera's. Lengths are in units of the
+/// model's bounding radius.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct AreaLight {
+    /// Azimuth, degrees.
+    pub yaw_deg: f64,
+    /// Height, degrees in [−90, 90].
+    pub pitch_deg: f64,
+    /// Distance from the centre, bounding radii.
+    pub distance: f64,
+    /// Horizontal side, bounding radii.
+    pub width: f64,
+    /// Other side, bounding radii.
+    pub height: f64,
+    /// Linear RGB in [0, 1].
+    pub color: [f32; 3],
+    /// Radiance of white.
+    pub strength: f32,
+}
+
+impl Default for AreaLight {
+    fn default() -> Self {
+        Self {
+            yaw_deg: -35.0,
+            pitch_deg: 40.0,
+            distance: 3.0,
+            width: 1.0,
+            height: 1.0,
+            color: [1.0; 3],
+            strength: 10.0,
+        }
+    }
+}
+
+impl AreaLight {
+    /// Where it is and how large.
+    pub fn shape(&self) -> AreaShape {
+        AreaShape {
+            yaw_deg: self.yaw_deg,
+            pitch_deg: self.pitch_deg,
+            distance: self.distance,
+            width: self.width,
+            height: self.height,
+        }
+    }
+
+    /// Its surface: black but for what it emits.
+    pub fn material(&self) -> MaterialSettings {
+        MaterialSettings {
+            emission_color: self.color,
+            emission_strength: self.strength,
+            ..MaterialSettings::diffuse("area light", [0.0; 3])
         }
     }
 }
@@ -247,7 +315,13 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
         ("render.samples", f64::from(render.samples), r::SAMPLES),
         ("render.time_s", render.time_s.unwrap_or(1.0), r::TIME_S),
         ("render.bounces", f64::from(render.bounces), r::BOUNCES),
+        (
+            "the number of lighting.area_lights",
+            lighting.area_lights.len() as f64,
+            r::AREA_LIGHTS,
+        ),
     ];
+    let of_area_lights = lighting.area_lights.iter().flat_map(area_light_numbers);
     let triples = [
         ("lighting.background", colors[0].map(f64::from), r::COLOR),
         ("lighting.ground_color", colors[1].map(f64::from), r::COLOR),
@@ -257,11 +331,30 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
     let components = triples
         .into_iter()
         .flat_map(|(name, values, range)| values.map(|value| (name, value, range.clone())));
-    for (name, value, range) in single.into_iter().chain(components) {
+    for (name, value, range) in single.into_iter().chain(of_area_lights).chain(components) {
         if !range.contains(&value) {
             let (low, high) = range.into_inner();
             return Err(SettingError { name, value, low, high });
         }
     }
     Ok(())
+}
+
+/// What an area light is checked for.
+fn area_light_numbers(light: &AreaLight) -> impl Iterator<Item = (&'static str, f64, RangeInclusive<f64>)> {
+    use range as r;
+    let [red, green, blue] = light.color.map(f64::from);
+    let color = |value| ("lighting.area_lights.color", value, r::COLOR);
+    [
+        ("lighting.area_lights.yaw_deg", light.yaw_deg, r::YAW_DEG),
+        ("lighting.area_lights.pitch_deg", light.pitch_deg, r::PITCH_DEG),
+        ("lighting.area_lights.distance", light.distance, r::AREA_LENGTH),
+        ("lighting.area_lights.width", light.width, r::AREA_LENGTH),
+        ("lighting.area_lights.height", light.height, r::AREA_LENGTH),
+        ("lighting.area_lights.strength", f64::from(light.strength), r::STRENGTH),
+        color(red),
+        color(green),
+        color(blue),
+    ]
+    .into_iter()
 }

@@ -42,6 +42,12 @@ pub struct Globals {
     pub seed: u32,
     /// Nodes of the hierarchy; 0 where there is nothing to meet.
     pub node_count: u32,
+    /// Columns and rows of the table of emitting triangles.
+    pub light_cells_size: [u32; 2],
+    /// Probability that the environment is sampled, not an emitting triangle.
+    pub environment_probability: f32,
+    /// Density per area of the emitting triangles over the luminance of their emission.
+    pub density_per_luminance: f32,
     /// Fills the last 16 bytes.
     pub reserved: [u32; 2],
 }
@@ -71,6 +77,9 @@ impl Globals {
             strategy: settings.strategy as u32,
             seed: settings.seed,
             node_count: node_count as u32,
+            light_cells_size: settings.light_choice.cells_size,
+            environment_probability: settings.light_choice.environment_probability as f32,
+            density_per_luminance: settings.light_choice.density_per_luminance as f32,
             reserved: [0; 2],
         }
     }

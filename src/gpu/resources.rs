@@ -19,6 +19,7 @@ pub struct Resources {
     tables: wgpu::Buffer,
     environment_map: wgpu::TextureView,
     environment_cells: wgpu::Buffer,
+    light_cells: wgpu::Buffer,
     /// Sums of colours and of statistics since the last flush.
     pub sums: [wgpu::Buffer; 2],
     pub bind_group: wgpu::BindGroup,
@@ -53,6 +54,10 @@ impl Resources {
                 Some(old) => (old.environment_map.clone(), old.environment_cells.clone()),
                 None => upload_environment(gpu, &job.environment)?,
             };
+        let light_cells = match old.filter(|old| Arc::ptr_eq(&old.job.lights, &job.lights)) {
+            Some(old) => old.light_cells.clone(),
+            None => gpu.storage("the triangles that emit", bytemuck::cast_slice(&job.lights.cells))?,
+        };
         let size_of_sums = pixels(&job) * 16;
         let sums = match old.filter(|old| pixels(&old.job) == pixels(&job)) {
             Some(old) => old.sums.clone(),
@@ -81,6 +86,7 @@ impl Resources {
             environment_cells.as_entire_binding(),
             sums[0].as_entire_binding(),
             sums[1].as_entire_binding(),
+            light_cells.as_entire_binding(),
         ];
         let entries: Vec<_> = (0..)
             .zip(resources)
@@ -99,6 +105,7 @@ impl Resources {
             tables,
             environment_map,
             environment_cells,
+            light_cells,
             sums,
             bind_group,
         })

@@ -4,13 +4,17 @@ use std::sync::Arc;
 
 use super::session::SessionError;
 use crate::scene::environment::{self, Environment, EnvironmentSource};
+use crate::scene::light::AreaShape;
 use crate::scene::{self, Geometry, Model, ModelSource};
+
+/// What a geometry is made of: model, ground, area lights.
+type GeometryKey = (ModelSource, bool, Vec<AreaShape>);
 
 /// The last of each kind that was asked for: an edit that leaves a source alone costs nothing.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
     model: Option<(ModelSource, Arc<Model>)>,
-    geometry: Option<(ModelSource, bool, Arc<Geometry>)>,
+    geometry: Option<(GeometryKey, Arc<Geometry>)>,
     environment: Option<(EnvironmentSource, Arc<Environment>)>,
 }
 
@@ -29,20 +33,22 @@ impl Assets {
         Ok(model)
     }
 
-    /// The geometry of a source, with or without ground.
+    /// The geometry of a source, with or without ground, with area lights.
     ///
     /// # Errors
     /// As [`Assets::model`].
-    pub fn geometry(&mut self, source: &ModelSource, ground: bool) -> Result<Arc<Geometry>, SessionError> {
-        let known = self
-            .geometry
-            .as_ref()
-            .filter(|(of, with_ground, _)| of == source && *with_ground == ground);
-        if let Some((_, _, geometry)) = known {
+    pub fn geometry(
+        &mut self,
+        source: &ModelSource,
+        ground: bool,
+        area_lights: Vec<AreaShape>,
+    ) -> Result<Arc<Geometry>, SessionError> {
+        let key = (source.clone(), ground, area_lights);
+        if let Some((_, geometry)) = self.geometry.as_ref().filter(|(of, _)| *of == key) {
             return Ok(geometry.clone());
         }
-        let geometry = Arc::new(Geometry::build(&*self.model(source)?, ground));
-        self.geometry = Some((source.clone(), ground, geometry.clone()));
+        let geometry = Arc::new(Geometry::build_lit(&*self.model(source)?, ground, &key.2));
+        self.geometry = Some((key, geometry.clone()));
         Ok(geometry)
     }
 

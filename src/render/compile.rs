@@ -6,10 +6,12 @@ use super::assets::Assets;
 use super::session::SessionError;
 use crate::document::job::{BackgroundKind, Job, Settings};
 use crate::document::plan::Plan;
-use crate::document::{Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile};
+use crate::document::{AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile};
 use crate::optics::material::Material;
+use crate::optics::vector::Vec3;
 use crate::scene::Geometry;
-use crate::scene::camera::Camera;
+use crate::scene::camera::{Camera, orbit_direction};
+use crate::scene::light::{LightChoice, Lights};
 
 /// How much room a framed model is given.
 const FRAME_MARGIN: f64 = 1.05;
@@ -17,18 +19,25 @@ const FRAME_MARGIN: f64 = 1.05;
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
 
-/// Compiles documents; remembers the last materials, whose tables take milliseconds.
+/// What the table of emitting triangles depends on: geometry, and the emission of each slot.
+type LightsKey = (Arc<Geometry>, Vec<Vec3<f32>>);
+
+/// Compiles documents; remembers the last materials and lights, whose tables take milliseconds.
 #[derive(Debug, Default)]
 pub(super) struct Compiler {
     materials: Option<(Vec<MaterialSettings>, Compiled)>,
+    lights: Option<(LightsKey, Arc<Lights>)>,
 }
 
 impl Compiler {
     pub(super) fn compile(&mut self, document: &Document, assets: &mut Assets) -> Result<Job, SessionError> {
         let model = assets.model(&document.model)?;
-        let geometry = assets.geometry(&document.model, document.ground)?;
+        let shapes = document.lighting.area_lights.iter().map(AreaLight::shape).collect();
+        let geometry = assets.geometry(&document.model, document.ground, shapes)?;
         let environment = assets.environment(&document.lighting.environment)?;
         let (materials, tables) = self.materials(slot_materials(document, model.slots.len()));
+        let lights = self.lights(&geometry, &materials);
+        let environment_strength = f64::from(document.lighting.strength);
         let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
         let settings = Settings {
             image_size: [document.render.width, document.render.height],
@@ -39,16 +48,18 @@ impl Compiler {
                 Background::Color(color) => BackgroundKind::Color(color),
             },
             environment_rotation: [rotation_rad.cos(), rotation_rad.sin()],
-            environment_strength: f64::from(document.lighting.strength),
+            environment_strength,
+            light_choice: LightChoice::new(&environment, environment_strength, &lights),
             bounces: document.render.bounces,
             sequence: document.render.sequence,
             strategy: document.render.strategy,
             seed: document.render.seed,
         };
-        let plan = Plan::new(&materials, &environment, settings.camera.lens_radius);
+        let plan = Plan::new(&materials, &settings.light_choice, settings.camera.lens_radius);
         Ok(Job {
             geometry,
             environment,
+            lights,
             materials,
             tables,
             settings,
@@ -65,9 +76,21 @@ impl Compiler {
         self.materials = Some((wanted, compiled.clone()));
         compiled
     }
+
+    fn lights(&mut self, geometry: &Arc<Geometry>, materials: &[Material<f32>]) -> Arc<Lights> {
+        let emissions: Vec<_> = materials.iter().map(|material| material.emission).collect();
+        let is_known = |(of, emitted): &LightsKey| Arc::ptr_eq(of, geometry) && *emitted == emissions;
+        if let Some((_, lights)) = self.lights.as_ref().filter(|(key, _)| is_known(key)) {
+            return lights.clone();
+        }
+        let lights = Arc::new(Lights::new(geometry, materials));
+        self.lights = Some(((geometry.clone(), emissions), lights.clone()));
+        lights
+    }
 }
 
-/// One material a slot, the last one repeated where the document has too few, and the ground's where there is one.
+/// One material a slot, the last one repeated where the document has too few, the ground's where there is one, and those
+/// of the area lights.
 fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
     let last = document.materials.last().cloned().unwrap_or_default();
     let mut materials = document.materials.clone();
@@ -75,6 +98,7 @@ fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
     if document.ground {
         materials.push(MaterialSettings::diffuse("ground", document.lighting.ground_color));
     }
+    materials.extend(document.lighting.area_lights.iter().map(AreaLight::material));
     materials
 }
 
@@ -84,12 +108,11 @@ fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometr
     let units = |place: [f64; 3]| geometry.units_from_world(place.into());
     let target = settings.target.map_or(glam::DVec3::ZERO, units);
     let position = settings.position.map(units).unwrap_or_else(|| {
-        let (yaw, pitch) = (settings.yaw_deg.to_radians(), settings.pitch_deg.to_radians());
         let distance = match settings.distance {
             Some(distance) => distance / geometry.world_units_per_unit,
             None => framing_distance(settings.fov_deg, aspect),
         };
-        target + distance * glam::DVec3::new(pitch.cos() * yaw.sin(), pitch.sin(), pitch.cos() * yaw.cos())
+        target + distance * orbit_direction(settings.yaw_deg, settings.pitch_deg)
     });
     Camera::look_at(
         position.to_array(),

@@ -1,5 +1,6 @@
 //! The camera: a thin lens, and the pixel filter that its rays are drawn from.
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use crate::optics::real::Real;
@@ -81,11 +82,9 @@ impl Camera<f64> {
     /// A pinhole at `position` looking at `target` (in the geometry's units), +Y up; `fov_deg` is the vertical field of
     /// view, `aspect` width over height. Straight up or down, −Z is up in the picture.
     pub fn look_at(position: [f64; 3], target: [f64; 3], fov_deg: f64, aspect: f64, filter: PixelFilter) -> Self {
-        use glam::DVec3;
         let (position, target) = (DVec3::from_array(position), DVec3::from_array(target));
         let forward = (target - position).try_normalize().unwrap_or(DVec3::NEG_Z);
-        let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
-        let up = right.cross(forward);
+        let [right, up] = right_and_up(forward);
         let half_height = (0.5 * fov_deg.to_radians()).tan();
         Camera {
             origin: Vec3::from_f64(position.to_array()),
@@ -113,6 +112,20 @@ impl Camera<f64> {
             reserved: 0,
         }
     }
+}
+
+/// Unit vectors to the right and upwards of a view along the unit vector `forward`, +Y up; straight up or down, −Z is
+/// up in the picture.
+pub fn right_and_up(forward: DVec3) -> [DVec3; 2] {
+    let right = forward.cross(DVec3::Y).try_normalize().unwrap_or(DVec3::X);
+    [right, right.cross(forward)]
+}
+
+/// The unit vector towards a place in orbit, in degrees: yaw 0, pitch 0 is +Z, the yaw goes towards +X, the pitch
+/// towards +Y.
+pub fn orbit_direction(yaw_deg: f64, pitch_deg: f64) -> DVec3 {
+    let (yaw, pitch) = (yaw_deg.to_radians(), pitch_deg.to_radians());
+    DVec3::new(pitch.cos() * yaw.sin(), pitch.sin(), pitch.cos() * yaw.cos())
 }
 
 /// Where in the picture a sample lies, relative to its pixel's centre, in pixels: drawn from the filter, so that every

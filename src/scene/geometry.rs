@@ -6,6 +6,7 @@ use glam::DVec3;
 use obvhs::cwbvh::CwBvh;
 
 use super::bvh;
+use super::light::AreaShape;
 use super::mesh::{Mesh, any_tangent};
 use super::model::{Model, Slot};
 use super::shapes;
@@ -39,7 +40,7 @@ pub struct Geometry {
     /// The vertices of each triangle, counter-clockwise from outside, in the order of the hierarchy's leaves: leaf
     /// entry i of `bvh` is triangle i.
     pub triangles: Vec<[u32; 3]>,
-    /// The material slot of each triangle; the ground's is the number of the model's slots.
+    /// The material slot of each triangle; the ground's is the number of the model's slots, those of area lights follow.
     pub slots: Vec<u32>,
     /// The hierarchy; without `primitive_indices`, as nothing needs to be looked up. No nodes where there are no
     /// triangles.
@@ -49,7 +50,7 @@ pub struct Geometry {
     /// The model's bounding radius in the world: from that middle to the farthest vertex of a triangle; 1 where there
     /// is no triangle.
     pub world_units_per_unit: f64,
-    /// Lowest and highest coordinates of the model (without ground) in the world.
+    /// Lowest and highest coordinates of the model (without ground and area lights) in the world.
     pub bounds_world: [DVec3; 2],
     /// Triangles left out because a corner is not finite.
     pub dropped_not_finite: usize,
@@ -61,6 +62,11 @@ impl Geometry {
     /// Makes a model ready to trace; `ground` adds a horizontal square of half side 20 bounding radii at its lowest
     /// point, in the slot after the model's (see [`Geometry::ground_slot`]).
     pub fn build(model: &Model, ground: bool) -> Self {
+        Self::build_lit(model, ground, &[])
+    }
+
+    /// The same with area lights, each in a slot of its own after the model's and the ground's.
+    pub fn build_lit(model: &Model, ground: bool, area_lights: &[AreaShape]) -> Self {
         let mesh = &model.mesh;
         let is_finite = |&triangle: &usize| mesh.corners(triangle).iter().all(|corner| corner.is_finite());
         let finite: Vec<usize> = (0..mesh.triangles.len()).filter(is_finite).collect();
@@ -91,6 +97,10 @@ impl Geometry {
             let slot = model.slots.len() as u32;
             let ground = shapes::square(DVec3::Y * lowest, GROUND_HALF_SIDE, GROUND_HALF_SIDE as f32, slot);
             geometry.add(&ground, 0..ground.triangles.len(), |place| place.as_vec3().to_array());
+        }
+        for (light, slot) in area_lights.iter().zip(model.slots.len() as u32 + u32::from(ground)..) {
+            let light = light.mesh(slot);
+            geometry.add(&light, 0..light.triangles.len(), |place| place.as_vec3().to_array());
         }
         geometry.bvh = bvh::build(geometry.triangles.iter().map(|triangle| geometry.corners_of(triangle)));
         geometry.sort_by_leaves();

@@ -1,11 +1,13 @@
 //! What is rendered: meshes and where they come from, the hierarchy that rays find them by, the light around them.
 
+mod alias;
 mod bvh;
 pub mod camera;
 pub mod environment;
 mod geometry;
 mod gltf;
 mod intersect;
+pub mod light;
 pub mod mesh;
 mod model;
 pub mod shapes;

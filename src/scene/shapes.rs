@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use glam::{DQuat, DVec2, DVec3, Vec2, Vec3, Vec4, dvec2};
+use glam::{DQuat, DVec2, DVec3, Vec2, dvec2};
 
 use super::mesh::Mesh;
 
@@ -22,11 +22,18 @@ pub fn plane() -> Mesh {
 /// A horizontal square around `center` that faces +Y, of two triangles; (u, v) run from −`uv_half_side` to
 /// `uv_half_side` about ½ along +X and +Z.
 pub(super) fn square(center: DVec3, half_side: f64, uv_half_side: f32, slot: u32) -> Mesh {
+    rectangle(center, half_side * DVec3::X, half_side * DVec3::Z, uv_half_side, slot)
+}
+
+/// A rectangle around `center` of two triangles, with half its sides as vectors: u runs along `half_u`, v along
+/// `half_v`, both from −`uv_half_side` to `uv_half_side` about ½. It faces `half_v` × `half_u`.
+pub(super) fn rectangle(center: DVec3, half_u: DVec3, half_v: DVec3, uv_half_side: f32, slot: u32) -> Mesh {
     let mut mesh = Mesh::default();
-    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(x, z)| {
-        let position = center + half_side * DVec3::new(x, 0.0, z);
-        let uv = (Vec2::new(x as f32, z as f32) * uv_half_side + 1.0) * 0.5;
-        mesh.push_vertex(position, Vec3::Y, uv, Vec4::new(1.0, 0.0, 0.0, 1.0))
+    let normal = half_v.cross(half_u).normalize_or(DVec3::Y).as_vec3();
+    let tangent = half_u.normalize_or(DVec3::X).as_vec3().extend(1.0);
+    let corners = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)].map(|(u, v)| {
+        let uv = (Vec2::new(u as f32, v as f32) * uv_half_side + 1.0) * 0.5;
+        mesh.push_vertex(center + u * half_u + v * half_v, normal, uv, tangent)
     });
     let [a, b, c, d] = corners;
     mesh.push_triangle([a, b, c], slot);

@@ -76,13 +76,20 @@ pub fn surface_at<T: Real>(
     } else {
         frame_from_normal(shading)
     };
-    let extent = p0.map(T::abs) * w.abs() + p1.map(T::abs) * u.abs() + p2.map(T::abs) * v.abs();
-    let margin = T::from_f64(0.05);
-    let error = T::from_f64(POSITION_ERROR) * normal.map(T::abs).dot(extent + vec3(margin, margin, margin));
     SurfacePoint {
         surface: Surface { frame, normal, wo },
         position,
-        error,
+        error: position_error([p0, p1, p2], [w, u, v], normal),
         slot,
     }
+}
+
+/// How far off its plane, along the unit `normal`, the place may be that is interpolated between a triangle's corners
+/// with these weights.
+#[inline(always)]
+pub fn position_error<T: Real>(corners: [Vec3<T>; 3], weights: [T; 3], normal: Vec3<T>) -> T {
+    let [p0, p1, p2] = corners.map(|corner| corner.map(T::abs));
+    let [w, u, v] = weights.map(T::abs);
+    let margin = T::from_f64(0.05);
+    T::from_f64(POSITION_ERROR) * normal.map(T::abs).dot(p0 * w + p1 * u + p2 * v + vec3(margin, margin, margin))
 }

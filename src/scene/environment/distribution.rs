@@ -4,10 +4,12 @@ use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 
+use crate::scene::alias::alias_table;
+
 /// More cells than this are merged: 24 MiB of table, and finer cells gain nothing a sample could show.
 const MAX_CELLS: u64 = 2048 * 1024;
 
-/// One cell of the distribution: an entry of the alias table (Walker 1977, Vose 1991) with the cell's density.
+/// One cell of the distribution: an entry of the alias table with the cell's density.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Zeroable, bytemuck::Pod)]
 pub struct AliasCell {
@@ -125,7 +127,14 @@ pub(super) fn build(map: &Map, cells_width: u32, cells_height: u32) -> Vec<Alias
         .flat_map_iter(|row| cell_row_weights(map, row, cells_width, cells_height))
         .collect();
     let total: f64 = weights.iter().sum();
-    let mut cells = alias_table(&weights, total);
+    let entries = alias_table(&weights).into_iter();
+    let mut cells: Vec<AliasCell> = entries
+        .map(|entry| AliasCell {
+            threshold: entry.threshold,
+            alias_index: entry.alias_index,
+            density: 0.0,
+        })
+        .collect();
     if total > 0.0 {
         cells
             .par_chunks_mut(cells_width as usize)
@@ -168,35 +177,4 @@ fn overlaps(index: u32, coarse: u32, fine: u32) -> impl Iterator<Item = (u32, f6
         let covered = end.min((i + 1) * coarse) - begin.max(i * coarse);
         (i as u32, covered as f64 / coarse as f64)
     })
-}
-
-/// Vose's table: drawing an entry uniformly and keeping it with probability `threshold` chooses each index in
-/// proportion to its weight. All weights 0 give entries that are always kept.
-fn alias_table(weights: &[f64], total: f64) -> Vec<AliasCell> {
-    let mut cells: Vec<AliasCell> = (0..weights.len())
-        .map(|index| AliasCell {
-            threshold: 1.0,
-            alias_index: index as u32,
-            density: 0.0,
-        })
-        .collect();
-    if total <= 0.0 {
-        return cells;
-    }
-    let scale = weights.len() as f64 / total;
-    let mut scaled: Vec<f64> = weights.iter().map(|weight| weight * scale).collect();
-    let (mut small, mut large): (Vec<u32>, Vec<u32>) =
-        (0..weights.len() as u32).partition(|&index| scaled[index as usize] < 1.0);
-    while let (Some(&giver), Some(taker)) = (large.last(), small.pop()) {
-        let (giver_index, taker_index) = (giver as usize, taker as usize);
-        cells[taker_index].threshold = scaled[taker_index] as f32;
-        cells[taker_index].alias_index = giver;
-        scaled[giver_index] -= 1.0 - scaled[taker_index];
-        if scaled[giver_index] < 1.0 {
-            large.pop();
-            small.push(giver);
-        }
-    }
-    // What is left in either list is 1 but for rounding, and so are the thresholds already.
-    cells
 }

@@ -23,6 +23,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
+use crate::scene::alias::grid_place;
 
 pub use distribution::AliasCell;
 pub use error::EnvironmentError;
@@ -226,24 +227,15 @@ pub fn environment_radiance<T: Real>(environment: &Environment, direction_local:
 /// of 2 million cells leaves three, and a table whose size is no power of two would be off by several per cent.
 pub fn environment_sample<T: Real>(environment: &Environment, xi: Vec3<T>) -> (Vec3<T>, T) {
     let (width, height) = (environment.cells_width, environment.cells_height);
-    let (column, x) = split(xi.x, width);
-    let (row, y) = split(xi.y, height);
-    let drawn = row * width + column;
+    let (drawn, place) = grid_place([xi.x, xi.y], [width, height]);
     let cell = environment.cells[drawn as usize];
     let keep = xi.z.less(T::from_f64(f64::from(cell.threshold)));
     let chosen = if keep.any() { drawn } else { cell.alias_index };
     let density = T::from_f64(f64::from(environment.cells[chosen as usize].density));
     (
-        environment_direction_in_cell(chosen % width, chosen / width, [x, y], width, height),
+        environment_direction_in_cell(chosen % width, chosen / width, place, width, height),
         density,
     )
-}
-
-/// The whole and the fractional part of `xi` × `count`, the whole part below `count`.
-fn split<T: Real>(xi: T, count: u32) -> (u32, T) {
-    let scaled = xi * T::from_f64(f64::from(count));
-    let whole = (scaled.to_f64() as u32).min(count - 1);
-    (whole, (scaled - T::from_f64(f64::from(whole))).min(T::one()))
 }
 
 /// The direction at `place` (in [0, 1]², from the top left) of a cell, uniform in solid angle.
@@ -276,10 +268,7 @@ fn environment_direction_in_cell<T: Real>(
 
 /// The density, per steradian, with which [`environment_sample`] draws a unit direction in the map's frame.
 pub fn environment_density<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> T {
-    let uv = environment_uv(direction_local);
-    let (column, _) = split(uv[0], environment.cells_width);
-    let (row, _) = split(uv[1], environment.cells_height);
-    T::from_f64(f64::from(
-        environment.cells[(row * environment.cells_width + column) as usize].density,
-    ))
+    let size = [environment.cells_width, environment.cells_height];
+    let (cell, _) = grid_place(environment_uv(direction_local), size);
+    T::from_f64(f64::from(environment.cells[cell as usize].density))
 }

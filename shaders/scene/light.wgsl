@@ -1,0 +1,50 @@
+// Surfaces that emit: sampled by power, triangle by triangle. Twin of src/scene/light.rs.
+#import "scene/alias"
+#import "scene/surface"
+
+struct LightSample {
+    // Towards the place.
+    direction: vec3f,
+    // Per steradian.
+    density: f32,
+    radiance: vec3f,
+    // The way that must be free: it ends so far before the place that the triangle itself is not met.
+    distance: f32,
+}
+
+// Keeps densities finite where a triangle is seen edge-on.
+const COSINE_MIN: f32 = 1e-6;
+
+// A place on an emitting triangle, seen from `origin`. xi.xy choose an entry of the table and the place, xi.z whether the
+// entry or its alias is taken. There must be such a triangle.
+fn light_sample(origin: vec3f, xi: vec3f) -> LightSample {
+    let drawn = grid_place(xi.xy, globals.light_cells_size);
+    let cell = light_cells[drawn.index];
+    let chosen = select(cell.alias_index, drawn.index, xi.z < cell.threshold);
+    let index = light_cells[chosen].triangle;
+    let triangle = triangles[index];
+    let p0 = bitcast<vec3f>(triangle.corners[0].xyz);
+    let p1 = bitcast<vec3f>(triangle.corners[1].xyz);
+    let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
+    // Uniform in area.
+    let s = sqrt(drawn.place.x);
+    let weights = vec3f(1.0 - s, s * (1.0 - drawn.place.y), s * drawn.place.y);
+    let place = p0 * weights.x + p1 * weights.y + p2 * weights.z;
+    let towards = place - origin;
+    let distance = length(towards);
+    let direction = normalize_or(towards, vec3f(0.0, 1.0, 0.0));
+    let normal = normalize_or(cross(p1 - p0, p2 - p0), direction);
+    let radiance = materials[triangle_slots[index]].emission;
+    let cosine = abs(dot(normal, direction));
+    let error = position_error(p0, p1, p2, weights, normal) + POSITION_ERROR * distance;
+    return LightSample(
+        direction, light_density(radiance, cosine, distance), radiance, distance - error / max(cosine, COSINE_MIN),
+    );
+}
+
+// The density, per steradian, with which light_sample draws the direction to a place that emits `emission` and is seen
+// under this cosine from this distance.
+fn light_density(emission: vec3f, cosine: f32, distance: f32) -> f32 {
+    let per_area = globals.density_per_luminance * luminance(emission);
+    return per_area * distance * distance / max(cosine, COSINE_MIN);
+}

@@ -1,0 +1,64 @@
+//! Draws from many weights in constant time: alias tables (Walker 1977, Vose 1991), their entries in the rows of a grid.
+
+use crate::optics::real::Real;
+
+/// An entry of an alias table: drawing an entry uniformly, and keeping it or taking its alias, chooses each index in
+/// proportion to its weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct AliasEntry {
+    /// The probability, in [0, 1], that a draw of this entry is kept.
+    pub(super) threshold: f32,
+    /// The entry to take instead when it is not kept.
+    pub(super) alias_index: u32,
+}
+
+/// Vose's table. An entry of weight 0 is never chosen, unless all are 0: then each is always kept.
+pub(super) fn alias_table(weights: &[f64]) -> Vec<AliasEntry> {
+    let total: f64 = weights.iter().sum();
+    let heaviest = (0..weights.len()).max_by(|&a, &b| weights[a].total_cmp(&weights[b]));
+    let entry = |index: usize| {
+        // Rounding may leave an entry of weight 0 without a giver.
+        let is_kept = weights[index] > 0.0 || total <= 0.0;
+        AliasEntry {
+            threshold: if is_kept { 1.0 } else { 0.0 },
+            alias_index: if is_kept { index } else { heaviest.unwrap_or(index) } as u32,
+        }
+    };
+    let mut entries: Vec<AliasEntry> = (0..weights.len()).map(entry).collect();
+    if total <= 0.0 {
+        return entries;
+    }
+    let scale = weights.len() as f64 / total;
+    let mut scaled: Vec<f64> = weights.iter().map(|weight| weight * scale).collect();
+    let (mut small, mut large): (Vec<u32>, Vec<u32>) =
+        (0..weights.len() as u32).partition(|&index| scaled[index as usize] < 1.0);
+    while let (Some(&giver), Some(taker)) = (large.last(), small.pop()) {
+        let (giver_index, taker_index) = (giver as usize, taker as usize);
+        entries[taker_index].threshold = scaled[taker_index] as f32;
+        entries[taker_index].alias_index = giver;
+        scaled[giver_index] -= 1.0 - scaled[taker_index];
+        if scaled[giver_index] < 1.0 {
+            large.pop();
+            small.push(giver);
+        }
+    }
+    // What is left in either list is 1 but for rounding, and so are the thresholds already.
+    entries
+}
+
+/// The index of the cell of a grid of `size` columns and rows that a place in [0, 1)² falls in, and the place inside it,
+/// in [0, 1]². Two numbers for the cell, since of one of 24 bits a large table would leave few bits for each entry.
+#[inline(always)]
+pub fn grid_place<T: Real>(xi: [T; 2], size: [u32; 2]) -> (u32, [T; 2]) {
+    let (column, x) = split(xi[0], size[0]);
+    let (row, y) = split(xi[1], size[1]);
+    (row * size[0] + column, [x, y])
+}
+
+/// The whole and the fractional part of `xi` × `count`, the whole part below `count`.
+#[inline(always)]
+fn split<T: Real>(xi: T, count: u32) -> (u32, T) {
+    let scaled = xi * T::from_f64(f64::from(count));
+    let whole = (scaled.to_f64() as u32).min(count - 1);
+    (whole, (scaled - T::from_f64(f64::from(whole))).min(T::one()))
+}

@@ -1,0 +1,222 @@
+//! Surfaces that emit: sampled by power, triangle by triangle, and weighed against the environment. Area lights are
+//! rectangles among them.
+//!
+//! A triangle emits the same radiance from both sides. It is picked in proportion to area × luminance, and a place on it
+//! uniformly; so the density per area is luminance / power for every place of every triangle, and a hit needs no table
+//! to know it. The functions that start with `light_` have WGSL twins in `shaders/scene/light.wgsl`.
+
+use std::f64::consts::PI;
+
+use bytemuck::{Pod, Zeroable};
+use glam::DVec3;
+
+use super::alias::{AliasEntry, alias_table, grid_place};
+use super::camera::{orbit_direction, right_and_up};
+use super::environment::Environment;
+use super::geometry::Geometry;
+use super::mesh::Mesh;
+use super::shapes;
+use super::surface::{POSITION_ERROR, position_error};
+use crate::optics::material::Material;
+use crate::optics::numeric::normalize_or;
+use crate::optics::real::{Mask, Real};
+use crate::optics::vector::{Vec3, vec3};
+
+/// Where an area light is, which looks at the centre of the model's bounding box. Lengths are in units of the model's
+/// bounding radius.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AreaShape {
+    /// Azimuth in degrees, as a camera's: 0 on the +Z side, 90 on the +X side.
+    pub yaw_deg: f64,
+    /// Height above the horizon in degrees.
+    pub pitch_deg: f64,
+    /// Distance of its middle from the centre, above 0.
+    pub distance: f64,
+    /// Its horizontal side, above 0.
+    pub width: f64,
+    /// Its other side, above 0.
+    pub height: f64,
+}
+
+impl AreaShape {
+    /// Its two triangles in the geometry's units, facing the centre.
+    pub(super) fn mesh(&self, slot: u32) -> Mesh {
+        let outwards = orbit_direction(self.yaw_deg, self.pitch_deg);
+        let [right, up] = right_and_up(-outwards);
+        let (half_u, half_v) = (right * (-0.5 * self.width), up * (-0.5 * self.height));
+        shapes::rectangle(self.distance * outwards, half_u, half_v, 1.0, slot)
+    }
+}
+
+/// An entry of the alias table over the emitting triangles.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Zeroable, Pod)]
+pub struct LightCell {
+    /// The probability, in [0, 1], that a draw of this entry is kept.
+    pub threshold: f32,
+    /// The entry to take instead when it is not kept.
+    pub alias_index: u32,
+    /// Which of [`Geometry::triangles`].
+    pub triangle: u32,
+}
+
+/// The triangles of a scene that emit.
+#[derive(Clone, Debug, Default)]
+pub struct Lights {
+    /// The alias table, in rows of a grid; the last row is filled up with entries that are never chosen.
+    pub cells: Vec<LightCell>,
+    /// Columns and rows of the grid.
+    pub cells_size: [u32; 2],
+    /// Σ area × luminance of the emission, in the geometry's units.
+    pub power: f64,
+}
+
+impl Lights {
+    /// The triangles of slots whose materials emit.
+    pub fn new(geometry: &Geometry, materials: &[Material<f32>]) -> Self {
+        let luminances: Vec<f64> = materials
+            .iter()
+            .map(|material| material.emission.luminance().into())
+            .collect();
+        if luminances.iter().all(|luminance| *luminance <= 0.0) {
+            return Self::default();
+        }
+        let emitting = geometry
+            .slots
+            .iter()
+            .map(|&slot| luminances[slot as usize])
+            .zip(0u32..)
+            .filter(|(luminance, _)| *luminance > 0.0);
+        let (mut weights, triangles): (Vec<f64>, Vec<u32>) = emitting
+            .map(|(luminance, triangle)| (area(geometry, triangle) * luminance, triangle))
+            .unzip();
+        let power: f64 = weights.iter().sum();
+        if power <= 0.0 {
+            return Self::default();
+        }
+        let columns = (weights.len() as f64).sqrt().ceil() as usize;
+        let rows = weights.len().div_ceil(columns);
+        weights.resize(columns * rows, 0.0);
+        let triangles = triangles.into_iter().chain(std::iter::repeat(0));
+        let cell = |(entry, triangle): (AliasEntry, u32)| LightCell {
+            threshold: entry.threshold,
+            alias_index: entry.alias_index,
+            triangle,
+        };
+        Self {
+            cells: alias_table(&weights).into_iter().zip(triangles).map(cell).collect(),
+            cells_size: [columns as u32, rows as u32],
+            power,
+        }
+    }
+
+    /// True where nothing emits.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+}
+
+fn area(geometry: &Geometry, triangle: u32) -> f64 {
+    let corners = geometry.corners(triangle as usize);
+    let [a, b, c] = corners.map(|corner| DVec3::from_array(corner.map(f64::from)));
+    0.5 * (b - a).cross(c - a).length()
+}
+
+/// How one light sample is shared out, and what the integrators need to know its density.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LightChoice {
+    /// The probability that the environment is sampled, not a triangle: 0 where it is not sampled at all.
+    pub environment_probability: f64,
+    /// The density per area of the emitting triangles over the luminance of their emission; 0 where nothing emits.
+    pub density_per_luminance: f64,
+    /// Columns and rows of the table of triangles.
+    pub cells_size: [u32; 2],
+}
+
+/// Neither kind of light gets less than this share of the samples: power says nothing about what is near or in shadow.
+const SHARE_MIN: f64 = 0.1;
+
+impl LightChoice {
+    /// Shares by power: what the environment sends into the model's bounding sphere, 4π² × mean luminance × strength,
+    /// against what the triangles emit from both sides, 2π × Σ area × luminance. An environment that is equally bright
+    /// everywhere, or black, is not sampled.
+    pub fn new(environment: &Environment, environment_strength: f64, lights: &Lights) -> Self {
+        let is_sampled = !environment.is_constant && !environment.is_black && environment_strength > 0.0;
+        let mean: Vec3<f64> = Vec3::from_f32(environment.mean_radiance);
+        let far = 2.0 * PI * mean.luminance() * environment_strength;
+        let environment_probability = match (is_sampled, lights.is_empty()) {
+            (false, _) => 0.0,
+            (true, true) => 1.0,
+            (true, false) => (far / (far + lights.power)).clamp(SHARE_MIN, 1.0 - SHARE_MIN),
+        };
+        let density_per_luminance = if lights.is_empty() {
+            0.0
+        } else {
+            (1.0 - environment_probability) / lights.power
+        };
+        Self {
+            environment_probability,
+            density_per_luminance,
+            cells_size: lights.cells_size,
+        }
+    }
+}
+
+/// A place on an emitting triangle, seen from a point.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSample<T> {
+    /// Towards the place.
+    pub direction: Vec3<T>,
+    /// With which it was drawn, per steradian.
+    pub density: T,
+    /// The way that must be free: it ends so far before the place that the triangle itself is not met.
+    pub distance: T,
+    /// What the place emits.
+    pub radiance: Vec3<T>,
+}
+
+/// A place on an emitting triangle, drawn with three uniform numbers in [0, 1): `xi.x` and `xi.y` choose an entry of the
+/// table and the place, `xi.z` whether the entry or its alias is taken. There must be such a triangle. `origin` is where
+/// the ray towards it will start.
+pub fn light_sample<T: Real>(
+    geometry: &Geometry,
+    materials: &[Material<T>],
+    lights: &Lights,
+    density_per_luminance: T,
+    origin: Vec3<T>,
+    xi: Vec3<T>,
+) -> LightSample<T> {
+    let (drawn, [x, y]) = grid_place([xi.x, xi.y], lights.cells_size);
+    let cell = lights.cells[drawn as usize];
+    let keep = xi.z.less(T::from_f64(f64::from(cell.threshold)));
+    let chosen = if keep.any() { drawn } else { cell.alias_index };
+    let triangle = lights.cells[chosen as usize].triangle as usize;
+    let [p0, p1, p2] = geometry.corners(triangle).map(Vec3::from_f32);
+    // Uniform in area.
+    let s = x.sqrt();
+    let weights = [T::one() - s, s * (T::one() - y), s * y];
+    let place = p0 * weights[0] + p1 * weights[1] + p2 * weights[2];
+    let towards = place - origin;
+    let distance = towards.length();
+    let direction = normalize_or(towards, vec3(T::zero(), T::one(), T::zero()));
+    let normal = normalize_or((p1 - p0).cross(p2 - p0), direction);
+    let radiance = materials[geometry.slots[triangle] as usize].emission;
+    let cosine = normal.dot(direction).abs();
+    let error = position_error([p0, p1, p2], weights, normal) + T::from_f64(POSITION_ERROR) * distance;
+    LightSample {
+        direction,
+        density: light_density(radiance, cosine, distance, density_per_luminance),
+        distance: distance - error / cosine.max(T::from_f64(COSINE_MIN)),
+        radiance,
+    }
+}
+
+/// Keeps densities finite where a triangle is seen edge-on.
+const COSINE_MIN: f64 = 1e-6;
+
+/// The density, per steradian, with which [`light_sample`] draws the direction to a place that emits `emission` and is
+/// seen under this cosine from this distance.
+pub fn light_density<T: Real>(emission: Vec3<T>, cosine: T, distance: T, density_per_luminance: T) -> T {
+    let per_area = density_per_luminance * emission.luminance();
+    per_area * distance * distance / cosine.max(T::from_f64(COSINE_MIN))
+}
