@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 
 use crate::document::parameter::parse_color;
-use crate::document::{Background, MaterialSettings, ParameterError, assign, range};
+use crate::document::{AreaLight, Background, MaterialSettings, ParameterError, assign, range};
 use crate::render::output::{OutputError, format_of};
 
 /// Pixels that a picture may have: with 64 bytes each a render stays below 9 GB.
@@ -47,6 +47,36 @@ pub(super) fn place(text: &str) -> Result<[f64; 3], String> {
 /// Yaw and pitch in degrees.
 pub(super) fn orbit(text: &str) -> Result<[f64; 2], String> {
     numbers_in([range::YAW_DEG, range::PITCH_DEG])(text)
+}
+
+/// An area light; white where no colour is given.
+pub(super) fn area_light(text: &str) -> Result<AreaLight, String> {
+    let (numbers, color) = match text.split_once(",#") {
+        Some((numbers, digits)) => (
+            numbers,
+            parse_color(&format!("#{digits}")).map_err(|error| error.to_string())?,
+        ),
+        None => (text, [1.0; 3]),
+    };
+    let length = range::AREA_LENGTH;
+    let ranges = [
+        range::YAW_DEG,
+        range::PITCH_DEG,
+        length.clone(),
+        length.clone(),
+        length,
+        range::STRENGTH,
+    ];
+    let [yaw_deg, pitch_deg, distance, width, height, strength] = numbers_in(ranges)(numbers)?;
+    Ok(AreaLight {
+        yaw_deg,
+        pitch_deg,
+        distance,
+        width,
+        height,
+        color,
+        strength: strength as f32,
+    })
 }
 
 /// Width and height, as in 640x480.

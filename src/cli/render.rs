@@ -10,7 +10,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{names, parse};
 use crate::document::file::{self, Opened};
-use crate::document::{Background, Document, MaterialSettings, PixelFilter, Strategy, assign, preset, range};
+use crate::document::{
+    AreaLight, Background, Document, MaterialSettings, PixelFilter, Strategy, assign, preset, range,
+};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 use crate::render::{EngineChoice, Progress, Session, SessionError, output};
@@ -40,6 +42,10 @@ pub struct RenderArguments {
     /// Factor of the environment's radiance.
     #[arg(long, default_value = "1", value_name = "X", value_parser = parse::number_in(range::STRENGTH), allow_negative_numbers = true)]
     environment_strength: f64,
+    /// A rectangle that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
+    /// in bounding radii of the model) and radiance. May be repeated up to 8 times.
+    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,#rrggbb]", value_parser = parse::area_light, allow_hyphen_values = true)]
+    area_lights: Vec<AreaLight>,
     /// What the camera sees where it meets nothing.
     #[arg(long, default_value = "environment", value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
     background: Background,
@@ -312,6 +318,7 @@ fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Resul
     lighting.rotation_deg = arguments.environment_rotation as f32;
     lighting.strength = arguments.environment_strength as f32;
     lighting.background = arguments.background;
+    lighting.area_lights = arguments.area_lights.clone();
     let camera = &mut document.camera;
     if let Some([yaw_deg, pitch_deg]) = arguments.camera_orbit {
         (camera.yaw_deg, camera.pitch_deg) = (yaw_deg, pitch_deg);

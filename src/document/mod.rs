@@ -29,7 +29,9 @@ pub use parameter::{Choice, Kind, Parameter, ParameterError, Value, assign, para
 pub use preset::{PRESETS, load_material, material_by_name, save_material};
 pub use project::{load_document, save_document};
 pub use registry::PARAMETERS;
-pub use settings::{AreaLight, Background, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings, range};
+pub use settings::{
+    AreaLight, Background, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings, range,
+};
 
 pub use crate::scene::camera::PixelFilter;
 

@@ -10,7 +10,7 @@ use super::session::{Session, SessionError};
 use crate::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
 use crate::analysis::film::Film;
 use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
-use crate::document::{Background, Document, PixelFilter, Strategy};
+use crate::document::{AreaLight, Background, Document, PixelFilter, Strategy};
 use crate::optics::curve::Curve;
 use crate::optics::frame::frame_from_normal;
 use crate::optics::lobe::{Horizon, Lobe, lobe_evaluate, lobe_sample};
@@ -290,6 +290,13 @@ fn pictures(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
     let mut subject = document(ModelSource::Teapot, EnvironmentSource::Studio, samples);
     subject.materials[0].roughness = 0.5;
     subject.lighting.background = Background::Transparent;
+    // Large enough for the lobe alone to find it often.
+    subject.lighting.area_lights = vec![AreaLight {
+        width: 2.0,
+        height: 2.0,
+        strength: 4.0,
+        ..AreaLight::default()
+    }];
     let with = |strategy: Strategy, seed: u32| {
         let mut document = subject.clone();
         (document.render.strategy, document.render.seed) = (strategy, seed);

@@ -212,7 +212,7 @@ pub fn light_sample<T: Real>(
 }
 
 /// Keeps densities finite where a triangle is seen edge-on.
-const COSINE_MIN: f64 = 1e-6;
+pub const COSINE_MIN: f64 = 1e-6;
 
 /// The density, per steradian, with which [`light_sample`] draws the direction to a place that emits `emission` and is
 /// seen under this cosine from this distance.

@@ -91,5 +91,8 @@ pub fn position_error<T: Real>(corners: [Vec3<T>; 3], weights: [T; 3], normal: V
     let [p0, p1, p2] = corners.map(|corner| corner.map(T::abs));
     let [w, u, v] = weights.map(T::abs);
     let margin = T::from_f64(0.05);
-    T::from_f64(POSITION_ERROR) * normal.map(T::abs).dot(p0 * w + p1 * u + p2 * v + vec3(margin, margin, margin))
+    T::from_f64(POSITION_ERROR)
+        * normal
+            .map(T::abs)
+            .dot(p0 * w + p1 * u + p2 * v + vec3(margin, margin, margin))
 }

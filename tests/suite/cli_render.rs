@@ -340,6 +340,44 @@ fn sampling_is_as_asked_for() {
 }
 
 #[test]
+fn area_lights_shine_from_where_they_are_put() {
+    let place = Workplace::new();
+    let dark = "--model sphere --environment-strength 0 --background transparent --samples 16";
+    let render = |arguments: &str| place.picture(&format!("{dark} {arguments} --camera-orbit 0,0"));
+    assert_eq!(render("").mean(1), 0.0);
+    let halves = |picture: &Picture| {
+        let half = |first: usize| -> f32 {
+            let columns = first..first + picture.width / 2;
+            let rows = 0..picture.height;
+            rows.flat_map(|y| columns.clone().map(move |x| (x, y)))
+                .map(|(x, y)| picture.at(x, y)[1])
+                .sum()
+        };
+        [half(0), half(picture.width / 2)]
+    };
+    let [left, right] = halves(&render("--area-light 80,0,3,1,1,10"));
+    assert!(right > 4.0 * left, "from the right: {left} {right}");
+    let [left, right] = halves(&render("--area-light -80,0,3,1,1,10"));
+    assert!(left > 4.0 * right, "from the left: {left} {right}");
+    let red = render("--area-light 0,45,3,1,1,10,#ff0000");
+    assert!(red.mean(0) > 0.01 && red.mean(1) == 0.0 && red.mean(2) == 0.0);
+    let both = render("--area-light 0,45,3,1,1,10,#ff0000 --area-light 0,45,3.1,1,1,10,#0000ff");
+    assert!(both.mean(0) > 0.01 && both.mean(2) > 0.0);
+    let effects = place.report(&format!("{dark} --area-light 0,45,3,1,1,10"))["effects"].clone();
+    let effects: Vec<_> = effects.as_array().unwrap().iter().filter_map(Value::as_str).collect();
+    assert!(
+        effects.contains(&"emitter-sampling") && !effects.contains(&"light-sampling"),
+        "{effects:?}"
+    );
+    let nine = "--area-light 0,45,3,1,1,10 ".repeat(9);
+    place.refused(
+        1,
+        &format!("render {nine}"),
+        &["lighting.area_lights", "between 0 and 8"],
+    );
+}
+
+#[test]
 fn both_engines_render_the_same_scene() {
     let place = Workplace::new();
     let render = |engine: &str| {

@@ -4,7 +4,8 @@ use glossmith::document::custom_curve::CustomCurve;
 use glossmith::document::history::History;
 use glossmith::document::parameter::{Kind, Parameter, Value, assign, parameter, parse_color};
 use glossmith::document::{
-    Background, Change, Conductor, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy, compile, preset,
+    AreaLight, Background, Change, Conductor, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy, compile,
+    preset,
 };
 use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};
 use glossmith::optics::lobe::Lobe;
@@ -392,6 +393,14 @@ fn every_edit_is_the_change_that_it_is() {
     assert_eq!(
         change(|d| d.lighting.background = Background::Transparent),
         Change { lighting: true, ..none }
+    );
+    assert_eq!(
+        change(|d| d.lighting.area_lights.push(AreaLight::default())),
+        Change {
+            materials: true,
+            geometry: true,
+            ..none
+        }
     );
     assert_eq!(
         change(|d| d.lighting.ground_color = [1.0; 3]),

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use glossmith::document::file::{self, FileError, Opened};
 use glossmith::document::preset::{self, PRESETS, SHIPPED};
 use glossmith::document::{
-    Background, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy as LightStrategy, project,
+    AreaLight, Background, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy as LightStrategy, project,
 };
 use glossmith::optics::tone::ToneCurve;
 use glossmith::scene::ModelSource;
@@ -195,6 +195,15 @@ fn unusual_document(folder: &Path) -> Document {
     document.lighting.environment = EnvironmentSource::File(PathBuf::from("/elsewhere/sky.hdr"));
     document.lighting.rotation_deg = 12.3;
     document.lighting.background = Background::Color([0.1, 0.2, 0.3]);
+    document.lighting.area_lights = vec![
+        AreaLight::default(),
+        AreaLight {
+            yaw_deg: 12.5,
+            color: [0.1, 0.2, 0.3],
+            strength: 0.7,
+            ..AreaLight::default()
+        },
+    ];
     document.camera.target = Some([0.1, -2.0, 1e-3]);
     document.camera.distance = Some(3.3);
     document.view.tone_map = ToneCurve::PbrNeutral;
@@ -393,10 +402,11 @@ proptest! {
     }
 
     #[test]
-    fn any_value_in_a_document_is_an_error_or_in_range(part in 0..7_usize, key in 0..9_usize, value in any_json()) {
+    fn any_value_in_a_document_is_an_error_or_in_range(part in 0..7_usize, key in 0..10_usize, value in any_json()) {
         let part = ["model", "ground", "materials", "lighting", "camera", "view", "render"][part];
         let key = [
             "strength", "rotation_deg", "background", "fov_deg", "position", "exposure_ev", "width", "time_s", "seed",
+            "area_lights",
         ][key];
         for inner in [value.clone(), json!({ key: value })] {
             let text = json!({"glossmith-document": 1, part: inner}).to_string();

@@ -8,6 +8,7 @@ use glossmith::optics::material::Material;
 use glossmith::scene::Vertex;
 use glossmith::scene::camera::Camera;
 use glossmith::scene::environment::AliasCell;
+use glossmith::scene::light::LightCell;
 
 use super::shaders::modules;
 
@@ -42,7 +43,7 @@ fn rust_layouts() -> Vec<Layout> {
         layout!(Globals: Globals {
             camera, image_size, tile_origin, tile_size, first_sample, sample_count, background, background_kind,
             environment_rotation, environment_cells_size, environment_strength, bounces, sequence, strategy, seed,
-            node_count, reserved,
+            node_count, light_cells_size, environment_probability, density_per_luminance, reserved,
         }),
         layout!(Camera: Camera<f32> {
             origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,
@@ -57,6 +58,7 @@ fn rust_layouts() -> Vec<Layout> {
             wo, roughness, anisotropy, lobe, curve, horizon, seed, first, count, reserved,
         }),
         layout!(AliasCell: AliasCell { threshold, alias_index, density }),
+        layout!(LightCell: LightCell { threshold, alias_index, triangle }),
     ]
 }
 

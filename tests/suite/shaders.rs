@@ -14,7 +14,7 @@ use glossmith::optics::material::ALBEDO_NODES;
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::{self, ToneCurve};
 use glossmith::scene::camera::{Camera, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA, PixelFilter};
-use glossmith::scene::surface;
+use glossmith::scene::{light, surface};
 use naga::back::{hlsl, msl, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
@@ -208,6 +208,7 @@ fn background_number(background: BackgroundKind) -> u32 {
         background,
         environment_rotation: [1.0, 0.0],
         environment_strength: 1.0,
+        light_choice: Default::default(),
         bounces: 1,
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
@@ -277,6 +278,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("NEUTRAL_START", tone::NEUTRAL_START),
         ("GAUSSIAN_SIGMA", GAUSSIAN_SIGMA),
         ("GAUSSIAN_KEPT", kept),
+        ("COSINE_MIN", light::COSINE_MIN),
         ("POSITION_ERROR", surface::POSITION_ERROR),
         ("VIEW_COSINE_MIN", surface::VIEW_COSINE_MIN),
         ("FIRST_DIMENSION", f64::from(integrator::FIRST_DIMENSION)),
@@ -351,6 +353,7 @@ const NARROW_PLAN: Plan = Plan {
     specular: true,
     emission: false,
     light_sampling: true,
+    emitter_sampling: false,
     lens: false,
 };
 

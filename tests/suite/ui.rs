@@ -10,7 +10,7 @@ use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options, Resolution};
-use glossmith::document::{Document, PRESETS, save_document, save_material};
+use glossmith::document::{AreaLight, Document, PRESETS, save_document, save_material};
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -210,6 +210,33 @@ fn shift_and_drag_turns_the_light_and_the_wheel_zooms() {
     harness.key_press(Key::F);
     harness.run_steps(2);
     assert_eq!(harness.state().document().camera.distance, None, "it was {distance}");
+}
+
+#[test]
+fn an_area_light_is_added_moved_and_removed() {
+    let mut harness = editor();
+    let before = picture(&harness);
+    harness.state_mut().reveal(Pane::Lighting);
+    harness.run_steps(2);
+    harness.get_by_label("Add area light").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().document().lighting.area_lights, [AreaLight::default()]);
+    let lit = picture(&harness);
+    assert_ne!(lit, before);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Area light 1 yaw")
+        .set_value_accesskit(70.0);
+    settle(&mut harness);
+    assert_eq!(harness.state().document().lighting.area_lights[0].yaw_deg, 70.0);
+    assert_ne!(picture(&harness), lit);
+    undo(&mut harness);
+    assert_eq!(picture(&harness), lit);
+    harness.get_by_label("Remove area light 1").click();
+    settle(&mut harness);
+    assert_eq!(harness.state().document().lighting.area_lights, []);
+    assert_eq!(picture(&harness), before);
+    undo(&mut harness);
+    assert_eq!(picture(&harness), lit);
 }
 
 #[test]

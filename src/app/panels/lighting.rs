@@ -1,10 +1,10 @@
-//! Environment, background and ground.
+//! Environment, area lights, background and ground.
 
 use std::sync::Arc;
 
 use egui::{ColorImage, TextureHandle, TextureOptions, Ui, vec2};
 
-use super::Desk;
+use super::{Desk, area_lights};
 use crate::app::actions::{Action, Command};
 use crate::app::theme;
 use crate::app::widgets::{self, Name, NumberStyle};
@@ -86,6 +86,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         sources(ui, desk);
         numbers(ui, desk);
     });
+    widgets::group(ui, "Area lights", |ui| area_lights::show(ui, desk));
     widgets::group(ui, "Background", |ui| background(ui, desk));
     widgets::group(ui, "Ground", |ui| {
         let name = Name::new(

@@ -1,5 +1,6 @@
 //! The panels, one a file. They change the document, push actions, and read the renderer's state.
 
+mod area_lights;
 pub(super) mod camera;
 pub(super) mod curve;
 pub(super) mod lighting;

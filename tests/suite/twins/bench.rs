@@ -15,6 +15,7 @@ use glossmith::optics::real::Real;
 use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
+use glossmith::scene::light::{LightChoice, Lights};
 use glossmith::scene::{self, Geometry, ModelSource};
 
 use super::harness::Rng;
@@ -32,6 +33,8 @@ pub struct Scene {
     pub curves: Vec<u32>,
     pub materials: Vec<Material<f32>>,
     pub tables: Vec<f32>,
+    /// The teapot and the ground shine.
+    pub lights: Lights,
 }
 
 /// The teapot on its ground in the studio, with a material for each combination of lobe, curve and Fresnel model.
@@ -69,13 +72,17 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     // The materials of the geometry's slots: the teapot's stretched, the ground's not.
     materials[0].anisotropy = 0.6;
     materials[1].anisotropy = 0.0;
+    materials[0].emission = vec3(0.7, 0.2, 0.4);
+    materials[1].emission = vec3(0.001, 0.002, 0.003);
     for material in &mut materials {
         let albedo = albedo_table(&material.cast(), &tables, ALBEDO_SAMPLES);
         material.albedo_table = tables.len() as u32;
         tables.extend(albedo);
     }
+    let geometry = Geometry::build(&model, true);
     Scene {
-        geometry: Geometry::build(&model, true),
+        lights: Lights::new(&geometry, &materials),
+        geometry,
         environment: environment::studio().unwrap(),
         curves,
         materials,
@@ -84,6 +91,11 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
 });
 
 impl Scene {
+    /// How light samples are shared out.
+    pub fn light_choice(&self) -> LightChoice {
+        LightChoice::new(&self.environment, 1.0, &self.lights)
+    }
+
     /// A material in the precision of a twin.
     pub fn material<T: Real>(&self, index: u32) -> Material<T> {
         self.materials[index as usize].cast()
@@ -156,7 +168,7 @@ impl Bench {
             gpu.device
                 .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries })
         };
-        let scene_entries: Vec<_> = (0..=8).map(scene_entry).collect();
+        let scene_entries: Vec<_> = (0..=8).chain([11]).map(scene_entry).collect();
         let rows_entries = [storage_entry(0, true), storage_entry(1, false)];
         let layouts = [layout_of(&scene_entries), layout_of(&rows_entries)];
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -275,6 +287,7 @@ fn settings() -> Settings {
         background: BackgroundKind::Environment,
         environment_rotation: [1.0, 0.0],
         environment_strength: 1.0,
+        light_choice: SCENE.light_choice(),
         bounces: 8,
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
@@ -288,6 +301,7 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
         environment,
         materials,
         tables,
+        lights,
         ..
     } = &*SCENE;
     let cells_size = [environment.cells_width, environment.cells_height];
@@ -308,11 +322,13 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
         gpu.storage("materials", cast_slice(materials))?,
         gpu.storage("tables", cast_slice(tables))?,
         gpu.storage("cells", cast_slice(&environment.cells))?,
+        gpu.storage("light cells", cast_slice(&lights.cells))?,
     ];
     let mut resources: Vec<_> = buffers.iter().map(wgpu::Buffer::as_entire_binding).collect();
     resources.insert(0, uniforms.as_entire_binding());
     resources.insert(7, wgpu::BindingResource::TextureView(&map));
-    let entries: Vec<_> = (0..)
+    let entries: Vec<_> = (0..=8)
+        .chain([11])
         .zip(resources)
         .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
         .collect();

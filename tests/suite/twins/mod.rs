@@ -12,6 +12,7 @@ mod curves;
 mod elementary;
 mod environment;
 mod harness;
+mod light;
 mod lobes;
 mod material;
 mod surface;

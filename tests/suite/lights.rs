@@ -1,0 +1,493 @@
+//! Surfaces that emit: their sampler against its density, area lights against Lambert's formula, the strategies and
+//! engines against each other.
+
+use std::time::Duration;
+
+use glam::{DVec3, Vec2, Vec4};
+use glossmith::analysis::chi_square::test_counts;
+use glossmith::analysis::film::Film;
+use glossmith::cpu::CpuEngine;
+use glossmith::document::{AreaLight, Background, Document, Strategy};
+use glossmith::optics::material::Material;
+use glossmith::optics::real::Real;
+use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::camera::camera_ray;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::light::{Lights, light_density, light_sample};
+use glossmith::scene::mesh::Mesh;
+use glossmith::scene::{Geometry, Model, ModelSource, Slot};
+
+use crate::environment::triple;
+use crate::renders::{assert_same_picture, document, render, with_strategy};
+use crate::support::Random;
+
+/// Rows of cells that a triangle is cut into.
+const CUTS: u32 = 10;
+const CELLS: usize = (CUTS * CUTS) as usize;
+const DRAWS: u32 = 400_000;
+
+/// Seven triangles around the origin that hide none of each other, of three materials, of which one does not emit.
+fn shards() -> (Geometry, Vec<Material<f32>>) {
+    let mut mesh = Mesh::default();
+    let mut random = Random::new(4);
+    for triangle in 0..8u32 {
+        let center = DVec3::from_array(std::array::from_fn(|axis| {
+            let side = if triangle >> axis & 1 == 0 { -1.0 } else { 1.0 };
+            side * (0.5 + f64::from(random.unit()))
+        }));
+        let corners = [(); 3].map(|()| {
+            let position = center + 0.45 * random.in_ball().as_dvec3();
+            mesh.push_vertex(position, glam::Vec3::Y, Vec2::ZERO, Vec4::X)
+        });
+        mesh.push_triangle(corners, [0, 0, 1, 2, 0, 1, 0, 1][triangle as usize]);
+    }
+    let model = Model {
+        mesh,
+        slots: vec![Slot::neutral("shard"); 3],
+        ..Model::default()
+    };
+    let (mut materials, _) = glossmith::document::compile(&vec![Default::default(); 3]);
+    materials[0].emission = vec3(1.0, 2.0, 3.0);
+    materials[1].emission = vec3(0.7, 0.1, 0.0);
+    (Geometry::build(&model, false), materials)
+}
+
+/// The solid angle of a triangle seen from the origin (Van Oosterom and Strackee 1983).
+fn solid_angle(corners: [DVec3; 3]) -> f64 {
+    let [a, b, c] = corners.map(DVec3::normalize);
+    let numerator = a.dot(b.cross(c)).abs();
+    2.0 * numerator.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
+}
+
+/// The cell of a triangle that holds the place with weights u and v of its second and third corner.
+fn cell_of(u: f64, v: f64) -> usize {
+    let n = f64::from(CUTS);
+    let (i, j) = ((u * n).floor().min(n - 1.0), (v * n).floor().min(n - 1.0));
+    let is_upper = u * n - i + v * n - j > 1.0;
+    // Row i holds 2 (n − i) − 1 small triangles.
+    let before = i * (2.0 * n - i);
+    (before + 2.0 * j) as usize + usize::from(is_upper)
+}
+
+/// The weights (u, v) of the corners of every cell, in the order of [`cell_of`].
+fn cells() -> Vec<[[f64; 2]; 3]> {
+    let n = f64::from(CUTS);
+    let mut cells = Vec::new();
+    for i in 0..CUTS {
+        for j in 0..CUTS - i {
+            let at = |di: u32, dj: u32| [f64::from(i + di) / n, f64::from(j + dj) / n];
+            cells.push([at(0, 0), at(1, 0), at(0, 1)]);
+            if i + j + 1 < CUTS {
+                cells.push([at(1, 1), at(0, 1), at(1, 0)]);
+            }
+        }
+    }
+    cells
+}
+
+/// The p-value of samples of the triangles seen from `origin` against their density integrated over the solid angle of
+/// each cell, times `tamper(cell)`.
+fn chi_square_p<T: Real>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> f64 {
+    let (geometry, materials) = shards();
+    let lights = Lights::new(&geometry, &materials);
+    let per_luminance = 1.0 / lights.power;
+    let from = DVec3::from_array(origin.to_f64());
+    let mut expected = vec![0.0; geometry.triangles.len() * CELLS];
+    for triangle in 0..geometry.triangles.len() {
+        let emission: Vec3<f64> = materials[geometry.slots[triangle] as usize].cast::<f64>().emission;
+        let corners = geometry.corners(triangle);
+        let [a, b, c] = corners.map(|corner| DVec3::from_array(corner.map(f64::from)) - from);
+        let normal = (b - a).cross(c - a).normalize();
+        for (cell, weights) in cells().into_iter().enumerate() {
+            let corners = weights.map(|[u, v]| a * (1.0 - u - v) + b * u + c * v);
+            let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+            let cosine = normal.dot(middle.normalize()).abs();
+            let density = light_density(emission, cosine, middle.length(), per_luminance);
+            let index = triangle * CELLS + cell;
+            expected[index] = density * solid_angle(corners) * f64::from(DRAWS) * tamper(index);
+        }
+    }
+    let materials: Vec<Material<T>> = materials.iter().map(Material::cast).collect();
+    let origin: Vec3<T> = Vec3::from_f64(origin.to_f64());
+    let mut observed = vec![0; expected.len()];
+    let mut random = Random::new(9);
+    for _ in 0..DRAWS {
+        let density = T::from_f64(per_luminance);
+        let sample = light_sample(&geometry, &materials, &lights, density, origin, triple(&mut random));
+        let hit = geometry.intersect(origin.to_f32(), sample.direction.to_f32(), f32::MAX);
+        // Rounding at an edge.
+        let Some(hit) = hit else { continue };
+        observed[hit.triangle as usize * CELLS + cell_of(hit.u.into(), hit.v.into())] += 1;
+    }
+    test_counts(&observed, &expected).p_value
+}
+
+#[test]
+fn triangles_are_sampled_with_their_density() {
+    for origin in [vec3(0.0, 0.0, 0.0), vec3(0.1, -0.05, 0.07)] {
+        let double = chi_square_p::<f64>(origin, |_| 1.0);
+        assert!(double > 1e-3, "from {origin:?} in f64: p = {double}");
+        let single = chi_square_p::<f32>(origin, |_| 1.0);
+        assert!(single > 1e-3, "from {origin:?} in f32: p = {single}");
+        // The test sees a density that is off by three per cent.
+        let tampered = chi_square_p::<f32>(origin, |cell| if cell % 2 == 0 { 1.03 } else { 0.97 });
+        assert!(tampered < 1e-6, "a tampered density passed with p = {tampered}");
+    }
+}
+
+#[test]
+fn the_table_holds_what_emits_and_nothing_else() {
+    let (geometry, materials) = shards();
+    let lights = Lights::new(&geometry, &materials);
+    let emitting = geometry.slots.iter().filter(|&&slot| slot < 2).count();
+    assert_eq!((emitting, lights.cells_size), (7, [3, 3]));
+    let chosen = |index: usize| {
+        let kept = f64::from(lights.cells[index].threshold);
+        let taken = lights.cells.iter().filter(|cell| cell.alias_index as usize == index);
+        kept + taken.map(|cell| 1.0 - f64::from(cell.threshold)).sum::<f64>()
+    };
+    assert!((0..7).all(|index| chosen(index) > 0.0));
+    assert_eq!([chosen(7), chosen(8)], [0.0; 2]);
+    let dark: Vec<_> = materials[2..].repeat(3);
+    assert!(Lights::new(&geometry, &dark).is_empty());
+}
+
+/// A white plane under one area light and nothing else.
+fn lit_plane(light: AreaLight) -> Document {
+    let assignments = ["base.metalness=0", "specular.weight=0", "base.color=0.8,0.8,0.8"];
+    let mut document = document(ModelSource::Plane, EnvironmentSource::Furnace, &assignments);
+    document.lighting.strength = 0.0;
+    document.lighting.background = Background::Transparent;
+    document.lighting.area_lights = vec![light];
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (120.0, 35.0);
+    (document.render.width, document.render.height) = (48, 48);
+    document
+}
+
+/// The corners of an area light as docs/CONVENTIONS.md says, in bounding radii about the model's centre.
+fn corners(light: &AreaLight) -> [DVec3; 4] {
+    let (yaw, pitch) = (light.yaw_deg.to_radians(), light.pitch_deg.to_radians());
+    let outwards = DVec3::new(pitch.cos() * yaw.sin(), pitch.sin(), pitch.cos() * yaw.cos());
+    let across = DVec3::new(yaw.cos(), 0.0, -yaw.sin());
+    let along = outwards.cross(across);
+    let corner = |u: f64, v: f64| light.distance * outwards + across * (u * light.width) + along * (v * light.height);
+    [
+        corner(-0.5, -0.5),
+        corner(0.5, -0.5),
+        corner(0.5, 0.5),
+        corner(-0.5, 0.5),
+    ]
+}
+
+/// Irradiance at a place with this normal of a polygon of radiance 1 above its horizon (Lambert 1760).
+fn irradiance(place: DVec3, normal: DVec3, polygon: &[DVec3; 4]) -> f64 {
+    let seen = polygon.map(|corner| (corner - place).normalize());
+    let edges = (0..4).map(|i| {
+        let (a, b) = (seen[i], seen[(i + 1) % 4]);
+        a.dot(b).acos() * a.cross(b).normalize().dot(normal)
+    });
+    0.5 * edges.sum::<f64>().abs()
+}
+
+/// For each pixel that sees the plane alone: what the plane radiates there.
+fn expected_radiance(session: &Session, light: &AreaLight) -> Vec<Option<f64>> {
+    const SUBPIXELS: u32 = 3;
+    let job = session.job().expect("a document was submitted");
+    let corners = corners(light);
+    let size = job.settings.image_size;
+    let pixel = |index: u32| {
+        let mut sum = 0.0;
+        for sub in 0..SUBPIXELS * SUBPIXELS {
+            let inside = |i: u32| (f64::from(i) + 0.5) / f64::from(SUBPIXELS);
+            let place = [
+                f64::from(index % size[0]) + inside(sub % SUBPIXELS),
+                f64::from(index / size[0]) + inside(sub / SUBPIXELS),
+            ];
+            let [origin, direction] = camera_ray(&job.settings.camera, place, size, [0.0; 2]);
+            let hit = job.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX)?;
+            if job.geometry.slots[hit.triangle as usize] != 0 {
+                return None;
+            }
+            let place = DVec3::from_array((origin + direction * f64::from(hit.t)).to_f64());
+            sum += irradiance(place, DVec3::Y, &corners);
+        }
+        let mean = sum / f64::from(SUBPIXELS * SUBPIXELS);
+        Some(0.8 / std::f64::consts::PI * f64::from(light.strength) * mean)
+    };
+    let pixels: Vec<_> = (0..size[0] * size[1]).map(pixel).collect();
+    // At the edge of the plane the grid above is too coarse.
+    let is_inside = |index: usize| {
+        let width = size[0] as usize;
+        let around = [
+            index.wrapping_sub(1),
+            index + 1,
+            index.wrapping_sub(width),
+            index + width,
+        ];
+        around.iter().all(|&i| pixels.get(i).is_some_and(Option::is_some))
+    };
+    (0..pixels.len()).map(|i| pixels[i].filter(|_| is_inside(i))).collect()
+}
+
+/// Fails unless a film agrees with what is expected, pixel by pixel and as a whole.
+#[track_caller]
+fn assert_analytic(film: &Film, expected: &[Option<f64>], what: &str) {
+    assert_eq!(film.dropped, 0, "{what}");
+    let (mut count, mut beyond, mut difference, mut variance_sum, mut total) = (0, 0, 0.0, 0.0, 0.0);
+    let pixels = film.luminance().into_iter().zip(film.variance_of_mean()).zip(expected);
+    for ((mean, variance), expected) in pixels {
+        let Some(expected) = expected else { continue };
+        // Rounding of f32 radiance beside the noise.
+        let variance = variance + (1e-4 * expected).powi(2);
+        count += 1;
+        beyond += usize::from((mean - expected).abs() > 3.0 * variance.sqrt());
+        difference += mean - expected;
+        variance_sum += variance;
+        total += expected;
+    }
+    assert!(count > 200, "{what}: only {count} pixels");
+    let sigma = difference / (variance_sum + (1e-4 * total).powi(2)).sqrt();
+    assert!(
+        sigma.abs() < 4.0,
+        "{what}: off by {sigma:.1} sigma, {:.4} of it",
+        difference / total
+    );
+    assert!(
+        beyond * 100 <= count * 2,
+        "{what}: {beyond} of {count} pixels beyond 3 sigma"
+    );
+}
+
+/// A film of the processor's engine with shading in f64.
+fn render_in_f64(document: &Document) -> Film {
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(document).unwrap();
+    let mut engine = CpuEngine::default();
+    engine.submit(session.job().unwrap().clone());
+    engine.step_in::<f64>(Duration::MAX, document.render.samples);
+    engine.film().clone()
+}
+
+/// A white plane under a rectangle: Lambert's formula gives every pixel. Near and small, and so far and large that its
+/// coordinates have few digits: nothing shadows itself, nothing leaks.
+#[test]
+fn a_rectangle_lights_a_plane_as_lambert_says() {
+    let near = AreaLight {
+        yaw_deg: 30.0,
+        pitch_deg: 60.0,
+        distance: 1.2,
+        width: 0.9,
+        height: 0.4,
+        strength: 5.0,
+        ..AreaLight::default()
+    };
+    let far = AreaLight {
+        distance: 700.0,
+        width: 300.0,
+        height: 500.0,
+        ..near
+    };
+    for (name, light) in [("near", near), ("far", far)] {
+        let document = lit_plane(light);
+        let mut session = Session::open(EngineChoice::Cpu).unwrap();
+        session.submit(&document).unwrap();
+        let expected = expected_radiance(&session, &light);
+        for strategy in [Strategy::Mis, Strategy::Light] {
+            let document = with_strategy(&document, strategy, 5);
+            for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+                let what = format!("{name}, {strategy:?} on {engine:?}");
+                assert_analytic(&render(engine, &document), &expected, &what);
+            }
+            assert_analytic(
+                &render_in_f64(&document),
+                &expected,
+                &format!("{name}, {strategy:?} in f64"),
+            );
+        }
+        // One path in thirty finds the light.
+        let mut lobe = with_strategy(&document, Strategy::Lobe, 6);
+        lobe.render.samples = 2048;
+        assert_analytic(&render(EngineChoice::Cpu, &lobe), &expected, &format!("{name}, lobe"));
+    }
+}
+
+/// Area lights large enough that the lobe strategy has an honest variance.
+fn large_lights() -> Vec<AreaLight> {
+    let one = AreaLight {
+        distance: 2.5,
+        width: 2.0,
+        height: 2.0,
+        strength: 4.0,
+        color: [1.0, 0.6, 0.3],
+        ..AreaLight::default()
+    };
+    let other = AreaLight {
+        yaw_deg: 100.0,
+        pitch_deg: 10.0,
+        strength: 2.0,
+        color: [0.2, 0.5, 1.0],
+        ..one
+    };
+    vec![one, other]
+}
+
+/// With an environment to share the samples with, with one that is not sampled, and with none.
+fn lit_scenes() -> Vec<(&'static str, Document)> {
+    let matt = ["base.metalness=0", "specular.roughness=0.6", "base.color=0.5,0.6,0.7"];
+    let mut studio = document(ModelSource::Teapot, EnvironmentSource::Studio, &matt);
+    studio.lighting.area_lights = large_lights();
+    studio.ground = true;
+    let metal = ["specular.lobe=ggx", "specular.roughness=0.8"];
+    let mut dark = document(ModelSource::Sphere, EnvironmentSource::Sky, &metal);
+    dark.lighting.strength = 0.0;
+    dark.lighting.area_lights = large_lights();
+    let mut furnace = document(
+        ModelSource::Shaderball,
+        EnvironmentSource::Furnace,
+        &["specular.roughness=0.5"],
+    );
+    let mut stand = furnace.materials[0].clone();
+    (stand.emission_color, stand.emission_strength) = ([0.3, 1.0, 0.5], 2.0);
+    furnace.materials.push(stand);
+    furnace.lighting.area_lights = large_lights()[..1].to_vec();
+    let mut scenes = vec![("studio", studio), ("dark", dark), ("furnace", furnace)];
+    for (_, document) in &mut scenes {
+        document.lighting.background = Background::Transparent;
+        (document.render.width, document.render.height) = (40, 40);
+        document.render.samples = 192;
+        // Few paths that found much light would make the lobe's variance dishonest.
+        document.render.bounces = 4;
+    }
+    scenes
+}
+
+#[test]
+fn strategies_and_engines_agree_on_what_emits() {
+    for (name, document) in lit_scenes() {
+        let with = |strategy, seed| with_strategy(&document, strategy, seed);
+        let mis = render(EngineChoice::Cpu, &document);
+        assert_eq!(mis.dropped, 0);
+        let others = [
+            ("light", render(EngineChoice::Cpu, &with(Strategy::Light, 1))),
+            ("lobe", render(EngineChoice::Cpu, &with(Strategy::Lobe, 2))),
+            ("mis in f64", render_in_f64(&with(Strategy::Mis, 3))),
+            ("mis on the GPU", render(EngineChoice::Gpu, &with(Strategy::Mis, 4))),
+            ("light on the GPU", render(EngineChoice::Gpu, &with(Strategy::Light, 5))),
+            ("lobe on the GPU", render(EngineChoice::Gpu, &with(Strategy::Lobe, 6))),
+        ];
+        for (what, film) in &others {
+            assert_same_picture(&mis, film, &format!("{name}: mis against {what}"));
+        }
+    }
+}
+
+/// The mean squared error of a render against a reference.
+fn squared_error(document: &Document, reference: &Film) -> f64 {
+    let film = render(EngineChoice::Cpu, document);
+    let pairs = film.luminance().into_iter().zip(reference.luminance());
+    pairs.map(|(a, b)| (a - b) * (a - b)).sum()
+}
+
+/// A small light is found by sampling it, a mirror image of a large one by sampling the lobe: weighing both does not lose
+/// much to the better one, and gains much over the other.
+#[test]
+fn weighing_both_strategies_is_as_good_as_the_better_one() {
+    let light = |side: f64| AreaLight {
+        distance: 2.0,
+        width: side,
+        height: side,
+        strength: (1.0 / (side * side)) as f32,
+        ..AreaLight::default()
+    };
+    let cases = [
+        (
+            "small",
+            light(0.05),
+            ["base.metalness=0", "specular.weight=0"],
+            Strategy::Lobe,
+            20.0,
+        ),
+        (
+            "large",
+            light(3.0),
+            ["base.metalness=1", "specular.roughness=0.1"],
+            Strategy::Light,
+            2.0,
+        ),
+    ];
+    for (name, light, assignments, worse, gain) in cases {
+        let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &assignments);
+        document.lighting.strength = 0.0;
+        document.lighting.area_lights = vec![light];
+        document.lighting.background = Background::Transparent;
+        (document.render.width, document.render.height) = (32, 32);
+        document.render.samples = 1024;
+        let reference = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Mis, 99));
+        document.render.samples = 32;
+        let error = |strategy| squared_error(&with_strategy(&document, strategy, 1), &reference);
+        let (mis, other) = (error(Strategy::Mis), error(worse));
+        let better = error(if worse == Strategy::Lobe {
+            Strategy::Light
+        } else {
+            Strategy::Lobe
+        });
+        assert!(mis * gain < other, "{name}: {mis:e} against {worse:?} {other:e}");
+        assert!(
+            mis < 1.2 * better,
+            "{name}: {mis:e} against the better strategy's {better:e}"
+        );
+    }
+}
+
+#[test]
+fn nothing_is_sampled_that_gives_no_light() {
+    let effects = |edit: fn(&mut Document)| {
+        let mut document = document(ModelSource::Sphere, EnvironmentSource::Studio, &[]);
+        edit(&mut document);
+        let mut session = Session::open(EngineChoice::Cpu).unwrap();
+        session.submit(&document).unwrap();
+        let job = session.job().unwrap();
+        let sampled = ["light-sampling", "emitter-sampling"].map(|name| job.plan.effects().contains(&name));
+        (
+            sampled,
+            job.lights.cells.len(),
+            job.settings.light_choice.environment_probability,
+        )
+    };
+    assert_eq!(effects(|_| {}), ([true, false], 0, 1.0));
+    assert_eq!(effects(|d| d.lighting.strength = 0.0), ([false, false], 0, 0.0));
+    let dark = effects(|d| {
+        d.lighting.area_lights = vec![AreaLight {
+            strength: 0.0,
+            ..AreaLight::default()
+        }];
+    });
+    assert_eq!(dark, ([true, false], 0, 1.0));
+    let furnace = effects(|d| {
+        d.lighting.environment = EnvironmentSource::Furnace;
+        d.lighting.area_lights = vec![AreaLight::default()];
+    });
+    assert_eq!(furnace, ([false, true], 2, 0.0));
+    let (sampled, cells, share) = effects(|d| d.lighting.area_lights = large_lights());
+    assert!(
+        sampled == [true, true] && cells == 4 && (0.1..=0.9).contains(&share),
+        "{share}"
+    );
+    let (sampled, cells, _) = effects(|d| d.materials[0].emission_strength = 1.0);
+    assert!(sampled == [true, true] && cells > 1000);
+}
+
+/// Lights stand where they are put, whatever the model, and the camera still frames the model alone.
+#[test]
+fn area_lights_do_not_move_the_camera() {
+    let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, &[]);
+    let camera = |document: &Document| {
+        let mut session = Session::open(EngineChoice::Cpu).unwrap();
+        session.submit(document).unwrap();
+        session.job().unwrap().settings.camera
+    };
+    let before = camera(&document);
+    document.lighting.area_lights = large_lights();
+    assert_eq!(camera(&document), before);
+}

@@ -1,0 +1,79 @@
+//! Sampling of triangles that emit: the teapot's many small ones and the ground's two large ones.
+
+use glossmith::optics::material::Material;
+use glossmith::optics::real::Real;
+use glossmith::optics::vector::vec3;
+use glossmith::scene::light::{light_density, light_sample};
+
+use super::bench::SCENE;
+use super::harness::{Case, Output, Value, check, inputs, twin};
+
+const UNIT: Output = Output::Vector(1.0);
+
+fn materials<T: Real>() -> [Material<T>; 2] {
+    [SCENE.material(0), SCENE.material(1)]
+}
+
+fn density_per_luminance<T: Real>() -> T {
+    // The shader has it in f32.
+    T::from_f64(f64::from(SCENE.light_choice().density_per_luminance as f32))
+}
+
+#[test]
+fn lights_agree() {
+    check(
+        &["scene/light"],
+        &[
+            Case::new(
+                "light_sample",
+                "origin a b c",
+                "let s = light_sample(origin, vec3f(a, b, c));",
+                twin!(|row| {
+                    let origin = row.vector();
+                    let [a, b, c] = row.numbers();
+                    let density = density_per_luminance();
+                    let scene = &*SCENE;
+                    let materials = materials();
+                    let s = light_sample(
+                        &scene.geometry,
+                        &materials,
+                        &scene.lights,
+                        density,
+                        origin,
+                        vec3(a, b, c),
+                    );
+                    row.put_vector(s.direction);
+                    row.put(s.density);
+                    row.put(s.distance);
+                    row.put_vector(s.radiance);
+                }),
+            )
+            .output("s.direction", UNIT)
+            .output("s.density", Output::Number(0.0))
+            .output("s.distance", Output::Number(1.0))
+            .output("s.radiance", Output::Vector(0.0))
+            .group_of("from around the teapot", 32_000, |rng, _| {
+                inputs![
+                    rng.direction() * rng.range(1.2, 5.0),
+                    Value::Unit(rng.unit()),
+                    Value::Unit(rng.unit()),
+                    Value::Unit(rng.unit())
+                ]
+            }),
+            Case::new(
+                "light_density",
+                "emission cosine distance",
+                "",
+                twin!(|row| {
+                    let (emission, [cosine, distance]) = (row.vector(), row.numbers());
+                    row.put(light_density(emission, cosine, distance, density_per_luminance()));
+                }),
+            )
+            .output("light_density(emission, cosine, distance)", Output::Number(0.0))
+            .group("", |rng, _| {
+                let emission = vec3(rng.range(0.1, 2.0), rng.range(0.1, 2.0), rng.range(0.1, 2.0));
+                inputs![emission, rng.range(0.0, 1.0), rng.log_range(1e-3, 100.0)]
+            }),
+        ],
+    );
+}
