@@ -162,6 +162,7 @@ fn lit_plane(light: AreaLight) -> Document {
     document.lighting.area_lights = vec![light];
     (document.camera.yaw_deg, document.camera.pitch_deg) = (120.0, 35.0);
     (document.render.width, document.render.height) = (48, 48);
+    document.render.samples = 256;
     document
 }
 
@@ -342,20 +343,21 @@ fn lit_scenes() -> Vec<(&'static str, Document)> {
     let mut dark = document(ModelSource::Sphere, EnvironmentSource::Sky, &metal);
     dark.lighting.strength = 0.0;
     dark.lighting.area_lights = large_lights();
-    let mut furnace = document(
-        ModelSource::Shaderball,
-        EnvironmentSource::Furnace,
-        &["specular.roughness=0.5"],
-    );
-    let mut stand = furnace.materials[0].clone();
-    (stand.emission_color, stand.emission_strength) = ([0.3, 1.0, 0.5], 2.0);
-    furnace.materials.push(stand);
+    let glow = [
+        "emission.strength=2",
+        "emission.color=0.3,1,0.5",
+        "specular.roughness=0.5",
+    ];
+    let mut furnace = document(ModelSource::Sphere, EnvironmentSource::Furnace, &glow);
+    furnace.ground = true;
+    // Far off on the ground a chance hit of the light would be rare.
+    (furnace.camera.pitch_deg, furnace.camera.distance) = (60.0, Some(5.0));
     furnace.lighting.area_lights = large_lights()[..1].to_vec();
     let mut scenes = vec![("studio", studio), ("dark", dark), ("furnace", furnace)];
     for (_, document) in &mut scenes {
         document.lighting.background = Background::Transparent;
         (document.render.width, document.render.height) = (40, 40);
-        document.render.samples = 192;
+        document.render.samples = 512;
         // Few paths that found much light would make the lobe's variance dishonest.
         document.render.bounces = 4;
     }
