@@ -118,6 +118,17 @@ fn chi_square_p<T: Real>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> f6
         let hit = geometry.intersect(origin.to_f32(), sample.direction.to_f32(), f32::MAX);
         // Rounding at an edge.
         let Some(hit) = hit else { continue };
+        let emission = materials[geometry.slots[hit.triangle as usize] as usize].emission;
+        let [a, b, c] = geometry
+            .corners(hit.triangle as usize)
+            .map(|corner| DVec3::from_array(corner.map(f64::from)));
+        let normal = (b - a).cross(c - a).normalize();
+        let cosine = normal.dot(DVec3::from_array(sample.direction.to_f64())).abs();
+        let at_hit = light_density(emission, T::from_f64(cosine), T::from_f64(hit.t.into()), density).to_f64();
+        assert!(
+            (sample.density.to_f64() / at_hit - 1.0).abs() < 1e-3,
+            "{sample:?}, {at_hit} at the hit"
+        );
         observed[hit.triangle as usize * CELLS + cell_of(hit.u.into(), hit.v.into())] += 1;
     }
     test_counts(&observed, &expected).p_value
