@@ -74,10 +74,10 @@ fn is_from_afar(xi: f32) -> bool {
 
 // A direction drawn from the triangles that emit or from the environment, whose radiance is looked up once it is known
 // to arrive.
-fn draw_light(origin: vec3f, xi: vec3f) -> LightSample {
+fn draw_light(point: SurfacePoint, xi: vec3f) -> LightSample {
     let share = globals.environment_probability;
     if !is_from_afar(xi.z) {
-        return light_sample(origin, vec3f(xi.xy, (xi.z - share) / (1.0 - share)));
+        return light_sample(point.position, point.error, vec3f(xi.xy, (xi.z - share) / (1.0 - share)));
     }
     let drawn = environment_sample(vec3f(xi.xy, xi.z / share), globals.environment_cells_size);
     let direction = environment_world_from_local(drawn.direction, globals.environment_rotation);
@@ -87,8 +87,7 @@ fn draw_light(origin: vec3f, xi: vec3f) -> LightSample {
 // Light that arrives straight from the environment or from what emits, one direction drawn.
 fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: ptr<function, u32>) -> vec3f {
     let xi = vec3f(random_pair(state, dimension), random_pair(state, dimension + 1u).x);
-    let origin = ray_origin(point);
-    let light = draw_light(origin, xi);
+    let light = draw_light(point, xi);
     let wi = light.direction;
     if light.density <= 0.0 || dot(point.surface.normal, wi) <= 0.0 {
         return vec3f(0.0);
@@ -99,7 +98,7 @@ fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: p
         return vec3f(0.0);
     }
     *rays += 1u;
-    if trace(origin, wi, light.distance, true).triangle != NO_HIT {
+    if trace(ray_origin(point), wi, light.distance, true).triangle != NO_HIT {
         return vec3f(0.0);
     }
     if is_from_afar(xi.z) {

@@ -16,8 +16,8 @@ struct LightSample {
 const COSINE_MIN: f32 = 1e-6;
 
 // A place on an emitting triangle, seen from `origin`. xi.xy choose an entry of the table and the place, xi.z whether the
-// entry or its alias is taken. There must be such a triangle.
-fn light_sample(origin: vec3f, xi: vec3f) -> LightSample {
+// entry or its alias is taken. There must be such a triangle. The ray may start up to origin_error off `origin`.
+fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let drawn = grid_place(xi.xy, globals.light_cells_size);
     let cell = light_cells[drawn.index];
     let chosen = select(cell.alias_index, drawn.index, xi.z < cell.threshold);
@@ -36,7 +36,7 @@ fn light_sample(origin: vec3f, xi: vec3f) -> LightSample {
     let normal = normalize_or(cross(p1 - p0, p2 - p0), direction);
     let radiance = materials[triangle_slots[index]].emission;
     let cosine = abs(dot(normal, direction));
-    let error = position_error(p0, p1, p2, weights, normal) + POSITION_ERROR * distance;
+    let error = position_error(p0, p1, p2, weights, normal) + origin_error + POSITION_ERROR * distance;
     return LightSample(
         direction, light_density(radiance, cosine, distance), radiance, distance - error / max(cosine, COSINE_MIN),
     );

@@ -107,12 +107,13 @@ impl<'a, T: Real> Integrator<'a, T> {
 
     /// A direction drawn from the triangles that emit or from the environment; true for the latter, whose radiance is
     /// looked up once it is known to arrive.
-    fn draw_light(&self, origin: Vec3<T>, xi: Vec3<T>) -> (LightSample<T>, bool) {
+    fn draw_light(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> (LightSample<T>, bool) {
         let share = self.environment_probability;
         if self.samples_emitters && !(self.samples_environment && xi.z.less(share).any()) {
             let xi = vec3(xi.x, xi.y, (xi.z - share) / (T::one() - share));
             let (materials, density) = (&self.materials, self.density_per_luminance);
-            let sample = light_sample(self.geometry, materials, self.lights, density, origin, xi);
+            let (lights, place) = (self.lights, point.position);
+            let sample = light_sample(self.geometry, materials, lights, density, place, point.error, xi);
             return (sample, false);
         }
         let (local, density) = environment_sample(self.environment, vec3(xi.x, xi.y, xi.z / share));
@@ -129,8 +130,7 @@ impl<'a, T: Real> Integrator<'a, T> {
     fn direct_light(&self, point: &SurfacePoint<T>, state: RandomState, dimension: u32, rays: &mut u32) -> Vec3<T> {
         let [a, b] = random_pair(state, dimension);
         let [c, _] = random_pair(state, dimension + 1);
-        let origin = point.ray_origin();
-        let (light, is_far) = self.draw_light(origin, vec3(a, b, c));
+        let (light, is_far) = self.draw_light(point, vec3(a, b, c));
         let (wi, density) = (light.direction, light.density);
         if density.to_f64() <= 0.0 || point.surface.normal.dot(wi).to_f64() <= 0.0 {
             return Vec3::zero();
@@ -147,7 +147,10 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
         *rays += 1;
         let distance = light.distance.to_f64() as f32;
-        if self.geometry.occluded(origin.to_f32(), wi.to_f32(), distance) {
+        if self
+            .geometry
+            .occluded(point.ray_origin().to_f32(), wi.to_f32(), distance)
+        {
             return Vec3::zero();
         }
         let radiance = if is_far { self.far_radiance(wi) } else { light.radiance };

@@ -176,14 +176,15 @@ pub struct LightSample<T> {
 }
 
 /// A place on an emitting triangle, drawn with three uniform numbers in [0, 1): `xi.x` and `xi.y` choose an entry of the
-/// table and the place, `xi.z` whether the entry or its alias is taken. There must be such a triangle. `origin` is where
-/// the ray towards it will start.
+/// table and the place, `xi.z` whether the entry or its alias is taken. There must be such a triangle. The ray towards it
+/// may start up to `origin_error` off `origin`.
 pub fn light_sample<T: Real>(
     geometry: &Geometry,
     materials: &[Material<T>],
     lights: &Lights,
     density_per_luminance: T,
     origin: Vec3<T>,
+    origin_error: T,
     xi: Vec3<T>,
 ) -> LightSample<T> {
     let (drawn, [x, y]) = grid_place([xi.x, xi.y], lights.cells_size);
@@ -202,7 +203,7 @@ pub fn light_sample<T: Real>(
     let normal = normalize_or((p1 - p0).cross(p2 - p0), direction);
     let radiance = materials[geometry.slots[triangle] as usize].emission;
     let cosine = normal.dot(direction).abs();
-    let error = position_error([p0, p1, p2], weights, normal) + T::from_f64(POSITION_ERROR) * distance;
+    let error = position_error([p0, p1, p2], weights, normal) + origin_error + T::from_f64(POSITION_ERROR) * distance;
     LightSample {
         direction,
         density: light_density(radiance, cosine, distance, density_per_luminance),

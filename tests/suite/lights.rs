@@ -114,7 +114,8 @@ fn chi_square_p<T: Real>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> f6
     let mut random = Random::new(9);
     for _ in 0..DRAWS {
         let density = T::from_f64(per_luminance);
-        let sample = light_sample(&geometry, &materials, &lights, density, origin, triple(&mut random));
+        let xi = triple(&mut random);
+        let sample = light_sample(&geometry, &materials, &lights, density, origin, T::zero(), xi);
         let hit = geometry.intersect(origin.to_f32(), sample.direction.to_f32(), f32::MAX);
         // Rounding at an edge.
         let Some(hit) = hit else { continue };

@@ -26,22 +26,16 @@ fn lights_agree() {
         &[
             Case::new(
                 "light_sample",
-                "origin a b c",
-                "let s = light_sample(origin, vec3f(a, b, c));",
+                "origin error a b c",
+                "let s = light_sample(origin, error, vec3f(a, b, c));",
                 twin!(|row| {
                     let origin = row.vector();
-                    let [a, b, c] = row.numbers();
+                    let [error, a, b, c] = row.numbers();
                     let density = density_per_luminance();
                     let scene = &*SCENE;
                     let materials = materials();
-                    let s = light_sample(
-                        &scene.geometry,
-                        &materials,
-                        &scene.lights,
-                        density,
-                        origin,
-                        vec3(a, b, c),
-                    );
+                    let (geometry, xi) = (&scene.geometry, vec3(a, b, c));
+                    let s = light_sample(geometry, &materials, &scene.lights, density, origin, error, xi);
                     row.put_vector(s.direction);
                     row.put(s.density);
                     row.put(s.distance);
@@ -55,6 +49,7 @@ fn lights_agree() {
             .group_of("from around the teapot", 32_000, |rng, _| {
                 inputs![
                     rng.direction() * rng.range(1.2, 5.0),
+                    rng.log_range(1e-7, 1e-3),
                     Value::Unit(rng.unit()),
                     Value::Unit(rng.unit()),
                     Value::Unit(rng.unit())
