@@ -11,6 +11,8 @@ use std::sync::Once;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
+use figure::Style;
+
 use super::lobe_view::{LinePlot, LobeView};
 use super::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::lobe::Lobe;
@@ -33,6 +35,12 @@ fn register_fonts() {
     });
 }
 
+/// Colour of the lines of a group in sRGB: the same in files and in the window.
+pub fn series_color(group: usize) -> [u8; 3] {
+    let RGBColor(r, g, b) = figure::PALETTE[group % figure::PALETTE.len()];
+    [r, g, b]
+}
+
 /// A view of lobes as .svg, or else as .png.
 ///
 /// # Errors
@@ -43,6 +51,18 @@ pub fn lobe_view_file(path: &Path, view: &LobeView) -> Result<(), PlotError> {
         LobeView::Maps(plot) => figure::write(path, plot),
         LobeView::Solids(plot) => figure::write(path, plot),
     }
+}
+
+/// A view of lobes as a picture for the screen: every length `zoom` times as large as in a file, dark on white or
+/// light on a dark grey. `None` where the figure can't be drawn.
+pub fn lobe_view_picture(view: &LobeView, zoom: f64, is_dark: bool) -> Option<image::RgbImage> {
+    let style = if is_dark { Style::dark(zoom) } else { Style::light(zoom) };
+    let drawn = match view {
+        LobeView::Lines(plot) => figure::picture(plot, style),
+        LobeView::Maps(plot) => figure::picture(plot, style),
+        LobeView::Solids(plot) => figure::picture(plot, style),
+    };
+    drawn.ok()
 }
 
 /// A line plot as .svg, or else as .png.

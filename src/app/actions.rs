@@ -114,6 +114,7 @@ commands! {
     OpenModel, File, "Open model…", "Opens a glTF model (.glb, .gltf).", None, 0;
     OpenEnvironment, File, "Open environment…", "Opens an environment map (.hdr, .exr).", keys(CTRL_SHIFT, Key::O), 0;
     OpenMaterial, File, "Open material…", "Opens a material (.json) into the selected slot.", None, 0;
+    OpenMeasured, File, "Open measured material…", "Opens a measured material (.binary of the MERL database) to match looks with.", None, 0;
     Reload, File, "Reload files", "Reads model and environment again.", keys(CTRL, Key::R), 0;
     Save, File, "Save project", "Saves materials, light, camera and settings (.json).", keys(CTRL, Key::S), 1;
     SaveAs, File, "Save project as…", "Saves the project under another name.", keys(CTRL_SHIFT, Key::S), 1;

@@ -21,6 +21,7 @@ pub(super) enum Purpose {
     OpenModel,
     OpenEnvironment,
     OpenMaterial,
+    OpenMeasured,
     SaveMaterial,
     SavePicture,
 }
@@ -33,6 +34,7 @@ impl Purpose {
             Self::OpenModel => "Open a model",
             Self::OpenEnvironment => "Open an environment",
             Self::OpenMaterial => "Open a material",
+            Self::OpenMeasured => "Open a measured material",
             Self::SaveMaterial => "Save the material",
             Self::SavePicture => "Save the picture",
         }
@@ -48,6 +50,7 @@ impl Purpose {
             Self::OpenModel => ("glTF models", &["glb", "gltf"]),
             Self::OpenEnvironment => ("Environment maps", &["hdr", "exr"]),
             Self::OpenMaterial | Self::SaveMaterial => ("Materials", &["json"]),
+            Self::OpenMeasured => ("Measured materials (MERL)", &["binary"]),
             Self::SavePicture => ("Pictures", &["png", "exr", "hdr"]),
         }
     }

@@ -159,6 +159,7 @@ impl App {
             Command::OpenModel => (Purpose::OpenModel, String::new()),
             Command::OpenEnvironment => (Purpose::OpenEnvironment, String::new()),
             Command::OpenMaterial => (Purpose::OpenMaterial, String::new()),
+            Command::OpenMeasured => (Purpose::OpenMeasured, String::new()),
             Command::SaveMaterial => (Purpose::SaveMaterial, material_file()),
             Command::SavePicture => (Purpose::SavePicture, format!("{}.png", self.files.project_name())),
             // The others are done where this is called.
@@ -173,6 +174,7 @@ impl App {
             Purpose::Open | Purpose::OpenModel | Purpose::OpenEnvironment | Purpose::OpenMaterial => {
                 self.open(path);
             }
+            Purpose::OpenMeasured => self.panels.lobe.measured = Some(path),
             Purpose::SaveProject => self.save_project(with_ending(path, "json")),
             Purpose::SaveMaterial => {
                 let path = with_ending(path, "json");

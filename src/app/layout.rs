@@ -22,6 +22,8 @@ pub enum Pane {
     Curve,
     /// What the lobe draws.
     Samples,
+    /// The lobe itself.
+    Lobe,
     /// Environment, background, ground.
     Lighting,
     /// Camera, view and render settings.
@@ -30,17 +32,23 @@ pub enum Pane {
     Presets,
     /// What was said.
     Log,
+    /// The proof on this machine.
+    Check,
 }
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 10] = [
         Self::Viewport,
         Self::Material,
+        Self::Curve,
+        Self::Samples,
+        Self::Lobe,
         Self::Lighting,
         Self::Camera,
         Self::Presets,
         Self::Log,
+        Self::Check,
     ];
 
     /// What it is called.
@@ -50,10 +58,12 @@ impl Pane {
             Self::Material => "Material",
             Self::Curve => "Curve",
             Self::Samples => "Samples",
+            Self::Lobe => "Lobe",
             Self::Lighting => "Light",
             Self::Camera => "Camera & picture",
             Self::Presets => "Presets",
             Self::Log => "Log",
+            Self::Check => "Check",
         }
     }
 }
@@ -67,18 +77,14 @@ pub(super) fn default_layout() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let mut pane = |pane| tiles.insert_pane(pane);
     let (viewport, material) = (pane(Pane::Viewport), pane(Pane::Material));
-    let (presets, lighting, camera, log) = (
-        pane(Pane::Presets),
-        pane(Pane::Lighting),
-        pane(Pane::Camera),
-        pane(Pane::Log),
-    );
-    let (curve, samples) = (pane(Pane::Curve), pane(Pane::Samples));
-    let upper_left = tiles.insert_tab_tile(vec![presets, log]);
-    let lower_left = tiles.insert_tab_tile(vec![lighting, camera]);
+    let upper_left = [Pane::Presets, Pane::Log, Pane::Check].map(&mut pane).to_vec();
+    let lower_left = [Pane::Lighting, Pane::Camera].map(&mut pane).to_vec();
+    let lower_right = [Pane::Curve, Pane::Samples, Pane::Lobe].map(&mut pane).to_vec();
+    let upper_left = tiles.insert_tab_tile(upper_left);
+    let lower_left = tiles.insert_tab_tile(lower_left);
     let left = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [upper_left, lower_left], 0.42));
     let upper_right = tiles.insert_tab_tile(vec![material]);
-    let lower_right = tiles.insert_tab_tile(vec![curve, samples]);
+    let lower_right = tiles.insert_tab_tile(lower_right);
     let right = tiles.insert_container(Linear::new_binary(
         LinearDir::Vertical,
         [upper_right, lower_right],
@@ -124,10 +130,12 @@ impl Behavior<Pane> for Panes<'_, '_> {
                     Pane::Material => panels::material::show(ui, self.desk),
                     Pane::Curve => panels::curve::show(ui, self.desk),
                     Pane::Samples => panels::samples::show(ui, self.desk),
+                    Pane::Lobe => panels::lobe::show(ui, self.desk),
                     Pane::Lighting => panels::lighting::show(ui, self.desk),
                     Pane::Camera => panels::camera::show(ui, self.desk),
                     Pane::Presets => panels::presets::show(ui, self.desk),
                     Pane::Log => panels::log::show(ui, self.desk),
+                    Pane::Check => panels::check::show(ui, self.desk),
                     Pane::Viewport => {}
                 });
             });

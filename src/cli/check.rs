@@ -6,7 +6,7 @@ use anyhow::{Context, bail};
 use clap::Args;
 
 use crate::render::EngineChoice;
-use crate::render::check::{Check, CheckOptions, run as run_checks};
+use crate::render::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
 
 /// Arguments of `glossmith check`.
 #[derive(Debug, Args)]
@@ -56,38 +56,18 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
 
 /// A line a group, and a line for each check that failed (or every one).
 fn print_table(checks: &[Check], verbose: bool) {
-    let mut groups: Vec<&str> = checks.iter().map(|check| check.group).collect();
-    groups.dedup();
     println!("{:12} {:>7} {:>7}  worst", "group", "passed", "failed");
-    for group in groups {
-        let of_group: Vec<&Check> = checks.iter().filter(|check| check.group == group).collect();
-        let passed = of_group.iter().filter(|check| check.passed).count();
-        // The smallest p, else the largest share of the limit.
-        let badness = |check: &Check| {
-            if check.measure == "p" {
-                -check.value
-            } else {
-                check.value
-            }
-        };
-        let worst = of_group.iter().max_by(|a, b| badness(a).total_cmp(&badness(b)));
-        let worst = worst.map(|check| line(check)).unwrap_or_default();
-        println!("{group:12} {passed:>7} {:>7}  {worst}", of_group.len() - passed);
+    for of_group in summaries(checks) {
+        let GroupSummary {
+            group,
+            passed,
+            failed,
+            worst,
+        } = of_group;
+        println!("{group:12} {passed:>7} {failed:>7}  {worst}");
     }
     for check in checks.iter().filter(|check| verbose || !check.passed) {
-        println!(
-            "{} {}: {}",
-            if check.passed { "  ok  " } else { "FAILED" },
-            check.group,
-            line(check)
-        );
+        let verdict = if check.passed { "  ok  " } else { "FAILED" };
+        println!("{verdict} {}: {check}", check.group);
     }
-}
-
-fn line(check: &Check) -> String {
-    let comparison = if check.measure == "p" { "above" } else { "at most" };
-    format!(
-        "{}: {} {:.3e}, {comparison} {:.1e}",
-        check.name, check.measure, check.value, check.limit
-    )
 }

@@ -42,6 +42,56 @@ pub struct Check {
     pub passed: bool,
 }
 
+impl std::fmt::Display for Check {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let comparison = if self.measure == "p" { "above" } else { "at most" };
+        let Self {
+            name,
+            measure,
+            value,
+            limit,
+            ..
+        } = self;
+        write!(f, "{name}: {measure} {value:.3e}, {comparison} {limit:.1e}")
+    }
+}
+
+/// The checks of a group.
+#[derive(Clone, Debug)]
+pub struct GroupSummary {
+    /// Which.
+    pub group: &'static str,
+    /// How many passed.
+    pub passed: usize,
+    /// How many failed.
+    pub failed: usize,
+    /// The one closest to failing, or furthest beyond.
+    pub worst: Check,
+}
+
+/// The checks by group.
+pub fn summaries(checks: &[Check]) -> Vec<GroupSummary> {
+    // The smallest p, else the largest value.
+    let badness = |check: &Check| {
+        if check.measure == "p" {
+            -check.value
+        } else {
+            check.value
+        }
+    };
+    let summary = |of_group: &[Check]| {
+        let passed = of_group.iter().filter(|check| check.passed).count();
+        let worst = of_group.iter().max_by(|a, b| badness(a).total_cmp(&badness(b)))?;
+        Some(GroupSummary {
+            group: worst.group,
+            passed,
+            failed: of_group.len() - passed,
+            worst: worst.clone(),
+        })
+    };
+    checks.chunk_by(|a, b| a.group == b.group).filter_map(summary).collect()
+}
+
 /// What to check.
 #[derive(Clone, Copy, Debug)]
 pub struct CheckOptions {

@@ -3,6 +3,7 @@
 //! `submit` a document, `step` with a budget of time until `progress` says that it is done, read `film` or `image`.
 
 mod assets;
+pub mod background;
 mod calibration;
 pub mod check;
 mod compile;

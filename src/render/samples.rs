@@ -1,9 +1,9 @@
 //! Clouds of samples for plots, drawn on a thread of their own by the function that the engine renders with.
 
 use std::io;
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
+use std::sync::Arc;
 
+use super::background::{Background, Desk};
 use super::engine::{EngineChoice, Sampler};
 use crate::analysis::fit::{Measure, Nearest, nearest_roughness};
 use crate::analysis::histogram::{angle_density, angle_histogram};
@@ -67,99 +67,32 @@ pub struct SampleReport {
     pub angle: AnglePlot,
 }
 
-#[derive(Default)]
-struct Shared {
-    orders: Mutex<Orders>,
-    ordered: Condvar,
-    answer: Mutex<Option<Result<Arc<SampleReport>, String>>>,
-}
-
-#[derive(Default)]
-struct Orders {
-    query: Option<SampleQuery>,
-    quit: bool,
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
+/// What is known of a query's samples so far, or why there are none.
+pub type SampleAnswer = Result<Arc<SampleReport>, String>;
 
 /// Draws samples on a thread of its own; the latest query wins.
-pub struct SampleWorker {
-    shared: Arc<Shared>,
-    _thread: JoinHandle<()>,
-}
+pub type SampleWorker = Background<SampleQuery, SampleAnswer>;
 
-impl SampleWorker {
-    /// Starts the thread; `repaint` is called when there is something new to show.
-    ///
-    /// # Errors
-    /// If the system gives no thread.
-    pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
-        let shared = Arc::new(Shared::default());
-        let of_thread = shared.clone();
-        let thread = std::thread::Builder::new()
-            .name("samples".to_owned())
-            .spawn(move || run(&of_thread, &repaint))?;
-        Ok(Self {
-            shared,
-            _thread: thread,
-        })
-    }
-
-    /// Asks; a query that has not been begun is forgotten.
-    pub fn ask(&self, query: SampleQuery) {
-        lock(&self.shared.orders).query = Some(query);
-        self.shared.ordered.notify_one();
-    }
-
-    /// The latest report, or why there is none.
-    pub fn latest(&self) -> Option<Result<Arc<SampleReport>, String>> {
-        lock(&self.shared.answer).clone()
-    }
-}
-
-impl Drop for SampleWorker {
-    fn drop(&mut self) {
-        lock(&self.shared.orders).quit = true;
-        self.shared.ordered.notify_one();
-    }
-}
-
-fn run(shared: &Shared, repaint: &dyn Fn()) {
+/// Starts the thread; `repaint` is called when there is something new to show.
+///
+/// # Errors
+/// If the system gives no thread.
+pub fn spawn_samples(repaint: impl Fn() + Send + 'static) -> io::Result<SampleWorker> {
     let mut sampler: Option<(EngineChoice, Sampler)> = None;
-    while let Some(query) = next(shared) {
-        let publish = |answer| {
-            *lock(&shared.answer) = Some(answer);
-            repaint();
-        };
-        let report = match draw(&mut sampler, &query) {
-            Ok(report) => report,
+    Background::spawn("samples", repaint, move |query: SampleQuery, desk| {
+        match draw(&mut sampler, &query) {
+            Ok(report) => {
+                desk.publish(Ok(Arc::new(report.clone())));
+                if query.compare {
+                    compare(report, desk);
+                }
+            }
             Err(why) => {
                 sampler = None;
-                publish(Err(why));
-                continue;
+                desk.publish(Err(why));
             }
-        };
-        publish(Ok(Arc::new(report.clone())));
-        if query.compare {
-            compare(shared, report, publish);
         }
-    }
-}
-
-/// Waits for a query; `None` when it is time to go.
-fn next(shared: &Shared) -> Option<SampleQuery> {
-    let mut orders = lock(&shared.orders);
-    loop {
-        if orders.quit {
-            return None;
-        }
-        if let Some(query) = orders.query.take() {
-            return Some(query);
-        }
-        orders = shared.ordered.wait(orders).unwrap_or_else(PoisonError::into_inner);
-    }
+    })
 }
 
 fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> Result<SampleReport, String> {
@@ -198,7 +131,7 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
 }
 
 /// Adds the lobes of equal look, one after the other, unless something else is asked for meanwhile.
-fn compare(shared: &Shared, mut report: SampleReport, publish: impl Fn(Result<Arc<SampleReport>, String>)) {
+fn compare(mut report: SampleReport, desk: &Desk<'_, SampleQuery, SampleAnswer>) {
     let request = report.query.request.clone();
     let target = model(&request);
     if !target.has_density() {
@@ -208,11 +141,7 @@ fn compare(shared: &Shared, mut report: SampleReport, publish: impl Fn(Result<Ar
         .into_iter()
         .filter(|lobe| *lobe != request.lobe)
     {
-        let is_over = {
-            let orders = lock(&shared.orders);
-            orders.quit || orders.query.is_some()
-        };
-        if is_over {
+        if desk.is_superseded() {
             return;
         }
         // Looks are matched head-on, where every model is at its most comparable.
@@ -226,7 +155,7 @@ fn compare(shared: &Shared, mut report: SampleReport, publish: impl Fn(Result<Ar
             nearest,
             analytic: analytic(&matched, &request),
         });
-        publish(Ok(Arc::new(report.clone())));
+        desk.publish(Ok(Arc::new(report.clone())));
     }
 }
 

@@ -22,10 +22,44 @@ pub(super) const PALETTE: [RGBColor; 7] = [
     RGBColor(86, 180, 233),
     RGBColor(70, 70, 70),
 ];
-/// Text and axes.
-pub(super) const INK: RGBColor = RGBColor(50, 50, 55);
-/// Lines to read values by.
-pub(super) const FAINT: RGBColor = RGBColor(222, 222, 226);
+/// What a figure is drawn with.
+#[derive(Clone, Copy)]
+pub(super) struct Style {
+    /// Pixels that a length of 1 takes.
+    pub(super) scale: f64,
+    /// Behind everything.
+    pub(super) paper: RGBColor,
+    /// Text and axes.
+    pub(super) ink: RGBColor,
+    /// Lines to read values by.
+    pub(super) faint: RGBColor,
+    /// Areas that stand out from the paper a little.
+    pub(super) shade: RGBColor,
+}
+
+impl Style {
+    /// Dark on white.
+    pub(super) fn light(scale: f64) -> Self {
+        Self {
+            scale,
+            paper: WHITE,
+            ink: RGBColor(50, 50, 55),
+            faint: RGBColor(222, 222, 226),
+            shade: RGBColor(243, 243, 246),
+        }
+    }
+
+    /// Light on the dark window's grey.
+    pub(super) fn dark(scale: f64) -> Self {
+        Self {
+            scale,
+            paper: RGBColor(36, 36, 36),
+            ink: RGBColor(205, 205, 205),
+            faint: RGBColor(74, 74, 74),
+            shade: RGBColor(48, 48, 48),
+        }
+    }
+}
 
 /// Heights of a figure's title and of a panel's name, pixels.
 pub(super) const TITLE: u32 = 50;
@@ -38,8 +72,8 @@ const OVERSAMPLING: u32 = 2;
 pub(super) trait Figure {
     /// Width and height in pixels.
     fn size(&self) -> (u32, u32);
-    /// Draws it, every length `scale` times as large.
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+    /// Draws it, every length `style.scale` times as large.
+    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
     where
         DB::ErrorType: 'static;
 }
@@ -65,41 +99,66 @@ fn write_svg(path: &Path, figure: &impl Figure) -> Outcome {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, figure.size()).into_drawing_area();
-        root.fill(&WHITE)?;
-        figure.draw(&root, 1.0)?;
-        root.present()?;
+        draw_on_paper(&root, figure, Style::light(1.0))?;
     }
     Ok(std::fs::write(path, text)?)
 }
 
 fn write_png(path: &Path, figure: &impl Figure) -> Outcome {
+    let picture = picture(figure, Style::light(1.0))?;
+    Ok(picture.save_with_format(path, image::ImageFormat::Png)?)
+}
+
+/// A figure as pixels.
+pub(super) fn picture(figure: &impl Figure, style: Style) -> Result<image::RgbImage, Box<dyn Error>> {
+    register_fonts();
+    let size_px = |length: u32, scale: f64| (f64::from(length) * scale).round() as u32;
     let (width, height) = figure.size();
-    let large = (width * OVERSAMPLING, height * OVERSAMPLING);
+    let large_scale = style.scale * f64::from(OVERSAMPLING);
+    let large = (size_px(width, large_scale), size_px(height, large_scale));
     let mut pixels = vec![0; 3 * large.0 as usize * large.1 as usize];
     {
         let root = BitMapBackend::with_buffer(&mut pixels, large).into_drawing_area();
-        root.fill(&WHITE)?;
-        figure.draw(&root, f64::from(OVERSAMPLING))?;
-        root.present()?;
+        let large_style = Style {
+            scale: large_scale,
+            ..style
+        };
+        draw_on_paper(&root, figure, large_style)?;
     }
     let picture = image::RgbImage::from_raw(large.0, large.1, pixels).ok_or("the picture is too large")?;
-    let reduced = image::imageops::resize(&picture, width, height, image::imageops::FilterType::Triangle);
-    Ok(reduced.save_with_format(path, image::ImageFormat::Png)?)
+    let (width, height) = (size_px(width, style.scale), size_px(height, style.scale));
+    Ok(image::imageops::resize(
+        &picture,
+        width,
+        height,
+        image::imageops::FilterType::Triangle,
+    ))
+}
+
+fn draw_on_paper<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, figure: &impl Figure, style: Style) -> Outcome
+where
+    DB::ErrorType: 'static,
+{
+    root.fill(&style.paper)?;
+    figure.draw(root, style)?;
+    Ok(root.present()?)
 }
 
 /// A length in pixels at a scale.
-pub(super) fn px(length: f64, scale: f64) -> i32 {
-    (length * scale).round() as i32
+pub(super) fn px(length: f64, style: Style) -> i32 {
+    (length * style.scale).round() as i32
 }
 
 /// The font at a size in pixels.
-pub(super) fn font(size: f64, scale: f64) -> TextStyle<'static> {
-    TextStyle::from(("sans-serif", size * scale).into_font()).color(&INK)
+pub(super) fn font(size: f64, style: Style) -> TextStyle<'static> {
+    let mut text = TextStyle::from(("sans-serif", size * style.scale).into_font());
+    text.color = style.ink.to_backend_color();
+    text
 }
 
 /// A line of a colour.
-pub(super) fn stroke(color: RGBColor, width: f64, scale: f64) -> ShapeStyle {
-    color.stroke_width((width * scale).round().max(1.0) as u32)
+pub(super) fn stroke(color: RGBColor, width: f64, style: Style) -> ShapeStyle {
+    color.stroke_width((width * style.scale).round().max(1.0) as u32)
 }
 
 /// Writes a title of a size over an area, centred in `height`, and returns what is left below. Lengths in pixels.
@@ -108,18 +167,18 @@ pub(super) fn titled<DB: DrawingBackend>(
     title: &str,
     size: f64,
     height: u32,
-    scale: f64,
+    style: Style,
 ) -> Result<DrawingArea<DB, Shift>, Box<dyn Error>>
 where
     DB::ErrorType: 'static,
 {
-    let (top, rest) = area.split_vertically(px(f64::from(height), scale));
+    let (top, rest) = area.split_vertically(px(f64::from(height), style));
     let (width, height) = top.dim_in_pixel();
-    let style = font(size, scale).pos(Pos::new(HPos::Center, VPos::Center));
+    let centred = font(size, style).pos(Pos::new(HPos::Center, VPos::Center));
     top.draw(&Text::new(
         title.to_owned(),
         (width as i32 / 2, height as i32 / 2),
-        style,
+        centred,
     ))?;
     Ok(rest)
 }

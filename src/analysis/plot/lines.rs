@@ -5,7 +5,7 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::figure::{FAINT, Figure, INK, Outcome, PALETTE, font, number, px, round_step, stroke};
+use super::figure::{Figure, Outcome, PALETTE, Style, font, number, px, round_step, stroke};
 use crate::analysis::lobe_view::{Axis, LinePlot, Series};
 
 /// A chart in plain coordinates.
@@ -23,17 +23,17 @@ impl Figure for LinePlot {
         (SIZE.0 + legend_width(self), if self.is_polar { 530 } else { SIZE.1 })
     }
 
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
     where
         DB::ErrorType: 'static,
     {
-        let (area, legend) = root.split_horizontally(px(f64::from(SIZE.0), scale));
+        let (area, legend) = root.split_horizontally(px(f64::from(SIZE.0), style));
         if self.is_polar {
-            draw_polar(self, &area, scale)?;
+            draw_polar(self, &area, style)?;
         } else {
-            draw_cartesian(self, &area, scale)?;
+            draw_cartesian(self, &area, style)?;
         }
-        draw_legend(self, &legend, scale)
+        draw_legend(self, &legend, style)
     }
 }
 
@@ -61,16 +61,16 @@ fn place(axis: &Axis, value: f64) -> f64 {
     }
 }
 
-fn draw_cartesian<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+fn draw_cartesian<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
 where
     DB::ErrorType: 'static,
 {
     let [x, y] = [&plot.x, &plot.y].map(|axis| place(axis, axis.range[0])..place(axis, axis.range[1]));
     let mut chart = ChartBuilder::on(root)
-        .caption(title(plot), font(22.0, scale))
-        .margin(px(16.0, scale))
-        .x_label_area_size(px(46.0, scale))
-        .y_label_area_size(px(66.0, scale))
+        .caption(title(plot), font(22.0, style))
+        .margin(px(16.0, style))
+        .x_label_area_size(px(46.0, style))
+        .y_label_area_size(px(66.0, style))
         .build_cartesian_2d(x, y)?;
     let label = |axis: &Axis, place: f64| {
         number(if axis.is_logarithmic {
@@ -82,10 +82,10 @@ where
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
-        .bold_line_style(stroke(FAINT, 1.0, scale))
-        .axis_style(stroke(INK, 1.0, scale))
-        .label_style(font(14.0, scale))
-        .axis_desc_style(font(15.0, scale))
+        .bold_line_style(stroke(style.faint, 1.0, style))
+        .axis_style(stroke(style.ink, 1.0, style))
+        .label_style(font(14.0, style))
+        .axis_desc_style(font(15.0, style))
         .x_labels(10)
         .y_labels(8)
         .x_label_formatter(&|place| label(&plot.x, *place))
@@ -98,7 +98,7 @@ where
             .points
             .iter()
             .map(|[x, y]| (place(&plot.x, *x), place(&plot.y, *y)));
-        draw_series(&mut chart, series, rank, points, scale)?;
+        draw_series(&mut chart, series, rank, points, style)?;
     }
     Ok(())
 }
@@ -111,8 +111,8 @@ fn ranked(series: &[Series]) -> impl Iterator<Item = (&Series, usize)> {
 }
 
 /// The line of a series.
-fn style(series: &Series, scale: f64) -> ShapeStyle {
-    stroke(PALETTE[series.group % PALETTE.len()], 2.2, scale)
+fn line_style(series: &Series, style: Style) -> ShapeStyle {
+    stroke(PALETTE[series.group % PALETTE.len()], 2.2, style)
 }
 
 /// A line; those after the first of a group dashed.
@@ -121,44 +121,44 @@ fn draw_series<DB: DrawingBackend>(
     series: &Series,
     rank: usize,
     points: impl Iterator<Item = (f64, f64)>,
-    scale: f64,
+    style: Style,
 ) -> Outcome
 where
     DB::ErrorType: 'static,
 {
-    let style = style(series, scale);
+    let line = line_style(series, style);
     if rank == 0 {
-        chart.draw_series(LineSeries::new(points, style))?;
+        chart.draw_series(LineSeries::new(points, line))?;
     } else {
         let points: Vec<_> = points.collect();
-        chart.draw_series(DashedLineSeries::new(points, px(7.0, scale), px(5.0, scale), style))?;
+        chart.draw_series(DashedLineSeries::new(points, px(7.0, style), px(5.0, style), line))?;
     }
     Ok(())
 }
 
 /// The names beside the plot.
-fn draw_legend<DB: DrawingBackend>(plot: &LinePlot, area: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+fn draw_legend<DB: DrawingBackend>(plot: &LinePlot, area: &DrawingArea<DB, Shift>, style: Style) -> Outcome
 where
     DB::ErrorType: 'static,
 {
     for ((series, rank), row) in ranked(&plot.series).zip(0..) {
         let y = 64.0 + ENTRY_HEIGHT * f64::from(row);
-        let at = |x: f64| (px(x, scale), px(y, scale));
+        let at = |x: f64| (px(x, style), px(y, style));
         let dashes: &[[f64; 2]] = if rank == 0 {
             &[[4.0, 30.0]]
         } else {
             &[[4.0, 13.0], [19.0, 28.0]]
         };
         for [from, to] in dashes {
-            area.draw(&PathElement::new([at(*from), at(*to)], style(series, scale)))?;
+            area.draw(&PathElement::new([at(*from), at(*to)], line_style(series, style)))?;
         }
-        let label = font(15.0, scale).pos(Pos::new(HPos::Left, VPos::Center));
+        let label = font(15.0, style).pos(Pos::new(HPos::Left, VPos::Center));
         area.draw(&Text::new(plot.label(series), at(38.0), label))?;
     }
     Ok(())
 }
 
-fn draw_polar<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+fn draw_polar<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
 where
     DB::ErrorType: 'static,
 {
@@ -166,29 +166,29 @@ where
     // Room for the angles outside the outermost circle; both axes have the same scale.
     let outer = 1.09 * reach;
     let mut chart = ChartBuilder::on(root)
-        .caption(title(plot), font(22.0, scale))
-        .margin(px(16.0, scale))
-        .x_label_area_size(px(34.0, scale))
+        .caption(title(plot), font(22.0, style))
+        .margin(px(16.0, style))
+        .x_label_area_size(px(34.0, style))
         .build_cartesian_2d(-outer..outer, 0.0..outer)?;
-    draw_polar_net(&mut chart, reach, scale)?;
+    draw_polar_net(&mut chart, reach, style)?;
     for (series, rank) in ranked(&plot.series) {
         let points: Vec<(f64, f64)> = series.polar_points().map(|[x, y]| (x, y)).collect();
-        draw_series(&mut chart, series, rank, points.into_iter(), scale)?;
+        draw_series(&mut chart, series, rank, points.into_iter(), style)?;
         if let Some(angle_deg) = series.view_angle_deg {
-            draw_view(&mut chart, angle_deg, reach, scale)?;
+            draw_view(&mut chart, angle_deg, reach, style)?;
         }
     }
     let caption = Text::new(
         plot.y.label.clone(),
-        (root.dim_in_pixel().0 as i32 / 2, px(502.0, scale)),
-        centred(15.0, scale),
+        (root.dim_in_pixel().0 as i32 / 2, px(502.0, style)),
+        centred(15.0, style),
     );
     root.draw(&caption)?;
     Ok(())
 }
 
 /// Circles of equal value and rays of equal angle.
-fn draw_polar_net<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, reach: f64, scale: f64) -> Outcome
+fn draw_polar_net<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, reach: f64, style: Style) -> Outcome
 where
     DB::ErrorType: 'static,
 {
@@ -202,46 +202,49 @@ where
     let step = round_step(reach, 5.0);
     let circles = (1..).map(|i| step * f64::from(i)).take_while(|radius| *radius <= reach);
     for radius in circles {
-        chart.draw_series(LineSeries::new(arc(radius), stroke(FAINT, 1.0, scale)))?;
+        chart.draw_series(LineSeries::new(arc(radius), stroke(style.faint, 1.0, style)))?;
         let at = (radius, 0.0);
-        let label = EmptyElement::at(at) + Text::new(number(radius), (0, px(5.0, scale)), centred(13.0, scale));
+        let label = EmptyElement::at(at) + Text::new(number(radius), (0, px(5.0, style)), centred(13.0, style));
         chart.draw_series([label])?;
     }
     for angle_deg in [-60.0, -30.0, 0.0, 30.0, 60.0] {
         let line = [(0.0, 0.0), ray(angle_deg, reach)];
-        chart.draw_series(LineSeries::new(line, stroke(FAINT, 1.0, scale)))?;
+        chart.draw_series(LineSeries::new(line, stroke(style.faint, 1.0, style)))?;
         let label = Text::new(
             format!("{}°", angle_deg.abs()),
-            (0, px(-8.0, scale)),
-            centred(13.0, scale),
+            (0, px(-8.0, style)),
+            centred(13.0, style),
         );
         chart.draw_series([EmptyElement::at(ray(angle_deg, 1.035 * reach)) + label])?;
     }
-    chart.draw_series(LineSeries::new(arc(reach), stroke(FAINT, 1.0, scale)))?;
-    chart.draw_series(LineSeries::new([(-reach, 0.0), (reach, 0.0)], stroke(INK, 1.5, scale)))?;
+    chart.draw_series(LineSeries::new(arc(reach), stroke(style.faint, 1.0, style)))?;
+    chart.draw_series(LineSeries::new(
+        [(-reach, 0.0), (reach, 0.0)],
+        stroke(style.ink, 1.5, style),
+    ))?;
     Ok(())
 }
 
 /// Where the view comes from, as a dashed ray.
-fn draw_view<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, angle_deg: f64, reach: f64, scale: f64) -> Outcome
+fn draw_view<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, angle_deg: f64, reach: f64, style: Style) -> Outcome
 where
     DB::ErrorType: 'static,
 {
     let angle_rad = angle_deg.to_radians();
     let end = (-0.98 * reach * angle_rad.sin(), 0.98 * reach * angle_rad.cos());
-    let style = stroke(INK, 1.2, scale);
+    let line = stroke(style.ink, 1.2, style);
     chart.draw_series(DashedLineSeries::new(
         [(0.0, 0.0), end],
-        px(3.0, scale),
-        px(4.0, scale),
-        style,
+        px(3.0, style),
+        px(4.0, style),
+        line,
     ))?;
-    let label = Text::new("view", (px(-34.0, scale), px(-4.0, scale)), font(13.0, scale));
+    let label = Text::new("view", (px(-34.0, style), px(-4.0, style)), font(13.0, style));
     chart.draw_series([EmptyElement::at(end) + label])?;
     Ok(())
 }
 
 /// The font, centred on its place.
-fn centred(size: f64, scale: f64) -> TextStyle<'static> {
-    font(size, scale).pos(Pos::new(HPos::Center, VPos::Top))
+fn centred(size: f64, style: Style) -> TextStyle<'static> {
+    font(size, style).pos(Pos::new(HPos::Center, VPos::Top))
 }

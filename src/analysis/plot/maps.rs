@@ -4,7 +4,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::figure::{Figure, INK, NAME, Outcome, TITLE, font, number, panel_grid, px, stroke, titled};
+use super::figure::{Figure, NAME, Outcome, Style, TITLE, font, number, panel_grid, px, stroke, titled};
 use crate::analysis::lobe_view::{DiscMap, MapPlot};
 
 /// Side of a panel without its name and width of the scale's strip, pixels.
@@ -41,17 +41,17 @@ impl Figure for MapPlot {
         (columns as u32 * PANEL + STRIP, rows as u32 * (PANEL + NAME) + TITLE)
     }
 
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
     where
         DB::ErrorType: 'static,
     {
         let (rows, columns) = panel_grid(self.maps.len());
-        let rest = titled(root, &format!("{} in 1/sr", self.title), 22.0, TITLE, scale)?;
-        let (panels, strip) = rest.split_horizontally(px(f64::from(columns as u32 * PANEL), scale));
+        let rest = titled(root, &format!("{} in 1/sr", self.title), 22.0, TITLE, style)?;
+        let (panels, strip) = rest.split_horizontally(px(f64::from(columns as u32 * PANEL), style));
         for (map, area) in self.maps.iter().zip(panels.split_evenly((rows, columns))) {
-            draw_map(self, map, &area, scale)?;
+            draw_map(self, map, &area, style)?;
         }
-        draw_strip(self, &strip, scale)
+        draw_strip(self, &strip, style)
     }
 }
 
@@ -64,14 +64,14 @@ impl MapPlot {
     }
 }
 
-fn draw_map<DB: DrawingBackend>(plot: &MapPlot, map: &DiscMap, area: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+fn draw_map<DB: DrawingBackend>(plot: &MapPlot, map: &DiscMap, area: &DrawingArea<DB, Shift>, style: Style) -> Outcome
 where
     DB::ErrorType: 'static,
 {
     let name = format!("{}, view {}°", map.lobe, map.view_angle_deg);
-    let disc = titled(area, &name, 16.0, NAME, scale)?;
+    let disc = titled(area, &name, 16.0, NAME, style)?;
     let mut chart = ChartBuilder::on(&disc)
-        .margin(px(6.0, scale))
+        .margin(px(6.0, style))
         .build_cartesian_2d(-1.03..1.03, -1.03..1.03)?;
     for row in 0..map.size {
         chart.draw_series(runs(plot, map, row))?;
@@ -82,24 +82,24 @@ where
             .map(move |phi| (radius * phi.cos(), radius * phi.sin()))
     };
     // Hides the pixels' corners.
-    chart.draw_series(LineSeries::new(circle(1.0), stroke(INK, 2.5, scale)))?;
+    chart.draw_series(LineSeries::new(circle(1.0), stroke(style.ink, 2.5, style)))?;
     for theta_deg in [30.0_f64, 60.0] {
         let radius = distance_from_centre(theta_deg.to_radians());
         chart.draw_series(LineSeries::new(
             circle(radius),
-            WHITE.mix(0.45).stroke_width(px(1.0, scale) as u32),
+            WHITE.mix(0.45).stroke_width(px(1.0, style) as u32),
         ))?;
         let label = Text::new(
             format!("{theta_deg}°"),
-            (px(3.0, scale), px(-14.0, scale)),
-            font(12.0, scale).color(&WHITE),
+            (px(3.0, style), px(-14.0, style)),
+            font(12.0, style).color(&WHITE),
         );
         chart.draw_series([EmptyElement::at((0.0, -radius)) + label])?;
     }
     let at = distance_from_centre(map.view_angle_deg.to_radians());
-    let (mark, ring) = (stroke(WHITE, 1.5, scale), stroke(WHITE, 1.5, scale));
-    chart.draw_series([Circle::new((-at, 0.0), px(5.0, scale), ring)])?;
-    chart.draw_series([Cross::new((at, 0.0), px(5.0, scale), mark)])?;
+    let (mark, ring) = (stroke(WHITE, 1.5, style), stroke(WHITE, 1.5, style));
+    chart.draw_series([Circle::new((-at, 0.0), px(5.0, style), ring)])?;
+    chart.draw_series([Cross::new((at, 0.0), px(5.0, style), mark)])?;
     Ok(())
 }
 
@@ -132,13 +132,13 @@ fn runs(plot: &MapPlot, map: &DiscMap, row: usize) -> Vec<Rectangle<(f64, f64)>>
 }
 
 /// The scale: a strip of its colours with a number at each decade; what the marks mean.
-fn draw_strip<DB: DrawingBackend>(plot: &MapPlot, area: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+fn draw_strip<DB: DrawingBackend>(plot: &MapPlot, area: &DrawingArea<DB, Shift>, style: Style) -> Outcome
 where
     DB::ErrorType: 'static,
 {
-    let height = f64::from(area.dim_in_pixel().1) / scale;
+    let height = f64::from(area.dim_in_pixel().1) / style.scale;
     let (top, bottom) = (24.0, height - 90.0);
-    let at = |x: f64, y: f64| (px(x, scale), px(y, scale));
+    let at = |x: f64, y: f64| (px(x, style), px(y, style));
     let y_of = |place: f64| bottom + (top - bottom) * place;
     for i in 0..STEPS as usize {
         let (low, high) = (i as f64 / STEPS, (i + 1) as f64 / STEPS);
@@ -150,15 +150,26 @@ where
     let [low, high] = plot.range.map(f64::log10);
     for decade in low.ceil() as i32..=high.floor() as i32 {
         let y = y_of((f64::from(decade) - low) / (high - low));
-        let label = font(13.0, scale).pos(Pos::new(HPos::Left, VPos::Center));
-        area.draw(&PathElement::new([at(26.0, y), at(31.0, y)], stroke(INK, 1.0, scale)))?;
+        let label = font(13.0, style).pos(Pos::new(HPos::Left, VPos::Center));
+        area.draw(&PathElement::new(
+            [at(26.0, y), at(31.0, y)],
+            stroke(style.ink, 1.0, style),
+        ))?;
         area.draw(&Text::new(number(10.0_f64.powi(decade)), at(35.0, y), label))?;
     }
     let [view, mirror] = [height - 48.0, height - 26.0];
-    area.draw(&Circle::new(at(16.0, view), px(5.0, scale), stroke(INK, 1.5, scale)))?;
-    area.draw(&Cross::new(at(16.0, mirror), px(5.0, scale), stroke(INK, 1.5, scale)))?;
+    area.draw(&Circle::new(
+        at(16.0, view),
+        px(5.0, style),
+        stroke(style.ink, 1.5, style),
+    ))?;
+    area.draw(&Cross::new(
+        at(16.0, mirror),
+        px(5.0, style),
+        stroke(style.ink, 1.5, style),
+    ))?;
     for (text, y) in [("view", view), ("mirror", mirror)] {
-        let label = font(13.0, scale).pos(Pos::new(HPos::Left, VPos::Center));
+        let label = font(13.0, style).pos(Pos::new(HPos::Left, VPos::Center));
         area.draw(&Text::new(text, at(30.0, y), label))?;
     }
     Ok(())

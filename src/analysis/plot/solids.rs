@@ -4,7 +4,7 @@ use plotters::coord::Shift;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
-use super::figure::{FAINT, Figure, INK, NAME, Outcome, PALETTE, TITLE, font, number, panel_grid, px, stroke, titled};
+use super::figure::{Figure, NAME, Outcome, PALETTE, Style, TITLE, font, number, panel_grid, px, stroke, titled};
 use crate::analysis::lobe_view::{Solid, SolidPlot};
 use crate::optics::vector::{Vec3, vec3};
 
@@ -59,20 +59,25 @@ impl Figure for SolidPlot {
         (columns as u32 * PANEL.0, rows as u32 * (PANEL.1 + NAME) + TITLE)
     }
 
-    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+    fn draw<DB: DrawingBackend>(&self, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
     where
         DB::ErrorType: 'static,
     {
         let (rows, columns) = panel_grid(self.solids.len());
-        let rest = titled(root, &self.title, 22.0, TITLE, scale)?;
+        let rest = titled(root, &self.title, 22.0, TITLE, style)?;
         for (i, (solid, area)) in self.solids.iter().zip(rest.split_evenly((rows, columns))).enumerate() {
-            draw_solid(solid, PALETTE[i % PALETTE.len()], &area, scale)?;
+            draw_solid(solid, PALETTE[i % PALETTE.len()], &area, style)?;
         }
         Ok(())
     }
 }
 
-fn draw_solid<DB: DrawingBackend>(solid: &Solid, color: RGBColor, area: &DrawingArea<DB, Shift>, scale: f64) -> Outcome
+fn draw_solid<DB: DrawingBackend>(
+    solid: &Solid,
+    color: RGBColor,
+    area: &DrawingArea<DB, Shift>,
+    style: Style,
+) -> Outcome
 where
     DB::ErrorType: 'static,
 {
@@ -84,22 +89,22 @@ where
         solid.view_angle_deg,
         number(three_digits(top))
     );
-    let below = titled(area, &name, 16.0, NAME, scale)?;
+    let below = titled(area, &name, 16.0, NAME, style)?;
     let [x, y] = RANGE.map(|[low, high]| low..high);
     let mut chart = ChartBuilder::on(&below).build_cartesian_2d(x, y)?;
-    draw_surface(&mut chart, &eye, scale)?;
+    draw_surface(&mut chart, &eye, style)?;
     let angle_rad = solid.view_angle_deg.to_radians();
     let view = vec3(-angle_rad.sin(), 0.0, angle_rad.cos());
     // What lies behind the body first.
-    draw_direction(&mut chart, &eye, view, "view", scale)?;
-    draw_direction(&mut chart, &eye, vec3(0.0, 0.0, 1.0), "n", scale)?;
-    draw_direction(&mut chart, &eye, vec3(-view.x, 0.0, view.z), "r", scale)?;
+    draw_direction(&mut chart, &eye, view, "view", style)?;
+    draw_direction(&mut chart, &eye, vec3(0.0, 0.0, 1.0), "n", style)?;
+    draw_direction(&mut chart, &eye, vec3(-view.x, 0.0, view.z), "r", style)?;
     for face in faces(solid, top, &eye) {
         let shade = |channel: u8| {
             (f64::from(channel) * face.brightness + 255.0 * 0.25 * face.brightness.powi(4)).min(255.0) as u8
         };
-        let style = RGBColor(shade(color.0), shade(color.1), shade(color.2));
-        chart.draw_series([Polygon::new(face.corners.to_vec(), style.filled())])?;
+        let shaded = RGBColor(shade(color.0), shade(color.1), shade(color.2));
+        chart.draw_series([Polygon::new(face.corners.to_vec(), shaded.filled())])?;
         // Closes the seams between faces.
         let outline = [
             face.corners[0],
@@ -108,7 +113,7 @@ where
             face.corners[3],
             face.corners[0],
         ];
-        chart.draw_series([PathElement::new(outline, style.stroke_width(1))])?;
+        chart.draw_series([PathElement::new(outline, shaded.stroke_width(1))])?;
     }
     Ok(())
 }
@@ -120,7 +125,7 @@ fn three_digits(value: f64) -> f64 {
 }
 
 /// The surface: a disc with circles at a third and two thirds of the largest value.
-fn draw_surface<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, eye: &Eye, scale: f64) -> Outcome
+fn draw_surface<DB: DrawingBackend>(chart: &mut Chart<'_, DB>, eye: &Eye, style: Style) -> Outcome
 where
     DB::ErrorType: 'static,
 {
@@ -129,15 +134,12 @@ where
             .map(move |i| (f64::from(i) * 3.0_f64).to_radians())
             .map(move |phi| eye.project(vec3(radius * phi.cos(), radius * phi.sin(), 0.0)))
     };
-    chart.draw_series([Polygon::new(
-        circle(1.0).collect::<Vec<_>>(),
-        RGBColor(243, 243, 246).filled(),
-    )])?;
+    chart.draw_series([Polygon::new(circle(1.0).collect::<Vec<_>>(), style.shade.filled())])?;
     for radius in [1.0 / 3.0, 2.0 / 3.0, 1.0] {
-        chart.draw_series(LineSeries::new(circle(radius), stroke(FAINT, 1.0, scale)))?;
+        chart.draw_series(LineSeries::new(circle(radius), stroke(style.faint, 1.0, style)))?;
     }
     let across = [vec3(-1.0, 0.0, 0.0), vec3(1.0, 0.0, 0.0)].map(|end| eye.project(end));
-    chart.draw_series(LineSeries::new(across, stroke(FAINT, 1.0, scale)))?;
+    chart.draw_series(LineSeries::new(across, stroke(style.faint, 1.0, style)))?;
     Ok(())
 }
 
@@ -147,7 +149,7 @@ fn draw_direction<DB: DrawingBackend>(
     eye: &Eye,
     direction: Vec3<f64>,
     name: &str,
-    scale: f64,
+    style: Style,
 ) -> Outcome
 where
     DB::ErrorType: 'static,
@@ -155,12 +157,12 @@ where
     let end = eye.project(direction);
     let line = DashedLineSeries::new(
         [(0.0, 0.0), end],
-        px(4.0, scale),
-        px(4.0, scale),
-        stroke(INK, 1.2, scale),
+        px(4.0, style),
+        px(4.0, style),
+        stroke(style.ink, 1.2, style),
     );
     chart.draw_series(line)?;
-    let label = Text::new(name.to_owned(), (px(5.0, scale), px(-12.0, scale)), font(14.0, scale));
+    let label = Text::new(name.to_owned(), (px(5.0, style), px(-12.0, style)), font(14.0, style));
     chart.draw_series([EmptyElement::at(end) + label])?;
     Ok(())
 }

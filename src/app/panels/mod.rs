@@ -2,8 +2,12 @@
 
 mod area_lights;
 pub(super) mod camera;
+pub(super) mod check;
 pub(super) mod curve;
 pub(super) mod lighting;
+pub(super) mod lobe;
+mod lobe_match;
+mod lobe_plot;
 pub(super) mod log;
 pub(super) mod material;
 pub(super) mod presets;
@@ -39,6 +43,10 @@ pub(super) struct PanelState {
     pub(super) curve: curve::CurveState,
     /// The sample plots'.
     pub(super) samples: samples::SampleState,
+    /// The lobe views'.
+    pub(super) lobe: lobe::LobeState,
+    /// The checks'.
+    pub(super) check: check::CheckState,
     /// Rendering was stopped by hand.
     pub(super) is_paused: bool,
     /// What is searched for among the presets.

@@ -13,7 +13,7 @@ use crate::app::widgets::{self, Name, NumberStyle};
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::vector::Vec3;
 use crate::render::EngineChoice;
-use crate::render::samples::{SampleQuery, SampleReport, SampleWorker, mirror_direction};
+use crate::render::samples::{SampleQuery, SampleReport, SampleWorker, mirror_direction, spawn_samples};
 
 /// From where the samples are looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,7 +86,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let state = &mut desk.state.samples;
     if state.worker.is_none() {
         let ctx = ui.ctx().clone();
-        state.worker = SampleWorker::spawn(move || ctx.request_repaint()).ok();
+        state.worker = spawn_samples(move || ctx.request_repaint()).ok();
     }
     let Some(worker) = &state.worker else {
         widgets::note(ui, "The system gives no thread to draw samples on.");
@@ -114,6 +114,13 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
 }
 
+impl SampleState {
+    /// The angle between view and normal, degrees.
+    pub(super) fn view_angle_deg(&self) -> f32 {
+        self.view_angle_deg.unwrap_or(VIEW_ANGLE_DEG)
+    }
+}
+
 /// What the plots are of: the selected material's specular lobe.
 fn query(desk: &Desk<'_>) -> Option<SampleQuery> {
     let engine = desk.snapshot.engine.as_ref()?;
@@ -135,7 +142,7 @@ fn query(desk: &Desk<'_>) -> Option<SampleQuery> {
         } else {
             Vec::new()
         },
-        view_angle_deg: state.view_angle_deg.unwrap_or(VIEW_ANGLE_DEG),
+        view_angle_deg: state.view_angle_deg(),
         count: state.count.unwrap_or(COUNTS[1].0),
         seed: desk.document.render.seed,
     };
@@ -162,7 +169,24 @@ fn controls(ui: &mut Ui, state: &mut SampleState) {
             }
         }
     });
-    let mut view_angle_deg = state.view_angle_deg.unwrap_or(VIEW_ANGLE_DEG);
+    view_angle_row(ui, state);
+    let mut count = state.count.unwrap_or(COUNTS[1].0);
+    let name = Name::new("Samples drawn", "Samples", "How many are drawn for the plot.");
+    if widgets::row(ui, name, |ui| widgets::choice(ui, "sample count", &mut count, &COUNTS)).changed {
+        state.count = Some(count);
+    }
+    if state.look == Look::Angle {
+        let help = "Looks for the roughness at which Phong and GGX come closest, by the total variation distance.";
+        widgets::row(ui, Name::new("Compare lobes", "Phong and GGX", help), |ui| {
+            ui.checkbox(&mut state.compare, "")
+        });
+    }
+    ui.add_space(4.0);
+}
+
+/// The angle that the plots of samples and lobes share.
+pub(super) fn view_angle_row(ui: &mut Ui, state: &mut SampleState) {
+    let mut view_angle_deg = state.view_angle_deg();
     let style = NumberStyle {
         range: 0.0..=89.9,
         bar: Some([0.0, 89.9]),
@@ -183,18 +207,6 @@ fn controls(ui: &mut Ui, state: &mut SampleState) {
     if response.reset {
         state.view_angle_deg = None;
     }
-    let mut count = state.count.unwrap_or(COUNTS[1].0);
-    let name = Name::new("Samples drawn", "Samples", "How many are drawn for the plot.");
-    if widgets::row(ui, name, |ui| widgets::choice(ui, "sample count", &mut count, &COUNTS)).changed {
-        state.count = Some(count);
-    }
-    if state.look == Look::Angle {
-        let help = "Looks for the roughness at which Phong and GGX come closest, by the total variation distance.";
-        widgets::row(ui, Name::new("Compare lobes", "Phong and GGX", help), |ui| {
-            ui.checkbox(&mut state.compare, "")
-        });
-    }
-    ui.add_space(4.0);
 }
 
 /// Where a direction lies in a view, in [−1, 1]² (x to the right, y up).

@@ -1,0 +1,102 @@
+//! Line plots of lobes in the window: the data that the command line writes as files.
+
+use egui::{Color32, Ui};
+use egui_plot::{GridMark, Legend, Line, LineStyle, Plot, PlotPoints};
+
+use crate::analysis::lobe_view::{Axis, LinePlot, Series};
+use crate::analysis::plot::series_color;
+
+/// Where a value lies on an axis.
+fn place(axis: &Axis, value: f64) -> f64 {
+    if axis.is_logarithmic {
+        value.max(axis.range[0]).log10()
+    } else {
+        value
+    }
+}
+
+/// Shows a line plot over the width there is.
+pub(super) fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot) {
+    let width = ui.available_width();
+    let is_logarithmic = plot.y.is_logarithmic;
+    let number = move |mark: GridMark, _: &std::ops::RangeInclusive<f64>| {
+        let value = if is_logarithmic {
+            10.0_f64.powf(mark.value)
+        } else {
+            mark.value
+        };
+        short(value)
+    };
+    let mut shown = Plot::new(id.to_owned())
+        .height((0.8 * width).clamp(160.0, 420.0))
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .show_background(false)
+        .x_axis_label(if plot.is_polar {
+            plot.y.label.clone()
+        } else {
+            plot.x.label.clone()
+        })
+        .y_axis_formatter(number)
+        .set_margin_fraction(egui::vec2(0.03, 0.06))
+        .legend(Legend::default());
+    let [top, bottom] = [plot.y.range[1], plot.y.range[0]].map(|value| place(&plot.y, value));
+    shown = if plot.is_polar {
+        shown
+            .data_aspect(1.0)
+            .include_y(0.0)
+            .include_y(top)
+            .include_x(-top)
+            .include_x(top)
+    } else {
+        let [first, last] = plot.x.range;
+        shown.include_y(bottom).include_y(top).include_x(first).include_x(last)
+    };
+    let response = shown.show(ui, |plot_ui| {
+        for (rank, series) in plot
+            .series
+            .chunk_by(|a, b| a.group == b.group)
+            .flat_map(|group| group.iter().enumerate())
+        {
+            let style = if rank == 0 {
+                LineStyle::Solid
+            } else {
+                LineStyle::dashed_dense()
+            };
+            plot_ui.line(
+                Line::new(plot.label(series), PlotPoints::from(points(plot, series)))
+                    .color(color(series.group))
+                    .width(2.0)
+                    .style(style),
+            );
+        }
+    });
+    response.response.accessible_name(plot.title.clone());
+    if !plot.is_polar {
+        ui.weak(&plot.y.label);
+    }
+}
+
+fn points(plot: &LinePlot, series: &Series) -> Vec<[f64; 2]> {
+    if plot.is_polar {
+        return series.polar_points().collect();
+    }
+    let on_axes = |[x, y]: &[f64; 2]| [place(&plot.x, *x), place(&plot.y, *y)];
+    series.points.iter().map(on_axes).collect()
+}
+
+fn color(group: usize) -> Color32 {
+    let [r, g, b] = series_color(group);
+    Color32::from_rgb(r, g, b)
+}
+
+/// A number on an axis.
+fn short(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
+        format!("{}", (value * 1e4).round() / 1e4)
+    } else {
+        format!("{value:.0e}")
+    }
+}
