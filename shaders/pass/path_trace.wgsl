@@ -48,7 +48,8 @@ fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: p
     let xi = vec3f(random_pair(state, dimension), random_pair(state, dimension + 1u).x);
     let light = environment_sample(xi, globals.environment_cells_size);
     let wi = environment_world_from_local(light.direction, globals.environment_rotation);
-    if light.density <= 0.0 || dot(point.surface.normal, wi) <= 0.0 {
+    let transmits = material_transmits(materials[point.slot]);
+    if light.density <= 0.0 || (dot(point.surface.normal, wi) <= 0.0 && !transmits) {
         return vec3f(0.0);
     }
     let competing = select(0.0, 1.0, globals.strategy == STRATEGY_MIS);
@@ -57,7 +58,7 @@ fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: p
         return vec3f(0.0);
     }
     *rays += 1u;
-    if trace(ray_origin(point), wi, 1e30, true).triangle != NO_HIT {
+    if trace(ray_origin(point, wi, transmits), wi, 1e30, true).triangle != NO_HIT {
         return vec3f(0.0);
     }
     return value * far_radiance(wi) / light.density;
@@ -94,6 +95,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         let point = surface_at(hit, ray.direction);
         let material = materials[point.slot];
+        if PLAN_ABSORPTION == 1u && point.surface.is_inside && material_transmits(material) {
+            throughput *= exp(-material.absorption * hit.t);
+        }
         if PLAN_EMISSION == 1u {
             radiance += throughput * material.emission;
         }
@@ -120,7 +124,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         lobe_density = drawn.density;
         was_mirror = drawn.is_mirror;
-        ray = Ray(ray_origin(point), drawn.wi);
+        ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
     }
     return PathResult(radiance, 1.0, rays);
 }

@@ -30,7 +30,8 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     let position = p0 * w + p1 * hit.u + p2 * hit.v;
     let wo = -direction;
     let out = normalize_or(cross(p1 - p0, p2 - p0), wo);
-    let normal = select(out, -out, dot(out, wo) < 0.0);
+    let is_back = dot(out, wo) < 0.0;
+    let normal = select(out, -out, is_back);
     let a = vertices[triangle.corners[0].w];
     let b = vertices[triangle.corners[1].w];
     let c = vertices[triangle.corners[2].w];
@@ -53,10 +54,12 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     }
     let extent = abs(p0) * abs(w) + abs(p1) * abs(hit.u) + abs(p2) * abs(hit.v);
     let error = POSITION_ERROR * dot(abs(normal), extent + vec3f(0.05));
-    return SurfacePoint(Surface(frame, normal, wo), position, error, slot);
+    return SurfacePoint(Surface(frame, normal, wo, is_back), position, error, slot);
 }
 
-// Where a ray from the surface starts: outside the bound on the position's error.
-fn ray_origin(point: SurfacePoint) -> vec3f {
-    return point.position + point.surface.normal * point.error;
+// Where a ray from the surface towards `wi` starts: outside the bound on the position's error. Only a surface that
+// transmits lets it start behind.
+fn ray_origin(point: SurfacePoint, wi: vec3f, transmits: bool) -> vec3f {
+    let is_behind = transmits && dot(point.surface.normal, wi) < 0.0;
+    return point.position + point.surface.normal * select(point.error, -point.error, is_behind);
 }

@@ -86,7 +86,9 @@ impl<'a, T: Real> Integrator<'a, T> {
         let [c, _] = random_pair(state, dimension + 1);
         let (local, density) = environment_sample(self.environment, vec3(a, b, c));
         let wi = environment_world_from_local(local, self.rotation);
-        if density.to_f64() <= 0.0 || point.surface.normal.dot(wi).to_f64() <= 0.0 {
+        let material = &self.materials[point.slot as usize];
+        let is_behind = point.surface.normal.dot(wi).to_f64() <= 0.0;
+        if density.to_f64() <= 0.0 || (is_behind && !material.transmits()) {
             return Vec3::zero();
         }
         let competing = T::from_f64(if self.settings.strategy == Strategy::Mis {
@@ -94,16 +96,13 @@ impl<'a, T: Real> Integrator<'a, T> {
         } else {
             0.0
         });
-        let material = &self.materials[point.slot as usize];
         let value = material_evaluate(material, self.tables, &point.surface, wi, density, competing);
         if value.max_component().to_f64() <= 0.0 {
             return Vec3::zero();
         }
         *rays += 1;
-        if self
-            .geometry
-            .occluded(point.ray_origin().to_f32(), wi.to_f32(), f32::MAX)
-        {
+        let origin = point.ray_origin(wi, material.transmits());
+        if self.geometry.occluded(origin.to_f32(), wi.to_f32(), f32::MAX) {
             return Vec3::zero();
         }
         value * self.far_radiance(wi) / density
@@ -142,6 +141,10 @@ impl<'a, T: Real> Integrator<'a, T> {
             };
             let point = self.surface(&hit, direction);
             let material = &self.materials[point.slot as usize];
+            if point.surface.is_inside && material.transmits() {
+                let length = T::from_f64(f64::from(hit.t));
+                throughput = throughput * material.absorption.map(|absorption| (-absorption * length).exp());
+            }
             radiance += throughput * material.emission;
             if bounce >= settings.bounces {
                 break;
@@ -169,7 +172,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             }
             lobe_density = drawn.density;
             was_mirror = drawn.is_mirror;
-            (origin, direction) = (point.ray_origin(), drawn.wi);
+            (origin, direction) = (point.ray_origin(drawn.wi, material.transmits()), drawn.wi);
         }
         PathResult {
             radiance,

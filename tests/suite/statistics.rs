@@ -3,7 +3,7 @@
 use glossmith::analysis::chi_square::{ChiSquare, PolarGrid, sidak_level, test_counts, test_samples};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::lobe::{Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample, raw_weight};
+use glossmith::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample, raw_weight};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ fn draw(case: &Case, i: u32) -> LobeSample<f64> {
 fn chi_square(case: &Case, count: u32, roughness_factor: f64, factor: impl Fn(Vec3<f64>) -> f64) -> ChiSquare {
     let kept = |sample: LobeSample<f64>| (sample.weight != 0.0).then_some(sample.wi);
     let samples: Vec<_> = (0..count).map(|i| kept(draw(case, i))).collect();
-    let mirror = case.wo().mirrored_about(case.frame().normal);
+    let mirror = case.middle();
     let grid = PolarGrid::following(
         frame_from_normal(mirror),
         12,
@@ -118,6 +118,53 @@ fn stretched_samples_follow_their_densities() {
         ));
     }
     assert_all_follow(&cases);
+}
+
+/// Lobes turned about the refracted direction, into glass, diamond and out of both: every lobe, curve and policy, and
+/// under total reflection where it is the mirror direction again.
+#[test]
+fn refracted_samples_follow_their_densities() {
+    let mut cases = Vec::new();
+    for (lobe, curve) in lobes_and_curves() {
+        if lobe.facets() != Facets::None {
+            continue;
+        }
+        let policies = if lobe == Lobe::Geometric {
+            Horizon::ALL
+        } else {
+            &[Horizon::Mirror]
+        };
+        for &horizon in policies {
+            for eta in [1.5, 1.0 / 1.5, 2.4] {
+                let stretched: &[f64] = if lobe == Lobe::Geometric && eta == 1.5 { &[0.0, 0.7] } else { &[0.0] };
+                cases.extend(refracting(
+                    Case::grid(lobe, curve, horizon, stretched, &ROUGHNESS, &ANGLES_DEG),
+                    eta,
+                    cases.len(),
+                ));
+            }
+        }
+    }
+    assert_all_follow(&cases);
+}
+
+/// The microfacet lobes, each facet refracting by itself.
+#[test]
+fn samples_refracted_at_facets_follow_their_densities() {
+    let mut cases = Vec::new();
+    for &lobe in Lobe::ALL.iter().filter(|lobe| lobe.facets() != Facets::None) {
+        for eta in [1.5, 1.0 / 1.5, 2.4] {
+            let stretched: &[f64] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
+            let grid = Case::grid(lobe, Curve::Sqrt, Horizon::Mirror, stretched, &ROUGHNESS, &ANGLES_DEG);
+            cases.extend(refracting(grid, eta, cases.len()));
+        }
+    }
+    assert_all_follow(&cases);
+}
+
+/// The cases with another index, and seeds of their own.
+fn refracting(cases: Vec<Case>, eta: f64, first: usize) -> impl Iterator<Item = Case> {
+    (0x8000 + first as u32..).zip(cases).map(move |(seed, case)| Case { eta, seed, ..case })
 }
 
 /// Where the shading normal leans, samples cross either of two horizons.

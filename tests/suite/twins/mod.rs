@@ -14,6 +14,7 @@ mod environment;
 mod harness;
 mod lobes;
 mod material;
+mod refraction;
 mod surface;
 mod tone;
 mod trace;
