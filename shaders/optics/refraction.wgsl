@@ -31,14 +31,15 @@ fn refracting_cosine(wo: vec3f, wi: vec3f, eta: f32) -> f32 {
 }
 
 // What turns the density of the direction that the facet mirrors `wo` to into the density of `wi`; 0 where no facet
-// refracts one to the other. `along`: the facet's refracting_normal.
+// refracts one to the other, and where `wi` is not below the shading normal's horizon. `along`: the facet's refracting_normal.
 fn facet_density_factor(frame: Frame, wo: vec3f, wi: vec3f, eta: f32, along: vec3f) -> f32 {
     let square = max(dot(along, along), 1e-30);
     let h = along / sqrt(square);
     let before = dot(wo, h);
     let behind = -dot(wi, h);
     let value = 4.0 * before * eta * eta * behind / square;
-    return select(0.0, value, before > 0.0 && behind > 0.0 && dot(frame.normal, h) > 0.0);
+    let is_seen = before > 0.0 && dot(frame.normal, h) > 0.0;
+    return select(0.0, value, dot(frame.normal, wi) < 0.0 && is_seen && behind > 0.0);
 }
 
 fn facet_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {

@@ -104,7 +104,8 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
     if let Some(table) = known {
         return table;
     }
-    let table: Arc<[f32]> = albedo_table(&key.material.cast::<f64>(), &key.curve_table, ALBEDO_SAMPLES, is_inside).into();
+    let table: Arc<[f32]> =
+        albedo_table(&key.material.cast::<f64>(), &key.curve_table, ALBEDO_SAMPLES, is_inside).into();
     let mut memory = memory();
     if memory.len() >= REMEMBERED {
         memory.remove(0);

@@ -152,7 +152,11 @@ impl<T: Real> Material<T> {
             model: by_index(Fresnel::ALL, self.fresnel),
             metal_f0: self.base_color,
             metalness: self.metalness,
-            tint: if is_bare { Vec3::splat(T::one()) } else { self.specular_color },
+            tint: if is_bare {
+                Vec3::splat(T::one())
+            } else {
+                self.specular_color
+            },
             weight: if is_bare { T::one() } else { self.specular_weight },
             ior: self.ior_ahead(is_inside),
             eta: self.eta,

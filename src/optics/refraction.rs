@@ -63,14 +63,16 @@ pub fn refracting_cosine<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> T {
 
 /// What turns the density of the direction that a facet mirrors `wo` to into the density of the refracted `wi`, per
 /// steradian: dωh/dωi = eta² |wi·h|/(wo·h + eta wi·h)² over dωh/dω of the mirrored one, 1/(4 wo·h). 0 where no facet
-/// refracts one to the other. `along`: that facet's [`refracting_normal`].
+/// refracts one to the other, and where `wi` is not below the shading normal's horizon: such samples are lost. `along`: that facet's [`refracting_normal`].
 #[inline(always)]
 pub fn facet_density_factor<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>, eta: T, along: Vec3<T>) -> T {
     let square = along.dot(along).max(T::from_f64(1e-30));
     let h = along / square.sqrt();
     let (before, behind) = (wo.dot(h), -wi.dot(h));
     let value = T::from_f64(4.0) * before * eta * eta * behind / square;
-    let is_refracted = T::zero().less(before) & T::zero().less(behind) & T::zero().less(frame.normal.dot(h));
+    let is_behind = frame.normal.dot(wi).less(T::zero());
+    let is_seen = T::zero().less(before) & T::zero().less(frame.normal.dot(h));
+    let is_refracted = is_behind & is_seen & T::zero().less(behind);
     T::select(is_refracted, value, T::zero())
 }
 

@@ -26,7 +26,7 @@ pub struct Case {
     pub lean_deg: f64,
     /// Different for each case of a grid.
     pub seed: u32,
-    table: &'static [f32],
+    pub table: &'static [f32],
 }
 
 impl std::fmt::Debug for Case {

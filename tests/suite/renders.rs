@@ -13,7 +13,7 @@ use glossmith::scene::ModelSource;
 use glossmith::scene::environment::{self, Environment, EnvironmentSource};
 
 /// A small document: one material from assignments, box filter, independent samples (so that variances are honest).
-fn document(model: ModelSource, light: EnvironmentSource, assignments: &[&str]) -> Document {
+pub fn document(model: ModelSource, light: EnvironmentSource, assignments: &[&str]) -> Document {
     let mut material = MaterialSettings::default();
     for assignment in assignments {
         assign(&mut material, assignment).unwrap();
@@ -33,7 +33,7 @@ fn document(model: ModelSource, light: EnvironmentSource, assignments: &[&str]) 
 }
 
 /// Renders to the end.
-fn render(choice: EngineChoice, document: &Document) -> Film {
+pub fn render(choice: EngineChoice, document: &Document) -> Film {
     let mut session = Session::open(choice).unwrap();
     session.submit(document).unwrap();
     while !session.step(Duration::from_secs(1)).unwrap().is_done {}
@@ -64,7 +64,7 @@ fn beyond_three_sigma(a: &Film, b: &Film) -> f64 {
 
 /// Fails unless two films show the same picture: their sums agree, few pixels are beyond 3 standard deviations.
 #[track_caller]
-fn assert_same_picture(a: &Film, b: &Film, what: &str) {
+pub fn assert_same_picture(a: &Film, b: &Film, what: &str) {
     let whole = a.difference_in_sigma(b);
     assert!(
         whole.abs() < 4.0,
@@ -79,7 +79,7 @@ fn assert_same_picture(a: &Film, b: &Film, what: &str) {
     );
 }
 
-fn with_strategy(document: &Document, strategy: Strategy, seed: u32) -> Document {
+pub fn with_strategy(document: &Document, strategy: Strategy, seed: u32) -> Document {
     let mut document = document.clone();
     document.render.strategy = strategy;
     document.render.seed = seed;

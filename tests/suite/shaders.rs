@@ -9,8 +9,8 @@ use glossmith::gpu::shader::{EXTRA, Linked, link, link_with, module_names};
 use glossmith::optics::chord;
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, LONG_TAIL_MAX};
 use glossmith::optics::fresnel::Fresnel;
-use glossmith::optics::lobe::{ALPHA_MIN, Horizon, Lobe, MIRROR_WIDTH};
-use glossmith::optics::material::ALBEDO_NODES;
+use glossmith::optics::lobe::{ALPHA_MIN, Facets, Horizon, Lobe, MIRROR_WIDTH};
+use glossmith::optics::material::{ALBEDO_NODES, TOTAL_NODES};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::{self, ToneCurve};
 use glossmith::scene::camera::{Camera, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA, PixelFilter};
@@ -268,6 +268,10 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("CUSTOM_INTERVALS", CUSTOM_INTERVALS as f64),
         ("LONG_TAIL_MAX", LONG_TAIL_MAX),
         ("ALBEDO_NODES", ALBEDO_NODES as f64),
+        ("TOTAL_NODES", TOTAL_NODES as f64),
+        ("FACETS_NONE", f64::from(Facets::None as u32)),
+        ("FACETS_VISIBLE", f64::from(Facets::Visible as u32)),
+        ("FACETS_ALL", f64::from(Facets::All as u32)),
         ("SHORT_RULE_ROUGHNESS", chord::SHORT_RULE_ROUGHNESS),
         ("PEAK_RADIUS", chord::PEAK_RADIUS),
         ("TINY", chord::TINY),
@@ -350,6 +354,8 @@ const NARROW_PLAN: Plan = Plan {
     base: false,
     specular: true,
     emission: false,
+    transmission: false,
+    absorption: false,
     light_sampling: true,
     lens: false,
 };

@@ -85,8 +85,9 @@ impl<'a> Materials<'a> {
             .map(|volume| volume.attenuation_distance.0)
             .filter(|distance| distance.is_finite() && *distance > 0.0);
         if transmission > 0.0 && attenuation_distance.is_some() && [red, green, blue] != [1.0; 3] {
-            self.warnings
-                .push(format!("material {index}: its volume colours what is seen through, not its base colour"));
+            self.warnings.push(format!(
+                "material {index}: its volume colours what is seen through, not its base colour"
+            ));
         }
         let mut uv_set = None;
         let info = |info: &Option<json::texture::Info>| {

@@ -72,12 +72,12 @@ pub fn read_view<T: Real>(row: &mut Row<'_, T>) -> (Frame<T>, Vec3<T>, Vec3<T>) 
 /// The numbers of a shape.
 #[derive(Clone, Copy)]
 pub struct Shape {
-    lobe: Lobe,
-    curve: Curve,
-    horizon: Horizon,
-    table: u32,
-    roughness: f32,
-    anisotropy: f32,
+    pub lobe: Lobe,
+    pub curve: Curve,
+    pub horizon: Horizon,
+    pub table: u32,
+    pub roughness: f32,
+    pub anisotropy: f32,
     /// 0 in half of them: they reflect.
     pub eta: f32,
 }

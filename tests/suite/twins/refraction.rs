@@ -2,7 +2,7 @@
 
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::{Lobe, lobe_sample, lobe_view};
-use glossmith::optics::real::{Mask, Real};
+use glossmith::optics::real::Mask;
 use glossmith::optics::refraction::{
     facet_density_factor, facet_refracted, facet_weight, refracted, refracted_square, refracting_cosine,
     refracting_normal,
