@@ -91,6 +91,8 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
     var share = clamp(specular / max(specular + rest, 1e-9), 0.05, 0.95);
     share = select(0.0, share, specular > 0.0);
     share = select(1.0, share, rest > 0.0);
+    // What is passed on is what was not reflected, no estimate.
+    share = select(share, min(specular, 1.0), passes_on(material));
     return Layers(base, transmission, share, (1.0 - share) * (through / max(rest, 1e-9)));
 }
 
@@ -112,37 +114,88 @@ fn base_shape() -> LobeShape {
     return LobeShape(LOBE_LAMBERT, CURVE_SQRT, HORIZON_MIRROR, 0u, 1.0, 0.0, 0.0);
 }
 
+const LAYER_SPECULAR: u32 = 0u;
+const LAYER_BASE: u32 = 1u;
+const LAYER_TRANSMISSION: u32 = 2u;
+
+struct MaterialNumbers {
+    lobe: vec3f,
+    layer: f32,
+    below: vec3f,
+}
+
+fn passes_on(material: Material) -> bool {
+    let lobe = planned(material.lobe, PLAN_LOBE);
+    return material_transmits(material) && (lobe == LOBE_GEOMETRIC || lobe == LOBE_LAMBERT);
+}
+
 fn material_sample(
-    material: Material, surface: Surface, xi: vec3f, xi_layer: f32, wants_density: bool,
+    material: Material, surface: Surface, numbers: MaterialNumbers, wants_density: bool,
 ) -> MaterialSample {
     let layers = material_layers(material, surface);
-    let specular = layers.specular_probability;
+    let base = base_probability(layers);
     let through = layers.transmission_probability;
-    let is_specular = xi_layer < specular;
-    let is_base = xi_layer < specular + base_probability(layers) || !(through > 0.0);
-    var shape = base_shape();
-    var probability = base_probability(layers);
-    if is_specular {
-        shape = material_shape(material);
-        probability = specular;
-    } else if PLAN_TRANSMISSION == 1u && !is_base {
-        shape = material_transmission_shape(material, surface.is_inside);
-        probability = through;
+    let is_passed_on = passes_on(material);
+    var xi = numbers.lobe;
+    var specular = layers.specular_probability;
+    var layer = below_layer(numbers.layer, specular, base, through);
+    if is_passed_on || numbers.layer < specular {
+        layer = LAYER_SPECULAR;
     }
-    let drawn = lobe_sample(shape, surface.frame, surface.normal, surface.wo, xi);
-    var color = layers.base;
-    if is_specular {
-        let terms = material_fresnel_terms(material, surface.is_inside);
-        color = fresnel(terms, half_vector_cosine(surface.wo, drawn.wi));
-    } else if PLAN_TRANSMISSION == 1u && !is_base {
-        color = transmission_color(material, layers, shape, surface, drawn.wi);
+    var shape: LobeShape;
+    var drawn: LobeSample;
+    var color: vec3f;
+    var probability: f32;
+    // A loop, so that the lobes' code is there once: the second time where the specular lobe passed on.
+    for (var i = 0u; i < 1u + PLAN_TRANSMISSION; i++) {
+        shape = layer_shape(material, layer, surface.is_inside);
+        drawn = lobe_sample(shape, surface.frame, surface.normal, surface.wo, xi);
+        if layer == LAYER_SPECULAR {
+            let terms = material_fresnel_terms(material, surface.is_inside);
+            color = fresnel(terms, half_vector_cosine(surface.wo, drawn.wi));
+            if is_passed_on {
+                specular = select(0.0, luminance(color), drawn.weight > 0.0);
+            }
+            probability = specular;
+            if numbers.layer < specular {
+                break;
+            }
+            xi = numbers.below;
+            layer = below_layer(numbers.layer, specular, base, through);
+            continue;
+        }
+        if PLAN_TRANSMISSION == 1u && layer == LAYER_TRANSMISSION {
+            color = transmission_color(material, layers, shape, surface, drawn.wi);
+            probability = through;
+        } else {
+            color = layers.base;
+            probability = base;
+        }
+        break;
     }
     let mirror = is_mirror(shape);
     var density = 0.0;
     if wants_density && !mirror {
         density = probability * lobe_evaluate(shape, surface.frame, surface.normal, surface.wo, drawn.wi).y;
     }
-    return MaterialSample(drawn.wi, color * (drawn.weight / probability), density, mirror);
+    return MaterialSample(drawn.wi, color * (drawn.weight / max(probability, 1e-20)), density, mirror);
+}
+
+// The layer below the specular one, whose probability was `specular`.
+fn below_layer(xi_layer: f32, specular: f32, base: f32, through: f32) -> u32 {
+    let base_end = specular + (1.0 - specular) * (base / max(base + through, 1e-20));
+    let is_base = PLAN_TRANSMISSION == 0u || xi_layer < base_end || !(through > 0.0);
+    return select(LAYER_TRANSMISSION, LAYER_BASE, is_base);
+}
+
+fn layer_shape(material: Material, layer: u32, is_inside: bool) -> LobeShape {
+    if layer == LAYER_SPECULAR {
+        return material_shape(material);
+    }
+    if PLAN_TRANSMISSION == 1u && layer == LAYER_TRANSMISSION {
+        return material_transmission_shape(material, is_inside);
+    }
+    return base_shape();
 }
 
 fn transmission_color(material: Material, layers: Layers, shape: LobeShape, surface: Surface, wi: vec3f) -> vec3f {
@@ -173,14 +226,15 @@ fn material_evaluate(material: Material, surface: Surface, wi: vec3f, light_dens
             continue;
         }
         let lobe = lobe_evaluate(shape, surface.frame, surface.normal, surface.wo, wi);
-        let share = light_density / (light_density + competing * probability * lobe.y);
         var color = vec3f(0.0);
         if is_through {
             color = transmission_color(material, layers, shape, surface, wi);
         } else {
             let terms = material_fresnel_terms(material, surface.is_inside);
             color = fresnel(terms, half_vector_cosine(surface.wo, wi));
+            probability = select(probability, luminance(color), passes_on(material));
         }
+        let share = light_density / (light_density + competing * probability * lobe.y);
         sum += color * (lobe.x * share);
     }
     if material_has_base(material) {

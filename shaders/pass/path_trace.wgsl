@@ -13,6 +13,8 @@ const BACKGROUND_TRANSPARENT: u32 = 1u;
 // Pairs of numbers before the first bounce (pixel, lens) and a bounce (lobe twice, light twice).
 const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
+// The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
+const BELOW_DIMENSION: u32 = 4096u;
 // Bounces before Russian roulette.
 const ROULETTE_START: u32 = 3u;
 // Beyond it the square would overflow: dropped and counted.
@@ -110,7 +112,12 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
         let wants_density = PLAN_LIGHT_SAMPLING == 1u && globals.strategy == STRATEGY_MIS;
-        let drawn = material_sample(material, point.surface, xi.xyz, xi.w, wants_density);
+        var numbers = MaterialNumbers(xi.xyz, xi.w, xi.xyz);
+        if material_transmits(material) {
+            let pair = BELOW_DIMENSION + 2u * bounce;
+            numbers.below = vec3f(random_pair(state, pair), random_pair(state, pair + 1u).x);
+        }
+        let drawn = material_sample(material, point.surface, numbers, wants_density);
         throughput *= drawn.throughput;
         let strength = max(max(throughput.x, throughput.y), throughput.z);
         if !(strength > 0.0) {

@@ -1,7 +1,7 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
 
 use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
-use crate::optics::material::{Material, material_evaluate, material_sample};
+use crate::optics::material::{Material, MaterialNumbers, material_evaluate, material_sample};
 use crate::optics::random::{RandomState, random_pair, random_state};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
@@ -17,6 +17,8 @@ use crate::scene::{Geometry, Hit};
 pub const FIRST_DIMENSION: u32 = 2;
 /// Pairs of numbers a bounce: lobe twice, light twice.
 pub const BOUNCE_DIMENSIONS: u32 = 4;
+/// The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
+pub const BELOW_DIMENSION: u32 = 4096;
 /// Bounces before Russian roulette.
 pub const ROULETTE_START: u32 = 3;
 /// Beyond it the square would overflow f32: dropped and counted.
@@ -155,8 +157,18 @@ impl<'a, T: Real> Integrator<'a, T> {
             }
             let [a, b] = random_pair(state, dimension);
             let [c, layer] = random_pair(state, dimension + 1);
+            let mut numbers = MaterialNumbers {
+                lobe: [a, b, c],
+                layer,
+                below: [a, b, c],
+            };
+            if material.transmits() {
+                let [a, b] = random_pair(state, BELOW_DIMENSION + 2 * bounce);
+                let [c, _] = random_pair(state, BELOW_DIMENSION + 2 * bounce + 1);
+                numbers.below = [a, b, c];
+            }
             let wants_density = self.samples_light && settings.strategy == Strategy::Mis;
-            let drawn = material_sample(material, self.tables, &point.surface, [a, b, c], layer, wants_density);
+            let drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
             throughput = throughput * drawn.throughput;
             let strength = throughput.max_component();
             // Also ends paths that are NaN.

@@ -9,7 +9,7 @@
 use super::curve::Curve;
 use super::frame::Frame;
 use super::fresnel::{Fresnel, FresnelTerms, fresnel, half_vector_cosine};
-use super::lobe::{Horizon, Lobe, LobeShape, is_mirror, lobe_evaluate, lobe_sample, refracts_at_facets};
+use super::lobe::{Horizon, Lobe, LobeSample, LobeShape, is_mirror, lobe_evaluate, lobe_sample, refracts_at_facets};
 use super::random::{Sequence, random_pair, random_state};
 use super::real::{Mask, Real};
 use super::refraction::{refracted_square, refracting_cosine};
@@ -264,6 +264,8 @@ pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface:
     let share = (specular / (specular + rest).max(tiny)).clamp(T::from_f64(0.05), T::from_f64(0.95));
     let share = T::select(zero.less(specular), share, zero);
     let share = T::select(zero.less(rest), share, one);
+    // What is passed on is what was not reflected, no estimate.
+    let share = if passes_on(material) { specular.min(one) } else { share };
     Layers {
         base,
         transmission,
@@ -296,48 +298,77 @@ fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
     }
 }
 
-/// Draws a direction: the specular lobe, the base or the refracting lobe, chosen by `xi_layer`. `wants_density` is false
-/// where no other strategy competes: then the geometric lobe never computes its density.
+/// The numbers that a sample of a material takes, each in [0, 1).
+#[derive(Clone, Copy, Debug)]
+pub struct MaterialNumbers<T> {
+    /// Draws the direction.
+    pub lobe: [T; 3],
+    /// Chooses the layer.
+    pub layer: T,
+    /// Draws the direction where the specular lobe passed it on to what is below.
+    pub below: [T; 3],
+}
+
+/// True where a mirrored direction is drawn first and what it does not reflect is passed on: then all weights are 1
+/// however often light is reflected inside. It takes a lobe whose own weights are 1.
+#[inline(always)]
+fn passes_on<T: Real>(material: &Material<T>) -> bool {
+    let lobe: Lobe = by_index(Lobe::ALL, material.lobe);
+    material.transmits() && matches!(lobe, Lobe::Geometric | Lobe::Lambert)
+}
+
+/// Draws a direction: from the specular lobe, the base or the refracting lobe. `wants_density` is false where no other
+/// strategy competes: then the geometric lobe never computes its density.
 pub fn material_sample<T: Real>(
     material: &Material<T>,
     tables: &[f32],
     surface: &Surface<T>,
-    xi: [T; 3],
-    xi_layer: T,
+    numbers: MaterialNumbers<T>,
     wants_density: bool,
 ) -> MaterialSample<T> {
     let layers = material_layers(material, tables, surface);
-    let (specular, through) = (layers.specular_probability, layers.transmission_probability);
-    let is_specular = xi_layer.less(specular).any();
-    let is_base = xi_layer.less(specular + layers.base_probability()).any() || !T::zero().less(through).any();
-    let (shape, probability) = if is_specular {
-        (material.shape(tables), specular)
-    } else if is_base {
-        (base_shape(), layers.base_probability())
-    } else {
-        (material.transmission_shape(tables, surface.is_inside), through)
+    let base = layers.base_probability();
+    let through = layers.transmission_probability;
+    let draw = |shape: &LobeShape<'_, T>, xi| lobe_sample(shape, &surface.frame, surface.normal, surface.wo, xi);
+    let finish = |shape: &LobeShape<'_, T>, drawn: LobeSample<T>, color: Vec3<T>, probability: T| {
+        let is_mirror = is_mirror(shape).any();
+        let density = if wants_density && !is_mirror {
+            probability * lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, drawn.wi)[1]
+        } else {
+            T::zero()
+        };
+        MaterialSample {
+            wi: drawn.wi,
+            throughput: color * (drawn.weight / probability.max(T::from_f64(1e-20))),
+            density,
+            is_mirror,
+        }
     };
-    let drawn = lobe_sample(&shape, &surface.frame, surface.normal, surface.wo, xi);
-    let color = if is_specular {
+    let mut xi = numbers.lobe;
+    let mut specular = layers.specular_probability;
+    let is_passed_on = passes_on(material);
+    if is_passed_on || numbers.layer.less(specular).any() {
+        let shape = material.shape(tables);
+        let drawn = draw(&shape, xi);
         let terms = material.fresnel_terms(surface.is_inside);
-        fresnel(&terms, half_vector_cosine(surface.wo, drawn.wi))
-    } else if is_base {
-        layers.base
-    } else {
-        transmission_color(material, &layers, &shape, surface, drawn.wi)
-    };
-    let is_mirror = is_mirror(&shape).any();
-    let density = if wants_density && !is_mirror {
-        probability * lobe_evaluate(&shape, &surface.frame, surface.normal, surface.wo, drawn.wi)[1]
-    } else {
-        T::zero()
-    };
-    MaterialSample {
-        wi: drawn.wi,
-        throughput: color * (drawn.weight / probability),
-        density,
-        is_mirror,
+        let color = fresnel(&terms, half_vector_cosine(surface.wo, drawn.wi));
+        if is_passed_on {
+            specular = T::select(T::zero().less(drawn.weight), color.luminance(), T::zero());
+            xi = numbers.below;
+        }
+        if numbers.layer.less(specular).any() {
+            return finish(&shape, drawn, color, specular);
+        }
     }
+    let base_end = specular + (T::one() - specular) * (base / (base + through).max(T::from_f64(1e-20)));
+    if numbers.layer.less(base_end).any() || !T::zero().less(through).any() {
+        let shape = base_shape();
+        return finish(&shape, draw(&shape, xi), layers.base, base);
+    }
+    let shape = material.transmission_shape(tables, surface.is_inside);
+    let drawn = draw(&shape, xi);
+    let color = transmission_color(material, &layers, &shape, surface, drawn.wi);
+    finish(&shape, drawn, color, through)
 }
 
 /// What is refracted into a direction: of lobes made of facets what the facet does not reflect, of others what the
@@ -372,25 +403,30 @@ pub fn material_evaluate<T: Real>(
 ) -> Vec3<T> {
     let layers = material_layers(material, tables, surface);
     let mut sum = Vec3::zero();
-    let mut add = |shape: &LobeShape<'_, T>, probability: T, color: &dyn Fn() -> Vec3<T>| {
+    let mut add = |shape: &LobeShape<'_, T>, probability: T, color: Vec3<T>| {
         if !is_mirror(shape).any() {
             let [value, density] = lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, wi);
             let share = light_density / (light_density + competing * probability * density);
-            sum += color() * (value * share);
+            sum += color * (value * share);
         }
     };
     if material.has_specular() {
         let terms = material.fresnel_terms(surface.is_inside);
-        let color = || fresnel(&terms, half_vector_cosine(surface.wo, wi));
-        add(&material.shape(tables), layers.specular_probability, &color);
+        let color = fresnel(&terms, half_vector_cosine(surface.wo, wi));
+        let probability = if passes_on(material) {
+            color.luminance()
+        } else {
+            layers.specular_probability
+        };
+        add(&material.shape(tables), probability, color);
     }
     if material.has_base() {
-        add(&base_shape(), layers.base_probability(), &|| layers.base);
+        add(&base_shape(), layers.base_probability(), layers.base);
     }
     if material.transmits() {
         let shape = material.transmission_shape(tables, surface.is_inside);
-        let color = || transmission_color(material, &layers, &shape, surface, wi);
-        add(&shape, layers.transmission_probability, &color);
+        let color = transmission_color(material, &layers, &shape, surface, wi);
+        add(&shape, layers.transmission_probability, color);
     }
     sum
 }

@@ -285,6 +285,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("VIEW_COSINE_MIN", surface::VIEW_COSINE_MIN),
         ("FIRST_DIMENSION", f64::from(integrator::FIRST_DIMENSION)),
         ("BOUNCE_DIMENSIONS", f64::from(integrator::BOUNCE_DIMENSIONS)),
+        ("BELOW_DIMENSION", f64::from(integrator::BELOW_DIMENSION)),
         ("ROULETTE_START", f64::from(integrator::ROULETTE_START)),
         ("RADIANCE_MAX", integrator::RADIANCE_MAX),
     ] {
@@ -297,7 +298,14 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
 }
 
 /// Constants that only shaders need.
-const WITHOUT_TWIN: &[&str] = &["ANY", "NO_HIT", "STACK_SIZE"];
+const WITHOUT_TWIN: &[&str] = &[
+    "ANY",
+    "NO_HIT",
+    "STACK_SIZE",
+    "LAYER_SPECULAR",
+    "LAYER_BASE",
+    "LAYER_TRANSMISSION",
+];
 
 #[test]
 fn constants_equal_their_twins() {

@@ -2,7 +2,8 @@
 
 use glossmith::optics::lobe::{Lobe, lobe_sample, raw_sample};
 use glossmith::optics::material::{
-    Material, Surface, albedo_lookup, albedo_place, material_evaluate, material_layers, material_sample,
+    Material, MaterialNumbers, Surface, albedo_lookup, albedo_place, material_evaluate, material_layers,
+    material_sample,
 };
 use glossmith::optics::real::Real;
 
@@ -65,14 +66,19 @@ fn materials_agree() {
     .output("l.transmission_probability", Output::Number(0.05));
     let mut sample = Case::new(
         "material_sample",
-        "material tangent bitangent shading normal wo inside a b c layer wants_density",
+        "material tangent bitangent shading normal wo inside a b c layer d e f wants_density",
         "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, inside == 1u); \
-         let s = material_sample(materials[material], surface, vec3f(a, b, c), layer, wants_density == 1u);",
+         let s = material_sample(materials[material], surface, \
+         MaterialNumbers(vec3f(a, b, c), layer, vec3f(d, e, f)), wants_density == 1u);",
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
-            let (xi, layer) = (row.numbers(), row.number());
+            let numbers = MaterialNumbers {
+                lobe: row.numbers(),
+                layer: row.number(),
+                below: row.numbers(),
+            };
             let wants_density = row.bits() == 1;
-            let drawn = material_sample(&material, &SCENE.tables, &surface, xi, layer, wants_density);
+            let drawn = material_sample(&material, &SCENE.tables, &surface, numbers, wants_density);
             row.put_vector(drawn.wi);
             row.put_vector(drawn.throughput);
             row.put(drawn.density);
@@ -105,7 +111,7 @@ fn materials_agree() {
             [&start[..], &View::random(rng).inputs(), &[side(rng)]].concat()
         });
         sample = sample.group_of(lobe.name(), 16_000, move |rng, _| {
-            let xi = [(); 4].map(|()| Value::Unit(rng.unit()));
+            let xi = [(); 7].map(|()| Value::Unit(rng.unit()));
             let start = [random_index(rng, lobe).into()];
             let view = View::random(rng).inputs();
             [&start[..], &view, &[side(rng)], &xi, &[(rng.bits() & 1).into()]].concat()
