@@ -41,7 +41,7 @@ pub fn render(choice: EngineChoice, document: &Document) -> Film {
 }
 
 /// The share of pixels whose luminances differ by more than three standard deviations of their noise.
-pub fn beyond_three_sigma(a: &Film, b: &Film) -> f64 {
+fn beyond_three_sigma(a: &Film, b: &Film) -> f64 {
     let (mean_a, mean_b) = (a.luminance(), b.luminance());
     // Rounding of f32 radiance beside the noise.
     let floored = |film: &Film, mean: &[f64]| -> Vec<f64> {
