@@ -173,11 +173,6 @@ impl App {
         layout::reveal(&mut self.layout, pane);
     }
 
-    /// How long the window's frames take.
-    pub fn meter(&self) -> &FrameMeter {
-        &self.meter
-    }
-
     /// What was said so far, oldest first.
     pub fn messages(&self) -> Vec<String> {
         self.panels.log.iter().map(|entry| entry.text.clone()).collect()
@@ -414,10 +409,9 @@ impl App {
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
-        let begun = Instant::now();
         let ctx = ui.ctx().clone();
-        self.meter
-            .begin(begun, ctx.requested_repaint_last_pass(), frame.info().cpu_usage);
+        let is_running = ctx.requested_repaint_last_pass();
+        self.meter.begin(Instant::now(), is_running, frame.info().cpu_usage);
         self.take_events();
         let mut actions = std::mem::take(&mut self.queue);
         if self.sheet == Sheet::None && !self.dialogs.is_open() {
@@ -431,7 +425,6 @@ impl eframe::App for App {
         }
         self.record_and_submit(&ctx);
         self.set_title(&ctx);
-        self.meter.end(begun.elapsed());
     }
 
     fn on_exit(&mut self) {

@@ -11,72 +11,88 @@ const RECENT: Duration = Duration::from_secs(10);
 /// Frames left out of the worst: at the start, fonts and pipelines are made.
 const WARM_UP_FRAMES: u64 = 10;
 
-/// How long the window's frames take: what eframe counts of its last one, and where frames follow each other without a
-/// pause, as while something moves, all that lies between them.
+/// How long the window's frames take. Two times, as they have different causes: the *work* of a frame, for which nothing
+/// else happens in the window (panels, tessellation, upload, submission: what eframe counts), and the *interval* between
+/// frames that follow each other without a pause, which also holds the driver's drawing and the wait for the screen.
 #[derive(Clone, Debug, Default)]
 pub struct FrameMeter {
     frames: u64,
     begun: Option<Instant>,
+    work: Track,
+    interval: Track,
+}
+
+/// One of the two times.
+#[derive(Clone, Debug, Default)]
+struct Track {
     last: Duration,
     worst: Duration,
     recent: Vec<(Instant, Duration)>,
 }
 
-impl FrameMeter {
-    /// A frame begins, which tells how long the last one was. `is_running`: it was asked for by the last one.
-    pub(super) fn begin(&mut self, now: Instant, is_running: bool, cpu_seconds: Option<f32>) {
-        let between = self.begun.filter(|_| is_running).map(|begun| now.duration_since(begun));
-        let counted = cpu_seconds.map(|seconds| Duration::from_secs_f32(seconds.clamp(0.0, 1e3)));
-        if let Some(last) = between.max(counted) {
-            self.record(now, last);
-        }
-        self.begun = Some(now);
-    }
-
-    /// The panels took this long.
-    pub(super) fn end(&mut self, duration: Duration) {
-        self.record(Instant::now(), duration);
-        self.frames += 1;
-    }
-
-    fn record(&mut self, now: Instant, duration: Duration) {
+impl Track {
+    fn record(&mut self, now: Instant, duration: Duration, is_warm: bool) {
         self.last = duration;
         self.recent.retain(|(at, _)| now.duration_since(*at) < RECENT);
         self.recent.push((now, duration));
-        if self.frames > WARM_UP_FRAMES {
+        if is_warm {
             self.worst = self.worst.max(duration);
         }
     }
 
+    fn recent_worst(&self) -> Duration {
+        let durations = self.recent.iter().map(|(_, duration)| *duration);
+        durations.max().unwrap_or_default()
+    }
+}
+
+impl FrameMeter {
+    /// A frame begins. `is_running`: it was asked for while the last one was drawn. `work_seconds`: eframe's count of
+    /// the last one.
+    pub(super) fn begin(&mut self, now: Instant, is_running: bool, work_seconds: Option<f32>) {
+        let is_warm = self.frames > WARM_UP_FRAMES;
+        if let Some(seconds) = work_seconds {
+            let work = Duration::from_secs_f32(seconds.clamp(0.0, 1e3));
+            self.work.record(now, work, is_warm);
+        }
+        if let Some(begun) = self.begun.filter(|_| is_running) {
+            self.interval.record(now, now.duration_since(begun), is_warm);
+        }
+        self.begun = Some(now);
+        self.frames += 1;
+    }
+
     /// One line for the log.
     pub fn summary(&self) -> String {
-        let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
-        let recent = ms(self.recent_worst());
         format!(
-            "window: {} frames, longest {:.1} ms, of the last 10 s {recent:.1} ms",
+            "window: {} frames; longest frame {:.1} ms, longest interval between frames {:.1} ms",
             self.frames,
-            ms(self.worst)
+            ms(self.work.worst),
+            ms(self.interval.worst)
         )
     }
 
-    /// The longest frame since the start, the first few left out.
-    pub fn worst(&self) -> Duration {
-        self.worst
+    fn describe(&self, ui: &mut Ui) {
+        ui.label("The window's own frames: they are drawn beside the renderer.");
+        egui::Grid::new("frame times").num_columns(4).show(ui, |ui| {
+            for heading in ["", "last", "longest in 10 s", "longest"] {
+                ui.weak(heading);
+            }
+            ui.end_row();
+            for (label, track) in [("Frame", &self.work), ("From frame to frame", &self.interval)] {
+                ui.label(label);
+                for duration in [track.last, track.recent_worst(), track.worst] {
+                    ui.label(format!("{:.1} ms", ms(duration)));
+                }
+                ui.end_row();
+            }
+        });
+        ui.weak("From frame to frame: while something moves; with the driver's drawing and the wait for the screen.");
     }
+}
 
-    /// The longest frame of the last ten seconds.
-    pub fn recent_worst(&self) -> Duration {
-        self.recent
-            .iter()
-            .map(|(_, duration)| *duration)
-            .max()
-            .unwrap_or_default()
-    }
-
-    /// Frames recorded.
-    pub fn frames(&self) -> u64 {
-        self.frames
-    }
+fn ms(duration: Duration) -> f64 {
+    1e3 * duration.as_secs_f64()
 }
 
 /// Shows the bar's contents.
@@ -147,23 +163,16 @@ fn activity(ui: &mut Ui, snapshot: &Snapshot) {
 }
 
 fn window_time(ui: &mut Ui, meter: &FrameMeter, snapshot: &Snapshot) {
-    let ms = |duration: Duration| 1e3 * duration.as_secs_f64();
-    ui.weak(format!("window {:.0} ms", ms(meter.last))).on_hover_ui(|ui| {
-        ui.label("Time of the window's own frames: they are drawn beside the renderer.");
-        ui.label(format!("last: {:.1} ms", ms(meter.last)));
-        ui.label(format!("longest of the last 10 s: {:.1} ms", ms(meter.recent_worst())));
-        ui.label(format!(
-            "longest: {:.1} ms of {} frames",
-            ms(meter.worst()),
-            meter.frames()
-        ));
-        if let Some(first) = snapshot.first_picture {
-            ui.label(format!(
-                "from the last change to its first picture: {:.0} ms",
-                ms(first)
-            ));
-        }
-    });
+    ui.weak(format!("window {:.0} ms", ms(meter.work.last)))
+        .on_hover_ui(|ui| {
+            meter.describe(ui);
+            if let Some(first) = snapshot.first_picture {
+                ui.label(format!(
+                    "From the last change to its first picture: {:.0} ms",
+                    ms(first)
+                ));
+            }
+        });
 }
 
 /// A number with three digits and a prefix.
@@ -196,19 +205,22 @@ mod tests {
     }
 
     #[test]
-    fn frames_that_follow_each_other_count_whole_and_the_first_ones_not_at_all() {
+    fn work_counts_every_frame_and_intervals_only_those_without_a_pause() {
         let mut meter = FrameMeter::default();
         let begun = Instant::now();
         let at = |ms: u64| begun + Duration::from_millis(ms);
+        // The first frames make fonts and pipelines: they count as recent, not as the longest.
         meter.begin(at(0), true, None);
-        meter.end(Duration::from_secs(3));
+        meter.begin(at(3000), true, Some(3.0));
         for frame in 1..=20 {
-            meter.begin(at(40 * frame), true, Some(0.005));
-            meter.end(Duration::from_millis(5));
+            meter.begin(at(3000 + 40 * frame), true, Some(0.005));
         }
-        assert_eq!(meter.worst(), Duration::from_millis(40));
-        assert_eq!(meter.recent_worst(), Duration::from_secs(3));
-        meter.begin(at(5000), false, Some(0.012));
-        assert_eq!(meter.last, Duration::from_secs_f32(0.012));
+        assert_eq!(meter.work.worst, Duration::from_millis(5));
+        assert_eq!(meter.interval.worst, Duration::from_millis(40));
+        assert_eq!(meter.work.recent_worst(), Duration::from_secs(3));
+        // A pause is no interval, but the frame before it counts.
+        meter.begin(at(9000), false, Some(0.012));
+        assert_eq!(meter.work.last, Duration::from_secs_f32(0.012));
+        assert_eq!(meter.interval.worst, Duration::from_millis(40));
     }
 }

@@ -18,7 +18,9 @@ const SHOWN_MAX: f64 = 5.0;
 /// Steps of a drawn line.
 const STEPS: usize = 240;
 /// Points that a named curve becomes when it is edited.
-const POINTS: usize = 9;
+const POINTS: usize = 11;
+/// Steps of the line along which those points are spread.
+const FINE_STEPS: usize = 1000;
 /// What ctrl snaps to.
 const SNAP: f64 = 0.05;
 
@@ -112,16 +114,25 @@ fn head(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut crate::document::Materi
     });
 }
 
-/// A custom curve through points of a named one.
+/// A custom curve through points of a named one, spread evenly along its line as the plot shows it: denser where it is
+/// steep.
 fn from_named(curve: Curve) -> CustomCurve {
-    let point = |i: usize| {
-        // Denser at the ends, where the curves are steep.
-        let xi = 0.5 - 0.5 * (std::f64::consts::PI * i as f64 / (POINTS - 1) as f64).cos();
-        let xi = if i == POINTS - 1 { 1.0 } else { xi };
-        let distance = curve_distance(curve, &[], xi.min(1.0 - 1e-4)).clamp(0.0, f64::from(DISTANCE_MAX));
-        [xi as f32, distance as f32]
+    let distance = |xi: f64| curve_distance(curve, &[], xi.min(1.0 - 1e-3)).clamp(0.0, f64::from(DISTANCE_MAX));
+    let fine: Vec<[f64; 2]> = (0..=FINE_STEPS)
+        .map(|i| i as f64 / FINE_STEPS as f64)
+        .map(|xi| [xi, distance(xi)])
+        .collect();
+    let top = distance(1.0);
+    let mut lengths = vec![0.0];
+    for pair in fine.windows(2) {
+        let step = (pair[1][0] - pair[0][0]).hypot((pair[1][1] - pair[0][1]) / top);
+        lengths.push(lengths[lengths.len() - 1] + step);
+    }
+    let at = |i: usize| {
+        let length = lengths[FINE_STEPS] * i as f64 / (POINTS - 1) as f64;
+        fine[lengths.partition_point(|l| *l < length).min(FINE_STEPS)].map(|x| x as f32)
     };
-    CustomCurve::try_from((0..POINTS).map(point).collect::<Vec<_>>()).unwrap_or_default()
+    CustomCurve::try_from((0..POINTS).map(at).collect::<Vec<_>>()).unwrap_or_default()
 }
 
 fn plot<'a>(id: &str, label: &'a str, height: f32) -> Plot<'a> {
@@ -386,7 +397,7 @@ mod tests {
                 let xi = 0.95 * f64::from(i) / 20.0;
                 let (wanted, drawn) = (curve_distance::<f64>(curve, &[], xi), custom.distance(xi));
                 assert!(
-                    (wanted - drawn).abs() < 0.12,
+                    (wanted - drawn).abs() < 0.03 * custom.distance(1.0),
                     "{curve:?} at {xi}: {drawn} instead of {wanted}"
                 );
             }
