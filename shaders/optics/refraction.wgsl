@@ -13,7 +13,8 @@ fn refracted_square(cosine: f32, eta: f32) -> f32 {
 fn refracted(wo: vec3f, axis: vec3f, eta: f32) -> Refracted {
     let cosine = dot(wo, axis);
     let square = refracted_square(cosine, eta);
-    return Refracted((axis * (cosine - safe_sqrt(square)) - wo) / eta, square < 0.0);
+    let is_total = square < 0.0;
+    return Refracted(select((axis * (cosine - safe_sqrt(square)) - wo) / eta, -wo, is_total), is_total);
 }
 
 fn facet_refracted(wo: vec3f, mirrored: vec3f, eta: f32) -> Refracted {

@@ -16,7 +16,7 @@ use super::vector::Vec3;
 /// A refracted direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Refracted<T: Real> {
-    /// Behind the surface; along it where the reflection is total.
+    /// Behind the surface; straight on where the reflection is total.
     pub wi: Vec3<T>,
     /// True where all light is reflected.
     pub is_total: T::Mask,
@@ -34,9 +34,10 @@ pub fn refracted_square<T: Real>(cosine: T, eta: T) -> T {
 pub fn refracted<T: Real>(wo: Vec3<T>, axis: Vec3<T>, eta: T) -> Refracted<T> {
     let cosine = wo.dot(axis);
     let square = refracted_square(cosine, eta);
+    let is_total = square.less(T::zero());
     Refracted {
-        wi: (axis * (cosine - square.safe_sqrt()) - wo) / eta,
-        is_total: square.less(T::zero()),
+        wi: Vec3::select(is_total, -wo, (axis * (cosine - square.safe_sqrt()) - wo) / eta),
+        is_total,
     }
 }
 

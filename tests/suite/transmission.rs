@@ -40,9 +40,10 @@ fn clear_glass_is_white_in_the_furnace() {
             &["specular.roughness=0.3"],
             &["specular.roughness=0.7", "specular.curve=long-tail"],
             &["specular.roughness=0.4", "specular.anisotropy=0.6"],
-            // Were the reflection smooth and the refraction rough, total reflection would keep light inside for ever.
+            // Were the reflection smoother and the refraction or the base rough, total reflection would keep some of
+            // the light inside for more bounces than there are.
             &["specular.roughness=0.3", "transmission.roughness=-0.15"],
-            &["transmission.weight=0.5", "base.color=1,1,1", "specular.roughness=0.2"],
+            &["transmission.weight=0.5", "base.color=1,1,1", "specular.roughness=0.6"],
             // The tint and the weight of the reflection leave more to refract.
             &[
                 "specular.roughness=0.3",
