@@ -51,6 +51,8 @@ mod support;
 mod tone;
 #[path = "suite/tone_twin.rs"]
 mod tone_twin;
+#[path = "suite/transmission.rs"]
+mod transmission;
 #[path = "suite/ui.rs"]
 mod ui;
 #[path = "suite/worker.rs"]

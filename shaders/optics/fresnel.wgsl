@@ -1,5 +1,6 @@
 // The Fresnel factor at the half vector. Twin of src/optics/fresnel.rs.
 #import "optics/numeric"
+#import "optics/refraction"
 
 const FRESNEL_NONE: u32 = 0u;
 const FRESNEL_SCHLICK: u32 = 1u;
@@ -55,7 +56,7 @@ fn fresnel_schlick(f0: vec3f, cosine: f32) -> vec3f {
 fn fresnel_dielectric(cosine: f32, ior: f32) -> f32 {
     let c = clamp(cosine, 0.0, 1.0);
     // ior^2 cos^2 of the refracted angle, not negative unless the reflection is total.
-    let square = ior * ior - (1.0 - c * c);
+    let square = refracted_square(c, ior);
     let g = safe_sqrt(square);
     let perpendicular = (c - g) / max(c + g, 1e-12);
     let parallel = (ior * ior * c - g) / max(ior * ior * c + g, 1e-12);

@@ -5,6 +5,7 @@
 #import "scene/plan"
 
 const ALBEDO_NODES: u32 = 64u;
+const TOTAL_NODES: u32 = 16u;
 
 struct MaterialSample {
     wi: vec3f,
@@ -17,100 +18,251 @@ struct Surface {
     frame: Frame,
     normal: vec3f,
     wo: vec3f,
+    is_inside: bool,
 }
 
 struct Layers {
     base: vec3f,
+    transmission: vec3f,
     specular_probability: f32,
+    transmission_probability: f32,
 }
 
 fn material_shape(material: Material) -> LobeShape {
     return LobeShape(
         planned(material.lobe, PLAN_LOBE), planned(material.curve, PLAN_CURVE), planned(material.horizon, PLAN_HORIZON),
         material.curve_table, material.roughness, select(0.0, material.anisotropy, PLAN_ANISOTROPY == 1u),
+        0.0,
     );
 }
 
-fn material_fresnel_terms(material: Material) -> FresnelTerms {
+fn material_transmission_shape(material: Material, is_inside: bool) -> LobeShape {
+    var shape = material_shape(material);
+    shape.roughness = material.transmission_roughness;
+    shape.eta = material_ior_ahead(material, is_inside);
+    return shape;
+}
+
+fn material_ior_ahead(material: Material, is_inside: bool) -> f32 {
+    return select(material.ior, 1.0 / material.ior, is_inside && material_transmits(material));
+}
+
+fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
+    let is_bare = is_inside && material_transmits(material);
     return FresnelTerms(
-        planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.specular_color, material.specular_weight,
-        material.ior, material.eta, material.k,
+        planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness,
+        select(material.specular_color, vec3f(1.0), is_bare), select(material.specular_weight, 1.0, is_bare),
+        material_ior_ahead(material, is_inside), material.eta, material.k,
     );
 }
 
 fn material_has_base(material: Material) -> bool {
-    return PLAN_BASE == 1u && material.metalness < 1.0 && any(material.base_color > vec3f(0.0));
+    let is_opaque = PLAN_TRANSMISSION == 0u || material.transmission_weight < 1.0;
+    return PLAN_BASE == 1u && is_opaque && material.metalness < 1.0 && any(material.base_color > vec3f(0.0));
+}
+
+fn material_transmits(material: Material) -> bool {
+    return PLAN_TRANSMISSION == 1u && material.transmission_weight > 0.0 && material.metalness < 1.0;
 }
 
 fn material_has_specular(material: Material) -> bool {
-    return PLAN_SPECULAR == 1u && material.specular_weight > 0.0;
+    return PLAN_SPECULAR == 1u && (material.specular_weight > 0.0 || material_transmits(material));
 }
 
 fn material_layers(material: Material, surface: Surface) -> Layers {
-    if !material_has_base(material) {
-        return Layers(vec3f(0.0), 1.0);
+    let transmits = material_transmits(material);
+    if !material_has_base(material) && !transmits {
+        return Layers(vec3f(0.0), vec3f(0.0), 1.0, 0.0);
     }
-    let diffuse = material.base_color * (1.0 - material.metalness);
-    if !material_has_specular(material) {
-        return Layers(diffuse, 0.0);
+    var taken = vec3f(0.0);
+    if material_has_specular(material) {
+        taken = specular_albedo(material, surface);
     }
-    let taken = albedo_lookup(material.albedo_table, dot(surface.frame.normal, surface.wo));
-    let base = max(diffuse * (vec3f(1.0) - taken), vec3f(0.0));
-    let share = luminance(taken) / max(luminance(taken) + luminance(base), 1e-9);
-    return Layers(base, clamp(share, 0.05, 0.95));
+    let left = max(vec3f(1.0) - taken, vec3f(0.0)) * (1.0 - material.metalness);
+    var base = material.base_color * left;
+    var transmission = vec3f(0.0);
+    if transmits {
+        base *= 1.0 - material.transmission_weight;
+        transmission = material.transmission_tint * left * material.transmission_weight;
+    }
+    let specular = luminance(taken);
+    let through = luminance(transmission);
+    let rest = luminance(base) + through;
+    var share = clamp(specular / max(specular + rest, 1e-9), 0.05, 0.95);
+    share = select(0.0, share, specular > 0.0);
+    share = select(1.0, share, rest > 0.0);
+    // What is passed on is what was not reflected, no estimate.
+    share = select(share, min(specular, 1.0), passes_on(material));
+    return Layers(base, transmission, share, (1.0 - share) * (through / max(rest, 1e-9)));
+}
+
+fn specular_albedo(material: Material, surface: Surface) -> vec3f {
+    var place = dot(surface.frame.normal, surface.wo);
+    var first = material.albedo_table;
+    if surface.is_inside && material_transmits(material) {
+        place = albedo_place(place, material_ior_ahead(material, true));
+        first = material.inner_albedo_table;
+    }
+    return albedo_lookup(first, place);
+}
+
+fn base_probability(layers: Layers) -> f32 {
+    return 1.0 - layers.specular_probability - layers.transmission_probability;
 }
 
 fn base_shape() -> LobeShape {
-    return LobeShape(LOBE_LAMBERT, CURVE_SQRT, HORIZON_MIRROR, 0u, 1.0, 0.0);
+    return LobeShape(LOBE_LAMBERT, CURVE_SQRT, HORIZON_MIRROR, 0u, 1.0, 0.0, 0.0);
+}
+
+const LAYER_SPECULAR: u32 = 0u;
+const LAYER_BASE: u32 = 1u;
+const LAYER_TRANSMISSION: u32 = 2u;
+
+struct MaterialNumbers {
+    lobe: vec3f,
+    layer: f32,
+    below: vec3f,
+}
+
+fn passes_on(material: Material) -> bool {
+    let lobe = planned(material.lobe, PLAN_LOBE);
+    return material_transmits(material) && (lobe == LOBE_GEOMETRIC || lobe == LOBE_LAMBERT);
 }
 
 fn material_sample(
-    material: Material, surface: Surface, xi: vec3f, xi_layer: f32, wants_density: bool,
+    material: Material, surface: Surface, numbers: MaterialNumbers, wants_density: bool,
 ) -> MaterialSample {
     let layers = material_layers(material, surface);
-    let is_specular = xi_layer < layers.specular_probability;
-    var shape = base_shape();
-    if is_specular {
-        shape = material_shape(material);
+    let base = base_probability(layers);
+    let through = layers.transmission_probability;
+    let is_passed_on = passes_on(material);
+    var xi = numbers.lobe;
+    var specular = layers.specular_probability;
+    var layer = below_layer(numbers.layer, specular, base, through);
+    if is_passed_on || numbers.layer < specular {
+        layer = LAYER_SPECULAR;
     }
-    let drawn = lobe_sample(shape, surface.frame, surface.normal, surface.wo, xi);
-    var color = layers.base;
-    var probability = 1.0 - layers.specular_probability;
-    if is_specular {
-        color = fresnel(material_fresnel_terms(material), half_vector_cosine(surface.wo, drawn.wi));
-        probability = layers.specular_probability;
+    var shape: LobeShape;
+    var drawn: LobeSample;
+    var color: vec3f;
+    var probability: f32;
+    // A loop, so that the lobes' code is there once: the second time where the specular lobe passed on.
+    for (var i = 0u; i < 1u + PLAN_TRANSMISSION; i++) {
+        shape = layer_shape(material, layer, surface.is_inside);
+        drawn = lobe_sample(shape, surface.frame, surface.normal, surface.wo, xi);
+        if layer == LAYER_SPECULAR {
+            let terms = material_fresnel_terms(material, surface.is_inside);
+            color = fresnel(terms, half_vector_cosine(surface.wo, drawn.wi));
+            if is_passed_on {
+                specular = select(0.0, luminance(color), drawn.weight > 0.0);
+            }
+            probability = specular;
+            if numbers.layer < specular {
+                break;
+            }
+            xi = numbers.below;
+            layer = below_layer(numbers.layer, specular, base, through);
+            continue;
+        }
+        if PLAN_TRANSMISSION == 1u && layer == LAYER_TRANSMISSION {
+            color = transmission_color(material, layers, shape, surface, drawn.wi);
+            probability = through;
+        } else {
+            color = layers.base;
+            probability = base;
+        }
+        break;
     }
     let mirror = is_mirror(shape);
     var density = 0.0;
     if wants_density && !mirror {
         density = probability * lobe_evaluate(shape, surface.frame, surface.normal, surface.wo, drawn.wi).y;
     }
-    return MaterialSample(drawn.wi, color * (drawn.weight / probability), density, mirror);
+    return MaterialSample(drawn.wi, color * (drawn.weight / max(probability, 1e-20)), density, mirror);
+}
+
+// The layer below the specular one, whose probability was `specular`.
+fn below_layer(xi_layer: f32, specular: f32, base: f32, through: f32) -> u32 {
+    let base_end = specular + (1.0 - specular) * (base / max(base + through, 1e-20));
+    let is_base = PLAN_TRANSMISSION == 0u || xi_layer < base_end || !(through > 0.0);
+    return select(LAYER_TRANSMISSION, LAYER_BASE, is_base);
+}
+
+fn layer_shape(material: Material, layer: u32, is_inside: bool) -> LobeShape {
+    if layer == LAYER_SPECULAR {
+        return material_shape(material);
+    }
+    if PLAN_TRANSMISSION == 1u && layer == LAYER_TRANSMISSION {
+        return material_transmission_shape(material, is_inside);
+    }
+    return base_shape();
+}
+
+fn transmission_color(material: Material, layers: Layers, shape: LobeShape, surface: Surface, wi: vec3f) -> vec3f {
+    if !refracts_at_facets(shape) {
+        return layers.transmission;
+    }
+    let cosine = refracting_cosine(surface.wo, wi, shape.eta);
+    let reflected = fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
+    let left = max(vec3f(1.0) - reflected, vec3f(0.0));
+    return material.transmission_tint * left * (material.transmission_weight * (1.0 - material.metalness));
 }
 
 fn material_evaluate(material: Material, surface: Surface, wi: vec3f, light_density: f32, competing: f32) -> vec3f {
     let layers = material_layers(material, surface);
     var sum = vec3f(0.0);
-    let shape = material_shape(material);
-    if material_has_specular(material) && !is_mirror(shape) {
+    // A loop over the specular and the refracting lobe, so that the lobes' code is there once.
+    for (var i = 0u; i < 1u + PLAN_TRANSMISSION; i++) {
+        let is_through = PLAN_TRANSMISSION == 1u && i == 1u;
+        var shape = material_shape(material);
+        var probability = layers.specular_probability;
+        var is_there = material_has_specular(material);
+        if is_through {
+            shape = material_transmission_shape(material, surface.is_inside);
+            probability = layers.transmission_probability;
+            is_there = material_transmits(material);
+        }
+        if !is_there || is_mirror(shape) {
+            continue;
+        }
         let lobe = lobe_evaluate(shape, surface.frame, surface.normal, surface.wo, wi);
-        let share = light_density / (light_density + competing * layers.specular_probability * lobe.y);
-        sum += fresnel(material_fresnel_terms(material), half_vector_cosine(surface.wo, wi)) * (lobe.x * share);
+        var color = vec3f(0.0);
+        if is_through {
+            color = transmission_color(material, layers, shape, surface, wi);
+        } else {
+            let terms = material_fresnel_terms(material, surface.is_inside);
+            color = fresnel(terms, half_vector_cosine(surface.wo, wi));
+            probability = select(probability, luminance(color), passes_on(material));
+        }
+        let share = light_density / (light_density + competing * probability * lobe.y);
+        sum += color * (lobe.x * share);
     }
     if material_has_base(material) {
         let lobe = lobe_evaluate(base_shape(), surface.frame, surface.normal, surface.wo, wi);
-        let share = light_density / (light_density + competing * (1.0 - layers.specular_probability) * lobe.y);
+        let share = light_density / (light_density + competing * base_probability(layers) * lobe.y);
         sum += layers.base * (lobe.x * share);
     }
     return sum;
 }
 
-fn albedo_lookup(albedo_table: u32, cosine: f32) -> vec3f {
+fn albedo_lookup(albedo_table: u32, place: f32) -> vec3f {
     let last = f32(ALBEDO_NODES) - 1.0;
-    let position = clamp(cosine, 0.0, 1.0) * last;
+    let position = clamp(place, 0.0, 1.0) * last;
     let low = min(floor(position), last - 1.0);
     let first = albedo_table + 3u * u32(low);
     let left = vec3f(tables[first], tables[first + 1u], tables[first + 2u]);
     let right = vec3f(tables[first + 3u], tables[first + 4u], tables[first + 5u]);
     return mix(left, right, position - low);
+}
+
+fn albedo_place(cosine: f32, eta: f32) -> f32 {
+    let critical = safe_sqrt(-refracted_square(0.0, eta));
+    let share = f32(TOTAL_NODES) / (f32(ALBEDO_NODES) - 1.0);
+    if !(critical > 0.0) {
+        return cosine;
+    }
+    let square = refracted_square(cosine, eta);
+    let above = share + (1.0 - share) * (safe_sqrt(square) / eta);
+    let below = share * (max(cosine, 0.0) / critical);
+    return select(above, below, square < 0.0);
 }

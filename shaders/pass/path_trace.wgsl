@@ -14,6 +14,8 @@ const BACKGROUND_TRANSPARENT: u32 = 1u;
 // Pairs of numbers before the first bounce (pixel, lens) and a bounce (lobe twice, light twice).
 const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
+// The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
+const BELOW_DIMENSION: u32 = 4096u;
 // Bounces before Russian roulette.
 const ROULETTE_START: u32 = 3u;
 // Beyond it the square would overflow: dropped and counted.
@@ -89,7 +91,8 @@ fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: p
     let xi = vec3f(random_pair(state, dimension), random_pair(state, dimension + 1u).x);
     let light = draw_light(point, xi);
     let wi = light.direction;
-    if light.density <= 0.0 || dot(point.surface.normal, wi) <= 0.0 {
+    let transmits = material_transmits(materials[point.slot]);
+    if light.density <= 0.0 || (dot(point.surface.normal, wi) <= 0.0 && !transmits) {
         return vec3f(0.0);
     }
     let competing = select(0.0, 1.0, globals.strategy == STRATEGY_MIS);
@@ -98,7 +101,7 @@ fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: p
         return vec3f(0.0);
     }
     *rays += 1u;
-    if trace(ray_origin(point), wi, light.distance, true).triangle != NO_HIT {
+    if trace(ray_origin(point, wi, transmits), wi, light.distance, true).triangle != NO_HIT {
         return vec3f(0.0);
     }
     if is_from_afar(xi.z) {
@@ -138,6 +141,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         let point = surface_at(hit, ray.direction);
         let material = materials[point.slot];
+        if PLAN_ABSORPTION == 1u && point.surface.is_inside && material_transmits(material) {
+            throughput *= exp(-material.absorption * hit.t);
+        }
         if PLAN_EMISSION == 1u {
             radiance += throughput * emitted_light(point, hit.t, lobe_density, was_mirror);
         }
@@ -150,7 +156,12 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
         let wants_density = samples_light() && globals.strategy == STRATEGY_MIS;
-        let drawn = material_sample(material, point.surface, xi.xyz, xi.w, wants_density);
+        var numbers = MaterialNumbers(xi.xyz, xi.w, xi.xyz);
+        if material_transmits(material) {
+            let pair = BELOW_DIMENSION + 2u * bounce;
+            numbers.below = vec3f(random_pair(state, pair), random_pair(state, pair + 1u).x);
+        }
+        let drawn = material_sample(material, point.surface, numbers, wants_density);
         throughput *= drawn.throughput;
         let strength = max(max(throughput.x, throughput.y), throughput.z);
         if !(strength > 0.0) {
@@ -164,7 +175,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         lobe_density = drawn.density;
         was_mirror = drawn.is_mirror;
-        ray = Ray(ray_origin(point), drawn.wi);
+        ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
     }
     return PathResult(radiance, 1.0, rays);
 }

@@ -54,6 +54,11 @@ struct Material {
     roughness: f32,
     emission: vec3f,
     anisotropy: f32,
+    transmission_tint: vec3f,
+    transmission_weight: f32,
+    // For a length of 1 in the geometry's units.
+    absorption: vec3f,
+    transmission_roughness: f32,
     rotation_rad: f32,
     lobe: u32,
     curve: u32,
@@ -61,7 +66,7 @@ struct Material {
     fresnel: u32,
     curve_table: u32,
     albedo_table: u32,
-    reserved: u32,
+    inner_albedo_table: u32,
 }
 
 // A triangle to intersect: corner positions as bits, with the corner's vertex index in w.

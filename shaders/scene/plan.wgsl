@@ -15,6 +15,10 @@ override PLAN_BASE: u32 = 1u;
 override PLAN_SPECULAR: u32 = 1u;
 // 1: some material may emit.
 override PLAN_EMISSION: u32 = 1u;
+// 1: some material may transmit light.
+override PLAN_TRANSMISSION: u32 = 1u;
+// 1: some material that transmits light may absorb it inside.
+override PLAN_ABSORPTION: u32 = 1u;
 // 1: the environment is sampled.
 override PLAN_LIGHT_SAMPLING: u32 = 1u;
 // 1: some triangle may emit, and is sampled.

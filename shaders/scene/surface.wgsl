@@ -30,7 +30,8 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     let position = p0 * w + p1 * hit.u + p2 * hit.v;
     let wo = -direction;
     let out = normalize_or(cross(p1 - p0, p2 - p0), wo);
-    let normal = select(out, -out, dot(out, wo) < 0.0);
+    let is_back = dot(out, wo) < 0.0;
+    let normal = select(out, -out, is_back);
     let a = vertices[triangle.corners[0].w];
     let b = vertices[triangle.corners[1].w];
     let c = vertices[triangle.corners[2].w];
@@ -52,7 +53,7 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
         frame = frame_from_tangent(shading, tangent, materials[slot].rotation_rad);
     }
     let error = position_error(p0, p1, p2, vec3f(w, hit.u, hit.v), normal);
-    return SurfacePoint(Surface(frame, normal, wo), position, error, slot);
+    return SurfacePoint(Surface(frame, normal, wo, is_back), position, error, slot);
 }
 
 // How far off its plane, along the normal, the place may be that is interpolated between a triangle's corners.
@@ -61,7 +62,9 @@ fn position_error(p0: vec3f, p1: vec3f, p2: vec3f, weights: vec3f, normal: vec3f
     return POSITION_ERROR * dot(abs(normal), abs(p0) * w.x + abs(p1) * w.y + abs(p2) * w.z + vec3f(0.05));
 }
 
-// Where a ray from the surface starts: outside the bound on the position's error.
-fn ray_origin(point: SurfacePoint) -> vec3f {
-    return point.position + point.surface.normal * point.error;
+// Where a ray from the surface towards `wi` starts: outside the bound on the position's error. Only a surface that
+// transmits lets it start behind.
+fn ray_origin(point: SurfacePoint, wi: vec3f, transmits: bool) -> vec3f {
+    let is_behind = transmits && dot(point.surface.normal, wi) < 0.0;
+    return point.position + point.surface.normal * select(point.error, -point.error, is_behind);
 }

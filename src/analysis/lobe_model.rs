@@ -63,6 +63,7 @@ impl LobeModel {
             horizon: self.horizon,
             roughness: self.roughness,
             anisotropy: self.anisotropy,
+            eta: 0.0,
             table: &self.table,
         }
     }

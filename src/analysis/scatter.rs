@@ -39,6 +39,7 @@ impl ScatterRequest {
             horizon: self.horizon,
             roughness: T::from_f64(f64::from(self.roughness)),
             anisotropy: T::from_f64(f64::from(self.anisotropy)),
+            eta: T::zero(),
             table: &self.table,
         }
     }

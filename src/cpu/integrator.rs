@@ -1,7 +1,7 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
 
 use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
-use crate::optics::material::{Material, material_evaluate, material_sample};
+use crate::optics::material::{Material, MaterialNumbers, material_evaluate, material_sample};
 use crate::optics::random::{RandomState, random_pair, random_state};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
@@ -18,6 +18,8 @@ use crate::scene::{Geometry, Hit};
 pub const FIRST_DIMENSION: u32 = 2;
 /// Pairs of numbers a bounce: lobe twice, light twice.
 pub const BOUNCE_DIMENSIONS: u32 = 4;
+/// The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
+pub const BELOW_DIMENSION: u32 = 4096;
 /// Bounces before Russian roulette.
 pub const ROULETTE_START: u32 = 3;
 /// Beyond it the square would overflow f32: dropped and counted.
@@ -132,7 +134,9 @@ impl<'a, T: Real> Integrator<'a, T> {
         let [c, _] = random_pair(state, dimension + 1);
         let (light, is_far) = self.draw_light(point, vec3(a, b, c));
         let (wi, density) = (light.direction, light.density);
-        if density.to_f64() <= 0.0 || point.surface.normal.dot(wi).to_f64() <= 0.0 {
+        let material = &self.materials[point.slot as usize];
+        let is_behind = point.surface.normal.dot(wi).to_f64() <= 0.0;
+        if density.to_f64() <= 0.0 || (is_behind && !material.transmits()) {
             return Vec3::zero();
         }
         let competing = T::from_f64(if self.settings.strategy == Strategy::Mis {
@@ -140,17 +144,14 @@ impl<'a, T: Real> Integrator<'a, T> {
         } else {
             0.0
         });
-        let material = &self.materials[point.slot as usize];
         let value = material_evaluate(material, self.tables, &point.surface, wi, density, competing);
         if value.max_component().to_f64() <= 0.0 {
             return Vec3::zero();
         }
         *rays += 1;
+        let origin = point.ray_origin(wi, material.transmits());
         let distance = light.distance.to_f64() as f32;
-        if self
-            .geometry
-            .occluded(point.ray_origin().to_f32(), wi.to_f32(), distance)
-        {
+        if self.geometry.occluded(origin.to_f32(), wi.to_f32(), distance) {
             return Vec3::zero();
         }
         let radiance = if is_far { self.far_radiance(wi) } else { light.radiance };
@@ -192,6 +193,9 @@ impl<'a, T: Real> Integrator<'a, T> {
             let point = self.surface(&hit, direction);
             let material = &self.materials[point.slot as usize];
             let distance = T::from_f64(f64::from(hit.t));
+            if point.surface.is_inside && material.transmits() {
+                throughput = throughput * material.absorption.map(|absorption| (-absorption * distance).exp());
+            }
             radiance += throughput * self.emitted_light(&point, distance, lobe_density, was_mirror);
             if bounce >= settings.bounces {
                 break;
@@ -202,8 +206,18 @@ impl<'a, T: Real> Integrator<'a, T> {
             }
             let [a, b] = random_pair(state, dimension);
             let [c, layer] = random_pair(state, dimension + 1);
+            let mut numbers = MaterialNumbers {
+                lobe: [a, b, c],
+                layer,
+                below: [a, b, c],
+            };
+            if material.transmits() {
+                let [a, b] = random_pair(state, BELOW_DIMENSION + 2 * bounce);
+                let [c, _] = random_pair(state, BELOW_DIMENSION + 2 * bounce + 1);
+                numbers.below = [a, b, c];
+            }
             let wants_density = samples_light && settings.strategy == Strategy::Mis;
-            let drawn = material_sample(material, self.tables, &point.surface, [a, b, c], layer, wants_density);
+            let drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
             throughput = throughput * drawn.throughput;
             let strength = throughput.max_component();
             // Also ends paths that are NaN.
@@ -219,7 +233,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             }
             lobe_density = drawn.density;
             was_mirror = drawn.is_mirror;
-            (origin, direction) = (point.ray_origin(), drawn.wi);
+            (origin, direction) = (point.ray_origin(drawn.wi, material.transmits()), drawn.wi);
         }
         PathResult {
             radiance,

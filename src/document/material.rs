@@ -47,6 +47,14 @@ pub struct MaterialSettings {
     pub eta: [f32; 3],
     /// Imaginary part, in [0, 20].
     pub k: [f32; 3],
+    /// Share of the base that refracts, in [0, 1].
+    pub transmission_weight: f32,
+    /// Linear RGB in [0, 1]: tint at each refraction, or what is left of white after `transmission_depth`.
+    pub transmission_color: [f32; 3],
+    /// In bounding radii of the model; 0 where nothing is absorbed inside.
+    pub transmission_depth: f32,
+    /// Added to `roughness` for the refraction, in [−1, 1].
+    pub transmission_roughness: f32,
     /// Linear RGB in [0, 1].
     pub emission_color: [f32; 3],
     /// Emitted radiance is `emission_color` times this.
@@ -78,6 +86,10 @@ impl Default for MaterialSettings {
             conductor: Conductor::Custom,
             eta: [1.0; 3],
             k: [1.0; 3],
+            transmission_weight: 0.0,
+            transmission_color: [1.0; 3],
+            transmission_depth: 0.0,
+            transmission_roughness: 0.0,
             emission_color: [1.0; 3],
             emission_strength: 0.0,
             extra: Map::new(),
@@ -113,6 +125,13 @@ impl MaterialSettings {
             ior: slot.ior.clamp(1.0, 4.0),
             ..Self::default()
         };
+        material.transmission_weight = unit(slot.transmission);
+        if slot.attenuation_distance.is_finite() {
+            material.transmission_color = slot.attenuation_color.map(unit);
+            material.transmission_depth = slot.attenuation_distance.clamp(0.0, 1000.0);
+        } else if slot.transmission > 0.0 {
+            material.transmission_color = material.base_color;
+        }
         if strength > 0.0 {
             material.emission_color = slot.emission.map(|x| unit(x / strength));
             material.emission_strength = strength.min(1e6);

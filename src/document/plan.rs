@@ -24,6 +24,10 @@ pub struct Plan {
     pub specular: bool,
     /// Some material emits.
     pub emission: bool,
+    /// Some material transmits light.
+    pub transmission: bool,
+    /// Some material that transmits light absorbs it inside.
+    pub absorption: bool,
     /// The environment is sampled: not where it is equally bright everywhere or black.
     pub light_sampling: bool,
     /// Emitting triangles are sampled.
@@ -43,6 +47,8 @@ impl Plan {
         base: true,
         specular: true,
         emission: true,
+        transmission: true,
+        absorption: true,
         light_sampling: true,
         emitter_sampling: true,
         lens: true,
@@ -64,6 +70,10 @@ impl Plan {
             base: materials.iter().any(Material::has_base),
             specular: !specular.is_empty(),
             emission: materials.iter().any(|m| m.emission.max_component() > 0.0),
+            transmission: materials.iter().any(Material::transmits),
+            absorption: materials
+                .iter()
+                .any(|m| m.transmits() && m.absorption.max_component() > 0.0),
             light_sampling: light.environment_probability > 0.0,
             emitter_sampling: light.density_per_luminance > 0.0,
             lens: lens_radius > 0.0,
@@ -80,6 +90,8 @@ impl Plan {
             ("base", self.base),
             ("anisotropy", self.anisotropy),
             ("emission", self.emission),
+            ("transmission", self.transmission),
+            ("absorption", self.absorption),
             ("depth-of-field", self.lens),
         ];
         effects
@@ -90,7 +102,7 @@ impl Plan {
     }
 
     /// The override constants of the pipeline, by their names in `shaders/scene/plan.wgsl`.
-    pub fn constants(&self) -> [(&'static str, f64); 11] {
+    pub fn constants(&self) -> [(&'static str, f64); 13] {
         let number = |value: Option<u32>| f64::from(value.unwrap_or(u32::MAX));
         let flag = |value: bool| f64::from(u8::from(value));
         [
@@ -102,6 +114,8 @@ impl Plan {
             ("PLAN_BASE", flag(self.base)),
             ("PLAN_SPECULAR", flag(self.specular)),
             ("PLAN_EMISSION", flag(self.emission)),
+            ("PLAN_TRANSMISSION", flag(self.transmission)),
+            ("PLAN_ABSORPTION", flag(self.absorption)),
             ("PLAN_LIGHT_SAMPLING", flag(self.light_sampling)),
             ("PLAN_EMITTER_SAMPLING", flag(self.emitter_sampling)),
             ("PLAN_LENS", flag(self.lens)),

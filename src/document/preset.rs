@@ -28,6 +28,7 @@ macro_rules! shipped {
 /// The files of the shipped materials, in the order of the menus.
 pub const SHIPPED: &[&str] = shipped! {
     "porcelain" "lambert-white" "plastic-blue" "rubber" "satin-black" "car-paint-red" "pearl"
+    "glass" "frosted-glass" "bottle-glass" "amber"
     "chrome" "silver" "aluminium" "brushed-steel" "gold" "copper"
 };
 

@@ -63,6 +63,7 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
     let mut all = base();
     all.extend(specular_shape());
     all.extend(specular_fresnel());
+    all.extend(transmission());
     all.extend(emission());
     all
 });
@@ -150,14 +151,18 @@ fn specular_fresnel() -> Vec<Parameter> {
         Parameter {
             label: "Fresnel",
             symbol: "F",
-            help: "How the share of reflected light grows towards grazing angles.",
+            help: "How the share of reflected light grows towards grazing angles. A material that transmits light follows the exact equations of a dielectric.",
+            applies: |material| has_specular(material) && !transmits(material),
             ..of("specular.fresnel", choices!(Fresnel), choice_field!(Fresnel fresnel))
         },
         Parameter {
             label: "Index of refraction",
             symbol: "n",
-            help: "How strongly the dielectric reflects: water 1.33, plastic and glass 1.5, diamond 2.4.",
+            help: "How strongly the dielectric reflects and refracts: water 1.33, plastic and glass 1.5, diamond 2.4.",
             applies: |material| {
+                if transmits(material) {
+                    return true;
+                }
                 let of_dielectric = matches!(material.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
                 has_specular(material) && of_dielectric && material.metalness < 1.0
             },
@@ -195,6 +200,41 @@ fn specular_fresnel() -> Vec<Parameter> {
     ]
 }
 
+fn transmission() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Weight",
+            help: "How much of the base is clear instead of diffuse: glass, water, amber. The surface must be closed.",
+            applies: |material| material.metalness < 1.0,
+            ..of("transmission.weight", unit_number(), field!(Number transmission_weight))
+        },
+        Parameter {
+            label: "Colour",
+            help: "Colours what is seen through: at each passage through the surface or, where there is a depth, on the way inside.",
+            ..of("transmission.color", Kind::Color, field!(Color transmission_color))
+        },
+        Parameter {
+            label: "Depth",
+            help: "The way inside after which white light has the colour, in bounding radii of the model; at 0 the surface itself is tinted.",
+            ..of(
+                "transmission.depth",
+                number([0.0, 1000.0], [0.0, 2.0], "", 0.01),
+                field!(Number transmission_depth),
+            )
+        },
+        Parameter {
+            label: "Extra roughness",
+            symbol: "R",
+            help: "Added to the roughness of the reflection for what is seen through: at 0 both are equally rough.",
+            ..of(
+                "transmission.roughness",
+                number([-1.0, 1.0], [-1.0, 1.0], "", 0.01),
+                field!(Number transmission_roughness),
+            )
+        },
+    ]
+}
+
 fn emission() -> Vec<Parameter> {
     vec![
         Parameter {
@@ -222,6 +262,7 @@ fn of(key: &'static str, kind: Kind, (get, set): (Get, Set)) -> Parameter {
         Some(("base", _)) => ("Base", |_| true),
         Some(("specular", "weight")) => ("Specular", |_| true),
         Some(("specular", _)) => ("Specular", has_specular),
+        Some(("transmission", _)) => ("Transmission", transmits),
         _ => ("Emission", |_| true),
     };
     Parameter {
@@ -251,7 +292,11 @@ fn unit_number() -> Kind {
 }
 
 fn has_specular(material: &MaterialSettings) -> bool {
-    material.specular_weight > 0.0
+    material.specular_weight > 0.0 || transmits(material)
+}
+
+fn transmits(material: &MaterialSettings) -> bool {
+    material.transmission_weight > 0.0 && material.metalness < 1.0
 }
 
 fn is_geometric(material: &MaterialSettings) -> bool {

@@ -146,11 +146,15 @@ fn lobe_registry() -> String {
             "0.0",
         );
     }
-    text += &dispatch(
-        "is_hemispherical(lobe: u32) -> bool",
-        "lobe",
-        cases(&|module| format!("{}_HEMISPHERICAL", module.to_uppercase())),
-        "true",
-    );
+    let property = |signature: &str, value: &dyn Fn(Lobe) -> String, otherwise: &str| {
+        let case = |lobe: &Lobe| format!("        case {}u: {{ return {}; }}\n", *lobe as u32, value(*lobe));
+        dispatch(signature, "lobe", Lobe::ALL.iter().map(case).collect(), otherwise)
+    };
+    let hemispherical = |lobe: Lobe| format!("{}_HEMISPHERICAL", lobe.module().to_uppercase());
+    text += &property("is_hemispherical(lobe: u32) -> bool", &hemispherical, "true");
+    let anisotropic = |lobe: Lobe| lobe.is_anisotropic().to_string();
+    text += &property("is_anisotropic(lobe: u32) -> bool", &anisotropic, "false");
+    let facets = |lobe: Lobe| format!("{}u", lobe.facets() as u32);
+    text += &property("facets(lobe: u32) -> u32", &facets, "0u");
     text
 }

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::real::Real;
+use super::refraction::refracted_square;
 use super::vector::{Vec3, vec3};
 
 macro_rules! fresnels {
@@ -119,7 +120,7 @@ pub fn fresnel_schlick<T: Real>(f0: Vec3<T>, cosine: T) -> Vec3<T> {
 pub fn fresnel_dielectric<T: Real>(cosine: T, ior: T) -> T {
     let c = cosine.clamp(T::zero(), T::one());
     // ior² cos²θt, not negative unless the reflection is total.
-    let square = ior * ior - (T::one() - c * c);
+    let square = refracted_square(c, ior);
     let g = square.safe_sqrt();
     let perpendicular = (c - g) / (c + g).max(T::from_f64(1e-12));
     let parallel = (ior * ior * c - g) / (ior * ior * c + g).max(T::from_f64(1e-12));

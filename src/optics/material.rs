@@ -1,19 +1,24 @@
-//! The material as the integrators see it: a specular lobe over a Lambertian base.
+//! The material as the integrators see it: a specular lobe over a base that is Lambertian, or refracts, or is a mixture
+//! of both.
 //!
 //! The specular lobe reflects the Fresnel share; what it leaves over reaches the base. How much that is on average over
 //! the lobe, its albedo, is tabulated for each material ([`albedo_table`]), so that a white base under any lobe reflects
-//! all light: the layering neither loses nor makes energy.
+//! or transmits all light: the layering neither loses nor makes energy. A material that transmits has a second table for
+//! views from within. Lobes made of facets refract at each facet what that facet does not reflect.
 
 use super::curve::Curve;
 use super::frame::Frame;
 use super::fresnel::{Fresnel, FresnelTerms, fresnel, half_vector_cosine};
-use super::lobe::{Horizon, Lobe, LobeShape, is_mirror, lobe_evaluate, lobe_sample};
+use super::lobe::{Horizon, Lobe, LobeSample, LobeShape, is_mirror, lobe_evaluate, lobe_sample, refracts_at_facets};
 use super::random::{Sequence, random_pair, random_state};
 use super::real::{Mask, Real};
+use super::refraction::{refracted_square, refracting_cosine};
 use super::vector::{Vec3, vec3};
 
 /// Nodes of an albedo table, equidistant in the cosine of the view.
 pub const ALBEDO_NODES: usize = 64;
+/// Of the nodes of a table for views from within, those below the critical angle: there the reflection is total.
+pub const TOTAL_NODES: usize = 16;
 /// Numbers of an albedo table: red, green and blue a node.
 pub const ALBEDO_LENGTH: usize = 3 * ALBEDO_NODES;
 
@@ -41,6 +46,14 @@ pub struct Material<T> {
     pub emission: Vec3<T>,
     /// Stretch of the lobe in [−1, 1].
     pub anisotropy: T,
+    /// Tint at each refraction, linear RGB in [0, 1].
+    pub transmission_tint: Vec3<T>,
+    /// Share of the base that refracts, in [0, 1].
+    pub transmission_weight: T,
+    /// What a length of 1 of the interior absorbs, as the negative logarithm of what it lets through; linear RGB.
+    pub absorption: Vec3<T>,
+    /// Roughness of the refraction in [0, 1].
+    pub transmission_roughness: T,
     /// Turn of the tangent, radians.
     pub rotation_rad: T,
     /// [`Lobe`] as a number.
@@ -55,11 +68,11 @@ pub struct Material<T> {
     pub curve_table: u32,
     /// Where the albedo table begins.
     pub albedo_table: u32,
-    /// Fills the last 16 bytes.
-    pub reserved: u32,
+    /// Where the albedo table for views from within begins.
+    pub inner_albedo_table: u32,
 }
 
-// SAFETY: f32 and u32 fields without padding (4 × 4 × 5 + 8 × 4 bytes); any bit pattern is valid.
+// SAFETY: f32 and u32 fields without padding (4 × 4 × 7 + 8 × 4 bytes); any bit pattern is valid.
 unsafe impl bytemuck::Zeroable for Material<f32> {}
 // SAFETY: as above.
 unsafe impl bytemuck::Pod for Material<f32> {}
@@ -80,6 +93,10 @@ impl<T: Real> Material<T> {
             roughness: number(self.roughness),
             emission: vector(self.emission),
             anisotropy: number(self.anisotropy),
+            transmission_tint: vector(self.transmission_tint),
+            transmission_weight: number(self.transmission_weight),
+            absorption: vector(self.absorption),
+            transmission_roughness: number(self.transmission_roughness),
             rotation_rad: number(self.rotation_rad),
             lobe: self.lobe,
             curve: self.curve,
@@ -87,7 +104,7 @@ impl<T: Real> Material<T> {
             fresnel: self.fresnel,
             curve_table: self.curve_table,
             albedo_table: self.albedo_table,
-            reserved: self.reserved,
+            inner_albedo_table: self.inner_albedo_table,
         }
     }
 
@@ -100,20 +117,48 @@ impl<T: Real> Material<T> {
             horizon: by_index(Horizon::ALL, self.horizon),
             roughness: self.roughness,
             anisotropy: self.anisotropy,
+            eta: T::zero(),
             table: tables.get(self.curve_table as usize..).unwrap_or_default(),
         }
     }
 
-    /// The Fresnel factor's terms.
+    /// The refracting lobe, seen from within or without.
     #[inline(always)]
-    pub fn fresnel_terms(&self) -> FresnelTerms<T> {
+    pub fn transmission_shape<'a>(&self, tables: &'a [f32], is_inside: bool) -> LobeShape<'a, T> {
+        LobeShape {
+            roughness: self.transmission_roughness,
+            eta: self.ior_ahead(is_inside),
+            ..self.shape(tables)
+        }
+    }
+
+    /// The index of refraction behind the surface over that before it: inverted where a material that transmits is seen
+    /// from within.
+    #[inline(always)]
+    pub fn ior_ahead(&self, is_inside: bool) -> T {
+        if is_inside && self.transmits() {
+            T::one() / self.ior
+        } else {
+            self.ior
+        }
+    }
+
+    /// The Fresnel factor's terms. From within, weight and tint have no effect: the interface is the bare dielectric, so
+    /// that what is reflected totally keeps its energy.
+    #[inline(always)]
+    pub fn fresnel_terms(&self, is_inside: bool) -> FresnelTerms<T> {
+        let is_bare = is_inside && self.transmits();
         FresnelTerms {
             model: by_index(Fresnel::ALL, self.fresnel),
             metal_f0: self.base_color,
             metalness: self.metalness,
-            tint: self.specular_color,
-            weight: self.specular_weight,
-            ior: self.ior,
+            tint: if is_bare {
+                Vec3::splat(T::one())
+            } else {
+                self.specular_color
+            },
+            weight: if is_bare { T::one() } else { self.specular_weight },
+            ior: self.ior_ahead(is_inside),
             eta: self.eta,
             k: self.k,
         }
@@ -122,13 +167,20 @@ impl<T: Real> Material<T> {
     /// True where a Lambertian base shows.
     #[inline(always)]
     pub fn has_base(&self) -> bool {
-        self.metalness.to_f64() < 1.0 && self.base_color.max_component().to_f64() > 0.0
+        let is_opaque = self.transmission_weight.to_f64() < 1.0;
+        is_opaque && self.metalness.to_f64() < 1.0 && self.base_color.max_component().to_f64() > 0.0
     }
 
-    /// True where the specular lobe reflects anything.
+    /// True where light goes through the surface.
+    #[inline(always)]
+    pub fn transmits(&self) -> bool {
+        self.transmission_weight.to_f64() > 0.0 && self.metalness.to_f64() < 1.0
+    }
+
+    /// True where the specular lobe reflects anything: if not from without, then from within.
     #[inline(always)]
     pub fn has_specular(&self) -> bool {
-        self.specular_weight.to_f64() > 0.0
+        self.specular_weight.to_f64() > 0.0 || self.transmits()
     }
 }
 
@@ -161,41 +213,75 @@ pub struct Surface<T> {
     pub normal: Vec3<T>,
     /// Towards the viewer.
     pub wo: Vec3<T>,
+    /// True where the viewer is on the back of the triangle: within the solid, if its mesh is closed.
+    pub is_inside: bool,
 }
 
 /// The shares of the layers for one view direction.
 #[derive(Clone, Copy, Debug)]
 pub struct Layers<T> {
-    /// Albedo of the base after what the specular lobe took.
+    /// Albedo of the Lambertian base after what the specular lobe took.
     pub base: Vec3<T>,
+    /// What is refracted, on average over the lobe.
+    pub transmission: Vec3<T>,
     /// Probability of sampling the specular lobe.
     pub specular_probability: T,
+    /// Probability of sampling the refracting lobe.
+    pub transmission_probability: T,
 }
 
-/// What the base is left with, and how often each layer is sampled: in proportion to the luminance it reflects, each at
-/// least one time in twenty.
+impl<T: Real> Layers<T> {
+    /// Probability of sampling the Lambertian base.
+    #[inline(always)]
+    pub fn base_probability(&self) -> T {
+        T::one() - self.specular_probability - self.transmission_probability
+    }
+}
+
+/// What the base is left with, and how often each layer is sampled: in proportion to the luminance it reflects or
+/// transmits, the specular lobe at least one time in twenty and at most nineteen, unless it is alone or has nothing.
 pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Layers<T> {
-    if !material.has_base() {
+    let (zero, one) = (T::zero(), T::one());
+    if !material.has_base() && !material.transmits() {
         return Layers {
             base: Vec3::zero(),
-            specular_probability: T::one(),
+            transmission: Vec3::zero(),
+            specular_probability: one,
+            transmission_probability: zero,
         };
     }
-    let diffuse = material.base_color * (T::one() - material.metalness);
-    if !material.has_specular() {
-        return Layers {
-            base: diffuse,
-            specular_probability: T::zero(),
-        };
-    }
-    let taken = albedo_lookup(tables, material.albedo_table, surface.frame.normal.dot(surface.wo));
-    let base = diffuse * (Vec3::splat(T::one()) - taken).map(|x| x.max(T::zero()));
-    let (specular_luminance, base_luminance) = (taken.luminance(), base.luminance());
-    let share = specular_luminance / (specular_luminance + base_luminance).max(T::from_f64(1e-9));
+    let taken = if material.has_specular() {
+        specular_albedo(material, tables, surface)
+    } else {
+        Vec3::zero()
+    };
+    let left = (Vec3::splat(one) - taken).map(|x| x.max(zero)) * (one - material.metalness);
+    let base = material.base_color * left * (one - material.transmission_weight);
+    let transmission = material.transmission_tint * left * material.transmission_weight;
+    let (specular, below, through) = (taken.luminance(), base.luminance(), transmission.luminance());
+    let rest = below + through;
+    let tiny = T::from_f64(1e-9);
+    let share = (specular / (specular + rest).max(tiny)).clamp(T::from_f64(0.05), T::from_f64(0.95));
+    let share = T::select(zero.less(specular), share, zero);
+    let share = T::select(zero.less(rest), share, one);
+    // What is passed on is what was not reflected, no estimate.
+    let share = if passes_on(material) { specular.min(one) } else { share };
     Layers {
         base,
-        specular_probability: share.clamp(T::from_f64(0.05), T::from_f64(0.95)),
+        transmission,
+        specular_probability: share,
+        transmission_probability: (one - share) * (through / rest.max(tiny)),
     }
+}
+
+/// What the specular lobe reflects of this view.
+fn specular_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Vec3<T> {
+    let cosine = surface.frame.normal.dot(surface.wo);
+    if surface.is_inside && material.transmits() {
+        let place = albedo_place(cosine, material.ior_ahead(true));
+        return albedo_lookup(tables, material.inner_albedo_table, place);
+    }
+    albedo_lookup(tables, material.albedo_table, cosine)
 }
 
 /// The base's lobe: Lambert's, its rare samples below the geometric surface mirrored.
@@ -207,52 +293,106 @@ fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
         horizon: Horizon::Mirror,
         roughness: T::one(),
         anisotropy: T::zero(),
+        eta: T::zero(),
         table: &[],
     }
 }
 
-/// Draws a direction: the specular lobe or the base, chosen by `xi_layer`. `wants_density` is false where no other
+/// The numbers that a sample of a material takes, each in [0, 1).
+#[derive(Clone, Copy, Debug)]
+pub struct MaterialNumbers<T> {
+    /// Draws the direction.
+    pub lobe: [T; 3],
+    /// Chooses the layer.
+    pub layer: T,
+    /// Draws the direction where the specular lobe passed it on to what is below.
+    pub below: [T; 3],
+}
+
+/// True where a mirrored direction is drawn first and what it does not reflect is passed on: then all weights are 1
+/// however often light is reflected inside. It takes a lobe whose own weights are 1.
+#[inline(always)]
+fn passes_on<T: Real>(material: &Material<T>) -> bool {
+    let lobe: Lobe = by_index(Lobe::ALL, material.lobe);
+    material.transmits() && matches!(lobe, Lobe::Geometric | Lobe::Lambert)
+}
+
+/// Draws a direction: from the specular lobe, the base or the refracting lobe. `wants_density` is false where no other
 /// strategy competes: then the geometric lobe never computes its density.
 pub fn material_sample<T: Real>(
     material: &Material<T>,
     tables: &[f32],
     surface: &Surface<T>,
-    xi: [T; 3],
-    xi_layer: T,
+    numbers: MaterialNumbers<T>,
     wants_density: bool,
 ) -> MaterialSample<T> {
     let layers = material_layers(material, tables, surface);
-    let is_specular = xi_layer.less(layers.specular_probability).any();
-    let shape = if is_specular {
-        material.shape(tables)
-    } else {
-        base_shape()
+    let base = layers.base_probability();
+    let through = layers.transmission_probability;
+    let draw = |shape: &LobeShape<'_, T>, xi| lobe_sample(shape, &surface.frame, surface.normal, surface.wo, xi);
+    let finish = |shape: &LobeShape<'_, T>, drawn: LobeSample<T>, color: Vec3<T>, probability: T| {
+        let is_mirror = is_mirror(shape).any();
+        let density = if wants_density && !is_mirror {
+            probability * lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, drawn.wi)[1]
+        } else {
+            T::zero()
+        };
+        MaterialSample {
+            wi: drawn.wi,
+            throughput: color * (drawn.weight / probability.max(T::from_f64(1e-20))),
+            density,
+            is_mirror,
+        }
     };
-    let drawn = lobe_sample(&shape, &surface.frame, surface.normal, surface.wo, xi);
-    let (color, probability) = if is_specular {
-        let cosine = half_vector_cosine(surface.wo, drawn.wi);
-        (fresnel(&material.fresnel_terms(), cosine), layers.specular_probability)
-    } else {
-        (layers.base, T::one() - layers.specular_probability)
-    };
-    let is_mirror = is_mirror(&shape).any();
-    let density = if wants_density && !is_mirror {
-        probability * lobe_evaluate(&shape, &surface.frame, surface.normal, surface.wo, drawn.wi)[1]
-    } else {
-        T::zero()
-    };
-    MaterialSample {
-        wi: drawn.wi,
-        throughput: color * (drawn.weight / probability),
-        density,
-        is_mirror,
+    let mut xi = numbers.lobe;
+    let mut specular = layers.specular_probability;
+    let is_passed_on = passes_on(material);
+    if is_passed_on || numbers.layer.less(specular).any() {
+        let shape = material.shape(tables);
+        let drawn = draw(&shape, xi);
+        let terms = material.fresnel_terms(surface.is_inside);
+        let color = fresnel(&terms, half_vector_cosine(surface.wo, drawn.wi));
+        if is_passed_on {
+            specular = T::select(T::zero().less(drawn.weight), color.luminance(), T::zero());
+            xi = numbers.below;
+        }
+        if numbers.layer.less(specular).any() {
+            return finish(&shape, drawn, color, specular);
+        }
     }
+    let base_end = specular + (T::one() - specular) * (base / (base + through).max(T::from_f64(1e-20)));
+    if numbers.layer.less(base_end).any() || !T::zero().less(through).any() {
+        let shape = base_shape();
+        return finish(&shape, draw(&shape, xi), layers.base, base);
+    }
+    let shape = material.transmission_shape(tables, surface.is_inside);
+    let drawn = draw(&shape, xi);
+    let color = transmission_color(material, &layers, &shape, surface, drawn.wi);
+    finish(&shape, drawn, color, through)
+}
+
+/// What is refracted into a direction: of lobes made of facets what the facet does not reflect, of others what the
+/// specular lobe leaves over on average.
+fn transmission_color<T: Real>(
+    material: &Material<T>,
+    layers: &Layers<T>,
+    shape: &LobeShape<'_, T>,
+    surface: &Surface<T>,
+    wi: Vec3<T>,
+) -> Vec3<T> {
+    if !refracts_at_facets(shape) {
+        return layers.transmission;
+    }
+    let cosine = refracting_cosine(surface.wo, wi, shape.eta);
+    let reflected = fresnel(&material.fresnel_terms(surface.is_inside), cosine);
+    let left = (Vec3::splat(T::one()) - reflected).map(|x| x.max(T::zero()));
+    material.transmission_tint * left * (material.transmission_weight * (T::one() - material.metalness))
 }
 
 /// The material's evaluate (cosine included) for light from `wi` that was drawn with density `light_density`, each layer
 /// multiplied by its share under multiple importance sampling (Veach 1997, balance heuristic): light_density/
 /// (light_density + `competing` × density of that layer). `competing` is 1, or 0 where light sampling works alone.
-/// Layers weighed as mirrors give nothing: only sampling the lobe finds what they reflect.
+/// Layers weighed as mirrors give nothing: only sampling the lobe finds what they reflect or refract.
 pub fn material_evaluate<T: Real>(
     material: &Material<T>,
     tables: &[f32],
@@ -262,25 +402,40 @@ pub fn material_evaluate<T: Real>(
     competing: T,
 ) -> Vec3<T> {
     let layers = material_layers(material, tables, surface);
-    let share = |probability: T, density: T| light_density / (light_density + competing * probability * density);
     let mut sum = Vec3::zero();
-    let shape = material.shape(tables);
-    if material.has_specular() && !is_mirror(&shape).any() {
-        let [value, density] = lobe_evaluate(&shape, &surface.frame, surface.normal, surface.wo, wi);
-        let color = fresnel(&material.fresnel_terms(), half_vector_cosine(surface.wo, wi));
-        sum += color * (value * share(layers.specular_probability, density));
+    let mut add = |shape: &LobeShape<'_, T>, probability: T, color: Vec3<T>| {
+        if !is_mirror(shape).any() {
+            let [value, density] = lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, wi);
+            let share = light_density / (light_density + competing * probability * density);
+            sum += color * (value * share);
+        }
+    };
+    if material.has_specular() {
+        let terms = material.fresnel_terms(surface.is_inside);
+        let color = fresnel(&terms, half_vector_cosine(surface.wo, wi));
+        let probability = if passes_on(material) {
+            color.luminance()
+        } else {
+            layers.specular_probability
+        };
+        add(&material.shape(tables), probability, color);
     }
     if material.has_base() {
-        let [value, density] = lobe_evaluate(&base_shape(), &surface.frame, surface.normal, surface.wo, wi);
-        sum += layers.base * (value * share(T::one() - layers.specular_probability, density));
+        add(&base_shape(), layers.base_probability(), layers.base);
+    }
+    if material.transmits() {
+        let shape = material.transmission_shape(tables, surface.is_inside);
+        let color = transmission_color(material, &layers, &shape, surface, wi);
+        add(&shape, layers.transmission_probability, color);
     }
     sum
 }
 
-/// The specular albedo for a view whose cosine is `cosine`, linear between the table's nodes.
-pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, cosine: T) -> Vec3<T> {
+/// The specular albedo at a `place` of a table, linear between its nodes: from without the view's cosine, from within
+/// what [`albedo_place`] makes of it.
+pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> Vec3<T> {
     let last = T::from_f64(ALBEDO_NODES as f64 - 1.0);
-    let position = cosine.clamp(T::zero(), T::one()) * last;
+    let position = place.clamp(T::zero(), T::one()) * last;
     let low = position.floor().min(last - T::one());
     let first = albedo_table as usize + 3 * low.to_f64() as usize;
     let number = |i: usize| T::from_f64(f64::from(tables[i]));
@@ -288,17 +443,46 @@ pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, cosine: T) -> V
     node(first).mix(node(first + 3), position - low)
 }
 
-/// The specular lobe's albedo against the view's cosine: what [`albedo_lookup`] reads. `samples` a node.
-pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32) -> Vec<f32> {
+/// Where in a table a view is found, in [0, 1]. At the critical angle the albedo of a smooth interface rises with a
+/// vertical tangent: below it the nodes are equidistant in the view's cosine, above it in that of the refracted direction.
+pub fn albedo_place<T: Real>(cosine: T, eta: T) -> T {
+    let critical = (-refracted_square(T::zero(), eta)).safe_sqrt();
+    let share = T::from_f64(TOTAL_NODES as f64 / (ALBEDO_NODES as f64 - 1.0));
+    if !T::zero().less(critical).any() {
+        return cosine;
+    }
+    let square = refracted_square(cosine, eta);
+    let above = share + (T::one() - share) * (square.safe_sqrt() / eta);
+    let below = share * (cosine.max(T::zero()) / critical);
+    T::select(square.less(T::zero()), below, above)
+}
+
+/// The view's cosine at a node of a table: [`albedo_place`] backwards.
+fn node_cosine(node: usize, eta: f64) -> f64 {
+    let critical_square = (1.0 - eta * eta).max(0.0);
+    if critical_square == 0.0 {
+        return node as f64 / (ALBEDO_NODES as f64 - 1.0);
+    }
+    if node < TOTAL_NODES {
+        return critical_square.sqrt() * node as f64 / TOTAL_NODES as f64;
+    }
+    let refracted = (node - TOTAL_NODES) as f64 / (ALBEDO_NODES - 1 - TOTAL_NODES) as f64;
+    (critical_square + (eta * refracted).powi(2)).sqrt().min(1.0)
+}
+
+/// The specular lobe's albedo against the view's cosine, from within or without: what [`albedo_lookup`] reads. `samples`
+/// a node.
+pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
     let normal = vec3(0.0, 0.0, 1.0);
     let frame = super::frame::frame_from_normal(normal);
     let shape = material.shape(tables);
-    let terms = material.fresnel_terms();
+    let terms = material.fresnel_terms(is_inside);
+    let eta = if is_inside { material.ior_ahead(true) } else { 1.0 };
     let mut table = Vec::with_capacity(ALBEDO_LENGTH);
     for node in 0..ALBEDO_NODES {
         // At exactly grazing the microfacet lobes are 0/0.
-        let cosine = (node as f64 / (ALBEDO_NODES as f64 - 1.0)).max(1e-3);
-        let wo = vec3((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+        let cosine = node_cosine(node, eta).max(1e-3);
+        let wo = vec3((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
         let mut sum = Vec3::zero();
         for i in 0..samples {
             let state = random_state(node as u32, 0, 0, i, Sequence::Sobol);

@@ -15,6 +15,7 @@ pub mod microfacet;
 pub mod numeric;
 pub mod random;
 pub mod real;
+pub mod refraction;
 pub mod tone;
 pub mod vector;
 pub mod warp;

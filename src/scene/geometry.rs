@@ -68,16 +68,13 @@ impl Geometry {
     /// The same with area lights, each in a slot of its own after the model's and the ground's.
     pub fn build_lit(model: &Model, ground: bool, area_lights: &[AreaShape]) -> Self {
         let mesh = &model.mesh;
-        let is_finite = |&triangle: &usize| mesh.corners(triangle).iter().all(|corner| corner.is_finite());
-        let finite: Vec<usize> = (0..mesh.triangles.len()).filter(is_finite).collect();
-        let usable: Vec<usize> = finite
-            .iter()
-            .copied()
-            .filter(|&triangle| has_area(mesh.corners(triangle)))
-            .collect();
-        let bounds_world = bounds(mesh, &usable);
-        let center_world = bounds_world[0].midpoint(bounds_world[1]);
-        let world_units_per_unit = bounding_radius(mesh, &usable, center_world);
+        let Framing {
+            usable,
+            dropped_not_finite,
+            bounds_world,
+            center_world,
+            world_units_per_unit,
+        } = Framing::of(mesh);
         let mut geometry = Self {
             positions: Vec::new(),
             vertices: Vec::new(),
@@ -87,8 +84,8 @@ impl Geometry {
             center_world,
             world_units_per_unit,
             bounds_world,
-            dropped_not_finite: mesh.triangles.len() - finite.len(),
-            dropped_no_area: finite.len() - usable.len(),
+            dropped_not_finite,
+            dropped_no_area: mesh.triangles.len() - dropped_not_finite - usable.len(),
         };
         let to_units = |place: DVec3| ((place - center_world) / world_units_per_unit).as_vec3().to_array();
         geometry.add(mesh, usable.into_iter(), to_units);
@@ -199,6 +196,36 @@ impl Geometry {
         self.triangles = sorted.collect();
         self.positions = positions;
         self.vertices = vertices;
+    }
+}
+
+/// The triangles of a mesh that can be traced, and the sphere around them.
+pub(super) struct Framing {
+    /// Those with finite corners and an area.
+    usable: Vec<usize>,
+    dropped_not_finite: usize,
+    bounds_world: [DVec3; 2],
+    center_world: DVec3,
+    /// See [`Geometry::world_units_per_unit`].
+    pub world_units_per_unit: f64,
+}
+
+impl Framing {
+    pub fn of(mesh: &Mesh) -> Self {
+        let is_finite = |&triangle: &usize| mesh.corners(triangle).iter().all(|corner| corner.is_finite());
+        let finite: Vec<usize> = (0..mesh.triangles.len()).filter(is_finite).collect();
+        let dropped_not_finite = mesh.triangles.len() - finite.len();
+        let has_area = |triangle: &usize| has_area(mesh.corners(*triangle));
+        let usable: Vec<usize> = finite.into_iter().filter(has_area).collect();
+        let bounds_world = bounds(mesh, &usable);
+        let center_world = bounds_world[0].midpoint(bounds_world[1]);
+        Self {
+            dropped_not_finite,
+            bounds_world,
+            center_world,
+            world_units_per_unit: bounding_radius(mesh, &usable, center_world),
+            usable,
+        }
     }
 }
 

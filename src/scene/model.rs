@@ -117,6 +117,10 @@ pub struct Slot {
     pub ior: f32,
     /// Fraction of light that is refracted instead of scattered, in [0, 1] (KHR_materials_transmission).
     pub transmission: f32,
+    /// What is left of white light after `attenuation_distance` inside, linear (KHR_materials_volume).
+    pub attenuation_color: [f32; 3],
+    /// In bounding radii of the model, above 0; infinite where nothing is absorbed.
+    pub attenuation_distance: f32,
     /// Colour (sRGB-encoded) and opacity.
     pub base_color_texture: Option<TextureRef>,
     /// Roughness in green, metalness in blue (linear values).
@@ -144,6 +148,8 @@ impl Default for Slot {
             double_sided: false,
             ior: 1.5,
             transmission: 0.0,
+            attenuation_color: [1.0; 3],
+            attenuation_distance: f32::INFINITY,
             base_color_texture: None,
             metallic_roughness_texture: None,
             normal_texture: None,

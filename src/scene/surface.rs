@@ -3,7 +3,7 @@
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
 use crate::optics::material::{Material, Surface};
 use crate::optics::numeric::normalize_or;
-use crate::optics::real::Real;
+use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 
 use super::{Geometry, Hit};
@@ -27,10 +27,12 @@ pub struct SurfacePoint<T> {
 }
 
 impl<T: Real> SurfacePoint<T> {
-    /// Where a ray from the surface starts: outside the bound on the position's error.
+    /// Where a ray from the surface towards `wi` starts: outside the bound on the position's error. Only a surface that
+    /// `transmits` lets it start behind.
     #[inline(always)]
-    pub fn ray_origin(&self) -> Vec3<T> {
-        self.position + self.surface.normal * self.error
+    pub fn ray_origin(&self, wi: Vec3<T>, transmits: bool) -> Vec3<T> {
+        let is_behind = transmits && self.surface.normal.dot(wi).to_f64() < 0.0;
+        self.position + self.surface.normal * if is_behind { -self.error } else { self.error }
     }
 }
 
@@ -58,7 +60,8 @@ pub fn surface_at<T: Real>(
     let position = p0 * w + p1 * u + p2 * v;
     let wo = -direction;
     let out = normalize_or((p1 - p0).cross(p2 - p0), wo);
-    let normal = Vec3::select(out.dot(wo).less(T::zero()), -out, out);
+    let is_back = out.dot(wo).less(T::zero());
+    let normal = Vec3::select(is_back, -out, out);
     let corners = geometry.triangles[index].map(|vertex| &geometry.vertices[vertex as usize]);
     let interpolate =
         |a: [f32; 3], b: [f32; 3], c: [f32; 3]| Vec3::from_f32(a) * w + Vec3::from_f32(b) * u + Vec3::from_f32(c) * v;
@@ -77,7 +80,12 @@ pub fn surface_at<T: Real>(
         frame_from_normal(shading)
     };
     SurfacePoint {
-        surface: Surface { frame, normal, wo },
+        surface: Surface {
+            frame,
+            normal,
+            wo,
+            is_inside: is_back.any(),
+        },
         position,
         error: position_error([p0, p1, p2], [w, u, v], normal),
         slot,

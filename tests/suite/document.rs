@@ -323,7 +323,7 @@ fn compiled_materials_refer_to_their_tables() {
     assert_eq!(materials[2].albedo_table as usize, CUSTOM_LENGTH + ALBEDO_LENGTH);
     assert_eq!(tables[..CUSTOM_LENGTH], custom.custom_curve.table());
     for material in [&materials[0], &materials[2]] {
-        let expected = albedo_table(&material.cast::<f64>(), &tables, 1024);
+        let expected = albedo_table(&material.cast::<f64>(), &tables, 1024, false);
         let first = material.albedo_table as usize;
         assert_eq!(
             tables[first..first + ALBEDO_LENGTH],

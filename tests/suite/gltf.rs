@@ -210,6 +210,9 @@ fn materials_and_textures_become_slots() {
         "extensions": {
             "KHR_materials_emissive_strength": {"emissiveStrength": 20.0},
             "KHR_materials_ior": {"ior": 1.75}, "KHR_materials_transmission": {"transmissionFactor": 0.875},
+            "KHR_materials_volume": {
+                "thicknessFactor": 1.0, "attenuationDistance": 3.0, "attenuationColor": [0.25, 0.5, 0.75],
+            },
         },
     }]);
     let model = Folder::new().load_glb(&document, &buffer).expect("loads");
@@ -230,6 +233,16 @@ fn materials_and_textures_become_slots() {
         (lamp.emission, lamp.ior, lamp.transmission),
         ([20.0, 10.0, 0.0], 1.75, 0.875)
     );
+    // In bounding radii: the square of side 1 has one of half its diagonal.
+    let distance = 3.0 / std::f32::consts::FRAC_1_SQRT_2;
+    assert!(
+        (lamp.attenuation_distance - distance).abs() < 1e-5,
+        "{}",
+        lamp.attenuation_distance
+    );
+    assert_eq!(lamp.attenuation_color, [0.25, 0.5, 0.75]);
+    assert!(default.attenuation_distance.is_infinite());
+    assert_eq!(model.warnings.len(), 1, "{:?}", model.warnings);
     assert!(lamp.double_sided && !default.double_sided);
     let color = lamp.base_color_texture.expect("a colour texture");
     assert_eq!(

@@ -50,7 +50,8 @@ fn rust_layouts() -> Vec<Layout> {
         }),
         layout!(Material: Material<f32> {
             base_color, metalness, specular_color, specular_weight, eta, ior, k, roughness, emission, anisotropy,
-            rotation_rad, lobe, curve, horizon, fresnel, curve_table, albedo_table, reserved,
+            transmission_tint, transmission_weight, absorption, transmission_roughness, rotation_rad, lobe, curve,
+            horizon, fresnel, curve_table, albedo_table, inner_albedo_table,
         }),
         layout!(Triangle: Triangle { corners }),
         layout!(Vertex: Vertex { normal, uv, tangent }),

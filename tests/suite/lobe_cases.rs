@@ -2,7 +2,8 @@
 
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::frame::{Frame, frame_from_normal};
-use glossmith::optics::lobe::{Horizon, Lobe, LobeShape};
+use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_view, refracts_at_facets};
+use glossmith::optics::refraction::refracted;
 use glossmith::optics::vector::{Vec3, vec3};
 
 /// Mirror-like, glossy, rough, nearly Lambertian, Lambertian.
@@ -18,12 +19,14 @@ pub struct Case {
     pub horizon: Horizon,
     pub roughness: f64,
     pub anisotropy: f64,
+    /// 0 where the lobe reflects, else the index of refraction behind the surface over that before it.
+    pub eta: f64,
     pub angle_deg: f64,
     /// Angle of the geometric normal to the shading normal, towards the viewer where positive.
     pub lean_deg: f64,
     /// Different for each case of a grid.
     pub seed: u32,
-    table: &'static [f32],
+    pub table: &'static [f32],
 }
 
 impl std::fmt::Debug for Case {
@@ -32,13 +35,14 @@ impl std::fmt::Debug for Case {
         let Self {
             roughness,
             anisotropy,
+            eta,
             angle_deg,
             lean_deg,
             ..
         } = self;
         write!(
             f,
-            "{lobe}/{curve} {horizon} roughness {roughness}/{anisotropy} view {angle_deg}° leaning {lean_deg}°"
+            "{lobe}/{curve} {horizon} roughness {roughness}/{anisotropy} eta {eta} view {angle_deg}° leaning {lean_deg}°"
         )
     }
 }
@@ -52,6 +56,7 @@ impl Case {
             horizon,
             roughness,
             anisotropy: 0.0,
+            eta: 0.0,
             angle_deg,
             lean_deg: 0.0,
             seed: 0,
@@ -92,6 +97,7 @@ impl Case {
             horizon: self.horizon,
             roughness: self.roughness,
             anisotropy: self.anisotropy,
+            eta: self.eta,
             table: self.table,
         }
     }
@@ -104,6 +110,18 @@ impl Case {
     /// Towards the viewer, in a plane between tangent and bitangent.
     pub fn wo(&self) -> Vec3<f64> {
         self.in_view_plane(self.angle_deg)
+    }
+
+    /// The middle of the lobe: the mirror direction, or the refracted one. Behind the critical angle a lobe made of
+    /// facets has none, and what is left lies on the other side of the view.
+    pub fn middle(&self) -> Vec3<f64> {
+        let (shape, wo) = (self.shape(), self.wo());
+        if !refracts_at_facets(&shape) {
+            let view = lobe_view(&shape, &self.frame(), self.surface_normal(), wo);
+            return view.wo.mirrored_about(view.frame.normal);
+        }
+        let behind = refracted(wo, self.frame().normal, self.eta);
+        if behind.is_total { -wo } else { behind.wi }
     }
 
     /// The geometric normal.

@@ -9,8 +9,8 @@ use glossmith::gpu::shader::{EXTRA, Linked, link, link_with, module_names};
 use glossmith::optics::chord;
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, LONG_TAIL_MAX};
 use glossmith::optics::fresnel::Fresnel;
-use glossmith::optics::lobe::{ALPHA_MIN, Horizon, Lobe, MIRROR_WIDTH};
-use glossmith::optics::material::ALBEDO_NODES;
+use glossmith::optics::lobe::{ALPHA_MIN, Facets, Horizon, Lobe, MIRROR_WIDTH};
+use glossmith::optics::material::{ALBEDO_NODES, TOTAL_NODES};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::{self, ToneCurve};
 use glossmith::scene::camera::{Camera, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA, PixelFilter};
@@ -269,6 +269,10 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("CUSTOM_INTERVALS", CUSTOM_INTERVALS as f64),
         ("LONG_TAIL_MAX", LONG_TAIL_MAX),
         ("ALBEDO_NODES", ALBEDO_NODES as f64),
+        ("TOTAL_NODES", TOTAL_NODES as f64),
+        ("FACETS_NONE", f64::from(Facets::None as u32)),
+        ("FACETS_VISIBLE", f64::from(Facets::Visible as u32)),
+        ("FACETS_ALL", f64::from(Facets::All as u32)),
         ("SHORT_RULE_ROUGHNESS", chord::SHORT_RULE_ROUGHNESS),
         ("PEAK_RADIUS", chord::PEAK_RADIUS),
         ("TINY", chord::TINY),
@@ -283,6 +287,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("VIEW_COSINE_MIN", surface::VIEW_COSINE_MIN),
         ("FIRST_DIMENSION", f64::from(integrator::FIRST_DIMENSION)),
         ("BOUNCE_DIMENSIONS", f64::from(integrator::BOUNCE_DIMENSIONS)),
+        ("BELOW_DIMENSION", f64::from(integrator::BELOW_DIMENSION)),
         ("ROULETTE_START", f64::from(integrator::ROULETTE_START)),
         ("RADIANCE_MAX", integrator::RADIANCE_MAX),
     ] {
@@ -295,7 +300,14 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
 }
 
 /// Constants that only shaders need.
-const WITHOUT_TWIN: &[&str] = &["ANY", "NO_HIT", "STACK_SIZE"];
+const WITHOUT_TWIN: &[&str] = &[
+    "ANY",
+    "NO_HIT",
+    "STACK_SIZE",
+    "LAYER_SPECULAR",
+    "LAYER_BASE",
+    "LAYER_TRANSMISSION",
+];
 
 #[test]
 fn constants_equal_their_twins() {
@@ -352,6 +364,8 @@ const NARROW_PLAN: Plan = Plan {
     base: false,
     specular: true,
     emission: false,
+    transmission: false,
+    absorption: false,
     light_sampling: true,
     emitter_sampling: false,
     lens: false,

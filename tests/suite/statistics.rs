@@ -3,8 +3,10 @@
 use glossmith::analysis::chi_square::{ChiSquare, PolarGrid, sidak_level, test_counts, test_samples};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::lobe::{Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample, raw_weight};
+use glossmith::optics::fresnel::{fresnel_dielectric, half_vector_cosine};
+use glossmith::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample, raw_weight};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
+use glossmith::optics::refraction::refracting_cosine;
 use glossmith::optics::vector::{Vec3, vec3};
 use rayon::prelude::*;
 
@@ -33,7 +35,7 @@ fn draw(case: &Case, i: u32) -> LobeSample<f64> {
 fn chi_square(case: &Case, count: u32, roughness_factor: f64, factor: impl Fn(Vec3<f64>) -> f64) -> ChiSquare {
     let kept = |sample: LobeSample<f64>| (sample.weight != 0.0).then_some(sample.wi);
     let samples: Vec<_> = (0..count).map(|i| kept(draw(case, i))).collect();
-    let mirror = case.wo().mirrored_about(case.frame().normal);
+    let mirror = case.middle();
     let grid = PolarGrid::following(
         frame_from_normal(mirror),
         12,
@@ -120,6 +122,60 @@ fn stretched_samples_follow_their_densities() {
     assert_all_follow(&cases);
 }
 
+/// Lobes turned about the refracted direction, into glass and out of it (beyond the critical angle they reflect): every
+/// lobe and curve, every policy on one of the sides.
+#[test]
+fn refracted_samples_follow_their_densities() {
+    let (entering, leaving) = (1.5, 1.0 / 1.5);
+    let of_geometric = [
+        (Horizon::Mirror, entering, 0.0),
+        (Horizon::Mirror, leaving, 0.0),
+        (Horizon::Mirror, entering, 0.7),
+        (Horizon::Absorb, leaving, 0.0),
+        (Horizon::None, entering, 0.0),
+    ];
+    let mut cases = Vec::new();
+    for (lobe, curve) in lobes_and_curves() {
+        if lobe.facets() != Facets::None {
+            continue;
+        }
+        let kinds = if lobe == Lobe::Geometric {
+            &of_geometric[..]
+        } else {
+            &of_geometric[..2]
+        };
+        for &(horizon, eta, stretch) in kinds {
+            let grid = Case::grid(lobe, curve, horizon, &[stretch], &ROUGHNESS, &ANGLES_DEG);
+            cases.extend(refracting(grid, eta, cases.len()));
+        }
+    }
+    assert_all_follow(&cases);
+}
+
+/// The microfacet lobes, each facet refracting by itself.
+#[test]
+fn samples_refracted_at_facets_follow_their_densities() {
+    let mut cases = Vec::new();
+    for &lobe in Lobe::ALL.iter().filter(|lobe| lobe.facets() != Facets::None) {
+        for eta in [1.5, 1.0 / 1.5, 2.4] {
+            let stretched: &[f64] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
+            let grid = Case::grid(lobe, Curve::Sqrt, Horizon::Mirror, stretched, &ROUGHNESS, &ANGLES_DEG);
+            // Beyond the critical angle narrow lobes refract next to nothing.
+            let is_refracted = |case: &Case| eta > 1.0 || case.angle_deg < 45.0 || case.roughness >= 0.3;
+            let grid = grid.into_iter().filter(is_refracted).collect();
+            cases.extend(refracting(grid, eta, cases.len()));
+        }
+    }
+    assert_all_follow(&cases);
+}
+
+/// The cases with another index, and seeds of their own.
+fn refracting(cases: Vec<Case>, eta: f64, first: usize) -> impl Iterator<Item = Case> {
+    (0x8000 + first as u32..)
+        .zip(cases)
+        .map(move |(seed, case)| Case { eta, seed, ..case })
+}
+
 /// Where the shading normal leans, samples cross either of two horizons.
 #[test]
 fn samples_over_a_leaning_normal_follow_their_densities() {
@@ -139,7 +195,12 @@ fn samples_over_a_leaning_normal_follow_their_densities() {
 #[test]
 fn weights_are_evaluate_over_density() {
     for (lobe, curve) in lobes_and_curves() {
-        for case in Case::grid(lobe, curve, Horizon::Mirror, &[0.0, 0.5], &ROUGHNESS, &ANGLES_DEG) {
+        let grid = Case::grid(lobe, curve, Horizon::Mirror, &[0.0, 0.5], &ROUGHNESS, &ANGLES_DEG);
+        let indices = [0.0, 1.5, 1.0 / 1.5];
+        for case in grid
+            .iter()
+            .flat_map(|case| indices.map(|eta| Case { eta, ..case.clone() }))
+        {
             for i in 0..50 {
                 let sample = draw(&case, i);
                 let (shape, frame) = (case.shape(), case.frame());
@@ -150,9 +211,51 @@ fn weights_are_evaluate_over_density() {
                         error <= 1e-9 * value.max(1e-9),
                         "{case:?}: {value} {density} {sample:?}"
                     );
+                    if case.eta != 0.0 {
+                        continue;
+                    }
                     // Were both computed from a weight of 1, the check above would prove nothing.
                     let weight = raw_weight(&shape, &frame, case.wo(), sample.wi);
                     assert!((weight - sample.weight).abs() <= 1e-12 * weight, "{case:?}");
+                }
+            }
+        }
+    }
+}
+
+/// What the microfacet lobes reflect and refract adds up to no more than there was, and to the same for each way of
+/// sampling one model.
+#[test]
+fn facets_reflect_and_refract_no_more_than_there_is() {
+    const COUNT: u32 = 16_384;
+    let total = |lobe: Lobe, eta: f64, roughness: f64, angle_deg: f64| {
+        let reflecting = Case::new(lobe, Curve::Sqrt, Horizon::Mirror, roughness, angle_deg);
+        let refracting = Case {
+            eta,
+            ..reflecting.clone()
+        };
+        let wo = reflecting.wo();
+        let sum: f64 = (0..COUNT)
+            .map(|i| {
+                let (mirrored, refracted) = (draw(&reflecting, i), draw(&refracting, i));
+                let reflected = fresnel_dielectric(half_vector_cosine(wo, mirrored.wi), eta);
+                let left = 1.0 - fresnel_dielectric(refracting_cosine(wo, refracted.wi, eta), eta);
+                mirrored.weight * reflected + refracted.weight * left
+            })
+            .sum();
+        sum / f64::from(COUNT)
+    };
+    for eta in [1.5, 1.0 / 1.5] {
+        for roughness in [0.1, 0.4, 0.8] {
+            for angle_deg in [0.0, 30.0, 60.0] {
+                let [visible, by_slopes, all] =
+                    [Lobe::Ggx, Lobe::Ggx2018, Lobe::GgxNdf].map(|lobe| total(lobe, eta, roughness, angle_deg));
+                let what = format!("eta {eta} roughness {roughness} view {angle_deg}°");
+                assert!((0.5..1.0 + 1e-9).contains(&visible), "{what}: {visible}");
+                assert!((visible - by_slopes).abs() < 5e-3, "{what}: {visible} {by_slopes}");
+                assert!((visible - all).abs() < 2e-2, "{what}: {visible} {all}");
+                if roughness == 0.1 {
+                    assert!(visible > 0.995, "{what}: {visible}");
                 }
             }
         }

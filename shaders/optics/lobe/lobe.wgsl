@@ -1,11 +1,16 @@
 // What all lobes share, and what happens below the horizon. Twin of src/optics/lobe/mod.rs.
-// raw_sample, raw_density, raw_weight, is_hemispherical and LOBE_* are generated from the registry.
+// raw_sample, raw_density, raw_weight, is_hemispherical, is_anisotropic, facets and LOBE_* are generated from the
+// registry.
 #import "optics/frame"
+#import "optics/refraction"
 #import "optics/lobe/registry"
 
 const HORIZON_MIRROR: u32 = 0u;
 const HORIZON_ABSORB: u32 = 1u;
 const HORIZON_NONE: u32 = 2u;
+const FACETS_NONE: u32 = 0u;
+const FACETS_VISIBLE: u32 = 1u;
+const FACETS_ALL: u32 = 2u;
 const ALPHA_MIN: f32 = 1e-4;
 const MIRROR_WIDTH: f32 = 1e-3;
 
@@ -17,6 +22,8 @@ struct LobeShape {
     table: u32,
     roughness: f32,
     anisotropy: f32,
+    // 0: reflects. Else refracts: index behind the surface over index before it.
+    eta: f32,
 }
 
 struct LobeSample {
@@ -37,18 +44,52 @@ fn is_mirror(shape: LobeShape) -> bool {
     var width = shape.roughness * shape.roughness;
     if shape.lobe == LOBE_GEOMETRIC { width = shape.roughness; }
     if shape.lobe == LOBE_LAMBERT { width = 1.0; }
+    if refracts_at_facets(shape) { width *= abs(1.0 - 1.0 / shape.eta); }
     return width < MIRROR_WIDTH;
 }
 
-fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f, xi: vec3f) -> LobeSample {
-    let raw = raw_sample(shape, frame, wo, xi);
-    var weight = raw_weight(shape, frame, wo, raw);
-    if is_hemispherical(shape.lobe) {
-        weight = select(0.0, weight, dot(frame.normal, raw) > 0.0);
+fn refracts_at_facets(shape: LobeShape) -> bool {
+    return shape.eta != 0.0 && facets(shape.lobe) != FACETS_NONE;
+}
+
+struct LobeView {
+    frame: Frame,
+    normal: vec3f,
+    wo: vec3f,
+}
+
+fn lobe_view(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f) -> LobeView {
+    if shape.eta == 0.0 {
+        return LobeView(frame, surface_normal, wo);
     }
-    let below = dot(surface_normal, raw) < 0.0;
+    if refracts_at_facets(shape) {
+        return LobeView(frame, -surface_normal, wo);
+    }
+    let behind = refracted(wo, frame.normal, shape.eta);
+    if behind.is_total {
+        return LobeView(frame, surface_normal, wo);
+    }
+    let turned = Frame(frame.tangent, -frame.bitangent, -frame.normal);
+    return LobeView(turned, -surface_normal, mirrored_about(behind.wi, frame.normal));
+}
+
+fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f, xi: vec3f) -> LobeSample {
+    let view = lobe_view(shape, frame, surface_normal, wo);
+    var raw = raw_sample(shape, view.frame, view.wo, xi);
+    var weight = 0.0;
+    if refracts_at_facets(shape) {
+        let behind = facet_refracted(wo, raw, shape.eta);
+        raw = behind.wi;
+        weight = select(facet_weight(shape, frame, wo, raw), 0.0, behind.is_total);
+    } else {
+        weight = raw_weight(shape, view.frame, view.wo, raw);
+        if is_hemispherical(shape.lobe) {
+            weight = select(0.0, weight, dot(view.frame.normal, raw) > 0.0);
+        }
+    }
+    let below = dot(view.normal, raw) < 0.0;
     switch shape.horizon {
-        case HORIZON_MIRROR: { return LobeSample(select(raw, reflected_at_plane(raw, surface_normal), below), weight); }
+        case HORIZON_MIRROR: { return LobeSample(select(raw, reflected_at_plane(raw, view.normal), below), weight); }
         case HORIZON_ABSORB: { return LobeSample(raw, select(weight, 0.0, below)); }
         default: { return LobeSample(raw, weight); }
     }
@@ -56,7 +97,8 @@ fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f,
 
 // (evaluate, density), the cosine included.
 fn lobe_evaluate(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f, wi: vec3f) -> vec2f {
-    if shape.horizon != HORIZON_NONE && !(dot(surface_normal, wi) > 0.0) {
+    let view = lobe_view(shape, frame, surface_normal, wo);
+    if shape.horizon != HORIZON_NONE && !(dot(view.normal, wi) > 0.0) {
         return vec2f(0.0);
     }
     // A loop, so that the lobes' code is there once: drivers inline, and compile in more than proportion to the size.
@@ -64,16 +106,30 @@ fn lobe_evaluate(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3
     var direction = wi;
     let count = select(1u, 2u, shape.horizon == HORIZON_MIRROR);
     for (var i = 0u; i < count; i++) {
-        result += raw_evaluate(shape, frame, wo, direction);
-        direction = reflected_at_plane(wi, surface_normal);
+        result += raw_evaluate(shape, view, direction);
+        direction = reflected_at_plane(wi, view.normal);
     }
     return result;
 }
 
-fn raw_evaluate(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> vec2f {
-    if is_hemispherical(shape.lobe) && dot(frame.normal, wi) <= 0.0 {
+fn raw_evaluate(shape: LobeShape, view: LobeView, wi: vec3f) -> vec2f {
+    // Facets have the density of the direction that they mirror to.
+    var mirrored = wi;
+    var factor = 1.0;
+    let at_facets = refracts_at_facets(shape);
+    if at_facets {
+        let along = refracting_normal(view.wo, wi, shape.eta);
+        mirrored = mirrored_about(view.wo, normalize_or(along, view.frame.normal));
+        factor = facet_density_factor(view.frame, view.wo, wi, shape.eta, along);
+        if !(factor > 0.0) {
+            return vec2f(0.0);
+        }
+    } else if is_hemispherical(shape.lobe) && dot(view.frame.normal, wi) <= 0.0 {
         return vec2f(0.0);
     }
-    let density = raw_density(shape, frame, wo, wi);
-    return vec2f(density * raw_weight(shape, frame, wo, wi), density);
+    let density = raw_density(shape, view.frame, view.wo, mirrored) * factor;
+    if at_facets {
+        return vec2f(density * facet_weight(shape, view.frame, view.wo, wi), density);
+    }
+    return vec2f(density * raw_weight(shape, view.frame, view.wo, wi), density);
 }

@@ -1,7 +1,7 @@
 //! Blinn-Phong as a microfacet lobe: D = (n + 2)/(2π) cosⁿθh (Blinn 1977), n = 2/α² − 2, masked as GGX of the same α
 //! (Walter et al. 2007 show the two to be close).
 
-use super::LobeShape;
+use super::{Facets, LobeShape};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
@@ -13,6 +13,8 @@ use crate::optics::numeric::{expm1, log1p};
 pub const HEMISPHERICAL: bool = true;
 /// Isotropic.
 pub const ANISOTROPIC: bool = false;
+/// Facets drawn in proportion to D cosθ.
+pub const FACETS: Facets = Facets::All;
 
 /// The exponent n.
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! GGX with height-correlated Smith masking, single scattering; visible normals sampled by spherical caps.
 //! Source: Dupuy and Benyoub, "Sampling visible GGX normals with spherical caps", HPG 2023, listing 3.
 
-use super::LobeShape;
+use super::{Facets, LobeShape};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
@@ -12,6 +12,8 @@ use crate::optics::numeric::normalize_or;
 pub const HEMISPHERICAL: bool = true;
 /// Two widths.
 pub const ANISOTROPIC: bool = true;
+/// Facets drawn among those that the viewer sees.
+pub const FACETS: Facets = Facets::Visible;
 
 /// The reflection at a visible normal: a uniform point on the spherical cap of the stretched view direction.
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! GGX as in [`super::ggx`], all normals sampled in proportion to D cosθ (Walter et al. 2007, eqs. 35 and 36): kept to
 //! be compared in noise.
 
-use super::LobeShape;
+use super::{Facets, LobeShape};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
@@ -12,6 +12,8 @@ use crate::optics::numeric::normalize_or;
 pub const HEMISPHERICAL: bool = true;
 /// Two widths.
 pub const ANISOTROPIC: bool = true;
+/// Facets drawn in proportion to D cosθ.
+pub const FACETS: Facets = Facets::All;
 
 /// The reflection at a normal drawn from D cosθ.
 #[inline(always)]

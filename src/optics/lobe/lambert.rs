@@ -1,6 +1,6 @@
 //! Lambert's lobe: density cosθ/π, drawn without a basis as the normal plus a uniform direction.
 
-use super::LobeShape;
+use super::{Facets, LobeShape};
 use crate::optics::frame::Frame;
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::Real;
@@ -11,6 +11,8 @@ use crate::optics::warp::uniform_sphere;
 pub const HEMISPHERICAL: bool = true;
 /// Isotropic.
 pub const ANISOTROPIC: bool = false;
+/// No facets: refraction turns the lobe about the refracted direction.
+pub const FACETS: Facets = Facets::None;
 
 /// A direction with density cosθ/π.
 #[inline(always)]

@@ -10,7 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use super::curve::Curve;
 use super::frame::Frame;
+use super::numeric::normalize_or;
 use super::real::{Mask, Real};
+use super::refraction::{facet_density_factor, facet_refracted, facet_weight, refracted, refracting_normal};
 use super::vector::Vec3;
 
 macro_rules! lobes {
@@ -52,6 +54,10 @@ macro_rules! lobes {
             /// True where the lobe reads the anisotropy.
             pub fn is_anisotropic(self) -> bool {
                 match self { $(Lobe::$variant => $module::ANISOTROPIC,)* }
+            }
+            /// Whether the lobe is made of facets, each of which refracts by itself.
+            pub fn facets(self) -> Facets {
+                match self { $(Lobe::$variant => $module::FACETS,)* }
             }
         }
 
@@ -116,6 +122,18 @@ impl Horizon {
     }
 }
 
+/// How a lobe draws the facets that it is made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Facets {
+    /// It has none.
+    None = 0,
+    /// Those that the viewer sees, in proportion to D G1 (wo·h)/cosθo.
+    Visible = 1,
+    /// All, in proportion to D cosθh.
+    All = 2,
+}
+
 /// What a lobe needs to know besides directions.
 #[derive(Clone, Copy, Debug)]
 pub struct LobeShape<'a, T> {
@@ -129,6 +147,8 @@ pub struct LobeShape<'a, T> {
     pub roughness: T,
     /// Stretch along the tangent in [−1, 1]; 0 is isotropic.
     pub anisotropy: T,
+    /// 0 where the lobe reflects. Where it refracts: the index of refraction behind the surface over that before it.
+    pub eta: T,
     /// The custom curve's table; empty where the curve has a name.
     pub table: &'a [f32],
 }
@@ -163,19 +183,80 @@ pub fn stretch_from_anisotropy<T: Real>(anisotropy: T) -> T {
     ((T::one() + s) / (T::one() - s)).sqrt()
 }
 
-/// True where the lobe is so narrow that it is weighed as a mirror ([`MIRROR_WIDTH`]).
+/// True where the lobe is so narrow that it is weighed as a mirror ([`MIRROR_WIDTH`]). Facets turn the refracted
+/// direction by |1 − 1/η| of their own tilt: where both sides are nearly alike, everything goes straight on.
 #[inline(always)]
 pub fn is_mirror<T: Real>(shape: &LobeShape<'_, T>) -> T::Mask {
-    let width = match shape.lobe {
+    let mut width = match shape.lobe {
         Lobe::Geometric => shape.roughness,
         Lobe::Lambert => T::one(),
         _ => shape.roughness * shape.roughness,
     };
+    if refracts_at_facets(shape) {
+        width = width * (T::one() - T::one() / shape.eta).abs();
+    }
     width.less(T::from_f64(MIRROR_WIDTH))
 }
 
+/// True where the lobe refracts, and does so facet by facet.
+#[inline(always)]
+pub fn refracts_at_facets<T: Real>(shape: &LobeShape<'_, T>) -> bool {
+    shape.eta.to_f64() != 0.0 && shape.lobe.facets() != Facets::None
+}
+
+/// How a lobe is seen: where it refracts as a whole, by a viewer behind the surface.
+#[derive(Clone, Copy, Debug)]
+pub struct LobeView<T> {
+    /// The shading frame on the side that the lobe fills; on the viewer's where facets refract.
+    pub frame: Frame<T>,
+    /// The geometric normal on the side that the lobe fills.
+    pub normal: Vec3<T>,
+    /// Towards the viewer whose mirror direction is the lobe's middle; the real viewer where facets refract.
+    pub wo: Vec3<T>,
+}
+
+/// The view in which a refracting lobe is a reflecting one. Facets refract each by itself, so only the side changes. Any
+/// other lobe is turned about the refracted direction: what a viewer behind the surface, whose mirror direction that is,
+/// sees reflected (mathematics, section 7). Under total reflection, and for `eta` 0, the lobe reflects.
+#[inline(always)]
+pub fn lobe_view<T: Real>(
+    shape: &LobeShape<'_, T>,
+    frame: &Frame<T>,
+    surface_normal: Vec3<T>,
+    wo: Vec3<T>,
+) -> LobeView<T> {
+    let seen = LobeView {
+        frame: *frame,
+        normal: surface_normal,
+        wo,
+    };
+    if shape.eta.to_f64() == 0.0 {
+        return seen;
+    }
+    if refracts_at_facets(shape) {
+        return LobeView {
+            normal: -surface_normal,
+            ..seen
+        };
+    }
+    let behind = refracted(wo, frame.normal, shape.eta);
+    if behind.is_total.any() {
+        return seen;
+    }
+    LobeView {
+        frame: Frame {
+            tangent: frame.tangent,
+            bitangent: -frame.bitangent,
+            normal: -frame.normal,
+        },
+        normal: -surface_normal,
+        wo: behind.wi.mirrored_about(frame.normal),
+    }
+}
+
 /// Draws a direction. `surface_normal` is the geometric normal, on the side of `wo`: it is its horizon that counts, so
-/// that no ray enters the surface where the shading normal leans. Source of the mirror policy: mathematics, section 3.
+/// that no reflected ray enters the surface, and no refracted one stays outside, where the shading normal leans. Source
+/// of the mirror policy: mathematics, section 3.
 pub fn lobe_sample<T: Real>(
     shape: &LobeShape<'_, T>,
     frame: &Frame<T>,
@@ -183,15 +264,25 @@ pub fn lobe_sample<T: Real>(
     wo: Vec3<T>,
     xi: [T; 3],
 ) -> LobeSample<T> {
-    let raw = raw_sample(shape, frame, wo, xi);
-    let mut weight = raw_weight(shape, frame, wo, raw);
-    if shape.lobe.is_hemispherical() {
-        weight = T::select(T::zero().less(frame.normal.dot(raw)), weight, T::zero());
-    }
-    let below = surface_normal.dot(raw).less(T::zero());
+    let view = lobe_view(shape, frame, surface_normal, wo);
+    let mut raw = raw_sample(shape, &view.frame, view.wo, xi);
+    let weight = if refracts_at_facets(shape) {
+        let facet = facet_refracted(wo, raw, shape.eta);
+        raw = facet.wi;
+        T::select(facet.is_total, T::zero(), facet_weight(shape, frame, wo, raw))
+    } else {
+        let weight = raw_weight(shape, &view.frame, view.wo, raw);
+        let is_lost = !T::zero().less(view.frame.normal.dot(raw));
+        if shape.lobe.is_hemispherical() {
+            T::select(is_lost, T::zero(), weight)
+        } else {
+            weight
+        }
+    };
+    let below = view.normal.dot(raw).less(T::zero());
     match shape.horizon {
         Horizon::Mirror => LobeSample {
-            wi: Vec3::select(below, raw.reflected_at_plane(surface_normal), raw),
+            wi: Vec3::select(below, raw.reflected_at_plane(view.normal), raw),
             weight,
         },
         Horizon::Absorb => LobeSample {
@@ -203,7 +294,7 @@ pub fn lobe_sample<T: Real>(
 }
 
 /// (evaluate, density) of [`lobe_sample`] for a direction: evaluate with the cosine included, density per steradian of
-/// what is kept. Both 0 below the horizon, except under [`Horizon::None`].
+/// what is kept. Both 0 on the side of the surface that the lobe does not fill, except under [`Horizon::None`].
 pub fn lobe_evaluate<T: Real>(
     shape: &LobeShape<'_, T>,
     frame: &Frame<T>,
@@ -211,14 +302,14 @@ pub fn lobe_evaluate<T: Real>(
     wo: Vec3<T>,
     wi: Vec3<T>,
 ) -> [T; 2] {
-    let height = surface_normal.dot(wi);
+    let view = lobe_view(shape, frame, surface_normal, wo);
     if shape.horizon == Horizon::None {
-        return raw_evaluate(shape, frame, wo, wi);
+        return raw_evaluate(shape, &view, wi);
     }
-    let visible = T::zero().less(height);
-    let [mut value, mut density] = raw_evaluate(shape, frame, wo, wi);
+    let visible = T::zero().less(view.normal.dot(wi));
+    let [mut value, mut density] = raw_evaluate(shape, &view, wi);
     if shape.horizon == Horizon::Mirror {
-        let [folded, folded_density] = raw_evaluate(shape, frame, wo, wi.reflected_at_plane(surface_normal));
+        let [folded, folded_density] = raw_evaluate(shape, &view, wi.reflected_at_plane(view.normal));
         value += folded;
         density += folded_density;
     }
@@ -229,10 +320,22 @@ pub fn lobe_evaluate<T: Real>(
 }
 
 /// (evaluate, density) before the horizon policy.
-fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> [T; 2] {
+fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<T>) -> [T; 2] {
+    let LobeView { frame, wo, .. } = view;
+    if refracts_at_facets(shape) {
+        let along = refracting_normal(*wo, wi, shape.eta);
+        let mirrored = wo.mirrored_about(normalize_or(along, frame.normal));
+        let factor = facet_density_factor(frame, *wo, wi, shape.eta, along);
+        let density = T::select(
+            T::zero().less(factor),
+            factor * raw_density(shape, frame, *wo, mirrored),
+            T::zero(),
+        );
+        return [density * facet_weight(shape, frame, *wo, wi), density];
+    }
     if shape.lobe.is_hemispherical() && !T::zero().less(frame.normal.dot(wi)).any() {
         return [T::zero(), T::zero()];
     }
-    let density = raw_density(shape, frame, wo, wi);
-    [density * raw_weight(shape, frame, wo, wi), density]
+    let density = raw_density(shape, frame, *wo, wi);
+    [density * raw_weight(shape, frame, *wo, wi), density]
 }

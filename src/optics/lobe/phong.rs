@@ -3,7 +3,7 @@
 //! f = (n + 2)/(2π) cosⁿα, sampled with density (n + 1)/(2π) cosⁿα (paper, eqs. 2 and 5), n = (2/α² − 2)/4 with
 //! α = roughness². What falls below the surface is lost: the model's own loss.
 
-use super::{LobeShape, alpha_from_roughness};
+use super::{Facets, LobeShape, alpha_from_roughness};
 use crate::optics::frame::{Frame, frame_from_normal, world_from_local};
 use crate::optics::numeric::{expm1, log1p};
 use crate::optics::real::Real;
@@ -13,6 +13,8 @@ use crate::optics::vector::{Vec3, vec3};
 pub const HEMISPHERICAL: bool = true;
 /// Isotropic.
 pub const ANISOTROPIC: bool = false;
+/// No facets: refraction turns the lobe about the refracted direction.
+pub const FACETS: Facets = Facets::None;
 
 /// The exponent n, never below 0.
 #[inline(always)]

@@ -77,6 +77,18 @@ impl<'a> Materials<'a> {
         let strength = extensions
             .and_then(|e| e.emissive_strength.as_ref())
             .map_or(1.0, |e| e.emissive_strength.0);
+        let volume = extensions.and_then(|e| e.volume.as_ref());
+        let transmission = extensions
+            .and_then(|e| e.transmission.as_ref())
+            .map_or(0.0, |e| unit(e.transmission_factor.0));
+        let attenuation_distance = volume
+            .map(|volume| volume.attenuation_distance.0)
+            .filter(|distance| distance.is_finite() && *distance > 0.0);
+        if transmission > 0.0 && attenuation_distance.is_some() && [red, green, blue] != [1.0; 3] {
+            self.warnings.push(format!(
+                "material {index}: its volume colours what is seen through, not its base colour"
+            ));
+        }
         let mut uv_set = None;
         let info = |info: &Option<json::texture::Info>| {
             let info = info.as_ref()?;
@@ -97,9 +109,9 @@ impl<'a> Materials<'a> {
             ior: extensions
                 .and_then(|e| e.ior.as_ref())
                 .map_or(1.5, |e| e.ior.0.clamp(1.0, 100.0)),
-            transmission: extensions
-                .and_then(|e| e.transmission.as_ref())
-                .map_or(0.0, |e| unit(e.transmission_factor.0)),
+            transmission,
+            attenuation_color: volume.map_or([1.0; 3], |volume| volume.attenuation_color.0.map(unit)),
+            attenuation_distance: attenuation_distance.unwrap_or(f32::INFINITY),
             base_color_texture: self.texture(info(&pbr.base_color_texture), &mut uv_set),
             metallic_roughness_texture: self.texture(info(&pbr.metallic_roughness_texture), &mut uv_set),
             normal_texture: self.texture(

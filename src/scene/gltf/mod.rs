@@ -15,6 +15,7 @@ use gltf::json;
 
 use self::container::Document;
 use self::material::Materials;
+use super::geometry::Framing;
 use super::mesh::Mesh;
 use super::model::{Model, ModelError};
 
@@ -43,7 +44,11 @@ pub(super) fn load(path: &Path) -> Result<Model, ModelError> {
         return Err(ModelError::NoTriangles { path: path.to_owned() });
     }
     warnings.append(&mut materials.warnings);
-    let (slots, textures) = materials.finish()?;
+    let (mut slots, textures) = materials.finish()?;
+    let world_units_per_unit = Framing::of(&whole).world_units_per_unit as f32;
+    for slot in &mut slots {
+        slot.attenuation_distance /= world_units_per_unit;
+    }
     warnings.dedup();
     let name = path
         .file_stem()

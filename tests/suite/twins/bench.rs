@@ -75,9 +75,12 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     materials[0].emission = vec3(0.7, 0.2, 0.4);
     materials[1].emission = vec3(0.001, 0.002, 0.003);
     for material in &mut materials {
-        let albedo = albedo_table(&material.cast(), &tables, ALBEDO_SAMPLES);
-        material.albedo_table = tables.len() as u32;
-        tables.extend(albedo);
+        let albedo = [false, true].map(|is_inside| {
+            let table = albedo_table(&material.cast(), &tables, ALBEDO_SAMPLES, is_inside);
+            tables.extend(&table);
+            (tables.len() - table.len()) as u32
+        });
+        [material.albedo_table, material.inner_albedo_table] = albedo;
     }
     let geometry = Geometry::build(&model, true);
     Scene {
@@ -114,6 +117,7 @@ pub fn random_roughness(rng: &mut Rng) -> f32 {
 fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) -> Material<f32> {
     let mut color = |low: f32, high: f32| vec3(rng.range(low, high), rng.range(low, high), rng.range(low, high));
     let (base_color, specular_color, eta, k) = (color(0.0, 1.0), color(0.2, 1.0), color(0.1, 3.0), color(0.0, 6.0));
+    let tint = color(0.2, 1.0);
     let metalness = if rng.chance(0.3) { 1.0 } else { rng.range(0.0, 1.0) };
     Material {
         base_color: if rng.chance(0.1) {
@@ -130,6 +134,14 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
         emission: vec3(0.0, 0.0, 0.0),
         anisotropy: if rng.chance(0.5) { rng.range(-1.0, 1.0) } else { 0.0 },
+        transmission_tint: tint,
+        transmission_weight: match rng.below(4) {
+            0 => rng.range(0.0, 1.0),
+            1 => 1.0,
+            _ => 0.0,
+        },
+        absorption: vec3(0.0, 0.0, 0.0),
+        transmission_roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
         rotation_rad: rng.range(-3.0, 3.0),
         lobe: lobe as u32,
         curve: curve as u32,
@@ -137,7 +149,7 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         fresnel: fresnel as u32,
         curve_table: 0,
         albedo_table: 0,
-        reserved: 0,
+        inner_albedo_table: 0,
     }
 }
 

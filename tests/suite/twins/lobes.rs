@@ -71,17 +71,19 @@ pub fn read_view<T: Real>(row: &mut Row<'_, T>) -> (Frame<T>, Vec3<T>, Vec3<T>) 
 
 /// The numbers of a shape.
 #[derive(Clone, Copy)]
-struct Shape {
-    lobe: Lobe,
-    curve: Curve,
-    horizon: Horizon,
-    table: u32,
-    roughness: f32,
-    anisotropy: f32,
+pub struct Shape {
+    pub lobe: Lobe,
+    pub curve: Curve,
+    pub horizon: Horizon,
+    pub table: u32,
+    pub roughness: f32,
+    pub anisotropy: f32,
+    /// 0 in half of them: they reflect.
+    pub eta: f32,
 }
 
 impl Shape {
-    fn inputs(&self) -> [Value; 6] {
+    pub fn inputs(&self) -> [Value; 7] {
         let Self {
             lobe,
             curve,
@@ -89,6 +91,7 @@ impl Shape {
             table,
             roughness,
             anisotropy,
+            eta,
         } = *self;
         [
             (lobe as u32).into(),
@@ -97,21 +100,23 @@ impl Shape {
             table.into(),
             roughness.into(),
             anisotropy.into(),
+            eta.into(),
         ]
     }
-    fn lobe_shape(&self) -> LobeShape<'static, f32> {
+    pub fn lobe_shape(&self) -> LobeShape<'static, f32> {
         LobeShape {
             lobe: self.lobe,
             curve: self.curve,
             horizon: self.horizon,
             roughness: self.roughness,
             anisotropy: self.anisotropy,
+            eta: self.eta,
             table: &SCENE.tables[self.table as usize..],
         }
     }
 }
 
-fn read_shape<T: Real>(row: &mut Row<'_, T>) -> LobeShape<'static, T> {
+pub fn read_shape<T: Real>(row: &mut Row<'_, T>) -> LobeShape<'static, T> {
     let [lobe, curve, horizon, table] = [(); 4].map(|()| row.bits() as usize);
     LobeShape {
         lobe: Lobe::ALL[lobe],
@@ -119,6 +124,7 @@ fn read_shape<T: Real>(row: &mut Row<'_, T>) -> LobeShape<'static, T> {
         horizon: Horizon::ALL[horizon],
         roughness: row.number(),
         anisotropy: row.number(),
+        eta: row.number(),
         table: &SCENE.tables[table..],
     }
 }
@@ -150,7 +156,7 @@ fn kinds() -> Vec<(String, Lobe, Curve, bool)> {
     kinds
 }
 
-fn random_shape(rng: &mut Rng, lobe: Lobe, curve: Curve, stretched: bool) -> Shape {
+pub fn random_shape(rng: &mut Rng, lobe: Lobe, curve: Curve, stretched: bool) -> Shape {
     Shape {
         lobe,
         curve,
@@ -158,6 +164,11 @@ fn random_shape(rng: &mut Rng, lobe: Lobe, curve: Curve, stretched: bool) -> Sha
         table: SCENE.curves[rng.below(CUSTOM_CURVES)],
         roughness: random_roughness(rng),
         anisotropy: if stretched { rng.range(-1.0, 1.0) } else { 0.0 },
+        eta: match rng.below(4) {
+            0 => rng.range(1.05, 2.5),
+            1 => 1.0 / rng.range(1.05, 2.5),
+            _ => 0.0,
+        },
     }
 }
 
@@ -182,10 +193,10 @@ fn with_direction(mut case: Case) -> Case {
     for (name, lobe, curve, stretched) in kinds() {
         case = case.group_of(&name, 16_000, move |rng, index| {
             let (shape, view) = (random_shape(rng, lobe, curve, stretched), View::random(rng));
-            let wi = if index % 2 == 0 {
-                raw_sample(&shape.lobe_shape(), &view.frame, view.wo, units(rng))
-            } else {
-                rng.direction()
+            let wi = match index % 4 {
+                0 => raw_sample(&shape.lobe_shape(), &view.frame, view.wo, units(rng)),
+                1 => lobe_sample(&shape.lobe_shape(), &view.frame, view.normal, view.wo, units(rng)).wi,
+                _ => rng.direction(),
             };
             [&shape.inputs()[..], &view.inputs(), &[wi.into()]].concat()
         });
@@ -193,17 +204,18 @@ fn with_direction(mut case: Case) -> Case {
     case
 }
 
-const SHAPE_AND_VIEW: &str = "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy); \
+pub const SHAPE_AND_VIEW: &str = "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy, eta); \
     let frame = Frame(tangent, bitangent, shading);";
 
 macro_rules! shape_and_view {
     ($last:literal) => {
         concat!(
-            "lobe curve horizon table roughness anisotropy tangent bitangent shading normal wo ",
+            "lobe curve horizon table roughness anisotropy eta tangent bitangent shading normal wo ",
             $last
         )
     };
 }
+pub(super) use shape_and_view;
 
 #[test]
 fn lobes_agree() {
@@ -245,7 +257,7 @@ fn lobes_agree() {
                     "lobe_sample",
                     shape_and_view!("a b c"),
                     concat!(
-                        "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy); ",
+                        "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy, eta); ",
                         "let frame = Frame(tangent, bitangent, shading); ",
                         "let drawn = lobe_sample(shape, frame, normal, wo, vec3f(a, b, c));"
                     ),
@@ -265,7 +277,7 @@ fn lobes_agree() {
                     "lobe_evaluate",
                     shape_and_view!("wi"),
                     concat!(
-                        "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy); ",
+                        "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy, eta); ",
                         "let frame = Frame(tangent, bitangent, shading); ",
                         "let found = lobe_evaluate(shape, frame, normal, wo, wi);"
                     ),
@@ -287,8 +299,8 @@ fn lobes_agree() {
 fn shapes_agree() {
     let mut mirror = Case::new(
         "is_mirror",
-        "lobe curve horizon table roughness anisotropy",
-        "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy);",
+        "lobe curve horizon table roughness anisotropy eta",
+        "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy, eta);",
         twin!(|row| {
             let shape = read_shape(row);
             row.put(T::select(is_mirror(&shape), T::one(), T::zero()));
@@ -369,7 +381,7 @@ fn microfacets_agree() {
             .output(expression, output)
             .group("", |rng, _| widths_and_directions(rng))
     };
-    const SHAPE: &str = "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy); \
+    const SHAPE: &str = "let shape = LobeShape(lobe, curve, horizon, table, roughness, anisotropy, eta); \
         let alpha = microfacet_alpha(shape); let equal = isotropic_alpha(shape);";
     check(
         &["optics/microfacet"],

@@ -1,8 +1,9 @@
 //! The layered material with real albedo tables, for every lobe.
 
-use glossmith::optics::lobe::{Lobe, raw_sample};
+use glossmith::optics::lobe::{Lobe, lobe_sample, raw_sample};
 use glossmith::optics::material::{
-    Material, Surface, albedo_lookup, material_evaluate, material_layers, material_sample,
+    Material, MaterialNumbers, Surface, albedo_lookup, albedo_place, material_evaluate, material_layers,
+    material_sample,
 };
 use glossmith::optics::real::Real;
 
@@ -16,7 +17,19 @@ const COLOUR: Output = Output::Vector(0.1);
 fn read_material_and_surface<T: Real>(row: &mut Row<'_, T>) -> (Material<T>, Surface<T>) {
     let material = SCENE.material(row.bits());
     let (frame, normal, wo) = read_view(row);
-    (material, Surface { frame, normal, wo })
+    let is_inside = row.bits() == 1;
+    let surface = Surface {
+        frame,
+        normal,
+        wo,
+        is_inside,
+    };
+    (material, surface)
+}
+
+/// Seen from within one time in two.
+fn side(rng: &mut Rng) -> Value {
+    (rng.bits() & 1).into()
 }
 
 /// A material of this lobe.
@@ -29,33 +42,43 @@ fn random_index(rng: &mut Rng, lobe: Lobe) -> u32 {
     of_lobe[rng.below(of_lobe.len())]
 }
 
-const SURFACE: &str = "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo);";
+const SURFACE: &str = "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, inside == 1u);";
 
 #[test]
 fn materials_agree() {
     let mut layers = Case::new(
         "material_layers",
-        "material tangent bitangent shading normal wo",
-        "let l = material_layers(materials[material], Surface(Frame(tangent, bitangent, shading), normal, wo));",
+        "material tangent bitangent shading normal wo inside",
+        "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, inside == 1u); \
+         let l = material_layers(materials[material], surface);",
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
             let layers = material_layers(&material, &SCENE.tables, &surface);
             row.put_vector(layers.base);
+            row.put_vector(layers.transmission);
             row.put(layers.specular_probability);
+            row.put(layers.transmission_probability);
         }),
     )
     .output("l.base", COLOUR)
-    .output("l.specular_probability", Output::Number(0.05));
+    .output("l.transmission", COLOUR)
+    .output("l.specular_probability", Output::Number(0.05))
+    .output("l.transmission_probability", Output::Number(0.05));
     let mut sample = Case::new(
         "material_sample",
-        "material tangent bitangent shading normal wo a b c layer wants_density",
-        "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo); \
-         let s = material_sample(materials[material], surface, vec3f(a, b, c), layer, wants_density == 1u);",
+        "material tangent bitangent shading normal wo inside a b c layer d e f wants_density",
+        "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, inside == 1u); \
+         let s = material_sample(materials[material], surface, \
+         MaterialNumbers(vec3f(a, b, c), layer, vec3f(d, e, f)), wants_density == 1u);",
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
-            let (xi, layer) = (row.numbers(), row.number());
+            let numbers = MaterialNumbers {
+                lobe: row.numbers(),
+                layer: row.number(),
+                below: row.numbers(),
+            };
             let wants_density = row.bits() == 1;
-            let drawn = material_sample(&material, &SCENE.tables, &surface, xi, layer, wants_density);
+            let drawn = material_sample(&material, &SCENE.tables, &surface, numbers, wants_density);
             row.put_vector(drawn.wi);
             row.put_vector(drawn.throughput);
             row.put(drawn.density);
@@ -68,7 +91,7 @@ fn materials_agree() {
     .output("f32(s.is_mirror)", Output::Number(1.0));
     let mut evaluate = Case::new(
         "material_evaluate",
-        "material tangent bitangent shading normal wo wi light_density competing",
+        "material tangent bitangent shading normal wo inside wi light_density competing",
         SURFACE,
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
@@ -84,24 +107,31 @@ fn materials_agree() {
     );
     for &lobe in Lobe::ALL {
         layers = layers.group(lobe.name(), move |rng, _| {
-            [&[random_index(rng, lobe).into()][..], &View::random(rng).inputs()].concat()
+            let start = [random_index(rng, lobe).into()];
+            [&start[..], &View::random(rng).inputs(), &[side(rng)]].concat()
         });
         sample = sample.group_of(lobe.name(), 16_000, move |rng, _| {
-            let xi = [(); 4].map(|()| Value::Unit(rng.unit()));
+            let xi = [(); 7].map(|()| Value::Unit(rng.unit()));
             let start = [random_index(rng, lobe).into()];
-            [&start[..], &View::random(rng).inputs(), &xi, &[(rng.bits() & 1).into()]].concat()
+            let view = View::random(rng).inputs();
+            [&start[..], &view, &[side(rng)], &xi, &[(rng.bits() & 1).into()]].concat()
         });
         evaluate = evaluate.group_of(lobe.name(), 16_000, move |rng, index| {
             let (material, view) = (random_index(rng, lobe), View::random(rng));
-            let wi = if index % 2 == 0 {
-                let shape = SCENE.materials[material as usize].shape(&SCENE.tables);
-                raw_sample(&shape, &view.frame, view.wo, [(); 3].map(|()| rng.unit()))
-            } else {
-                rng.direction()
+            let (inside, xi) = (side(rng), [(); 3].map(|()| rng.unit()));
+            let is_inside = matches!(inside, Value::Bits(1));
+            let of_material = &SCENE.materials[material as usize];
+            let wi = match index % 4 {
+                0 => raw_sample(&of_material.shape(&SCENE.tables), &view.frame, view.wo, xi),
+                1 => {
+                    let shape = of_material.transmission_shape(&SCENE.tables, is_inside);
+                    lobe_sample(&shape, &view.frame, view.normal, view.wo, xi).wi
+                }
+                _ => rng.direction(),
             };
             let competing: f32 = if rng.chance(0.5) { 1.0 } else { 0.0 };
             let last = inputs![wi, rng.log_range(1e-3, 1e3), competing];
-            [&[material.into()][..], &view.inputs(), &last].concat()
+            [&[material.into()][..], &view.inputs(), &[inside], &last].concat()
         });
     }
     check(
@@ -124,6 +154,17 @@ fn materials_agree() {
             .group("", |rng, _| {
                 inputs![rng.below(SCENE.materials.len()) as u32, Value::Unit(rng.unit())]
             }),
+            Case::new(
+                "albedo_place",
+                "cosine eta",
+                "",
+                twin!(|row| {
+                    let [cosine, eta] = row.numbers();
+                    row.put(albedo_place(cosine, eta));
+                }),
+            )
+            .output("albedo_place(cosine, eta)", Output::Number(0.1))
+            .group("", |rng, _| inputs![Value::Unit(rng.unit()), rng.range(0.4, 1.5)]),
         ],
     );
 }

@@ -15,6 +15,7 @@ mod harness;
 mod light;
 mod lobes;
 mod material;
+mod refraction;
 mod surface;
 mod tone;
 mod trace;

@@ -50,7 +50,10 @@ fn surfaces_agree() {
                     }
                     row.put_vector(point.position);
                     row.put(point.error);
-                    row.put_vector(point.ray_origin());
+                    for transmits in [false, true] {
+                        row.put_vector(point.ray_origin(-frame.normal, transmits));
+                    }
+                    row.put(if surface.is_inside { T::one() } else { T::zero() });
                     row.put_bits(point.slot);
                 }),
             )
@@ -61,7 +64,9 @@ fn surfaces_agree() {
             .output("p.surface.wo", UNIT)
             .output("p.position", UNIT)
             .output("p.error", Output::Number(0.0))
-            .output("ray_origin(p)", UNIT)
+            .output("ray_origin(p, -p.surface.frame.normal, false)", UNIT)
+            .output("ray_origin(p, -p.surface.frame.normal, true)", UNIT)
+            .output("f32(p.surface.is_inside)", Output::Number(1.0))
             .output("p.slot", Output::Exact)
             .group("teapot and ground", |rng, _| {
                 let (triangle, u, v) = place_in_triangle(rng);

@@ -1,0 +1,60 @@
+// Refraction at a dielectric interface. Twin of src/optics/refraction.rs, which explains the mathematics.
+#import "optics/microfacet"
+
+struct Refracted {
+    wi: vec3f,
+    is_total: bool,
+}
+
+fn refracted_square(cosine: f32, eta: f32) -> f32 {
+    return (eta - 1.0) * (eta + 1.0) + cosine * cosine;
+}
+
+fn refracted(wo: vec3f, axis: vec3f, eta: f32) -> Refracted {
+    let cosine = dot(wo, axis);
+    let square = refracted_square(cosine, eta);
+    let is_total = square < 0.0;
+    return Refracted(select((axis * (cosine - safe_sqrt(square)) - wo) / eta, -wo, is_total), is_total);
+}
+
+fn facet_refracted(wo: vec3f, mirrored: vec3f, eta: f32) -> Refracted {
+    return refracted(wo, normalize_or(wo + mirrored, wo), eta);
+}
+
+fn refracting_normal(wo: vec3f, wi: vec3f, eta: f32) -> vec3f {
+    let sum = wo + wi * eta;
+    return select(-sum, sum, eta < 1.0);
+}
+
+fn refracting_cosine(wo: vec3f, wi: vec3f, eta: f32) -> f32 {
+    let h = normalize_or(refracting_normal(wo, wi, eta), wo);
+    return clamp(dot(wo, h), 0.0, 1.0);
+}
+
+// What turns the density of the direction that the facet mirrors `wo` to into the density of `wi`; 0 where no facet
+// refracts one to the other, and where `wi` is not below the shading normal's horizon. `along`: the facet's refracting_normal.
+fn facet_density_factor(frame: Frame, wo: vec3f, wi: vec3f, eta: f32, along: vec3f) -> f32 {
+    let square = max(dot(along, along), 1e-30);
+    let h = along / sqrt(square);
+    let before = dot(wo, h);
+    let behind = -dot(wi, h);
+    let value = 4.0 * before * eta * eta * behind / square;
+    let is_seen = before > 0.0 && dot(frame.normal, h) > 0.0;
+    return select(0.0, value, dot(frame.normal, wi) < 0.0 && is_seen && behind > 0.0);
+}
+
+fn facet_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
+    var alpha = isotropic_alpha(shape);
+    if is_anisotropic(shape.lobe) { alpha = microfacet_alpha(shape); }
+    let wo_local = local_from_world(frame, wo);
+    let wi_local = local_from_world(frame, wi);
+    var weight = smith_g1_over_cosine(alpha, wi_local) * abs(wi_local.z);
+    if facets(shape.lobe) == FACETS_ALL {
+        let h = normalize_or(refracting_normal(wo, wi, shape.eta), frame.normal);
+        let height = dot(frame.normal, h);
+        let ratio = max(dot(wo, h), 0.0) / max(height, 1e-6);
+        // Normals on the far side of the facets are drawn too; the viewer sees none of them.
+        weight *= smith_g1_over_cosine(alpha, wo_local) * select(0.0, ratio, height > 0.0);
+    }
+    return select(0.0, weight, wi_local.z < 0.0 && wo_local.z > 0.0);
+}

@@ -1,0 +1,102 @@
+//! Refraction at a dielectric interface: of a direction, and at each of the facets of a rough surface.
+//!
+//! `eta` is the index of refraction behind the surface (on the side away from `wo`) over that before it. What is carried
+//! along a path is the basic radiance, radiance over the square of the index of refraction: it does not change where
+//! light is refracted, so that no factor of `eta`² appears (Nicodemus 1963; Veach 1997, section 5.2). Source of the
+//! facets' density and weight: Walter et al., "Microfacet models for refraction through rough surfaces", EGSR 2007,
+//! equations 16, 17 and 21.
+
+use super::frame::{Frame, local_from_world};
+use super::lobe::{Facets, LobeShape};
+use super::microfacet::{isotropic_alpha, microfacet_alpha, smith_g1_over_cosine};
+use super::numeric::normalize_or;
+use super::real::Real;
+use super::vector::Vec3;
+
+/// A refracted direction.
+#[derive(Clone, Copy, Debug)]
+pub struct Refracted<T: Real> {
+    /// Behind the surface; straight on where the reflection is total.
+    pub wi: Vec3<T>,
+    /// True where all light is reflected.
+    pub is_total: T::Mask,
+}
+
+/// `eta`² cos² of the refracted angle for the cosine before the surface; negative under total reflection. So written
+/// that nothing cancels where both sides are alike.
+#[inline(always)]
+pub fn refracted_square<T: Real>(cosine: T, eta: T) -> T {
+    (eta - T::one()) * (eta + T::one()) + cosine * cosine
+}
+
+/// Snell's law for a surface with the unit normal `axis` on the side of `wo`.
+#[inline(always)]
+pub fn refracted<T: Real>(wo: Vec3<T>, axis: Vec3<T>, eta: T) -> Refracted<T> {
+    let cosine = wo.dot(axis);
+    let square = refracted_square(cosine, eta);
+    let is_total = square.less(T::zero());
+    Refracted {
+        wi: Vec3::select(is_total, -wo, (axis * (cosine - square.safe_sqrt()) - wo) / eta),
+        is_total,
+    }
+}
+
+/// What the facet that mirrors `wo` to `mirrored` refracts.
+#[inline(always)]
+pub fn facet_refracted<T: Real>(wo: Vec3<T>, mirrored: Vec3<T>, eta: T) -> Refracted<T> {
+    refracted(wo, normalize_or(wo + mirrored, wo), eta)
+}
+
+/// The vector along the normal of the facet that refracts `wo` to `wi`, on the side of `wo` where there is such a facet;
+/// its length is |wo·h + eta wi·h|.
+#[inline(always)]
+pub fn refracting_normal<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> Vec3<T> {
+    let sum = wo + wi * eta;
+    Vec3::select(eta.less(T::one()), sum, -sum)
+}
+
+/// The cosine between the view and the normal of the facet that refracts it to `wi`, in [0, 1].
+#[inline(always)]
+pub fn refracting_cosine<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> T {
+    let h = normalize_or(refracting_normal(wo, wi, eta), wo);
+    wo.dot(h).clamp(T::zero(), T::one())
+}
+
+/// What turns the density of the direction that a facet mirrors `wo` to into the density of the refracted `wi`, per
+/// steradian: dωh/dωi = eta² |wi·h|/(wo·h + eta wi·h)² over dωh/dω of the mirrored one, 1/(4 wo·h). 0 where no facet
+/// refracts one to the other, and where `wi` is not below the shading normal's horizon: such samples are lost. `along`: that facet's [`refracting_normal`].
+#[inline(always)]
+pub fn facet_density_factor<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>, eta: T, along: Vec3<T>) -> T {
+    let square = along.dot(along).max(T::from_f64(1e-30));
+    let h = along / square.sqrt();
+    let (before, behind) = (wo.dot(h), -wi.dot(h));
+    let value = T::from_f64(4.0) * before * eta * eta * behind / square;
+    let is_behind = frame.normal.dot(wi).less(T::zero());
+    let is_seen = T::zero().less(before) & T::zero().less(frame.normal.dot(h));
+    let is_refracted = is_behind & is_seen & T::zero().less(behind);
+    T::select(is_refracted, value, T::zero())
+}
+
+/// Evaluate over density of a direction refracted at a facet, Fresnel's share left aside: Smith's masking of both
+/// directions, each by itself as they are on different sides, over that of the drawn normals. 0 where `wi` is not below
+/// the shading normal's horizon.
+#[inline(always)]
+pub fn facet_weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
+    let alpha = if shape.lobe.is_anisotropic() {
+        microfacet_alpha(shape)
+    } else {
+        isotropic_alpha(shape)
+    };
+    let (wo_local, wi_local) = (local_from_world(frame, wo), local_from_world(frame, wi));
+    let mut weight = smith_g1_over_cosine(alpha, wi_local) * wi_local.z.abs();
+    if shape.lobe.facets() == Facets::All {
+        let h = normalize_or(refracting_normal(wo, wi, shape.eta), frame.normal);
+        let height = frame.normal.dot(h);
+        let ratio = wo.dot(h).max(T::zero()) / height.max(T::from_f64(1e-6));
+        // Normals on the far side of the facets are drawn too; the viewer sees none of them.
+        let ratio = T::select(T::zero().less(height), ratio, T::zero());
+        weight = weight * smith_g1_over_cosine(alpha, wo_local) * ratio;
+    }
+    let is_behind = wi_local.z.less(T::zero()) & T::zero().less(wo_local.z);
+    T::select(is_behind, weight, T::zero())
+}

@@ -1,0 +1,266 @@
+//! Glass: energy, absorption, invisibility, and the strategies and engines against each other.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use glossmith::analysis::film::Film;
+use glossmith::cpu::CpuEngine;
+use glossmith::document::job::Job;
+use glossmith::document::{Background, Document, MaterialSettings, Strategy, compile};
+use glossmith::optics::fresnel::Fresnel;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::{Geometry, Model, ModelSource, Slot};
+
+use super::renders::{assert_same_picture, document, render, with_strategy};
+
+const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
+
+/// A sphere of clear glass, but for the assignments.
+fn glass(light: EnvironmentSource, assignments: &[&str]) -> Document {
+    let clear = ["base.metalness=0", "transmission.weight=1", "specular.roughness=0"];
+    let mut document = document(ModelSource::Sphere, light, &[&clear, assignments].concat());
+    document.lighting.background = Background::Transparent;
+    document
+}
+
+/// Mean colour of what the camera sees of the model.
+fn mean(film: &Film) -> [f64; 3] {
+    let alpha: f64 = film.color.iter().map(|color| color[3]).sum();
+    [0, 1, 2].map(|i| film.color.iter().map(|color| color[i]).sum::<f64>() / alpha)
+}
+
+/// What goes in comes out: glass that absorbs nothing can't be seen where light is equally bright from everywhere.
+#[test]
+fn clear_glass_is_white_in_the_furnace() {
+    for choice in ENGINES {
+        for assignments in [
+            &["specular.ior=1.5"][..],
+            &["specular.ior=2.4"],
+            &["specular.roughness=0.3"],
+            &["specular.roughness=0.7", "specular.curve=long-tail"],
+            &["specular.roughness=0.4", "specular.anisotropy=0.6"],
+            // Were the reflection smoother and the refraction or the base rough, total reflection would keep some of
+            // the light inside for more bounces than there are.
+            &["specular.roughness=0.3", "transmission.roughness=-0.15"],
+            &["transmission.weight=0.5", "base.color=1,1,1", "specular.roughness=0.6"],
+            // The tint and the weight of the reflection leave more to refract.
+            &[
+                "specular.roughness=0.3",
+                "specular.color=0.3,0.3,0.3",
+                "specular.weight=0.5",
+            ],
+        ] {
+            let film = render(choice, &glass(EnvironmentSource::Furnace, assignments));
+            assert_eq!(film.dropped, 0);
+            for value in mean(&film) {
+                assert!((value - 1.0).abs() < 3e-3, "{choice:?}, {assignments:?}: {value}");
+            }
+        }
+    }
+}
+
+/// Single scattering loses what facets shadow, and makes nothing.
+#[test]
+fn rough_ggx_glass_makes_no_light() {
+    for choice in ENGINES {
+        for (roughness, least) in [("0.02", 0.999), ("0.3", 0.93), ("0.6", 0.64), ("0.9", 0.35)] {
+            let roughness = format!("specular.roughness={roughness}");
+            let film = render(
+                choice,
+                &glass(EnvironmentSource::Furnace, &["specular.lobe=ggx", &roughness]),
+            );
+            let [value, ..] = mean(&film);
+            println!("{choice:?} {roughness} {value}");
+            assert!((least..1.001).contains(&value), "{choice:?}, {roughness}: {value}");
+        }
+    }
+}
+
+/// Beer and Lambert: with the index 1 every ray goes straight on; along the axis of glass the reflections between front
+/// and back add up to a geometric series.
+#[test]
+fn absorption_is_exponential_in_the_way() {
+    let color = [0.9, 0.5, 0.1];
+    for choice in ENGINES {
+        for ior in [1.0, 1.5] {
+            let ior_assignment = format!("specular.ior={ior}");
+            let absorbing = [
+                "transmission.color=0.9,0.5,0.1",
+                "transmission.depth=0.8",
+                &ior_assignment,
+            ];
+            let mut document = glass(EnvironmentSource::Furnace, &absorbing);
+            // Close to the axis: half a degree off it the way inside is shorter by less than a thousandth.
+            (document.camera.fov_deg, document.camera.distance) = (1.0, Some(4.0));
+            document.render.samples = 256;
+            let reflected = f64::powi((ior - 1.0) / (ior + 1.0), 2);
+            for (value, color) in mean(&render(choice, &document)).into_iter().zip(color) {
+                let passed = f64::powf(color, 2.0 / 0.8);
+                let expected = reflected + (1.0 - reflected).powi(2) * passed / (1.0 - reflected * passed);
+                // The mesh is a little smaller than the sphere.
+                let limit = 0.005 * expected + if ior == 1.0 { 0.0 } else { 0.001 };
+                assert!(
+                    (value - expected).abs() < limit,
+                    "{choice:?} {ior}: {value}, {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// With the index of the air around it and no roughness, the sphere is not there.
+#[test]
+fn glass_with_the_index_of_air_is_invisible() {
+    for lobe in ["geometric", "ggx"] {
+        let lobe = format!("specular.lobe={lobe}");
+        let mut document = glass(EnvironmentSource::Studio, &["specular.ior=1", &lobe]);
+        document.lighting.background = Background::Environment;
+        document.render.samples = 16;
+        let mut session = Session::open(EngineChoice::Cpu).unwrap();
+        session.submit(&document).unwrap();
+        let mut engine = CpuEngine::default();
+        engine.submit(Arc::new(Job {
+            geometry: Arc::new(Geometry::build(&Model::default(), false)),
+            ..Job::clone(session.job().unwrap())
+        }));
+        engine.step(Duration::from_secs(100), 16);
+        let empty = engine.film().image();
+        for choice in ENGINES {
+            let film = render(choice, &document);
+            // The sphere is there, and was met: a path through it has more than one ray.
+            assert!(film.rays > 16 * 64 * 64 * 2, "{choice:?} {lobe}: {} rays", film.rays);
+            for (i, (seen, expected)) in film.image().pixels.iter().zip(&empty.pixels).enumerate() {
+                for (a, b) in seen.iter().zip(expected) {
+                    // GGX's narrowest lobe shadows a little at the edge.
+                    let limit = 0.01 * b.abs() + 0.01;
+                    assert!(
+                        (a - b).abs() < limit,
+                        "{choice:?} {lobe}: pixel {i}: {seen:?}, {expected:?}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn strategies_agree_on_rough_glass() {
+    for assignments in [
+        &["specular.roughness=0.5"][..],
+        &["specular.roughness=0.6", "specular.lobe=ggx", "specular.ior=1.33"],
+        &[
+            "specular.roughness=0.5",
+            "transmission.weight=0.6",
+            "base.color=0.8,0.2,0.1",
+        ],
+    ] {
+        let mut document = glass(EnvironmentSource::Studio, assignments);
+        document.render.samples = 256;
+        (document.render.width, document.render.height) = (32, 32);
+        let mis = render(EngineChoice::Cpu, &document);
+        let lobe = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Lobe, 2));
+        assert_same_picture(&mis, &lobe, &format!("mis against lobe, {assignments:?}"));
+        // Light sampling alone has the rare bright paths of light reflected inside: its pixels are skewed, its sum is not.
+        let light = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Light, 1));
+        let off = mis.difference_in_sigma(&light);
+        assert!(off.abs() < 4.0, "mis against light, {assignments:?}: {off:.1} sigma");
+    }
+}
+
+#[test]
+fn engines_agree_on_glass() {
+    for assignments in [
+        &[
+            "specular.roughness=0",
+            "transmission.color=0.8,0.4,0.2",
+            "transmission.depth=0.5",
+        ][..],
+        &["specular.roughness=0.4", "transmission.color=0.5,0.9,0.7"],
+        &[
+            "specular.lobe=ggx-ndf",
+            "specular.roughness=0.5",
+            "transmission.roughness=-0.2",
+        ],
+    ] {
+        let mut document = glass(EnvironmentSource::Studio, assignments);
+        document.model = ModelSource::Teapot;
+        let cpu = render(EngineChoice::Cpu, &document);
+        let gpu = render(EngineChoice::Gpu, &with_strategy(&document, Strategy::Mis, 7));
+        assert_eq!((cpu.dropped, gpu.dropped), (0, 0));
+        assert_same_picture(&cpu, &gpu, &format!("cpu against gpu, {assignments:?}"));
+    }
+}
+
+/// The plan leaves out what no material calls for, and a clear material follows the exact equations.
+#[test]
+fn transmission_is_compiled_in_where_it_is_called_for() {
+    let plan = |assignments: &[&str]| {
+        let mut session = Session::open(EngineChoice::Cpu).unwrap();
+        session.submit(&glass(EnvironmentSource::Furnace, assignments)).unwrap();
+        let effects = session.job().unwrap().plan.effects();
+        ["transmission", "absorption"].map(|name| effects.contains(&name))
+    };
+    assert_eq!(plan(&["transmission.weight=0"]), [false, false]);
+    assert_eq!(plan(&["base.metalness=1"]), [false, false]);
+    assert_eq!(plan(&["transmission.color=0.5,0.5,0.5"]), [true, false]);
+    assert_eq!(
+        plan(&["transmission.color=0.5,0.5,0.5", "transmission.depth=1"]),
+        [true, true]
+    );
+
+    let clear = MaterialSettings {
+        metalness: 0.0,
+        transmission_weight: 1.0,
+        transmission_color: [0.25, 1.0, 0.0],
+        ..MaterialSettings::default()
+    };
+    let ([tinted], _) = parts(&clear);
+    assert_eq!(tinted.fresnel, Fresnel::Dielectric as u32);
+    assert_eq!((tinted.transmission_tint.x, tinted.absorption.x), (0.25, 0.0));
+    let deep = MaterialSettings {
+        transmission_depth: 2.0,
+        ..clear
+    };
+    let ([deep], _) = parts(&deep);
+    assert_eq!(deep.transmission_tint.x, 1.0);
+    assert!((deep.absorption.x - 0.5 * 4.0_f32.ln()).abs() < 1e-6 && deep.absorption.y == 0.0);
+    assert!(
+        deep.absorption.z.is_finite() && deep.absorption.z > 4.0,
+        "black absorbs much, not infinitely"
+    );
+}
+
+fn parts(material: &MaterialSettings) -> ([glossmith::optics::material::Material<f32>; 1], Vec<f32>) {
+    let (materials, tables) = compile(std::slice::from_ref(material));
+    ([materials[0]], tables)
+}
+
+/// glTF: the base colour tints what is transmitted, unless the volume does.
+#[test]
+fn slots_that_transmit_become_glass() {
+    let slot = Slot {
+        transmission: 0.875,
+        base_color: [0.5, 0.25, 1.0],
+        metalness: 0.0,
+        ior: 1.75,
+        ..Slot::default()
+    };
+    let material = MaterialSettings::from_slot(&slot);
+    assert_eq!((material.transmission_weight, material.ior), (0.875, 1.75));
+    assert_eq!(
+        (material.transmission_color, material.transmission_depth),
+        ([0.5, 0.25, 1.0], 0.0)
+    );
+    let material = MaterialSettings::from_slot(&Slot {
+        attenuation_color: [0.1, 0.2, 0.3],
+        attenuation_distance: 2.5,
+        ..slot
+    });
+    assert_eq!(
+        (material.transmission_color, material.transmission_depth),
+        ([0.1, 0.2, 0.3], 2.5)
+    );
+    let opaque = MaterialSettings::from_slot(&Slot::neutral("wall"));
+    assert_eq!((opaque.transmission_weight, opaque.transmission_color), (0.0, [1.0; 3]));
+}
