@@ -31,7 +31,7 @@ fn tone_curves_agree() {
     )
     .output("tone_map(curve, color)", DISPLAY);
     for &curve in ToneCurve::ALL {
-        map = map.group_of(curve.name(), 14_000, move |rng, _| {
+        map = map.group_of(curve.name(), 18_000, move |rng, _| {
             inputs![curve as u32, scene_color(rng)]
         });
     }
