@@ -14,6 +14,7 @@ pub mod parameter;
 pub mod plan;
 pub mod preset;
 pub mod project;
+pub mod recovery;
 mod registry;
 mod settings;
 
