@@ -41,6 +41,8 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/nothing_lost.rs"]
+mod nothing_lost;
 #[path = "suite/renders.rs"]
 mod renders;
 #[path = "suite/statistics.rs"]

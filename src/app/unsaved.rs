@@ -158,7 +158,10 @@ impl Question {
         let mut answer = None;
         ui.horizontal(|ui| {
             let save = ui.button("Save");
-            if std::mem::take(&mut self.is_new) {
+            // The focus lasts only once the sheet has been laid out.
+            if save.has_focus() {
+                self.is_new = false;
+            } else if self.is_new {
                 save.request_focus();
             }
             if save.clicked() {

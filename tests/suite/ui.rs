@@ -17,28 +17,40 @@ use glossmith::scene::environment::EnvironmentSource;
 
 use super::worker::small_document;
 
-const PATIENCE: Duration = Duration::from_secs(120);
+pub(super) const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The options of an editor that is tested: nothing of the user's is read or written.
+pub(super) fn options() -> Options {
+    Options {
+        engine: EngineChoice::Cpu,
+        document: Some(small_document()),
+        resolution: Some(Resolution::Document),
+        ..Options::default()
+    }
+}
 
 fn editor_with(document: Document, files: Vec<PathBuf>) -> Harness<'static, App> {
-    let options = Options {
+    editor_of(Options {
         files,
-        engine: EngineChoice::Cpu,
         document: Some(document),
-        resolution: Some(Resolution::Document),
-    };
+        ..options()
+    })
+}
+
+pub(super) fn editor_of(options: Options) -> Harness<'static, App> {
     Harness::builder()
         .with_size(Vec2::new(1400.0, 1000.0))
         .build_eframe(move |creation| App::new(creation, options).expect("a thread to render on"))
 }
 
 /// An editor whose first picture is finished.
-fn editor() -> Harness<'static, App> {
+pub(super) fn editor() -> Harness<'static, App> {
     let mut harness = editor_with(small_document(), Vec::new());
     settle(&mut harness);
     harness
 }
 
-fn wait(harness: &mut Harness<'static, App>, what: &str, until: impl Fn(&App) -> bool) {
+pub(super) fn wait(harness: &mut Harness<'static, App>, what: &str, until: impl Fn(&App) -> bool) {
     let begun = Instant::now();
     loop {
         harness.step();
@@ -52,7 +64,7 @@ fn wait(harness: &mut Harness<'static, App>, what: &str, until: impl Fn(&App) ->
     }
 }
 
-fn settle(harness: &mut Harness<'static, App>) {
+pub(super) fn settle(harness: &mut Harness<'static, App>) {
     // What was just done reaches the renderer with the next frame.
     harness.run_steps(3);
     wait(harness, "a finished picture", App::is_settled);
@@ -77,7 +89,7 @@ fn undo(harness: &mut Harness<'static, App>) {
     settle(harness);
 }
 
-fn request(harness: &mut Harness<'static, App>, action: Action) {
+pub(super) fn request(harness: &mut Harness<'static, App>, action: Action) {
     harness.state_mut().request(action);
     harness.run_steps(2);
 }
@@ -377,7 +389,7 @@ fn projects_and_materials_come_back_from_their_files() {
     settle(&mut harness);
     assert_eq!(*harness.state().document(), document);
     request(&mut harness, Action::Open(material));
-    settle(&mut harness);
+    wait(&mut harness, "the material", |app| app.document() != &document);
     assert_eq!(harness.state().document().materials[0], PRESETS[3]);
 }
 
