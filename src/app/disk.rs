@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use crate::document::file::Opened;
+use crate::document::library::Entry;
 use crate::document::{Document, FileError};
 use crate::render::worker::Level;
 
@@ -13,6 +14,10 @@ pub(super) enum Done {
     Read(PathBuf, Result<Opened, FileError>),
     /// The document was written, such as it was then.
     SavedProject(PathBuf, Box<Document>, Result<(), FileError>),
+    /// The user's materials were listed.
+    Listed(Result<(String, Vec<Entry>), FileError>),
+    /// The user's materials were changed; what to say about it, and which there are.
+    ChangedLibrary(Result<(String, Vec<Entry>), FileError>),
     /// Something else was written; what to say about it.
     Wrote(Result<String, String>),
 }
@@ -103,8 +108,10 @@ impl Disk {
         let done: Vec<Done> = self.done.try_iter().collect();
         for done in &done {
             match done {
-                Done::Read(..) => self.reads = self.reads.saturating_sub(1),
-                Done::SavedProject(..) | Done::Wrote(_) => self.writes = self.writes.saturating_sub(1),
+                Done::Read(..) | Done::Listed(_) => self.reads = self.reads.saturating_sub(1),
+                Done::SavedProject(..) | Done::ChangedLibrary(_) | Done::Wrote(_) => {
+                    self.writes = self.writes.saturating_sub(1)
+                }
             }
         }
         done

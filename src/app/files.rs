@@ -16,7 +16,7 @@ use crate::scene::environment::EnvironmentSource;
 
 /// The project's file, and the thread that reads and writes.
 pub(super) struct Files {
-    disk: Disk,
+    pub(super) disk: Disk,
     pub(super) project: Option<PathBuf>,
 }
 
@@ -104,6 +104,11 @@ impl App {
                         self.files.project = Some(path.clone());
                     }
                     self.say_saved(&path, saved.map_err(|error| error.to_string()));
+                }
+                Done::Listed(listed) => self.take_library(listed),
+                Done::ChangedLibrary(changed) => {
+                    has_failed |= changed.is_err();
+                    self.take_library(changed);
                 }
                 Done::Wrote(result) => {
                     has_failed |= result.is_err();

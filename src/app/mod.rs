@@ -12,6 +12,7 @@ mod edits;
 mod files;
 mod icons;
 pub mod layout;
+pub mod library;
 mod menu;
 mod orbit;
 mod panels;
@@ -63,6 +64,7 @@ pub fn run(files: Vec<PathBuf>, engine: EngineChoice) -> anyhow::Result<()> {
         files,
         engine,
         data: settings::data_folder(),
+        cache: settings::cache_folder(),
         ..Options::default()
     };
     crate::render::priority::let_rendering_give_way();
@@ -86,8 +88,11 @@ pub struct Options {
     pub document: Option<Document>,
     /// The size of the picture instead of the one remembered.
     pub resolution: Option<Resolution>,
-    /// The folder for what belongs to the user; without one, unsaved edits are not kept for a crash.
+    /// The folder for what belongs to the user: materials, and unsaved edits for after a crash. Without one neither is
+    /// kept.
     pub data: Option<PathBuf>,
+    /// The folder for what can be made again: small pictures of materials. Without one none are made.
+    pub cache: Option<PathBuf>,
     /// At least so long between two copies of unsaved edits, instead of 5 s.
     pub autosave_interval: Option<Duration>,
 }
@@ -145,6 +150,7 @@ impl App {
             awaited: 0,
             panels: PanelState {
                 resolution: options.resolution.unwrap_or(kept.resolution),
+                library: library::Library::new(options.data.as_ref().map(|data| data.join("materials")), options.cache),
                 ..PanelState::default()
             },
             layout: kept.layout.unwrap_or_else(layout::default_layout),
@@ -167,6 +173,7 @@ impl App {
             title: String::new(),
             theme: kept.theme,
         };
+        app.list_library();
         for path in options.files {
             app.awaited += usize::from(app.open(path));
         }
@@ -283,6 +290,7 @@ impl App {
                 self.panels.slot = slot;
                 self.edits.seal();
             }
+            Action::ChangeLibrary(change) => self.change_library(change),
             Action::LookFrom(yaw_deg, pitch_deg) => {
                 let camera = &mut self.document.camera;
                 (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
@@ -350,6 +358,7 @@ impl App {
             Command::Shortcuts => self.sheet = Sheet::Shortcuts,
             Command::About => self.sheet = Sheet::About,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::SaveToMyPresets => self.change_library(library::Change::Add),
             of_files => self.file_command(ctx, of_files),
         }
     }

@@ -55,6 +55,15 @@ pub(super) fn data_folder() -> Option<PathBuf> {
     )
 }
 
+/// The folder for what can be made again, where the system has one.
+pub(super) fn cache_folder() -> Option<PathBuf> {
+    Some(
+        directories::ProjectDirs::from("", "", "glossmith")?
+            .cache_dir()
+            .to_owned(),
+    )
+}
+
 /// What is remembered.
 #[derive(Serialize, Deserialize)]
 #[serde(default)]

@@ -7,6 +7,7 @@ pub mod custom_curve;
 pub mod file;
 pub mod history;
 pub mod job;
+pub mod library;
 pub mod match_look;
 mod material;
 pub mod measured_look;
