@@ -35,6 +35,8 @@ mod gltf;
 mod gltf_builder;
 #[path = "suite/gltf_damaged.rs"]
 mod gltf_damaged;
+#[path = "suite/library.rs"]
+mod library;
 #[path = "suite/lights.rs"]
 mod lights;
 #[path = "suite/lobe_cases.rs"]

@@ -12,8 +12,9 @@ use image::{ImageFormat, RgbaImage};
 use super::background::{Background, Desk};
 use super::display::display;
 use super::{EngineChoice, Session, SessionError};
+use crate::document::file::save_atomically;
 use crate::document::preset::material_text;
-use crate::document::{self, Document, MaterialSettings, RenderSettings};
+use crate::document::{Document, MaterialSettings, RenderSettings};
 use crate::scene::ModelSource;
 
 /// Columns and rows of a thumbnail.
@@ -75,9 +76,9 @@ pub fn spawn_thumbnails(folder: PathBuf, repaint: impl Fn() + Send + 'static) ->
     })
 }
 
-/// The document of a thumbnail.
+/// The document of a thumbnail. The environment stays visible: what glass refracts is seen against something.
 fn document(material: &MaterialSettings) -> Document {
-    let mut document = Document {
+    Document {
         model: ModelSource::Sphere,
         materials: vec![material.clone()],
         render: RenderSettings {
@@ -87,10 +88,7 @@ fn document(material: &MaterialSettings) -> Document {
             ..RenderSettings::default()
         },
         ..Document::default()
-    };
-    // What is refracted is seen against something, reflections alone make no sphere.
-    document.lighting.background = document::Background::Environment;
-    document
+    }
 }
 
 /// `None` where something else is wanted by now.
@@ -129,7 +127,7 @@ fn write(path: &Path, pixels: &[u8]) -> Result<(), String> {
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     }
-    document::file::save_atomically(path, bytes.get_ref()).map_err(|error| error.to_string())
+    save_atomically(path, bytes.get_ref()).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]
