@@ -11,6 +11,8 @@ use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options, Resolution};
 use glossmith::document::{AreaLight, Document, PRESETS, save_document, save_material};
+use glossmith::optics::curve::Curve;
+use glossmith::optics::lobe::Lobe;
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -439,4 +441,33 @@ fn the_window_paints_the_renderers_pixels() {
     let difference = painted.iter().zip(expected).map(|(a, b)| a.abs_diff(*b)).max();
     assert!(difference <= Some(3), "painted {painted:?}, rendered {expected:?}");
     assert!(expected[0] > 2 * expected[1], "the background is red");
+}
+
+#[test]
+fn a_look_is_matched_used_and_undone() {
+    let mut harness = editor();
+    harness.state_mut().reveal(Pane::Lobe);
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Compare the lobe")
+        .click();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "GGX").click();
+    harness.run_steps(2);
+    // The panel may have to be scrolled to reach the buttons, which accessibility does by itself.
+    harness.get_by_label("Match look").click_accesskit();
+    let begun = Instant::now();
+    while harness.query_by_label("Use it").is_none() {
+        assert!(begun.elapsed() < PATIENCE, "waited in vain for the match");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let before = harness.state().document().clone();
+    harness.get_by_label("Use it").click_accesskit();
+    settle(&mut harness);
+    let material = &harness.state().document().materials[0];
+    assert_eq!((material.lobe, material.curve), (Lobe::Geometric, Curve::Custom));
+    assert_ne!(material.custom_curve, before.materials[0].custom_curve);
+    undo(&mut harness);
+    assert_eq!(*harness.state().document(), before);
 }
