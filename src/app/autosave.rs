@@ -141,27 +141,26 @@ impl Drop for Autosave {
 }
 
 fn work(folder: &Path, ordered: &Receiver<Order>, report: &dyn Fn(Report)) {
-    let mut leftovers: Vec<Option<Slot>> = match recovery::leftovers(folder) {
-        Ok(found) => found.into_iter().map(Some).collect(),
-        Err(error) => {
-            report(Report::Failed(error));
-            return;
-        }
-    };
-    if !leftovers.is_empty() {
+    let begin = || -> Result<_, FileError> {
+        let leftovers: Vec<Option<Slot>> = recovery::leftovers(folder)?.into_iter().map(Some).collect();
         let load = |(index, slot): (usize, &Option<Slot>)| {
             let contents = slot.as_ref()?.load().map_err(|error| error.to_string());
             Some(Leftover { index, contents })
         };
-        report(Report::Found(leftovers.iter().enumerate().filter_map(load).collect()));
-    }
-    let slot = match Slot::open(folder) {
-        Ok(slot) => slot,
-        Err(error) => {
-            report(Report::Failed(error));
-            return;
+        let found: Vec<Leftover> = leftovers.iter().enumerate().filter_map(load).collect();
+        if !found.is_empty() {
+            report(Report::Found(found));
         }
+        Ok((Slot::open(folder)?, leftovers))
     };
+    match begin() {
+        Ok((slot, leftovers)) => obey(slot, leftovers, ordered, report),
+        Err(error) => report(Report::Failed(error)),
+    }
+}
+
+/// Does as it is told until the window is gone.
+fn obey(slot: Slot, mut leftovers: Vec<Option<Slot>>, ordered: &Receiver<Order>, report: &dyn Fn(Report)) {
     let mut is_kept = true;
     let mut is_empty = true;
     let mut has_failed = false;

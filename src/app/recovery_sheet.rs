@@ -2,7 +2,7 @@
 
 use std::time::{Duration, SystemTime};
 
-use egui::{RichText, Ui, vec2};
+use egui::{RichText, Ui};
 
 use super::App;
 use super::autosave::{Leftover, Report};
@@ -94,55 +94,56 @@ fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usize, Choice)> {
         "Glossmith ended without closing. What had not been saved was put aside; restored, it can be undone, and is \
          saved when you save it.",
     );
-    for (at, leftover) in leftovers.iter().enumerate() {
-        ui.add_space(theme::GAP);
-        ui.separator();
-        let name = match &leftover.contents {
-            Ok(recovered) => {
-                let name = name(recovered);
-                ui.label(RichText::new(&name).strong());
-                let age = SystemTime::now().duration_since(recovered.at).unwrap_or_default();
-                widgets::note(ui, format!("{}, put aside {}", contents(recovered), ago(age)));
-                name
+    egui::ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
+        for (at, leftover) in leftovers.iter().enumerate() {
+            ui.add_space(theme::GAP);
+            ui.separator();
+            if let Some(choice) = row(ui, leftover, at == 0) {
+                chosen = Some((at, choice));
             }
-            Err(why) => {
-                ui.label(RichText::new("A damaged file").strong());
-                ui.colored_label(ui.visuals().error_fg_color, why);
-                "the damaged file".to_owned()
-            }
-        };
-        ui.horizontal(|ui| {
-            let restore = ui
-                .add_enabled(leftover.contents.is_ok(), egui::Button::new("Restore"))
-                .accessible_name(format!("Restore {name}"));
-            if at == 0 && ui.memory(|memory| memory.focused().is_none()) {
-                restore.request_focus();
-            }
-            if restore.clicked() {
-                chosen = Some((at, Choice::Restore));
-            }
-            let discard = ui.button("Discard").accessible_name(format!("Discard {name}"));
-            if discard.on_hover_text("Removes it for good.").clicked() {
-                chosen = Some((at, Choice::Discard));
-            }
-        });
-    }
+        }
+    });
     ui.add_space(theme::GAP);
     ui.separator();
-    ui.allocate_ui_with_layout(
-        vec2(ui.available_width(), theme::ROW_HEIGHT),
-        egui::Layout::right_to_left(egui::Align::Center),
-        |ui| {
-            if ui
-                .button("Later")
-                .on_hover_text("Asks again at the next start.")
-                .clicked()
-            {
-                ui.close();
-            }
-        },
-    );
+    let later = ui.button("Later").on_hover_text("Asks again at the next start.");
+    if later.clicked() {
+        ui.close();
+    }
     chosen
+}
+
+fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
+    let mut choice = None;
+    let name = match &leftover.contents {
+        Ok(recovered) => {
+            let name = name(recovered);
+            ui.label(RichText::new(&name).strong());
+            let age = SystemTime::now().duration_since(recovered.at).unwrap_or_default();
+            widgets::note(ui, format!("{}, put aside {}", contents(recovered), ago(age)));
+            name
+        }
+        Err(why) => {
+            ui.label(RichText::new("A damaged file").strong());
+            ui.colored_label(ui.visuals().error_fg_color, why);
+            "the damaged file".to_owned()
+        }
+    };
+    ui.horizontal(|ui| {
+        let restore = ui
+            .add_enabled(leftover.contents.is_ok(), egui::Button::new("Restore"))
+            .accessible_name(format!("Restore {name}"));
+        if is_first && ui.memory(|memory| memory.focused().is_none()) {
+            restore.request_focus();
+        }
+        if restore.clicked() {
+            choice = Some(Choice::Restore);
+        }
+        let discard = ui.button("Discard").accessible_name(format!("Discard {name}"));
+        if discard.on_hover_text("Removes it for good.").clicked() {
+            choice = Some(Choice::Discard);
+        }
+    });
+    choice
 }
 
 /// What to call it.
