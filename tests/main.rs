@@ -11,6 +11,8 @@ mod cli_render;
 mod cli_scatter;
 #[path = "suite/cli_support.rs"]
 mod cli_support;
+#[path = "suite/density.rs"]
+mod density;
 #[path = "suite/docs.rs"]
 mod docs;
 #[path = "suite/document.rs"]

@@ -96,6 +96,7 @@ fn the_geometric_density_integrates_to_one() {
                     horizon: Horizon::None,
                     roughness,
                     anisotropy: 0.0,
+                    eta: 0.0,
                     table: Vec::new(),
                     view_angle_deg,
                     count: 0,
