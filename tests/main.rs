@@ -17,6 +17,8 @@ mod density;
 mod docs;
 #[path = "suite/document.rs"]
 mod document;
+#[path = "suite/elementary.rs"]
+mod elementary;
 #[path = "suite/environment.rs"]
 mod environment;
 #[path = "suite/environment_files.rs"]
