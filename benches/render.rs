@@ -83,6 +83,7 @@ fn lobes() {
                 horizon: Horizon::None,
                 roughness: 0.3,
                 anisotropy: 0.0,
+                eta: 0.0,
                 table: Vec::new(),
                 view_angle_deg: 45.0,
                 count: 0,

@@ -11,10 +11,14 @@ mod cli_render;
 mod cli_scatter;
 #[path = "suite/cli_support.rs"]
 mod cli_support;
+#[path = "suite/density.rs"]
+mod density;
 #[path = "suite/docs.rs"]
 mod docs;
 #[path = "suite/document.rs"]
 mod document;
+#[path = "suite/elementary.rs"]
+mod elementary;
 #[path = "suite/environment.rs"]
 mod environment;
 #[path = "suite/environment_files.rs"]

@@ -9,13 +9,14 @@ struct Scatter {
     wo: vec3f,
     roughness: f32,
     anisotropy: f32,
+    // 0 where the lobe reflects.
+    eta: f32,
     lobe: u32,
     curve: u32,
     horizon: u32,
     seed: u32,
     first: u32,
     count: u32,
-    reserved: u32,
 }
 
 @group(1) @binding(0) var<uniform> scatter: Scatter;
@@ -29,7 +30,9 @@ fn draw(@builtin(global_invocation_id) id: vec3u) {
     }
     let normal = vec3f(0.0, 0.0, 1.0);
     let frame = Frame(vec3f(1.0, 0.0, 0.0), vec3f(0.0, 1.0, 0.0), normal);
-    let shape = LobeShape(scatter.lobe, scatter.curve, scatter.horizon, 0u, scatter.roughness, scatter.anisotropy, 0.0);
+    let shape = LobeShape(
+        scatter.lobe, scatter.curve, scatter.horizon, 0u, scatter.roughness, scatter.anisotropy, scatter.eta,
+    );
     let state = random_state(0u, 0u, scatter.seed, scatter.first + id.x, 1u);
     let xi = vec3f(random_pair(state, 0u), random_pair(state, 1u).x);
     let drawn = lobe_sample(shape, frame, normal, scatter.wo, xi);

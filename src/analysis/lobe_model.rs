@@ -21,6 +21,8 @@ pub struct LobeModel {
     pub roughness: f64,
     /// Stretch in [−1, 1].
     pub anisotropy: f64,
+    /// 0 where the lobe reflects, else the relative index of refraction.
+    pub eta: f64,
     /// Turn of the tangent out of the plane of incidence, radians.
     pub rotation_rad: f64,
     /// The custom curve's table; empty where the curve has a name.
@@ -42,6 +44,7 @@ impl LobeModel {
             horizon: Horizon::Mirror,
             roughness,
             anisotropy: 0.0,
+            eta: 0.0,
             rotation_rad: 0.0,
             table: Vec::new(),
         }
@@ -63,7 +66,7 @@ impl LobeModel {
             horizon: self.horizon,
             roughness: self.roughness,
             anisotropy: self.anisotropy,
-            eta: 0.0,
+            eta: self.eta,
             table: &self.table,
         }
     }

@@ -73,7 +73,7 @@ pub fn line_plot_file(path: &Path, plot: &LinePlot) -> Result<(), PlotError> {
     figure::write(path, plot)
 }
 
-/// The samples seen from the mirror direction, as in the paper's Fig. 1: the plane's horizontal axis lies in the plane of
+/// The samples seen from the lobe's middle, as in the paper's Fig. 1: the plane's horizontal axis lies in the plane of
 /// incidence (to the right: away from the normal), the circle has the radius of the lobe's roughness.
 ///
 /// # Errors
@@ -88,10 +88,9 @@ pub fn scatter_png(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) 
 }
 
 fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> Result<(), Box<dyn std::error::Error>> {
-    let wo: Vec3<f32> = request.wo();
-    // The mirror direction and the two axes across it.
-    let mirror: Vec3<f32> = Vec3::from_f32([-wo.x, 0.0, wo.z]);
-    let across: Vec3<f32> = Vec3::from_f32([mirror.z, 0.0, -mirror.x]);
+    // The lobe's middle and the axis across it that points away from the normal on its side; the other one is y.
+    let [x, _, z] = request.middle().to_f32();
+    let across: Vec3<f32> = Vec3::from_f32([z.abs(), 0.0, -x * z.signum()]);
     let points = cloud
         .samples
         .iter()
@@ -103,8 +102,13 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
         Lobe::Geometric => format!("Geometric, {}", request.curve.label().to_lowercase()),
         lobe => lobe.label().to_owned(),
     };
+    let refracted = if request.eta == 0.0 {
+        String::new()
+    } else {
+        format!(", index {}", request.eta)
+    };
     let caption = format!(
-        "{lobe}, roughness {}, view {}°",
+        "{lobe}, roughness {}, view {}°{refracted}",
         request.roughness, request.view_angle_deg
     );
     let mut chart = ChartBuilder::on(&root)

@@ -2,12 +2,12 @@
 
 use crate::optics::curve::Curve;
 use crate::optics::frame::Frame;
-use crate::optics::lobe::{Horizon, Lobe, LobeShape};
+use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_middle};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
 /// Samples of a lobe to draw, in the local frame with the normal +z and the mirror direction in the x–z half plane
-/// x ≥ 0.
+/// x ≥ 0; what is refracted has z < 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatterRequest {
     /// The lobe.
@@ -20,6 +20,8 @@ pub struct ScatterRequest {
     pub roughness: f32,
     /// Stretch in [−1, 1].
     pub anisotropy: f32,
+    /// 0 where the lobe reflects. Where it refracts: the index of refraction behind the surface over that before it.
+    pub eta: f32,
     /// The custom curve's table; empty where the curve has a name.
     pub table: Vec<f32>,
     /// Angle between view and normal, degrees in [0, 90].
@@ -39,7 +41,7 @@ impl ScatterRequest {
             horizon: self.horizon,
             roughness: T::from_f64(f64::from(self.roughness)),
             anisotropy: T::from_f64(f64::from(self.anisotropy)),
-            eta: T::zero(),
+            eta: T::from_f64(f64::from(self.eta)),
             table: &self.table,
         }
     }
@@ -48,6 +50,12 @@ impl ScatterRequest {
     pub fn wo<T: Real>(&self) -> Vec3<T> {
         let angle_rad = f64::from(self.view_angle_deg).to_radians();
         Vec3::from_f64([-angle_rad.sin(), 0.0, angle_rad.cos()])
+    }
+
+    /// The middle of the lobe: the mirror direction, or the refracted one.
+    pub fn middle(&self) -> Vec3<f64> {
+        let frame = Self::frame();
+        lobe_middle(&self.shape(), &frame, frame.normal, self.wo())
     }
 
     /// The frame: the axes.

@@ -17,6 +17,8 @@ use super::parse::{check_writable, number_in};
 
 /// Samples that fit in memory on any machine of today.
 const COUNT_MAX: i64 = 100_000_000;
+/// Relative indices of refraction: into and out of anything there is.
+const IOR: std::ops::RangeInclusive<f64> = 0.2..=5.0;
 
 /// Arguments of `glossmith scatter`.
 #[derive(Debug, Args)]
@@ -36,6 +38,10 @@ pub struct ScatterArguments {
     /// Angle between the view and the normal, 0 to 90.
     #[arg(long, default_value = "45", value_name = "DEG", value_parser = number_in(0.0..=90.0), allow_negative_numbers = true)]
     view_angle: f64,
+    /// Refracts instead of reflecting: index of refraction behind the surface over that before it. Refracted samples
+    /// have z < 0; beyond the critical angle lobes without facets reflect.
+    #[arg(long, value_name = "X", value_parser = number_in(IOR), allow_negative_numbers = true)]
+    ior: Option<f64>,
     /// Samples to draw; absorbed ones count.
     #[arg(long, default_value_t = 10_000, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=COUNT_MAX))]
     count: u32,
@@ -45,7 +51,7 @@ pub struct ScatterArguments {
     /// The engine whose function draws.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     engine: EngineChoice,
-    /// .csv: columns x,y,z,density, a row a sample; .png: the samples seen from the mirror direction.
+    /// .csv: columns x,y,z,density, a row a sample; .png: the samples seen from the lobe's middle.
     #[arg(long, value_name = "FILE.csv|FILE.png", value_parser = parse_output)]
     output: PathBuf,
 }
@@ -62,6 +68,7 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
         horizon: arguments.horizon,
         roughness: arguments.roughness as f32,
         anisotropy: 0.0,
+        eta: arguments.ior.map_or(0.0, |ior| ior as f32),
         table: Vec::new(),
         view_angle_deg: arguments.view_angle as f32,
         count: arguments.count,

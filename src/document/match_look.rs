@@ -121,6 +121,7 @@ pub fn lobe_of_material(material: &MaterialSettings) -> LobeModel {
         roughness: f64::from(material.roughness),
         anisotropy: f64::from(material.anisotropy),
         rotation_rad: f64::from(material.rotation_deg).to_radians(),
+        eta: 0.0,
         table: if is_custom {
             material.custom_curve.table()
         } else {

@@ -21,6 +21,8 @@ pub struct Scatter {
     pub roughness: f32,
     /// Stretch in [−1, 1].
     pub anisotropy: f32,
+    /// 0 where the lobe reflects, else the relative index of refraction.
+    pub eta: f32,
     /// The lobe as a number.
     pub lobe: u32,
     /// The curve as a number.
@@ -33,8 +35,6 @@ pub struct Scatter {
     pub first: u32,
     /// Samples of the dispatch.
     pub count: u32,
-    /// Fills the last 16 bytes.
-    pub reserved: u32,
 }
 
 /// The shader that draws, compiled.
@@ -100,13 +100,13 @@ fn uniforms(request: &ScatterRequest, first: u32, count: u32) -> Scatter {
         wo: request.wo(),
         roughness: request.roughness,
         anisotropy: request.anisotropy,
+        eta: request.eta,
         lobe: request.lobe as u32,
         curve: request.curve as u32,
         horizon: request.horizon as u32,
         seed: request.seed,
         first,
         count,
-        reserved: 0,
     }
 }
 

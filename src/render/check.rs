@@ -10,10 +10,10 @@ use super::session::{Session, SessionError};
 use crate::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
 use crate::analysis::film::Film;
 use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
-use crate::document::{AreaLight, Background, Document, PixelFilter, Strategy};
+use crate::document::{AreaLight, Background, CustomCurve, Document, PixelFilter, Strategy};
 use crate::optics::curve::Curve;
 use crate::optics::frame::frame_from_normal;
-use crate::optics::lobe::{Horizon, Lobe, lobe_evaluate, lobe_sample};
+use crate::optics::lobe::{Facets, Horizon, Lobe, lobe_evaluate, lobe_sample};
 use crate::optics::random::{Sequence, random_pair, random_state};
 use crate::optics::vector::Vec3;
 use crate::scene::ModelSource;
@@ -24,6 +24,15 @@ const LEVEL: f64 = 1e-3;
 /// Roughness and view angles of the full grid.
 const ROUGHNESS: [f32; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
 const VIEW_ANGLES_DEG: [f32; 5] = [0.0, 30.0, 60.0, 80.0, 89.0];
+
+/// Kinds of cases: the policy below the horizon, the relative index of refraction (0 where the lobe reflects), and which
+/// part of the grid a quick check takes: one case in so many.
+const KINDS: [(Horizon, f32, usize); 4] = [
+    (Horizon::Mirror, 0.0, 5),
+    (Horizon::Absorb, 0.0, 5),
+    (Horizon::Mirror, 1.5, 15),
+    (Horizon::Absorb, 1.0 / 1.5, 15),
+];
 
 /// One thing that was checked.
 #[derive(Clone, Debug, Serialize)]
@@ -101,46 +110,64 @@ pub struct CheckOptions {
     pub thorough: bool,
 }
 
-/// A case of the χ² tests.
+/// The cases of the χ² tests: every lobe and curve, stretched where it can be, reflecting and refracting.
 pub fn sample_cases(thorough: bool) -> Vec<ScatterRequest> {
-    let lobes = Lobe::ALL.iter().flat_map(|&lobe| {
-        let named = Curve::ALL.iter().copied().filter(|curve| *curve != Curve::Custom);
-        let curves: Vec<Curve> = if lobe == Lobe::Geometric {
-            named.collect()
-        } else {
-            vec![Curve::Sqrt]
-        };
-        curves.into_iter().map(move |curve| (lobe, curve))
-    });
     let mut cases = Vec::new();
-    for (lobe, curve) in lobes {
-        for (i, &roughness) in ROUGHNESS.iter().enumerate() {
-            for (j, &view_angle_deg) in VIEW_ANGLES_DEG.iter().enumerate() {
-                for horizon in [Horizon::Mirror, Horizon::Absorb] {
-                    let stretched: &[f32] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
-                    for &anisotropy in stretched {
-                        let number = cases.len();
-                        // A fifth of the grid, each column and row met, unless all of it is wanted.
-                        if !thorough && !(i + 2 * j + number / 35).is_multiple_of(5) {
-                            continue;
-                        }
-                        cases.push(ScatterRequest {
-                            lobe,
-                            curve,
-                            horizon,
-                            roughness,
-                            anisotropy,
-                            table: Vec::new(),
-                            view_angle_deg,
-                            count: if thorough { 60_000 } else { 20_000 },
-                            seed: number as u32,
-                        });
+    for (horizon, eta, quick_part) in KINDS {
+        // Unless all of it is wanted: each lobe at some places of the grid, each place with some lobes.
+        let part = if thorough { 1 } else { quick_part };
+        for (number, (lobe, curve, anisotropy)) in shapes().into_iter().enumerate() {
+            for (i, &roughness) in ROUGHNESS.iter().enumerate() {
+                for (j, &view_angle_deg) in VIEW_ANGLES_DEG.iter().enumerate() {
+                    // Beyond the critical angle narrow lobes made of facets refract next to nothing.
+                    let is_dark =
+                        eta < 1.0 && view_angle_deg > 41.0 && roughness < 0.3 && lobe.facets() != Facets::None;
+                    if !(i + 2 * j + number).is_multiple_of(part) || (eta != 0.0 && is_dark) {
+                        continue;
                     }
+                    cases.push(ScatterRequest {
+                        lobe,
+                        curve,
+                        horizon,
+                        roughness,
+                        anisotropy,
+                        eta,
+                        table: table(curve),
+                        view_angle_deg,
+                        count: if thorough { 60_000 } else { 20_000 },
+                        seed: cases.len() as u32,
+                    });
                 }
             }
         }
     }
     cases
+}
+
+/// Every lobe, curve and stretch.
+fn shapes() -> Vec<(Lobe, Curve, f32)> {
+    let mut shapes = Vec::new();
+    for &lobe in Lobe::ALL {
+        let curves = if lobe == Lobe::Geometric {
+            Curve::ALL
+        } else {
+            &[Curve::Sqrt]
+        };
+        let stretched: &[f32] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
+        for &curve in curves {
+            shapes.extend(stretched.iter().map(|&anisotropy| (lobe, curve, anisotropy)));
+        }
+    }
+    shapes
+}
+
+/// The table of the curve that is drawn by hand.
+fn table(curve: Curve) -> Vec<f32> {
+    if curve == Curve::Custom {
+        CustomCurve::default().table()
+    } else {
+        Vec::new()
+    }
 }
 
 /// The p-value of a cloud of samples under the density of the f64 twin, times `density_factor` (1, but for tests of the
@@ -153,14 +180,13 @@ pub fn chi_square(
     let shape = request.shape::<f64>();
     let frame = ScatterRequest::frame::<f64>();
     let wo = request.wo::<f64>();
-    let mirror = wo.mirrored_about(frame.normal);
     // The rings follow the lobe: equal shares of a pilot drawn by the twin.
     let pilot = (0..4000).map(|i| {
         let state = random_state(1, 0, request.seed, i, Sequence::Independent);
         let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
         lobe_sample(&shape, &frame, frame.normal, wo, [a, b, c]).wi
     });
-    let grid = PolarGrid::following(frame_from_normal(mirror), 12, 12, pilot);
+    let grid = PolarGrid::following(frame_from_normal(request.middle()), 12, 12, pilot);
     let mut samples: Vec<_> = cloud
         .samples
         .iter()
@@ -226,8 +252,13 @@ fn describe(case: &ScatterRequest) -> String {
     } else {
         format!(" stretched {}", case.anisotropy)
     };
+    let index = if case.eta == 0.0 {
+        String::new()
+    } else {
+        format!(" refracted {:.3}", case.eta)
+    };
     format!(
-        "{}{curve} {} roughness {}{stretch} view {}°",
+        "{}{curve} {} roughness {}{stretch}{index} view {}°",
         case.lobe.name(),
         case.horizon.name(),
         case.roughness,

@@ -7,7 +7,7 @@ use super::background::{Background, Desk};
 use super::engine::{EngineChoice, Sampler};
 use crate::analysis::fit::{Measure, Nearest, nearest_roughness};
 use crate::analysis::histogram::{angle_density, angle_histogram};
-use crate::analysis::lobe_model::{LobeModel, NORMAL, view_direction};
+use crate::analysis::lobe_model::{LobeModel, view_direction};
 use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::curve::Curve;
 use crate::optics::frame::frame_from_normal;
@@ -109,8 +109,9 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
         ..request.clone()
     };
     let raw = opened.draw(&free).map_err(|error| error.to_string())?;
-    let below = raw.samples.iter().filter(|[_, _, z, _]| *z < 0.0).count();
-    let mirror: Vec3<f64> = mirror_direction(request);
+    let mirror = request.middle();
+    let side = mirror.z.signum() as f32;
+    let below = raw.samples.iter().filter(|[_, _, z, _]| *z * side < 0.0).count();
     let directions = cloud.samples.iter().map(|&[x, y, z, _]| Vec3::from_f32([x, y, z]));
     let mut counted = angle_histogram(directions, mirror, ANGLE_BINS).density();
     // Absorbed samples count as drawn, as in the density.
@@ -159,15 +160,11 @@ fn compare(mut report: SampleReport, desk: &Desk<'_, SampleQuery, SampleAnswer>)
     }
 }
 
-/// The mirror direction of a request.
-pub fn mirror_direction(request: &ScatterRequest) -> Vec3<f64> {
-    request.wo::<f64>().mirrored_about(NORMAL)
-}
-
 fn model(request: &ScatterRequest) -> LobeModel {
     LobeModel {
         horizon: request.horizon,
         anisotropy: f64::from(request.anisotropy),
+        eta: f64::from(request.eta),
         table: request.table.clone(),
         ..LobeModel::new(request.lobe, f64::from(request.roughness), request.curve)
     }
@@ -179,7 +176,7 @@ fn analytic(model: &LobeModel, request: &ScatterRequest) -> Vec<[f64; 2]> {
         return Vec::new();
     }
     let wo = request.wo();
-    let around_mirror = frame_from_normal(mirror_direction(request));
+    let around_mirror = frame_from_normal(request.middle());
     let density = |wi: Vec3<f64>| model.evaluate(wo, wi)[1];
     let step = std::f64::consts::PI / ANGLE_BINS as f64;
     (0..ANGLE_BINS)

@@ -7,6 +7,8 @@ use glossmith::render::check::{CheckOptions, chi_square, run, sample_cases};
 use glossmith::render::{EngineChoice, Sampler};
 use rayon::prelude::*;
 
+use crate::lobe_cases::lobes_and_curves;
+
 /// Fails where a case's samples do not follow its density.
 fn assert_all_follow(draw: impl Fn(&ScatterRequest) -> ScatterCloud) {
     let cases = sample_cases(false);
@@ -37,6 +39,27 @@ fn processor_samples_follow_their_densities() {
 fn gpu_samples_follow_their_densities() {
     let sampler = Sampler::open(EngineChoice::Gpu).expect("a Vulkan driver: install mesa-vulkan-drivers");
     assert_all_follow(|case| sampler.draw(case).unwrap());
+}
+
+/// The quick grid holds every lobe and curve as a reflecting, a refracting and, where it can be, a stretched one.
+#[test]
+fn the_quick_cases_miss_no_kind_of_lobe() {
+    for thorough in [false, true] {
+        let cases = sample_cases(thorough);
+        for (lobe, curve) in lobes_and_curves() {
+            let of_lobe = || cases.iter().filter(|case| (case.lobe, case.curve) == (lobe, curve));
+            for is_refracting in [false, true] {
+                for is_stretched in [false, true] {
+                    let count = of_lobe()
+                        .filter(|case| (case.eta != 0.0, case.anisotropy != 0.0) == (is_refracting, is_stretched))
+                        .count();
+                    let what = format!("{lobe:?} {curve:?} refracting {is_refracting} stretched {is_stretched}");
+                    assert_eq!(count > 0, lobe.is_anisotropic() || !is_stretched, "{what}");
+                }
+            }
+        }
+        println!("thorough {thorough}: {} cases", cases.len());
+    }
 }
 
 /// A density that is off by 2 % on one side and right in total is found.
@@ -96,6 +119,7 @@ fn the_geometric_density_integrates_to_one() {
                     horizon: Horizon::None,
                     roughness,
                     anisotropy: 0.0,
+                    eta: 0.0,
                     table: Vec::new(),
                     view_angle_deg,
                     count: 0,

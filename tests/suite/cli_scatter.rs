@@ -57,6 +57,34 @@ fn the_mirror_direction_is_in_the_xz_half_plane() {
     }
 }
 
+/// Refracted samples lie below the surface, about the direction of Snell's law; under total reflection they stay above.
+#[test]
+fn refracted_samples_follow_snells_law() {
+    let place = Workplace::new();
+    for engine in ["cpu", "gpu"] {
+        for (lobe, roughness) in [("geometric", 0.02), ("phong", 0.05), ("ggx", 0.05)] {
+            let common = format!("--lobe {lobe} --roughness {roughness} --engine {engine} --count 2000");
+            let rows = scatter(&place, &format!("{common} --view-angle 50 --ior 1.5"));
+            assert!(rows.len() > 1900, "{} rows", rows.len());
+            assert!(rows.iter().all(|row| row[2] < 0.0 && row[3] > 0.0));
+            let x = rows.iter().map(|row| row[0]).sum::<f64>() / rows.len() as f64;
+            let expected = 50.0_f64.to_radians().sin() / 1.5;
+            assert!((x - expected).abs() < 5e-3, "{engine} {lobe}: {x}, expected {expected}");
+        }
+        let total = scatter(
+            &place,
+            &format!("--lobe geometric --engine {engine} --roughness 0.02 --view-angle 60 --ior 0.5"),
+        );
+        assert!(total.iter().all(|row| row[2] > 0.0));
+    }
+    place.refused(
+        2,
+        "scatter --lobe ggx --ior 0 --output s.csv",
+        &["--ior", "give a number from 0.2 to 5"],
+    );
+    place.done("scatter --lobe geometric --ior 1.5 --count 3000 --engine cpu --output s.png");
+}
+
 #[test]
 fn absorbed_samples_are_left_out_and_counted() {
     let place = Workplace::new();

@@ -56,7 +56,7 @@ fn rust_layouts() -> Vec<Layout> {
         layout!(Triangle: Triangle { corners }),
         layout!(Vertex: Vertex { normal, uv, tangent }),
         layout!(Scatter: Scatter {
-            wo, roughness, anisotropy, lobe, curve, horizon, seed, first, count, reserved,
+            wo, roughness, anisotropy, eta, lobe, curve, horizon, seed, first, count,
         }),
         layout!(AliasCell: AliasCell { threshold, alias_index, density }),
         layout!(LightCell: LightCell { threshold, alias_index, triangle }),

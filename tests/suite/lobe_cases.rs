@@ -2,8 +2,7 @@
 
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::frame::{Frame, frame_from_normal};
-use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_view, refracts_at_facets};
-use glossmith::optics::refraction::refracted;
+use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_middle};
 use glossmith::optics::vector::{Vec3, vec3};
 
 /// Mirror-like, glossy, rough, nearly Lambertian, Lambertian.
@@ -112,16 +111,9 @@ impl Case {
         self.in_view_plane(self.angle_deg)
     }
 
-    /// The middle of the lobe: the mirror direction, or the refracted one. Behind the critical angle a lobe made of
-    /// facets has none, and what is left lies on the other side of the view.
+    /// The middle of the lobe.
     pub fn middle(&self) -> Vec3<f64> {
-        let (shape, wo) = (self.shape(), self.wo());
-        if !refracts_at_facets(&shape) {
-            let view = lobe_view(&shape, &self.frame(), self.surface_normal(), wo);
-            return view.wo.mirrored_about(view.frame.normal);
-        }
-        let behind = refracted(wo, self.frame().normal, self.eta);
-        if behind.is_total { -wo } else { behind.wi }
+        lobe_middle(&self.shape(), &self.frame(), self.surface_normal(), self.wo())
     }
 
     /// The geometric normal.

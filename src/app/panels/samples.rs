@@ -13,7 +13,7 @@ use crate::app::widgets::{self, Name, NumberStyle};
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::vector::Vec3;
 use crate::render::EngineChoice;
-use crate::render::samples::{SampleQuery, SampleReport, SampleWorker, mirror_direction, spawn_samples};
+use crate::render::samples::{SampleQuery, SampleReport, SampleWorker, spawn_samples};
 
 /// From where the samples are looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -137,6 +137,7 @@ fn query(desk: &Desk<'_>) -> Option<SampleQuery> {
         } else {
             0.0
         },
+        eta: 0.0,
         table: if is_custom {
             material.custom_curve.table()
         } else {
@@ -262,7 +263,7 @@ fn reach(report: &SampleReport, look: Look) -> f32 {
     if look != Look::Mirror {
         return 1.08;
     }
-    let mirror = Vec3::from_f32(mirror_direction(&report.query.request).to_f32());
+    let mirror = Vec3::from_f32(report.query.request.middle().to_f32());
     let extents = report.cloud.samples.iter().map(|&[x, y, z, _]| {
         let [x, y] = project(look, Vec3::from_f32([x, y, z]), mirror);
         x.abs().max(y.abs())
@@ -272,7 +273,7 @@ fn reach(report: &SampleReport, look: Look) -> f32 {
 
 /// The points as a picture whose opacity grows with their number.
 fn splat(report: &SampleReport, look: Look, reach: f32, side: usize, color: Color32) -> ColorImage {
-    let mirror = Vec3::from_f32(mirror_direction(&report.query.request).to_f32());
+    let mirror = Vec3::from_f32(report.query.request.middle().to_f32());
     let mut counts = vec![0_u32; side * side];
     for &[x, y, z, _] in &report.cloud.samples {
         let [x, y] = project(look, Vec3::from_f32([x, y, z]), mirror);
@@ -298,7 +299,7 @@ fn splat(report: &SampleReport, look: Look, reach: f32, side: usize, color: Colo
 /// Circles, lines and letters over the points.
 fn marks(ui: &Ui, rect: Rect, drawn: &Drawn) {
     let request = &drawn.report.query.request;
-    let mirror = Vec3::from_f32(mirror_direction(request).to_f32());
+    let mirror = Vec3::from_f32(request.middle().to_f32());
     let scale = 0.5 * rect.width() / drawn.reach;
     let at = |[x, y]: [f32; 2]| rect.center() + scale * vec2(x, -y);
     let stroke = Stroke::new(1.0, ui.visuals().weak_text_color());

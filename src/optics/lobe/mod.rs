@@ -254,6 +254,21 @@ pub fn lobe_view<T: Real>(
     }
 }
 
+/// The middle of the lobe: the mirror direction, or the refracted one. Behind the critical angle a lobe made of facets
+/// has none, and what is left of it lies on the other side of the view.
+pub fn lobe_middle<T: Real>(
+    shape: &LobeShape<'_, T>,
+    frame: &Frame<T>,
+    surface_normal: Vec3<T>,
+    wo: Vec3<T>,
+) -> Vec3<T> {
+    if refracts_at_facets(shape) {
+        return refracted(wo, frame.normal, shape.eta).wi;
+    }
+    let view = lobe_view(shape, frame, surface_normal, wo);
+    view.wo.mirrored_about(view.frame.normal)
+}
+
 /// Draws a direction. `surface_normal` is the geometric normal, on the side of `wo`: it is its horizon that counts, so
 /// that no reflected ray enters the surface, and no refracted one stays outside, where the shading normal leans. Source
 /// of the mirror policy: mathematics, section 3.
