@@ -13,7 +13,7 @@ use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
 use crate::document::{AreaLight, Background, CustomCurve, Document, PixelFilter, Strategy};
 use crate::optics::curve::Curve;
 use crate::optics::frame::frame_from_normal;
-use crate::optics::lobe::{Facets, Horizon, Lobe, lobe_evaluate, lobe_sample};
+use crate::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample};
 use crate::optics::random::{Sequence, random_pair, random_state};
 use crate::optics::vector::Vec3;
 use crate::scene::ModelSource;
@@ -24,6 +24,9 @@ const LEVEL: f64 = 1e-3;
 /// Roughness and view angles of the full grid.
 const ROUGHNESS: [f32; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
 const VIEW_ANGLES_DEG: [f32; 5] = [0.0, 30.0, 60.0, 80.0, 89.0];
+
+/// What the weight of an f64 sample may differ from evaluate / density, relative to itself.
+const WEIGHT_ERROR: f64 = 1e-9;
 
 /// Kinds of cases: the policy below the horizon, the relative index of refraction (0 where the lobe reflects), and which
 /// part of the grid a quick check takes: one case in so many.
@@ -37,7 +40,7 @@ const KINDS: [(Horizon, f32, usize); 4] = [
 /// One thing that was checked.
 #[derive(Clone, Debug, Serialize)]
 pub struct Check {
-    /// Which kind of check: `samples`, `energy`, `furnace`, `engines`, `strategies`, `soundness`.
+    /// Which kind of check: `samples`, `energy`, `weights`, `furnace`, `engines`, `strategies`, `soundness`.
     pub group: &'static str,
     /// What was checked.
     pub name: String,
@@ -211,6 +214,7 @@ pub fn run(options: CheckOptions, progress: impl Fn(&str)) -> Result<Vec<Check>,
     checks.extend(samples(options)?);
     progress("energy");
     checks.extend(energy());
+    checks.extend(weights());
     progress("white furnace");
     checks.extend(furnace(options)?);
     progress("engines and strategies");
@@ -266,18 +270,36 @@ fn describe(case: &ScatterRequest) -> String {
     )
 }
 
+/// Checks of a group by their worst: only failures are listed one by one, the rest is summed up.
+fn summed_up(group: &'static str, what: &str, all: Vec<Check>) -> Vec<Check> {
+    let count = all.len();
+    let worst = all.iter().map(|check| check.value / check.limit).fold(0.0, f64::max);
+    let mut checks: Vec<Check> = all.into_iter().filter(|check| !check.passed).collect();
+    checks.push(Check {
+        group,
+        name: format!("{what} over {count} cases, worst share of its limit"),
+        measure: "error",
+        value: worst,
+        limit: 1.0,
+        passed: worst <= 1.0,
+    });
+    checks
+}
+
+/// Samples of the f64 twin of a case.
+fn twin_samples(case: &ScatterRequest, count: u32) -> impl Iterator<Item = LobeSample<f64>> + '_ {
+    let frame = ScatterRequest::frame::<f64>();
+    (0..count).map(move |i| {
+        let state = random_state(2, 0, case.seed, i, Sequence::Sobol);
+        let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
+        lobe_sample(&case.shape(), &frame, frame.normal, case.wo(), [a, b, c])
+    })
+}
+
 /// The mean weight of the samples: 1 for the geometric lobe under the mirror policy, never above 1.
 fn energy() -> Vec<Check> {
-    let cases = sample_cases(true);
     let check = |case: &ScatterRequest| {
-        let shape = case.shape::<f64>();
-        let frame = ScatterRequest::frame::<f64>();
-        let weight = |i: u32| {
-            let state = random_state(2, 0, case.seed, i, Sequence::Sobol);
-            let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
-            lobe_sample(&shape, &frame, frame.normal, case.wo(), [a, b, c]).weight
-        };
-        let mean = (0..4096).map(weight).sum::<f64>() / 4096.0;
+        let mean = twin_samples(case, 4096).map(|drawn| drawn.weight).sum::<f64>() / 4096.0;
         let is_conserving = case.lobe == Lobe::Geometric && case.horizon == Horizon::Mirror;
         let value = if is_conserving {
             (mean - 1.0).abs()
@@ -290,38 +312,48 @@ fn energy() -> Vec<Check> {
         } else {
             2e-3
         };
-        (
-            value <= limit,
-            Check {
-                group: "energy",
-                name: describe(case),
-                measure: "error",
-                value,
-                limit,
-                passed: value <= limit,
-            },
-        )
+        Check {
+            group: "energy",
+            name: describe(case),
+            measure: "error",
+            value,
+            limit,
+            passed: value <= limit,
+        }
     };
-    let all: Vec<_> = cases.par_iter().map(check).collect();
-    // Only failures are listed one by one; the rest is summed up by its worst.
-    let worst = all
-        .iter()
-        .map(|(_, check)| check.value / check.limit)
-        .fold(0.0, f64::max);
-    let mut checks: Vec<Check> = all
-        .into_iter()
-        .filter(|(passed, _)| !passed)
-        .map(|(_, check)| check)
-        .collect();
-    checks.push(Check {
-        group: "energy",
-        name: format!("mean weight over {} cases, worst share of its limit", cases.len()),
-        measure: "error",
-        value: worst,
-        limit: 1.0,
-        passed: worst <= 1.0,
-    });
-    checks
+    summed_up(
+        "energy",
+        "mean weight",
+        sample_cases(true).par_iter().map(check).collect(),
+    )
+}
+
+/// That a sample's weight is evaluate / density where it landed.
+fn weights() -> Vec<Check> {
+    let check = |case: &ScatterRequest| {
+        let frame = ScatterRequest::frame::<f64>();
+        let error = |drawn: LobeSample<f64>| {
+            if drawn.weight <= 0.0 {
+                return 0.0;
+            }
+            let [value, density] = lobe_evaluate(&case.shape(), &frame, frame.normal, case.wo(), drawn.wi);
+            (value - drawn.weight * density).abs() / value.max(f64::MIN_POSITIVE)
+        };
+        let value = twin_samples(case, 256).map(error).fold(0.0, f64::max);
+        Check {
+            group: "weights",
+            name: describe(case),
+            measure: "error",
+            value,
+            limit: WEIGHT_ERROR,
+            passed: value <= WEIGHT_ERROR,
+        }
+    };
+    summed_up(
+        "weights",
+        "weight against evaluate / density",
+        sample_cases(true).par_iter().map(check).collect(),
+    )
 }
 
 /// A small document under a light, with honest variances: box filter, independent samples.
