@@ -39,12 +39,16 @@ mod gltf;
 mod gltf_builder;
 #[path = "suite/gltf_damaged.rs"]
 mod gltf_damaged;
+#[path = "suite/library.rs"]
+mod library;
 #[path = "suite/lights.rs"]
 mod lights;
 #[path = "suite/lobe_cases.rs"]
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/nothing_lost.rs"]
+mod nothing_lost;
 #[path = "suite/renders.rs"]
 mod renders;
 #[path = "suite/statistics.rs"]

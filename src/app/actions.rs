@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
+use super::library::Change;
 use crate::document::MaterialSettings;
 use crate::render::EngineChoice;
 use crate::scene::ModelSource;
@@ -24,6 +25,8 @@ pub enum Action {
     UseMaterial(Box<MaterialSettings>),
     /// Selects a material slot.
     SelectSlot(usize),
+    /// Changes the user's folder of materials.
+    ChangeLibrary(Change),
     /// Looks from a direction: yaw and pitch in degrees.
     LookFrom(f64, f64),
     /// Changes the engine.
@@ -119,6 +122,7 @@ commands! {
     Save, File, "Save project", "Saves materials, light, camera and settings (.json).", keys(CTRL, Key::S), 1;
     SaveAs, File, "Save project as…", "Saves the project under another name.", keys(CTRL_SHIFT, Key::S), 1;
     SaveMaterial, File, "Save material…", "Saves the selected material (.json).", None, 1;
+    SaveToMyPresets, File, "Save to my presets", "Adds the selected material to your own presets.", None, 1;
     SavePicture, File, "Save picture…", "Saves what has been rendered so far (.png, .exr, .hdr).", keys(CTRL, Key::E), 1;
     CopyPicture, File, "Copy picture", "Copies what has been rendered so far to the clipboard.", keys(CTRL_SHIFT, Key::C), 1;
     Quit, File, "Quit", "Closes the window.", keys(CTRL, Key::Q), 2;

@@ -87,6 +87,11 @@ impl Dialogs {
         self.field.is_some()
     }
 
+    /// Whether a file is being chosen, in the path field or in the system's dialog.
+    pub(super) fn is_asking(&self) -> bool {
+        self.field.is_some() || self.pending.is_some()
+    }
+
     /// Asks for a file, unless a dialog is open already. `suggestion` is a file's name to save under.
     pub(super) fn ask(&mut self, purpose: Purpose, suggestion: String, ctx: &egui::Context) {
         if self.pending.is_some() || self.field.is_some() {

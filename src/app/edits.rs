@@ -74,8 +74,18 @@ impl Edits {
         self.history.redo_label()
     }
 
-    pub(super) fn is_saved(&self) -> bool {
-        self.history.is_saved()
+    /// Whether a file, or nothing but the start, holds the document.
+    pub(super) fn is_saved(&self, document: &Document) -> bool {
+        self.history.is_saved() && self.history.current() == document
+    }
+
+    /// A file holds this document by now, which may have been edited since.
+    pub(super) fn mark_value_saved(&mut self, document: &Document) {
+        self.history.mark_value_saved(document);
+    }
+
+    pub(super) fn mark_unsaved(&mut self) {
+        self.history.mark_unsaved();
     }
 
     pub(super) fn mark_saved(&mut self) {

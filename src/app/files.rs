@@ -1,39 +1,31 @@
-//! Opening and saving: projects, materials, pictures. What takes long happens on threads.
+//! Opening and saving: projects, materials, pictures. The window never waits for them.
 
 use std::path::{Path, PathBuf};
-use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::App;
 use super::actions::Command;
 use super::dialogs::Purpose;
+use super::disk::{Disk, Done, words};
+use super::unsaved::Then;
 use crate::document::file::Opened;
-use crate::document::{Document, file, preset, save_document, save_material};
+use crate::document::{Document, FileError, Loaded, file, preset, save_document, save_material};
 use crate::render::output;
 use crate::render::worker::Level;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 
-/// The project's file, and what threads that save have to say.
+/// The project's file, and the thread that reads and writes.
 pub(super) struct Files {
-    ctx: egui::Context,
-    project: Option<PathBuf>,
-    sender: Sender<(Level, String)>,
-    receiver: Receiver<(Level, String)>,
+    pub(super) disk: Disk,
+    pub(super) project: Option<PathBuf>,
 }
 
 impl Files {
-    pub(super) fn new(ctx: egui::Context) -> Self {
-        let (sender, receiver) = channel();
-        Self {
-            ctx,
+    pub(super) fn new(ctx: egui::Context) -> std::io::Result<Self> {
+        Ok(Self {
+            disk: Disk::new(ctx)?,
             project: None,
-            sender,
-            receiver,
-        }
-    }
-
-    pub(super) fn take_messages(&self) -> Vec<(Level, String)> {
-        self.receiver.try_iter().collect()
+        })
     }
 
     /// What to call the project.
@@ -42,22 +34,14 @@ impl Files {
         stem.map_or_else(|| "untitled".to_owned(), |stem| stem.to_string_lossy().into_owned())
     }
 
-    /// Does something that takes long, and says how it went.
-    fn beside(&self, work: impl FnOnce() -> Result<String, String> + Send + 'static) -> Result<(), String> {
-        let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
-        let body = move || {
-            let message = match work() {
-                Ok(text) => (Level::Info, text),
-                Err(text) => (Level::Error, text),
-            };
-            // Nobody listens where the window was closed meanwhile.
-            let _ = sender.send(message);
-            ctx.request_repaint();
-        };
-        let spawned = std::thread::Builder::new().name("save".to_owned()).spawn(body);
-        spawned
-            .map(|_| ())
-            .map_err(|error| format!("the system gives no thread to save on: {error}"))
+    /// Whether something is still to be written.
+    pub(super) fn is_saving(&self) -> bool {
+        self.disk.is_writing()
+    }
+
+    /// Whether a material or a project that was opened has not been read yet.
+    pub(super) fn is_reading(&self) -> bool {
+        self.disk.is_reading()
     }
 }
 
@@ -85,15 +69,15 @@ fn kind_of(path: &Path) -> FileKind {
 }
 
 impl App {
-    /// Opens a file by its ending; true where the worker was asked to load it.
+    /// Opens a file by its ending, beside the window; true where it is of a kind that can be opened.
     pub(super) fn open(&mut self, path: PathBuf) -> bool {
         match kind_of(&path) {
             FileKind::Model => self.worker.open_model(ModelSource::File(path)),
             FileKind::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
-            FileKind::Json => {
-                self.open_json(&path);
-                return false;
-            }
+            FileKind::Json => self.files.disk.read(move || {
+                let opened = file::open(&path);
+                Done::Read(path, opened)
+            }),
             FileKind::Unknown => {
                 let text = "opened are models (.glb, .gltf), environments (.hdr, .exr), materials and projects (.json)";
                 self.say(
@@ -106,30 +90,85 @@ impl App {
         true
     }
 
-    fn open_json(&mut self, path: &Path) {
-        let (warnings, label) = match file::open(path) {
+    /// Takes what has been read and written.
+    pub(super) fn take_files(&mut self, ctx: &egui::Context) {
+        let mut has_failed = false;
+        for done in self.files.disk.take_done() {
+            match done {
+                Done::Read(path, opened) => self.take_opened(ctx, path, opened),
+                Done::SavedProject(path, document, saved) => {
+                    has_failed |= saved.is_err();
+                    if saved.is_ok() {
+                        self.edits.mark_value_saved(&document);
+                        self.recent.add(&path);
+                        self.files.project = Some(path.clone());
+                    }
+                    self.say_saved(&path, saved.map_err(|error| error.to_string()));
+                }
+                Done::Listed(listed) => self.take_library(listed),
+                Done::ChangedLibrary(changed) => {
+                    has_failed |= changed.is_err();
+                    self.take_library(changed);
+                }
+                Done::Wrote(result) => {
+                    has_failed |= result.is_err();
+                    let (level, text) = words(result);
+                    self.say(level, text);
+                }
+            }
+        }
+        self.go_on_after_save(ctx, has_failed);
+    }
+
+    fn take_opened(&mut self, ctx: &egui::Context, path: PathBuf, opened: Result<Opened, FileError>) {
+        let is_at_start = self.awaited > 0;
+        match opened {
             Ok(Opened::Material(loaded)) => {
+                let is_saved = self.edits.is_saved(&self.document);
                 self.use_material(loaded.value);
-                (loaded.warnings, None)
+                self.say_all(loaded.warnings);
+                self.recent.add(&path);
+                self.count_as_start(is_at_start && is_saved);
             }
-            Ok(Opened::Document(loaded)) => {
-                self.document = loaded.value;
-                self.panels.slot = 0;
-                self.files.project = Some(path.to_owned());
-                (loaded.warnings, Some(format!("Open {}", self.files.project_name())))
-            }
-            Err(error) => {
-                self.say(Level::Error, error.to_string());
-                return;
-            }
-        };
+            Ok(Opened::Document(loaded)) => self.unless_unsaved(ctx, Then::Adopt(loaded, path)),
+            Err(error) => self.say(Level::Error, error.to_string()),
+        }
+        self.awaited = self.awaited.saturating_sub(1);
+    }
+
+    /// Files given at the start are where editing begins, not edits that could be lost; a project's changes are.
+    pub(super) fn count_as_start(&mut self, is_start: bool) {
+        self.edits.record(&self.document, false);
+        if is_start && self.files.project.is_none() {
+            self.edits.mark_saved();
+        }
+    }
+
+    /// Goes on with a project that has been read.
+    pub(super) fn adopt_project(&mut self, loaded: Loaded<Document>, path: PathBuf) {
+        self.say_all(loaded.warnings);
+        self.recent.add(&path);
+        self.document = loaded.value;
+        self.panels.slot = 0;
+        self.files.project = Some(path);
+        self.edits.note(format!("Open {}", self.files.project_name()), "");
+        self.edits.record(&self.document, false);
+        self.edits.mark_saved();
+    }
+
+    /// Goes on with the default document.
+    pub(super) fn start_anew(&mut self) {
+        self.document = Document::default();
+        self.panels.slot = 0;
+        self.files.project = None;
+        self.edits.note("New", "");
+        self.edits.record(&self.document, false);
+        self.edits.mark_saved();
+    }
+
+    fn say_all(&mut self, warnings: Vec<String>) {
         for warning in warnings {
             self.say(Level::Warning, warning);
-        }
-        if let Some(label) = label {
-            self.edits.note(label, "");
-            self.edits.record(&self.document, false);
-            self.edits.mark_saved();
         }
     }
 
@@ -138,9 +177,7 @@ impl App {
         let material_file = || format!("{}.json", preset::command_line_name(&self.desk_material().name));
         let ask = match command {
             Command::New => {
-                self.document = Document::default();
-                self.files.project = None;
-                self.edits.note("New", "");
+                self.unless_unsaved(ctx, Then::New);
                 return;
             }
             Command::CopyPicture => {
@@ -176,22 +213,25 @@ impl App {
             }
             Purpose::OpenMeasured => self.panels.lobe.measured = Some(path),
             Purpose::SaveProject => self.save_project(with_ending(path, "json")),
-            Purpose::SaveMaterial => {
-                let path = with_ending(path, "json");
-                let saved = save_material(&path, &self.desk_material());
-                self.say_saved(&path, saved.map_err(|error| error.to_string()));
-            }
+            Purpose::SaveMaterial => self.save_material(with_ending(path, "json")),
             Purpose::SavePicture => self.save_picture(with_ending(path, "png")),
         }
     }
 
     fn save_project(&mut self, path: PathBuf) {
-        let saved = save_document(&path, &self.document).map_err(|error| error.to_string());
-        if saved.is_ok() {
-            self.edits.mark_saved();
-            self.files.project = Some(path.clone());
-        }
-        self.say_saved(&path, saved);
+        let document = Box::new(self.document.clone());
+        self.files.disk.write(move || {
+            let saved = save_document(&path, &document);
+            Done::SavedProject(path, document, saved)
+        });
+    }
+
+    fn save_material(&mut self, path: PathBuf) {
+        let material = self.desk_material();
+        self.files.disk.write(move || {
+            let saved = save_material(&path, &material).map_err(|error| error.to_string());
+            Done::Wrote(saved.map(|()| format!("saved {}", path.display())))
+        });
     }
 
     fn say_saved(&mut self, path: &Path, saved: Result<(), String>) {
@@ -207,7 +247,7 @@ impl App {
             return;
         };
         let view = self.document.view;
-        let begun = self.files.beside(move || {
+        self.files.disk.write_beside(move || {
             output::write(&path, &picture.image, &view).map_err(|error| error.to_string())?;
             let size = format!("{} × {}", picture.width, picture.height);
             Ok(format!(
@@ -216,9 +256,6 @@ impl App {
                 picture.samples_per_pixel
             ))
         });
-        if let Err(error) = begun {
-            self.say(Level::Error, error);
-        }
     }
 
     fn copy_picture(&mut self, ctx: &egui::Context) {

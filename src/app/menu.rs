@@ -5,6 +5,7 @@ use egui::{Key, RichText, Ui, vec2};
 use super::actions::{Action, Command, Menu};
 use super::edits::Edits;
 use super::layout::Pane;
+use super::recent::Recent;
 use super::theme;
 use crate::render::EngineChoice;
 
@@ -26,7 +27,7 @@ pub(super) struct MenuAnswer {
     pub(super) reveal: Option<Pane>,
 }
 
-pub(super) fn bar(ui: &mut Ui, edits: &Edits, actions: &mut Vec<Action>) -> MenuAnswer {
+pub(super) fn bar(ui: &mut Ui, edits: &Edits, recent: &mut Recent, actions: &mut Vec<Action>) -> MenuAnswer {
     let mut reveal = None;
     egui::MenuBar::new().ui(ui, |ui| {
         for menu in Menu::ALL {
@@ -35,6 +36,9 @@ pub(super) fn bar(ui: &mut Ui, edits: &Edits, actions: &mut Vec<Action>) -> Menu
                 let mut group = 0;
                 for command in Command::ALL.iter().filter(|command| command.menu() == menu) {
                     if command.group() != group {
+                        if menu == Menu::File && group == 0 {
+                            recent.menu(ui, actions);
+                        }
                         ui.separator();
                         group = command.group();
                     }

@@ -5,17 +5,23 @@
 //! differs from the one last submitted is submitted.
 
 pub mod actions;
+mod autosave;
 mod dialogs;
+mod disk;
 mod edits;
 mod files;
 mod icons;
 pub mod layout;
+pub mod library;
 mod menu;
 mod orbit;
 mod panels;
+mod recent;
+mod recovery_sheet;
 mod settings;
 pub mod status;
 mod theme;
+mod unsaved;
 mod viewport;
 mod widgets;
 
@@ -28,18 +34,22 @@ use egui::Ui;
 use egui_tiles::Tree;
 
 use actions::{Action, Command};
+use autosave::{Autosave, Leftover};
 use dialogs::Dialogs;
 use edits::Edits;
 use layout::Pane;
 use menu::Sheet;
 pub use panels::Resolution;
 use panels::{Desk, PanelState};
+use recent::Recent;
 use status::FrameMeter;
+use unsaved::Unsaved;
 use viewport::Viewport;
 
 use crate::document::{CameraSettings, Change, Document, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
+use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelSource};
 
 /// Changes that follow each other within this are rendered as moving.
@@ -53,6 +63,8 @@ pub fn run(files: Vec<PathBuf>, engine: EngineChoice) -> anyhow::Result<()> {
     let options = Options {
         files,
         engine,
+        data: settings::data_folder(),
+        cache: settings::cache_folder(),
         ..Options::default()
     };
     crate::render::priority::let_rendering_give_way();
@@ -76,6 +88,13 @@ pub struct Options {
     pub document: Option<Document>,
     /// The size of the picture instead of the one remembered.
     pub resolution: Option<Resolution>,
+    /// The folder for what belongs to the user: materials, and unsaved edits for after a crash. Without one neither is
+    /// kept.
+    pub data: Option<PathBuf>,
+    /// The folder for what can be made again: small pictures of materials. Without one none are made.
+    pub cache: Option<PathBuf>,
+    /// At least so long between two copies of unsaved edits, instead of 5 s.
+    pub autosave_interval: Option<Duration>,
 }
 
 /// The editor.
@@ -98,6 +117,11 @@ pub struct App {
     dialogs: Dialogs,
     sheet: Sheet,
     files: files::Files,
+    recent: Recent,
+    autosave: Autosave,
+    /// What crashes left and the user has not decided about.
+    leftovers: Vec<Leftover>,
+    unsaved: Unsaved,
     meter: FrameMeter,
     title: String,
     theme: egui::ThemePreference,
@@ -126,6 +150,7 @@ impl App {
             awaited: 0,
             panels: PanelState {
                 resolution: options.resolution.unwrap_or(kept.resolution),
+                library: library::Library::new(options.data.as_ref().map(|data| data.join("materials")), options.cache),
                 ..PanelState::default()
             },
             layout: kept.layout.unwrap_or_else(layout::default_layout),
@@ -133,11 +158,22 @@ impl App {
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),
             sheet: Sheet::None,
-            files: files::Files::new(creation.egui_ctx.clone()),
+            files: files::Files::new(creation.egui_ctx.clone())?,
+            recent: Recent::new(kept.recent),
+            autosave: match options.data {
+                Some(data) => {
+                    let interval = options.autosave_interval.unwrap_or(autosave::INTERVAL);
+                    Autosave::begin(data.join("recovery"), interval, creation.egui_ctx.clone())?
+                }
+                None => Autosave::default(),
+            },
+            leftovers: Vec::new(),
+            unsaved: Unsaved::default(),
             meter: FrameMeter::default(),
             title: String::new(),
             theme: kept.theme,
         };
+        app.list_library();
         for path in options.files {
             app.awaited += usize::from(app.open(path));
         }
@@ -182,27 +218,38 @@ impl App {
         panels::log::add(&mut self.panels.log, level, text.into());
     }
 
-    fn take_events(&mut self) {
+    fn take_events(&mut self, ctx: &egui::Context) {
+        self.take_files(ctx);
+        self.take_autosave_reports();
+        if self.awaited > 0 && self.files.is_reading() {
+            // Projects and materials first, whichever is read faster: a model given beside a project changes it.
+            return;
+        }
         for event in self.worker.take_events() {
+            let is_start = self.awaited > 0 && self.edits.is_saved(&self.document);
             match event {
-                Event::Message(level, text) => self.say(level, text),
+                Event::Message(level, text) => {
+                    self.say(level, text);
+                    continue;
+                }
                 Event::ModelOpened(source, model) => {
+                    if let ModelSource::File(path) = &source {
+                        self.recent.add(path);
+                    }
                     self.adopt_model(source, &model);
-                    self.awaited = self.awaited.saturating_sub(1);
+                    self.count_as_start(is_start);
                 }
                 Event::EnvironmentOpened(source, _) => {
+                    if let EnvironmentSource::File(path) = &source {
+                        self.recent.add(path);
+                    }
                     self.document.lighting.environment = source;
                     self.edits.note("Change the environment", "");
-                    self.awaited = self.awaited.saturating_sub(1);
+                    self.count_as_start(is_start);
                 }
-                Event::OpenFailed(_, why) => {
-                    self.say(Level::Error, why);
-                    self.awaited = self.awaited.saturating_sub(1);
-                }
+                Event::OpenFailed(_, why) => self.say(Level::Error, why),
             }
-        }
-        for (level, text) in self.files.take_messages() {
-            self.say(level, text);
+            self.awaited = self.awaited.saturating_sub(1);
         }
     }
 
@@ -243,6 +290,7 @@ impl App {
                 self.panels.slot = slot;
                 self.edits.seal();
             }
+            Action::ChangeLibrary(change) => self.change_library(change),
             Action::LookFrom(yaw_deg, pitch_deg) => {
                 let camera = &mut self.document.camera;
                 (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
@@ -310,6 +358,7 @@ impl App {
             Command::Shortcuts => self.sheet = Sheet::Shortcuts,
             Command::About => self.sheet = Sheet::About,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::SaveToMyPresets => self.change_library(library::Change::Add),
             of_files => self.file_command(ctx, of_files),
         }
     }
@@ -364,7 +413,7 @@ impl App {
         let answer = egui::Panel::top("menu")
             .frame(bar)
             .show_separator_line(false)
-            .show(ui, |ui| menu::bar(ui, &self.edits, actions))
+            .show(ui, |ui| menu::bar(ui, &self.edits, &mut self.recent, actions))
             .inner;
         if let Some(pane) = answer.reveal {
             layout::reveal(&mut self.layout, pane);
@@ -395,10 +444,26 @@ impl App {
         if let Some((purpose, path)) = self.dialogs.show(ui) {
             self.chosen(purpose, path);
         }
+        self.show_recovery(ui.ctx());
+        self.show_question(ui.ctx());
+    }
+
+    /// Whether something lies over the window that takes the keys.
+    fn is_covered(&self) -> bool {
+        let is_asked = self.dialogs.is_open() || self.unsaved.is_open() || !self.leftovers.is_empty();
+        is_asked || self.sheet != Sheet::None
+    }
+
+    fn put_aside(&mut self, ctx: &egui::Context) {
+        let is_saved = self.edits.is_saved(&self.document);
+        let project = self.files.project.as_deref();
+        if let Some(wait) = self.autosave.watch(&self.document, project, is_saved) {
+            ctx.request_repaint_after(wait);
+        }
     }
 
     fn set_title(&mut self, ctx: &egui::Context) {
-        let mark = if self.edits.is_saved() { "" } else { " *" };
+        let mark = if self.edits.is_saved(&self.document) { "" } else { " *" };
         let title = format!("{}{mark} – Glossmith", self.files.project_name());
         if title != self.title {
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title.clone()));
@@ -412,9 +477,9 @@ impl eframe::App for App {
         let ctx = ui.ctx().clone();
         let is_running = ctx.requested_repaint_last_pass();
         self.meter.begin(Instant::now(), is_running, frame.info().cpu_usage);
-        self.take_events();
+        self.take_events(&ctx);
         let mut actions = std::mem::take(&mut self.queue);
-        if self.sheet == Sheet::None && !self.dialogs.is_open() {
+        if !self.is_covered() {
             actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
         }
         let dropped = ctx.input(|input| input.raw.dropped_files.clone());
@@ -424,10 +489,13 @@ impl eframe::App for App {
             self.apply(&ctx, action);
         }
         self.record_and_submit(&ctx);
+        self.put_aside(&ctx);
+        self.guard_close(&ctx);
         self.set_title(&ctx);
     }
 
     fn on_exit(&mut self) {
+        self.autosave.end();
         log::info!("{}", self.meter.summary());
     }
 
@@ -438,6 +506,7 @@ impl eframe::App for App {
             theme: self.theme,
             layout: Some(layout),
             resolution: self.panels.resolution,
+            recent: self.recent.paths().to_vec(),
         };
         kept.save(storage);
     }

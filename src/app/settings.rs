@@ -1,5 +1,6 @@
 //! What the window is opened with, and what is remembered from one start to the next.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use egui::ThemePreference;
@@ -45,6 +46,24 @@ fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static>
     }
 }
 
+/// The folder for what belongs to the user, where the system has one.
+pub(super) fn data_folder() -> Option<PathBuf> {
+    Some(
+        directories::ProjectDirs::from("", "", "glossmith")?
+            .data_local_dir()
+            .to_owned(),
+    )
+}
+
+/// The folder for what can be made again, where the system has one.
+pub(super) fn cache_folder() -> Option<PathBuf> {
+    Some(
+        directories::ProjectDirs::from("", "", "glossmith")?
+            .cache_dir()
+            .to_owned(),
+    )
+}
+
 /// What is remembered.
 #[derive(Serialize, Deserialize)]
 #[serde(default)]
@@ -52,6 +71,8 @@ pub(super) struct Kept {
     pub(super) theme: ThemePreference,
     pub(super) layout: Option<Tree<Pane>>,
     pub(super) resolution: Resolution,
+    /// Files opened and saved, the latest first.
+    pub(super) recent: Vec<PathBuf>,
 }
 
 impl Default for Kept {
@@ -60,6 +81,7 @@ impl Default for Kept {
             theme: ThemePreference::Dark,
             layout: None,
             resolution: Resolution::default(),
+            recent: Vec::new(),
         }
     }
 }

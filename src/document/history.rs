@@ -128,6 +128,19 @@ impl<T: Clone + PartialEq> History<T> {
         self.is_open = false;
     }
 
+    /// Records that a file holds `value`, which the document may have left since.
+    pub fn mark_value_saved(&mut self, value: &T) {
+        if let Some(state) = self.states.iter().rev().find(|state| state.value == *value) {
+            self.saved_id = state.id;
+        }
+        self.is_open = false;
+    }
+
+    /// Records that no file holds any of the values.
+    pub fn mark_unsaved(&mut self) {
+        self.saved_id = u64::MAX;
+    }
+
     /// True where there is nothing to save.
     pub fn is_saved(&self) -> bool {
         self.states[self.current].id == self.saved_id

@@ -7,6 +7,7 @@ pub mod custom_curve;
 pub mod file;
 pub mod history;
 pub mod job;
+pub mod library;
 pub mod match_look;
 mod material;
 pub mod measured_look;
@@ -14,6 +15,7 @@ pub mod parameter;
 pub mod plan;
 pub mod preset;
 pub mod project;
+pub mod recovery;
 mod registry;
 mod settings;
 

@@ -137,10 +137,11 @@ fn migrate_0(object: &mut Map<String, Json>) {
     };
     for key in object.keys().cloned().collect::<Vec<_>>() {
         let is_meant = |known: &str| known == key || known.split_once('.').is_some_and(|(_, short)| short == key);
+        // Groups that came after version 0 are never meant.
         let mut meant = PARAMETERS
             .iter()
             .map(|parameter| parameter.key)
-            .filter(|known| is_meant(known));
+            .filter(|known| is_meant(known) && !known.starts_with("transmission."));
         if let (Some(known), None) = (meant.next(), meant.next())
             && let Some(value) = object.remove(&key)
         {

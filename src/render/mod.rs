@@ -13,6 +13,7 @@ pub mod output;
 pub mod priority;
 pub mod samples;
 mod session;
+pub mod thumbnails;
 pub mod worker;
 
 pub use assets::Assets;

@@ -11,34 +11,48 @@ use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options, Resolution};
 use glossmith::document::{AreaLight, Document, PRESETS, save_document, save_material};
+use glossmith::optics::curve::Curve;
+use glossmith::optics::lobe::Lobe;
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 
 use super::worker::small_document;
 
-const PATIENCE: Duration = Duration::from_secs(120);
+pub(super) const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The options of an editor that is tested: nothing of the user's is read or written.
+pub(super) fn options() -> Options {
+    Options {
+        engine: EngineChoice::Cpu,
+        document: Some(small_document()),
+        resolution: Some(Resolution::Document),
+        ..Options::default()
+    }
+}
 
 fn editor_with(document: Document, files: Vec<PathBuf>) -> Harness<'static, App> {
-    let options = Options {
+    editor_of(Options {
         files,
-        engine: EngineChoice::Cpu,
         document: Some(document),
-        resolution: Some(Resolution::Document),
-    };
+        ..options()
+    })
+}
+
+pub(super) fn editor_of(options: Options) -> Harness<'static, App> {
     Harness::builder()
         .with_size(Vec2::new(1400.0, 1000.0))
         .build_eframe(move |creation| App::new(creation, options).expect("a thread to render on"))
 }
 
 /// An editor whose first picture is finished.
-fn editor() -> Harness<'static, App> {
+pub(super) fn editor() -> Harness<'static, App> {
     let mut harness = editor_with(small_document(), Vec::new());
     settle(&mut harness);
     harness
 }
 
-fn wait(harness: &mut Harness<'static, App>, what: &str, until: impl Fn(&App) -> bool) {
+pub(super) fn wait(harness: &mut Harness<'static, App>, what: &str, until: impl Fn(&App) -> bool) {
     let begun = Instant::now();
     loop {
         harness.step();
@@ -52,7 +66,7 @@ fn wait(harness: &mut Harness<'static, App>, what: &str, until: impl Fn(&App) ->
     }
 }
 
-fn settle(harness: &mut Harness<'static, App>) {
+pub(super) fn settle(harness: &mut Harness<'static, App>) {
     // What was just done reaches the renderer with the next frame.
     harness.run_steps(3);
     wait(harness, "a finished picture", App::is_settled);
@@ -77,7 +91,7 @@ fn undo(harness: &mut Harness<'static, App>) {
     settle(harness);
 }
 
-fn request(harness: &mut Harness<'static, App>, action: Action) {
+pub(super) fn request(harness: &mut Harness<'static, App>, action: Action) {
     harness.state_mut().request(action);
     harness.run_steps(2);
 }
@@ -377,7 +391,7 @@ fn projects_and_materials_come_back_from_their_files() {
     settle(&mut harness);
     assert_eq!(*harness.state().document(), document);
     request(&mut harness, Action::Open(material));
-    settle(&mut harness);
+    wait(&mut harness, "the material", |app| app.document() != &document);
     assert_eq!(harness.state().document().materials[0], PRESETS[3]);
 }
 
@@ -427,4 +441,33 @@ fn the_window_paints_the_renderers_pixels() {
     let difference = painted.iter().zip(expected).map(|(a, b)| a.abs_diff(*b)).max();
     assert!(difference <= Some(3), "painted {painted:?}, rendered {expected:?}");
     assert!(expected[0] > 2 * expected[1], "the background is red");
+}
+
+#[test]
+fn a_look_is_matched_used_and_undone() {
+    let mut harness = editor();
+    harness.state_mut().reveal(Pane::Lobe);
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Compare the lobe")
+        .click();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "GGX").click();
+    harness.run_steps(2);
+    // The panel may have to be scrolled to reach the buttons, which accessibility does by itself.
+    harness.get_by_label("Match look").click_accesskit();
+    let begun = Instant::now();
+    while harness.query_by_label("Use it").is_none() {
+        assert!(begun.elapsed() < PATIENCE, "waited in vain for the match");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let before = harness.state().document().clone();
+    harness.get_by_label("Use it").click_accesskit();
+    settle(&mut harness);
+    let material = &harness.state().document().materials[0];
+    assert_eq!((material.lobe, material.curve), (Lobe::Geometric, Curve::Custom));
+    assert_ne!(material.custom_curve, before.materials[0].custom_curve);
+    undo(&mut harness);
+    assert_eq!(*harness.state().document(), before);
 }

@@ -1,7 +1,7 @@
 //! Line plots of lobes in the window: the data that the command line writes as files.
 
 use egui::{Color32, Ui};
-use egui_plot::{GridMark, Legend, Line, LineStyle, Plot, PlotPoints};
+use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoints};
 
 use crate::analysis::lobe_view::{Axis, LinePlot, Series};
 use crate::analysis::plot::series_color;
@@ -40,8 +40,7 @@ pub(super) fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot) {
             plot.x.label.clone()
         })
         .y_axis_formatter(number)
-        .set_margin_fraction(egui::vec2(0.03, 0.06))
-        .legend(Legend::default());
+        .set_margin_fraction(egui::vec2(0.03, 0.06));
     let [top, bottom] = [plot.y.range[1], plot.y.range[0]].map(|value| place(&plot.y, value));
     shown = if plot.is_polar {
         shown
@@ -74,8 +73,24 @@ pub(super) fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot) {
         }
     });
     response.response.accessible_name(plot.title.clone());
+    key(ui, plot);
+}
+
+/// What the lines are, below the plot: over it they would hide narrow lobes.
+fn key(ui: &mut Ui, plot: &LinePlot) {
     if !plot.is_polar {
         ui.weak(&plot.y.label);
+    }
+    for series in &plot.series {
+        ui.horizontal(|ui| {
+            let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 12.0), egui::Sense::hover());
+            ui.painter().hline(
+                rect.x_range(),
+                rect.center().y,
+                egui::Stroke::new(2.5, color(series.group)),
+            );
+            ui.add(egui::Label::new(plot.label(series)).truncate());
+        });
     }
 }
 

@@ -16,7 +16,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     name(ui, desk, &mut material);
     ui.add_space(theme::GAP);
     let mut groups: Vec<&'static str> = Vec::new();
-    for parameter in PARAMETERS.iter() {
+    for parameter in PARAMETERS.iter().filter(|parameter| (parameter.applies)(&before)) {
         if !groups.contains(&parameter.group) {
             groups.push(parameter.group);
         }

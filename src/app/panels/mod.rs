@@ -15,6 +15,7 @@ pub(super) mod samples;
 
 use super::actions::{Action, Command};
 use super::edits::Edits;
+use super::library::Library;
 use super::widgets::RowResponse;
 use crate::document::{Document, MaterialSettings};
 use crate::render::worker::{Scene, Snapshot};
@@ -51,6 +52,8 @@ pub(super) struct PanelState {
     pub(super) is_paused: bool,
     /// What is searched for among the presets.
     pub(super) preset_search: String,
+    /// The materials to choose from.
+    pub(super) library: Library,
 }
 
 /// How large the picture is.

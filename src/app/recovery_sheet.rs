@@ -1,0 +1,192 @@
+//! The sheet that offers what a crash left.
+
+use std::time::{Duration, SystemTime};
+
+use egui::{RichText, Ui};
+
+use super::App;
+use super::autosave::{Leftover, Report};
+use super::{theme, widgets};
+use crate::document::recovery::Recovered;
+use crate::render::worker::Level;
+
+/// What is to be done with a leftover.
+enum Choice {
+    Restore,
+    Discard,
+}
+
+impl App {
+    /// Takes what the thread told that puts documents aside.
+    pub(super) fn take_autosave_reports(&mut self) {
+        for report in self.autosave.take_reports() {
+            match report {
+                Report::Found(leftovers) => self.leftovers = leftovers,
+                Report::Failed(error) => {
+                    self.say(
+                        Level::Warning,
+                        format!("unsaved edits are not kept for a crash: {error}"),
+                    );
+                }
+            }
+        }
+    }
+
+    /// Shows the sheet as long as there is something to choose.
+    pub(super) fn show_recovery(&mut self, ctx: &egui::Context) {
+        if self.leftovers.is_empty() {
+            return;
+        }
+        let mut chosen = None;
+        let modal = egui::Modal::new(egui::Id::unique("recovery")).show(ctx, |ui| {
+            chosen = sheet(ui, &self.leftovers);
+        });
+        if let Some((at, choice)) = chosen {
+            let leftover = self.leftovers.remove(at);
+            match choice {
+                Choice::Discard => self.autosave.discard(leftover.index),
+                Choice::Restore => self.restore(leftover),
+            }
+        } else if modal.should_close() {
+            self.leave_leftovers();
+        }
+    }
+
+    fn restore(&mut self, leftover: Leftover) {
+        let Ok(recovered) = leftover.contents else {
+            return;
+        };
+        for warning in &recovered.warnings {
+            self.say(Level::Warning, warning.clone());
+        }
+        let name = name(&recovered);
+        self.document = recovered.document;
+        self.panels.slot = 0;
+        self.files.project = recovered.project;
+        self.edits.note(format!("Restore {name}"), "");
+        self.edits.record(&self.document, false);
+        self.edits.mark_unsaved();
+        self.autosave.keep(&self.document, self.files.project.as_deref());
+        self.autosave.discard(leftover.index);
+        self.say(Level::Info, format!("restored {name}; it has not been saved yet"));
+        self.leave_leftovers();
+    }
+
+    /// What was not chosen stays for the next start.
+    fn leave_leftovers(&mut self) {
+        if !self.leftovers.is_empty() {
+            let count = self.leftovers.len();
+            self.say(
+                Level::Info,
+                format!("unsaved documents left for the next start: {count}"),
+            );
+            self.leftovers.clear();
+        }
+    }
+}
+
+fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usize, Choice)> {
+    let mut chosen = None;
+    ui.set_width(460.0);
+    ui.heading("Unsaved work was found");
+    widgets::note(
+        ui,
+        "Glossmith ended without closing. What had not been saved was put aside; restored, it can be undone, and is \
+         saved when you save it.",
+    );
+    egui::ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
+        for (at, leftover) in leftovers.iter().enumerate() {
+            ui.add_space(theme::GAP);
+            ui.separator();
+            if let Some(choice) = row(ui, leftover, at == 0) {
+                chosen = Some((at, choice));
+            }
+        }
+    });
+    ui.add_space(theme::GAP);
+    ui.separator();
+    let later = ui.button("Later").on_hover_text("Asks again at the next start.");
+    if later.clicked() {
+        ui.close();
+    }
+    chosen
+}
+
+fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
+    let mut choice = None;
+    let name = match &leftover.contents {
+        Ok(recovered) => {
+            let name = name(recovered);
+            ui.label(RichText::new(&name).strong());
+            let age = SystemTime::now().duration_since(recovered.at).unwrap_or_default();
+            widgets::note(ui, format!("{}, put aside {}", contents(recovered), ago(age)));
+            name
+        }
+        Err(why) => {
+            ui.label(RichText::new("A damaged file").strong());
+            ui.colored_label(ui.visuals().error_fg_color, why);
+            "the damaged file".to_owned()
+        }
+    };
+    ui.horizontal(|ui| {
+        let restore = ui
+            .add_enabled(leftover.contents.is_ok(), egui::Button::new("Restore"))
+            .accessible_name(format!("Restore {name}"));
+        if is_first && ui.memory(|memory| memory.focused().is_none()) {
+            restore.request_focus();
+        }
+        if restore.clicked() {
+            choice = Some(Choice::Restore);
+        }
+        let discard = ui.button("Discard").accessible_name(format!("Discard {name}"));
+        if discard.on_hover_text("Removes it for good.").clicked() {
+            choice = Some(Choice::Discard);
+        }
+    });
+    choice
+}
+
+/// What to call it.
+fn name(recovered: &Recovered) -> String {
+    let stem = recovered.project.as_ref().and_then(|path| path.file_stem());
+    stem.map_or_else(|| "untitled".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// What tells one untitled document from another.
+fn contents(recovered: &Recovered) -> String {
+    let materials = &recovered.document.materials;
+    let names: Vec<&str> = materials.iter().take(3).map(|material| &*material.name).collect();
+    let more = if materials.len() > 3 { ", …" } else { "" };
+    format!("{} in {}{more}", recovered.document.model, names.join(", "))
+}
+
+/// How long ago something was, in words.
+fn ago(age: Duration) -> String {
+    let minutes = age.as_secs() / 60;
+    let (count, unit) = match minutes {
+        0 => return "less than a minute ago".to_owned(),
+        1..60 => (minutes, "minute"),
+        60..1440 => (minutes / 60, "hour"),
+        _ => (minutes / 1440, "day"),
+    };
+    format!("{count} {unit}{} ago", if count == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ages_are_said_in_the_largest_unit_that_fits() {
+        for (seconds, words) in [
+            (0, "less than a minute ago"),
+            (61, "1 minute ago"),
+            (3599, "59 minutes ago"),
+            (3600, "1 hour ago"),
+            (86_399, "23 hours ago"),
+            (3 * 86_400, "3 days ago"),
+        ] {
+            assert_eq!(ago(Duration::from_secs(seconds)), words);
+        }
+    }
+}

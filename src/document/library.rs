@@ -1,0 +1,148 @@
+//! A folder of the user's materials.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::MaterialSettings;
+use super::file::FileError;
+use super::preset::{command_line_name, load_material, save_material};
+
+/// A file of the folder.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// The file.
+    pub path: PathBuf,
+    /// Its material, or what is wrong with it.
+    pub material: Result<MaterialSettings, String>,
+}
+
+impl Entry {
+    /// What to call it: the material's name, else the file's.
+    pub fn name(&self) -> String {
+        let stem = || self.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        self.material
+            .as_ref()
+            .map_or_else(|_| stem(), |material| material.name.clone())
+    }
+}
+
+/// The materials in a folder by name; none where it is not there.
+///
+/// # Errors
+/// [`FileError::Read`] where the folder can't be read.
+pub fn list(folder: &Path) -> Result<Vec<Entry>, FileError> {
+    let files = match fs::read_dir(folder) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
+        other => other.map_err(|source| FileError::Read {
+            path: folder.to_owned(),
+            source,
+        })?,
+    };
+    let paths = files.flatten().map(|file| file.path());
+    let mut entries: Vec<Entry> = paths
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+        })
+        .map(|path| Entry {
+            material: load_material(&path)
+                .map(|loaded| loaded.value)
+                .map_err(|error| error.to_string()),
+            path,
+        })
+        .collect();
+    entries.sort_by_key(|entry| (entry.name().to_lowercase(), entry.path.clone()));
+    Ok(entries)
+}
+
+/// Adds a material in a file named after it; no other file is replaced. The folder is made where it is not there.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub fn add(folder: &Path, material: &MaterialSettings) -> Result<PathBuf, FileError> {
+    fs::create_dir_all(folder).map_err(cannot_write(folder))?;
+    let path = free_path(folder, &material.name);
+    save_material(&path, material)?;
+    Ok(path)
+}
+
+/// Gives a material another name, and its file, too.
+///
+/// # Errors
+/// What is wrong with the file, or [`FileError::Write`]; the material then has its old name.
+pub fn rename(path: &Path, name: &str) -> Result<PathBuf, FileError> {
+    let mut material = load_material(path)?.value;
+    if material.name == name {
+        return Ok(path.to_owned());
+    }
+    material.name = name.to_owned();
+    let renamed = add(path.parent().unwrap_or(Path::new(".")), &material)?;
+    remove(path)?;
+    Ok(renamed)
+}
+
+/// Removes a material's file.
+///
+/// # Errors
+/// [`FileError::Write`].
+pub fn remove(path: &Path) -> Result<(), FileError> {
+    fs::remove_file(path).map_err(cannot_write(path))
+}
+
+/// A file's name that is allowed everywhere and not taken yet.
+fn free_path(folder: &Path, name: &str) -> PathBuf {
+    let allowed = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '-' };
+    let mut stem: String = command_line_name(name).chars().map(allowed).take(60).collect();
+    if stem.trim_matches('-').is_empty() {
+        stem = "material".to_owned();
+    }
+    let first = folder.join(format!("{stem}.json"));
+    let others = (2..).map(|number| folder.join(format!("{stem}-{number}.json")));
+    let is_free = |path: &PathBuf| !path.exists();
+    std::iter::once(first.clone())
+        .chain(others)
+        .find(is_free)
+        .unwrap_or(first)
+}
+
+fn cannot_write(path: &Path) -> impl FnOnce(io::Error) -> FileError {
+    let path = path.to_owned();
+    move |source| FileError::Write { path, source }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::PRESETS;
+
+    #[test]
+    fn materials_are_added_listed_renamed_and_removed() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let folder = folder.path().join("materials");
+        assert_eq!(list(&folder).expect("nothing is no error"), []);
+        let mut material = PRESETS[3].clone();
+        material.name = "../Odd: name".to_owned();
+        let paths = [0, 1].map(|_| add(&folder, &material).expect("added"));
+        assert_ne!(paths[0], paths[1], "no file is replaced");
+        assert!(paths.iter().all(|path| path.parent() == Some(&*folder)), "{paths:?}");
+        let renamed = rename(&paths[0], "Alpha").expect("renamed");
+        fs::write(folder.join("broken.json"), "{").expect("a temporary file");
+        let names: Vec<String> = list(&folder).expect("listed").iter().map(Entry::name).collect();
+        assert_eq!(names, ["../Odd: name", "Alpha", "broken"]);
+        material.name = "Alpha".to_owned();
+        assert_eq!(load_material(&renamed).expect("whole").value, material);
+        remove(&renamed).expect("removed");
+        assert_eq!(list(&folder).expect("listed").len(), 2);
+        assert!(remove(&renamed).is_err() && rename(&renamed, "Beta").is_err());
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_written_is_an_error() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("file");
+        fs::write(&file, "no folder").expect("a temporary file");
+        let error = add(&file.join("materials"), &PRESETS[0]).expect_err("a file is no folder");
+        assert!(error.to_string().contains("permissions"), "{error}");
+    }
+}

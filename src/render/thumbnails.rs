@@ -1,0 +1,189 @@
+//! Small pictures of materials, rendered beside the window and kept on disk.
+
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::io::{self, Cursor};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use image::{ImageFormat, RgbaImage};
+
+use super::background::{Background, Desk};
+use super::display::display;
+use super::{EngineChoice, Session, SessionError};
+use crate::document::file::save_atomically;
+use crate::document::preset::material_text;
+use crate::document::{Document, MaterialSettings, RenderSettings};
+use crate::scene::ModelSource;
+
+/// Columns and rows of a thumbnail.
+pub const SIDE: u32 = 64;
+/// Samples a pixel: noise is below what is seen at this size.
+const SAMPLES: u32 = 24;
+/// How long to render before looking whether something else is wanted.
+const STEP: Duration = Duration::from_millis(30);
+/// To be raised where thumbnails of the same material come out otherwise than before.
+const VERSION: u32 = 1;
+
+/// A picture: red, green, blue and alpha of 8 bits, alpha not premultiplied; [`SIDE`] × [`SIDE`] pixels from the top.
+pub type Thumbnail = Arc<Vec<u8>>;
+/// Thumbnails by [`key`].
+pub type Thumbnails = Arc<HashMap<u64, Thumbnail>>;
+/// Renders the thumbnails of the materials that it was asked for last, in their order; answers grow.
+pub type ThumbnailWorker = Background<Vec<MaterialSettings>, Thumbnails>;
+
+/// The same for materials that look the same, whatever they are called.
+pub fn key(material: &MaterialSettings) -> u64 {
+    let nameless = MaterialSettings {
+        name: String::new(),
+        ..material.clone()
+    };
+    let mut hasher = DefaultHasher::new();
+    (VERSION, env!("CARGO_PKG_VERSION"), material_text(&nameless)).hash(&mut hasher);
+    hasher.finish()
+}
+
+/// Starts the worker; `folder` keeps the pictures from one start to the next and is made where it is not there.
+///
+/// # Errors
+/// If the system gives no thread.
+pub fn spawn_thumbnails(folder: PathBuf, repaint: impl Fn() + Send + 'static) -> io::Result<ThumbnailWorker> {
+    let mut session: Option<Session> = None;
+    let mut made: HashMap<u64, Thumbnail> = HashMap::new();
+    Background::spawn("thumbnails", repaint, move |materials, desk| {
+        for material in materials {
+            let key = key(&material);
+            if made.contains_key(&key) {
+                continue;
+            }
+            let path = folder.join(format!("{key:016x}.png"));
+            let kept = read(&path);
+            let is_kept = kept.is_some();
+            match kept.map_or_else(|| make(&mut session, &material, desk), |kept| Ok(Some(kept))) {
+                Ok(Some(pixels)) => {
+                    if !is_kept && let Err(error) = write(&path, &pixels) {
+                        // A cache: where it can't be written, the next start renders again.
+                        log::debug!("{error}");
+                    }
+                    made.insert(key, Arc::new(pixels));
+                    desk.publish(Arc::new(made.clone()));
+                }
+                Ok(None) => return,
+                Err(error) => log::warn!("no small picture of {}: {error}", material.name),
+            }
+        }
+    })
+}
+
+/// The document of a thumbnail. The environment stays visible: what glass refracts is seen against something.
+fn document(material: &MaterialSettings) -> Document {
+    Document {
+        model: ModelSource::Sphere,
+        materials: vec![material.clone()],
+        render: RenderSettings {
+            width: SIDE,
+            height: SIDE,
+            samples: SAMPLES,
+            ..RenderSettings::default()
+        },
+        ..Document::default()
+    }
+}
+
+/// `None` where something else is wanted by now.
+fn make<A>(
+    session: &mut Option<Session>,
+    material: &MaterialSettings,
+    desk: &Desk<'_, Vec<MaterialSettings>, A>,
+) -> Result<Option<Vec<u8>>, SessionError> {
+    let session = match session {
+        Some(session) => session,
+        None => session.insert(Session::open(EngineChoice::Cpu)?),
+    };
+    let document = document(material);
+    session.submit(&document)?;
+    while !session.step(STEP)?.is_done {
+        if desk.is_superseded() {
+            return Ok(None);
+        }
+    }
+    Ok(Some(display(&session.image()?, &document.view)))
+}
+
+fn read(path: &Path) -> Option<Vec<u8>> {
+    let bytes = std::fs::read(path).ok()?;
+    let picture = image::load_from_memory_with_format(&bytes, ImageFormat::Png).ok()?;
+    let picture = picture.into_rgba8();
+    (picture.dimensions() == (SIDE, SIDE)).then(|| picture.into_raw())
+}
+
+fn write(path: &Path, pixels: &[u8]) -> Result<(), String> {
+    let picture = RgbaImage::from_raw(SIDE, SIDE, pixels.to_vec()).ok_or("not the size of a thumbnail")?;
+    let mut bytes = Cursor::new(Vec::new());
+    picture
+        .write_to(&mut bytes, ImageFormat::Png)
+        .map_err(|error| error.to_string())?;
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    }
+    save_atomically(path, bytes.get_ref()).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+    use crate::document::material_by_name;
+
+    fn wait(worker: &ThumbnailWorker, count: usize) -> Thumbnails {
+        let begun = Instant::now();
+        loop {
+            if let Some(made) = worker.latest().filter(|made| made.len() >= count) {
+                return made;
+            }
+            assert!(begun.elapsed() < Duration::from_secs(60), "no thumbnails came");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    fn mean(pixels: &[u8]) -> [f64; 3] {
+        [0, 1, 2].map(|channel| {
+            // The middle of the picture: the sphere.
+            let middle = (24..40).flat_map(|y| (24..40).map(move |x| 4 * (y * SIDE as usize + x) + channel));
+            middle.map(|at| f64::from(pixels[at])).sum::<f64>() / 256.0
+        })
+    }
+
+    #[test]
+    fn thumbnails_show_their_materials_and_are_kept() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let cache = folder.path().join("new");
+        let [gold, rubber] = ["gold", "rubber"].map(|name| material_by_name(name).expect("shipped").clone());
+        let worker = spawn_thumbnails(cache.clone(), || {}).expect("a thread");
+        worker.ask(vec![gold.clone(), rubber.clone()]);
+        let made = wait(&worker, 2);
+        let (yellow, dark) = (mean(&made[&key(&gold)]), mean(&made[&key(&rubber)]));
+        assert!(yellow[0] > 1.2 * yellow[2], "gold is yellow: {yellow:?}");
+        assert!(dark[0] < 0.6 * yellow[0], "rubber is dark: {dark:?}");
+        assert_eq!(std::fs::read_dir(&cache).expect("made").count(), 2);
+        // A marked file shows that the second start reads it.
+        let marked = vec![77; 4 * (SIDE * SIDE) as usize];
+        let path = cache.join(format!("{:016x}.png", key(&gold)));
+        write(&path, &marked).expect("written");
+        let again = spawn_thumbnails(cache, || {}).expect("a thread");
+        again.ask(vec![gold.clone()]);
+        assert_eq!(*wait(&again, 1)[&key(&gold)], marked);
+    }
+
+    #[test]
+    fn the_key_follows_the_look_and_not_the_name() {
+        let gold = material_by_name("gold").expect("shipped").clone();
+        let mut other = gold.clone();
+        other.name = "Or".to_owned();
+        assert_eq!(key(&gold), key(&other));
+        other.roughness += 0.01;
+        assert_ne!(key(&gold), key(&other));
+    }
+}

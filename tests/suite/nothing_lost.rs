@@ -1,0 +1,378 @@
+//! Unsaved edits: put aside, offered after a crash, asked about before they go; and the files opened last.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::{App, Options};
+use glossmith::document::{Document, PRESETS, load_document, save_document};
+use glossmith::scene::ModelSource;
+
+use super::ui::{PATIENCE, editor_of, options, request, wait};
+
+type Editor = Harness<'static, App>;
+
+/// An editor that keeps unsaved edits in a folder.
+fn keeping_editor(data: &Path) -> Editor {
+    editor_of(Options {
+        data: Some(data.to_owned()),
+        autosave_interval: Some(Duration::from_millis(20)),
+        ..options()
+    })
+}
+
+fn edit(harness: &mut Editor, roughness: f32) {
+    harness.run_steps(3);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .set_value_accesskit(f64::from(roughness));
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().materials[0].roughness, roughness);
+}
+
+/// Frames until something is seen.
+fn see(harness: &mut Editor, what: &str, until: impl Fn(&Editor) -> bool) {
+    let begun = Instant::now();
+    while !until(harness) {
+        assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(3));
+    }
+}
+
+/// Documents put aside in a data folder.
+fn kept(data: &Path) -> Vec<Document> {
+    let Ok(entries) = std::fs::read_dir(data.join("recovery")) else {
+        return Vec::new();
+    };
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    paths
+        .filter(|path| path.extension().is_some_and(|ending| ending == "json"))
+        .filter_map(|path| Some(load_document(&path).ok()?.value))
+        .collect()
+}
+
+fn edit_until_kept(harness: &mut Editor, data: &Path, roughness: f32) {
+    edit(harness, roughness);
+    let is_kept = |document: &Document| document.materials[0].roughness == roughness;
+    see(harness, "the copy", |_| kept(data).iter().any(is_kept));
+}
+
+/// Asks the window to close, as its button does; whether it does.
+fn closes(harness: &mut Editor) -> bool {
+    let viewport = harness.input_mut().viewports.get_mut(&ViewportId::ROOT);
+    viewport.expect("the window").events.push(ViewportEvent::Close);
+    harness.step();
+    let does_close = !commands(harness).contains(&ViewportCommand::CancelClose);
+    // The window says it once.
+    let viewport = harness.input_mut().viewports.get_mut(&ViewportId::ROOT);
+    viewport.expect("the window").events.clear();
+    harness.run_steps(2);
+    does_close
+}
+
+fn commands(harness: &Editor) -> Vec<ViewportCommand> {
+    harness.output().viewport_output[&ViewportId::ROOT].commands.clone()
+}
+
+/// Frames until the program closes the window itself.
+fn closes_by_itself(harness: &mut Editor) {
+    see(harness, "the window to close", |harness| {
+        commands(harness).contains(&ViewportCommand::Close)
+    });
+    assert!(closes(harness));
+}
+
+fn press(harness: &mut Editor, label: &str) {
+    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.step();
+}
+
+fn asks(harness: &Editor) -> bool {
+    harness.query_by_role_and_label(Role::Button, "Discard").is_some()
+}
+
+#[test]
+fn what_a_crash_left_is_offered_and_restored() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut crashed = keeping_editor(folder.path());
+    edit_until_kept(&mut crashed, folder.path(), 0.71);
+    let document = crashed.state().document().clone();
+    drop(crashed);
+    let mut harness = keeping_editor(folder.path());
+    see(&mut harness, "the offer", |harness| {
+        harness.query_by_label("Unsaved work was found").is_some()
+    });
+    harness.check_accessibility();
+    assert_ne!(*harness.state().document(), document);
+    // The button has the focus.
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Unsaved work was found").is_none());
+    assert_eq!(*harness.state().document(), document);
+    assert!(!closes(&mut harness), "it is still unsaved");
+    see(&mut harness, "one file, of this window", |_| {
+        kept(folder.path()).len() == 1
+    });
+    press(&mut harness, "Discard");
+    harness.step();
+    eframe::App::on_exit(harness.state_mut());
+    drop(harness);
+    assert_eq!(
+        kept(folder.path()).len(),
+        0,
+        "closed as it should be, it leaves nothing"
+    );
+}
+
+#[test]
+fn a_leftover_stays_until_it_is_decided_about() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut crashed = keeping_editor(folder.path());
+    edit_until_kept(&mut crashed, folder.path(), 0.37);
+    drop(crashed);
+    let offers = |harness: &Editor| harness.query_by_label("Unsaved work was found").is_some();
+    for is_discarded in [false, true] {
+        let mut harness = keeping_editor(folder.path());
+        see(&mut harness, "the offer", offers);
+        if is_discarded {
+            press(&mut harness, "Discard untitled");
+        } else {
+            harness.key_press(Key::Escape);
+        }
+        harness.run_steps(2);
+        assert!(!offers(&harness));
+        eframe::App::on_exit(harness.state_mut());
+        drop(harness);
+        assert_eq!(kept(folder.path()).len(), usize::from(!is_discarded));
+    }
+}
+
+#[test]
+fn two_windows_keep_their_edits_apart() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut first = keeping_editor(folder.path());
+    edit_until_kept(&mut first, folder.path(), 0.21);
+    let mut second = keeping_editor(folder.path());
+    edit_until_kept(&mut second, folder.path(), 0.84);
+    assert!(
+        second.query_by_label("Unsaved work was found").is_none(),
+        "the first window's edits are not lost"
+    );
+    eframe::App::on_exit(second.state_mut());
+    drop(second);
+    let left: Vec<f32> = kept(folder.path()).iter().map(|d| d.materials[0].roughness).collect();
+    assert_eq!(left, [0.21]);
+    drop(first);
+}
+
+#[test]
+fn saved_and_undone_edits_are_not_kept() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut harness = keeping_editor(folder.path());
+    edit_until_kept(&mut harness, folder.path(), 0.66);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    see(&mut harness, "the copy to go", |_| kept(folder.path()).is_empty());
+    assert!(closes(&mut harness));
+}
+
+#[test]
+fn a_data_folder_that_cannot_be_written_is_said_once() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let file = folder.path().join("file");
+    std::fs::write(&file, "no folder").expect("a temporary file");
+    let mut harness = keeping_editor(&file);
+    wait(&mut harness, "the message", |app| !app.messages().is_empty());
+    edit(&mut harness, 0.5);
+    edit(&mut harness, 0.6);
+    let about = |text: &&String| text.contains("not kept for a crash");
+    assert_eq!(harness.state().messages().iter().filter(about).count(), 1);
+}
+
+#[test]
+fn closing_asks_about_unsaved_edits_and_cancel_means_cancel() {
+    let mut harness = editor_of(options());
+    harness.run_steps(3);
+    assert!(closes(&mut harness), "there is nothing to lose");
+    let mut harness = editor_of(options());
+    edit(&mut harness, 0.5);
+    let document = harness.state().document().clone();
+    assert!(!closes(&mut harness));
+    harness.run_steps(2);
+    assert!(asks(&harness));
+    harness.check_accessibility();
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert!(!asks(&harness) && *harness.state().document() == document);
+    assert!(!closes(&mut harness));
+    press(&mut harness, "Cancel");
+    assert!(!commands(&harness).contains(&ViewportCommand::Close));
+    assert!(!closes(&mut harness));
+    // By keyboard: past "Save" to "Discard".
+    for focused in ["Save", "Discard"] {
+        harness.run_steps(2);
+        let button = harness.get_by_role_and_label(Role::Button, focused);
+        assert!(button.accesskit_node().is_focused(), "{focused}");
+        if focused == "Save" {
+            harness.key_press(Key::Tab);
+        }
+    }
+    // Only down: the frame of letting go would hide what this one asked for.
+    harness.key_down(Key::Enter);
+    harness.step();
+    closes_by_itself(&mut harness);
+}
+
+#[test]
+fn closing_saves_first_where_that_was_chosen() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let project = folder.path().join("project.json");
+    save_document(&project, &options().document.expect("given")).expect("a temporary file");
+    let mut harness = editor_of(Options {
+        files: vec![project.clone()],
+        ..options()
+    });
+    wait(&mut harness, "the start", App::is_settled);
+    edit(&mut harness, 0.5);
+    assert!(!closes(&mut harness));
+    press(&mut harness, "Save");
+    closes_by_itself(&mut harness);
+    let saved = load_document(&project).expect("a project").value;
+    assert_eq!(saved, *harness.state().document());
+    assert_eq!(saved.materials[0].roughness, 0.5);
+}
+
+#[test]
+fn a_save_that_fails_or_is_cancelled_does_not_close() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let inner = folder.path().join("inner");
+    std::fs::create_dir(&inner).expect("a temporary folder");
+    let project = inner.join("project.json");
+    save_document(&project, &options().document.expect("given")).expect("a temporary file");
+    let mut harness = editor_of(Options {
+        files: vec![project],
+        ..options()
+    });
+    wait(&mut harness, "the start", App::is_settled);
+    edit(&mut harness, 0.5);
+    std::fs::remove_dir_all(&inner).expect("the folder goes");
+    assert!(!closes(&mut harness));
+    press(&mut harness, "Save");
+    wait(&mut harness, "the message", |app| {
+        app.messages().iter().any(|text| text.contains("cannot be saved"))
+    });
+    for _ in 0..5 {
+        assert!(!commands(&harness).contains(&ViewportCommand::Close));
+        harness.step();
+    }
+    assert!(!closes(&mut harness), "the edits are still unsaved");
+}
+
+#[test]
+fn new_and_open_ask_and_what_can_be_undone_does_not() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let project = folder.path().join("project.json");
+    let other = Document {
+        ground: true,
+        ..options().document.expect("given")
+    };
+    save_document(&project, &other).expect("a temporary file");
+    let mut harness = editor_of(options());
+    edit(&mut harness, 0.5);
+    let document = harness.state().document().clone();
+    request(&mut harness, Action::Do(Command::New));
+    see(&mut harness, "the question", asks);
+    press(&mut harness, "Cancel");
+    assert_eq!(*harness.state().document(), document);
+    request(&mut harness, Action::Open(project.clone()));
+    see(&mut harness, "the question", asks);
+    assert_eq!(*harness.state().document(), document);
+    press(&mut harness, "Discard");
+    harness.run_steps(2);
+    assert_eq!(*harness.state().document(), other);
+    request(&mut harness, Action::UseMaterial(Box::new(PRESETS[2].clone())));
+    harness.run_steps(3);
+    assert!(!asks(&harness));
+    request(&mut harness, Action::Do(Command::New));
+    see(&mut harness, "the question", asks);
+    press(&mut harness, "Discard");
+    harness.run_steps(2);
+    assert_eq!(*harness.state().document(), Document::default());
+    request(&mut harness, Action::Do(Command::New));
+    harness.run_steps(3);
+    assert!(!asks(&harness), "a new document holds nothing to lose");
+}
+
+/// What eframe keeps from one start to the next.
+#[derive(Default)]
+struct Memory(HashMap<String, String>);
+
+impl eframe::Storage for Memory {
+    fn get_string(&self, key: &str) -> Option<String> {
+        self.0.get(key).cloned()
+    }
+    fn set_string(&mut self, key: &str, value: String) {
+        self.0.insert(key.to_owned(), value);
+    }
+    fn remove_string(&mut self, key: &str) {
+        self.0.remove(key);
+    }
+    fn flush(&mut self) {}
+}
+
+fn editor_remembering(memory: Memory) -> Editor {
+    // The window borrows it for as long as it lives.
+    let memory: &'static Memory = Box::leak(Box::new(memory));
+    Harness::builder()
+        .with_size(egui::Vec2::new(1400.0, 1000.0))
+        .build_eframe(move |creation| {
+            creation.storage = Some(memory);
+            App::new(creation, options()).expect("a thread to render on")
+        })
+}
+
+#[test]
+fn recent_files_are_kept_and_missing_ones_are_greyed() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let [there, gone] = ["there.json", "gone.json"].map(|name| folder.path().join(name));
+    let other = Document {
+        model: ModelSource::Sphere,
+        ..options().document.expect("given")
+    };
+    for path in [&there, &gone] {
+        save_document(path, &other).expect("a temporary file");
+    }
+    let mut harness = editor_of(options());
+    for path in [&there, &gone] {
+        request(&mut harness, Action::Open(path.clone()));
+        let name = path.file_stem().expect("a name").to_string_lossy().into_owned();
+        see(&mut harness, "the project", |harness| {
+            let title = ViewportCommand::Title(format!("{name} – Glossmith"));
+            commands(harness).contains(&title)
+        });
+    }
+    let mut memory = Memory::default();
+    eframe::App::save(harness.state_mut(), &mut memory);
+    drop(harness);
+    std::fs::remove_file(&gone).expect("it is there");
+    let mut harness = editor_remembering(memory);
+    harness.run_steps(2);
+    press(&mut harness, "File");
+    harness.run_steps(2);
+    harness.get_by_label_contains("Open recent").hover();
+    see(&mut harness, "the missing file", |harness| {
+        harness.query_by_label("gone.json (not there any more)").is_some()
+    });
+    let missing = harness.get_by_label("gone.json (not there any more)");
+    assert!(missing.accesskit_node().is_disabled());
+    press(&mut harness, "there.json");
+    wait(&mut harness, "the project", |app| {
+        app.document().model == ModelSource::Sphere
+    });
+}
