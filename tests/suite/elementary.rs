@@ -208,7 +208,7 @@ fn pictures_do_not_jump_where_lobes_become_mirrors() {
         let roughness = format!("specular.roughness={roughness}");
         let assignments = ["base.metalness=1", "specular.fresnel=none", &roughness];
         let mut document = document(ModelSource::Sphere, EnvironmentSource::Studio, &assignments);
-        document.lighting.area_lights = vec![light.clone()];
+        document.lighting.area_lights = vec![light];
         render(EngineChoice::Cpu, &document)
     };
     let [mirror, below, above] = [0.0, 0.999 * MIRROR_WIDTH, 1.001 * MIRROR_WIDTH].map(picture);
