@@ -342,20 +342,23 @@ fn hard_directions(case: &Case, single: &Inputs<f32>) -> Vec<Vec3<f32>> {
         directions.extend([-3e-7, -1e-7, 0.0, 1e-7, 3e-7].map(|by| at(inside + by)));
     }
     let mut rounded: Vec<Vec3<f32>> = directions.into_iter().map(|v| Vec3::from_f32(v.to_f32())).collect();
-    // As f32 itself finds the middle, and its neighbours.
+    rounded.extend([single.frame.normal, -single.frame.normal]);
+    rounded
+}
+
+/// The lobe's middle as f32 itself finds it, and its neighbours.
+fn peak(single: &Inputs<f32>) -> Vec<Vec3<f32>> {
     let view = lobe_view(&single.shape, &single.frame, single.frame.normal, single.wo);
     let found = view.wo.mirrored_about(view.frame.normal);
-    let neighbour = |v: f32, up: bool| if up { v.next_up() } else { v.next_down() };
-    rounded.extend([found, single.frame.normal, -single.frame.normal]);
-    for up in [false, true] {
-        rounded.extend([
-            found.map(|v| neighbour(v, up)),
-            vec3(neighbour(found.x, up), found.y, found.z),
-            vec3(found.x, neighbour(found.y, up), found.z),
-            vec3(found.x, found.y, neighbour(found.z, up)),
-        ]);
-    }
-    rounded
+    let neighbours = [f32::next_up, f32::next_down].map(|next| {
+        [
+            found.map(next),
+            vec3(next(found.x), found.y, found.z),
+            vec3(found.x, next(found.y), found.z),
+            vec3(found.x, found.y, next(found.z)),
+        ]
+    });
+    [&[found], neighbours.as_flattened()].concat()
 }
 
 #[test]
@@ -380,6 +383,12 @@ fn no_direction_gives_anything_but_a_number() {
             let values = lobe_evaluate(&single.shape, &single.frame, single.frame.normal, single.wo, light);
             let is_number = |v: f32| v.is_finite() && v >= 0.0;
             assert!(values.into_iter().all(is_number), "{case:?} {light:?}: {values:?}");
+        }
+        for light in peak(&single) {
+            let found = density(&single, light);
+            // Beyond the horizon there is none; nowhere else may a NaN have been taken for 0.
+            let is_there = found > 0.0 || case.horizon != Horizon::None;
+            assert!(found.is_finite() && is_there, "{case:?} {light:?}: {found}");
         }
         // The ends of what random numbers there are.
         let ends = [0.0, 0.5, 1.0 - f32::EPSILON / 2.0];

@@ -126,7 +126,7 @@ fn sobol_points_fill_elementary_intervals() {
     for (x, y, seed) in [(0, 0, 0), (17, 3, 0), (511, 300, 7), (65_535, 65_535, u32::MAX)] {
         for dimension in [0, 1, 5, 40] {
             let pair = |sample: u32| random_pair_bits(random_state(x, y, seed, sample, Sequence::Sobol), dimension);
-            for k in [0, 1, 2, 5, 8, 11] {
+            for k in 0..=11 {
                 for block in [0, 1, 6] {
                     let points: Vec<_> = (0..1_u32 << k).map(|i| pair((block << k) + i)).collect();
                     for split in 0..=k {
@@ -208,7 +208,7 @@ fn pictures_do_not_jump_where_lobes_become_mirrors() {
         let roughness = format!("specular.roughness={roughness}");
         let assignments = ["base.metalness=1", "specular.fresnel=none", &roughness];
         let mut document = document(ModelSource::Sphere, EnvironmentSource::Studio, &assignments);
-        document.lighting.area_lights = vec![light.clone()];
+        document.lighting.area_lights = vec![light];
         render(EngineChoice::Cpu, &document)
     };
     let [mirror, below, above] = [0.0, 0.999 * MIRROR_WIDTH, 1.001 * MIRROR_WIDTH].map(picture);
