@@ -195,14 +195,15 @@ mod tests {
     fn what_a_crash_left_comes_back_whole_and_once() {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let slot = Slot::open(folder.path()).expect("a slot");
-        slot.save(&edited(), Some(Path::new("/work/pot.json"))).expect("saved");
+        slot.save(&edited(), Some(Path::new("projects/pot.json")))
+            .expect("saved");
         assert_eq!(leftovers(folder.path()).expect("listed").len(), 0, "its window lives");
         drop(slot);
         let found = leftovers(folder.path()).expect("listed");
         assert_eq!(found.len(), 1);
         let recovered = found[0].load().expect("whole");
         assert_eq!(recovered.document, edited());
-        assert_eq!(recovered.project.as_deref(), Some(Path::new("/work/pot.json")));
+        assert_eq!(recovered.project.as_deref(), Some(Path::new("projects/pot.json")));
         assert_eq!(leftovers(folder.path()).expect("listed").len(), 0, "it is taken");
         for slot in found {
             slot.remove().expect("removed");

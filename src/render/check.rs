@@ -151,13 +151,8 @@ pub fn sample_cases(thorough: bool) -> Vec<ScatterRequest> {
 fn shapes() -> Vec<(Lobe, Curve, f32)> {
     let mut shapes = Vec::new();
     for &lobe in Lobe::ALL {
-        let curves = if lobe == Lobe::Geometric {
-            Curve::ALL
-        } else {
-            &[Curve::Sqrt]
-        };
         let stretched: &[f32] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
-        for &curve in curves {
+        for &curve in lobe.curves() {
             shapes.extend(stretched.iter().map(|&anisotropy| (lobe, curve, anisotropy)));
         }
     }

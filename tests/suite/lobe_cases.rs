@@ -130,16 +130,9 @@ impl Case {
 
 /// Every lobe; the geometric one with every curve.
 pub fn lobes_and_curves() -> Vec<(Lobe, Curve)> {
-    let curves = |lobe| {
-        if lobe == Lobe::Geometric {
-            Curve::ALL
-        } else {
-            &[Curve::Sqrt]
-        }
-    };
     Lobe::ALL
         .iter()
-        .flat_map(|&lobe| curves(lobe).iter().map(move |&curve| (lobe, curve)))
+        .flat_map(|&lobe| lobe.curves().iter().map(move |&curve| (lobe, curve)))
         .collect()
 }
 

@@ -51,6 +51,10 @@ macro_rules! lobes {
             pub fn is_hemispherical(self) -> bool {
                 match self { $(Lobe::$variant => $module::HEMISPHERICAL,)* }
             }
+            /// The curves that make a difference: all for the geometric lobe, any one for those that read none.
+            pub fn curves(self) -> &'static [Curve] {
+                if self == Lobe::Geometric { Curve::ALL } else { &[Curve::Sqrt] }
+            }
             /// True where the lobe reads the anisotropy.
             pub fn is_anisotropic(self) -> bool {
                 match self { $(Lobe::$variant => $module::ANISOTROPIC,)* }
