@@ -35,7 +35,7 @@ fn far_radiance(direction: vec3f) -> vec3f {
 // What a path that left the scene sees, weighed against light sampling.
 fn far_light(direction: vec3f, lobe_density: f32, is_mirror: bool) -> vec3f {
     let radiance = far_radiance(direction);
-    if PLAN_LIGHT_SAMPLING == 0u || is_mirror || globals.strategy == STRATEGY_LOBE {
+    if !samples_environment() || is_mirror {
         return radiance;
     }
     if globals.strategy == STRATEGY_LIGHT {
@@ -49,7 +49,7 @@ fn far_light(direction: vec3f, lobe_density: f32, is_mirror: bool) -> vec3f {
 // What a surface emits that a path met at `distance`, weighed against light sampling.
 fn emitted_light(point: SurfacePoint, distance: f32, lobe_density: f32, is_mirror: bool) -> vec3f {
     let emission = materials[point.slot].emission;
-    if PLAN_EMITTER_SAMPLING == 0u || is_mirror || globals.strategy == STRATEGY_LOBE {
+    if !samples_emitters() || is_mirror {
         return emission;
     }
     if globals.strategy == STRATEGY_LIGHT {
@@ -64,14 +64,24 @@ fn lobe_share(lobe_density: f32, light_density: f32) -> f32 {
     return lobe_density / max(lobe_density + light_density, 1e-30);
 }
 
+// Whether directions are drawn from the environment.
+fn samples_environment() -> bool {
+    return PLAN_LIGHT_SAMPLING == 1u && globals.environment_probability > 0.0 && globals.strategy != STRATEGY_LOBE;
+}
+
+// Whether directions are drawn towards the triangles that emit.
+fn samples_emitters() -> bool {
+    return PLAN_EMITTER_SAMPLING == 1u && globals.density_per_luminance > 0.0 && globals.strategy != STRATEGY_LOBE;
+}
+
 // Whether light is sampled at all.
 fn samples_light() -> bool {
-    return (PLAN_LIGHT_SAMPLING == 1u || PLAN_EMITTER_SAMPLING == 1u) && globals.strategy != STRATEGY_LOBE;
+    return samples_environment() || samples_emitters();
 }
 
 // Whether one light sample is drawn from the environment, not from the triangles that emit.
 fn is_from_afar(xi: f32) -> bool {
-    return PLAN_EMITTER_SAMPLING == 0u || (PLAN_LIGHT_SAMPLING == 1u && xi < globals.environment_probability);
+    return !samples_emitters() || (samples_environment() && xi < globals.environment_probability);
 }
 
 // A direction drawn from the triangles that emit or from the environment, whose radiance is looked up once it is known
@@ -100,14 +110,21 @@ fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: p
     if all(value <= vec3f(0.0)) {
         return vec3f(0.0);
     }
-    *rays += 1u;
-    if trace(ray_origin(point, wi, transmits), wi, light.distance, true).triangle != NO_HIT {
-        return vec3f(0.0);
+    if !meets_nothing(point, wi) {
+        *rays += 1u;
+        if trace(ray_origin(point, wi, transmits), wi, light.distance, true).triangle != NO_HIT {
+            return vec3f(0.0);
+        }
     }
     if is_from_afar(xi.z) {
         return value * far_radiance(wi) / light.density;
     }
     return value * light.radiance / light.density;
+}
+
+// True where it is proven that nothing lies ahead: outside a convex body.
+fn meets_nothing(point: SurfacePoint, wi: vec3f) -> bool {
+    return PLAN_INTERREFLECTION == 0u && !point.surface.is_inside && dot(point.surface.normal, wi) > 0.0;
 }
 
 fn camera_background(direction: vec3f, rays: u32) -> PathResult {
@@ -129,9 +146,14 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var lobe_density = 0.0;
     var was_mirror = true;
     var rays = 0u;
+    var leaves = false;
     for (var bounce = 0u; ; bounce++) {
-        rays += 1u;
-        let hit = trace(ray.origin, ray.direction, 1e30, false);
+        var hit: Hit;
+        hit.triangle = NO_HIT;
+        if !leaves {
+            rays += 1u;
+            hit = trace(ray.origin, ray.direction, 1e30, false);
+        }
         if hit.triangle == NO_HIT {
             if bounce == 0u {
                 return camera_background(ray.direction, rays);
@@ -175,6 +197,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         lobe_density = drawn.density;
         was_mirror = drawn.is_mirror;
+        leaves = meets_nothing(point, drawn.wi);
         ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
     }
     return PathResult(radiance, 1.0, rays);

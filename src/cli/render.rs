@@ -9,6 +9,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{names, parse};
+use crate::document::effect::EffectSwitches;
 use crate::document::file::{self, Opened};
 use crate::document::{
     AreaLight, Background, Document, MaterialSettings, PixelFilter, Strategy, assign, preset, range,
@@ -70,6 +71,12 @@ pub struct RenderArguments {
     /// Vertical field of view.
     #[arg(long, default_value = "30", value_name = "DEG", value_parser = parse::number_in(range::FOV_DEG), allow_negative_numbers = true)]
     fov: f64,
+    /// Radius of the lens, in bounding radii of the model; 0 is a pinhole, with which everything is sharp.
+    #[arg(long, default_value = "0", value_name = "X", value_parser = parse::number_in(range::APERTURE), allow_negative_numbers = true)]
+    aperture: f64,
+    /// How far away things are sharp, in the model's units. Without it at the target.
+    #[arg(long, value_name = "X", value_parser = parse::number_in(range::DISTANCE), allow_negative_numbers = true)]
+    focus_distance: Option<f64>,
     /// Pixel filter: box (to compare with other renderers) or gaussian (smoother edges).
     #[arg(long, default_value = "gaussian", value_name = "box|gaussian", value_parser = names::filter)]
     filter: PixelFilter,
@@ -91,12 +98,16 @@ pub struct RenderArguments {
     /// How light is found: by sampling the lobe, the light, or both weighed against each other.
     #[arg(long, default_value = "mis", value_name = "lobe|light|mis", value_parser = names::strategy)]
     strategy: Strategy,
+    /// Which effects are simulated: those that the scene calls for; all, needed or not; or these alone (names of
+    /// `glossmith plan`, with commas between; +NAME and -NAME change what the scene calls for).
+    #[arg(long, default_value = "auto", value_name = "auto|all|LIST", allow_hyphen_values = true)]
+    effects: EffectSwitches,
     /// Changes all random numbers.
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
     seed: u32,
     /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
-    engine: EngineChoice,
+    pub(super) engine: EngineChoice,
     /// Tone curve of .png pictures.
     #[arg(long, default_value = "agx", value_name = "agx|aces|pbr-neutral|none", value_parser = names::tone)]
     tone_map: ToneCurve,
@@ -294,7 +305,7 @@ fn json_report(
 }
 
 /// The document that the arguments describe.
-fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Result<Document> {
+pub(super) fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Result<Document> {
     let model = session.assets().model(&arguments.model)?;
     let mut document = Document {
         model: arguments.model.clone(),
@@ -327,6 +338,8 @@ fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Resul
     camera.distance = arguments.camera_distance;
     camera.position = arguments.camera_position;
     camera.fov_deg = arguments.fov;
+    camera.aperture = arguments.aperture;
+    camera.focus_distance = arguments.focus_distance;
     document.view.tone_map = arguments.tone_map;
     document.view.exposure_ev = arguments.exposure as f32;
     let render = &mut document.render;
@@ -343,6 +356,7 @@ fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Resul
     render.strategy = arguments.strategy;
     render.seed = arguments.seed;
     render.filter = arguments.filter;
+    render.effects = arguments.effects;
     document.check()?;
     Ok(document)
 }

@@ -50,6 +50,7 @@ pub struct Integrator<'a, T> {
     density_per_luminance: T,
     samples_environment: bool,
     samples_emitters: bool,
+    is_interreflecting: bool,
 }
 
 impl<'a, T: Real> Integrator<'a, T> {
@@ -68,8 +69,9 @@ impl<'a, T: Real> Integrator<'a, T> {
             lights: &job.lights,
             environment_probability: T::from_f64(choice.environment_probability),
             density_per_luminance: T::from_f64(choice.density_per_luminance),
-            samples_environment: job.plan.light_sampling && samples_light,
-            samples_emitters: job.plan.emitter_sampling && samples_light,
+            samples_environment: job.plan.has("light-sampling") && samples_light && choice.environment_probability > 0.0,
+            samples_emitters: job.plan.has("emitter-sampling") && samples_light && choice.density_per_luminance > 0.0,
+            is_interreflecting: job.plan.has("interreflection"),
         }
     }
 
@@ -148,14 +150,21 @@ impl<'a, T: Real> Integrator<'a, T> {
         if value.max_component().to_f64() <= 0.0 {
             return Vec3::zero();
         }
-        *rays += 1;
-        let origin = point.ray_origin(wi, material.transmits());
-        let distance = light.distance.to_f64() as f32;
-        if self.geometry.occluded(origin.to_f32(), wi.to_f32(), distance) {
-            return Vec3::zero();
+        if !self.meets_nothing(point, wi) {
+            *rays += 1;
+            let origin = point.ray_origin(wi, material.transmits());
+            let distance = light.distance.to_f64() as f32;
+            if self.geometry.occluded(origin.to_f32(), wi.to_f32(), distance) {
+                return Vec3::zero();
+            }
         }
         let radiance = if is_far { self.far_radiance(wi) } else { light.radiance };
         value * radiance / density
+    }
+
+    /// True where it is proven that nothing lies ahead: outside a convex body.
+    fn meets_nothing(&self, point: &SurfacePoint<T>, wi: Vec3<T>) -> bool {
+        !self.is_interreflecting && !point.surface.is_inside && point.surface.normal.dot(wi).to_f64() > 0.0
     }
 
     fn camera_background(&self, direction: Vec3<T>, rays: u32) -> PathResult<T> {
@@ -181,9 +190,14 @@ impl<'a, T: Real> Integrator<'a, T> {
         let mut lobe_density = T::zero();
         let mut was_mirror = true;
         let mut rays = 0;
+        let mut leaves = false;
         for bounce in 0.. {
-            rays += 1;
-            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX) else {
+            let mut hit = None;
+            if !leaves {
+                rays += 1;
+                hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
+            }
+            let Some(hit) = hit else {
                 if bounce == 0 {
                     return self.camera_background(direction, rays);
                 }
@@ -233,6 +247,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             }
             lobe_density = drawn.density;
             was_mirror = drawn.is_mirror;
+            leaves = self.meets_nothing(&point, drawn.wi);
             (origin, direction) = (point.ray_origin(drawn.wi, material.transmits()), drawn.wi);
         }
         PathResult {

@@ -19,7 +19,7 @@ pub struct Change {
     pub materials: bool,
     /// The model, whether there is a ground, or the place of an area light.
     pub geometry: bool,
-    /// Bounces, sequence, strategy, seed, pixel filter.
+    /// Bounces, sequence, strategy, seed, pixel filter, effects switched on or off.
     pub sampling: bool,
     /// Samples or seconds to reach.
     pub target: bool,
@@ -48,7 +48,15 @@ impl Change {
                 render.strategy,
                 render.seed,
                 render.filter,
-            ) != (other.bounces, other.sequence, other.strategy, other.seed, other.filter),
+                render.effects,
+            ) != (
+                other.bounces,
+                other.sequence,
+                other.strategy,
+                other.seed,
+                other.filter,
+                other.effects,
+            ),
             target: (render.samples, render.time_s) != (other.samples, other.time_s),
         }
     }

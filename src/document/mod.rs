@@ -4,6 +4,7 @@
 pub mod change;
 mod compile;
 pub mod custom_curve;
+pub mod effect;
 pub mod file;
 pub mod history;
 pub mod job;

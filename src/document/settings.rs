@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
+use super::effect::EffectSwitches;
 use super::{Document, MaterialSettings};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
@@ -29,6 +30,8 @@ pub mod range {
     pub const PITCH_DEG: RangeInclusive<f64> = -90.0..=90.0;
     /// Vertical field of view, degrees.
     pub const FOV_DEG: RangeInclusive<f64> = 0.1..=170.0;
+    /// Radius of the lens, bounding radii.
+    pub const APERTURE: RangeInclusive<f64> = 0.0..=10.0;
     /// Exposure, stops.
     pub const EXPOSURE_EV: RangeInclusive<f64> = -32.0..=32.0;
     /// Width and height, pixels; the random numbers' counters have 16 bits for each.
@@ -166,6 +169,10 @@ pub struct CameraSettings {
     pub position: Option<[f64; 3]>,
     /// Vertical field of view, degrees.
     pub fov_deg: f64,
+    /// Radius of the lens, bounding radii of the model; 0: a pinhole, everything is sharp.
+    pub aperture: f64,
+    /// Distance along the viewing direction of what is sharp, scene units; `None`: that of the target.
+    pub focus_distance: Option<f64>,
 }
 
 impl Default for CameraSettings {
@@ -177,6 +184,8 @@ impl Default for CameraSettings {
             distance: None,
             position: None,
             fov_deg: 30.0,
+            aperture: 0.0,
+            focus_distance: None,
         }
     }
 }
@@ -213,6 +222,8 @@ pub struct RenderSettings {
     pub seed: u32,
     /// How samples are spread over a pixel and its neighbours.
     pub filter: PixelFilter,
+    /// What the user decides about effects, against the plan.
+    pub effects: EffectSwitches,
 }
 
 impl Default for RenderSettings {
@@ -227,6 +238,7 @@ impl Default for RenderSettings {
             strategy: Strategy::default(),
             seed: 0,
             filter: PixelFilter::default(),
+            effects: EffectSwitches::default(),
         }
     }
 }
@@ -309,6 +321,8 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
         ("camera.pitch_deg", camera.pitch_deg, r::PITCH_DEG),
         ("camera.fov_deg", camera.fov_deg, r::FOV_DEG),
         ("camera.distance", camera.distance.unwrap_or(1.0), r::DISTANCE),
+        ("camera.aperture", camera.aperture, r::APERTURE),
+        ("camera.focus_distance", camera.focus_distance.unwrap_or(1.0), r::DISTANCE),
         ("view.exposure_ev", f64::from(view.exposure_ev), r::EXPOSURE_EV),
         ("render.width", f64::from(render.width), r::SIZE),
         ("render.height", f64::from(render.height), r::SIZE),

@@ -67,7 +67,7 @@ impl GpuEngine {
     pub fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         let [width, height] = job.settings.image_size;
         let old = self.resources.take();
-        if old.as_ref().is_some_and(|old| old.job().plan != job.plan) {
+        if old.as_ref().is_some_and(|old| old.job().plan.specialisation() != job.plan.specialisation()) {
             self.samples_per_second = 0.0;
         }
         self.resources = Some(Resources::new(&self.gpu, &self.pipelines.bindings, job, old)?);
@@ -121,7 +121,7 @@ impl GpuEngine {
         self.gpu
             .queue
             .write_buffer(&resources.globals, 0, bytemuck::bytes_of(&globals));
-        let pipeline = self.pipelines.get(&self.gpu, job.plan)?;
+        let pipeline = self.pipelines.get(&self.gpu, &job.plan)?;
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         {
             let mut pass = encoder.begin_compute_pass(&Default::default());

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use super::device::{GpuDevice, GpuError};
 use super::shader;
-use crate::document::plan::Plan;
+use crate::document::plan::{Plan, Specialisation};
 
 /// The path tracer's shader, its binding layout, and a pipeline for each plan met.
 #[derive(Debug)]
@@ -13,7 +13,7 @@ pub struct Pipelines {
     layout: wgpu::PipelineLayout,
     /// Bindings of `shaders/scene/layout.wgsl`.
     pub bindings: wgpu::BindGroupLayout,
-    of_plan: HashMap<Plan, wgpu::ComputePipeline>,
+    of_plan: HashMap<Specialisation, wgpu::ComputePipeline>,
 }
 
 impl Pipelines {
@@ -59,8 +59,9 @@ impl Pipelines {
     ///
     /// # Errors
     /// [`GpuError::Shader`] where the driver refuses it.
-    pub fn get(&mut self, gpu: &GpuDevice, plan: Plan) -> Result<&wgpu::ComputePipeline, GpuError> {
-        if !self.of_plan.contains_key(&plan) {
+    pub fn get(&mut self, gpu: &GpuDevice, plan: &Plan) -> Result<&wgpu::ComputePipeline, GpuError> {
+        let specialisation = plan.specialisation();
+        if !self.of_plan.contains_key(&specialisation) {
             let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
             let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some("path_trace"),
@@ -76,9 +77,9 @@ impl Pipelines {
             if let Some(error) = pollster::block_on(scope.pop()) {
                 return Err(GpuError::Shader(error.to_string()));
             }
-            self.of_plan.insert(plan, pipeline);
+            self.of_plan.insert(specialisation.clone(), pipeline);
         }
-        Ok(&self.of_plan[&plan])
+        Ok(&self.of_plan[&specialisation])
     }
 }
 

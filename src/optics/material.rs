@@ -177,6 +177,13 @@ impl<T: Real> Material<T> {
         self.transmission_weight.to_f64() > 0.0 && self.metalness.to_f64() < 1.0
     }
 
+    /// True where every direction that it can draw is weighed as a mirror's.
+    pub fn is_mirror(&self) -> bool {
+        let through = self.transmission_shape(&[], false);
+        let reflects_alike = !self.has_specular() || is_mirror(&self.shape(&[])).any();
+        !self.has_base() && reflects_alike && (!self.transmits() || is_mirror(&through).any())
+    }
+
     /// True where the specular lobe reflects anything: if not from without, then from within.
     #[inline(always)]
     pub fn has_specular(&self) -> bool {

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::assets::Assets;
 use super::session::SessionError;
 use crate::document::job::{BackgroundKind, Job, Settings};
-use crate::document::plan::Plan;
+use crate::document::effect::Facts;
+use crate::document::plan::{Plan, without_what_is_off};
 use crate::document::{AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile};
 use crate::optics::material::Material;
 use crate::optics::vector::Vec3;
@@ -31,11 +32,13 @@ pub(super) struct Compiler {
 
 impl Compiler {
     pub(super) fn compile(&mut self, document: &Document, assets: &mut Assets) -> Result<Job, SessionError> {
+        let document = &without_what_is_off(document);
         let model = assets.model(&document.model)?;
         let shapes = document.lighting.area_lights.iter().map(AreaLight::shape).collect();
         let geometry = assets.geometry(&document.model, document.ground, shapes)?;
         let environment = assets.environment(&document.lighting.environment)?;
-        let (materials, tables) = self.materials(slot_materials(document, model.slots.len()));
+        let slots = slot_materials(document, model.slots.len());
+        let (materials, tables) = self.materials(&slots);
         let lights = self.lights(&geometry, &materials);
         let environment_strength = f64::from(document.lighting.strength);
         let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
@@ -55,7 +58,14 @@ impl Compiler {
             strategy: document.render.strategy,
             seed: document.render.seed,
         };
-        let plan = Plan::new(&materials, &settings.light_choice, settings.camera.lens_radius);
+        let plan = Plan::new(&Facts {
+            document,
+            slots: &slots,
+            materials: &materials,
+            geometry: &geometry,
+            environment: &environment,
+            settings: &settings,
+        });
         Ok(Job {
             geometry,
             environment,
@@ -67,13 +77,13 @@ impl Compiler {
         })
     }
 
-    fn materials(&mut self, wanted: Vec<MaterialSettings>) -> Compiled {
-        if let Some((_, compiled)) = self.materials.as_ref().filter(|(of, _)| *of == wanted) {
+    fn materials(&mut self, wanted: &[MaterialSettings]) -> Compiled {
+        if let Some((_, compiled)) = self.materials.as_ref().filter(|(of, _)| of == wanted) {
             return compiled.clone();
         }
-        let (materials, tables) = compile(&wanted);
+        let (materials, tables) = compile(wanted);
         let compiled = (Arc::new(materials), Arc::new(tables));
-        self.materials = Some((wanted, compiled.clone()));
+        self.materials = Some((wanted.to_vec(), compiled.clone()));
         compiled
     }
 
@@ -114,13 +124,19 @@ fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometr
         };
         target + distance * orbit_direction(settings.yaw_deg, settings.pitch_deg)
     });
-    Camera::look_at(
+    let pinhole = Camera::look_at(
         position.to_array(),
         target.to_array(),
         settings.fov_deg,
         aspect,
         render.filter,
-    )
+    );
+    let focus_distance = settings.focus_distance.map(|distance| distance / geometry.world_units_per_unit);
+    Camera {
+        lens_radius: settings.aperture,
+        focus_distance: focus_distance.unwrap_or(pinhole.focus_distance),
+        ..pinhole
+    }
 }
 
 /// The distance at which the bounding sphere, of radius 1, just fits the picture's shorter side.

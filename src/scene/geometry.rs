@@ -6,6 +6,7 @@ use glam::DVec3;
 use obvhs::cwbvh::CwBvh;
 
 use super::bvh;
+use super::convex::is_convex;
 use super::light::AreaShape;
 use super::mesh::{Mesh, any_tangent};
 use super::model::{Model, Slot};
@@ -45,6 +46,8 @@ pub struct Geometry {
     /// The hierarchy; without `primitive_indices`, as nothing needs to be looked up. No nodes where there are no
     /// triangles.
     pub bvh: CwBvh,
+    /// No ray that leaves a face on its outside meets anything: the scene is one convex body.
+    pub is_convex: bool,
     /// The middle of the model's bounding box in the world.
     pub center_world: DVec3,
     /// The model's bounding radius in the world: from that middle to the farthest vertex of a triangle; 1 where there
@@ -81,6 +84,7 @@ impl Geometry {
             triangles: Vec::new(),
             slots: Vec::new(),
             bvh: CwBvh::default(),
+            is_convex: false,
             center_world,
             world_units_per_unit,
             bounds_world,
@@ -101,6 +105,7 @@ impl Geometry {
         }
         geometry.bvh = bvh::build(geometry.triangles.iter().map(|triangle| geometry.corners_of(triangle)));
         geometry.sort_by_leaves();
+        geometry.is_convex = is_convex(&geometry.positions, &geometry.triangles);
         geometry
     }
 
