@@ -131,6 +131,7 @@ commands! {
     ResetMaterial, Edit, "Reset material", "Gives the selected material its defaults, keeping its name.", None, 1;
     ResetCamera, Edit, "Reset camera", "Puts the camera where it was at first.", None, 1;
     FrameAll, View, "Frame all", "Moves the camera so that the whole model is seen.", key(Key::F), 0;
+    FrameSelected, View, "Frame selected", "Moves the camera so that the surfaces of the selected material are seen.", keys(Modifiers::SHIFT, Key::F), 0;
     Maximise, View, "Viewport only", "Hides the panels, or shows them again.", key(Key::F11), 1;
     ToggleTheme, View, "Light or dark", "Changes between the light and the dark theme.", None, 1;
     ResetLayout, View, "Reset layout", "Puts all panels back to where they were at first.", None, 1;

@@ -34,11 +34,13 @@ pub enum Pane {
     Log,
     /// The proof on this machine.
     Check,
+    /// What is simulated, and why.
+    Effects,
 }
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Viewport,
         Self::Material,
         Self::Curve,
@@ -49,6 +51,7 @@ impl Pane {
         Self::Presets,
         Self::Log,
         Self::Check,
+        Self::Effects,
     ];
 
     /// What it is called.
@@ -64,6 +67,7 @@ impl Pane {
             Self::Presets => "Presets",
             Self::Log => "Log",
             Self::Check => "Check",
+            Self::Effects => "Effects",
         }
     }
 }
@@ -78,7 +82,7 @@ pub(super) fn default_layout() -> Tree<Pane> {
     let mut pane = |pane| tiles.insert_pane(pane);
     let (viewport, material) = (pane(Pane::Viewport), pane(Pane::Material));
     let upper_left = [Pane::Presets, Pane::Log, Pane::Check].map(&mut pane).to_vec();
-    let lower_left = [Pane::Lighting, Pane::Camera].map(&mut pane).to_vec();
+    let lower_left = [Pane::Lighting, Pane::Camera, Pane::Effects].map(&mut pane).to_vec();
     let lower_right = [Pane::Curve, Pane::Samples, Pane::Lobe].map(&mut pane).to_vec();
     let upper_left = tiles.insert_tab_tile(upper_left);
     let lower_left = tiles.insert_tab_tile(lower_left);
@@ -136,6 +140,7 @@ impl Behavior<Pane> for Panes<'_, '_> {
                     Pane::Presets => panels::presets::show(ui, self.desk),
                     Pane::Log => panels::log::show(ui, self.desk),
                     Pane::Check => panels::check::show(ui, self.desk),
+                    Pane::Effects => panels::effects::show(ui, self.desk),
                     Pane::Viewport => {}
                 });
             });

@@ -49,6 +49,7 @@ use viewport::Viewport;
 use crate::document::{CameraSettings, Change, Document, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
+use crate::scene::camera::framing_distance;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelSource};
 
@@ -268,6 +269,23 @@ impl App {
         self.edits.note(format!("Change the model to {}", model.name), "");
     }
 
+    /// Looks at the surfaces of the selected slot from where the camera is.
+    fn frame_selected(&mut self) {
+        let snapshot = self.worker.snapshot();
+        let Some(scene) = &snapshot.scene else { return };
+        let geometry = &scene.job.geometry;
+        let Some((center, radius)) = geometry.sphere_around(self.panels.slot as u32) else {
+            return;
+        };
+        let size = scene.job.settings.image_size.map(f64::from);
+        let camera = &mut self.document.camera;
+        let distance = framing_distance(camera.fov_deg, size[0] / size[1].max(1.0)) * radius;
+        camera.target = Some(geometry.world_from_units(center).to_array());
+        camera.distance = Some(distance * geometry.world_units_per_unit);
+        camera.position = None;
+        self.edits.note("Frame selected", "");
+    }
+
     fn desk_material(&self) -> MaterialSettings {
         let materials = &self.document.materials;
         materials
@@ -326,6 +344,7 @@ impl App {
                 (camera.target, camera.distance, camera.position) = (None, None, None);
                 self.edits.note("Frame all", "");
             }
+            Command::FrameSelected => self.frame_selected(),
             Command::Maximise => {
                 self.is_maximised = !self.is_maximised;
                 layout::set_maximised(&mut self.layout, self.is_maximised);

@@ -100,7 +100,12 @@ pub struct RenderArguments {
     strategy: Strategy,
     /// Which effects are simulated: those that the scene calls for; all, needed or not; or these alone (names of
     /// `glossmith plan`, with commas between; +NAME and -NAME change what the scene calls for).
-    #[arg(long, default_value = "auto", value_name = "auto|all|LIST", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        default_value = "auto",
+        value_name = "auto|all|LIST",
+        allow_hyphen_values = true
+    )]
     effects: EffectSwitches,
     /// Changes all random numbers.
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]

@@ -69,7 +69,9 @@ impl<'a, T: Real> Integrator<'a, T> {
             lights: &job.lights,
             environment_probability: T::from_f64(choice.environment_probability),
             density_per_luminance: T::from_f64(choice.density_per_luminance),
-            samples_environment: job.plan.has("light-sampling") && samples_light && choice.environment_probability > 0.0,
+            samples_environment: job.plan.has("light-sampling")
+                && samples_light
+                && choice.environment_probability > 0.0,
             samples_emitters: job.plan.has("emitter-sampling") && samples_light && choice.density_per_luminance > 0.0,
             is_interreflecting: job.plan.has("interreflection"),
         }

@@ -33,7 +33,8 @@ pub use preset::{PRESETS, load_material, material_by_name, save_material};
 pub use project::{load_document, save_document};
 pub use registry::PARAMETERS;
 pub use settings::{
-    AreaLight, Background, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings, range,
+    AreaLight, Background, Bookmark, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings,
+    range,
 };
 
 pub use crate::scene::camera::PixelFilter;
@@ -54,6 +55,8 @@ pub struct Document {
     pub lighting: Lighting,
     /// Where it is seen from.
     pub camera: CameraSettings,
+    /// Cameras to come back to; no picture depends on them.
+    pub bookmarks: Vec<Bookmark>,
     /// How radiance becomes a picture.
     pub view: ViewSettings,
     /// How, and for how long, it is rendered.
@@ -71,6 +74,7 @@ impl Default for Document {
             materials: vec![MaterialSettings::default()],
             lighting: Lighting::default(),
             camera: CameraSettings::default(),
+            bookmarks: Vec::new(),
             view: ViewSettings::default(),
             render: RenderSettings::default(),
             extra: serde_json::Map::new(),

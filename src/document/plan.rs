@@ -1,8 +1,8 @@
 //! The plan: for every effect, whether a scene calls for it, and why. Pipelines are specialised for it
 //! (`shaders/scene/plan.wgsl`).
 
-use super::effect::{Constant, Decision, EFFECTS, Effect, EffectSwitches, Facts, Switch};
 use super::Document;
+use super::effect::{Constant, Decision, EFFECTS, Effect, EffectSwitches, Facts, Switch};
 
 /// What is decided about every effect, in the order of [`EFFECTS`].
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -52,7 +52,8 @@ impl Plan {
 
     /// Whether the effect of this name is simulated.
     pub fn has(&self, name: &str) -> bool {
-        self.table().any(|(effect, decision)| effect.name == name && decision.is_on)
+        self.table()
+            .any(|(effect, decision)| effect.name == name && decision.is_on)
     }
 
     /// The names of the effects that are simulated.
@@ -65,7 +66,9 @@ impl Plan {
 
     /// How many effects' code is left out of the kernel, or narrowed down to one choice.
     pub fn left_out(&self) -> usize {
-        self.switched().filter(|(constant, value)| *value != constant.general).count()
+        self.switched()
+            .filter(|(constant, value)| *value != constant.general)
+            .count()
     }
 
     /// The override constants of the pipeline, by their names in `shaders/scene/plan.wgsl`.

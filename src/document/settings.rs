@@ -190,6 +190,16 @@ impl Default for CameraSettings {
     }
 }
 
+/// A camera to come back to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Bookmark {
+    /// What the user calls it.
+    pub name: String,
+    /// Where the scene is seen from.
+    pub camera: CameraSettings,
+}
+
 /// How radiance becomes a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -322,7 +332,11 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
         ("camera.fov_deg", camera.fov_deg, r::FOV_DEG),
         ("camera.distance", camera.distance.unwrap_or(1.0), r::DISTANCE),
         ("camera.aperture", camera.aperture, r::APERTURE),
-        ("camera.focus_distance", camera.focus_distance.unwrap_or(1.0), r::DISTANCE),
+        (
+            "camera.focus_distance",
+            camera.focus_distance.unwrap_or(1.0),
+            r::DISTANCE,
+        ),
         ("view.exposure_ev", f64::from(view.exposure_ev), r::EXPOSURE_EV),
         ("render.width", f64::from(render.width), r::SIZE),
         ("render.height", f64::from(render.height), r::SIZE),

@@ -67,7 +67,10 @@ impl GpuEngine {
     pub fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         let [width, height] = job.settings.image_size;
         let old = self.resources.take();
-        if old.as_ref().is_some_and(|old| old.job().plan.specialisation() != job.plan.specialisation()) {
+        if old
+            .as_ref()
+            .is_some_and(|old| old.job().plan.specialisation() != job.plan.specialisation())
+        {
             self.samples_per_second = 0.0;
         }
         self.resources = Some(Resources::new(&self.gpu, &self.pipelines.bindings, job, old)?);

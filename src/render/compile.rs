@@ -4,18 +4,15 @@ use std::sync::Arc;
 
 use super::assets::Assets;
 use super::session::SessionError;
-use crate::document::job::{BackgroundKind, Job, Settings};
 use crate::document::effect::Facts;
+use crate::document::job::{BackgroundKind, Job, Settings};
 use crate::document::plan::{Plan, without_what_is_off};
 use crate::document::{AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile};
 use crate::optics::material::Material;
 use crate::optics::vector::Vec3;
 use crate::scene::Geometry;
-use crate::scene::camera::{Camera, orbit_direction};
+use crate::scene::camera::{Camera, framing_distance, orbit_direction};
 use crate::scene::light::{LightChoice, Lights};
-
-/// How much room a framed model is given.
-const FRAME_MARGIN: f64 = 1.05;
 
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
@@ -131,17 +128,12 @@ fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometr
         aspect,
         render.filter,
     );
-    let focus_distance = settings.focus_distance.map(|distance| distance / geometry.world_units_per_unit);
+    let focus_distance = settings
+        .focus_distance
+        .map(|distance| distance / geometry.world_units_per_unit);
     Camera {
         lens_radius: settings.aperture,
         focus_distance: focus_distance.unwrap_or(pinhole.focus_distance),
         ..pinhole
     }
-}
-
-/// The distance at which the bounding sphere, of radius 1, just fits the picture's shorter side.
-fn framing_distance(fov_deg: f64, aspect: f64) -> f64 {
-    let half_height = (0.5 * fov_deg.to_radians()).tan();
-    let half = (half_height * aspect.min(1.0)).atan();
-    FRAME_MARGIN / half.sin()
 }

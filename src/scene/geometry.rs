@@ -137,6 +137,21 @@ impl Geometry {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
+    /// Centre and radius, in the geometry's units, of a sphere around the triangles of a slot; `None` where there are
+    /// none.
+    pub fn sphere_around(&self, slot: u32) -> Option<([f32; 3], f64)> {
+        let of_slot = || (0..self.triangles.len()).filter(|&triangle| self.slots[triangle] == slot);
+        let places = || {
+            of_slot()
+                .flat_map(|triangle| self.corners(triangle))
+                .map(|corner| DVec3::from_array(corner.map(f64::from)))
+        };
+        let (low, high) = (places().reduce(DVec3::min)?, places().reduce(DVec3::max)?);
+        let center = low.midpoint(high);
+        let radius = places().map(|place| place.distance(center)).fold(0.0, f64::max);
+        Some((center.as_vec3().to_array(), radius.max(1e-6)))
+    }
+
     /// A place in the world of one in the geometry's units.
     pub fn world_from_units(&self, place: [f32; 3]) -> DVec3 {
         self.center_world + self.world_units_per_unit * DVec3::from_array(place.map(f64::from))

@@ -4,6 +4,7 @@ mod area_lights;
 pub(super) mod camera;
 pub(super) mod check;
 pub(super) mod curve;
+pub(super) mod effects;
 pub(super) mod lighting;
 pub(super) mod lobe;
 mod lobe_match;
@@ -48,6 +49,8 @@ pub(super) struct PanelState {
     pub(super) lobe: lobe::LobeState,
     /// The checks'.
     pub(super) check: check::CheckState,
+    /// The next click in the viewport says what is sharp.
+    pub(super) picks_focus: bool,
     /// Rendering was stopped by hand.
     pub(super) is_paused: bool,
     /// What is searched for among the presets.
