@@ -49,6 +49,8 @@ mod lobe_cases;
 mod lobe_views;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/plan.rs"]
+mod plan;
 #[path = "suite/renders.rs"]
 mod renders;
 #[path = "suite/statistics.rs"]
@@ -63,6 +65,8 @@ mod tone_twin;
 mod transmission;
 #[path = "suite/ui.rs"]
 mod ui;
+#[path = "suite/ui_scene.rs"]
+mod ui_scene;
 #[path = "suite/worker.rs"]
 mod worker;
 

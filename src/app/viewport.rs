@@ -17,8 +17,10 @@ use super::icons::{self, Icon};
 use super::orbit::Orbit;
 use super::panels::{Desk, Resolution};
 use super::theme;
+use crate::optics::material::Material;
 use crate::render::worker::{Level, Picture, Scene};
 use crate::scene::camera::camera_ray;
+use crate::scene::surface::surface_at;
 
 /// Degrees of the environment's turn for a drag of one point.
 const LIGHT_DEG_PER_POINT: f32 = 0.35;
@@ -159,7 +161,8 @@ impl Viewport {
         }
     }
 
-    /// A click says what is sharp, where that was asked for or ctrl is held; otherwise it selects a slot.
+    /// A click says what is sharp, where that was asked for or ctrl is held; otherwise it selects a slot, and the plots
+    /// take the angle of the place.
     fn clicked(&self, ui: &Ui, at: Pos2, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
         let Some(hit) = hit_at(at, place, scene) else { return };
         let picks_focus = desk.state.picks_focus || ui.input(|input| input.modifiers.command);
@@ -167,7 +170,10 @@ impl Viewport {
             desk.document.camera.focus_distance = Some(hit.depth);
             desk.state.picks_focus = false;
             desk.edits.note("Focus", "");
-        } else if let Some(slot) = hit.slot {
+            return;
+        }
+        desk.state.samples.view_angle_deg = Some(hit.view_angle_deg);
+        if let Some(slot) = hit.slot {
             desk.actions.push(super::actions::Action::SelectSlot(slot));
         }
     }
@@ -232,6 +238,8 @@ struct SeenSurface {
     slot: Option<usize>,
     /// Along the camera's viewing direction, scene units.
     depth: f64,
+    /// Between view and shading normal, degrees.
+    view_angle_deg: f32,
 }
 
 fn hit_at(at: Pos2, place: Rect, scene: &Scene) -> Option<SeenSurface> {
@@ -248,9 +256,13 @@ fn hit_at(at: Pos2, place: Rect, scene: &Scene) -> Option<SeenSurface> {
     let [origin, direction] = camera_ray(camera, pixel, size, [0.5; 2]);
     let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::INFINITY)?;
     let slot = *geometry.slots.get(hit.triangle as usize)? as usize;
+    let materials: Vec<_> = scene.job.materials.iter().map(Material::cast).collect();
+    let point = surface_at(geometry, &materials, &hit, direction);
+    let cosine: f64 = point.surface.frame.normal.dot(point.surface.wo);
     Some(SeenSurface {
         slot: (slot < scene.model.slots.len()).then_some(slot),
         depth: f64::from(hit.t) * direction.dot(camera.forward) * geometry.world_units_per_unit,
+        view_angle_deg: cosine.clamp(0.0, 1.0).acos().to_degrees() as f32,
     })
 }
 

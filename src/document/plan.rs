@@ -45,6 +45,14 @@ impl Plan {
         }
     }
 
+    /// The same with another decision about one effect.
+    pub fn with(mut self, name: &str, decision: Decision) -> Self {
+        if let Some(place) = EFFECTS.iter().position(|effect| effect.name == name) {
+            self.decisions[place] = decision;
+        }
+        self
+    }
+
     /// Every effect with what was decided.
     pub fn table(&self) -> impl Iterator<Item = (&'static Effect, &Decision)> {
         EFFECTS.iter().zip(&self.decisions)
