@@ -136,7 +136,7 @@ fn camera_background(direction: vec3f, rays: u32) -> PathResult {
 }
 
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
-    let state = random_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
+    let state = path_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
     let offset = filter_offset(globals.camera.filter_kind, random_pair(state, 0u));
     var camera = globals.camera;
     camera.lens_radius = select(0.0, camera.lens_radius, PLAN_LENS == 1u);
@@ -209,27 +209,41 @@ fn is_sound(color: vec3f) -> bool {
     return all(color >= vec3f(0.0)) && all(color <= vec3f(RADIANCE_MAX));
 }
 
+// Workgroups along a tile's side.
+const TILE_WORKGROUPS: u32 = 2u;
+
 @compute @workgroup_size(8, 8)
-fn path_trace(@builtin(global_invocation_id) id: vec3u) {
-    if any(id.xy >= globals.tile_size) {
+fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) place: vec3u) {
+    let tile = tiles[workgroup.x / (TILE_WORKGROUPS * TILE_WORKGROUPS)];
+    let quarter = vec2u(workgroup.x % TILE_WORKGROUPS, workgroup.x / TILE_WORKGROUPS % TILE_WORKGROUPS);
+    let pixel = tile.origin + 8u * quarter + place.xy;
+    if any(pixel >= globals.image_size) {
         return;
     }
-    let pixel = globals.tile_origin + id.xy;
+    let index = pixel.y * globals.image_size.x + pixel.x;
     var color = vec4f(0.0);
-    // Luminance squared, kept, dropped, rays.
-    var sums = vec4f(0.0);
-    for (var i = 0u; i < globals.sample_count; i++) {
-        let path = trace_path(pixel, globals.first_sample + i);
-        sums.w += f32(path.rays);
+    var sums = PixelStatistics();
+    for (var i = 0u; i < tile.sample_count; i++) {
+        let sample = tile.first_sample + i;
+        let path = trace_path(pixel, sample);
+        sums.rays += f32(path.rays);
         if is_sound(path.radiance) {
             let y = luminance(path.radiance);
+            let is_odd = f32(sample % 2u);
             color += vec4f(path.radiance, path.alpha);
-            sums += vec4f(y * y, 1.0, 0.0, 0.0);
+            sums.luminance_squared += y * y;
+            sums.kept += 1.0;
+            sums.odd_luminance += is_odd * y;
+            sums.odd_kept += is_odd;
         } else {
-            sums.z += 1.0;
+            sums.dropped += 1.0;
         }
     }
-    let index = pixel.y * globals.image_size.x + pixel.x;
     color_sums[index] += color;
-    statistics[index] += sums;
+    statistics[index].luminance_squared += sums.luminance_squared;
+    statistics[index].kept += sums.kept;
+    statistics[index].odd_luminance += sums.odd_luminance;
+    statistics[index].odd_kept += sums.odd_kept;
+    statistics[index].dropped += sums.dropped;
+    statistics[index].rays += sums.rays;
 }

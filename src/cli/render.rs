@@ -83,12 +83,21 @@ pub struct RenderArguments {
     /// Width and height in pixels.
     #[arg(long, default_value = "512x512", value_name = "WxH", value_parser = parse::size)]
     size: [u32; 2],
-    /// Samples a pixel [default: 256, or no limit with --time].
+    /// Samples a pixel; with --adaptive on the most of a pixel [default: 256, or no limit with --time or --noise].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
     /// Stop after this time of rendering.
     #[arg(long, value_name = "SECONDS", value_parser = parse::number_in(range::TIME_S), allow_negative_numbers = true)]
     time: Option<f64>,
+    /// Stop at this relative error of the picture: 0.02 is 2 %.
+    #[arg(long, value_name = "X", value_parser = parse::number_in(range::NOISE), allow_negative_numbers = true)]
+    noise: Option<f64>,
+    /// Samples that each pixel has before its error is believed, so that small lights are not missed.
+    #[arg(long, default_value_t = 16, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(2..=65536))]
+    min_samples: u32,
+    /// Whether samples go where the error is, or evenly over the picture [default: on with --noise, else off].
+    #[arg(long, value_name = "on|off", value_parser = parse::on_or_off)]
+    adaptive: Option<bool>,
     /// Reflections that a path may have, 1 to 64.
     #[arg(long, default_value_t = 64, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
     bounces: u32,
@@ -238,7 +247,7 @@ fn render(
 fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document) -> anyhow::Result<Progress> {
     const BAR_STEPS: f64 = 1000.0;
     let bar = if std::io::stderr().is_terminal() {
-        let style = ProgressStyle::with_template("{bar:40} {msg} samples a pixel, {eta} left")?;
+        let style = ProgressStyle::with_template("{bar:40} {msg}, {eta} left")?;
         ProgressBar::new(BAR_STEPS as u64).with_style(style)
     } else {
         ProgressBar::hidden()
@@ -247,13 +256,11 @@ fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document)
         let stepped = session.step(STEP).map(|_| ());
         or_fall_back(stepped, session, engine, document)?;
         let progress = session.progress();
-        let by_samples = f64::from(progress.samples_per_pixel) / f64::from(progress.samples_wanted.max(1));
-        let by_time = document
-            .render
-            .time_s
-            .map_or(0.0, |limit| progress.render_seconds / limit);
-        bar.set_position((BAR_STEPS * by_samples.max(by_time)) as u64);
-        bar.set_message(progress.samples_per_pixel.to_string());
+        bar.set_position((BAR_STEPS * progress.share_done(document.render.time_s)) as u64);
+        let error = progress
+            .noise
+            .map_or(String::new(), |noise| format!(", error {:.2} %", 100.0 * noise.relative));
+        bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
         if progress.is_done {
             bar.finish_and_clear();
             return Ok(progress);
@@ -290,6 +297,7 @@ fn json_report(
     let film = session.film()?;
     let seconds = progress.render_seconds.max(1e-9);
     let samples = film.samples() + film.dropped;
+    let rays = film.total_rays();
     Ok(serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
         "engine": engine.kind,
@@ -298,11 +306,17 @@ fn json_report(
         "width": film.width,
         "height": film.height,
         "samples_per_pixel": progress.samples_per_pixel,
+        "mean_samples_per_pixel": progress.mean_samples,
+        "noise": progress.noise.map(|noise| noise.relative),
+        "noise_low": progress.noise.map(|noise| noise.low),
+        "noise_high": progress.noise.map(|noise| noise.high),
+        "converged": progress.is_converged(),
+        "stopped_by": progress.stopped_by,
         "setup_seconds": setup_seconds,
         "render_seconds": progress.render_seconds,
         "samples_per_second": samples as f64 / seconds,
-        "rays": film.rays,
-        "rays_per_second": film.rays as f64 / seconds,
+        "rays": rays,
+        "rays_per_second": rays as f64 / seconds,
         "dropped_samples": film.dropped,
         "effects": effects,
         "seed": document.render.seed,
@@ -349,13 +363,16 @@ pub(super) fn document(arguments: &RenderArguments, session: &mut Session) -> an
     document.view.exposure_ev = arguments.exposure as f32;
     let render = &mut document.render;
     [render.width, render.height] = arguments.size;
-    // With a time limit only, samples are not limited.
-    render.samples = arguments.samples.unwrap_or(if arguments.time.is_some() {
+    // With a time or noise to reach only, samples are not limited.
+    render.samples = arguments.samples.unwrap_or(if arguments.time.or(arguments.noise).is_some() {
         u32::MAX
     } else {
         render.samples
     });
     render.time_s = arguments.time;
+    render.noise = arguments.noise;
+    render.min_samples = arguments.min_samples;
+    render.adaptive = arguments.adaptive;
     render.bounces = arguments.bounces;
     render.sequence = arguments.sequence;
     render.strategy = arguments.strategy;

@@ -2,7 +2,7 @@
 
 use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
 use crate::optics::material::{Material, MaterialNumbers, material_evaluate, material_sample};
-use crate::optics::random::{RandomState, random_pair, random_state};
+use crate::optics::random::{RandomState, path_state, random_pair};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::camera::{Camera, camera_ray, filter_offset};
@@ -181,7 +181,7 @@ impl<'a, T: Real> Integrator<'a, T> {
     /// One path through a pixel.
     pub fn trace_path(&self, pixel: [u32; 2], sample: u32) -> PathResult<T> {
         let settings = self.settings;
-        let state = random_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
+        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
         let offset: [T; 2] = filter_offset(self.camera.filter_kind, random_pair(state, 0));
         let half = T::from_f64(0.5);
         let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);

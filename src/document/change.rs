@@ -1,6 +1,6 @@
 //! What differs between two documents, and what follows from it.
 
-use super::{AreaLight, Document, PARAMETERS};
+use super::{AreaLight, Document, PARAMETERS, RenderSettings};
 
 /// What differs between two documents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub struct Change {
     pub geometry: bool,
     /// Bounces, sequence, strategy, seed, pixel filter, effects switched on or off.
     pub sampling: bool,
-    /// Samples or seconds to reach.
+    /// What is to be reached: samples, seconds, noise, and how samples are shared out on the way.
     pub target: bool,
 }
 
@@ -57,7 +57,7 @@ impl Change {
                 other.filter,
                 other.effects,
             ),
-            target: (render.samples, render.time_s) != (other.samples, other.time_s),
+            target: aim(render) != aim(other),
         }
     }
 
@@ -110,6 +110,17 @@ impl Change {
     pub fn needs_display(self) -> bool {
         self.display || self.restarts()
     }
+}
+
+fn aim(render: &RenderSettings) -> impl PartialEq {
+    let RenderSettings {
+        samples,
+        time_s,
+        noise,
+        min_samples,
+        ..
+    } = *render;
+    (samples, time_s, noise, min_samples, render.is_adaptive())
 }
 
 fn shine_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {

@@ -40,6 +40,10 @@ pub mod range {
     pub const SAMPLES: RangeInclusive<f64> = 1.0..=4_294_967_295.0;
     /// Render time, seconds.
     pub const TIME_S: RangeInclusive<f64> = 0.001..=1e9;
+    /// Relative error of the picture at which rendering stops.
+    pub const NOISE: RangeInclusive<f64> = 1e-5..=1.0;
+    /// Samples a pixel before an estimate of the error is believed.
+    pub const MIN_SAMPLES: RangeInclusive<f64> = 2.0..=65536.0;
     /// Longest path, bounces.
     pub const BOUNCES: RangeInclusive<f64> = 1.0..=64.0;
     /// Distance and sides of an area light, bounding radii.
@@ -222,6 +226,13 @@ pub struct RenderSettings {
     pub samples: u32,
     /// Seconds after which it stops earlier.
     pub time_s: Option<f64>,
+    /// Relative error of the picture (see [`crate::analysis::noise`]) at which it stops earlier; 0.01 is 1 %.
+    pub noise: Option<f64>,
+    /// Samples that each pixel has before the error is believed, so that small lights are not missed; at least 2.
+    pub min_samples: u32,
+    /// Whether samples go where the error is; `None`: only where a noise is to be reached. `samples` is then the most
+    /// that a pixel gets.
+    pub adaptive: Option<bool>,
     /// Longest path, 1 to 64 bounces.
     pub bounces: u32,
     /// Which random numbers are drawn.
@@ -243,6 +254,9 @@ impl Default for RenderSettings {
             height: 512,
             samples: 256,
             time_s: None,
+            noise: None,
+            min_samples: 16,
+            adaptive: None,
             bounces: 64,
             sequence: Sequence::default(),
             strategy: Strategy::default(),
@@ -250,6 +264,13 @@ impl Default for RenderSettings {
             filter: PixelFilter::default(),
             effects: EffectSwitches::default(),
         }
+    }
+}
+
+impl RenderSettings {
+    /// Whether samples go where the error is.
+    pub fn is_adaptive(&self) -> bool {
+        self.adaptive.unwrap_or(self.noise.is_some())
     }
 }
 
@@ -342,6 +363,8 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
         ("render.height", f64::from(render.height), r::SIZE),
         ("render.samples", f64::from(render.samples), r::SAMPLES),
         ("render.time_s", render.time_s.unwrap_or(1.0), r::TIME_S),
+        ("render.noise", render.noise.unwrap_or(1.0), r::NOISE),
+        ("render.min_samples", f64::from(render.min_samples), r::MIN_SAMPLES),
         ("render.bounces", f64::from(render.bounces), r::BOUNCES),
         (
             "the number of lighting.area_lights",

@@ -4,18 +4,20 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::device::{GpuDevice, GpuError};
-use super::layout::Globals;
+use super::layout::{PixelStatistics, Tile};
 use super::pipeline::Pipelines;
-use super::resources::Resources;
+use super::resources::{DISPATCH_TILES, Resources};
+use super::timer::Timer;
 use crate::analysis::film::Film;
+use crate::analysis::tiles::{Schedule, TILE_SIDE, Work};
 use crate::document::job::Job;
 
 /// Longest dispatch: other users of the adapter, the window among them, wait for its end.
 const SLICE: Duration = Duration::from_millis(30);
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
-/// Rows and columns of a workgroup.
-const WORKGROUP: u32 = 8;
+/// Workgroups of a tile: 8 × 8 pixels each, as the shader says.
+const TILE_WORKGROUPS: u32 = 4;
 
 /// Renders on a GPU.
 #[derive(Debug)]
@@ -24,15 +26,14 @@ pub struct GpuEngine {
     pipelines: Pipelines,
     resources: Option<Resources>,
     film: Film,
-    /// Completed samples a pixel, and the first row that has not had the samples of the pass in progress.
-    samples: u32,
-    next_row: u32,
-    /// Samples of the pass in progress.
-    pass_samples: u32,
-    /// Samples in the GPU's sums.
+    schedule: Schedule,
+    /// Most samples of a pixel in the GPU's sums.
     unflushed: u32,
     /// Pixel samples a second, to cut work to a budget; 0 before the first slice.
     samples_per_second: f64,
+    timer: Option<Timer>,
+    /// What the dispatches of the job took by the timer.
+    gpu_seconds: f64,
 }
 
 impl GpuEngine {
@@ -43,15 +44,15 @@ impl GpuEngine {
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
         let pipelines = Pipelines::new(&gpu)?;
         Ok(Self {
+            timer: Timer::new(&gpu),
             gpu,
             pipelines,
             resources: None,
             film: Film::default(),
-            samples: 0,
-            next_row: 0,
-            pass_samples: 0,
+            schedule: Schedule::default(),
             unflushed: 0,
             samples_per_second: 0.0,
+            gpu_seconds: 0.0,
         })
     }
 
@@ -75,7 +76,8 @@ impl GpuEngine {
         }
         self.resources = Some(Resources::new(&self.gpu, &self.pipelines.bindings, job, old)?);
         self.film = Film::new(width, height);
-        (self.samples, self.next_row, self.pass_samples, self.unflushed) = (0, 0, 0, 0);
+        self.schedule = Schedule::new(width, height);
+        (self.unflushed, self.gpu_seconds) = (0, 0.0);
         Ok(())
     }
 
@@ -84,10 +86,26 @@ impl GpuEngine {
     /// # Errors
     /// If the device fails.
     pub fn step(&mut self, budget: Duration, samples: u32) -> Result<(), GpuError> {
+        let goals = vec![samples; self.schedule.grid().tiles()];
+        self.step_towards(budget, &goals)
+    }
+
+    /// The same up to a number of samples a pixel for each tile.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn step_towards(&mut self, budget: Duration, goals: &[u32]) -> Result<(), GpuError> {
+        self.schedule.aim(goals);
         let start = Instant::now();
-        while self.resources.is_some() && self.samples < samples {
+        while self.resources.is_some() {
             let left = budget.saturating_sub(start.elapsed());
-            self.slice(left.min(SLICE), samples)?;
+            let affordable = self.samples_per_second * left.min(SLICE).as_secs_f64();
+            let most = FLUSH_SAMPLES - self.unflushed;
+            let samples_of = |pixels: u64| ((affordable / pixels.max(1) as f64) as u32).clamp(1, most);
+            if !self.schedule.begin(samples_of) {
+                break;
+            }
+            self.slice(affordable)?;
             if start.elapsed() >= budget {
                 break;
             }
@@ -95,53 +113,53 @@ impl GpuEngine {
         Ok(())
     }
 
-    /// One dispatch of about `duration`: some rows of a pass, or a pass of several samples where the GPU is fast.
-    fn slice(&mut self, duration: Duration, samples: u32) -> Result<(), GpuError> {
+    /// One dispatch of about so many samples: some tiles of a pass, or a pass of several samples where the GPU is fast.
+    fn slice(&mut self, affordable: f64) -> Result<(), GpuError> {
         let Some(resources) = &self.resources else {
             return Ok(());
         };
-        let job = resources.job();
-        let [width, height] = job.settings.image_size;
-        let affordable = self.samples_per_second * duration.as_secs_f64();
-        if self.next_row == 0 {
-            let picture = f64::from(width) * f64::from(height);
-            let most = (samples - self.samples).min(FLUSH_SAMPLES - self.unflushed);
-            self.pass_samples = ((affordable / picture) as u32).clamp(1, most);
-        }
-        let rows = (affordable / f64::from(width * self.pass_samples)) as u32;
-        let rows = rows
-            .next_multiple_of(WORKGROUP)
-            .max(WORKGROUP)
-            .min(height - self.next_row);
-        let cells = [job.environment.cells_width, job.environment.cells_height];
-        let globals = Globals {
-            tile_origin: [0, self.next_row],
-            tile_size: [width, rows],
-            first_sample: self.samples,
-            sample_count: self.pass_samples,
-            ..Globals::new(&job.settings, job.geometry.bvh.nodes.len(), cells)
+        let grid = self.schedule.grid();
+        let tile_samples = f64::from(TILE_SIDE * TILE_SIDE * self.schedule.pass_samples());
+        // At least a row's: fewer leave a GPU idle.
+        let count = ((affordable / tile_samples) as usize).clamp(grid.columns(), DISPATCH_TILES);
+        let works = self.schedule.next(count);
+        let tile = |work: &Work| Tile {
+            origin: grid.origin(work.tile),
+            first_sample: work.first_sample,
+            sample_count: work.count,
         };
+        let tiles: Vec<Tile> = works.iter().map(tile).collect();
         self.gpu
             .queue
-            .write_buffer(&resources.globals, 0, bytemuck::bytes_of(&globals));
-        let pipeline = self.pipelines.get(&self.gpu, &job.plan)?;
+            .write_buffer(&resources.tiles, 0, bytemuck::cast_slice(&tiles));
+        let pipeline = self.pipelines.get(&self.gpu, &resources.job().plan)?;
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("path_trace"),
+                timestamp_writes: self.timer.as_ref().map(Timer::writes),
+            });
             pass.set_pipeline(pipeline);
             pass.set_bind_group(0, &resources.bind_group, &[]);
-            pass.dispatch_workgroups(width.div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP), 1);
+            pass.dispatch_workgroups(TILE_WORKGROUPS * tiles.len() as u32, 1, 1);
+        }
+        if let Some(timer) = &self.timer {
+            timer.resolve(&mut encoder);
         }
         let begun = Instant::now();
         self.gpu.queue.submit([encoder.finish()]);
+        if let Some(timer) = &self.timer {
+            timer.request();
+        }
         self.gpu.wait()?;
         let seconds = begun.elapsed().as_secs_f64().max(1e-6);
-        self.samples_per_second = f64::from(width * rows * self.pass_samples) / seconds;
-        self.next_row += rows;
-        if self.next_row >= height {
-            self.next_row = 0;
-            self.samples += self.pass_samples;
-            self.unflushed += self.pass_samples;
+        if let Some(timer) = &self.timer {
+            self.gpu_seconds += timer.seconds()?;
+        }
+        let samples_of = |work: &Work| grid.pixels(work.tile) * u64::from(work.count);
+        self.samples_per_second = works.iter().map(samples_of).sum::<u64>() as f64 / seconds;
+        if self.schedule.finish(&works) {
+            self.unflushed += self.schedule.pass_samples();
             if self.unflushed >= FLUSH_SAMPLES {
                 self.flush()?;
             }
@@ -156,17 +174,20 @@ impl GpuEngine {
         };
         let pixels = self.film.color.len();
         let colors: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
-        let statistics: Vec<[f32; 4]> = self.gpu.read(&resources.sums[1], pixels)?;
+        let statistics: Vec<PixelStatistics> = self.gpu.read(&resources.sums[1], pixels)?;
         for (sum, color) in self.film.color.iter_mut().zip(colors) {
             for (sum, x) in sum.iter_mut().zip(color) {
                 *sum += f64::from(x);
             }
         }
-        for (sum, [luminance_squared, kept, dropped, rays]) in self.film.statistics.iter_mut().zip(statistics) {
-            sum[0] += f64::from(luminance_squared);
-            sum[1] += f64::from(kept);
-            self.film.dropped += dropped as u64;
-            self.film.rays += rays as u64;
+        for (pixel, sums) in statistics.iter().enumerate() {
+            let [of_all, of_odd] = [&mut self.film.statistics[pixel], &mut self.film.odd[pixel]];
+            of_all[0] += f64::from(sums.luminance_squared);
+            of_all[1] += f64::from(sums.kept);
+            of_odd[0] += f64::from(sums.odd_luminance);
+            of_odd[1] += f64::from(sums.odd_kept);
+            self.film.rays[pixel] += f64::from(sums.rays);
+            self.film.dropped += sums.dropped as u64;
         }
         resources.clear_sums(&self.gpu);
         self.unflushed = 0;
@@ -182,8 +203,18 @@ impl GpuEngine {
         Ok(&self.film)
     }
 
+    /// What has been rendered of each tile.
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
     /// Completed samples a pixel.
     pub fn samples_per_pixel(&self) -> u32 {
-        self.samples
+        self.schedule.samples_per_pixel()
+    }
+
+    /// How long the GPU rendered the job by its own clock; `None` where it has none.
+    pub fn gpu_seconds(&self) -> Option<f64> {
+        self.timer.as_ref().map(|_| self.gpu_seconds)
     }
 }

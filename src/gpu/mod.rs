@@ -7,6 +7,7 @@ mod pipeline;
 mod resources;
 pub mod scatter;
 pub mod shader;
+mod timer;
 
 pub use device::{AdapterKind, GpuDevice, GpuError};
 pub use engine::GpuEngine;

@@ -83,7 +83,7 @@ impl Pipelines {
     }
 }
 
-/// Uniforms, eight read-only buffers, the environment's map, two buffers of sums.
+/// Uniforms, nine read-only buffers, the environment's map, two buffers of sums.
 fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let buffer = |ty| wgpu::BindingType::Buffer {
         ty,
@@ -108,5 +108,5 @@ fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
             count: None,
         }
     };
-    (0..=11).map(entry).collect()
+    (0..=12).map(entry).collect()
 }

@@ -7,6 +7,7 @@ pub mod background;
 mod calibration;
 pub mod check;
 mod compile;
+mod convergence;
 pub mod display;
 mod engine;
 pub mod output;
@@ -17,5 +18,6 @@ pub mod thumbnails;
 pub mod worker;
 
 pub use assets::Assets;
+pub use convergence::Measurement;
 pub use engine::{EngineChoice, EngineInfo, Sampler};
-pub use session::{Progress, Session, SessionError};
+pub use session::{Progress, Session, SessionError, StopReason};

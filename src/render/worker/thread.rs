@@ -391,12 +391,10 @@ impl State<'_> {
     fn step(&mut self) -> Result<(), SessionError> {
         let progress = self.session()?.step(STEP)?;
         let Some(stage) = &self.stage else { return Ok(()) };
-        let document = stage.document();
-        let pixels = u64::from(document.render.width) * u64::from(document.render.height);
         self.snapshot.progress = progress;
         self.snapshot.reduction = stage.reduction;
         if progress.samples_per_pixel > 0 {
-            self.snapshot.samples_per_second = progress.samples_per_second(pixels);
+            self.snapshot.samples_per_second = progress.samples_per_second;
             // Averaged, so that resolutions do not flicker while something is dragged.
             let weight = if self.samples_per_second > 0.0 {
                 SPEED_WEIGHT
