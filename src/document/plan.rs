@@ -2,7 +2,8 @@
 //! (`shaders/scene/plan.wgsl`).
 
 use crate::optics::lobe::Lobe;
-use crate::optics::material::Material;
+use crate::optics::material::{Material, NO_TEXTURE};
+use crate::optics::vector::Vec3;
 use crate::scene::light::LightChoice;
 
 /// What every material of the scene has in common, and what can be left out.
@@ -32,6 +33,22 @@ pub struct Plan {
     pub light_sampling: bool,
     /// Emitting triangles are sampled.
     pub emitter_sampling: bool,
+    /// Some metal's reflection is tinted towards the edge.
+    pub edge_tint: bool,
+    /// Some material has a coat.
+    pub coat: bool,
+    /// Some base colour has a texture.
+    pub color_textures: bool,
+    /// Some roughness and metalness have a texture.
+    pub roughness_textures: bool,
+    /// Some emission has a texture.
+    pub emission_textures: bool,
+    /// Some material has a normal texture.
+    pub normal_maps: bool,
+    /// Some material's albedo tables go over the roughness.
+    pub rough_tables: bool,
+    /// Light may go straight on through some surface.
+    pub alpha: bool,
     /// The lens is open.
     pub lens: bool,
 }
@@ -51,12 +68,22 @@ impl Plan {
         absorption: true,
         light_sampling: true,
         emitter_sampling: true,
+        edge_tint: true,
+        coat: true,
+        color_textures: true,
+        roughness_textures: true,
+        emission_textures: true,
+        normal_maps: true,
+        rough_tables: true,
+        alpha: true,
         lens: true,
     };
 
     /// What these materials call for under light that is shared out like this.
     pub fn new(materials: &[Material<f32>], light: &LightChoice, lens_radius: f64) -> Self {
-        let specular: Vec<_> = materials.iter().filter(|m| m.has_specular()).collect();
+        let anywhere: Vec<_> = materials.iter().map(Material::least_metallic).collect();
+        let specular: Vec<_> = anywhere.iter().filter(|m| m.has_specular()).collect();
+        let has_texture = |kind: usize| materials.iter().any(|m| m.textures[kind] != NO_TEXTURE);
         let shared = |number: fn(&Material<f32>) -> u32| {
             let first = specular.first().map(|m| number(m))?;
             specular.iter().all(|m| number(m) == first).then_some(first)
@@ -67,15 +94,23 @@ impl Plan {
             horizon: shared(|m| m.horizon),
             fresnel: shared(|m| m.fresnel),
             anisotropy: specular.iter().any(|m| m.anisotropy != 0.0),
-            base: materials.iter().any(Material::has_base),
+            base: anywhere.iter().any(Material::has_base),
             specular: !specular.is_empty(),
             emission: materials.iter().any(|m| m.emission.max_component() > 0.0),
-            transmission: materials.iter().any(Material::transmits),
-            absorption: materials
+            transmission: anywhere.iter().any(Material::transmits),
+            absorption: anywhere
                 .iter()
                 .any(|m| m.transmits() && m.absorption.max_component() > 0.0),
             light_sampling: light.environment_probability > 0.0,
             emitter_sampling: light.density_per_luminance > 0.0,
+            edge_tint: specular.iter().any(|m| m.edge_tint != Vec3::splat(1.0)),
+            coat: materials.iter().any(|m| m.coat_weight > 0.0),
+            color_textures: has_texture(0),
+            roughness_textures: has_texture(1),
+            normal_maps: has_texture(2),
+            emission_textures: has_texture(3),
+            rough_tables: materials.iter().any(|m| m.has_rough_tables == 1),
+            alpha: materials.iter().any(Material::has_holes),
             lens: lens_radius > 0.0,
         }
     }
@@ -92,6 +127,13 @@ impl Plan {
             ("emission", self.emission),
             ("transmission", self.transmission),
             ("absorption", self.absorption),
+            ("edge-tint", self.edge_tint),
+            ("coat", self.coat),
+            ("color-texture", self.color_textures),
+            ("roughness-texture", self.roughness_textures),
+            ("normal-map", self.normal_maps),
+            ("emission-texture", self.emission_textures),
+            ("alpha", self.alpha),
             ("depth-of-field", self.lens),
         ];
         effects
@@ -102,7 +144,7 @@ impl Plan {
     }
 
     /// The override constants of the pipeline, by their names in `shaders/scene/plan.wgsl`.
-    pub fn constants(&self) -> [(&'static str, f64); 13] {
+    pub fn constants(&self) -> [(&'static str, f64); 21] {
         let number = |value: Option<u32>| f64::from(value.unwrap_or(u32::MAX));
         let flag = |value: bool| f64::from(u8::from(value));
         [
@@ -118,6 +160,14 @@ impl Plan {
             ("PLAN_ABSORPTION", flag(self.absorption)),
             ("PLAN_LIGHT_SAMPLING", flag(self.light_sampling)),
             ("PLAN_EMITTER_SAMPLING", flag(self.emitter_sampling)),
+            ("PLAN_EDGE_TINT", flag(self.edge_tint)),
+            ("PLAN_COAT", flag(self.coat)),
+            ("PLAN_COLOR_TEXTURES", flag(self.color_textures)),
+            ("PLAN_ROUGHNESS_TEXTURES", flag(self.roughness_textures)),
+            ("PLAN_EMISSION_TEXTURES", flag(self.emission_textures)),
+            ("PLAN_NORMAL_MAPS", flag(self.normal_maps)),
+            ("PLAN_ROUGH_TABLES", flag(self.rough_tables)),
+            ("PLAN_ALPHA", flag(self.alpha)),
             ("PLAN_LENS", flag(self.lens)),
         ]
     }

@@ -82,7 +82,7 @@ impl Pipelines {
     }
 }
 
-/// Uniforms, eight read-only buffers, the environment's map, two buffers of sums.
+/// Uniforms, ten read-only buffers, the environment's map, two buffers of sums.
 fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let buffer = |ty| wgpu::BindingType::Buffer {
         ty,
@@ -107,5 +107,5 @@ fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
             count: None,
         }
     };
-    (0..=11).map(entry).collect()
+    (0..=13).map(entry).collect()
 }

@@ -20,6 +20,8 @@ pub struct Resources {
     environment_map: wgpu::TextureView,
     environment_cells: wgpu::Buffer,
     light_cells: wgpu::Buffer,
+    /// Records, words.
+    textures: [wgpu::Buffer; 2],
     /// Sums of colours and of statistics since the last flush.
     pub sums: [wgpu::Buffer; 2],
     pub bind_group: wgpu::BindGroup,
@@ -58,6 +60,13 @@ impl Resources {
             Some(old) => old.light_cells.clone(),
             None => gpu.storage("the triangles that emit", bytemuck::cast_slice(&job.lights.cells))?,
         };
+        let textures = match old.filter(|old| Arc::ptr_eq(&old.job.textures, &job.textures)) {
+            Some(old) => old.textures.clone(),
+            None => [
+                gpu.storage("the model's textures", bytemuck::cast_slice(&job.textures.records))?,
+                gpu.storage("the model's pictures", bytemuck::cast_slice(&job.textures.words))?,
+            ],
+        };
         let size_of_sums = pixels(&job) * 16;
         let sums = match old.filter(|old| pixels(&old.job) == pixels(&job)) {
             Some(old) => old.sums.clone(),
@@ -87,6 +96,8 @@ impl Resources {
             sums[0].as_entire_binding(),
             sums[1].as_entire_binding(),
             light_cells.as_entire_binding(),
+            textures[0].as_entire_binding(),
+            textures[1].as_entire_binding(),
         ];
         let entries: Vec<_> = (0..)
             .zip(resources)
@@ -106,6 +117,7 @@ impl Resources {
             environment_map,
             environment_cells,
             light_cells,
+            textures,
             sums,
             bind_group,
         })
