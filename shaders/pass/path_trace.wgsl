@@ -16,6 +16,10 @@ const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
 // The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
 const BELOW_DIMENSION: u32 = 4096u;
+// The first of the pairs of numbers that choose whether a surface stops a ray, one a bounce.
+const OPACITY_DIMENSION: u32 = 8192u;
+// Surfaces that a ray may go straight on through.
+const PASSES_MAX: u32 = 256u;
 // Bounces before Russian roulette.
 const ROULETTE_START: u32 = 3u;
 // Beyond it the square would overflow: dropped and counted.
@@ -47,8 +51,10 @@ fn far_light(direction: vec3f, lobe_density: f32, is_mirror: bool) -> vec3f {
 }
 
 // What a surface emits that a path met at `distance`, weighed against light sampling.
-fn emitted_light(point: SurfacePoint, distance: f32, lobe_density: f32, is_mirror: bool) -> vec3f {
-    let emission = materials[point.slot].emission;
+fn emitted_light(
+    point: SurfacePoint, material: Material, distance: f32, lobe_density: f32, is_mirror: bool,
+) -> vec3f {
+    let emission = material.emission;
     if !samples_emitters() || is_mirror {
         return emission;
     }
@@ -56,7 +62,7 @@ fn emitted_light(point: SurfacePoint, distance: f32, lobe_density: f32, is_mirro
         return vec3f(0.0);
     }
     let cosine = dot(point.surface.normal, point.surface.wo);
-    return emission * lobe_share(lobe_density, light_density(emission, cosine, distance));
+    return emission * lobe_share(lobe_density, light_density(material.light_luminance, cosine, distance));
 }
 
 // The share of the lobe under the balance heuristic (Veach 1997) where it met light by itself.
@@ -97,29 +103,85 @@ fn draw_light(point: SurfacePoint, xi: vec3f) -> LightSample {
 }
 
 // Light that arrives straight from the environment or from what emits, one direction drawn.
-fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: ptr<function, u32>) -> vec3f {
+fn direct_light(
+    point: SurfacePoint, material: Material, state: RandomState, dimension: u32, rays: ptr<function, u32>,
+) -> vec3f {
     let xi = vec3f(random_pair(state, dimension), random_pair(state, dimension + 1u).x);
     let light = draw_light(point, xi);
     let wi = light.direction;
-    let transmits = material_transmits(materials[point.slot]);
+    let transmits = material_transmits(material);
     if light.density <= 0.0 || (dot(point.surface.normal, wi) <= 0.0 && !transmits) {
         return vec3f(0.0);
     }
     let competing = select(0.0, 1.0, globals.strategy == STRATEGY_MIS);
-    let value = material_evaluate(materials[point.slot], point.surface, wi, light.density, competing);
+    let value = material_evaluate(material, point.surface, wi, light.density, competing);
     if all(value <= vec3f(0.0)) {
         return vec3f(0.0);
     }
+    var share = 1.0;
     if !meets_nothing(point, wi) {
-        *rays += 1u;
-        if trace(ray_origin(point, wi, transmits), wi, light.distance, true).triangle != NO_HIT {
-            return vec3f(0.0);
-        }
+        share = transmittance(ray_origin(point, wi, transmits), wi, light.distance, rays);
+    }
+    if share <= 0.0 {
+        return vec3f(0.0);
     }
     if is_from_afar(xi.z) {
-        return value * far_radiance(wi) / light.density;
+        return value * far_radiance(wi) * (share / light.density);
     }
-    return value * light.radiance / light.density;
+    return value * light.radiance * (share / light.density);
+}
+
+// The share of light that reaches the origin of a ray from so far.
+fn transmittance(start: vec3f, direction: vec3f, distance: f32, rays: ptr<function, u32>) -> f32 {
+    if PLAN_ALPHA == 0u {
+        *rays += 1u;
+        return select(0.0, 1.0, trace(start, direction, distance, true).triangle == NO_HIT);
+    }
+    var origin = start;
+    var share = 1.0;
+    var left = distance;
+    for (var i = 0u; i < PASSES_MAX; i++) {
+        *rays += 1u;
+        let hit = trace(origin, direction, left, false);
+        if hit.triangle == NO_HIT {
+            return share;
+        }
+        share *= 1.0 - hit_opacity(hit);
+        if share <= 0.0 {
+            break;
+        }
+        left -= hit.t;
+        origin = ray_origin(surface_at(hit, direction), direction, true);
+    }
+    return 0.0;
+}
+
+// The hit that stops a ray, its t the distance from the ray's origin.
+fn stop(ray: Ray, state: RandomState, bounce: u32, rays: ptr<function, u32>) -> Hit {
+    if PLAN_ALPHA == 0u {
+        *rays += 1u;
+        return trace(ray.origin, ray.direction, 1e30, false);
+    }
+    var origin = ray.origin;
+    var xi = random_pair(state, OPACITY_DIMENSION + bounce).x;
+    var distance = 0.0;
+    for (var i = 0u; i < PASSES_MAX; i++) {
+        *rays += 1u;
+        var hit = trace(origin, ray.direction, 1e30, false);
+        if hit.triangle == NO_HIT {
+            return hit;
+        }
+        distance += hit.t;
+        hit.t = distance;
+        let opacity = hit_opacity(hit);
+        if xi < opacity {
+            return hit;
+        }
+        // Uniform again, given that the surface did not stop the ray.
+        xi = (xi - opacity) / max(1.0 - opacity, 1e-20);
+        origin = ray_origin(surface_at(hit, ray.direction), ray.direction, true);
+    }
+    return Hit(0.0, NO_HIT, 0.0, 0.0);
 }
 
 // True where it is proven that nothing lies ahead: outside a convex body.
@@ -148,11 +210,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var rays = 0u;
     var leaves = false;
     for (var bounce = 0u; ; bounce++) {
-        var hit: Hit;
-        hit.triangle = NO_HIT;
+        var hit = Hit(0.0, NO_HIT, 0.0, 0.0);
         if !leaves {
-            rays += 1u;
-            hit = trace(ray.origin, ray.direction, 1e30, false);
+            hit = stop(ray, state, bounce, &rays);
         }
         if hit.triangle == NO_HIT {
             if bounce == 0u {
@@ -162,19 +222,19 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             break;
         }
         let point = surface_at(hit, ray.direction);
-        let material = materials[point.slot];
+        let material = textured_material(materials[point.slot], point.uvs);
         if PLAN_ABSORPTION == 1u && point.surface.is_inside && material_transmits(material) {
             throughput *= exp(-material.absorption * hit.t);
         }
         if PLAN_EMISSION == 1u {
-            radiance += throughput * emitted_light(point, hit.t, lobe_density, was_mirror);
+            radiance += throughput * emitted_light(point, material, hit.t, lobe_density, was_mirror);
         }
         if bounce >= globals.bounces {
             break;
         }
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
         if samples_light() {
-            radiance += throughput * direct_light(point, state, dimension + 2u, &rays);
+            radiance += throughput * direct_light(point, material, state, dimension + 2u, &rays);
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
         let wants_density = samples_light() && globals.strategy == STRATEGY_MIS;

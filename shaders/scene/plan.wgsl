@@ -25,6 +25,19 @@ override PLAN_ABSORPTION: u32 = 1u;
 override PLAN_LIGHT_SAMPLING: u32 = 1u;
 // 1: some triangle may emit, and is sampled.
 override PLAN_EMITTER_SAMPLING: u32 = 1u;
+// 1: some metal's reflection may be tinted towards the edge.
+override PLAN_EDGE_TINT: u32 = 1u;
+// 1: some material may have a coat.
+override PLAN_COAT: u32 = 1u;
+// 1: some material may have a texture of this kind.
+override PLAN_COLOR_TEXTURES: u32 = 1u;
+override PLAN_ROUGHNESS_TEXTURES: u32 = 1u;
+override PLAN_EMISSION_TEXTURES: u32 = 1u;
+override PLAN_NORMAL_MAPS: u32 = 1u;
+// 1: some material's albedo tables may go over the roughness.
+override PLAN_ROUGH_TABLES: u32 = 1u;
+// 1: light may go straight on through some surface.
+override PLAN_ALPHA: u32 = 1u;
 // 1: the lens may be open.
 override PLAN_LENS: u32 = 1u;
 

@@ -257,7 +257,7 @@ fn hit_at(at: Pos2, place: Rect, scene: &Scene) -> Option<SeenSurface> {
     let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::INFINITY)?;
     let slot = *geometry.slots.get(hit.triangle as usize)? as usize;
     let materials: Vec<_> = scene.job.materials.iter().map(Material::cast).collect();
-    let point = surface_at(geometry, &materials, &hit, direction);
+    let point = surface_at(geometry, &materials, &scene.job.textures, &hit, direction);
     let cosine: f64 = point.surface.frame.normal.dot(point.surface.wo);
     Some(SeenSurface {
         slot: (slot < scene.model.slots.len()).then_some(slot),

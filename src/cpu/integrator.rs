@@ -10,8 +10,9 @@ use crate::scene::environment::{
     Environment, environment_density, environment_local_from_world, environment_radiance, environment_sample,
     environment_world_from_local,
 };
-use crate::scene::light::{LightSample, Lights, light_density, light_sample};
-use crate::scene::surface::{SurfacePoint, surface_at};
+use crate::scene::light::{Emitters, LightSample, Lights, light_density, light_sample};
+use crate::scene::surface::{SurfacePoint, hit_opacity, surface_at};
+use crate::scene::texture::{Textures, textured_material};
 use crate::scene::{Geometry, Hit};
 
 /// Pairs of numbers before the first bounce: pixel, lens.
@@ -20,6 +21,10 @@ pub const FIRST_DIMENSION: u32 = 2;
 pub const BOUNCE_DIMENSIONS: u32 = 4;
 /// The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
 pub const BELOW_DIMENSION: u32 = 4096;
+/// The first of the pairs of numbers that choose whether a surface stops a ray, one a bounce.
+pub const OPACITY_DIMENSION: u32 = 8192;
+/// Surfaces that a ray may go straight on through.
+pub const PASSES_MAX: u32 = 256;
 /// Bounces before Russian roulette.
 pub const ROULETTE_START: u32 = 3;
 /// Beyond it the square would overflow f32: dropped and counted.
@@ -41,6 +46,8 @@ pub struct Integrator<'a, T> {
     geometry: &'a Geometry,
     environment: &'a Environment,
     tables: &'a [f32],
+    textures: &'a Textures,
+    has_holes: bool,
     settings: &'a Settings,
     materials: Vec<Material<T>>,
     camera: Camera<T>,
@@ -62,6 +69,8 @@ impl<'a, T: Real> Integrator<'a, T> {
             geometry: &job.geometry,
             environment: &job.environment,
             tables: &job.tables,
+            textures: &job.textures,
+            has_holes: job.plan.has("alpha"),
             settings: &job.settings,
             materials: job.materials.iter().map(Material::cast).collect(),
             camera: job.settings.camera.cast(),
@@ -98,8 +107,15 @@ impl<'a, T: Real> Integrator<'a, T> {
     }
 
     /// What a surface emits that a path met at `distance`, weighed against light sampling.
-    fn emitted_light(&self, point: &SurfacePoint<T>, distance: T, lobe_density: T, is_mirror: bool) -> Vec3<T> {
-        let emission = self.materials[point.slot as usize].emission;
+    fn emitted_light(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        distance: T,
+        lobe_density: T,
+        is_mirror: bool,
+    ) -> Vec3<T> {
+        let emission = material.emission;
         if !self.samples_emitters || is_mirror {
             return emission;
         }
@@ -107,7 +123,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             return Vec3::zero();
         }
         let cosine = point.surface.normal.dot(point.surface.wo);
-        let light_density = light_density(emission, cosine, distance, self.density_per_luminance);
+        let light_density = light_density(material.light_luminance, cosine, distance, self.density_per_luminance);
         emission * lobe_share(lobe_density, light_density)
     }
 
@@ -117,10 +133,14 @@ impl<'a, T: Real> Integrator<'a, T> {
         let share = self.environment_probability;
         if self.samples_emitters && !(self.samples_environment && xi.z.less(share).any()) {
             let xi = vec3(xi.x, xi.y, (xi.z - share) / (T::one() - share));
-            let (materials, density) = (&self.materials, self.density_per_luminance);
-            let (lights, place) = (self.lights, point.position);
-            let sample = light_sample(self.geometry, materials, lights, density, place, point.error, xi);
-            return (sample, false);
+            let emitters = Emitters {
+                geometry: self.geometry,
+                materials: &self.materials,
+                textures: self.textures,
+                lights: self.lights,
+                density_per_luminance: self.density_per_luminance,
+            };
+            return (light_sample(&emitters, point.position, point.error, xi), false);
         }
         let (local, density) = environment_sample(self.environment, vec3(xi.x, xi.y, xi.z / share));
         let sample = LightSample {
@@ -133,12 +153,18 @@ impl<'a, T: Real> Integrator<'a, T> {
     }
 
     /// Light that arrives straight from the environment or from what emits, one direction drawn.
-    fn direct_light(&self, point: &SurfacePoint<T>, state: RandomState, dimension: u32, rays: &mut u32) -> Vec3<T> {
+    fn direct_light(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        state: RandomState,
+        dimension: u32,
+        rays: &mut u32,
+    ) -> Vec3<T> {
         let [a, b] = random_pair(state, dimension);
         let [c, _] = random_pair(state, dimension + 1);
         let (light, is_far) = self.draw_light(point, vec3(a, b, c));
         let (wi, density) = (light.direction, light.density);
-        let material = &self.materials[point.slot as usize];
         let is_behind = point.surface.normal.dot(wi).to_f64() <= 0.0;
         if density.to_f64() <= 0.0 || (is_behind && !material.transmits()) {
             return Vec3::zero();
@@ -152,16 +178,75 @@ impl<'a, T: Real> Integrator<'a, T> {
         if value.max_component().to_f64() <= 0.0 {
             return Vec3::zero();
         }
+        let mut transmittance = T::one();
         if !self.meets_nothing(point, wi) {
-            *rays += 1;
             let origin = point.ray_origin(wi, material.transmits());
-            let distance = light.distance.to_f64() as f32;
-            if self.geometry.occluded(origin.to_f32(), wi.to_f32(), distance) {
-                return Vec3::zero();
-            }
+            transmittance = self.transmittance(origin, wi, light.distance, rays);
+        }
+        if transmittance.to_f64() <= 0.0 {
+            return Vec3::zero();
         }
         let radiance = if is_far { self.far_radiance(wi) } else { light.radiance };
-        value * radiance / density
+        value * radiance * (transmittance / density)
+    }
+
+    /// The share of light that reaches the origin of a ray from so far.
+    fn transmittance(&self, mut origin: Vec3<T>, direction: Vec3<T>, distance: T, rays: &mut u32) -> T {
+        if !self.has_holes {
+            *rays += 1;
+            let distance = distance.to_f64() as f32;
+            let is_occluded = self.geometry.occluded(origin.to_f32(), direction.to_f32(), distance);
+            return if is_occluded { T::zero() } else { T::one() };
+        }
+        let (mut share, mut left) = (T::one(), distance);
+        for _ in 0..PASSES_MAX {
+            *rays += 1;
+            let far = left.to_f64() as f32;
+            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), far) else {
+                return share;
+            };
+            share = share * (T::one() - hit_opacity(self.geometry, &self.materials, self.textures, &hit));
+            if share.to_f64() <= 0.0 {
+                break;
+            }
+            left = left - T::from_f64(f64::from(hit.t));
+            origin = self.surface(&hit, direction).ray_origin(direction, true);
+        }
+        T::zero()
+    }
+
+    /// The surface that stops a ray, with its distance from the origin; the origin moves on with the ray through
+    /// surfaces that do not.
+    fn stop(
+        &self,
+        mut origin: Vec3<T>,
+        direction: Vec3<T>,
+        state: RandomState,
+        bounce: u32,
+        rays: &mut u32,
+    ) -> Option<(SurfacePoint<T>, T)> {
+        let mut xi = T::zero();
+        if self.has_holes {
+            [xi, _] = random_pair(state, OPACITY_DIMENSION + bounce);
+        }
+        let mut distance = T::zero();
+        for _ in 0..PASSES_MAX {
+            *rays += 1;
+            let hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX)?;
+            distance += T::from_f64(f64::from(hit.t));
+            let point = self.surface(&hit, direction);
+            if !self.has_holes {
+                return Some((point, distance));
+            }
+            let opacity = hit_opacity(self.geometry, &self.materials, self.textures, &hit);
+            if xi.less(opacity).any() {
+                return Some((point, distance));
+            }
+            // Uniform again, given that the surface did not stop the ray.
+            xi = (xi - opacity) / (T::one() - opacity).max(T::from_f64(1e-20));
+            origin = point.ray_origin(direction, true);
+        }
+        None
     }
 
     /// True where it is proven that nothing lies ahead: outside a convex body.
@@ -194,31 +279,35 @@ impl<'a, T: Real> Integrator<'a, T> {
         let mut rays = 0;
         let mut leaves = false;
         for bounce in 0.. {
-            let mut hit = None;
+            let mut met = None;
             if !leaves {
-                rays += 1;
-                hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
+                met = self.stop(origin, direction, state, bounce, &mut rays);
             }
-            let Some(hit) = hit else {
+            let Some((point, distance)) = met else {
                 if bounce == 0 {
                     return self.camera_background(direction, rays);
                 }
                 radiance += throughput * self.far_light(direction, lobe_density, was_mirror);
                 break;
             };
-            let point = self.surface(&hit, direction);
-            let material = &self.materials[point.slot as usize];
-            let distance = T::from_f64(f64::from(hit.t));
+            let plain = &self.materials[point.slot as usize];
+            let textured;
+            let material = if plain.is_textured() {
+                textured = textured_material(self.textures, plain, point.uvs);
+                &textured
+            } else {
+                plain
+            };
             if point.surface.is_inside && material.transmits() {
                 throughput = throughput * material.absorption.map(|absorption| (-absorption * distance).exp());
             }
-            radiance += throughput * self.emitted_light(&point, distance, lobe_density, was_mirror);
+            radiance += throughput * self.emitted_light(&point, material, distance, lobe_density, was_mirror);
             if bounce >= settings.bounces {
                 break;
             }
             let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
             if samples_light {
-                radiance += throughput * self.direct_light(&point, state, dimension + 2, &mut rays);
+                radiance += throughput * self.direct_light(&point, material, state, dimension + 2, &mut rays);
             }
             let [a, b] = random_pair(state, dimension);
             let [c, layer] = random_pair(state, dimension + 1);
@@ -260,7 +349,7 @@ impl<'a, T: Real> Integrator<'a, T> {
     }
 
     fn surface(&self, hit: &Hit, direction: Vec3<T>) -> SurfacePoint<T> {
-        surface_at(self.geometry, &self.materials, hit, direction)
+        surface_at(self.geometry, &self.materials, self.textures, hit, direction)
     }
 }
 

@@ -23,11 +23,11 @@ mod settings;
 use serde::{Deserialize, Serialize};
 
 pub use change::Change;
-pub use compile::compile;
+pub use compile::{compile, compile_textured};
 pub use custom_curve::CustomCurve;
 pub use file::{FileError, Loaded};
 pub use history::History;
-pub use material::{Conductor, MaterialSettings};
+pub use material::{Conductor, MaterialSettings, TextureUse};
 pub use parameter::{Choice, Kind, Parameter, ParameterError, Value, assign, parameter};
 pub use preset::{PRESETS, load_material, material_by_name, save_material};
 pub use project::{load_document, save_document};

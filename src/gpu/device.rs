@@ -69,7 +69,7 @@ pub struct GpuDevice {
 }
 
 /// Storage buffers that the path tracer binds.
-const STORAGE_BUFFERS: u32 = 11;
+const STORAGE_BUFFERS: u32 = 13;
 
 impl GpuDevice {
     /// Opens the best adapter of a kind.

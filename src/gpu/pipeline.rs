@@ -83,7 +83,7 @@ impl Pipelines {
     }
 }
 
-/// Uniforms, nine read-only buffers, the environment's map, two buffers of sums.
+/// Uniforms, eleven read-only buffers, the environment's map, two buffers of sums.
 fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let buffer = |ty| wgpu::BindingType::Buffer {
         ty,
@@ -108,5 +108,5 @@ fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
             count: None,
         }
     };
-    (0..=12).map(entry).collect()
+    (0..=14).map(entry).collect()
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::session::SessionError;
 use crate::scene::environment::{self, Environment, EnvironmentSource};
 use crate::scene::light::AreaShape;
+use crate::scene::texture::Textures;
 use crate::scene::{self, Geometry, Model, ModelSource};
 
 /// What a geometry is made of: model, ground, area lights.
@@ -14,6 +15,7 @@ type GeometryKey = (ModelSource, bool, Vec<AreaShape>);
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
     model: Option<(ModelSource, Arc<Model>)>,
+    textures: Option<(ModelSource, Arc<Textures>)>,
     geometry: Option<(GeometryKey, Arc<Geometry>)>,
     environment: Option<(EnvironmentSource, Arc<Environment>)>,
 }
@@ -31,6 +33,20 @@ impl Assets {
         model.warnings.iter().for_each(|warning| log::warn!("{warning}"));
         self.model = Some((source.clone(), model.clone()));
         Ok(model)
+    }
+
+    /// The textures of a source, packed.
+    ///
+    /// # Errors
+    /// As [`Assets::model`].
+    pub fn textures(&mut self, source: &ModelSource) -> Result<Arc<Textures>, SessionError> {
+        if let Some((_, textures)) = self.textures.as_ref().filter(|(of, _)| of == source) {
+            return Ok(textures.clone());
+        }
+        let textures = Arc::new(Textures::new(&*self.model(source)?));
+        textures.warnings.iter().for_each(|warning| log::warn!("{warning}"));
+        self.textures = Some((source.clone(), textures.clone()));
+        Ok(textures)
     }
 
     /// The geometry of a source, with or without ground, with area lights.

@@ -7,23 +7,28 @@ use super::session::SessionError;
 use crate::document::effect::Facts;
 use crate::document::job::{BackgroundKind, Job, Settings};
 use crate::document::plan::{Plan, without_what_is_off};
-use crate::document::{AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile};
+use crate::document::{
+    AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile_textured,
+};
 use crate::optics::material::Material;
-use crate::optics::vector::Vec3;
 use crate::scene::Geometry;
 use crate::scene::camera::{Camera, framing_distance, orbit_direction};
 use crate::scene::light::{LightChoice, Lights};
+use crate::scene::texture::Textures;
 
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
 
+/// What materials and tables depend on.
+type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>);
+
 /// What the table of emitting triangles depends on: geometry, and the emission of each slot.
-type LightsKey = (Arc<Geometry>, Vec<Vec3<f32>>);
+type LightsKey = (Arc<Geometry>, Vec<f32>);
 
 /// Compiles documents; remembers the last materials and lights, whose tables take milliseconds.
 #[derive(Debug, Default)]
 pub(super) struct Compiler {
-    materials: Option<(Vec<MaterialSettings>, Compiled)>,
+    materials: Option<(MaterialsKey, Compiled)>,
     lights: Option<(LightsKey, Arc<Lights>)>,
 }
 
@@ -34,8 +39,9 @@ impl Compiler {
         let shapes = document.lighting.area_lights.iter().map(AreaLight::shape).collect();
         let geometry = assets.geometry(&document.model, document.ground, shapes)?;
         let environment = assets.environment(&document.lighting.environment)?;
+        let textures = assets.textures(&document.model)?;
         let slots = slot_materials(document, model.slots.len());
-        let (materials, tables) = self.materials(&slots);
+        let (materials, tables) = self.materials(&slots, &textures);
         let lights = self.lights(&geometry, &materials);
         let environment_strength = f64::from(document.lighting.strength);
         let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
@@ -68,24 +74,26 @@ impl Compiler {
             environment,
             lights,
             materials,
+            textures,
             tables,
             settings,
             plan,
         })
     }
 
-    fn materials(&mut self, wanted: &[MaterialSettings]) -> Compiled {
-        if let Some((_, compiled)) = self.materials.as_ref().filter(|(of, _)| of == wanted) {
+    fn materials(&mut self, wanted: &[MaterialSettings], textures: &Arc<Textures>) -> Compiled {
+        let is_known = |(of, looked_up): &MaterialsKey| of == wanted && Arc::ptr_eq(looked_up, textures);
+        if let Some((_, compiled)) = self.materials.as_ref().filter(|(key, _)| is_known(key)) {
             return compiled.clone();
         }
-        let (materials, tables) = compile(wanted);
+        let (materials, tables) = compile_textured(wanted, &textures.slots);
         let compiled = (Arc::new(materials), Arc::new(tables));
-        self.materials = Some((wanted.to_vec(), compiled.clone()));
+        self.materials = Some(((wanted.to_vec(), textures.clone()), compiled.clone()));
         compiled
     }
 
     fn lights(&mut self, geometry: &Arc<Geometry>, materials: &[Material<f32>]) -> Arc<Lights> {
-        let emissions: Vec<_> = materials.iter().map(|material| material.emission).collect();
+        let emissions: Vec<_> = materials.iter().map(|material| material.light_luminance).collect();
         let is_known = |(of, emitted): &LightsKey| Arc::ptr_eq(of, geometry) && *emitted == emissions;
         if let Some((_, lights)) = self.lights.as_ref().filter(|(key, _)| is_known(key)) {
             return lights.clone();

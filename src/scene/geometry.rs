@@ -17,7 +17,7 @@ const GROUND_HALF_SIDE: f64 = 20.0;
 /// How far the ground is below the lowest point, in bounding radii: enough that flat bottoms do not flicker with it.
 const GROUND_GAP: f64 = 1e-4;
 
-/// What shading needs of a vertex besides its position. 36 bytes, scalars only: the same layout in WGSL.
+/// What shading needs of a vertex besides its position. 44 bytes, scalars only: the same layout in WGSL.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Vertex {
@@ -25,6 +25,8 @@ pub struct Vertex {
     pub normal: [f32; 3],
     /// Texture coordinates, v downwards.
     pub uv: [f32; 2],
+    /// The second set of texture coordinates.
+    pub second_uv: [f32; 2],
     /// Unit tangent and the sign of the bitangent, see [`Mesh::tangents`].
     pub tangent: [f32; 4],
 }
@@ -176,6 +178,7 @@ impl Geometry {
             self.vertices.push(Vertex {
                 normal: normal.to_array(),
                 uv: mesh.uvs[vertex].to_array(),
+                second_uv: mesh.second_uvs.get(vertex).copied().unwrap_or_default().to_array(),
                 tangent: tangent.to_array(),
             });
         }

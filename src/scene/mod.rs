@@ -14,8 +14,9 @@ mod model;
 pub mod shapes;
 pub mod surface;
 pub mod teapot;
+pub mod texture;
 mod traverse;
 
 pub use geometry::{Geometry, Vertex};
 pub use intersect::{Hit, RayFrame, intersect_triangle};
-pub use model::{AlphaMode, Model, ModelError, ModelSource, Slot, Texture, TextureRef, Wrap, load};
+pub use model::{AlphaMode, Filter, Model, ModelError, ModelSource, Slot, Texture, TextureRef, Wrap, load};

@@ -11,10 +11,7 @@ pub(super) const EFFECT: Effect = Effect {
     decide: |facts| facts.needed_by(Material::has_base, "has a diffuse base"),
     remove: Some(|document| {
         for material in &mut document.materials {
-            // A metal has no base; its colour is its reflection's.
-            if material.metalness < 1.0 {
-                material.base_color = [0.0; 3];
-            }
+            material.base_weight = 0.0;
         }
         document.lighting.ground_color = [0.0; 3];
     }),

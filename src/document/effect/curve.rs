@@ -10,17 +10,15 @@ pub(super) const EFFECT: Effect = Effect {
     help: "Code for every D(ξ) curve, the interception of the long tail's among it; with one curve, only that one's.",
     constant: Constant::choice("PLAN_CURVE"),
     decide: |facts| {
-        let is_geometric = |number| number == Lobe::Geometric as u32;
-        if !facts.materials.iter().any(|m| m.has_specular() && is_geometric(m.lobe)) {
+        let geometric = facts.reflecting().filter(|material| material.lobe == Lobe::Geometric as u32);
+        let mut curves = geometric.map(|material| material.curve);
+        let Some(first) = curves.next() else {
             // Any number will do; the first keeps the other curves' code out.
             return Decision {
                 value: 0,
                 ..Decision::off("no material has a geometric lobe")
             };
-        }
-        let curves = facts.materials.iter().filter(|m| m.has_specular() && is_geometric(m.lobe));
-        let mut curves = curves.map(|material| material.curve);
-        let first = curves.next().unwrap_or_default();
+        };
         let label = |number: u32| Curve::ALL[number as usize].label();
         match curves.find(|&curve| curve != first) {
             None => Decision::which(first, format!("{} in every geometric lobe", label(first))),

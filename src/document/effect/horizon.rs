@@ -10,15 +10,14 @@ pub(super) const EFFECT: Effect = Effect {
     constant: Constant::choice("PLAN_HORIZON"),
     decide: |facts| {
         let crosses = |lobe: u32| !Lobe::ALL[lobe as usize].is_hemispherical();
-        let mut reflecting = facts.materials.iter().filter(|material| material.has_specular());
         let shared = facts.shared(|m| m.horizon, |number| Horizon::ALL[number as usize].name());
-        if reflecting.clone().all(|material| material.roughness == 0.0) {
+        if facts.reflecting().all(|material| material.roughness == 0.0) {
             Decision {
                 is_on: false,
                 reason: "every lobe is a mirror: no sample points below the surface".to_owned(),
                 ..shared
             }
-        } else if reflecting.any(|material| crosses(material.lobe)) {
+        } else if facts.reflecting().any(|material| crosses(material.lobe)) {
             shared
         } else {
             Decision {

@@ -43,8 +43,16 @@ effects! {
     anisotropy
     horizon
     fresnel
+    edge_tint
+    coat
     transmission
     absorption
+    color_texture
+    roughness_texture
+    rough_tables
+    normal_map
+    emission_texture
+    alpha
     depth_of_field
 }
 
@@ -141,7 +149,7 @@ impl Facts<'_> {
     /// On where some material `needs` it; `what` completes "the material …" and "no material …".
     fn needed_by(&self, needs: fn(&Material<f32>) -> bool, what: &str) -> Decision {
         let mut names: Vec<&str> = std::iter::zip(self.slots, self.materials)
-            .filter(|(_, material)| needs(material))
+            .filter(|(_, material)| needs(&material.least_metallic()))
             .map(|(slot, _)| slot.name.as_str())
             .collect();
         names.dedup();
@@ -152,9 +160,17 @@ impl Facts<'_> {
         }
     }
 
+    /// The materials with a reflecting lobe.
+    fn reflecting(&self) -> impl Iterator<Item = Material<f32>> {
+        self.materials
+            .iter()
+            .map(Material::least_metallic)
+            .filter(Material::has_specular)
+    }
+
     /// The choice that all materials with a reflecting lobe share; `name` gives a choice's name.
     fn shared(&self, number: fn(&Material<f32>) -> u32, name: fn(u32) -> &'static str) -> Decision {
-        let mut numbers = self.materials.iter().filter(|m| m.has_specular()).map(number);
+        let mut numbers = self.reflecting().map(|material| number(&material));
         let Some(first) = numbers.next() else {
             return Decision {
                 value: ANY,
