@@ -153,6 +153,11 @@ fn activity(ui: &mut Ui, snapshot: &Snapshot) {
     ui.label(snapshot.activity.to_string());
     if snapshot.activity == Activity::Rendering {
         let progress = &snapshot.progress;
+        if progress.is_standing_in {
+            ui.add(egui::Spinner::new().size(12.0));
+            ui.weak("compiling the kernel")
+                .on_hover_text("The processor draws until the GPU's kernel for this scene is compiled.");
+        }
         let share = f64::from(progress.samples_per_pixel) / f64::from(progress.samples_wanted.max(1));
         ui.add(
             egui::ProgressBar::new(share as f32)

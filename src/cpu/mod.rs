@@ -104,6 +104,12 @@ impl CpuEngine {
         &self.schedule
     }
 
+    /// What has been rendered, for another engine to go on with.
+    pub fn hand_over(mut self) -> (Film, Schedule) {
+        self.film();
+        (self.film, self.schedule)
+    }
+
     /// Completed samples a pixel.
     pub fn samples_per_pixel(&self) -> u32 {
         self.schedule.samples_per_pixel()

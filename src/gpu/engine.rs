@@ -11,6 +11,7 @@ use super::timer::Timer;
 use crate::analysis::film::Film;
 use crate::analysis::tiles::{Schedule, TILE_SIDE, Work};
 use crate::document::job::Job;
+use crate::document::plan::Specialisation;
 
 /// Longest dispatch: other users of the adapter, the window among them, wait for its end.
 const SLICE: Duration = Duration::from_millis(30);
@@ -81,6 +82,31 @@ impl GpuEngine {
         Ok(())
     }
 
+    /// Whether the kernel is ready that is made for this.
+    pub fn has_kernel(&self, specialisation: &Specialisation) -> bool {
+        self.pipelines.has(specialisation)
+    }
+
+    /// Compiles the kernel of a job's plan: some drivers do that at the first dispatch, so one is made that renders
+    /// nothing. Takes seconds.
+    ///
+    /// # Errors
+    /// [`GpuError::Shader`] where the driver refuses the kernel; [`GpuError::TooLarge`].
+    pub fn prepare(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
+        self.submit(job)?;
+        self.dispatch(&[Tile::default()])
+    }
+
+    /// Lets the scene go and keeps the kernels.
+    pub fn rest(&mut self) {
+        self.resources = None;
+    }
+
+    /// Goes on with what another engine rendered of the same job.
+    pub fn take_over(&mut self, film: Film, schedule: Schedule) {
+        (self.film, self.schedule) = (film, schedule);
+    }
+
     /// Renders for about `budget`, at most up to `samples` a pixel.
     ///
     /// # Errors
@@ -115,9 +141,6 @@ impl GpuEngine {
 
     /// One dispatch of about so many samples: some tiles of a pass, or a pass of several samples where the GPU is fast.
     fn slice(&mut self, affordable: f64) -> Result<(), GpuError> {
-        let Some(resources) = &self.resources else {
-            return Ok(());
-        };
         let grid = self.schedule.grid();
         let tile_samples = f64::from(TILE_SIDE * TILE_SIDE * self.schedule.pass_samples());
         // At least a row's: fewer leave a GPU idle.
@@ -129,9 +152,28 @@ impl GpuEngine {
             sample_count: work.count,
         };
         let tiles: Vec<Tile> = works.iter().map(tile).collect();
+        let begun = Instant::now();
+        self.dispatch(&tiles)?;
+        let seconds = begun.elapsed().as_secs_f64().max(1e-6);
+        let samples_of = |work: &Work| grid.pixels(work.tile) * u64::from(work.count);
+        self.samples_per_second = works.iter().map(samples_of).sum::<u64>() as f64 / seconds;
+        if self.schedule.finish(&works) {
+            self.unflushed += self.schedule.pass_samples();
+            if self.unflushed >= FLUSH_SAMPLES {
+                self.flush()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Renders tiles and waits for them.
+    fn dispatch(&mut self, tiles: &[Tile]) -> Result<(), GpuError> {
+        let Some(resources) = &self.resources else {
+            return Ok(());
+        };
         self.gpu
             .queue
-            .write_buffer(&resources.tiles, 0, bytemuck::cast_slice(&tiles));
+            .write_buffer(&resources.tiles, 0, bytemuck::cast_slice(tiles));
         let pipeline = self.pipelines.get(&self.gpu, &resources.job().plan)?;
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         {
@@ -146,23 +188,13 @@ impl GpuEngine {
         if let Some(timer) = &self.timer {
             timer.resolve(&mut encoder);
         }
-        let begun = Instant::now();
         self.gpu.queue.submit([encoder.finish()]);
         if let Some(timer) = &self.timer {
             timer.request();
         }
         self.gpu.wait()?;
-        let seconds = begun.elapsed().as_secs_f64().max(1e-6);
         if let Some(timer) = &self.timer {
             self.gpu_seconds += timer.seconds()?;
-        }
-        let samples_of = |work: &Work| grid.pixels(work.tile) * u64::from(work.count);
-        self.samples_per_second = works.iter().map(samples_of).sum::<u64>() as f64 / seconds;
-        if self.schedule.finish(&works) {
-            self.unflushed += self.schedule.pass_samples();
-            if self.unflushed >= FLUSH_SAMPLES {
-                self.flush()?;
-            }
         }
         Ok(())
     }

@@ -43,7 +43,7 @@ pub struct Globals {
 }
 
 /// What a dispatch renders of one tile.
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 #[repr(C)]
 pub struct Tile {
     /// Its top left pixel.

@@ -55,6 +55,11 @@ impl Pipelines {
         })
     }
 
+    /// Whether a pipeline of this kind has been compiled.
+    pub fn has(&self, specialisation: &Specialisation) -> bool {
+        self.of_plan.contains_key(specialisation)
+    }
+
     /// The pipeline of a plan, compiled at its first use.
     ///
     /// # Errors

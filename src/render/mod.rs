@@ -16,6 +16,7 @@ pub mod samples;
 mod session;
 pub mod thumbnails;
 pub mod worker;
+mod workshop;
 
 pub use assets::Assets;
 pub use convergence::Measurement;

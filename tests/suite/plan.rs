@@ -249,3 +249,37 @@ fn the_plan_is_printed_and_effects_are_chosen_on_the_command_line() {
     place.refused(2, "render --effects no-such-effect", &["no-such-effect"]);
     place.refused(2, "render --effects -lobe", &["lobe"]);
 }
+
+#[test]
+fn a_kernel_is_compiled_beside_the_picture() {
+    let mut document = small(Document::default());
+    document.render.samples = 100_000;
+    let mut session = Session::open_fluid(EngineChoice::Gpu).unwrap();
+    let mut is_stood_in_for = |document: &Document| {
+        session.submit(document).unwrap();
+        let first = session.step(Duration::from_millis(10)).unwrap();
+        assert!(first.mean_samples > 0.0, "there is a picture before there is a kernel");
+        let begun = std::time::Instant::now();
+        let mut kept = first.mean_samples;
+        while session.step(Duration::from_millis(10)).unwrap().is_standing_in {
+            assert!(begun.elapsed() < Duration::from_secs(300), "the kernel never came");
+            let now = session.progress().mean_samples;
+            assert!(now >= kept, "what was drawn is lost");
+            kept = now;
+        }
+        assert!(session.progress().mean_samples >= kept);
+        let mean = |film: &Film| film.luminance().iter().sum::<f64>() / film.color.len() as f64;
+        let after = mean(session.film().unwrap());
+        (first.is_standing_in, after)
+    };
+    let (stood_in, mean) = is_stood_in_for(&document);
+    assert!(stood_in);
+    let mut clear = document.clone();
+    (clear.materials[0].metalness, clear.materials[0].transmission_weight) = (0.0, 0.1);
+    let (stood_in, other_mean) = is_stood_in_for(&clear);
+    assert!(stood_in && other_mean != mean);
+    // The kernel of the first document was kept.
+    let (stood_in, again) = is_stood_in_for(&document);
+    assert!(!stood_in);
+    assert!((again / mean - 1.0).abs() < 0.05, "{again} against {mean}");
+}

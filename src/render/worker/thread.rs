@@ -177,7 +177,7 @@ impl State<'_> {
         self.snapshot.engine = None;
         self.samples_per_second = 0.0;
         self.tell(Activity::Starting);
-        let opened = catch_unwind(|| Session::open(choice)).map_err(|panic| panic_text(&*panic));
+        let opened = catch_unwind(|| Session::open_fluid(choice)).map_err(|panic| panic_text(&*panic));
         let why = match opened {
             Ok(Ok(session)) => {
                 self.session = Some(session);
