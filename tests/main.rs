@@ -47,6 +47,8 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/noise.rs"]
+mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
 #[path = "suite/plan.rs"]

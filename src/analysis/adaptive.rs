@@ -114,3 +114,109 @@ fn bisect([mut low, mut high]: [f64; 2], is_enough: impl Fn(f64) -> bool) -> f64
     }
     high
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::random::{Sequence, random_pair, random_state};
+
+    const SIDE: u32 = 96;
+
+    /// A film of 16 samples a pixel, each at the cost of `rays`, whose standard deviation a sample is `sigma` of its tile.
+    fn film(sigma: &dyn Fn(usize) -> f64, rays: &dyn Fn(usize) -> f64) -> Film {
+        let grid = TileGrid {
+            width: SIDE,
+            height: SIDE,
+        };
+        let mut film = Film::new(SIDE, SIDE);
+        for pixel in 0..(SIDE * SIDE) as usize {
+            let tile = grid.of_pixel(pixel);
+            for sample in 0..16 {
+                let state = random_state(pixel as u32, 0, 7, sample, Sequence::Independent);
+                let [x, _]: [f64; 2] = random_pair(state, 0);
+                let y = 1.0 + sigma(tile) * 12.0_f64.sqrt() * (x - 0.5);
+                film.add(pixel, sample, [y, y, y, 1.0]);
+                film.rays[pixel] += rays(tile);
+            }
+        }
+        film
+    }
+
+    fn goals(film: &Film, round: Round) -> Vec<u32> {
+        next_goals(film, &[16; 36], round)
+    }
+
+    const ROUND: Round = Round {
+        growth: 1.25,
+        noise: None,
+        samples_max: u32::MAX,
+    };
+
+    #[test]
+    fn samples_go_where_they_help_most() {
+        // Columns of tiles: exact, noisy, noisy at four times the cost.
+        let sigma = |tile: usize| if tile % 6 < 2 { 0.0 } else { 0.4 };
+        let rays = |tile: usize| if tile % 6 < 4 { 1.0 } else { 4.0 };
+        let film = film(&sigma, &rays);
+        let found = goals(&film, ROUND);
+        let total: u32 = found.iter().sum();
+        assert!((36 * 16 * 5 / 4..36 * 16 * 4 / 3).contains(&total), "{found:?}");
+        for row in found.chunks(6) {
+            assert_eq!(row[0], 16, "no error, nor beside it: {row:?}");
+            assert!(row[2] >= 24 && row[5] <= 20, "{row:?}");
+        }
+        // Far from the aim a tile at most doubles; near it only little is asked for.
+        let far = goals(
+            &film,
+            Round {
+                growth: 1e3,
+                noise: Some(1e-4),
+                ..ROUND
+            },
+        );
+        assert!(far.iter().all(|goal| *goal <= 32), "{far:?}");
+        let told = crate::analysis::noise::noise(&film).unwrap().relative;
+        let near = goals(
+            &film,
+            Round {
+                growth: 1e3,
+                noise: Some(0.98 * told),
+                ..ROUND
+            },
+        );
+        assert!(near.iter().sum::<u32>() < 36 * 16 * 11 / 10, "{near:?}");
+        let capped = goals(
+            &film,
+            Round {
+                samples_max: 20,
+                ..ROUND
+            },
+        );
+        assert!(
+            capped.iter().all(|goal| (16..=20).contains(goal)) && capped.contains(&20),
+            "{capped:?}"
+        );
+    }
+
+    #[test]
+    fn the_surroundings_of_a_small_bright_feature_do_not_starve() {
+        let hot = 14;
+        let film = film(&|tile| if tile == hot { 2.0 } else { 0.001 }, &|_| 1.0);
+        let grid = TileGrid {
+            width: SIDE,
+            height: SIDE,
+        };
+        // Rounds on end, as if the film stayed as it is but for the number of samples.
+        let mut samples = vec![16; 36];
+        for _ in 0..30 {
+            samples = next_goals(&film, &samples, ROUND);
+        }
+        let most = samples[hot];
+        assert!(most > 1000, "{samples:?}");
+        for tile in 0..36 {
+            let is_near = grid.around(hot).any(|near| near == tile);
+            let least = if is_near { 2 } else { 400 };
+            assert!(samples[tile] >= (most / least).max(16), "tile {tile}: {samples:?}");
+        }
+    }
+}

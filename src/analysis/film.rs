@@ -40,8 +40,9 @@ impl Film {
         }
     }
 
-    /// Adds sample number `sample` of a pixel: linear colour with coverage, and its luminance.
-    pub fn add(&mut self, pixel: usize, sample: u32, color: [f64; 4], luminance: f64) {
+    /// Adds sample number `sample` of a pixel: linear colour with coverage.
+    pub fn add(&mut self, pixel: usize, sample: u32, color: [f64; 4]) {
+        let luminance = luminance(color);
         for (sum, x) in self.color[pixel].iter_mut().zip(color) {
             *sum += x;
         }

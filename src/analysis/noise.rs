@@ -179,3 +179,103 @@ pub fn tile_errors(film: &Film) -> Vec<TileError> {
     };
     (0..grid.tiles()).map(of_tile).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::random::{Sequence, random_pair, random_state};
+
+    const SIDE: u32 = 48;
+
+    /// A film of known noise: pixel means 1, standard deviation of a sample 0 left of the middle and `sigma` right of it;
+    /// and the true squared error of its pixels' means, summed.
+    fn film(samples: u32, seed: u32, sigma: f64) -> (Film, f64) {
+        let mut film = Film::new(SIDE, SIDE);
+        let mut squared_error = 0.0;
+        for pixel in 0..(SIDE * SIDE) as usize {
+            let is_noisy = pixel as u32 % SIDE >= SIDE / 2;
+            let mut sum = 0.0;
+            for sample in 0..samples {
+                let state = random_state(pixel as u32, 0, seed, sample, Sequence::Independent);
+                let [x, _]: [f64; 2] = random_pair(state, 0);
+                // Uniform, of standard deviation 1.
+                let x = if is_noisy {
+                    sigma * 12.0_f64.sqrt() * (x - 0.5)
+                } else {
+                    0.0
+                };
+                film.add(pixel, sample, [1.0 + x, 1.0 + x, 1.0 + x, 1.0]);
+                film.rays[pixel] += 1.0;
+                sum += x;
+            }
+            squared_error += (sum / f64::from(samples)).powi(2);
+        }
+        (film, squared_error)
+    }
+
+    #[test]
+    fn the_error_of_known_noise() {
+        let mut inside = 0;
+        for seed in 0..60 {
+            let samples = 10 + seed % 7;
+            let (film, squared_error) = film(samples, seed, 0.3);
+            let found = noise(&film).unwrap();
+            let expected = 0.3 / f64::from(2 * samples).sqrt();
+            assert!((found.relative / expected - 1.0).abs() < 0.12, "{found:?} {expected}");
+            assert!(
+                (found.from_spread / expected - 1.0).abs() < 0.05,
+                "{found:?} {expected}"
+            );
+            let error = (squared_error / f64::from(SIDE * SIDE)).sqrt();
+            inside += usize::from((found.low..=found.high).contains(&error));
+        }
+        assert!((53..=60).contains(&inside), "{inside} of 60");
+    }
+
+    #[test]
+    fn halves_that_agree_better_than_their_spread_are_believed() {
+        // Each half holds the same values: as if a sequence had removed all error but that of one number.
+        let mut film = Film::new(SIDE, SIDE);
+        for pixel in 0..(SIDE * SIDE) as usize {
+            (0..8).for_each(|sample| {
+                let y = f64::from(sample / 2);
+                film.add(pixel, sample, [y, y, y, 1.0]);
+            });
+        }
+        let found = noise(&film).unwrap();
+        assert!(found.relative < 1e-12 && found.from_spread > 0.2, "{found:?}");
+    }
+
+    #[test]
+    fn no_error_is_told_before_there_are_two_halves_and_none_is_found_where_there_is_no_light() {
+        assert_eq!(noise(&film(1, 0, 0.3).0), None);
+        assert_eq!(noise(&Film::new(0, 0)), None);
+        assert_eq!(noise(&Film::new(4, 4)), None);
+        let mut black = Film::new(4, 4);
+        (0..16).for_each(|pixel| (0..2).for_each(|sample| black.add(pixel, sample, [0.0; 4])));
+        let found = noise(&black).unwrap();
+        assert_eq!((found.relative, found.low, found.high), (0.0, 0.0, 0.0));
+        assert!(relative_errors(&black).iter().all(|error| *error == 0.0));
+    }
+
+    #[test]
+    fn maps_and_tiles_show_where_the_error_is() {
+        let (film, _) = film(64, 5, 0.3);
+        let errors = relative_errors(&film);
+        let squares: f64 = errors.iter().map(|error| f64::from(*error).powi(2)).sum();
+        let told = noise(&film).unwrap().relative;
+        let of_map = (squares / f64::from(SIDE * SIDE)).sqrt();
+        assert!((of_map / told - 1.0).abs() < 0.1, "{of_map} {told}");
+        assert!(errors.iter().step_by(SIDE as usize).all(|error| *error < 1e-6));
+        let tiles = tile_errors(&film);
+        // The tiles in the middle column are half noisy.
+        for row in tiles.chunks(3) {
+            let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.2;
+            assert!(row[0].sample_variance < 1e-9 && row[0].rays == 1.0, "{row:?}");
+            assert!(
+                near(row[1].sample_variance, 0.045) && near(row[2].sample_variance, 0.09),
+                "{row:?}"
+            );
+        }
+    }
+}

@@ -180,3 +180,56 @@ impl Schedule {
         self.samples.iter().enumerate().map(of_tile).sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_the_picture_once() {
+        let grid = TileGrid { width: 37, height: 16 };
+        assert_eq!((grid.columns(), grid.rows()), (3, 1));
+        let mut pixels = vec![0; grid.tiles()];
+        (0..37 * 16).for_each(|pixel| pixels[grid.of_pixel(pixel)] += 1);
+        assert_eq!(pixels, [256, 256, 80]);
+        assert_eq!((0..3).map(|tile| grid.pixels(tile)).collect::<Vec<_>>(), [256, 256, 80]);
+        assert_eq!((grid.origin(2), grid.size(2)), ([32, 0], [5, 16]));
+        assert_eq!(grid.around(0).collect::<Vec<_>>(), [0, 1]);
+        let middle = TileGrid { width: 48, height: 48 }.around(4);
+        assert_eq!(middle.collect::<Vec<_>>(), (0..9).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn every_tile_gets_what_it_lacks_and_nothing_twice() {
+        let mut schedule = Schedule::new(40, 20);
+        let goals = [5, 0, 3, 5, 5, 1];
+        schedule.aim(&goals);
+        let mut had = [0_u32; 6];
+        let mut completed = 0;
+        while schedule.begin(|_| 2) {
+            // No more than two tiles at a time, so that passes are cut.
+            let works = schedule.next(2);
+            for work in &works {
+                assert_eq!(work.first_sample, had[work.tile]);
+                had[work.tile] += work.count;
+            }
+            let is_end = schedule.finish(&works);
+            completed = schedule.samples_per_pixel();
+            assert!(!is_end || completed % 2 == 0 || completed == 5, "{completed}");
+        }
+        assert_eq!((had, completed), (goals, 5));
+        assert!(schedule.is_at_goal());
+        assert_eq!(schedule.pixel_samples(), 256 * 5 + 128 * 3 + 64 * (5 + 5) + 32);
+        // A tile that was left behind catches up.
+        schedule.aim(&[5; 6]);
+        assert!(!schedule.is_at_goal() && schedule.begin(|_| 8));
+        let works = schedule.next(9);
+        let counts: Vec<_> = works
+            .iter()
+            .map(|work| (work.tile, work.first_sample, work.count))
+            .collect();
+        assert_eq!(counts, [(1, 0, 5), (2, 3, 2), (5, 1, 4)]);
+        schedule.finish(&works);
+        assert_eq!(schedule.pixel_samples(), 40 * 20 * 5);
+    }
+}

@@ -7,6 +7,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use super::library::Change;
 use crate::document::MaterialSettings;
 use crate::render::EngineChoice;
+use crate::render::display::Shown;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 
@@ -31,6 +32,8 @@ pub enum Action {
     LookFrom(f64, f64),
     /// Changes the engine.
     UseEngine(EngineChoice),
+    /// Shows the picture or a map of its error or samples.
+    Show(Shown),
 }
 
 /// Where a command stands in the menus.

@@ -315,6 +315,10 @@ impl App {
                 self.edits.note("Look from a side", "");
             }
             Action::UseEngine(choice) => self.worker.use_engine(choice),
+            Action::Show(shown) => {
+                self.panels.shown = shown;
+                self.worker.show(shown);
+            }
         }
     }
 

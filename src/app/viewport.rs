@@ -5,6 +5,7 @@
 //! material of what was clicked.
 
 mod header;
+mod legend;
 
 use std::sync::Arc;
 
@@ -86,6 +87,9 @@ impl Viewport {
         if let Some(picture) = &picture {
             let place = placed(area, picture, desk.state.resolution);
             self.paint(ui, place, picture);
+            if let Some((shown, scale)) = picture.map {
+                legend::show(ui, area, shown, scale);
+            }
             if let Some(scene) = desk.snapshot.scene.clone() {
                 self.navigate(ui, &response, place, &scene, desk);
             }
@@ -110,7 +114,7 @@ impl Viewport {
             }
             self.shown_serial = picture.serial;
         }
-        let is_opaque = picture.image.pixels.first().is_none_or(|pixel| pixel[3] >= 1.0);
+        let is_opaque = picture.map.is_some() || picture.image.pixels.first().is_none_or(|pixel| pixel[3] >= 1.0);
         if !is_opaque {
             checker(ui, place);
         }

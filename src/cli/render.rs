@@ -257,9 +257,9 @@ fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document)
         or_fall_back(stepped, session, engine, document)?;
         let progress = session.progress();
         bar.set_position((BAR_STEPS * progress.share_done(document.render.time_s)) as u64);
-        let error = progress
-            .noise
-            .map_or(String::new(), |noise| format!(", error {:.2} %", 100.0 * noise.relative));
+        let error = progress.noise.map_or(String::new(), |noise| {
+            format!(", error {:.2} %", 100.0 * noise.relative)
+        });
         bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
         if progress.is_done {
             bar.finish_and_clear();
@@ -364,11 +364,13 @@ pub(super) fn document(arguments: &RenderArguments, session: &mut Session) -> an
     let render = &mut document.render;
     [render.width, render.height] = arguments.size;
     // With a time or noise to reach only, samples are not limited.
-    render.samples = arguments.samples.unwrap_or(if arguments.time.or(arguments.noise).is_some() {
-        u32::MAX
-    } else {
-        render.samples
-    });
+    render.samples = arguments
+        .samples
+        .unwrap_or(if arguments.time.or(arguments.noise).is_some() {
+            u32::MAX
+        } else {
+            render.samples
+        });
     render.time_s = arguments.time;
     render.noise = arguments.noise;
     render.min_samples = arguments.min_samples;

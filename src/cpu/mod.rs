@@ -125,8 +125,7 @@ fn render_tile<T: Real>(integrator: &Integrator<'_, T>, origin: [u32; 2], work: 
             sums.rays[pixel] += f64::from(path.rays);
             if is_sound(path.radiance) {
                 let [r, g, b] = path.radiance.to_f64();
-                let luminance = path.radiance.luminance().to_f64();
-                sums.add(pixel, sample, [r, g, b, path.alpha.to_f64()], luminance);
+                sums.add(pixel, sample, [r, g, b, path.alpha.to_f64()]);
             } else {
                 sums.dropped += 1;
             }

@@ -268,8 +268,7 @@ impl Session {
         let seconds = self.engine_seconds();
         let schedule = self.engine.schedule().clone();
         let film = document.render.is_adaptive().then(|| self.engine.film()).transpose()?;
-        self.convergence
-            .next_round(film, &schedule, &document.render, seconds);
+        self.convergence.next_round(film, &schedule, &document.render, seconds);
         Ok(())
     }
 

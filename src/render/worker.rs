@@ -12,6 +12,8 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use super::convergence::Measurement;
+use super::display::{Scale, Shown};
 use super::engine::{EngineChoice, EngineInfo};
 use super::priority::lower_thread_priority;
 use super::session::Progress;
@@ -95,6 +97,8 @@ pub struct Picture {
     pub reduction: u32,
     /// Samples a pixel in it.
     pub samples_per_pixel: u32,
+    /// What `rgba` is a map of, with its colours' meaning; `None` for the picture itself.
+    pub map: Option<(Shown, Scale)>,
 }
 
 /// What is being rendered.
@@ -117,6 +121,8 @@ pub struct Snapshot {
     pub scene: Option<Arc<Scene>>,
     /// How far it has come.
     pub progress: Progress,
+    /// The errors seen so far in it, oldest first.
+    pub history: Arc<Vec<Measurement>>,
     /// Pixel samples a second.
     pub samples_per_second: f64,
     /// By how much the picture in progress is smaller than asked for.
@@ -160,6 +166,7 @@ struct Orders {
     models: Vec<ModelSource>,
     environments: Vec<EnvironmentSource>,
     engine: Option<EngineChoice>,
+    shown: Option<Shown>,
     reload: bool,
     restart: bool,
     quit: bool,
@@ -171,6 +178,7 @@ impl Orders {
             && self.models.is_empty()
             && self.environments.is_empty()
             && self.engine.is_none()
+            && self.shown.is_none()
             && !self.reload
             && !self.restart
             && !self.quit
@@ -267,6 +275,11 @@ impl Worker {
     /// Goes on with another engine.
     pub fn use_engine(&self, choice: EngineChoice) {
         self.order(|orders| orders.engine = Some(choice));
+    }
+
+    /// Shows the picture or a map of its error or samples; what has been rendered stays.
+    pub fn show(&self, shown: Shown) {
+        self.order(|orders| orders.shown = Some(shown));
     }
 
     fn order(&self, change: impl FnOnce(&mut Orders)) {

@@ -10,11 +10,15 @@ use crate::document::{Bookmark, PixelFilter, Strategy, range};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 
+/// The noise limit when it is switched on.
+const NOISE_AT_FIRST: f64 = 0.01;
+
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     widgets::group(ui, "Camera", |ui| camera(ui, desk));
     widgets::group(ui, "Bookmarks", |ui| bookmarks(ui, desk));
     widgets::group(ui, "View", |ui| view(ui, desk));
     widgets::group(ui, "Picture", |ui| picture(ui, desk));
+    widgets::group(ui, "Accuracy", |ui| accuracy(ui, desk));
     widgets::group(ui, "Sampling", |ui| sampling(ui, desk));
 }
 
@@ -287,6 +291,61 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
             desk.edits.note("Time limit", "Time limit");
         }
     }
+}
+
+fn accuracy(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let mut is_limited = desk.document.render.noise.is_some();
+    let help = "Stops rendering when the picture's estimated relative error is small enough.";
+    let name = Name::new("Noise limit", "Noise limit", help);
+    let response = widgets::row(ui, name, |ui| ui.checkbox(&mut is_limited, ""));
+    if response.changed {
+        desk.document.render.noise = is_limited.then_some(NOISE_AT_FIRST);
+    }
+    desk.edited(response, "Noise limit", |document| &mut document.render.noise);
+    if let Some(noise) = &mut desk.document.render.noise {
+        let mut noise_percent = 100.0 * *noise;
+        let style = NumberStyle {
+            range: 100.0 * range::NOISE.start()..=100.0 * range::NOISE.end(),
+            bar: None,
+            unit: " %",
+            speed: 0.01,
+            decimals: 3,
+        };
+        let help = "Standard error of a pixel, root mean square over the picture, relative to its mean luminance.";
+        let name = Name::new("Noise to reach", "Error", help);
+        let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut noise_percent, &style));
+        if response.changed {
+            *noise = 0.01 * noise_percent;
+            desk.edits.note("Noise limit", "Noise limit");
+        }
+    }
+    let min_samples = &mut desk.document.render.min_samples;
+    let help = "Samples that every pixel has before its error is believed: with fewer a small light may be missed.";
+    let name = Name::new("Minimum samples", "At least", help);
+    let style = whole(range::MIN_SAMPLES, " samples");
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, min_samples, &style));
+    desk.edited(response, "Minimum samples", |document| &mut document.render.min_samples);
+    let adaptive = &mut desk.document.render.adaptive;
+    let choices = [
+        (
+            None,
+            "With a noise limit",
+            "Adaptive where a noise is to be reached, else even.",
+        ),
+        (
+            Some(true),
+            "On",
+            "Samples go where the error is; the number of samples is the most of a pixel.",
+        ),
+        (Some(false), "Off", "Every pixel has the same number of samples."),
+    ];
+    let name = Name::new(
+        "Adaptive sampling",
+        "Adaptive",
+        "Parts of the picture that are exact rest.",
+    );
+    let response = widgets::row(ui, name, |ui| widgets::choice(ui, "adaptive", adaptive, &choices));
+    desk.edited(response, "Adaptive sampling", |document| &mut document.render.adaptive);
 }
 
 fn sampling(ui: &mut Ui, desk: &mut Desk<'_>) {

@@ -3,6 +3,7 @@
 mod area_lights;
 pub(super) mod camera;
 pub(super) mod check;
+pub(super) mod convergence;
 pub(super) mod curve;
 pub(super) mod effects;
 pub(super) mod lighting;
@@ -19,6 +20,7 @@ use super::edits::Edits;
 use super::library::Library;
 use super::widgets::RowResponse;
 use crate::document::{Document, MaterialSettings};
+use crate::render::display::Shown;
 use crate::render::worker::{Scene, Snapshot};
 
 /// What panels work on.
@@ -41,6 +43,8 @@ pub(super) struct PanelState {
     pub(super) thumbnail: lighting::Thumbnail,
     /// How large the picture is.
     pub(super) resolution: Resolution,
+    /// What of the render the viewport shows.
+    pub(super) shown: Shown,
     /// The curve editor's.
     pub(super) curve: curve::CurveState,
     /// The sample plots'.
