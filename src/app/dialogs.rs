@@ -43,8 +43,8 @@ impl Purpose {
     fn kind(self) -> (&'static str, &'static [&'static str]) {
         match self {
             Self::Open => (
-                "Projects, materials, models, environments",
-                &["json", "glb", "gltf", "hdr", "exr"],
+                "Projects, materials, models, environments, pictures with a document",
+                &["json", "glb", "gltf", "hdr", "exr", "png"],
             ),
             Self::SaveProject => ("Projects", &["json"]),
             Self::OpenModel => ("glTF models", &["glb", "gltf"]),

@@ -50,7 +50,7 @@ impl Files {
 enum FileKind {
     Model,
     Environment,
-    Json,
+    Document,
     Unknown,
 }
 
@@ -63,7 +63,7 @@ fn kind_of(path: &Path) -> FileKind {
     match ending.as_str() {
         "glb" | "gltf" => FileKind::Model,
         "hdr" | "exr" => FileKind::Environment,
-        "json" => FileKind::Json,
+        "json" | "png" => FileKind::Document,
         _ => FileKind::Unknown,
     }
 }
@@ -74,12 +74,13 @@ impl App {
         match kind_of(&path) {
             FileKind::Model => self.worker.open_model(ModelSource::File(path)),
             FileKind::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
-            FileKind::Json => self.files.disk.read(move || {
+            FileKind::Document => self.files.disk.read(move || {
                 let opened = file::open(&path);
                 Done::Read(path, opened)
             }),
             FileKind::Unknown => {
-                let text = "opened are models (.glb, .gltf), environments (.hdr, .exr), materials and projects (.json)";
+                let text = "opened are models (.glb, .gltf), environments (.hdr, .exr), materials and projects (.json), \
+                            and pictures saved here (.png)";
                 self.say(
                     Level::Error,
                     format!("{}: not a kind of file that can be opened; {text}", path.display()),
@@ -130,6 +131,11 @@ impl App {
                 self.recent.add(&path);
                 self.count_as_start(is_at_start && is_saved);
             }
+            Ok(Opened::Picture(loaded)) => {
+                let is_saved = self.edits.is_saved(&self.document);
+                self.adopt_picture(*loaded, &path);
+                self.count_as_start(is_at_start && is_saved);
+            }
             Ok(Opened::Document(loaded)) => self.unless_unsaved(ctx, Then::Adopt(loaded, path)),
             Err(error) => self.say(Level::Error, error.to_string()),
         }
@@ -154,6 +160,16 @@ impl App {
         self.edits.note(format!("Open {}", self.files.project_name()), "");
         self.edits.record(&self.document, false);
         self.edits.mark_saved();
+    }
+
+    /// Goes on with the document in a picture: an edit like others, so that saving does not replace the picture.
+    fn adopt_picture(&mut self, loaded: Loaded<Document>, path: &Path) {
+        self.say_all(loaded.warnings);
+        self.recent.add(path);
+        self.document = loaded.value;
+        self.panels.slot = 0;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        self.edits.note(format!("Open {name}"), "");
     }
 
     /// Goes on with the default document.
@@ -246,9 +262,8 @@ impl App {
             self.say(Level::Warning, "there is no picture to save yet");
             return;
         };
-        let view = self.document.view;
         self.files.disk.write_beside(move || {
-            output::write(&path, &picture.image, &view).map_err(|error| error.to_string())?;
+            output::write(&path, &picture.image, &picture.document).map_err(|error| error.to_string())?;
             let size = format!("{} × {}", picture.width, picture.height);
             Ok(format!(
                 "saved {} ({size}, {} samples a pixel)",

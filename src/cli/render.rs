@@ -160,12 +160,12 @@ fn open(path: &Path, document: &mut Document, session: &mut Session) -> anyhow::
             document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
         }
         "hdr" | "exr" => document.lighting.environment = EnvironmentSource::File(path.to_owned()),
-        "json" => match file::open(path)? {
+        "json" | "png" => match file::open(path)? {
             Opened::Material(material) => {
                 warn(&material.warnings);
                 document.materials = vec![material.value];
             }
-            Opened::Document(project) => {
+            Opened::Document(project) | Opened::Picture(project) => {
                 warn(&project.warnings);
                 *document = project.value;
             }
@@ -175,8 +175,8 @@ fn open(path: &Path, document: &mut Document, session: &mut Session) -> anyhow::
             path.display()
         ),
         _ => bail!(
-            "{}: neither a model (.glb, .gltf) nor an environment (.hdr, .exr), material or project (.json); give one \
-             of these",
+            "{}: neither a model (.glb, .gltf) nor an environment (.hdr, .exr), material or project (.json), or a \
+             picture saved here (.png); give one of these",
             path.display()
         ),
     }
@@ -203,7 +203,7 @@ fn render(
     let progress = step_to_end(&mut session, engine, document)?;
     let image = session.image()?;
     for path in outputs {
-        output::write(path, &image, &document.view)?;
+        output::write(path, &image, document)?;
         eprintln!("wrote {}", path.display());
     }
     if let Some(path) = report {

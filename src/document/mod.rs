@@ -12,6 +12,7 @@ pub mod match_look;
 mod material;
 pub mod measured_look;
 pub mod parameter;
+pub mod picture;
 pub mod plan;
 pub mod preset;
 pub mod project;

@@ -4,13 +4,14 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
+use image::Rgb;
 use image::codecs::hdr::HdrEncoder;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder as _, Rgb};
 
 use super::display::display;
 use crate::analysis::film::Image;
-use crate::document::ViewSettings;
+use crate::document::picture::png_bytes;
+use crate::document::project::document_text;
+use crate::document::Document;
 
 /// Why a picture can't be written.
 #[derive(Debug, thiserror::Error)]
@@ -60,13 +61,14 @@ pub fn format_of(path: &Path) -> Result<Format, OutputError> {
     }
 }
 
-/// Writes a picture in the format of the file's ending.
+/// Writes a picture of a document in the format of the file's ending. A .png has the document's exposure and tone curve,
+/// and the document itself inside.
 ///
 /// # Errors
 /// [`OutputError`] naming the file.
-pub fn write(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), OutputError> {
+pub fn write(path: &Path, image: &Image, document: &Document) -> Result<(), OutputError> {
     let written = match format_of(path)? {
-        Format::Png => write_png(path, image, view),
+        Format::Png => write_png(path, image, document),
         Format::Exr => write_exr(path, image),
         Format::Hdr => write_hdr(path, image),
     };
@@ -76,18 +78,14 @@ pub fn write(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), Outp
     })
 }
 
-fn write_png(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), String> {
-    let pixels = display(image, view);
-    // Not the encoder's fastest setting: what noise there is makes files half as large again with it.
-    let (compression, filter) = (CompressionType::Default, FilterType::Adaptive);
-    write_buffered(path, |file| {
-        PngEncoder::new_with_quality(file, compression, filter).write_image(
-            &pixels,
-            image.width,
-            image.height,
-            ExtendedColorType::Rgba8,
-        )
-    })
+fn write_png(path: &Path, image: &Image, document: &Document) -> Result<(), String> {
+    let text = document_text(path, document);
+    if let Err(error) = &text {
+        log::warn!("the picture is saved without its document: {error}");
+    }
+    let pixels = display(image, &document.view);
+    let bytes = png_bytes([image.width, image.height], &pixels, text.as_deref().ok())?;
+    std::fs::write(path, bytes).map_err(|error| error.to_string())
 }
 
 /// Writes a file through a buffer, and notices where the last of it does not fit on the disc.

@@ -95,6 +95,8 @@ pub struct Picture {
     pub reduction: u32,
     /// Samples a pixel in it.
     pub samples_per_pixel: u32,
+    /// What it shows, with the size at the full resolution.
+    pub document: Arc<Document>,
 }
 
 /// What is being rendered.

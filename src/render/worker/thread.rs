@@ -448,6 +448,7 @@ impl State<'_> {
             revision: stage.submission.revision,
             reduction: stage.reduction,
             samples_per_pixel,
+            document: Arc::new(stage.submission.document.clone()),
         }));
         self.tell(Activity::Rendering);
     }
