@@ -120,10 +120,9 @@ fn camera_background(direction: vec3f, rays: u32) -> PathResult {
 
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     let state = random_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
-    let offset = filter_offset(globals.camera.filter_kind, random_pair(state, 0u));
     var camera = globals.camera;
     camera.lens_radius = select(0.0, camera.lens_radius, PLAN_LENS == 1u);
-    var ray = camera_ray(camera, vec2f(pixel) + 0.5 + offset, globals.image_size, random_pair(state, 1u));
+    var ray = pixel_ray(camera, pixel, globals.image_size, state);
     var throughput = vec3f(1.0);
     var radiance = vec3f(0.0);
     var lobe_density = 0.0;

@@ -5,6 +5,7 @@
 
 pub mod chi_square;
 pub mod error;
+pub mod features;
 pub mod film;
 pub mod fit;
 pub mod histogram;

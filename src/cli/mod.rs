@@ -21,7 +21,7 @@ use crate::render::EngineChoice;
 /// Glossmith: a material editor around the geometric lobe.
 ///
 /// Without a subcommand the editor opens, with the files given: models (.glb, .gltf), environments (.hdr, .exr),
-/// materials (.json).
+/// materials and projects (.json), pictures saved here (.png).
 #[derive(Debug, Parser)]
 #[command(version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
 pub struct Arguments {

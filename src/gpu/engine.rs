@@ -7,6 +7,7 @@ use super::device::{GpuDevice, GpuError};
 use super::layout::Globals;
 use super::pipeline::Pipelines;
 use super::resources::Resources;
+use crate::analysis::features::{FeatureSums, Features};
 use crate::analysis::film::Film;
 use crate::document::job::Job;
 
@@ -14,6 +15,8 @@ use crate::document::job::Job;
 const SLICE: Duration = Duration::from_millis(30);
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
+/// Pixels of a dispatch that looks for features: one ray each.
+const FEATURE_PIXELS: u32 = 1 << 17;
 /// Rows and columns of a workgroup.
 const WORKGROUP: u32 = 8;
 
@@ -22,6 +25,8 @@ const WORKGROUP: u32 = 8;
 pub struct GpuEngine {
     gpu: GpuDevice,
     pipelines: Pipelines,
+    /// Compiled at the first use.
+    feature_pipelines: Option<Pipelines>,
     resources: Option<Resources>,
     film: Film,
     /// Completed samples a pixel, and the first row that has not had the samples of the pass in progress.
@@ -45,6 +50,7 @@ impl GpuEngine {
         Ok(Self {
             gpu,
             pipelines,
+            feature_pipelines: None,
             resources: None,
             film: Film::default(),
             samples: 0,
@@ -110,28 +116,15 @@ impl GpuEngine {
             .next_multiple_of(WORKGROUP)
             .max(WORKGROUP)
             .min(height - self.next_row);
-        let cells = [job.environment.cells_width, job.environment.cells_height];
-        let globals = Globals {
-            tile_origin: [0, self.next_row],
-            tile_size: [width, rows],
+        let tile = Tile {
+            first_row: self.next_row,
+            rows,
             first_sample: self.samples,
-            sample_count: self.pass_samples,
-            ..Globals::new(&job.settings, job.geometry.bvh.nodes.len(), cells)
+            samples: self.pass_samples,
         };
-        self.gpu
-            .queue
-            .write_buffer(&resources.globals, 0, bytemuck::bytes_of(&globals));
         let pipeline = self.pipelines.get(&self.gpu, job.plan)?;
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &resources.bind_group, &[]);
-            pass.dispatch_workgroups(width.div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP), 1);
-        }
         let begun = Instant::now();
-        self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.wait()?;
+        dispatch(&self.gpu, resources, pipeline, tile)?;
         let seconds = begun.elapsed().as_secs_f64().max(1e-6);
         self.samples_per_second = f64::from(width * rows * self.pass_samples) / seconds;
         self.next_row += rows;
@@ -179,8 +172,91 @@ impl GpuEngine {
         Ok(&self.film)
     }
 
+    /// What the camera sees first, over the first `samples` of each pixel; `None` without a job.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
+        // The sums lend their place.
+        self.flush()?;
+        let Some(resources) = &self.resources else {
+            return Ok(None);
+        };
+        let pipelines = match self.feature_pipelines.take() {
+            Some(pipelines) => pipelines,
+            None => self.pipelines.beside(&self.gpu, "features")?,
+        };
+        let pipelines = self.feature_pipelines.insert(pipelines);
+        let job = resources.job();
+        let [width, height] = job.settings.image_size;
+        let pipeline = pipelines.get(&self.gpu, job.plan)?;
+        let rows = (FEATURE_PIXELS / width).next_multiple_of(WORKGROUP).max(WORKGROUP);
+        for first_sample in 0..samples {
+            for first_row in (0..height).step_by(rows as usize) {
+                let tile = Tile {
+                    first_row,
+                    rows: rows.min(height - first_row),
+                    first_sample,
+                    samples: 1,
+                };
+                dispatch(&self.gpu, resources, pipeline, tile)?;
+            }
+        }
+        let pixels = self.film.color.len();
+        let albedo_hits: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
+        let normal_depth: Vec<[f32; 4]> = self.gpu.read(&resources.sums[1], pixels)?;
+        resources.clear_sums(&self.gpu);
+        let both = albedo_hits.into_iter().zip(normal_depth);
+        let sums: Vec<_> = both
+            .map(|(albedo_hits, normal_depth)| FeatureSums {
+                albedo_hits,
+                normal_depth,
+            })
+            .collect();
+        let units = job.geometry.world_units_per_unit;
+        Ok(Some(Features::from_sums([width, height], &sums, samples, units)))
+    }
+
     /// Completed samples a pixel.
     pub fn samples_per_pixel(&self) -> u32 {
         self.samples
     }
+}
+
+/// What a dispatch does: some samples of some rows.
+struct Tile {
+    first_row: u32,
+    rows: u32,
+    first_sample: u32,
+    samples: u32,
+}
+
+/// Runs a pass over a tile, and waits for its end.
+fn dispatch(
+    gpu: &GpuDevice,
+    resources: &Resources,
+    pipeline: &wgpu::ComputePipeline,
+    tile: Tile,
+) -> Result<(), GpuError> {
+    let job = resources.job();
+    let width = job.settings.image_size[0];
+    let cells = [job.environment.cells_width, job.environment.cells_height];
+    let globals = Globals {
+        tile_origin: [0, tile.first_row],
+        tile_size: [width, tile.rows],
+        first_sample: tile.first_sample,
+        sample_count: tile.samples,
+        ..Globals::new(&job.settings, job.geometry.bvh.nodes.len(), cells)
+    };
+    gpu.queue
+        .write_buffer(&resources.globals, 0, bytemuck::bytes_of(&globals));
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&Default::default());
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &resources.bind_group, &[]);
+        pass.dispatch_workgroups(width.div_ceil(WORKGROUP), tile.rows.div_ceil(WORKGROUP), 1);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait()
 }

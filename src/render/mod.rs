@@ -18,4 +18,5 @@ pub mod worker;
 
 pub use assets::Assets;
 pub use engine::{EngineChoice, EngineInfo, Sampler};
+pub use output::Layers;
 pub use session::{Progress, Session, SessionError};

@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use super::assets::Assets;
 use super::compile::Compiler;
 use super::engine::{Engine, EngineChoice, EngineInfo, cpu};
+use super::output::Layers;
 use crate::analysis::film::{Film, Image};
 use crate::document::Document;
 use crate::document::change::Change;
@@ -13,6 +14,9 @@ use crate::document::job::Job;
 use crate::gpu::GpuError;
 use crate::scene::ModelError;
 use crate::scene::environment::EnvironmentError;
+
+/// Samples of a pixel over which albedo, normal and depth are averaged.
+const FEATURE_SAMPLES: u32 = 32;
 
 /// What a session can't do.
 #[derive(Debug, thiserror::Error)]
@@ -172,6 +176,21 @@ impl Session {
     /// If the GPU fails.
     pub fn image(&mut self) -> Result<Image, SessionError> {
         Ok(self.film()?.image())
+    }
+
+    /// The mean picture with what is known beside it about each pixel.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn layers(&mut self) -> Result<Layers, SessionError> {
+        let features = self.engine.features(FEATURE_SAMPLES)?.unwrap_or_default();
+        let film = self.engine.film()?;
+        Ok(Layers {
+            image: film.image(),
+            features,
+            samples: film.statistics.iter().map(|statistics| statistics[1] as f32).collect(),
+            variance: film.variance_of_mean().into_iter().map(|variance| variance as f32).collect(),
+        })
     }
 
     /// Goes on with the processor after the GPU failed, with the same document from its start.
