@@ -5,6 +5,8 @@
 mod check;
 #[path = "suite/cli_errors.rs"]
 mod cli_errors;
+#[path = "suite/cli_pictures.rs"]
+mod cli_pictures;
 #[path = "suite/cli_render.rs"]
 mod cli_render;
 #[path = "suite/cli_scatter.rs"]

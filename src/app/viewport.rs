@@ -319,7 +319,8 @@ fn drop_hint(ui: &Ui, area: Rect) {
         egui::StrokeKind::Inside,
     );
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    let text = "Drop a model (.glb, .gltf), an environment (.hdr, .exr), a material or project (.json), a picture (.png)";
+    let text =
+        "Drop a model (.glb, .gltf), an environment (.hdr, .exr), a material or project (.json), a picture (.png)";
     ui.painter()
         .text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
 }

@@ -11,6 +11,7 @@ mod names;
 mod parse;
 mod render;
 mod scatter;
+mod turntable;
 
 use std::path::PathBuf;
 
@@ -42,6 +43,8 @@ const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, ren
 pub enum Command {
     /// Render a picture.
     Render(Box<render::RenderArguments>),
+    /// Render a turn about the model as numbered pictures.
+    Turntable(Box<turntable::TurntableArguments>),
     /// Prove on this machine that the renderer is right.
     Check(check::CheckArguments),
     /// Draw samples of a lobe, as the renderer draws them.
@@ -60,6 +63,7 @@ impl Command {
     pub fn run(self) -> anyhow::Result<()> {
         match self {
             Command::Render(arguments) => render::run(&arguments),
+            Command::Turntable(arguments) => turntable::run(&arguments),
             Command::Check(arguments) => check::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),

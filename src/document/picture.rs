@@ -180,7 +180,13 @@ mod tests {
 
     #[test]
     fn a_text_of_the_right_name_and_wrong_contents_is_an_error() {
-        for text in ["", "{", "[]", "{\"glossmith\": 1, \"material\": {}}", "{\"glossmith-document\": \"x\"}"] {
+        for text in [
+            "",
+            "{",
+            "[]",
+            "{\"glossmith\": 1, \"material\": {}}",
+            "{\"glossmith-document\": \"x\"}",
+        ] {
             let bytes = png_bytes(SIZE, &[0; 60], Some(text)).expect("the right size");
             let error = parse(Path::new("b.png"), &bytes).expect_err("no document");
             assert!(error.to_string().starts_with("b.png: "), "{error}");

@@ -14,6 +14,7 @@ pub mod priority;
 pub mod samples;
 mod session;
 pub mod thumbnails;
+pub mod turntable;
 pub mod worker;
 
 pub use assets::Assets;

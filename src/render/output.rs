@@ -10,9 +10,9 @@ use image::codecs::hdr::HdrEncoder;
 use super::display::display;
 use crate::analysis::features::Features;
 use crate::analysis::film::Image;
+use crate::document::Document;
 use crate::document::picture::png_bytes;
 use crate::document::project::document_text;
-use crate::document::Document;
 
 /// Why a picture can't be written.
 #[derive(Debug, thiserror::Error)]
@@ -134,13 +134,19 @@ pub fn write_layers(path: &Path, layers: &Layers) -> Result<(), OutputError> {
 }
 
 fn write_exr_layers(path: &Path, layers: &Layers) -> Result<(), String> {
-    use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage as _};
+    use exr::prelude::{
+        AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage as _,
+    };
     let image = &layers.image;
     let features = &layers.features;
     let channel = |name: &str, values: Vec<f32>| AnyChannel::new(name, FlatSamples::F32(values));
     let color = (0..4).map(|i| image.pixels.iter().map(|pixel| pixel[i]).collect());
     let vector = |values: &[[f32; 3]], i: usize| values.iter().map(|value| value[i]).collect::<Vec<f32>>();
-    let mut channels: Vec<_> = ["R", "G", "B", "A"].into_iter().zip(color).map(|(name, of)| channel(name, of)).collect();
+    let mut channels: Vec<_> = ["R", "G", "B", "A"]
+        .into_iter()
+        .zip(color)
+        .map(|(name, of)| channel(name, of))
+        .collect();
     for (i, (color, axis)) in ["R", "G", "B"].into_iter().zip(["X", "Y", "Z"]).enumerate() {
         channels.push(channel(&format!("albedo.{color}"), vector(&features.albedo, i)));
         channels.push(channel(&format!("normal.{axis}"), vector(&features.normal, i)));
@@ -152,7 +158,10 @@ fn write_exr_layers(path: &Path, layers: &Layers) -> Result<(), String> {
     let attributes = LayerAttributes::default();
     let channels = AnyChannels::sort(channels.into_iter().collect());
     let layer = Layer::new(size, attributes, Encoding::FAST_LOSSLESS, channels);
-    Image::from_layer(layer).write().to_file(path).map_err(|error| error.to_string())
+    Image::from_layer(layer)
+        .write()
+        .to_file(path)
+        .map_err(|error| error.to_string())
 }
 
 fn write_hdr(path: &Path, image: &Image) -> Result<(), String> {

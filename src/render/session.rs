@@ -189,7 +189,11 @@ impl Session {
             image: film.image(),
             features,
             samples: film.statistics.iter().map(|statistics| statistics[1] as f32).collect(),
-            variance: film.variance_of_mean().into_iter().map(|variance| variance as f32).collect(),
+            variance: film
+                .variance_of_mean()
+                .into_iter()
+                .map(|variance| variance as f32)
+                .collect(),
         })
     }
 
