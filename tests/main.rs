@@ -13,6 +13,8 @@ mod cli_render;
 mod cli_scatter;
 #[path = "suite/cli_support.rs"]
 mod cli_support;
+#[path = "suite/compare.rs"]
+mod compare;
 #[path = "suite/density.rs"]
 mod density;
 #[path = "suite/docs.rs"]

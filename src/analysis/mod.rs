@@ -4,6 +4,7 @@
 //! The tests are f64 and take plain directions and slices, so that samples of either engine can be tested.
 
 pub mod chi_square;
+pub mod difference;
 pub mod error;
 pub mod features;
 pub mod film;

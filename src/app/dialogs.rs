@@ -24,6 +24,7 @@ pub(super) enum Purpose {
     OpenMeasured,
     SaveMaterial,
     SavePicture,
+    SaveLayers,
 }
 
 impl Purpose {
@@ -37,6 +38,7 @@ impl Purpose {
             Self::OpenMeasured => "Open a measured material",
             Self::SaveMaterial => "Save the material",
             Self::SavePicture => "Save the picture",
+            Self::SaveLayers => "Save the picture with layers",
         }
     }
 
@@ -52,11 +54,15 @@ impl Purpose {
             Self::OpenMaterial | Self::SaveMaterial => ("Materials", &["json"]),
             Self::OpenMeasured => ("Measured materials (MERL)", &["binary"]),
             Self::SavePicture => ("Pictures", &["png", "exr", "hdr"]),
+            Self::SaveLayers => ("OpenEXR pictures", &["exr"]),
         }
     }
 
     fn is_saving(self) -> bool {
-        matches!(self, Self::SaveProject | Self::SaveMaterial | Self::SavePicture)
+        matches!(
+            self,
+            Self::SaveProject | Self::SaveMaterial | Self::SavePicture | Self::SaveLayers
+        )
     }
 }
 

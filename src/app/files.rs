@@ -9,7 +9,7 @@ use super::disk::{Disk, Done, words};
 use super::unsaved::Then;
 use crate::document::file::Opened;
 use crate::document::{Document, FileError, Loaded, file, preset, save_document, save_material};
-use crate::render::output;
+use crate::render::output::{self, Layers};
 use crate::render::worker::Level;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
@@ -110,6 +110,11 @@ impl App {
                 Done::ChangedLibrary(changed) => {
                     has_failed |= changed.is_err();
                     self.take_library(changed);
+                }
+                Done::ListedPins(listed) => self.take_snapshots(listed),
+                Done::ChangedPins(changed) => {
+                    has_failed |= changed.is_err();
+                    self.take_snapshots(changed);
                 }
                 Done::Wrote(result) => {
                     has_failed |= result.is_err();
@@ -214,6 +219,7 @@ impl App {
             Command::OpenMaterial => (Purpose::OpenMaterial, String::new()),
             Command::OpenMeasured => (Purpose::OpenMeasured, String::new()),
             Command::SaveMaterial => (Purpose::SaveMaterial, material_file()),
+            Command::SaveLayers => (Purpose::SaveLayers, format!("{}.exr", self.files.project_name())),
             Command::SavePicture => (Purpose::SavePicture, format!("{}.png", self.files.project_name())),
             // The others are done where this is called.
             _ => return,
@@ -230,6 +236,7 @@ impl App {
             Purpose::OpenMeasured => self.panels.lobe.measured = Some(path),
             Purpose::SaveProject => self.save_project(with_ending(path, "json")),
             Purpose::SaveMaterial => self.save_material(with_ending(path, "json")),
+            Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
             Purpose::SavePicture => self.save_picture(with_ending(path, "png")),
         }
     }
@@ -270,6 +277,14 @@ impl App {
                 path.display(),
                 picture.samples_per_pixel
             ))
+        });
+    }
+
+    /// Writes the layers that the renderer made.
+    pub(super) fn write_layers(&mut self, path: PathBuf, layers: Box<Layers>) {
+        self.files.disk.write_beside(move || {
+            output::write_layers(&path, &layers).map_err(|error| error.to_string())?;
+            Ok(format!("saved {} with layers", path.display()))
         });
     }
 

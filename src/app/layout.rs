@@ -30,6 +30,8 @@ pub enum Pane {
     Camera,
     /// Materials to start from.
     Presets,
+    /// Pinned states.
+    Snapshots,
     /// What was said.
     Log,
     /// The proof on this machine.
@@ -38,7 +40,7 @@ pub enum Pane {
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Viewport,
         Self::Material,
         Self::Curve,
@@ -47,6 +49,7 @@ impl Pane {
         Self::Lighting,
         Self::Camera,
         Self::Presets,
+        Self::Snapshots,
         Self::Log,
         Self::Check,
     ];
@@ -62,6 +65,7 @@ impl Pane {
             Self::Lighting => "Light",
             Self::Camera => "Camera & picture",
             Self::Presets => "Presets",
+            Self::Snapshots => "Snapshots",
             Self::Log => "Log",
             Self::Check => "Check",
         }
@@ -77,7 +81,9 @@ pub(super) fn default_layout() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let mut pane = |pane| tiles.insert_pane(pane);
     let (viewport, material) = (pane(Pane::Viewport), pane(Pane::Material));
-    let upper_left = [Pane::Presets, Pane::Log, Pane::Check].map(&mut pane).to_vec();
+    let upper_left = [Pane::Presets, Pane::Snapshots, Pane::Log, Pane::Check]
+        .map(&mut pane)
+        .to_vec();
     let lower_left = [Pane::Lighting, Pane::Camera].map(&mut pane).to_vec();
     let lower_right = [Pane::Curve, Pane::Samples, Pane::Lobe].map(&mut pane).to_vec();
     let upper_left = tiles.insert_tab_tile(upper_left);
@@ -134,6 +140,7 @@ impl Behavior<Pane> for Panes<'_, '_> {
                     Pane::Lighting => panels::lighting::show(ui, self.desk),
                     Pane::Camera => panels::camera::show(ui, self.desk),
                     Pane::Presets => panels::presets::show(ui, self.desk),
+                    Pane::Snapshots => panels::snapshots::show(ui, self.desk),
                     Pane::Log => panels::log::show(ui, self.desk),
                     Pane::Check => panels::check::show(ui, self.desk),
                     Pane::Viewport => {}

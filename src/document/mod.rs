@@ -19,6 +19,7 @@ pub mod project;
 pub mod recovery;
 mod registry;
 mod settings;
+pub mod snapshots;
 pub mod turntable;
 
 use serde::{Deserialize, Serialize};

@@ -69,11 +69,19 @@ impl Session {
     /// # Errors
     /// [`GpuError`] where a GPU was asked for and there is none that works; `auto` and `cpu` always work.
     pub fn open(choice: EngineChoice) -> Result<Self, SessionError> {
+        Self::open_with(choice, Assets::default())
+    }
+
+    /// The same with models and environments that it may share with other sessions.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         let (engine, info) = Engine::open(choice)?;
         Ok(Self {
             engine,
             info,
-            assets: Assets::default(),
+            assets,
             compiler: Compiler::default(),
             document: None,
             job: None,
@@ -87,8 +95,8 @@ impl Session {
     }
 
     /// Models and environments, loaded and kept.
-    pub fn assets(&mut self) -> &mut Assets {
-        &mut self.assets
+    pub fn assets(&self) -> &Assets {
+        &self.assets
     }
 
     /// Forgets what was rendered, so that the next submission starts over even with the same document.
@@ -118,7 +126,7 @@ impl Session {
             None => Change::everything(),
         };
         if change.restarts() {
-            let job = Arc::new(self.compiler.compile(document, &mut self.assets)?);
+            let job = Arc::new(self.compiler.compile(document, &self.assets)?);
             self.engine.submit(job.clone())?;
             self.job = Some(job);
             self.render_time = Duration::ZERO;
