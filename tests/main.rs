@@ -5,12 +5,16 @@
 mod check;
 #[path = "suite/cli_errors.rs"]
 mod cli_errors;
+#[path = "suite/cli_pictures.rs"]
+mod cli_pictures;
 #[path = "suite/cli_render.rs"]
 mod cli_render;
 #[path = "suite/cli_scatter.rs"]
 mod cli_scatter;
 #[path = "suite/cli_support.rs"]
 mod cli_support;
+#[path = "suite/compare.rs"]
+mod compare;
 #[path = "suite/density.rs"]
 mod density;
 #[path = "suite/docs.rs"]

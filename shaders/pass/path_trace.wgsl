@@ -5,6 +5,7 @@
 #import "scene/environment"
 #import "scene/light"
 #import "scene/surface"
+#import "scene/visibility"
 
 const STRATEGY_LOBE: u32 = 0u;
 const STRATEGY_LIGHT: u32 = 1u;
@@ -16,10 +17,6 @@ const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
 // The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
 const BELOW_DIMENSION: u32 = 4096u;
-// The first of the pairs of numbers that choose whether a surface stops a ray, one a bounce.
-const OPACITY_DIMENSION: u32 = 8192u;
-// Surfaces that a ray may go straight on through.
-const PASSES_MAX: u32 = 256u;
 // Bounces before Russian roulette.
 const ROULETTE_START: u32 = 3u;
 // Beyond it the square would overflow: dropped and counted.
@@ -131,59 +128,6 @@ fn direct_light(
     return value * light.radiance * (share / light.density);
 }
 
-// The share of light that reaches the origin of a ray from so far.
-fn transmittance(start: vec3f, direction: vec3f, distance: f32, rays: ptr<function, u32>) -> f32 {
-    if PLAN_ALPHA == 0u {
-        *rays += 1u;
-        return select(0.0, 1.0, trace(start, direction, distance, true).triangle == NO_HIT);
-    }
-    var origin = start;
-    var share = 1.0;
-    var left = distance;
-    for (var i = 0u; i < PASSES_MAX; i++) {
-        *rays += 1u;
-        let hit = trace(origin, direction, left, false);
-        if hit.triangle == NO_HIT {
-            return share;
-        }
-        share *= 1.0 - hit_opacity(hit);
-        if share <= 0.0 {
-            break;
-        }
-        left -= hit.t;
-        origin = ray_origin(surface_at(hit, direction), direction, true);
-    }
-    return 0.0;
-}
-
-// The hit that stops a ray, its t the distance from the ray's origin.
-fn stop(ray: Ray, state: RandomState, bounce: u32, rays: ptr<function, u32>) -> Hit {
-    if PLAN_ALPHA == 0u {
-        *rays += 1u;
-        return trace(ray.origin, ray.direction, 1e30, false);
-    }
-    var origin = ray.origin;
-    var xi = random_pair(state, OPACITY_DIMENSION + bounce).x;
-    var distance = 0.0;
-    for (var i = 0u; i < PASSES_MAX; i++) {
-        *rays += 1u;
-        var hit = trace(origin, ray.direction, 1e30, false);
-        if hit.triangle == NO_HIT {
-            return hit;
-        }
-        distance += hit.t;
-        hit.t = distance;
-        let opacity = hit_opacity(hit);
-        if xi < opacity {
-            return hit;
-        }
-        // Uniform again, given that the surface did not stop the ray.
-        xi = (xi - opacity) / max(1.0 - opacity, 1e-20);
-        origin = ray_origin(surface_at(hit, ray.direction), ray.direction, true);
-    }
-    return Hit(0.0, NO_HIT, 0.0, 0.0);
-}
-
 // True where it is proven that nothing lies ahead: outside a convex body.
 fn meets_nothing(point: SurfacePoint, wi: vec3f) -> bool {
     return PLAN_INTERREFLECTION == 0u && !point.surface.is_inside && dot(point.surface.normal, wi) > 0.0;
@@ -199,10 +143,9 @@ fn camera_background(direction: vec3f, rays: u32) -> PathResult {
 
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     let state = path_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
-    let offset = filter_offset(globals.camera.filter_kind, random_pair(state, 0u));
     var camera = globals.camera;
     camera.lens_radius = select(0.0, camera.lens_radius, PLAN_LENS == 1u);
-    var ray = camera_ray(camera, vec2f(pixel) + 0.5 + offset, globals.image_size, random_pair(state, 1u));
+    var ray = pixel_ray(camera, pixel, globals.image_size, state);
     var throughput = vec3f(1.0);
     var radiance = vec3f(0.0);
     var lobe_density = 0.0;
@@ -269,14 +212,11 @@ fn is_sound(color: vec3f) -> bool {
     return all(color >= vec3f(0.0)) && all(color <= vec3f(RADIANCE_MAX));
 }
 
-// Workgroups along a tile's side.
-const TILE_WORKGROUPS: u32 = 2u;
 
 @compute @workgroup_size(8, 8)
 fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) place: vec3u) {
     let tile = tiles[workgroup.x / (TILE_WORKGROUPS * TILE_WORKGROUPS)];
-    let quarter = vec2u(workgroup.x % TILE_WORKGROUPS, workgroup.x / TILE_WORKGROUPS % TILE_WORKGROUPS);
-    let pixel = tile.origin + 8u * quarter + place.xy;
+    let pixel = tile_pixel(tile, workgroup.x, place.xy);
     if any(pixel >= globals.image_size) {
         return;
     }

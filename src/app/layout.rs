@@ -32,6 +32,8 @@ pub enum Pane {
     Camera,
     /// Materials to start from.
     Presets,
+    /// Pinned states.
+    Snapshots,
     /// What was said.
     Log,
     /// The proof on this machine.
@@ -42,7 +44,7 @@ pub enum Pane {
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Viewport,
         Self::Material,
         Self::Curve,
@@ -52,6 +54,7 @@ impl Pane {
         Self::Lighting,
         Self::Camera,
         Self::Presets,
+        Self::Snapshots,
         Self::Log,
         Self::Check,
         Self::Effects,
@@ -69,6 +72,7 @@ impl Pane {
             Self::Lighting => "Light",
             Self::Camera => "Camera & picture",
             Self::Presets => "Presets",
+            Self::Snapshots => "Snapshots",
             Self::Log => "Log",
             Self::Check => "Check",
             Self::Effects => "Effects",
@@ -85,7 +89,9 @@ pub(super) fn default_layout() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let mut pane = |pane| tiles.insert_pane(pane);
     let (viewport, material) = (pane(Pane::Viewport), pane(Pane::Material));
-    let upper_left = [Pane::Presets, Pane::Log, Pane::Check].map(&mut pane).to_vec();
+    let upper_left = [Pane::Presets, Pane::Snapshots, Pane::Log, Pane::Check]
+        .map(&mut pane)
+        .to_vec();
     let lower_left = [Pane::Lighting, Pane::Camera, Pane::Effects].map(&mut pane).to_vec();
     let lower_right = [Pane::Curve, Pane::Samples, Pane::Lobe, Pane::Convergence].map(&mut pane);
     let upper_left = tiles.insert_tab_tile(upper_left);
@@ -143,6 +149,7 @@ impl Behavior<Pane> for Panes<'_, '_> {
                     Pane::Lighting => panels::lighting::show(ui, self.desk),
                     Pane::Camera => panels::camera::show(ui, self.desk),
                     Pane::Presets => panels::presets::show(ui, self.desk),
+                    Pane::Snapshots => panels::snapshots::show(ui, self.desk),
                     Pane::Log => panels::log::show(ui, self.desk),
                     Pane::Check => panels::check::show(ui, self.desk),
                     Pane::Effects => panels::effects::show(ui, self.desk),

@@ -6,6 +6,7 @@
 
 pub mod actions;
 mod autosave;
+pub mod compare;
 mod dialogs;
 mod disk;
 mod edits;
@@ -19,8 +20,10 @@ mod panels;
 mod recent;
 mod recovery_sheet;
 mod settings;
+pub mod snapshots;
 pub mod status;
 mod theme;
+mod turntable_sheet;
 mod unsaved;
 mod viewport;
 mod widgets;
@@ -43,6 +46,7 @@ pub use panels::Resolution;
 use panels::{Desk, PanelState};
 use recent::Recent;
 use status::FrameMeter;
+use turntable_sheet::TurntableSheet;
 use unsaved::Unsaved;
 use viewport::Viewport;
 
@@ -117,6 +121,7 @@ pub struct App {
     viewport: Viewport,
     dialogs: Dialogs,
     sheet: Sheet,
+    turntable: TurntableSheet,
     files: files::Files,
     recent: Recent,
     autosave: Autosave,
@@ -152,6 +157,7 @@ impl App {
             panels: PanelState {
                 resolution: options.resolution.unwrap_or(kept.resolution),
                 library: library::Library::new(options.data.as_ref().map(|data| data.join("materials")), options.cache),
+                snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
                 ..PanelState::default()
             },
             layout: kept.layout.unwrap_or_else(layout::default_layout),
@@ -159,6 +165,7 @@ impl App {
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),
             sheet: Sheet::None,
+            turntable: TurntableSheet::default(),
             files: files::Files::new(creation.egui_ctx.clone())?,
             recent: Recent::new(kept.recent),
             autosave: match options.data {
@@ -175,6 +182,7 @@ impl App {
             theme: kept.theme,
         };
         app.list_library();
+        app.list_snapshots();
         for path in options.files {
             app.awaited += usize::from(app.open(path));
         }
@@ -248,6 +256,10 @@ impl App {
                     self.edits.note("Change the environment", "");
                     self.count_as_start(is_start);
                 }
+                Event::LayersMade(path, layers) => {
+                    self.write_layers(path, layers);
+                    continue;
+                }
                 Event::OpenFailed(_, why) => self.say(Level::Error, why),
             }
             self.awaited = self.awaited.saturating_sub(1);
@@ -309,6 +321,9 @@ impl App {
                 self.edits.seal();
             }
             Action::ChangeLibrary(change) => self.change_library(change),
+            Action::ChangeSnapshots(change) => self.change_snapshots(change),
+            Action::UseSnapshot(path) => self.use_snapshot(&path),
+            Action::CompareWith(rival) => self.compare_with(rival),
             Action::LookFrom(yaw_deg, pitch_deg) => {
                 let camera = &mut self.document.camera;
                 (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
@@ -370,8 +385,22 @@ impl App {
                 self.panels.is_paused = !self.panels.is_paused;
                 self.worker.pause(self.panels.is_paused);
             }
-            Command::Reload => self.worker.reload(),
-            Command::Restart => self.worker.restart(),
+            Command::Reload => {
+                self.worker.reload();
+                self.restart_rival();
+            }
+            Command::Restart => {
+                self.worker.restart();
+                self.restart_rival();
+            }
+            Command::Compare => self.toggle_compare(),
+            Command::SwapCompared => self.swap_compared(),
+            Command::TakeCompared => self.take_compared(),
+            Command::Pin => {
+                self.change_snapshots(snapshots::PinChange::Add);
+                self.reveal(Pane::Snapshots);
+            }
+            Command::Turntable => self.open_turntable(),
             Command::Palette => {
                 self.sheet = Sheet::Palette {
                     search: String::new(),
@@ -416,15 +445,25 @@ impl App {
             .submitted
             .as_ref()
             .map_or(Change::everything(), |old| Change::between(old, &wanted));
+        let is_moving = is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
+        let pace = if is_moving { Pace::Moving } else { Pace::Still };
+        self.keep_up_rival(ctx, &wanted, pace);
         if change.is_none() {
             return;
         }
-        let is_moving = is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
-        self.revision = self
-            .worker
-            .submit(&wanted, if is_moving { Pace::Moving } else { Pace::Still });
+        self.revision = self.worker.submit(&wanted, pace);
         self.submitted = Some(wanted);
         self.submitted_at = Instant::now();
+    }
+
+    /// Small pictures of materials wait until the picture is there, and while something is being changed.
+    fn hold_thumbnails(&self, ctx: &egui::Context) {
+        let has_picture = self.worker.snapshot().picture.is_some();
+        let is_changing = ctx.input(|input| input.pointer.any_down()) || self.edits.is_in_flow();
+        self.panels.library.hold(!has_picture || is_changing);
+        if is_changing {
+            ctx.request_repaint_after(MOVING);
+        }
     }
 
     fn show(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
@@ -467,13 +506,15 @@ impl App {
         if let Some((purpose, path)) = self.dialogs.show(ui) {
             self.chosen(purpose, path);
         }
+        self.show_turntable(ui.ctx());
         self.show_recovery(ui.ctx());
         self.show_question(ui.ctx());
     }
 
     /// Whether something lies over the window that takes the keys.
     fn is_covered(&self) -> bool {
-        let is_asked = self.dialogs.is_open() || self.unsaved.is_open() || !self.leftovers.is_empty();
+        let is_asked =
+            self.dialogs.is_open() || self.turntable.is_open() || self.unsaved.is_open() || !self.leftovers.is_empty();
         is_asked || self.sheet != Sheet::None
     }
 
@@ -512,6 +553,7 @@ impl eframe::App for App {
             self.apply(&ctx, action);
         }
         self.record_and_submit(&ctx);
+        self.hold_thumbnails(&ctx);
         self.put_aside(&ctx);
         self.guard_close(&ctx);
         self.set_title(&ctx);

@@ -4,16 +4,16 @@
 //! and the wheel zoom, shift and left turns the light. As in Blender: shift and middle pans. A click selects the
 //! material of what was clicked.
 
+mod compare;
 mod header;
 mod legend;
 
-use std::sync::Arc;
-
 use egui::{
-    Color32, ColorImage, Image, Key, Modifiers, PointerButton, Pos2, Rect, Response, Sense, TextureHandle,
-    TextureOptions, Ui, Vec2, pos2, vec2,
+    Color32, ColorImage, Key, Modifiers, PointerButton, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui,
+    Vec2, pos2, vec2,
 };
 
+use super::compare::View;
 use super::icons::{self, Icon};
 use super::orbit::Orbit;
 use super::panels::{Desk, Resolution};
@@ -39,13 +39,58 @@ const SIDE_MAX_PX: u32 = 8192;
 /// The viewport's own state.
 #[derive(Default)]
 pub(super) struct Viewport {
-    texture: Option<TextureHandle>,
-    shown_serial: u64,
+    picture: Shown,
+    /// B's, where two are compared.
+    rival: Shown,
+    /// How B differs from A.
+    difference: Shown,
     /// Where the picture may be, points.
     area: Option<Rect>,
     pixels_per_point: f32,
     is_software: bool,
     id: Option<egui::Id>,
+}
+
+/// A texture, and what it shows.
+#[derive(Default)]
+struct Shown {
+    texture: Option<TextureHandle>,
+    key: Option<[u64; 2]>,
+}
+
+impl Shown {
+    /// Makes the texture show what the key stands for.
+    fn upload(&mut self, ui: &Ui, key: [u64; 2], image: impl FnOnce() -> ColorImage) {
+        if self.key == Some(key) {
+            return;
+        }
+        match &mut self.texture {
+            Some(texture) => texture.set(image(), TextureOptions::LINEAR),
+            None => self.texture = Some(ui.ctx().load_texture("picture", image(), TextureOptions::LINEAR)),
+        }
+        self.key = Some(key);
+    }
+
+    fn show(&self, ui: &Ui, clip: Rect, place: Rect) {
+        if let Some(texture) = &self.texture {
+            let painter = ui.painter_at(clip);
+            let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+            painter.image(texture.id(), place, whole, Color32::WHITE);
+        }
+    }
+
+    /// Paints a picture as far as `clip` shows it; `source` tells renderers apart whose serials may be the same.
+    fn paint(&mut self, ui: &Ui, clip: Rect, place: Rect, picture: &Picture, source: u64) {
+        self.upload(ui, [source, picture.serial], || {
+            let size = [picture.width as usize, picture.height as usize];
+            ColorImage::from_rgba_premultiplied(size, &picture.rgba)
+        });
+        let is_opaque = picture.image.pixels.first().is_none_or(|pixel| pixel[3] >= 1.0);
+        if !is_opaque {
+            checker(ui, clip.intersect(place));
+        }
+        self.show(ui, clip, place);
+    }
 }
 
 impl Viewport {
@@ -74,19 +119,37 @@ impl Viewport {
         let is_dark = ui.visuals().dark_mode;
         ui.painter().rect_filled(whole, 0.0, theme::surround(is_dark));
         let bar = Rect::from_min_size(whole.min, vec2(whole.width(), theme::BAR_HEIGHT));
-        let area = Rect::from_min_max(pos2(whole.left(), bar.bottom()), whole.max);
-        self.area = Some(area);
+        let is_compared = desk.state.compare.is_on;
+        let below = if is_compared { compare::BAR_HEIGHT } else { 0.0 };
+        let compare_bar = Rect::from_min_size(bar.left_bottom(), vec2(whole.width(), below));
+        let area = Rect::from_min_max(compare_bar.left_bottom(), whole.max);
+        self.area = Some(if is_compared {
+            compare::area_of_a(area, desk.state.compare.view)
+        } else {
+            area
+        });
         self.pixels_per_point = ui.ctx().pixels_per_point();
         self.is_software = desk.snapshot.engine.as_ref().is_none_or(|engine| engine.is_software);
         header::show(ui, bar, desk);
+        if is_compared {
+            compare::bar(ui, compare_bar, desk);
+        }
 
         let response = ui.interact(area, ui.scope_id().with("viewport"), Sense::click_and_drag());
         self.id = Some(response.id);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Viewport"));
         let picture = desk.snapshot.picture.clone();
         if let Some(picture) = &picture {
-            let place = placed(area, picture, desk.state.resolution);
-            self.paint(ui, place, picture);
+            let place = if is_compared {
+                self.compared(ui, area, picture, desk)
+            } else {
+                let place = placed(area, picture, desk.state.resolution);
+                self.picture.paint(ui, place, place, picture, 0);
+                place
+            };
+            if is_compared && desk.state.compare.view == View::Wipe {
+                Self::divider(ui, place, desk);
+            }
             if let Some((shown, scale)) = picture.map {
                 legend::show(ui, area, shown, scale);
             }
@@ -102,25 +165,6 @@ impl Viewport {
         }
         messages(ui, area, desk);
         drop_hint(ui, area);
-    }
-
-    fn paint(&mut self, ui: &mut Ui, place: Rect, picture: &Arc<Picture>) {
-        if self.texture.is_none() || self.shown_serial != picture.serial {
-            let size = [picture.width as usize, picture.height as usize];
-            let image = ColorImage::from_rgba_premultiplied(size, &picture.rgba);
-            match &mut self.texture {
-                Some(texture) => texture.set(image, TextureOptions::LINEAR),
-                None => self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR)),
-            }
-            self.shown_serial = picture.serial;
-        }
-        let is_opaque = picture.map.is_some() || picture.image.pixels.first().is_none_or(|pixel| pixel[3] >= 1.0);
-        if !is_opaque {
-            checker(ui, place);
-        }
-        if let Some(texture) = &self.texture {
-            Image::new(texture).paint_at(ui, place);
-        }
     }
 
     fn navigate(&self, ui: &mut Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
@@ -356,7 +400,8 @@ fn drop_hint(ui: &Ui, area: Rect) {
         egui::StrokeKind::Inside,
     );
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    let text = "Drop a model (.glb, .gltf), an environment (.hdr, .exr), a material or a project (.json)";
+    let text =
+        "Drop a model (.glb, .gltf), an environment (.hdr, .exr), a material or project (.json), a picture (.png)";
     ui.painter()
         .text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
 }

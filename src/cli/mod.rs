@@ -12,6 +12,7 @@ mod parse;
 mod plan;
 mod render;
 mod scatter;
+mod turntable;
 
 use std::path::PathBuf;
 
@@ -22,7 +23,7 @@ use crate::render::EngineChoice;
 /// Glossmith: a material editor around the geometric lobe.
 ///
 /// Without a subcommand the editor opens, with the files given: models (.glb, .gltf), environments (.hdr, .exr),
-/// materials (.json).
+/// materials and projects (.json), pictures saved here (.png).
 #[derive(Debug, Parser)]
 #[command(version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
 pub struct Arguments {
@@ -45,6 +46,8 @@ pub enum Command {
     Render(Box<render::RenderArguments>),
     /// Show which effects a scene calls for, and why.
     Plan(Box<plan::PlanArguments>),
+    /// Render a turn about the model as numbered pictures.
+    Turntable(Box<turntable::TurntableArguments>),
     /// Prove on this machine that the renderer is right.
     Check(check::CheckArguments),
     /// Draw samples of a lobe, as the renderer draws them.
@@ -64,6 +67,7 @@ impl Command {
         match self {
             Command::Render(arguments) => render::run(&arguments),
             Command::Plan(arguments) => plan::run(&arguments),
+            Command::Turntable(arguments) => turntable::run(&arguments),
             Command::Check(arguments) => check::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),

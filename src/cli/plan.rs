@@ -6,16 +6,16 @@ use anyhow::Context;
 use clap::Args;
 
 use super::parse;
-use super::render::{RenderArguments, document};
+use super::render::SceneArguments;
 use crate::document::effect::Constant;
 use crate::document::plan::Plan;
 use crate::render::{EngineChoice, Session};
 
-/// Arguments of `glossmith plan`: those of `glossmith render`, of which only the ones count that describe the scene.
+/// Arguments of `glossmith plan`: those of `glossmith render` that describe the scene.
 #[derive(Debug, Args)]
 pub struct PlanArguments {
     #[command(flatten)]
-    scene: RenderArguments,
+    scene: SceneArguments,
     /// Write the table as JSON, too.
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -30,7 +30,7 @@ pub fn run(arguments: &PlanArguments) -> anyhow::Result<()> {
         parse::check_writable(path)?;
     }
     let mut session = Session::open(EngineChoice::Cpu)?;
-    let document = document(&arguments.scene, &mut session)?;
+    let document = arguments.scene.document(&mut session)?;
     session.submit(&document)?;
     let job = session.job().context("the scene has no plan")?;
     print(&job.plan);

@@ -1,11 +1,11 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
 
 use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
-use crate::optics::material::{Material, MaterialNumbers, material_evaluate, material_sample};
+use crate::optics::material::{Material, MaterialNumbers, material_albedo, material_evaluate, material_sample};
 use crate::optics::random::{RandomState, path_state, random_pair};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
-use crate::scene::camera::{Camera, camera_ray, filter_offset};
+use crate::scene::camera::{Camera, pixel_ray};
 use crate::scene::environment::{
     Environment, environment_density, environment_local_from_world, environment_radiance, environment_sample,
     environment_world_from_local,
@@ -39,6 +39,17 @@ pub struct PathResult<T> {
     pub alpha: T,
     /// Rays traced.
     pub rays: u32,
+}
+
+/// What one sample of the camera sees first.
+#[derive(Clone, Copy, Debug)]
+pub struct FeatureSample<T> {
+    /// See [`material_albedo`].
+    pub albedo: Vec3<T>,
+    /// Shading normal in the world.
+    pub normal: Vec3<T>,
+    /// Along the camera's axis, in the geometry's units.
+    pub depth: T,
 }
 
 /// A job with its numbers in the precision of the shading.
@@ -267,10 +278,7 @@ impl<'a, T: Real> Integrator<'a, T> {
     pub fn trace_path(&self, pixel: [u32; 2], sample: u32) -> PathResult<T> {
         let settings = self.settings;
         let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        let offset: [T; 2] = filter_offset(self.camera.filter_kind, random_pair(state, 0));
-        let half = T::from_f64(0.5);
-        let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
-        let [mut origin, mut direction] = camera_ray(&self.camera, place, settings.image_size, random_pair(state, 1));
+        let [mut origin, mut direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
         let samples_light = self.samples_environment || self.samples_emitters;
         let mut throughput = Vec3::splat(T::one());
         let mut radiance = Vec3::zero();
@@ -346,6 +354,22 @@ impl<'a, T: Real> Integrator<'a, T> {
             alpha: T::one(),
             rays,
         }
+    }
+
+    /// What the camera sees first through a pixel, with the same ray as [`Integrator::trace_path`]; `None` where it meets
+    /// nothing.
+    pub fn trace_features(&self, pixel: [u32; 2], sample: u32) -> Option<FeatureSample<T>> {
+        let settings = self.settings;
+        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
+        let [origin, direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
+        let (point, distance) = self.stop(origin, direction, state, 0, &mut 0)?;
+        let plain = &self.materials[point.slot as usize];
+        let material = textured_material(self.textures, plain, point.uvs);
+        Some(FeatureSample {
+            albedo: material_albedo(&material, self.tables, &point.surface),
+            normal: point.surface.frame.normal,
+            depth: distance * direction.dot(self.camera.forward),
+        })
     }
 
     fn surface(&self, hit: &Hit, direction: Vec3<T>) -> SurfacePoint<T> {

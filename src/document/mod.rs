@@ -13,12 +13,15 @@ pub mod match_look;
 mod material;
 pub mod measured_look;
 pub mod parameter;
+pub mod picture;
 pub mod plan;
 pub mod preset;
 pub mod project;
 pub mod recovery;
 mod registry;
 mod settings;
+pub mod snapshots;
+pub mod turntable;
 
 use serde::{Deserialize, Serialize};
 

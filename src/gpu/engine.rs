@@ -8,6 +8,7 @@ use super::layout::{PixelStatistics, Tile};
 use super::pipeline::Pipelines;
 use super::resources::{DISPATCH_TILES, Resources};
 use super::timer::Timer;
+use crate::analysis::features::{FeatureSums, Features};
 use crate::analysis::film::Film;
 use crate::analysis::tiles::{Schedule, TILE_SIDE, Work};
 use crate::document::job::Job;
@@ -17,14 +18,18 @@ use crate::document::plan::Specialisation;
 const SLICE: Duration = Duration::from_millis(30);
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
-/// Workgroups of a tile: 8 × 8 pixels each, as the shader says.
+/// Workgroups of a tile: 8 × 8 pixels each, as the shaders say.
 const TILE_WORKGROUPS: u32 = 4;
+/// Tiles of a dispatch that looks for features: one ray a pixel.
+const FEATURE_TILES: usize = 512;
 
 /// Renders on a GPU.
 #[derive(Debug)]
 pub struct GpuEngine {
     gpu: GpuDevice,
     pipelines: Pipelines,
+    /// Compiled at the first use.
+    feature_pipelines: Option<Pipelines>,
     resources: Option<Resources>,
     film: Film,
     schedule: Schedule,
@@ -48,6 +53,7 @@ impl GpuEngine {
             timer: Timer::new(&gpu),
             gpu,
             pipelines,
+            feature_pipelines: None,
             resources: None,
             film: Film::default(),
             schedule: Schedule::default(),
@@ -171,28 +177,8 @@ impl GpuEngine {
         let Some(resources) = &self.resources else {
             return Ok(());
         };
-        self.gpu
-            .queue
-            .write_buffer(&resources.tiles, 0, bytemuck::cast_slice(tiles));
         let pipeline = self.pipelines.get(&self.gpu, &resources.job().plan)?;
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("path_trace"),
-                timestamp_writes: self.timer.as_ref().map(Timer::writes),
-            });
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &resources.bind_group, &[]);
-            pass.dispatch_workgroups(TILE_WORKGROUPS * tiles.len() as u32, 1, 1);
-        }
-        if let Some(timer) = &self.timer {
-            timer.resolve(&mut encoder);
-        }
-        self.gpu.queue.submit([encoder.finish()]);
-        if let Some(timer) = &self.timer {
-            timer.request();
-        }
-        self.gpu.wait()?;
+        dispatch(&self.gpu, resources, pipeline, tiles, self.timer.as_ref())?;
         if let Some(timer) = &self.timer {
             self.gpu_seconds += timer.seconds()?;
         }
@@ -235,6 +221,52 @@ impl GpuEngine {
         Ok(&self.film)
     }
 
+    /// What the camera sees first, over the first `samples` of each pixel; `None` without a job.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
+        // The sums lend their place.
+        self.flush()?;
+        let Some(resources) = &self.resources else {
+            return Ok(None);
+        };
+        let pipelines = match self.feature_pipelines.take() {
+            Some(pipelines) => pipelines,
+            None => self.pipelines.beside(&self.gpu, "features")?,
+        };
+        let pipelines = self.feature_pipelines.insert(pipelines);
+        let job = resources.job();
+        let pipeline = pipelines.get(&self.gpu, &job.plan)?;
+        let grid = self.schedule.grid();
+        let numbers: Vec<usize> = (0..grid.tiles()).collect();
+        for first_sample in 0..samples {
+            for some in numbers.chunks(FEATURE_TILES) {
+                let tile = |&number: &usize| Tile {
+                    origin: grid.origin(number),
+                    first_sample,
+                    sample_count: 1,
+                };
+                let tiles: Vec<Tile> = some.iter().map(tile).collect();
+                dispatch(&self.gpu, resources, pipeline, &tiles, None)?;
+            }
+        }
+        let pixels = self.film.color.len();
+        let albedo_hits: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
+        let normal_depth: Vec<PixelStatistics> = self.gpu.read(&resources.sums[1], pixels)?;
+        resources.clear_sums(&self.gpu);
+        let both = albedo_hits.into_iter().zip(normal_depth);
+        let sums: Vec<_> = both
+            .map(|(albedo_hits, lent)| FeatureSums {
+                albedo_hits,
+                normal_depth: [lent.luminance_squared, lent.kept, lent.odd_luminance, lent.odd_kept],
+            })
+            .collect();
+        let units = job.geometry.world_units_per_unit;
+        let size = [grid.width, grid.height];
+        Ok(Some(Features::from_sums(size, &sums, samples, units)))
+    }
+
     /// What has been rendered of each tile.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
@@ -249,4 +281,33 @@ impl GpuEngine {
     pub fn gpu_seconds(&self) -> Option<f64> {
         self.timer.as_ref().map(|_| self.gpu_seconds)
     }
+}
+
+/// Runs a pass over tiles, and waits for its end.
+fn dispatch(
+    gpu: &GpuDevice,
+    resources: &Resources,
+    pipeline: &wgpu::ComputePipeline,
+    tiles: &[Tile],
+    timer: Option<&Timer>,
+) -> Result<(), GpuError> {
+    gpu.queue.write_buffer(&resources.tiles, 0, bytemuck::cast_slice(tiles));
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("tiles"),
+            timestamp_writes: timer.map(Timer::writes),
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &resources.bind_group, &[]);
+        pass.dispatch_workgroups(TILE_WORKGROUPS * tiles.len() as u32, 1, 1);
+    }
+    if let Some(timer) = timer {
+        timer.resolve(&mut encoder);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    if let Some(timer) = timer {
+        timer.request();
+    }
+    gpu.wait()
 }

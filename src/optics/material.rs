@@ -369,6 +369,21 @@ fn specular_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Su
     albedo_lookup(tables, first, place)
 }
 
+/// The share of the light from everywhere that reaches the viewer by all layers, in [0, 1] for each colour: where there
+/// is only the specular lobe, its Fresnel term at the view's angle.
+pub fn material_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Vec3<T> {
+    let specular = if !material.has_specular() {
+        Vec3::zero()
+    } else if material.has_base() || material.transmits() {
+        specular_albedo(material, tables, surface)
+    } else {
+        let cosine = surface.frame.normal.dot(surface.wo);
+        fresnel(&material.fresnel_terms(surface.is_inside), cosine)
+    };
+    let layers = material_layers(material, tables, surface);
+    specular + layers.base + layers.transmission
+}
+
 /// The base's lobe: Lambert's, its rare samples below the geometric surface mirrored.
 #[inline(always)]
 fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {

@@ -33,7 +33,7 @@ pub(super) struct Compiler {
 }
 
 impl Compiler {
-    pub(super) fn compile(&mut self, document: &Document, assets: &mut Assets) -> Result<Job, SessionError> {
+    pub(super) fn compile(&mut self, document: &Document, assets: &Assets) -> Result<Job, SessionError> {
         let document = &without_what_is_off(document);
         let model = assets.model(&document.model)?;
         let shapes = document.lighting.area_lights.iter().map(AreaLight::shape).collect();

@@ -7,6 +7,7 @@ use super::assets::Assets;
 use super::compile::Compiler;
 use super::convergence::{Convergence, Measurement, mean_samples};
 use super::engine::{Engine, EngineChoice, EngineInfo, cpu};
+use super::output::Layers;
 use super::workshop::Workshop;
 use crate::analysis::film::{Film, Image};
 use crate::analysis::noise::Noise;
@@ -16,6 +17,9 @@ use crate::document::job::Job;
 use crate::gpu::GpuError;
 use crate::scene::ModelError;
 use crate::scene::environment::EnvironmentError;
+
+/// Samples of a pixel over which albedo, normal and depth are averaged.
+const FEATURE_SAMPLES: u32 = 32;
 
 /// What a session can't do.
 #[derive(Debug, thiserror::Error)]
@@ -114,11 +118,19 @@ impl Session {
     /// # Errors
     /// [`GpuError`] where a GPU was asked for and there is none that works; `auto` and `cpu` always work.
     pub fn open(choice: EngineChoice) -> Result<Self, SessionError> {
+        Self::open_with(choice, Assets::default())
+    }
+
+    /// The same with models and environments that it may share with other sessions.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         let (engine, info) = Engine::open(choice)?;
         Ok(Self {
             engine,
             info,
-            assets: Assets::default(),
+            assets,
             compiler: Compiler::default(),
             document: None,
             job: None,
@@ -135,8 +147,8 @@ impl Session {
     ///
     /// # Errors
     /// As [`Session::open`].
-    pub fn open_fluid(choice: EngineChoice) -> Result<Self, SessionError> {
-        let mut session = Self::open(choice)?;
+    pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
+        let mut session = Self::open_with(choice, assets)?;
         let stand_in = Engine::Cpu(Box::default());
         match std::mem::replace(&mut session.engine, stand_in) {
             Engine::Gpu(engine) => session.workshop = Some(Workshop::new(*engine)),
@@ -176,8 +188,8 @@ impl Session {
     }
 
     /// Models and environments, loaded and kept.
-    pub fn assets(&mut self) -> &mut Assets {
-        &mut self.assets
+    pub fn assets(&self) -> &Assets {
+        &self.assets
     }
 
     /// Forgets what was rendered, so that the next submission starts over even with the same document.
@@ -207,7 +219,7 @@ impl Session {
             None => Change::everything(),
         };
         if change.restarts() {
-            let job = Arc::new(self.compiler.compile(document, &mut self.assets)?);
+            let job = Arc::new(self.compiler.compile(document, &self.assets)?);
             if let Some(workshop) = &mut self.workshop {
                 let current = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default()));
                 self.engine = workshop.engine_for(&job, current);
@@ -347,6 +359,25 @@ impl Session {
     /// If the GPU fails.
     pub fn image(&mut self) -> Result<Image, SessionError> {
         Ok(self.film()?.image())
+    }
+
+    /// The mean picture with what is known beside it about each pixel.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn layers(&mut self) -> Result<Layers, SessionError> {
+        let features = self.engine.features(FEATURE_SAMPLES)?.unwrap_or_default();
+        let film = self.engine.film()?;
+        Ok(Layers {
+            image: film.image(),
+            features,
+            samples: film.statistics.iter().map(|statistics| statistics[1] as f32).collect(),
+            variance: film
+                .variance_of_mean()
+                .into_iter()
+                .map(|variance| variance as f32)
+                .collect(),
+        })
     }
 
     /// Goes on with the processor after the GPU failed, with the same document from its start.

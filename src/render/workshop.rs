@@ -40,7 +40,11 @@ impl Workshop {
     pub(super) fn new(blank: GpuEngine) -> Self {
         let is_software = blank.device().is_software();
         Self {
-            kind: if is_software { AdapterKind::Software } else { AdapterKind::Hardware },
+            kind: if is_software {
+                AdapterKind::Software
+            } else {
+                AdapterKind::Hardware
+            },
             blank: Some(blank),
             ready: Vec::new(),
             in_work: None,
@@ -86,7 +90,11 @@ impl Workshop {
             // Nobody waits any more where the session is gone.
             let _ = sender.send(prepare());
         };
-        if std::thread::Builder::new().name("kernel".to_owned()).spawn(work).is_ok() {
+        if std::thread::Builder::new()
+            .name("kernel".to_owned())
+            .spawn(work)
+            .is_ok()
+        {
             self.in_work = Some(Preparation {
                 specialisation: job.plan.specialisation(),
                 begun: Instant::now(),

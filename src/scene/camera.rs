@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use crate::optics::random::{RandomState, random_pair};
 use crate::optics::real::Real;
 use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_disc;
@@ -142,6 +143,20 @@ pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
         T::from_f64(GAUSSIAN_SIGMA) * (T::from_f64(-2.0) * (T::one() - xi[0] * T::from_f64(kept)).ln()).safe_sqrt();
     let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[1];
     [radius * phi_rad.cos(), radius * phi_rad.sin()]
+}
+
+/// The ray of a sample through its pixel, drawn with the path's first two pairs of numbers: (origin, unit direction).
+#[inline(always)]
+pub fn pixel_ray<T: Real>(
+    camera: &Camera<T>,
+    pixel: [u32; 2],
+    image_size: [u32; 2],
+    state: RandomState,
+) -> [Vec3<T>; 2] {
+    let offset: [T; 2] = filter_offset(camera.filter_kind, random_pair(state, 0));
+    let half = T::from_f64(0.5);
+    let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
+    camera_ray(camera, place, image_size, random_pair(state, 1))
 }
 
 /// The ray through a point of the picture, in pixels from its top left: (origin, unit direction).

@@ -9,7 +9,7 @@ use glossmith::document::effect::{Decision, EFFECTS, EffectSwitches, Switch};
 use glossmith::document::job::Job;
 use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, PRESETS, Strategy, Value, assign};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
-use glossmith::render::{EngineChoice, Session};
+use glossmith::render::{Assets, EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 
@@ -254,7 +254,7 @@ fn the_plan_is_printed_and_effects_are_chosen_on_the_command_line() {
 fn a_kernel_is_compiled_beside_the_picture() {
     let mut document = small(Document::default());
     document.render.samples = 100_000;
-    let mut session = Session::open_fluid(EngineChoice::Gpu).unwrap();
+    let mut session = Session::open_fluid(EngineChoice::Gpu, Assets::default()).unwrap();
     let mut is_stood_in_for = |document: &Document| {
         session.submit(document).unwrap();
         let first = session.step(Duration::from_millis(10)).unwrap();

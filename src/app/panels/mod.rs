@@ -14,10 +14,13 @@ pub(super) mod log;
 pub(super) mod material;
 pub(super) mod presets;
 pub(super) mod samples;
+pub(super) mod snapshots;
 
 use super::actions::{Action, Command};
+use super::compare::Compare;
 use super::edits::Edits;
 use super::library::Library;
+use super::snapshots::Snapshots;
 use super::widgets::RowResponse;
 use crate::document::{Document, MaterialSettings};
 use crate::render::display::Shown;
@@ -61,6 +64,10 @@ pub(super) struct PanelState {
     pub(super) preset_search: String,
     /// The materials to choose from.
     pub(super) library: Library,
+    /// The pinned states.
+    pub(super) snapshots: Snapshots,
+    /// The comparison of the document with something else.
+    pub(super) compare: Compare,
 }
 
 /// How large the picture is.
