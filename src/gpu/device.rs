@@ -119,7 +119,7 @@ impl GpuDevice {
         }
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("glossmith"),
-            required_features: adapter.features() & wgpu::Features::TIMESTAMP_QUERY,
+            required_features: adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PIPELINE_CACHE),
             required_limits: limits,
             ..Default::default()
         };

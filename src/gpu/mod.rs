@@ -3,6 +3,7 @@
 pub mod device;
 mod engine;
 pub mod layout;
+mod kernel_cache;
 mod pipeline;
 mod resources;
 pub mod scatter;

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::device::{GpuDevice, GpuError};
+use super::kernel_cache::KernelCache;
 use super::shader;
 use crate::document::plan::{Plan, Specialisation};
 
@@ -16,6 +17,7 @@ pub struct Pipelines {
     /// The pass, and its entry point.
     name: &'static str,
     of_plan: HashMap<Specialisation, wgpu::ComputePipeline>,
+    cache: Option<KernelCache>,
 }
 
 impl Pipelines {
@@ -67,6 +69,7 @@ impl Pipelines {
             bindings,
             name,
             of_plan: HashMap::new(),
+            cache: KernelCache::open(gpu),
         })
     }
 
@@ -92,12 +95,15 @@ impl Pipelines {
                     constants: &plan.constants(),
                     zero_initialize_workgroup_memory: false,
                 },
-                cache: None,
+                cache: self.cache.as_ref().map(KernelCache::cache),
             });
             if let Some(error) = pollster::block_on(scope.pop()) {
                 return Err(GpuError::Shader(error.to_string()));
             }
             self.of_plan.insert(specialisation.clone(), pipeline);
+            if let Some(cache) = &self.cache {
+                cache.save();
+            }
         }
         Ok(&self.of_plan[&specialisation])
     }
