@@ -20,6 +20,7 @@ struct Globals {
     image_size: vec2u,
     bounces: u32,
     sequence: u32,
+    // Its colour; where the environment is blurred, the sine of the angle.
     background: vec3f,
     background_kind: u32,
     // Cosine and sine.

@@ -67,6 +67,9 @@ pub struct SceneArguments {
     /// What the camera sees where it meets nothing.
     #[arg(long, default_value = "environment", value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
     background: Background,
+    /// Blur the environment where the camera sees it, over this angle; light and reflections stay sharp.
+    #[arg(long, default_value = "0", value_name = "DEG", value_parser = parse::number_in(range::BACKGROUND_BLUR_DEG), allow_negative_numbers = true)]
+    background_blur: f64,
     /// The material of everything: the name of a shipped one, or a .json file. Without it a file's own materials stay.
     #[arg(long, value_name = "FILE|NAME")]
     material: Option<String>,
@@ -384,6 +387,7 @@ impl SceneArguments {
         lighting.rotation_deg = self.environment_rotation as f32;
         lighting.strength = self.environment_strength as f32;
         lighting.background = self.background;
+        lighting.background_blur_deg = self.background_blur as f32;
         lighting.area_lights = self.area_lights.clone();
         let camera = &mut document.camera;
         if let Some([yaw_deg, pitch_deg]) = self.camera_orbit {

@@ -2,8 +2,8 @@
 
 pub mod device;
 mod engine;
-pub mod layout;
 mod kernel_cache;
+pub mod layout;
 mod pipeline;
 mod resources;
 pub mod scatter;
