@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::library::Change;
+use crate::document::ImportLobe;
 use crate::document::MaterialSettings;
 use crate::render::EngineChoice;
 use crate::scene::ModelSource;
@@ -31,6 +32,8 @@ pub enum Action {
     LookFrom(f64, f64),
     /// Changes the engine.
     UseEngine(EngineChoice),
+    /// Which lobe the materials of models get that are opened from now on.
+    ImportAs(ImportLobe),
 }
 
 /// Where a command stands in the menus.

@@ -133,6 +133,7 @@ impl<'a, T: Real> Integrator<'a, T> {
                 geometry: self.geometry,
                 materials: &self.materials,
                 textures: self.textures,
+                tables: self.tables,
                 lights: self.lights,
                 density_per_luminance: self.density_per_luminance,
             };
@@ -276,7 +277,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             let plain = &self.materials[point.slot as usize];
             let textured;
             let material = if plain.is_textured() {
-                textured = textured_material(self.textures, plain, point.uvs);
+                textured = textured_material(self.textures, self.tables, plain, point.uvs);
                 &textured
             } else {
                 plain

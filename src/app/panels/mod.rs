@@ -17,7 +17,7 @@ use super::actions::{Action, Command};
 use super::edits::Edits;
 use super::library::Library;
 use super::widgets::RowResponse;
-use crate::document::{Document, MaterialSettings};
+use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::render::worker::{Scene, Snapshot};
 
 /// What panels work on.
@@ -38,6 +38,8 @@ pub(super) struct PanelState {
     pub(super) log: Vec<log::Entry>,
     /// The environment's small picture.
     pub(super) thumbnail: lighting::Thumbnail,
+    /// The lobe of the materials of models that are opened.
+    pub(super) import_lobe: ImportLobe,
     /// How large the picture is.
     pub(super) resolution: Resolution,
     /// The curve editor's.
