@@ -97,6 +97,9 @@ struct Material {
     alpha_cutoff: f32,
     normal_strength: f32,
     has_rough_tables: u32,
+    texture_roughness: f32,
+    roughness_table: u32,
+    reserved: array<u32, 2>,
 }
 
 // One use of a picture.

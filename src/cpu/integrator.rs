@@ -150,6 +150,7 @@ impl<'a, T: Real> Integrator<'a, T> {
                 geometry: self.geometry,
                 materials: &self.materials,
                 textures: self.textures,
+                tables: self.tables,
                 lights: self.lights,
                 density_per_luminance: self.density_per_luminance,
             };
@@ -312,7 +313,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             let plain = &self.materials[point.slot as usize];
             let textured;
             let material = if plain.is_textured() {
-                textured = textured_material(self.textures, plain, point.uvs);
+                textured = textured_material(self.textures, self.tables, plain, point.uvs);
                 &textured
             } else {
                 plain
@@ -375,7 +376,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         let [origin, direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
         let (point, distance) = self.stop(origin, direction, state, 0, &mut 0)?;
         let plain = &self.materials[point.slot as usize];
-        let material = textured_material(self.textures, plain, point.uvs);
+        let material = textured_material(self.textures, self.tables, plain, point.uvs);
         Some(FeatureSample {
             albedo: material_albedo(&material, self.tables, &point.surface),
             normal: point.surface.frame.normal,
