@@ -381,6 +381,14 @@ const NARROW_PLAN: Plan = Plan {
     absorption: false,
     light_sampling: true,
     emitter_sampling: false,
+    edge_tint: false,
+    coat: false,
+    color_textures: false,
+    roughness_textures: false,
+    emission_textures: false,
+    normal_maps: false,
+    rough_tables: false,
+    alpha: false,
     lens: false,
 };
 
