@@ -5,7 +5,9 @@
 
 pub mod adaptive;
 pub mod chi_square;
+pub mod difference;
 pub mod error;
+pub mod features;
 pub mod film;
 pub mod fit;
 pub mod histogram;

@@ -32,15 +32,19 @@ pub enum Pane {
     Camera,
     /// Materials to start from.
     Presets,
+    /// Pinned states.
+    Snapshots,
     /// What was said.
     Log,
     /// The proof on this machine.
     Check,
+    /// What is simulated, and why.
+    Effects,
 }
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Viewport,
         Self::Material,
         Self::Curve,
@@ -50,8 +54,10 @@ impl Pane {
         Self::Lighting,
         Self::Camera,
         Self::Presets,
+        Self::Snapshots,
         Self::Log,
         Self::Check,
+        Self::Effects,
     ];
 
     /// What it is called.
@@ -66,8 +72,10 @@ impl Pane {
             Self::Lighting => "Light",
             Self::Camera => "Camera & picture",
             Self::Presets => "Presets",
+            Self::Snapshots => "Snapshots",
             Self::Log => "Log",
             Self::Check => "Check",
+            Self::Effects => "Effects",
         }
     }
 }
@@ -81,8 +89,10 @@ pub(super) fn default_layout() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let mut pane = |pane| tiles.insert_pane(pane);
     let (viewport, material) = (pane(Pane::Viewport), pane(Pane::Material));
-    let upper_left = [Pane::Presets, Pane::Log, Pane::Check].map(&mut pane).to_vec();
-    let lower_left = [Pane::Lighting, Pane::Camera].map(&mut pane).to_vec();
+    let upper_left = [Pane::Presets, Pane::Snapshots, Pane::Log, Pane::Check]
+        .map(&mut pane)
+        .to_vec();
+    let lower_left = [Pane::Lighting, Pane::Camera, Pane::Effects].map(&mut pane).to_vec();
     let lower_right = [Pane::Curve, Pane::Samples, Pane::Lobe, Pane::Convergence].map(&mut pane);
     let upper_left = tiles.insert_tab_tile(upper_left);
     let lower_left = tiles.insert_tab_tile(lower_left);
@@ -139,8 +149,10 @@ impl Behavior<Pane> for Panes<'_, '_> {
                     Pane::Lighting => panels::lighting::show(ui, self.desk),
                     Pane::Camera => panels::camera::show(ui, self.desk),
                     Pane::Presets => panels::presets::show(ui, self.desk),
+                    Pane::Snapshots => panels::snapshots::show(ui, self.desk),
                     Pane::Log => panels::log::show(ui, self.desk),
                     Pane::Check => panels::check::show(ui, self.desk),
+                    Pane::Effects => panels::effects::show(ui, self.desk),
                     Pane::Viewport => {}
                 });
             });

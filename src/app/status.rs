@@ -158,6 +158,11 @@ fn activity(ui: &mut Ui, snapshot: &Snapshot) {
     }
     ui.label(snapshot.activity.to_string());
     if snapshot.activity == Activity::Rendering {
+        if snapshot.progress.is_standing_in {
+            ui.add(egui::Spinner::new().size(12.0));
+            ui.weak("compiling the kernel")
+                .on_hover_text("The processor draws until the GPU's kernel for this scene is compiled.");
+        }
         let limit = snapshot.scene.as_ref().and_then(|scene| scene.document.render.time_s);
         let share = snapshot.progress.share_done(limit);
         ui.add(

@@ -1,5 +1,6 @@
 //! The engine on the processor: the same path tracer as the GPU's, on all cores.
 
+pub mod features;
 pub mod integrator;
 pub mod scatter;
 
@@ -8,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
+use crate::analysis::features::Features;
 use crate::analysis::film::Film;
 use crate::analysis::tiles::{Schedule, Work};
 use crate::document::job::Job;
@@ -102,6 +104,17 @@ impl CpuEngine {
     /// What has been rendered of each tile.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
+    }
+
+    /// What has been rendered, for another engine to go on with.
+    pub fn hand_over(mut self) -> (Film, Schedule) {
+        self.film();
+        (self.film, self.schedule)
+    }
+
+    /// What the camera sees first, over the first `samples` of each pixel; `None` without a job.
+    pub fn features(&self, samples: u32) -> Option<Features> {
+        Some(features::features(self.job.as_deref()?, samples))
     }
 
     /// Completed samples a pixel.

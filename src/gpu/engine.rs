@@ -8,22 +8,28 @@ use super::layout::{PixelStatistics, Tile};
 use super::pipeline::Pipelines;
 use super::resources::{DISPATCH_TILES, Resources};
 use super::timer::Timer;
+use crate::analysis::features::{FeatureSums, Features};
 use crate::analysis::film::Film;
 use crate::analysis::tiles::{Schedule, TILE_SIDE, Work};
 use crate::document::job::Job;
+use crate::document::plan::Specialisation;
 
 /// Longest dispatch: other users of the adapter, the window among them, wait for its end.
 const SLICE: Duration = Duration::from_millis(30);
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
-/// Workgroups of a tile: 8 × 8 pixels each, as the shader says.
+/// Workgroups of a tile: 8 × 8 pixels each, as the shaders say.
 const TILE_WORKGROUPS: u32 = 4;
+/// Tiles of a dispatch that looks for features: one ray a pixel.
+const FEATURE_TILES: usize = 512;
 
 /// Renders on a GPU.
 #[derive(Debug)]
 pub struct GpuEngine {
     gpu: GpuDevice,
     pipelines: Pipelines,
+    /// Compiled at the first use.
+    feature_pipelines: Option<Pipelines>,
     resources: Option<Resources>,
     film: Film,
     schedule: Schedule,
@@ -49,6 +55,7 @@ impl GpuEngine {
             timer: Timer::new(&gpu),
             gpu,
             pipelines,
+            feature_pipelines: None,
             resources: None,
             film: Film::default(),
             schedule: Schedule::default(),
@@ -71,7 +78,10 @@ impl GpuEngine {
     pub fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         let [width, height] = job.settings.image_size;
         let old = self.resources.take();
-        if old.as_ref().is_some_and(|old| old.job().plan != job.plan) {
+        if old
+            .as_ref()
+            .is_some_and(|old| old.job().plan.specialisation() != job.plan.specialisation())
+        {
             self.samples_per_second = 0.0;
         }
         self.resources = Some(Resources::new(&self.gpu, &self.pipelines.bindings, job, old)?);
@@ -79,6 +89,31 @@ impl GpuEngine {
         self.schedule = Schedule::new(width, height);
         (self.unflushed, self.is_flushed, self.gpu_seconds) = (0, true, 0.0);
         Ok(())
+    }
+
+    /// Whether the kernel is ready that is made for this.
+    pub fn has_kernel(&self, specialisation: &Specialisation) -> bool {
+        self.pipelines.has(specialisation)
+    }
+
+    /// Compiles the kernel of a job's plan: some drivers do that at the first dispatch, so one is made that renders
+    /// nothing. Takes seconds.
+    ///
+    /// # Errors
+    /// [`GpuError::Shader`] where the driver refuses the kernel; [`GpuError::TooLarge`].
+    pub fn prepare(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
+        self.submit(job)?;
+        self.dispatch(&[Tile::default()])
+    }
+
+    /// Lets the scene go and keeps the kernels.
+    pub fn rest(&mut self) {
+        self.resources = None;
+    }
+
+    /// Goes on with what another engine rendered of the same job.
+    pub fn take_over(&mut self, film: Film, schedule: Schedule) {
+        (self.film, self.schedule) = (film, schedule);
     }
 
     /// Renders for about `budget`, at most up to `samples` a pixel.
@@ -115,9 +150,6 @@ impl GpuEngine {
 
     /// One dispatch of about so many samples: some tiles of a pass, or a pass of several samples where the GPU is fast.
     fn slice(&mut self, affordable: f64) -> Result<(), GpuError> {
-        let Some(resources) = &self.resources else {
-            return Ok(());
-        };
         let grid = self.schedule.grid();
         let tile_samples = f64::from(TILE_SIDE * TILE_SIDE * self.schedule.pass_samples());
         // At least a row's: fewer leave a GPU idle.
@@ -129,34 +161,9 @@ impl GpuEngine {
             sample_count: work.count,
         };
         let tiles: Vec<Tile> = works.iter().map(tile).collect();
-        self.gpu
-            .queue
-            .write_buffer(&resources.tiles, 0, bytemuck::cast_slice(&tiles));
-        let pipeline = self.pipelines.get(&self.gpu, resources.job().plan)?;
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("path_trace"),
-                timestamp_writes: self.timer.as_ref().map(Timer::writes),
-            });
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &resources.bind_group, &[]);
-            pass.dispatch_workgroups(TILE_WORKGROUPS * tiles.len() as u32, 1, 1);
-        }
-        if let Some(timer) = &self.timer {
-            timer.resolve(&mut encoder);
-        }
         let begun = Instant::now();
-        self.is_flushed = false;
-        self.gpu.queue.submit([encoder.finish()]);
-        if let Some(timer) = &self.timer {
-            timer.request();
-        }
-        self.gpu.wait()?;
+        self.dispatch(&tiles)?;
         let seconds = begun.elapsed().as_secs_f64().max(1e-6);
-        if let Some(timer) = &self.timer {
-            self.gpu_seconds += timer.seconds()?;
-        }
         let samples_of = |work: &Work| grid.pixels(work.tile) * u64::from(work.count);
         self.samples_per_second = works.iter().map(samples_of).sum::<u64>() as f64 / seconds;
         if self.schedule.finish(&works) {
@@ -164,6 +171,20 @@ impl GpuEngine {
             if self.unflushed >= FLUSH_SAMPLES {
                 self.flush()?;
             }
+        }
+        Ok(())
+    }
+
+    /// Renders tiles and waits for them.
+    fn dispatch(&mut self, tiles: &[Tile]) -> Result<(), GpuError> {
+        let Some(resources) = &self.resources else {
+            return Ok(());
+        };
+        let pipeline = self.pipelines.get(&self.gpu, &resources.job().plan)?;
+        self.is_flushed = false;
+        dispatch(&self.gpu, resources, pipeline, tiles, self.timer.as_ref())?;
+        if let Some(timer) = &self.timer {
+            self.gpu_seconds += timer.seconds()?;
         }
         Ok(())
     }
@@ -205,6 +226,52 @@ impl GpuEngine {
         Ok(&self.film)
     }
 
+    /// What the camera sees first, over the first `samples` of each pixel; `None` without a job.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
+        // The sums lend their place.
+        self.flush()?;
+        let Some(resources) = &self.resources else {
+            return Ok(None);
+        };
+        let pipelines = match self.feature_pipelines.take() {
+            Some(pipelines) => pipelines,
+            None => self.pipelines.beside(&self.gpu, "features")?,
+        };
+        let pipelines = self.feature_pipelines.insert(pipelines);
+        let job = resources.job();
+        let pipeline = pipelines.get(&self.gpu, &job.plan)?;
+        let grid = self.schedule.grid();
+        let numbers: Vec<usize> = (0..grid.tiles()).collect();
+        for first_sample in 0..samples {
+            for some in numbers.chunks(FEATURE_TILES) {
+                let tile = |&number: &usize| Tile {
+                    origin: grid.origin(number),
+                    first_sample,
+                    sample_count: 1,
+                };
+                let tiles: Vec<Tile> = some.iter().map(tile).collect();
+                dispatch(&self.gpu, resources, pipeline, &tiles, None)?;
+            }
+        }
+        let pixels = self.film.color.len();
+        let albedo_hits: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
+        let normal_depth: Vec<PixelStatistics> = self.gpu.read(&resources.sums[1], pixels)?;
+        resources.clear_sums(&self.gpu);
+        let both = albedo_hits.into_iter().zip(normal_depth);
+        let sums: Vec<_> = both
+            .map(|(albedo_hits, lent)| FeatureSums {
+                albedo_hits,
+                normal_depth: [lent.luminance_squared, lent.kept, lent.odd_luminance, lent.odd_kept],
+            })
+            .collect();
+        let units = job.geometry.world_units_per_unit;
+        let size = [grid.width, grid.height];
+        Ok(Some(Features::from_sums(size, &sums, samples, units)))
+    }
+
     /// What has been rendered of each tile.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
@@ -219,4 +286,33 @@ impl GpuEngine {
     pub fn gpu_seconds(&self) -> Option<f64> {
         self.timer.as_ref().map(|_| self.gpu_seconds)
     }
+}
+
+/// Runs a pass over tiles, and waits for its end.
+fn dispatch(
+    gpu: &GpuDevice,
+    resources: &Resources,
+    pipeline: &wgpu::ComputePipeline,
+    tiles: &[Tile],
+    timer: Option<&Timer>,
+) -> Result<(), GpuError> {
+    gpu.queue.write_buffer(&resources.tiles, 0, bytemuck::cast_slice(tiles));
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("tiles"),
+            timestamp_writes: timer.map(Timer::writes),
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &resources.bind_group, &[]);
+        pass.dispatch_workgroups(TILE_WORKGROUPS * tiles.len() as u32, 1, 1);
+    }
+    if let Some(timer) = timer {
+        timer.resolve(&mut encoder);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    if let Some(timer) = timer {
+        timer.request();
+    }
+    gpu.wait()
 }

@@ -2,6 +2,7 @@
 
 pub mod device;
 mod engine;
+mod kernel_cache;
 pub mod layout;
 mod pipeline;
 mod resources;

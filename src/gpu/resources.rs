@@ -22,6 +22,8 @@ pub struct Resources {
     environment_map: wgpu::TextureView,
     environment_cells: wgpu::Buffer,
     light_cells: wgpu::Buffer,
+    /// Records, words.
+    textures: [wgpu::Buffer; 2],
     /// Sums of colours and of statistics since the last flush.
     pub sums: [wgpu::Buffer; 2],
     /// What a dispatch renders: [`Tile`] by tile.
@@ -62,6 +64,13 @@ impl Resources {
             Some(old) => old.light_cells.clone(),
             None => gpu.storage("the triangles that emit", bytemuck::cast_slice(&job.lights.cells))?,
         };
+        let textures = match old.filter(|old| Arc::ptr_eq(&old.job.textures, &job.textures)) {
+            Some(old) => old.textures.clone(),
+            None => [
+                gpu.storage("the model's textures", bytemuck::cast_slice(&job.textures.records))?,
+                gpu.storage("the model's pictures", bytemuck::cast_slice(&job.textures.words))?,
+            ],
+        };
         let bytes_of = |size: usize| pixels(&job) * size as u64;
         let sums = match old.filter(|old| pixels(&old.job) == pixels(&job)) {
             Some(old) => old.sums.clone(),
@@ -96,6 +105,8 @@ impl Resources {
             sums[1].as_entire_binding(),
             light_cells.as_entire_binding(),
             tiles.as_entire_binding(),
+            textures[0].as_entire_binding(),
+            textures[1].as_entire_binding(),
         ];
         let entries: Vec<_> = (0..)
             .zip(resources)
@@ -114,6 +125,7 @@ impl Resources {
             environment_map,
             environment_cells,
             light_cells,
+            textures,
             sums,
             tiles,
             bind_group,

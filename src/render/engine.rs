@@ -5,6 +5,7 @@ use std::str::FromStr;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::analysis::features::Features;
 use crate::analysis::film::Film;
 use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
 use crate::analysis::tiles::Schedule;
@@ -115,6 +116,13 @@ impl Engine {
         match self {
             Engine::Cpu(engine) => Ok(engine.film()),
             Engine::Gpu(engine) => engine.film(),
+        }
+    }
+
+    pub(super) fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
+        match self {
+            Engine::Cpu(engine) => Ok(engine.features(samples)),
+            Engine::Gpu(engine) => engine.features(samples),
         }
     }
 }

@@ -15,9 +15,12 @@ pub mod priority;
 pub mod samples;
 mod session;
 pub mod thumbnails;
+pub mod turntable;
 pub mod worker;
+mod workshop;
 
 pub use assets::Assets;
 pub use convergence::Measurement;
 pub use engine::{EngineChoice, EngineInfo, Sampler};
+pub use output::Layers;
 pub use session::{Progress, Session, SessionError, StopReason};

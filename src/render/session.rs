@@ -7,6 +7,8 @@ use super::assets::Assets;
 use super::compile::Compiler;
 use super::convergence::{Convergence, Measurement, mean_samples};
 use super::engine::{Engine, EngineChoice, EngineInfo, cpu};
+use super::output::Layers;
+use super::workshop::Workshop;
 use crate::analysis::film::{Film, Image};
 use crate::analysis::noise::Noise;
 use crate::document::Document;
@@ -15,6 +17,9 @@ use crate::document::job::Job;
 use crate::gpu::GpuError;
 use crate::scene::ModelError;
 use crate::scene::environment::EnvironmentError;
+
+/// Samples of a pixel over which albedo, normal and depth are averaged.
+const FEATURE_SAMPLES: u32 = 32;
 
 /// What a session can't do.
 #[derive(Debug, thiserror::Error)]
@@ -63,6 +68,8 @@ pub struct Progress {
     pub noise: Option<Noise>,
     /// The relative error to reach.
     pub noise_wanted: Option<f64>,
+    /// The processor draws, because the GPU's kernel is being compiled.
+    pub is_standing_in: bool,
     /// Why nothing more is rendered.
     pub stopped_by: Option<StopReason>,
     /// All that was asked for has been done.
@@ -99,6 +106,10 @@ pub struct Session {
     render_time: Duration,
     /// Of it the time in the engine's steps.
     step_time: Duration,
+    /// Engine time of the stand-in, before the engine took over, seconds.
+    stand_in_seconds: f64,
+    /// Where kernels are compiled beside the picture; `None` where the session waits for them.
+    workshop: Option<Workshop>,
 }
 
 impl Session {
@@ -107,18 +118,68 @@ impl Session {
     /// # Errors
     /// [`GpuError`] where a GPU was asked for and there is none that works; `auto` and `cpu` always work.
     pub fn open(choice: EngineChoice) -> Result<Self, SessionError> {
+        Self::open_with(choice, Assets::default())
+    }
+
+    /// The same with models and environments that it may share with other sessions.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         let (engine, info) = Engine::open(choice)?;
         Ok(Self {
             engine,
             info,
-            assets: Assets::default(),
+            assets,
             compiler: Compiler::default(),
             document: None,
             job: None,
             convergence: Convergence::default(),
             render_time: Duration::ZERO,
             step_time: Duration::ZERO,
+            stand_in_seconds: 0.0,
+            workshop: None,
         })
+    }
+
+    /// The same, but never waits for a kernel to be compiled: until it is ready the processor draws, and what it has
+    /// drawn then counts.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
+        let mut session = Self::open_with(choice, assets)?;
+        let stand_in = Engine::Cpu(Box::default());
+        match std::mem::replace(&mut session.engine, stand_in) {
+            Engine::Gpu(engine) => session.workshop = Some(Workshop::new(*engine)),
+            cpu => session.engine = cpu,
+        }
+        Ok(session)
+    }
+
+    /// True while the processor draws because the GPU's kernel is being compiled.
+    pub fn is_standing_in(&self) -> bool {
+        self.workshop.is_some() && matches!(self.engine, Engine::Cpu(_))
+    }
+
+    /// Lets the GPU take over where its kernel is ready by now.
+    fn change_over(&mut self) -> Result<(), SessionError> {
+        let (true, Some(job)) = (self.is_standing_in(), &self.job) else {
+            return Ok(());
+        };
+        let finished = self.workshop.as_mut().map(|workshop| workshop.finished(job));
+        let Some(mut engine) = finished.transpose()?.flatten() else {
+            return Ok(());
+        };
+        engine.submit(job.clone())?;
+        self.stand_in_seconds += self.engine_seconds();
+        self.step_time = Duration::ZERO;
+        if let Engine::Cpu(stand_in) = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
+            let (film, schedule) = stand_in.hand_over();
+            engine.take_over(film, schedule);
+        }
+        self.engine = Engine::Gpu(Box::new(engine));
+        Ok(())
     }
 
     /// What renders.
@@ -127,8 +188,8 @@ impl Session {
     }
 
     /// Models and environments, loaded and kept.
-    pub fn assets(&mut self) -> &mut Assets {
-        &mut self.assets
+    pub fn assets(&self) -> &Assets {
+        &self.assets
     }
 
     /// Forgets what was rendered, so that the next submission starts over even with the same document.
@@ -158,7 +219,11 @@ impl Session {
             None => Change::everything(),
         };
         if change.restarts() {
-            let job = Arc::new(self.compiler.compile(document, &mut self.assets)?);
+            let job = Arc::new(self.compiler.compile(document, &self.assets)?);
+            if let Some(workshop) = &mut self.workshop {
+                let current = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default()));
+                self.engine = workshop.engine_for(&job, current);
+            }
             self.engine.submit(job.clone())?;
             self.job = Some(job);
             self.start_clocks();
@@ -173,7 +238,7 @@ impl Session {
 
     fn start_clocks(&mut self) {
         self.convergence = Convergence::default();
-        (self.render_time, self.step_time) = (Duration::ZERO, Duration::ZERO);
+        (self.render_time, self.step_time, self.stand_in_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);
     }
 
     /// Renders for about `budget`.
@@ -181,6 +246,7 @@ impl Session {
     /// # Errors
     /// If the GPU fails; [`Session::fall_back_to_cpu`] goes on without it.
     pub fn step(&mut self, budget: Duration) -> Result<Progress, SessionError> {
+        self.change_over()?;
         let before = self.render_time;
         let begun = Instant::now();
         while !self.progress().is_done {
@@ -238,7 +304,7 @@ impl Session {
 
     /// The engine's own time.
     fn engine_seconds(&self) -> f64 {
-        self.engine.gpu_seconds().unwrap_or(self.step_time.as_secs_f64())
+        self.stand_in_seconds + self.engine.gpu_seconds().unwrap_or(self.step_time.as_secs_f64())
     }
 
     /// How far the render has come.
@@ -254,6 +320,7 @@ impl Session {
             render_seconds: self.render_time.as_secs_f64(),
             engine_seconds,
             measure_seconds: self.convergence.total_seconds,
+            is_standing_in: self.is_standing_in(),
             noise: self.convergence.noise(),
             noise_wanted: settings.and_then(|render| render.noise),
             ..Progress::default()
@@ -298,9 +365,29 @@ impl Session {
         Ok(self.film()?.image())
     }
 
+    /// The mean picture with what is known beside it about each pixel.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn layers(&mut self) -> Result<Layers, SessionError> {
+        let features = self.engine.features(FEATURE_SAMPLES)?.unwrap_or_default();
+        let film = self.engine.film()?;
+        Ok(Layers {
+            image: film.image(),
+            features,
+            samples: film.statistics.iter().map(|statistics| statistics[1] as f32).collect(),
+            variance: film
+                .variance_of_mean()
+                .into_iter()
+                .map(|variance| variance as f32)
+                .collect(),
+        })
+    }
+
     /// Goes on with the processor after the GPU failed, with the same document from its start.
     pub fn fall_back_to_cpu(&mut self, why: &str) {
         (self.engine, self.info) = cpu(format!("the GPU failed: {why}"));
+        self.workshop = None;
         if let Some(job) = &self.job
             && self.engine.submit(job.clone()).is_ok()
         {

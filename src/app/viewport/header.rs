@@ -111,6 +111,12 @@ fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
             .accessible_name("Viewport shows")
             .on_hover_text("Picture, error or samples");
     });
+    let compares = ui.selectable_label(desk.state.compare.is_on, "A | B");
+    let compares = compares.on_hover_text("Compare with another material or lobe (C)");
+    if compares.clicked() {
+        desk.act(Command::Compare);
+    }
+    compares.accessible_name("Compare");
     sized(ui, 104.0, |ui| {
         let response = widgets::choice(ui, "header size", &mut desk.state.resolution, &camera::RESOLUTIONS);
         response
@@ -142,7 +148,7 @@ fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
     });
 }
 
-fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
+pub(super) fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
     let layout = Layout::left_to_right(Align::Center);
     ui.allocate_ui_with_layout(vec2(width, crate::app::theme::ROW_HEIGHT), layout, add);
 }

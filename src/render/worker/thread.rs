@@ -10,6 +10,7 @@ use super::stage::Stage;
 use super::{Activity, Event, Level, Orders, Picture, STEP, Scene, Shared, Snapshot, Submission, lock};
 use crate::analysis::film::Image;
 use crate::document::{Change, Document, ViewSettings};
+use crate::render::assets::Assets;
 use crate::render::display::{Shown, display, map};
 use crate::render::engine::EngineChoice;
 use crate::render::session::{Session, SessionError};
@@ -28,10 +29,12 @@ const SPEED_WEIGHT: f64 = 0.1;
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
 /// The thread's body.
-pub(super) fn run(shared: &Shared, choice: EngineChoice, repaint: &dyn Fn()) {
+pub(super) fn run(shared: &Shared, choice: EngineChoice, assets: Assets, repaint: &dyn Fn()) {
     let mut state = State {
         shared,
         repaint,
+        assets,
+        wanted_layers: Vec::new(),
         session: None,
         snapshot: Snapshot::default(),
         stage: None,
@@ -51,6 +54,9 @@ pub(super) fn run(shared: &Shared, choice: EngineChoice, repaint: &dyn Fn()) {
 struct State<'a> {
     shared: &'a Shared,
     repaint: &'a dyn Fn(),
+    assets: Assets,
+    /// Files whose layers are to be made.
+    wanted_layers: Vec<PathBuf>,
     session: Option<Session>,
     snapshot: Snapshot,
     stage: Option<Stage>,
@@ -101,6 +107,7 @@ impl State<'_> {
             .environments
             .into_iter()
             .for_each(|source| self.load_environment(source));
+        self.wanted_layers.extend(orders.layers);
         if let Some(submission) = orders.submission {
             self.take(submission);
         } else if self.stage.as_ref().is_some_and(Stage::is_settled) {
@@ -111,6 +118,7 @@ impl State<'_> {
         } else {
             self.rest(is_paused);
         }
+        self.make_layers();
         Some(())
     }
 
@@ -172,10 +180,27 @@ impl State<'_> {
         }
     }
 
+    /// Makes the layers that were asked for, once the picture is there at its full resolution.
+    fn make_layers(&mut self) {
+        let is_full = self.stage.as_ref().is_some_and(|stage| stage.reduction == 1);
+        let has_samples = |session: &Session| session.progress().samples_per_pixel > 0;
+        if self.wanted_layers.is_empty() || !is_full || !self.session.as_ref().is_some_and(has_samples) {
+            return;
+        }
+        for path in std::mem::take(&mut self.wanted_layers) {
+            self.guarded(|state| {
+                let layers = state.session()?.layers()?;
+                lock(&state.shared.events).push(Event::LayersMade(path, Box::new(layers)));
+                (state.repaint)();
+                Ok(())
+            });
+        }
+    }
+
     fn session(&mut self) -> Result<&mut Session, SessionError> {
         let session = match self.session.take() {
             Some(session) => session,
-            None => Session::open(EngineChoice::Cpu)?,
+            None => Session::open_with(EngineChoice::Cpu, self.assets.clone())?,
         };
         Ok(self.session.insert(session))
     }
@@ -186,7 +211,8 @@ impl State<'_> {
         self.snapshot.engine = None;
         self.samples_per_second = 0.0;
         self.tell(Activity::Starting);
-        let opened = catch_unwind(|| Session::open(choice)).map_err(|panic| panic_text(&*panic));
+        let opened = catch_unwind(AssertUnwindSafe(|| Session::open_fluid(choice, self.assets.clone())))
+            .map_err(|panic| panic_text(&*panic));
         let why = match opened {
             Ok(Ok(session)) => {
                 self.session = Some(session);
@@ -230,7 +256,7 @@ impl State<'_> {
             return false;
         }
         self.say(Level::Warning, "going on with the processor".to_owned());
-        let opened = Session::open(EngineChoice::Cpu).and_then(|mut session| {
+        let opened = Session::open_with(EngineChoice::Cpu, self.assets.clone()).and_then(|mut session| {
             if let Some(stage) = &self.stage {
                 session.submit(&stage.document())?;
             }
@@ -468,6 +494,7 @@ impl State<'_> {
             reduction: stage.reduction,
             samples_per_pixel,
             map: scale.map(|scale| (wanted, scale)),
+            document: Arc::new(stage.submission.document.clone()),
         }));
         self.tell(Activity::Rendering);
         Ok(())
