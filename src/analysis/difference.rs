@@ -87,7 +87,7 @@ mod tests {
     fn differences_are_signed_and_relative() {
         let found = difference(&image(&[1.0, 2.0]), &image(&[1.5, 1.0])).expect("equal sizes");
         assert!((found.signed[0] - 0.5).abs() < 1e-6 && (found.signed[1] + 1.0).abs() < 1e-6);
-        let expected = (0.5 * (0.25 / 1.01 + 1.0 / 4.01)).sqrt();
+        let expected = (0.5_f64 * (0.25 / 1.01 + 1.0 / 4.01)).sqrt();
         assert!((found.rms_relative - expected).abs() < 1e-6, "{}", found.rms_relative);
         assert_eq!(difference(&image(&[1.0]), &image(&[1.0, 1.0])), None);
         let none = difference(&image(&[3.0]), &image(&[3.0])).expect("equal sizes");
