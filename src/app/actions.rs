@@ -7,8 +7,10 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use super::compare::Rival;
 use super::library::Change;
 use super::snapshots::PinChange;
+use crate::document::ImportLobe;
 use crate::document::MaterialSettings;
 use crate::render::EngineChoice;
+use crate::render::display::Shown;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 
@@ -39,6 +41,10 @@ pub enum Action {
     LookFrom(f64, f64),
     /// Changes the engine.
     UseEngine(EngineChoice),
+    /// Shows the picture or a map of its error or samples.
+    Show(Shown),
+    /// Which lobe the materials of models get that are opened from now on.
+    ImportAs(ImportLobe),
 }
 
 /// Where a command stands in the menus.
@@ -141,6 +147,7 @@ commands! {
     ResetMaterial, Edit, "Reset material", "Gives the selected material its defaults, keeping its name.", None, 1;
     ResetCamera, Edit, "Reset camera", "Puts the camera where it was at first.", None, 1;
     FrameAll, View, "Frame all", "Moves the camera so that the whole model is seen.", key(Key::F), 0;
+    FrameSelected, View, "Frame selected", "Moves the camera so that the surfaces of the selected material are seen.", keys(Modifiers::SHIFT, Key::F), 0;
     Compare, View, "Compare A and B", "Shows the material beside another one, or beside another lobe.", key(Key::C), 2;
     SwapCompared, View, "Swap A and B", "Makes B the document, and what the document was B.", key(Key::X), 2;
     TakeCompared, View, "Take B as the document", "Gives the document B's materials and ends the comparison.", None, 2;

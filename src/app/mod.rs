@@ -53,6 +53,7 @@ use viewport::Viewport;
 use crate::document::{CameraSettings, Change, Document, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
+use crate::scene::camera::framing_distance;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelSource};
 
@@ -155,6 +156,7 @@ impl App {
             awaited: 0,
             panels: PanelState {
                 resolution: options.resolution.unwrap_or(kept.resolution),
+                import_lobe: kept.import_lobe,
                 library: library::Library::new(options.data.as_ref().map(|data| data.join("materials")), options.cache),
                 snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
                 ..PanelState::default()
@@ -269,7 +271,10 @@ impl App {
     fn adopt_model(&mut self, source: ModelSource, model: &Model) {
         let is_file = matches!(source, ModelSource::File(_));
         let edited = self.desk_material();
-        self.document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
+        let slots = model.slots.iter();
+        self.document.materials = slots
+            .map(|slot| MaterialSettings::from_slot(slot, self.panels.import_lobe))
+            .collect();
         if !is_file && let Some(first) = self.document.materials.first_mut() {
             *first = edited;
         }
@@ -278,6 +283,23 @@ impl App {
         let camera = &mut self.document.camera;
         (camera.target, camera.distance, camera.position) = (None, None, None);
         self.edits.note(format!("Change the model to {}", model.name), "");
+    }
+
+    /// Looks at the surfaces of the selected slot from where the camera is.
+    fn frame_selected(&mut self) {
+        let snapshot = self.worker.snapshot();
+        let Some(scene) = &snapshot.scene else { return };
+        let geometry = &scene.job.geometry;
+        let Some((center, radius)) = geometry.sphere_around(self.panels.slot as u32) else {
+            return;
+        };
+        let size = scene.job.settings.image_size.map(f64::from);
+        let camera = &mut self.document.camera;
+        let distance = framing_distance(camera.fov_deg, size[0] / size[1].max(1.0)) * radius;
+        camera.target = Some(geometry.world_from_units(center).to_array());
+        camera.distance = Some(distance * geometry.world_units_per_unit);
+        camera.position = None;
+        self.edits.note("Frame selected", "");
     }
 
     fn desk_material(&self) -> MaterialSettings {
@@ -297,6 +319,7 @@ impl App {
             }
             Action::UseModel(source) => self.worker.open_model(source),
             Action::UseEnvironment(source) => self.worker.open_environment(source),
+            Action::ImportAs(lobe) => self.panels.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
             Action::SelectSlot(slot) => {
                 self.panels.slot = slot;
@@ -312,6 +335,10 @@ impl App {
                 self.edits.note("Look from a side", "");
             }
             Action::UseEngine(choice) => self.worker.use_engine(choice),
+            Action::Show(shown) => {
+                self.panels.shown = shown;
+                self.worker.show(shown);
+            }
         }
     }
 
@@ -341,6 +368,7 @@ impl App {
                 (camera.target, camera.distance, camera.position) = (None, None, None);
                 self.edits.note("Frame all", "");
             }
+            Command::FrameSelected => self.frame_selected(),
             Command::Maximise => {
                 self.is_maximised = !self.is_maximised;
                 layout::set_maximised(&mut self.layout, self.is_maximised);
@@ -452,7 +480,9 @@ impl App {
         let answer = egui::Panel::top("menu")
             .frame(bar)
             .show_separator_line(false)
-            .show(ui, |ui| menu::bar(ui, &self.edits, &mut self.recent, actions))
+            .show(ui, |ui| {
+                menu::bar(ui, &self.edits, &mut self.recent, self.panels.import_lobe, actions)
+            })
             .inner;
         if let Some(pane) = answer.reveal {
             layout::reveal(&mut self.layout, pane);
@@ -548,6 +578,7 @@ impl eframe::App for App {
             theme: self.theme,
             layout: Some(layout),
             resolution: self.panels.resolution,
+            import_lobe: self.panels.import_lobe,
             recent: self.recent.paths().to_vec(),
         };
         kept.save(storage);

@@ -6,6 +6,7 @@
 
 mod compare;
 mod header;
+mod legend;
 
 use egui::{
     Color32, ColorImage, Key, Modifiers, PointerButton, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui,
@@ -17,8 +18,10 @@ use super::icons::{self, Icon};
 use super::orbit::Orbit;
 use super::panels::{Desk, Resolution};
 use super::theme;
+use crate::optics::material::Material;
 use crate::render::worker::{Level, Picture, Scene};
 use crate::scene::camera::camera_ray;
+use crate::scene::surface::surface_at;
 
 /// Degrees of the environment's turn for a drag of one point.
 const LIGHT_DEG_PER_POINT: f32 = 0.35;
@@ -147,6 +150,9 @@ impl Viewport {
             if is_compared && desk.state.compare.view == View::Wipe {
                 Self::divider(ui, place, desk);
             }
+            if let Some((shown, scale)) = picture.map {
+                legend::show(ui, area, shown, scale);
+            }
             if let Some(scene) = desk.snapshot.scene.clone() {
                 self.navigate(ui, &response, place, &scene, desk);
             }
@@ -199,9 +205,24 @@ impl Viewport {
             && let Some(at) = response.interact_pointer_pos()
         {
             response.request_focus();
-            if let Some(slot) = slot_at(at, place, scene) {
-                desk.actions.push(super::actions::Action::SelectSlot(slot));
-            }
+            self.clicked(ui, at, place, scene, desk);
+        }
+    }
+
+    /// A click says what is sharp, where that was asked for or ctrl is held; otherwise it selects a slot, and the plots
+    /// take the angle of the place.
+    fn clicked(&self, ui: &Ui, at: Pos2, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
+        let Some(hit) = hit_at(at, place, scene) else { return };
+        let picks_focus = desk.state.picks_focus || ui.input(|input| input.modifiers.command);
+        if picks_focus && desk.document.camera.aperture > 0.0 {
+            desk.document.camera.focus_distance = Some(hit.depth);
+            desk.state.picks_focus = false;
+            desk.edits.note("Focus", "");
+            return;
+        }
+        desk.state.samples.view_angle_deg = Some(hit.view_angle_deg);
+        if let Some(slot) = hit.slot {
+            desk.actions.push(super::actions::Action::SelectSlot(slot));
         }
     }
 
@@ -259,8 +280,17 @@ fn placed(area: Rect, picture: &Picture, resolution: Resolution) -> Rect {
     Rect::from_center_size(area.center(), size * scale)
 }
 
-/// The material slot of what is seen at a place of the window.
-fn slot_at(at: Pos2, place: Rect, scene: &Scene) -> Option<usize> {
+/// What is seen at a place of the window.
+struct SeenSurface {
+    /// The material slot; `None` for the ground and area lights, which are no materials of the document.
+    slot: Option<usize>,
+    /// Along the camera's viewing direction, scene units.
+    depth: f64,
+    /// Between view and shading normal, degrees.
+    view_angle_deg: f32,
+}
+
+fn hit_at(at: Pos2, place: Rect, scene: &Scene) -> Option<SeenSurface> {
     if !place.contains(at) {
         return None;
     }
@@ -270,11 +300,18 @@ fn slot_at(at: Pos2, place: Rect, scene: &Scene) -> Option<usize> {
         f64::from(share.x) * f64::from(size[0]),
         f64::from(share.y) * f64::from(size[1]),
     ];
-    let [origin, direction] = camera_ray(&scene.job.settings.camera, pixel, size, [0.5; 2]).map(|v| v.to_f32());
-    let hit = scene.job.geometry.intersect(origin, direction, f32::INFINITY)?;
-    let slot = *scene.job.geometry.slots.get(hit.triangle as usize)? as usize;
-    // The ground's slot is no material of the document.
-    (slot < scene.model.slots.len()).then_some(slot)
+    let (camera, geometry) = (&scene.job.settings.camera, &scene.job.geometry);
+    let [origin, direction] = camera_ray(camera, pixel, size, [0.5; 2]);
+    let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::INFINITY)?;
+    let slot = *geometry.slots.get(hit.triangle as usize)? as usize;
+    let materials: Vec<_> = scene.job.materials.iter().map(Material::cast).collect();
+    let point = surface_at(geometry, &materials, &scene.job.textures, &hit, direction);
+    let cosine: f64 = point.surface.frame.normal.dot(point.surface.wo);
+    Some(SeenSurface {
+        slot: (slot < scene.model.slots.len()).then_some(slot),
+        depth: f64::from(hit.t) * direction.dot(camera.forward) * geometry.world_units_per_unit,
+        view_angle_deg: cosine.clamp(0.0, 1.0).acos().to_degrees() as f32,
+    })
 }
 
 /// Squares that show through where the picture is transparent.

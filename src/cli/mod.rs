@@ -9,6 +9,7 @@ mod lobe;
 mod lobe_spec;
 mod names;
 mod parse;
+mod plan;
 mod render;
 mod scatter;
 mod turntable;
@@ -43,6 +44,8 @@ const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, ren
 pub enum Command {
     /// Render a picture.
     Render(Box<render::RenderArguments>),
+    /// Show which effects a scene calls for, and why.
+    Plan(Box<plan::PlanArguments>),
     /// Render a turn about the model as numbered pictures.
     Turntable(Box<turntable::TurntableArguments>),
     /// Prove on this machine that the renderer is right.
@@ -63,6 +66,7 @@ impl Command {
     pub fn run(self) -> anyhow::Result<()> {
         match self {
             Command::Render(arguments) => render::run(&arguments),
+            Command::Plan(arguments) => plan::run(&arguments),
             Command::Turntable(arguments) => turntable::run(&arguments),
             Command::Check(arguments) => check::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),

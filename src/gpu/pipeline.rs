@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use super::device::{GpuDevice, GpuError};
+use super::kernel_cache::KernelCache;
 use super::shader;
-use crate::document::plan::Plan;
+use crate::document::plan::{Plan, Specialisation};
 
 /// A pass over the picture: its shader, its binding layout, and a pipeline for each plan met.
 #[derive(Debug)]
@@ -15,7 +16,8 @@ pub struct Pipelines {
     pub bindings: wgpu::BindGroupLayout,
     /// The pass, and its entry point.
     name: &'static str,
-    of_plan: HashMap<Plan, wgpu::ComputePipeline>,
+    of_plan: HashMap<Specialisation, wgpu::ComputePipeline>,
+    cache: Option<KernelCache>,
 }
 
 impl Pipelines {
@@ -67,15 +69,22 @@ impl Pipelines {
             bindings,
             name,
             of_plan: HashMap::new(),
+            cache: KernelCache::open(gpu),
         })
+    }
+
+    /// Whether a pipeline of this kind has been compiled.
+    pub fn has(&self, specialisation: &Specialisation) -> bool {
+        self.of_plan.contains_key(specialisation)
     }
 
     /// The pipeline of a plan, compiled at its first use.
     ///
     /// # Errors
     /// [`GpuError::Shader`] where the driver refuses it.
-    pub fn get(&mut self, gpu: &GpuDevice, plan: Plan) -> Result<&wgpu::ComputePipeline, GpuError> {
-        if !self.of_plan.contains_key(&plan) {
+    pub fn get(&mut self, gpu: &GpuDevice, plan: &Plan) -> Result<&wgpu::ComputePipeline, GpuError> {
+        let specialisation = plan.specialisation();
+        if !self.of_plan.contains_key(&specialisation) {
             let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
             let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(self.name),
@@ -86,18 +95,21 @@ impl Pipelines {
                     constants: &plan.constants(),
                     zero_initialize_workgroup_memory: false,
                 },
-                cache: None,
+                cache: self.cache.as_ref().map(KernelCache::cache),
             });
             if let Some(error) = pollster::block_on(scope.pop()) {
                 return Err(GpuError::Shader(error.to_string()));
             }
-            self.of_plan.insert(plan, pipeline);
+            self.of_plan.insert(specialisation.clone(), pipeline);
+            if let Some(cache) = &self.cache {
+                cache.save();
+            }
         }
-        Ok(&self.of_plan[&plan])
+        Ok(&self.of_plan[&specialisation])
     }
 }
 
-/// Uniforms, eight read-only buffers, the environment's map, two buffers of sums.
+/// Uniforms, eleven read-only buffers, the environment's map, two buffers of sums.
 fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let buffer = |ty| wgpu::BindingType::Buffer {
         ty,
@@ -122,5 +134,5 @@ fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
             count: None,
         }
     };
-    (0..=11).map(entry).collect()
+    (0..=14).map(entry).collect()
 }

@@ -5,6 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use super::session::SessionError;
 use crate::scene::environment::{self, Environment, EnvironmentSource};
 use crate::scene::light::AreaShape;
+use crate::scene::texture::Textures;
 use crate::scene::{self, Geometry, Model, ModelSource};
 
 /// What a geometry is made of: model, ground, area lights.
@@ -18,6 +19,7 @@ pub struct Assets(Arc<Mutex<Kept>>);
 #[derive(Debug, Default)]
 struct Kept {
     model: Option<(ModelSource, Arc<Model>)>,
+    textures: Option<(ModelSource, Arc<Textures>)>,
     geometry: Option<(GeometryKey, Arc<Geometry>)>,
     environment: Option<(EnvironmentSource, Arc<Environment>)>,
 }
@@ -34,6 +36,14 @@ impl Assets {
     /// Names the file, what is wrong with it and what to do.
     pub fn model(&self, source: &ModelSource) -> Result<Arc<Model>, SessionError> {
         self.kept().model(source)
+    }
+
+    /// The textures of a source, packed.
+    ///
+    /// # Errors
+    /// As [`Assets::model`].
+    pub fn textures(&self, source: &ModelSource) -> Result<Arc<Textures>, SessionError> {
+        self.kept().textures(source)
     }
 
     /// The geometry of a source, with or without ground, with area lights.
@@ -72,6 +82,16 @@ impl Kept {
         model.warnings.iter().for_each(|warning| log::warn!("{warning}"));
         self.model = Some((source.clone(), model.clone()));
         Ok(model)
+    }
+
+    fn textures(&mut self, source: &ModelSource) -> Result<Arc<Textures>, SessionError> {
+        if let Some((_, textures)) = self.textures.as_ref().filter(|(of, _)| of == source) {
+            return Ok(textures.clone());
+        }
+        let textures = Arc::new(Textures::new(&*self.model(source)?));
+        textures.warnings.iter().for_each(|warning| log::warn!("{warning}"));
+        self.textures = Some((source.clone(), textures.clone()));
+        Ok(textures)
     }
 
     fn geometry(

@@ -13,6 +13,8 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use super::assets::Assets;
+use super::convergence::Measurement;
+use super::display::{Scale, Shown};
 use super::engine::{EngineChoice, EngineInfo};
 use super::output::Layers;
 use super::priority::lower_thread_priority;
@@ -98,6 +100,8 @@ pub struct Picture {
     pub reduction: u32,
     /// Samples a pixel in it.
     pub samples_per_pixel: u32,
+    /// What `rgba` is a map of, with its colours' meaning; `None` for the picture itself.
+    pub map: Option<(Shown, Scale)>,
     /// What it shows, with the size at the full resolution.
     pub document: Arc<Document>,
 }
@@ -122,6 +126,8 @@ pub struct Snapshot {
     pub scene: Option<Arc<Scene>>,
     /// How far it has come.
     pub progress: Progress,
+    /// The errors seen so far in it, oldest first.
+    pub history: Arc<Vec<Measurement>>,
     /// Pixel samples a second.
     pub samples_per_second: f64,
     /// By how much the picture in progress is smaller than asked for.
@@ -168,6 +174,7 @@ struct Orders {
     environments: Vec<EnvironmentSource>,
     layers: Vec<PathBuf>,
     engine: Option<EngineChoice>,
+    shown: Option<Shown>,
     reload: bool,
     restart: bool,
     quit: bool,
@@ -180,6 +187,7 @@ impl Orders {
             && self.environments.is_empty()
             && self.layers.is_empty()
             && self.engine.is_none()
+            && self.shown.is_none()
             && !self.reload
             && !self.restart
             && !self.quit
@@ -295,6 +303,11 @@ impl Worker {
     /// Goes on with another engine.
     pub fn use_engine(&self, choice: EngineChoice) {
         self.order(|orders| orders.engine = Some(choice));
+    }
+
+    /// Shows the picture or a map of its error or samples; what has been rendered stays.
+    pub fn show(&self, shown: Shown) {
+        self.order(|orders| orders.shown = Some(shown));
     }
 
     fn order(&self, change: impl FnOnce(&mut Orders)) {

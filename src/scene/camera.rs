@@ -177,3 +177,13 @@ pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 
         (along * camera.focus_distance - shift).normalize(),
     ]
 }
+
+/// How much room a framed model is given.
+const FRAME_MARGIN: f64 = 1.05;
+
+/// The distance at which the bounding sphere, of radius 1, just fits the picture's shorter side.
+pub fn framing_distance(fov_deg: f64, aspect: f64) -> f64 {
+    let half_height = (0.5 * fov_deg.to_radians()).tan();
+    let half = (half_height * aspect.min(1.0)).atan();
+    FRAME_MARGIN / half.sin()
+}

@@ -1,11 +1,12 @@
 //! A ray's hit made into a surface to shade.
 
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
-use crate::optics::material::{Material, Surface};
+use crate::optics::material::{Material, NO_TEXTURE, Surface};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 
+use super::texture::{Textures, mapped_normal, opacity_at, uvs_at};
 use super::{Geometry, Hit};
 
 /// Rounding of the position's three products and sums, with what the box test and the transforms add.
@@ -24,6 +25,8 @@ pub struct SurfacePoint<T> {
     pub error: T,
     /// Material slot.
     pub slot: u32,
+    /// Both sets of texture coordinates; zero where the material looks up no texture.
+    pub uvs: [[T; 2]; 2],
 }
 
 impl<T: Real> SurfacePoint<T> {
@@ -50,6 +53,7 @@ pub fn bent_normal<T: Real>(shading: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
 pub fn surface_at<T: Real>(
     geometry: &Geometry,
     materials: &[Material<T>],
+    textures: &Textures,
     hit: &Hit,
     direction: Vec3<T>,
 ) -> SurfacePoint<T> {
@@ -67,15 +71,28 @@ pub fn surface_at<T: Real>(
         |a: [f32; 3], b: [f32; 3], c: [f32; 3]| Vec3::from_f32(a) * w + Vec3::from_f32(b) * u + Vec3::from_f32(c) * v;
     let interpolated = interpolate(corners[0].normal, corners[1].normal, corners[2].normal);
     let smoothed = normalize_or(interpolated, normal);
-    let shading = bent_normal(
-        Vec3::select(smoothed.dot(normal).less(T::zero()), -smoothed, smoothed),
-        wo,
-    );
+    let is_turned = smoothed.dot(normal).less(T::zero());
+    let facing = |shading: Vec3<T>| bent_normal(Vec3::select(is_turned, -shading, shading), wo);
     let slot = geometry.slots[index];
     let material = &materials[slot as usize];
-    let frame = if material.anisotropy.to_f64() != 0.0 {
+    let uvs = if material.is_textured() {
+        uvs_at(geometry, index, [w, u, v])
+    } else {
+        [[T::zero(); 2]; 2]
+    };
+    let tangent = || {
         let axis = |i: usize| [corners[i].tangent[0], corners[i].tangent[1], corners[i].tangent[2]];
-        frame_from_tangent(shading, interpolate(axis(0), axis(1), axis(2)), material.rotation_rad)
+        interpolate(axis(0), axis(1), axis(2))
+    };
+    let coat_normal = facing(smoothed);
+    let mut shading = coat_normal;
+    if material.textures[2] != NO_TEXTURE {
+        let side = |i: usize| T::from_f64(f64::from(corners[i].tangent[3]));
+        let sign = side(0) * w + side(1) * u + side(2) * v;
+        shading = facing(mapped_normal(textures, material, uvs, [smoothed, tangent()], sign));
+    }
+    let frame = if material.anisotropy.to_f64() != 0.0 {
+        frame_from_tangent(shading, tangent(), material.rotation_rad)
     } else {
         frame_from_normal(shading)
     };
@@ -84,12 +101,26 @@ pub fn surface_at<T: Real>(
             frame,
             normal,
             wo,
+            coat_normal,
             is_inside: is_back.any(),
         },
         position,
         error: position_error([p0, p1, p2], [w, u, v], normal),
         slot,
+        uvs,
     }
+}
+
+/// The share of light that is stopped where a ray met the geometry, in [0, 1].
+#[inline(always)]
+pub fn hit_opacity<T: Real>(geometry: &Geometry, materials: &[Material<T>], textures: &Textures, hit: &Hit) -> T {
+    let material = &materials[geometry.slots[hit.triangle as usize] as usize];
+    if !material.has_holes() {
+        return T::one();
+    }
+    let (u, v) = (T::from_f64(f64::from(hit.u)), T::from_f64(f64::from(hit.v)));
+    let uvs = uvs_at(geometry, hit.triangle as usize, [T::one() - u - v, u, v]);
+    opacity_at(textures, material, uvs)
 }
 
 /// How far off its plane, along the unit `normal`, the place may be that is interpolated between a triangle's corners

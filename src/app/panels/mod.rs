@@ -3,7 +3,9 @@
 mod area_lights;
 pub(super) mod camera;
 pub(super) mod check;
+pub(super) mod convergence;
 pub(super) mod curve;
+pub(super) mod effects;
 pub(super) mod lighting;
 pub(super) mod lobe;
 mod lobe_match;
@@ -20,7 +22,8 @@ use super::edits::Edits;
 use super::library::Library;
 use super::snapshots::Snapshots;
 use super::widgets::RowResponse;
-use crate::document::{Document, MaterialSettings};
+use crate::document::{Document, ImportLobe, MaterialSettings};
+use crate::render::display::Shown;
 use crate::render::worker::{Scene, Snapshot};
 
 /// What panels work on.
@@ -41,8 +44,12 @@ pub(super) struct PanelState {
     pub(super) log: Vec<log::Entry>,
     /// The environment's small picture.
     pub(super) thumbnail: lighting::Thumbnail,
+    /// The lobe of the materials of models that are opened.
+    pub(super) import_lobe: ImportLobe,
     /// How large the picture is.
     pub(super) resolution: Resolution,
+    /// What of the render the viewport shows.
+    pub(super) shown: Shown,
     /// The curve editor's.
     pub(super) curve: curve::CurveState,
     /// The sample plots'.
@@ -51,6 +58,8 @@ pub(super) struct PanelState {
     pub(super) lobe: lobe::LobeState,
     /// The checks'.
     pub(super) check: check::CheckState,
+    /// The next click in the viewport says what is sharp.
+    pub(super) picks_focus: bool,
     /// Rendering was stopped by hand.
     pub(super) is_paused: bool,
     /// What is searched for among the presets.
