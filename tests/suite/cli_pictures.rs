@@ -227,7 +227,7 @@ fn the_model_turns_against_a_light_that_stays() {
     let frames = |turn: &str| {
         place.done(&format!(
             "turntable --frames 2 --turn {turn} --output {turn} --model sphere --environment studio --background transparent \
-             --size 16x16 --samples 64 --engine cpu"
+             --size 16x16 --samples 256 --engine cpu"
         ));
         [1, 2].map(|number| {
             let path = place.path(turn).join(format!("frame-000{number}.png"));
