@@ -60,7 +60,7 @@ pub fn path_state(x: u32, y: u32, seed: u32, sample: u32, sequence: Sequence) ->
     let state = random_state(x, y, seed, sample, sequence);
     match sequence {
         Sequence::Sobol => RandomState {
-            key: if sample % 2 == 0 {
+            key: if sample.is_multiple_of(2) {
                 state.key
             } else {
                 hash_bits(state.key ^ 0x5851_f42d)

@@ -8,7 +8,6 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
 use super::engine::Engine;
-use crate::cpu::CpuEngine;
 use crate::document::job::Job;
 use crate::document::plan::Specialisation;
 use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
@@ -67,7 +66,7 @@ impl Workshop {
         }
         self.ready.iter_mut().for_each(GpuEngine::rest);
         self.begin(job);
-        Engine::Cpu(Box::new(CpuEngine::default()))
+        Engine::Cpu(Box::default())
     }
 
     /// Begins to compile where nothing else is being compiled.

@@ -300,7 +300,7 @@ fn alpha_is_a_share_or_a_cut() {
 /// Random slopes of up to 45 degrees.
 fn bumps() -> RgbaImage {
     RgbaImage::from_fn(16, 16, |x, y| {
-        let code = |i: u32| ((x * 37 + y * 101 + i * 71) * 2_654_435_761u32 >> 24) as u8;
+        let code = |i: u32| (((x * 37 + y * 101 + i * 71) * 2_654_435_761u32) >> 24) as u8;
         Rgba([code(1), code(2), 200, 255])
     })
 }
