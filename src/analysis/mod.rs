@@ -11,6 +11,7 @@ pub mod histogram;
 pub mod lobe_model;
 pub mod lobe_view;
 pub mod plot;
+pub mod probe;
 pub mod quadrature;
 pub mod scatter;
 pub mod sphere_grid;

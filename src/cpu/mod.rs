@@ -1,6 +1,7 @@
 //! The engine on the processor: the same path tracer as the GPU's, on all cores.
 
 pub mod integrator;
+pub mod probe;
 pub mod scatter;
 
 use std::sync::Arc;

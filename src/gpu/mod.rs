@@ -4,6 +4,7 @@ pub mod device;
 mod engine;
 pub mod layout;
 mod pipeline;
+pub mod probe;
 mod resources;
 pub mod scatter;
 pub mod shader;
