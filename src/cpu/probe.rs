@@ -87,6 +87,12 @@ pub fn probe_material<T: Real>(scene: &ProbeScene<'_>, question: &MaterialQuesti
     material_evaluate(&material, scene.tables, &surface, wi, density, T::one())
 }
 
+/// Materials' values in f32.
+pub fn probe_materials(scene: &ProbeScene<'_>, questions: &[MaterialQuestion]) -> Vec<Vec3<f32>> {
+    let answer = |q: &MaterialQuestion| probe_material(scene, q, [0.0; 2]);
+    questions.par_iter().map(answer).collect()
+}
+
 /// The nearest triangles on rays.
 pub fn probe_ray(scene: &ProbeScene<'_>, questions: &[RayQuestion]) -> Vec<RayAnswer> {
     let answer = |q: &RayQuestion| {

@@ -49,7 +49,10 @@ impl Probe {
                 entries,
             })
         };
-        let groups = [group(&scene), group(&[entry(0, storage(true)), entry(1, storage(false))])];
+        let groups = [
+            group(&scene),
+            group(&[entry(0, storage(true)), entry(1, storage(false))]),
+        ];
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: Some("probe"),
             bind_group_layouts: &groups.each_ref().map(Some),
@@ -144,7 +147,13 @@ impl Probe {
         let tables = gpu.storage("the materials' tables", bytemuck::cast_slice(scene.tables))?;
         Ok(self.bind(
             0,
-            &[(0, &globals), (1, &nodes), (2, &triangles), (5, &materials), (6, &tables)],
+            &[
+                (0, &globals),
+                (1, &nodes),
+                (2, &triangles),
+                (5, &materials),
+                (6, &tables),
+            ],
         ))
     }
 
