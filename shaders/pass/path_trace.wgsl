@@ -25,6 +25,8 @@ struct PathResult {
     radiance: vec3f,
     alpha: f32,
     rays: u32,
+    // Luminance that limiting fireflies took.
+    clamped: f32,
 }
 
 fn far_radiance(direction: vec3f) -> vec3f {
@@ -110,12 +112,24 @@ fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: p
     return value * light.radiance / light.density;
 }
 
+// What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
+fn limited(contribution: vec3f, reflections: u32, taken: ptr<function, f32>) -> vec3f {
+    if PLAN_FIREFLY_CLAMP == 0u || reflections <= 1u {
+        return contribution;
+    }
+    let largest = max(max(contribution.x, contribution.y), contribution.z);
+    let kept = globals.firefly_clamp / max(largest, globals.firefly_clamp);
+    *taken += luminance(contribution) * (1.0 - kept);
+    return contribution * kept;
+}
+
 fn camera_background(direction: vec3f, rays: u32) -> PathResult {
     if globals.background_kind == BACKGROUND_ENVIRONMENT {
-        return PathResult(far_radiance(direction), 1.0, rays);
+        return PathResult(far_radiance(direction), 1.0, rays, 0.0);
     }
     let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
-    return PathResult(select(globals.background, vec3f(0.0), is_transparent), select(1.0, 0.0, is_transparent), rays);
+    let color = select(globals.background, vec3f(0.0), is_transparent);
+    return PathResult(color, select(1.0, 0.0, is_transparent), rays, 0.0);
 }
 
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
@@ -126,6 +140,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var ray = camera_ray(camera, vec2f(pixel) + 0.5 + offset, globals.image_size, random_pair(state, 1u));
     var throughput = vec3f(1.0);
     var radiance = vec3f(0.0);
+    var clamped = 0.0;
     var lobe_density = 0.0;
     var was_mirror = true;
     var rays = 0u;
@@ -136,7 +151,8 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             if bounce == 0u {
                 return camera_background(ray.direction, rays);
             }
-            radiance += throughput * far_light(ray.direction, lobe_density, was_mirror);
+            let found = throughput * far_light(ray.direction, lobe_density, was_mirror);
+            radiance += limited(found, bounce, &clamped);
             break;
         }
         let point = surface_at(hit, ray.direction);
@@ -145,14 +161,16 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             throughput *= exp(-material.absorption * hit.t);
         }
         if PLAN_EMISSION == 1u {
-            radiance += throughput * emitted_light(point, hit.t, lobe_density, was_mirror);
+            let found = throughput * emitted_light(point, hit.t, lobe_density, was_mirror);
+            radiance += limited(found, bounce, &clamped);
         }
         if bounce >= globals.bounces {
             break;
         }
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
         if samples_light() {
-            radiance += throughput * direct_light(point, state, dimension + 2u, &rays);
+            let found = throughput * direct_light(point, state, dimension + 2u, &rays);
+            radiance += limited(found, bounce + 1u, &clamped);
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
         let wants_density = samples_light() && globals.strategy == STRATEGY_MIS;
@@ -177,7 +195,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         was_mirror = drawn.is_mirror;
         ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
     }
-    return PathResult(radiance, 1.0, rays);
+    return PathResult(radiance, 1.0, rays, clamped);
 }
 
 // Finite and not negative: what may be added to the picture.
@@ -195,12 +213,14 @@ fn path_trace(@builtin(global_invocation_id) id: vec3u) {
     var color = vec4f(0.0);
     // Luminance squared, kept, dropped, rays.
     var sums = vec4f(0.0);
+    var taken = 0.0;
     for (var i = 0u; i < globals.sample_count; i++) {
         let path = trace_path(pixel, globals.first_sample + i);
         sums.w += f32(path.rays);
         if is_sound(path.radiance) {
             let y = luminance(path.radiance);
             color += vec4f(path.radiance, path.alpha);
+            taken += path.clamped;
             sums += vec4f(y * y, 1.0, 0.0, 0.0);
         } else {
             sums.z += 1.0;
@@ -209,4 +229,7 @@ fn path_trace(@builtin(global_invocation_id) id: vec3u) {
     let index = pixel.y * globals.image_size.x + pixel.x;
     color_sums[index] += color;
     statistics[index] += sums;
+    if PLAN_FIREFLY_CLAMP == 1u {
+        statistics[globals.image_size.x * globals.image_size.y + index].x += taken;
+    }
 }

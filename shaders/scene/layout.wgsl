@@ -40,7 +40,9 @@ struct Globals {
     environment_probability: f32,
     // Density per area of the emitting triangles over the luminance of their emission.
     density_per_luminance: f32,
-    reserved: vec2u,
+    // The largest radiance of an indirect contribution.
+    firefly_clamp: f32,
+    reserved: u32,
 }
 
 struct Material {
@@ -101,6 +103,7 @@ struct LightCell {
 @group(0) @binding(8) var<storage, read> environment_cells: array<AliasCell>;
 // Sums over the samples of a pixel since the host last took them: red, green, blue, alpha.
 @group(0) @binding(9) var<storage, read_write> color_sums: array<vec4f>;
-// The same of luminance squared; samples kept; samples dropped; rays traced.
+// The same of luminance squared; samples kept; samples dropped; rays traced. Where fireflies are limited, as many again
+// after those: luminance taken.
 @group(0) @binding(10) var<storage, read_write> statistics: array<vec4f>;
 @group(0) @binding(11) var<storage, read> light_cells: array<LightCell>;

@@ -25,6 +25,8 @@ override PLAN_LIGHT_SAMPLING: u32 = 1u;
 override PLAN_EMITTER_SAMPLING: u32 = 1u;
 // 1: the lens may be open.
 override PLAN_LENS: u32 = 1u;
+// 1: indirect contributions are limited.
+override PLAN_FIREFLY_CLAMP: u32 = 1u;
 
 fn planned(value: u32, plan: u32) -> u32 {
     return select(plan, value, plan == ANY);

@@ -15,6 +15,8 @@ pub struct Film {
     pub dropped: u64,
     /// Rays traced.
     pub rays: u64,
+    /// Luminance that limiting fireflies took from all samples together.
+    pub clamped: f64,
 }
 
 impl Film {
@@ -28,6 +30,18 @@ impl Film {
             statistics: vec![[0.0; 2]; pixels],
             dropped: 0,
             rays: 0,
+            clamped: 0.0,
+        }
+    }
+
+    /// The part of the picture's energy, in [0, 1], that limiting fireflies took.
+    pub fn clamped_share(&self) -> f64 {
+        let luminance = |sum: &[f64; 4]| 0.2126 * sum[0] + 0.7152 * sum[1] + 0.0722 * sum[2];
+        let kept: f64 = self.color.iter().map(luminance).sum();
+        if self.clamped > 0.0 {
+            self.clamped / (self.clamped + kept)
+        } else {
+            0.0
         }
     }
 

@@ -85,6 +85,10 @@ pub struct RenderArguments {
     /// Reflections that a path may have, 1 to 64.
     #[arg(long, default_value_t = 64, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
     bounces: u32,
+    /// Limit the radiance of light that was reflected twice or more; the report tells how much energy that takes
+    /// (`clamped_energy`). Off unless given.
+    #[arg(long, value_name = "X", value_parser = parse::number_in(range::FIREFLY_CLAMP), allow_negative_numbers = true)]
+    firefly_clamp: Option<f64>,
     /// Random numbers: sobol (Owen-scrambled, less noise) or independent.
     #[arg(long, default_value = "sobol", value_name = "sobol|independent", value_parser = names::sequence)]
     sequence: Sequence,
@@ -288,6 +292,7 @@ fn json_report(
         "rays": film.rays,
         "rays_per_second": film.rays as f64 / seconds,
         "dropped_samples": film.dropped,
+        "clamped_energy": film.clamped_share(),
         "effects": effects,
         "seed": document.render.seed,
     }))
@@ -343,6 +348,7 @@ fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Resul
     render.strategy = arguments.strategy;
     render.seed = arguments.seed;
     render.filter = arguments.filter;
+    render.firefly_clamp = arguments.firefly_clamp.map(|limit| limit as f32);
     document.check()?;
     Ok(document)
 }

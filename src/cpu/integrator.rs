@@ -34,6 +34,8 @@ pub struct PathResult<T> {
     pub alpha: T,
     /// Rays traced.
     pub rays: u32,
+    /// Luminance that limiting fireflies took.
+    pub clamped: T,
 }
 
 /// A job with its numbers in the precision of the shading.
@@ -50,6 +52,8 @@ pub struct Integrator<'a, T> {
     density_per_luminance: T,
     samples_environment: bool,
     samples_emitters: bool,
+    /// Where fireflies are limited.
+    firefly_clamp: Option<T>,
 }
 
 impl<'a, T: Real> Integrator<'a, T> {
@@ -70,6 +74,10 @@ impl<'a, T: Real> Integrator<'a, T> {
             density_per_luminance: T::from_f64(choice.density_per_luminance),
             samples_environment: job.plan.light_sampling && samples_light,
             samples_emitters: job.plan.emitter_sampling && samples_light,
+            firefly_clamp: job
+                .plan
+                .firefly_clamp
+                .then(|| T::from_f64(job.settings.firefly_clamp)),
         }
     }
 
@@ -158,13 +166,29 @@ impl<'a, T: Real> Integrator<'a, T> {
         value * radiance / density
     }
 
+    /// What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
+    #[inline(always)]
+    fn limited(&self, contribution: Vec3<T>, reflections: u32, taken: &mut T) -> Vec3<T> {
+        let Some(limit) = self.firefly_clamp.filter(|_| reflections > 1) else {
+            return contribution;
+        };
+        let kept = limit / contribution.max_component().max(limit);
+        *taken += contribution.luminance() * (T::one() - kept);
+        contribution * kept
+    }
+
     fn camera_background(&self, direction: Vec3<T>, rays: u32) -> PathResult<T> {
         let (radiance, alpha) = match self.settings.background {
             BackgroundKind::Environment => (self.far_radiance(direction), T::one()),
             BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
             BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
         };
-        PathResult { radiance, alpha, rays }
+        PathResult {
+            radiance,
+            alpha,
+            rays,
+            clamped: T::zero(),
+        }
     }
 
     /// One path through a pixel.
@@ -178,6 +202,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         let samples_light = self.samples_environment || self.samples_emitters;
         let mut throughput = Vec3::splat(T::one());
         let mut radiance = Vec3::zero();
+        let mut clamped = T::zero();
         let mut lobe_density = T::zero();
         let mut was_mirror = true;
         let mut rays = 0;
@@ -187,7 +212,8 @@ impl<'a, T: Real> Integrator<'a, T> {
                 if bounce == 0 {
                     return self.camera_background(direction, rays);
                 }
-                radiance += throughput * self.far_light(direction, lobe_density, was_mirror);
+                let found = throughput * self.far_light(direction, lobe_density, was_mirror);
+                radiance += self.limited(found, bounce, &mut clamped);
                 break;
             };
             let point = self.surface(&hit, direction);
@@ -196,13 +222,15 @@ impl<'a, T: Real> Integrator<'a, T> {
             if point.surface.is_inside && material.transmits() {
                 throughput = throughput * material.absorption.map(|absorption| (-absorption * distance).exp());
             }
-            radiance += throughput * self.emitted_light(&point, distance, lobe_density, was_mirror);
+            let found = throughput * self.emitted_light(&point, distance, lobe_density, was_mirror);
+            radiance += self.limited(found, bounce, &mut clamped);
             if bounce >= settings.bounces {
                 break;
             }
             let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
             if samples_light {
-                radiance += throughput * self.direct_light(&point, state, dimension + 2, &mut rays);
+                let found = throughput * self.direct_light(&point, state, dimension + 2, &mut rays);
+                radiance += self.limited(found, bounce + 1, &mut clamped);
             }
             let [a, b] = random_pair(state, dimension);
             let [c, layer] = random_pair(state, dimension + 1);
@@ -239,6 +267,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             radiance,
             alpha: T::one(),
             rays,
+            clamped,
         }
     }
 

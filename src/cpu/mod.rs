@@ -77,7 +77,7 @@ impl CpuEngine {
         let colors = self.film.color[first..first + count].par_chunks_mut(CHUNK_PIXELS);
         let statistics = self.film.statistics[first..first + count].par_chunks_mut(CHUNK_PIXELS);
         let chunks = colors.zip(statistics).enumerate().map(|(chunk, (colors, statistics))| {
-            let (mut dropped, mut rays) = (0, 0);
+            let (mut dropped, mut rays, mut clamped) = (0, 0, 0.0);
             for (i, (color, statistics)) in colors.iter_mut().zip(statistics).enumerate() {
                 let index = (first + chunk * CHUNK_PIXELS + i) as u32;
                 let path = integrator.trace_path([index % width, index / width], sample);
@@ -90,13 +90,16 @@ impl CpuEngine {
                     }
                     statistics[0] += luminance * luminance;
                     statistics[1] += 1.0;
+                    clamped += path.clamped.to_f64();
                 } else {
                     dropped += 1;
                 }
             }
-            (dropped, rays)
+            (dropped, rays, clamped)
         });
-        let (dropped, rays) = chunks.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
+        let (dropped, rays, clamped) =
+            chunks.reduce(|| (0, 0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2));
+        self.film.clamped += clamped;
         self.film.dropped += dropped;
         self.film.rays += rays;
     }

@@ -44,11 +44,12 @@ impl Change {
                 || !stand_alike(&light.area_lights, &other_light.area_lights),
             sampling: (
                 render.bounces,
+                render.firefly_clamp,
                 render.sequence,
                 render.strategy,
                 render.seed,
                 render.filter,
-            ) != (other.bounces, other.sequence, other.strategy, other.seed, other.filter),
+            ) != (other.bounces, other.firefly_clamp, other.sequence, other.strategy, other.seed, other.filter),
             target: (render.samples, render.time_s) != (other.samples, other.time_s),
         }
     }

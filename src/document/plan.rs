@@ -34,6 +34,8 @@ pub struct Plan {
     pub emitter_sampling: bool,
     /// The lens is open.
     pub lens: bool,
+    /// Indirect contributions are limited.
+    pub firefly_clamp: bool,
 }
 
 impl Plan {
@@ -52,6 +54,7 @@ impl Plan {
         light_sampling: true,
         emitter_sampling: true,
         lens: true,
+        firefly_clamp: true,
     };
 
     /// What these materials call for under light that is shared out like this.
@@ -77,6 +80,7 @@ impl Plan {
             light_sampling: light.environment_probability > 0.0,
             emitter_sampling: light.density_per_luminance > 0.0,
             lens: lens_radius > 0.0,
+            firefly_clamp: false,
         }
     }
 
@@ -93,6 +97,7 @@ impl Plan {
             ("transmission", self.transmission),
             ("absorption", self.absorption),
             ("depth-of-field", self.lens),
+            ("firefly-clamp", self.firefly_clamp),
         ];
         effects
             .into_iter()
@@ -102,7 +107,7 @@ impl Plan {
     }
 
     /// The override constants of the pipeline, by their names in `shaders/scene/plan.wgsl`.
-    pub fn constants(&self) -> [(&'static str, f64); 13] {
+    pub fn constants(&self) -> [(&'static str, f64); 14] {
         let number = |value: Option<u32>| f64::from(value.unwrap_or(u32::MAX));
         let flag = |value: bool| f64::from(u8::from(value));
         [
@@ -119,6 +124,7 @@ impl Plan {
             ("PLAN_LIGHT_SAMPLING", flag(self.light_sampling)),
             ("PLAN_EMITTER_SAMPLING", flag(self.emitter_sampling)),
             ("PLAN_LENS", flag(self.lens)),
+            ("PLAN_FIREFLY_CLAMP", flag(self.firefly_clamp)),
         ]
     }
 }

@@ -39,6 +39,8 @@ pub mod range {
     pub const TIME_S: RangeInclusive<f64> = 0.001..=1e9;
     /// Longest path, bounces.
     pub const BOUNCES: RangeInclusive<f64> = 1.0..=64.0;
+    /// The largest radiance that an indirect contribution keeps.
+    pub const FIREFLY_CLAMP: RangeInclusive<f64> = 1e-6..=1e9;
     /// Distance and sides of an area light, bounding radii.
     pub const AREA_LENGTH: RangeInclusive<f64> = 1e-3..=1e3;
     /// How many area lights there may be.
@@ -213,6 +215,9 @@ pub struct RenderSettings {
     pub seed: u32,
     /// How samples are spread over a pixel and its neighbours.
     pub filter: PixelFilter,
+    /// The largest radiance that light keeps that was reflected twice or more; what is beyond is taken from the picture,
+    /// and told. `None`: nothing is taken.
+    pub firefly_clamp: Option<f32>,
 }
 
 impl Default for RenderSettings {
@@ -227,6 +232,7 @@ impl Default for RenderSettings {
             strategy: Strategy::default(),
             seed: 0,
             filter: PixelFilter::default(),
+            firefly_clamp: None,
         }
     }
 }
@@ -315,6 +321,11 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
         ("render.samples", f64::from(render.samples), r::SAMPLES),
         ("render.time_s", render.time_s.unwrap_or(1.0), r::TIME_S),
         ("render.bounces", f64::from(render.bounces), r::BOUNCES),
+        (
+            "render.firefly_clamp",
+            f64::from(render.firefly_clamp.unwrap_or(1.0)),
+            r::FIREFLY_CLAMP,
+        ),
         (
             "the number of lighting.area_lights",
             lighting.area_lights.len() as f64,

@@ -153,18 +153,22 @@ impl GpuEngine {
         };
         let pixels = self.film.color.len();
         let colors: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
-        let statistics: Vec<[f32; 4]> = self.gpu.read(&resources.sums[1], pixels)?;
+        let clamps = resources.job().plan.firefly_clamp;
+        let count = if clamps { 2 * pixels } else { pixels };
+        let statistics: Vec<[f32; 4]> = self.gpu.read(&resources.sums[1], count)?;
+        let (statistics, taken) = statistics.split_at(pixels);
         for (sum, color) in self.film.color.iter_mut().zip(colors) {
             for (sum, x) in sum.iter_mut().zip(color) {
                 *sum += f64::from(x);
             }
         }
         for (sum, [luminance_squared, kept, dropped, rays]) in self.film.statistics.iter_mut().zip(statistics) {
-            sum[0] += f64::from(luminance_squared);
-            sum[1] += f64::from(kept);
-            self.film.dropped += dropped as u64;
-            self.film.rays += rays as u64;
+            sum[0] += f64::from(*luminance_squared);
+            sum[1] += f64::from(*kept);
+            self.film.dropped += *dropped as u64;
+            self.film.rays += *rays as u64;
         }
+        self.film.clamped += taken.iter().map(|[taken, ..]| f64::from(*taken)).sum::<f64>();
         resources.clear_sums(&self.gpu);
         self.unflushed = 0;
         Ok(())

@@ -48,8 +48,10 @@ pub struct Globals {
     pub environment_probability: f32,
     /// Density per area of the emitting triangles over the luminance of their emission.
     pub density_per_luminance: f32,
+    /// The largest radiance of an indirect contribution.
+    pub firefly_clamp: f32,
     /// Fills the last 16 bytes.
-    pub reserved: [u32; 2],
+    pub reserved: u32,
 }
 
 impl Globals {
@@ -80,7 +82,8 @@ impl Globals {
             light_cells_size: settings.light_choice.cells_size,
             environment_probability: settings.light_choice.environment_probability as f32,
             density_per_luminance: settings.light_choice.density_per_luminance as f32,
-            reserved: [0; 2],
+            firefly_clamp: settings.firefly_clamp as f32,
+            reserved: 0,
         }
     }
 }

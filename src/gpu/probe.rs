@@ -1,5 +1,8 @@
 //! Single functions asked about inputs of one's own, answered by the shader (`shaders/pass/probe.wgsl`).
 
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::DeviceExt;
 
@@ -21,6 +24,7 @@ pub struct Probe {
     module: wgpu::ShaderModule,
     groups: [wgpu::BindGroupLayout; 2],
     layout: wgpu::PipelineLayout,
+    pipelines: Mutex<HashMap<&'static str, wgpu::ComputePipeline>>,
 }
 
 impl Probe {
@@ -63,6 +67,7 @@ impl Probe {
             module,
             groups,
             layout,
+            pipelines: Mutex::default(),
         })
     }
 
@@ -103,7 +108,12 @@ impl Probe {
         Ok(answers)
     }
 
+    /// The pipeline of an entry point, compiled at its first use.
     fn pipeline(&self, entry_point: &'static str) -> Result<wgpu::ComputePipeline, GpuError> {
+        let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(pipeline) = pipelines.get(entry_point) {
+            return Ok(pipeline.clone());
+        }
         let scope = self.gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let descriptor = wgpu::ComputePipelineDescriptor {
             label: Some(entry_point),
@@ -116,7 +126,10 @@ impl Probe {
         let pipeline = self.gpu.device.create_compute_pipeline(&descriptor);
         match pollster::block_on(scope.pop()) {
             Some(error) => Err(GpuError::Shader(error.to_string())),
-            None => Ok(pipeline),
+            None => {
+                pipelines.insert(entry_point, pipeline.clone());
+                Ok(pipeline)
+            }
         }
     }
 

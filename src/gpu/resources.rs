@@ -58,12 +58,12 @@ impl Resources {
             Some(old) => old.light_cells.clone(),
             None => gpu.storage("the triangles that emit", bytemuck::cast_slice(&job.lights.cells))?,
         };
-        let size_of_sums = pixels(&job) * 16;
-        let sums = match old.filter(|old| pixels(&old.job) == pixels(&job)) {
+        let sizes = sizes_of_sums(&job);
+        let sums = match old.filter(|old| sizes_of_sums(&old.job) == sizes) {
             Some(old) => old.sums.clone(),
             None => [
-                gpu.empty_storage("the picture", size_of_sums)?,
-                gpu.empty_storage("the picture", size_of_sums)?,
+                gpu.empty_storage("the picture", sizes[0])?,
+                gpu.empty_storage("the picture", sizes[1])?,
             ],
         };
         clear(gpu, &sums);
@@ -122,8 +122,10 @@ impl Resources {
     }
 }
 
-fn pixels(job: &Job) -> u64 {
-    job.settings.image_size.iter().map(|&x| u64::from(x)).product()
+/// Bytes of the sums of colours and of statistics.
+fn sizes_of_sums(job: &Job) -> [u64; 2] {
+    let pixels: u64 = job.settings.image_size.iter().map(|&x| u64::from(x)).product();
+    [16 * pixels, 16 * pixels * if job.plan.firefly_clamp { 2 } else { 1 }]
 }
 
 fn clear(gpu: &GpuDevice, buffers: &[wgpu::Buffer]) {

@@ -51,11 +51,15 @@ impl Compiler {
             environment_strength,
             light_choice: LightChoice::new(&environment, environment_strength, &lights),
             bounces: document.render.bounces,
+            firefly_clamp: document.render.firefly_clamp.map_or(f64::INFINITY, f64::from),
             sequence: document.render.sequence,
             strategy: document.render.strategy,
             seed: document.render.seed,
         };
-        let plan = Plan::new(&materials, &settings.light_choice, settings.camera.lens_radius);
+        let plan = Plan {
+            firefly_clamp: settings.firefly_clamp.is_finite(),
+            ..Plan::new(&materials, &settings.light_choice, settings.camera.lens_radius)
+        };
         Ok(Job {
             geometry,
             environment,

@@ -43,7 +43,7 @@ fn rust_layouts() -> Vec<Layout> {
         layout!(Globals: Globals {
             camera, image_size, tile_origin, tile_size, first_sample, sample_count, background, background_kind,
             environment_rotation, environment_cells_size, environment_strength, bounces, sequence, strategy, seed,
-            node_count, light_cells_size, environment_probability, density_per_luminance, reserved,
+            node_count, light_cells_size, environment_probability, density_per_luminance, firefly_clamp, reserved,
         }),
         layout!(Camera: Camera<f32> {
             origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,

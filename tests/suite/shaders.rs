@@ -369,6 +369,7 @@ const NARROW_PLAN: Plan = Plan {
     light_sampling: true,
     emitter_sampling: false,
     lens: false,
+    firefly_clamp: false,
 };
 
 #[test]
