@@ -39,7 +39,11 @@ fn try_path(format: &str, path: &Path) {
         "hdr" | "exr" => {
             if let Ok(map) = environment::load(&EnvironmentSource::File(path.to_owned())) {
                 assert!(map.texels.iter().flatten().all(|x| x.is_finite() && *x >= 0.0));
-                assert!(map.cells.iter().all(|cell| cell.density.is_finite() && cell.density >= 0.0));
+                assert!(
+                    map.cells
+                        .iter()
+                        .all(|cell| cell.density.is_finite() && cell.density >= 0.0)
+                );
             }
         }
         _ => {

@@ -74,10 +74,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             density_per_luminance: T::from_f64(choice.density_per_luminance),
             samples_environment: job.plan.light_sampling && samples_light,
             samples_emitters: job.plan.emitter_sampling && samples_light,
-            firefly_clamp: job
-                .plan
-                .firefly_clamp
-                .then(|| T::from_f64(job.settings.firefly_clamp)),
+            firefly_clamp: job.plan.firefly_clamp.then(|| T::from_f64(job.settings.firefly_clamp)),
         }
     }
 

@@ -97,8 +97,7 @@ impl CpuEngine {
             }
             (dropped, rays, clamped)
         });
-        let (dropped, rays, clamped) =
-            chunks.reduce(|| (0, 0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2));
+        let (dropped, rays, clamped) = chunks.reduce(|| (0, 0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1, a.2 + b.2));
         self.film.clamped += clamped;
         self.film.dropped += dropped;
         self.film.rays += rays;

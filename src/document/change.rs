@@ -49,7 +49,14 @@ impl Change {
                 render.strategy,
                 render.seed,
                 render.filter,
-            ) != (other.bounces, other.firefly_clamp, other.sequence, other.strategy, other.seed, other.filter),
+            ) != (
+                other.bounces,
+                other.firefly_clamp,
+                other.sequence,
+                other.strategy,
+                other.seed,
+                other.filter,
+            ),
             target: (render.samples, render.time_s) != (other.samples, other.time_s),
         }
     }

@@ -67,8 +67,14 @@ pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max
     // Twice the areas that the ray cuts the projected triangle into, opposite to v0, v1 and v2.
     let (from_x, from_y, to_x, to_y) = (px.zxy(), py.zxy(), px.yzx(), py.yzx());
     let is_turned = from_x.cmpgt(to_x) | (from_x.cmpeq(to_x) & from_y.cmpgt(to_y));
-    let (low_x, high_x) = (Vec3A::select(is_turned, to_x, from_x), Vec3A::select(is_turned, from_x, to_x));
-    let (low_y, high_y) = (Vec3A::select(is_turned, to_y, from_y), Vec3A::select(is_turned, from_y, to_y));
+    let (low_x, high_x) = (
+        Vec3A::select(is_turned, to_x, from_x),
+        Vec3A::select(is_turned, from_x, to_x),
+    );
+    let (low_y, high_y) = (
+        Vec3A::select(is_turned, to_y, from_y),
+        Vec3A::select(is_turned, from_y, to_y),
+    );
     let ordered = low_x * high_y - low_y * high_x;
     let areas = Vec3A::select(is_turned, -ordered, ordered);
     let area = areas.x + areas.y + areas.z;

@@ -48,7 +48,11 @@ fn what_is_taken_is_told() {
         let (limited, effects) = film(engine, &scene(Some(0.5)));
         assert!(effects.contains(&"firefly-clamp"));
         let missing = energy(&free) - energy(&limited);
-        assert!(missing > 0.01 * energy(&free), "{engine:?}: {missing} of {}", energy(&free));
+        assert!(
+            missing > 0.01 * energy(&free),
+            "{engine:?}: {missing} of {}",
+            energy(&free)
+        );
         assert!(
             (limited.clamped / missing - 1.0).abs() < 1e-3,
             "{engine:?}: {} told, {missing} missing",
@@ -74,6 +78,9 @@ fn direct_light_is_left_alone() {
             film(engine, &document).0
         };
         assert_eq!(direct(Some(1e-3)).clamped, 0.0, "{engine:?}");
-        assert!((energy(&direct(Some(1e-3))) / energy(&direct(None)) - 1.0).abs() < 1e-6, "{engine:?}");
+        assert!(
+            (energy(&direct(Some(1e-3))) / energy(&direct(None)) - 1.0).abs() < 1e-6,
+            "{engine:?}"
+        );
     }
 }

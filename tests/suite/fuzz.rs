@@ -49,7 +49,16 @@ fn damaged(bytes: &[u8], other: &[u8], random: &mut Random) -> Vec<u8> {
                 bytes.splice(at..at, part);
             }
             2 => {
-                let numbers = [0, 1, 0x7fff_ffff, 0x8000_0000, u32::MAX, 0xffff, 0x7fc0_0000, 0x4000_0000];
+                let numbers = [
+                    0,
+                    1,
+                    0x7fff_ffff,
+                    0x8000_0000,
+                    u32::MAX,
+                    0xffff,
+                    0x7fc0_0000,
+                    0x4000_0000,
+                ];
                 let number = numbers[random.below(numbers.len())].to_le_bytes();
                 let end = (at + 4).min(bytes.len());
                 bytes[at..end].copy_from_slice(&number[..end - at]);
@@ -118,9 +127,16 @@ fn damaged_files_of_the_corpus_are_refused_or_read() {
                 let allowed = 10 * bytes.len() as u64 / 1024 + MEMORY_FLOOR_KIB;
                 let needed = after.saturating_sub(before);
                 hungriest = hungriest.max(needed);
-                assert!(needed <= allowed, "{}, damage {i}: {needed} KiB, {allowed} allowed", path.display());
+                assert!(
+                    needed <= allowed,
+                    "{}, damage {i}: {needed} KiB, {allowed} allowed",
+                    path.display()
+                );
             }
         }
-        println!("{:24} {slowest:?}, {hungriest} KiB", path.file_name().unwrap().to_string_lossy());
+        println!(
+            "{:24} {slowest:?}, {hungriest} KiB",
+            path.file_name().unwrap().to_string_lossy()
+        );
     }
 }

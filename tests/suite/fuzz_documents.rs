@@ -56,7 +56,14 @@ fn value(random: &mut Random, kind: &Kind) -> Value {
             let count = random.below(6) as u32;
             let point = |i: u32, random: &mut Random| {
                 let xi = i as f32 / (count.max(2) - 1) as f32;
-                [if random.below(8) == 0 { number(random, [0.0, 1.0]) } else { xi }, i as f32 * random.unit()]
+                [
+                    if random.below(8) == 0 {
+                        number(random, [0.0, 1.0])
+                    } else {
+                        xi
+                    },
+                    i as f32 * random.unit(),
+                ]
             };
             Value::Curve((0..count).map(|i| point(i, random)).collect())
         }
@@ -172,7 +179,10 @@ fn try_document(session: &mut Session, seed: u64) -> bool {
     let count = pixels.len() as f64;
     let mean = pixels.iter().sum::<f64>() / count;
     let sigma = furnace.variance_of_mean().iter().sum::<f64>().sqrt() / count;
-    assert!(mean <= 1.0 + 5.0 * sigma + 5e-3, "{what}: {mean} ± {sigma} in the furnace");
+    assert!(
+        mean <= 1.0 + 5.0 * sigma + 5e-3,
+        "{what}: {mean} ± {sigma} in the furnace"
+    );
     true
 }
 
@@ -191,6 +201,9 @@ proptest! {
 #[test]
 fn any_document_is_refused_or_sound_on_the_gpu() {
     let mut session = Session::open(EngineChoice::Gpu).expect("a Vulkan driver: install mesa-vulkan-drivers");
-    let taken = (1000..1400).filter(|seed| try_document(&mut session, *seed)).take(10).count();
+    let taken = (1000..1400)
+        .filter(|seed| try_document(&mut session, *seed))
+        .take(10)
+        .count();
     assert_eq!(taken, 10);
 }

@@ -21,9 +21,16 @@ fn options(engine: EngineChoice, thorough: bool) -> HardOptions {
 fn assert_all_hold(engine: EngineChoice) {
     let (info, rows) = run(&options(engine, false), |_| {}).expect("an engine: install mesa-vulkan-drivers");
     for row in &rows {
-        println!("{info}: {:34} {:6.2} s  {:.2e}", row.case.name, row.seconds, row.check.value);
+        println!(
+            "{info}: {:34} {:6.2} s  {:.2e}",
+            row.case.name, row.seconds, row.check.value
+        );
     }
-    let failed: Vec<_> = rows.iter().filter(|row| !row.check.passed).map(|row| &row.check).collect();
+    let failed: Vec<_> = rows
+        .iter()
+        .filter(|row| !row.check.passed)
+        .map(|row| &row.check)
+        .collect();
     assert!(failed.is_empty(), "{info}: {failed:#?}");
     assert_eq!(rows.len(), catalogue().count());
 }
@@ -63,7 +70,11 @@ fn the_table_of_stability_is_the_programs_own() {
         std::fs::write(&path, format!("{head}{BEGIN}{table}{END}{tail}")).unwrap();
         return;
     }
-    assert_eq!(table.lines().count(), 2 + catalogue().count(), "run UPDATE_DOCS=1 cargo test hard");
+    assert_eq!(
+        table.lines().count(),
+        2 + catalogue().count(),
+        "run UPDATE_DOCS=1 cargo test hard"
+    );
     for (line, case) in table.lines().skip(2).zip(catalogue()) {
         let fixed = format!(
             "| {}: {} | {} | {}: {} |",

@@ -4,6 +4,7 @@ mod area_lights;
 pub(super) mod camera;
 pub(super) mod check;
 pub(super) mod curve;
+mod hard_cases;
 pub(super) mod lighting;
 pub(super) mod lobe;
 mod lobe_match;

@@ -15,6 +15,7 @@ use std::time::Instant;
 
 use super::check::Check;
 use super::engine::{EngineChoice, EngineInfo};
+use crate::analysis::film::Image;
 pub use stage::{HardError, Stage};
 
 /// A place where naive code breaks.
@@ -61,11 +62,13 @@ impl HardCase {
     /// Where the engine fails or a file of the case can't be written.
     pub fn run(&'static self, stage: &mut Stage) -> Result<HardRow, HardError> {
         let begun = Instant::now();
+        stage.take_picture();
         let value = (self.find)(stage)?;
         Ok(HardRow {
             case: self,
             check: Check::new(self.group, self.name, self.measure, value, self.limit),
             seconds: begun.elapsed().as_secs_f64(),
+            picture: stage.take_picture(),
         })
     }
 }
@@ -79,6 +82,8 @@ pub struct HardRow {
     pub check: Check,
     /// How long it took.
     pub seconds: f64,
+    /// What it rendered, where it is about pictures.
+    pub picture: Option<Image>,
 }
 
 /// Which cases to run, and where.

@@ -51,6 +51,8 @@ pub struct Stage {
     pub choice: EngineChoice,
     session: Session,
     folder: Folder,
+    /// The last picture that was rendered.
+    picture: Option<Image>,
 }
 
 impl Stage {
@@ -70,7 +72,13 @@ impl Stage {
             choice,
             session,
             folder: Folder::new()?,
+            picture: None,
         })
+    }
+
+    /// The last picture that was rendered since this was asked for.
+    pub fn take_picture(&mut self) -> Option<Image> {
+        self.picture.take()
     }
 
     /// What renders.
@@ -91,7 +99,9 @@ impl Stage {
         self.session.forget();
         self.session.submit(document)?;
         while !self.session.step(Duration::from_secs(1))?.is_done {}
-        Ok(self.session.film()?.clone())
+        let film = self.session.film()?.clone();
+        self.picture = Some(film.image());
+        Ok(film)
     }
 
     /// Where a case's file of this name lies.
