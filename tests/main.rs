@@ -5,12 +5,18 @@
 mod check;
 #[path = "suite/cli_errors.rs"]
 mod cli_errors;
+#[path = "suite/cli_pictures.rs"]
+mod cli_pictures;
 #[path = "suite/cli_render.rs"]
 mod cli_render;
 #[path = "suite/cli_scatter.rs"]
 mod cli_scatter;
 #[path = "suite/cli_support.rs"]
 mod cli_support;
+#[path = "suite/coat.rs"]
+mod coat;
+#[path = "suite/compare.rs"]
+mod compare;
 #[path = "suite/density.rs"]
 mod density;
 #[path = "suite/docs.rs"]
@@ -47,14 +53,20 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/noise.rs"]
+mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/plan.rs"]
+mod plan;
 #[path = "suite/renders.rs"]
 mod renders;
 #[path = "suite/statistics.rs"]
 mod statistics;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/textures.rs"]
+mod textures;
 #[path = "suite/tone.rs"]
 mod tone;
 #[path = "suite/tone_twin.rs"]
@@ -63,6 +75,8 @@ mod tone_twin;
 mod transmission;
 #[path = "suite/ui.rs"]
 mod ui;
+#[path = "suite/ui_scene.rs"]
+mod ui_scene;
 #[path = "suite/worker.rs"]
 mod worker;
 

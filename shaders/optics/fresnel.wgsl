@@ -1,6 +1,7 @@
 // The Fresnel factor at the half vector. Twin of src/optics/fresnel.rs.
 #import "optics/numeric"
 #import "optics/refraction"
+#import "scene/plan"
 
 const FRESNEL_NONE: u32 = 0u;
 const FRESNEL_SCHLICK: u32 = 1u;
@@ -10,6 +11,7 @@ struct FresnelTerms {
     model: u32,
     metal_f0: vec3f,
     metalness: f32,
+    edge_tint: vec3f,
     tint: vec3f,
     weight: f32,
     ior: f32,
@@ -22,11 +24,11 @@ fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
         case FRESNEL_NONE: { return terms.weight * terms.tint; }
         case FRESNEL_SCHLICK: {
             let dielectric = fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine);
-            return terms.weight * mix(dielectric, fresnel_schlick(terms.metal_f0, cosine) * terms.tint, terms.metalness);
+            return terms.weight * mix(dielectric, fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.tint, terms.metalness);
         }
         case FRESNEL_DIELECTRIC: {
             let dielectric = terms.tint * fresnel_dielectric(cosine, terms.ior);
-            return terms.weight * mix(dielectric, fresnel_schlick(terms.metal_f0, cosine) * terms.tint, terms.metalness);
+            return terms.weight * mix(dielectric, fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.tint, terms.metalness);
         }
         default: {
             return terms.weight * terms.tint * vec3f(
@@ -51,6 +53,25 @@ fn fresnel_schlick(f0: vec3f, cosine: f32) -> vec3f {
     let x = clamp(1.0 - cosine, 0.0, 1.0);
     let x2 = x * x;
     return f0 + (vec3f(1.0) - f0) * (x2 * x2 * x);
+}
+
+fn fresnel_metal(f0: vec3f, edge_tint: vec3f, cosine: f32) -> vec3f {
+    if PLAN_EDGE_TINT == 0u {
+        return fresnel_schlick(f0, cosine);
+    }
+    return max(fresnel_schlick(f0, cosine) - edge_darkening(f0, edge_tint) * edge_shape(cosine), vec3f(0.0));
+}
+
+fn edge_darkening(f0: vec3f, edge_tint: vec3f) -> vec3f {
+    let seventh = 1.0 / 7.0;
+    return fresnel_schlick(f0, seventh) * (vec3f(1.0) - edge_tint) * (1.0 / edge_shape(seventh));
+}
+
+fn edge_shape(cosine: f32) -> f32 {
+    let c = clamp(cosine, 0.0, 1.0);
+    let x = 1.0 - c;
+    let x2 = x * x;
+    return c * x2 * x2 * x2;
 }
 
 fn fresnel_dielectric(cosine: f32, ior: f32) -> f32 {

@@ -1,11 +1,13 @@
 // The material as the integrator sees it. Twin of src/optics/material.rs.
+#import "optics/albedo"
+#import "optics/coat"
 #import "optics/fresnel"
 #import "optics/lobe/registry"
 #import "scene/layout"
 #import "scene/plan"
 
-const ALBEDO_NODES: u32 = 64u;
-const TOTAL_NODES: u32 = 16u;
+const NO_TEXTURE: u32 = 0xffffffffu;
+const MATCHED_NODES: u32 = 17u;
 
 struct MaterialSample {
     wi: vec3f,
@@ -18,6 +20,7 @@ struct Surface {
     frame: Frame,
     normal: vec3f,
     wo: vec3f,
+    coat_normal: vec3f,
     is_inside: bool,
 }
 
@@ -26,6 +29,8 @@ struct Layers {
     transmission: vec3f,
     specular_probability: f32,
     transmission_probability: f32,
+    coat_probability: f32,
+    below_coat: vec3f,
 }
 
 fn material_shape(material: Material) -> LobeShape {
@@ -50,10 +55,16 @@ fn material_ior_ahead(material: Material, is_inside: bool) -> f32 {
 fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
     let is_bare = is_inside && material_transmits(material);
     return FresnelTerms(
-        planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness,
+        planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.edge_tint,
         select(material.specular_color, vec3f(1.0), is_bare), select(material.specular_weight, 1.0, is_bare),
         material_ior_ahead(material, is_inside), material.eta, material.k,
     );
+}
+
+fn material_has_holes(material: Material) -> bool {
+    let is_masked = material.alpha_cutoff > material.opacity;
+    let is_clear = material.alpha_cutoff < 0.0 && material.opacity < 1.0;
+    return PLAN_ALPHA == 1u && (is_masked || is_clear || material.opacity_texture != NO_TEXTURE);
 }
 
 fn material_has_base(material: Material) -> bool {
@@ -71,8 +82,11 @@ fn material_has_specular(material: Material) -> bool {
 
 fn material_layers(material: Material, surface: Surface) -> Layers {
     let transmits = material_transmits(material);
+    let coat = coat_share(material, surface);
+    let below_coat = coat_transmittance(material, surface, coat);
     if !material_has_base(material) && !transmits {
-        return Layers(vec3f(0.0), vec3f(0.0), 1.0, 0.0);
+        let below = select(0.0, 1.0, material_has_specular(material));
+        return Layers(vec3f(0.0), vec3f(0.0), 1.0, 0.0, coat_probability(coat, below), below_coat);
     }
     var taken = vec3f(0.0);
     if material_has_specular(material) {
@@ -93,7 +107,10 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
     share = select(1.0, share, rest > 0.0);
     // What is passed on is what was not reflected, no estimate.
     share = select(share, min(specular, 1.0), passes_on(material));
-    return Layers(base, transmission, share, (1.0 - share) * (through / max(rest, 1e-9)));
+    return Layers(
+        base, transmission, share, (1.0 - share) * (through / max(rest, 1e-9)),
+        coat_probability(coat, specular + rest), below_coat,
+    );
 }
 
 fn specular_albedo(material: Material, surface: Surface) -> vec3f {
@@ -103,7 +120,25 @@ fn specular_albedo(material: Material, surface: Surface) -> vec3f {
         place = albedo_place(place, material_ior_ahead(material, true));
         first = material.inner_albedo_table;
     }
+    if PLAN_ROUGH_TABLES == 1u && material.has_rough_tables == 1u {
+        let integrals = rough_albedo_lookup(first, place, material.roughness);
+        return rough_albedo(material_fresnel_terms(material, surface.is_inside), integrals);
+    }
     return albedo_lookup(first, place);
+}
+
+fn material_albedo(material: Material, surface: Surface) -> vec3f {
+    var specular = vec3f(0.0);
+    if material_has_specular(material) {
+        if material_has_base(material) || material_transmits(material) {
+            specular = specular_albedo(material, surface);
+        } else {
+            let cosine = dot(surface.frame.normal, surface.wo);
+            specular = fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
+        }
+    }
+    let layers = material_layers(material, surface);
+    return specular + layers.base + layers.transmission;
 }
 
 fn base_probability(layers: Layers) -> f32 {
@@ -117,6 +152,7 @@ fn base_shape() -> LobeShape {
 const LAYER_SPECULAR: u32 = 0u;
 const LAYER_BASE: u32 = 1u;
 const LAYER_TRANSMISSION: u32 = 2u;
+const LAYER_COAT: u32 = 3u;
 
 struct MaterialNumbers {
     lobe: vec3f,
@@ -138,9 +174,20 @@ fn material_sample(
     let is_passed_on = passes_on(material);
     var xi = numbers.lobe;
     var specular = layers.specular_probability;
-    var layer = below_layer(numbers.layer, specular, base, through);
-    if is_passed_on || numbers.layer < specular {
+    let is_coated = material_has_coat(material, surface);
+    var choice = numbers.layer;
+    if is_coated && choice >= layers.coat_probability {
+        choice = rescaled(choice, layers.coat_probability);
+    }
+    let below = 1.0 - layers.coat_probability;
+    var layer = below_layer(choice, specular, base, through);
+    if is_passed_on || choice < specular {
         layer = LAYER_SPECULAR;
+    }
+    var frame = surface.frame;
+    if is_coated && numbers.layer < layers.coat_probability {
+        layer = LAYER_COAT;
+        frame = frame_from_normal(surface.coat_normal);
     }
     var shape: LobeShape;
     var drawn: LobeSample;
@@ -149,7 +196,12 @@ fn material_sample(
     // A loop, so that the lobes' code is there once: the second time where the specular lobe passed on.
     for (var i = 0u; i < 1u + PLAN_TRANSMISSION; i++) {
         shape = layer_shape(material, layer, surface.is_inside);
-        drawn = lobe_sample(shape, surface.frame, surface.normal, surface.wo, xi);
+        drawn = lobe_sample(shape, frame, surface.normal, surface.wo, xi);
+        if PLAN_COAT == 1u && layer == LAYER_COAT {
+            color = vec3f(coat_fresnel(material, surface.wo, drawn.wi));
+            probability = layers.coat_probability;
+            break;
+        }
         if layer == LAYER_SPECULAR {
             let terms = material_fresnel_terms(material, surface.is_inside);
             color = fresnel(terms, half_vector_cosine(surface.wo, drawn.wi));
@@ -157,11 +209,11 @@ fn material_sample(
                 specular = select(0.0, luminance(color), drawn.weight > 0.0);
             }
             probability = specular;
-            if numbers.layer < specular {
+            if choice < specular {
                 break;
             }
             xi = numbers.below;
-            layer = below_layer(numbers.layer, specular, base, through);
+            layer = below_layer(choice, specular, base, through);
             continue;
         }
         if PLAN_TRANSMISSION == 1u && layer == LAYER_TRANSMISSION {
@@ -173,12 +225,21 @@ fn material_sample(
         }
         break;
     }
+    if is_coated && layer != LAYER_COAT {
+        color *= layers.below_coat;
+        probability *= below;
+    }
     let mirror = is_mirror(shape);
     var density = 0.0;
     if wants_density && !mirror {
-        density = probability * lobe_evaluate(shape, surface.frame, surface.normal, surface.wo, drawn.wi).y;
+        density = probability * lobe_evaluate(shape, frame, surface.normal, surface.wo, drawn.wi).y;
     }
     return MaterialSample(drawn.wi, color * (drawn.weight / max(probability, 1e-20)), density, mirror);
+}
+
+// A number in [0, 1) that was not below `share`, stretched to [0, 1) again.
+fn rescaled(number: f32, share: f32) -> f32 {
+    return min((number - share) / max(1.0 - share, 1e-20), 0.99999994);
 }
 
 // The layer below the specular one, whose probability was `specular`.
@@ -195,6 +256,9 @@ fn layer_shape(material: Material, layer: u32, is_inside: bool) -> LobeShape {
     if PLAN_TRANSMISSION == 1u && layer == LAYER_TRANSMISSION {
         return material_transmission_shape(material, is_inside);
     }
+    if PLAN_COAT == 1u && layer == LAYER_COAT {
+        return coat_shape(material);
+    }
     return base_shape();
 }
 
@@ -210,6 +274,7 @@ fn transmission_color(material: Material, layers: Layers, shape: LobeShape, surf
 
 fn material_evaluate(material: Material, surface: Surface, wi: vec3f, light_density: f32, competing: f32) -> vec3f {
     let layers = material_layers(material, surface);
+    let below = 1.0 - layers.coat_probability;
     var sum = vec3f(0.0);
     // A loop over the specular and the refracting lobe, so that the lobes' code is there once.
     for (var i = 0u; i < 1u + PLAN_TRANSMISSION; i++) {
@@ -234,35 +299,17 @@ fn material_evaluate(material: Material, surface: Surface, wi: vec3f, light_dens
             color = fresnel(terms, half_vector_cosine(surface.wo, wi));
             probability = select(probability, luminance(color), passes_on(material));
         }
-        let share = light_density / (light_density + competing * probability * lobe.y);
-        sum += color * (lobe.x * share);
+        let share = light_density / (light_density + competing * below * probability * lobe.y);
+        sum += color * layers.below_coat * (lobe.x * share);
     }
     if material_has_base(material) {
         let lobe = lobe_evaluate(base_shape(), surface.frame, surface.normal, surface.wo, wi);
-        let share = light_density / (light_density + competing * base_probability(layers) * lobe.y);
-        sum += layers.base * (lobe.x * share);
+        let share = light_density / (light_density + competing * below * base_probability(layers) * lobe.y);
+        sum += layers.base * layers.below_coat * (lobe.x * share);
+    }
+    if material_has_coat(material, surface) {
+        let lobe = coat_evaluate(material, surface, wi);
+        sum += vec3f(lobe.x * (light_density / (light_density + competing * layers.coat_probability * lobe.y)));
     }
     return sum;
-}
-
-fn albedo_lookup(albedo_table: u32, place: f32) -> vec3f {
-    let last = f32(ALBEDO_NODES) - 1.0;
-    let position = clamp(place, 0.0, 1.0) * last;
-    let low = min(floor(position), last - 1.0);
-    let first = albedo_table + 3u * u32(low);
-    let left = vec3f(tables[first], tables[first + 1u], tables[first + 2u]);
-    let right = vec3f(tables[first + 3u], tables[first + 4u], tables[first + 5u]);
-    return mix(left, right, position - low);
-}
-
-fn albedo_place(cosine: f32, eta: f32) -> f32 {
-    let critical = safe_sqrt(-refracted_square(0.0, eta));
-    let share = f32(TOTAL_NODES) / (f32(ALBEDO_NODES) - 1.0);
-    if !(critical > 0.0) {
-        return cosine;
-    }
-    let square = refracted_square(cosine, eta);
-    let above = share + (1.0 - share) * (safe_sqrt(square) / eta);
-    let below = share * (max(cosine, 0.0) / critical);
-    return select(above, below, square < 0.0);
 }

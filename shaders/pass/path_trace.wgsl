@@ -1,16 +1,19 @@
 // The path tracer. Twin of src/cpu/integrator.rs.
 #import "optics/material"
 #import "optics/random"
+#import "optics/warp"
 #import "scene/camera"
 #import "scene/environment"
 #import "scene/light"
 #import "scene/surface"
+#import "scene/visibility"
 
 const STRATEGY_LOBE: u32 = 0u;
 const STRATEGY_LIGHT: u32 = 1u;
 const STRATEGY_MIS: u32 = 2u;
 const BACKGROUND_ENVIRONMENT: u32 = 0u;
 const BACKGROUND_TRANSPARENT: u32 = 1u;
+const BACKGROUND_BLURRED: u32 = 3u;
 // Pairs of numbers before the first bounce (pixel, lens) and a bounce (lobe twice, light twice).
 const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
@@ -37,7 +40,7 @@ fn far_radiance(direction: vec3f) -> vec3f {
 // What a path that left the scene sees, weighed against light sampling.
 fn far_light(direction: vec3f, lobe_density: f32, is_mirror: bool) -> vec3f {
     let radiance = far_radiance(direction);
-    if PLAN_LIGHT_SAMPLING == 0u || is_mirror || globals.strategy == STRATEGY_LOBE {
+    if !samples_environment() || is_mirror {
         return radiance;
     }
     if globals.strategy == STRATEGY_LIGHT {
@@ -49,16 +52,18 @@ fn far_light(direction: vec3f, lobe_density: f32, is_mirror: bool) -> vec3f {
 }
 
 // What a surface emits that a path met at `distance`, weighed against light sampling.
-fn emitted_light(point: SurfacePoint, distance: f32, lobe_density: f32, is_mirror: bool) -> vec3f {
-    let emission = materials[point.slot].emission;
-    if PLAN_EMITTER_SAMPLING == 0u || is_mirror || globals.strategy == STRATEGY_LOBE {
+fn emitted_light(
+    point: SurfacePoint, material: Material, distance: f32, lobe_density: f32, is_mirror: bool,
+) -> vec3f {
+    let emission = material.emission;
+    if !samples_emitters() || is_mirror {
         return emission;
     }
     if globals.strategy == STRATEGY_LIGHT {
         return vec3f(0.0);
     }
     let cosine = dot(point.surface.normal, point.surface.wo);
-    return emission * lobe_share(lobe_density, light_density(emission, cosine, distance));
+    return emission * lobe_share(lobe_density, light_density(material.light_luminance, cosine, distance));
 }
 
 // The share of the lobe under the balance heuristic (Veach 1997) where it met light by itself.
@@ -66,14 +71,24 @@ fn lobe_share(lobe_density: f32, light_density: f32) -> f32 {
     return lobe_density / max(lobe_density + light_density, 1e-30);
 }
 
+// Whether directions are drawn from the environment.
+fn samples_environment() -> bool {
+    return PLAN_LIGHT_SAMPLING == 1u && globals.environment_probability > 0.0 && globals.strategy != STRATEGY_LOBE;
+}
+
+// Whether directions are drawn towards the triangles that emit.
+fn samples_emitters() -> bool {
+    return PLAN_EMITTER_SAMPLING == 1u && globals.density_per_luminance > 0.0 && globals.strategy != STRATEGY_LOBE;
+}
+
 // Whether light is sampled at all.
 fn samples_light() -> bool {
-    return (PLAN_LIGHT_SAMPLING == 1u || PLAN_EMITTER_SAMPLING == 1u) && globals.strategy != STRATEGY_LOBE;
+    return samples_environment() || samples_emitters();
 }
 
 // Whether one light sample is drawn from the environment, not from the triangles that emit.
 fn is_from_afar(xi: f32) -> bool {
-    return PLAN_EMITTER_SAMPLING == 0u || (PLAN_LIGHT_SAMPLING == 1u && xi < globals.environment_probability);
+    return !samples_emitters() || (samples_environment() && xi < globals.environment_probability);
 }
 
 // A direction drawn from the triangles that emit or from the environment, whose radiance is looked up once it is known
@@ -89,41 +104,57 @@ fn draw_light(point: SurfacePoint, xi: vec3f) -> LightSample {
 }
 
 // Light that arrives straight from the environment or from what emits, one direction drawn.
-fn direct_light(point: SurfacePoint, state: RandomState, dimension: u32, rays: ptr<function, u32>) -> vec3f {
+fn direct_light(
+    point: SurfacePoint, material: Material, state: RandomState, dimension: u32, rays: ptr<function, u32>,
+) -> vec3f {
     let xi = vec3f(random_pair(state, dimension), random_pair(state, dimension + 1u).x);
     let light = draw_light(point, xi);
     let wi = light.direction;
-    let transmits = material_transmits(materials[point.slot]);
+    let transmits = material_transmits(material);
     if light.density <= 0.0 || (dot(point.surface.normal, wi) <= 0.0 && !transmits) {
         return vec3f(0.0);
     }
     let competing = select(0.0, 1.0, globals.strategy == STRATEGY_MIS);
-    let value = material_evaluate(materials[point.slot], point.surface, wi, light.density, competing);
+    let value = material_evaluate(material, point.surface, wi, light.density, competing);
     if all(value <= vec3f(0.0)) {
         return vec3f(0.0);
     }
-    *rays += 1u;
-    if trace(ray_origin(point, wi, transmits), wi, light.distance, true).triangle != NO_HIT {
+    var share = 1.0;
+    if !meets_nothing(point, wi) {
+        share = transmittance(ray_origin(point, wi, transmits), wi, light.distance, rays);
+    }
+    if share <= 0.0 {
         return vec3f(0.0);
     }
     if is_from_afar(xi.z) {
-        return value * far_radiance(wi) / light.density;
+        return value * far_radiance(wi) * (share / light.density);
     }
-    return value * light.radiance / light.density;
+    return value * light.radiance * (share / light.density);
+}
+
+// True where it is proven that nothing lies ahead: outside a convex body.
+fn meets_nothing(point: SurfacePoint, wi: vec3f) -> bool {
+    return PLAN_INTERREFLECTION == 0u && !point.surface.is_inside && dot(point.surface.normal, wi) > 0.0;
 }
 
 // What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
 fn limited(contribution: vec3f, reflections: u32, taken: ptr<function, f32>) -> vec3f {
-    if PLAN_FIREFLY_CLAMP == 0u || reflections <= 1u {
+    let largest = max(max(contribution.x, contribution.y), contribution.z);
+    if PLAN_FIREFLY_CLAMP == 0u || reflections <= 1u || !(largest > globals.firefly_clamp) {
         return contribution;
     }
-    let largest = max(max(contribution.x, contribution.y), contribution.z);
-    let kept = globals.firefly_clamp / max(largest, globals.firefly_clamp);
+    let kept = globals.firefly_clamp / largest;
     *taken += luminance(contribution) * (1.0 - kept);
     return contribution * kept;
 }
 
-fn camera_background(direction: vec3f, rays: u32) -> PathResult {
+fn camera_background(direction: vec3f, state: RandomState, rays: u32) -> PathResult {
+    if globals.background_kind == BACKGROUND_BLURRED {
+        // The numbers of the first bounce, which there is none of.
+        let disc = globals.background.x * uniform_disc(random_pair(state, FIRST_DIMENSION));
+        let blurred = world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
+        return PathResult(far_radiance(blurred), 1.0, rays, 0.0);
+    }
     if globals.background_kind == BACKGROUND_ENVIRONMENT {
         return PathResult(far_radiance(direction), 1.0, rays, 0.0);
     }
@@ -133,35 +164,37 @@ fn camera_background(direction: vec3f, rays: u32) -> PathResult {
 }
 
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
-    let state = random_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
-    let offset = filter_offset(globals.camera.filter_kind, random_pair(state, 0u));
+    let state = path_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
     var camera = globals.camera;
     camera.lens_radius = select(0.0, camera.lens_radius, PLAN_LENS == 1u);
-    var ray = camera_ray(camera, vec2f(pixel) + 0.5 + offset, globals.image_size, random_pair(state, 1u));
+    var ray = pixel_ray(camera, pixel, globals.image_size, state);
     var throughput = vec3f(1.0);
     var radiance = vec3f(0.0);
     var clamped = 0.0;
     var lobe_density = 0.0;
     var was_mirror = true;
     var rays = 0u;
+    var leaves = false;
     for (var bounce = 0u; ; bounce++) {
-        rays += 1u;
-        let hit = trace(ray.origin, ray.direction, 1e30, false);
+        var hit = Hit(0.0, NO_HIT, 0.0, 0.0);
+        if !leaves {
+            hit = stop(ray, state, bounce, &rays);
+        }
         if hit.triangle == NO_HIT {
             if bounce == 0u {
-                return camera_background(ray.direction, rays);
+                return camera_background(ray.direction, state, rays);
             }
             let found = throughput * far_light(ray.direction, lobe_density, was_mirror);
             radiance += limited(found, bounce, &clamped);
             break;
         }
         let point = surface_at(hit, ray.direction);
-        let material = materials[point.slot];
+        let material = textured_material(materials[point.slot], point.uvs);
         if PLAN_ABSORPTION == 1u && point.surface.is_inside && material_transmits(material) {
             throughput *= exp(-material.absorption * hit.t);
         }
         if PLAN_EMISSION == 1u {
-            let found = throughput * emitted_light(point, hit.t, lobe_density, was_mirror);
+            let found = throughput * emitted_light(point, material, hit.t, lobe_density, was_mirror);
             radiance += limited(found, bounce, &clamped);
         }
         if bounce >= globals.bounces {
@@ -169,7 +202,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
         if samples_light() {
-            let found = throughput * direct_light(point, state, dimension + 2u, &rays);
+            let found = throughput * direct_light(point, material, state, dimension + 2u, &rays);
             radiance += limited(found, bounce + 1u, &clamped);
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
@@ -193,6 +226,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         lobe_density = drawn.density;
         was_mirror = drawn.is_mirror;
+        leaves = meets_nothing(point, drawn.wi);
         ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
     }
     return PathResult(radiance, 1.0, rays, clamped);
@@ -204,32 +238,44 @@ fn is_sound(color: vec3f) -> bool {
     return all(color >= vec3f(0.0)) && all(color <= vec3f(RADIANCE_MAX));
 }
 
+
 @compute @workgroup_size(8, 8)
-fn path_trace(@builtin(global_invocation_id) id: vec3u) {
-    if any(id.xy >= globals.tile_size) {
+fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) place: vec3u) {
+    let tile = tiles[workgroup.x / (TILE_WORKGROUPS * TILE_WORKGROUPS)];
+    let pixel = tile_pixel(tile, workgroup.x, place.xy);
+    if any(pixel >= globals.image_size) {
         return;
     }
-    let pixel = globals.tile_origin + id.xy;
+    let index = pixel.y * globals.image_size.x + pixel.x;
     var color = vec4f(0.0);
-    // Luminance squared, kept, dropped, rays.
-    var sums = vec4f(0.0);
-    var taken = 0.0;
-    for (var i = 0u; i < globals.sample_count; i++) {
-        let path = trace_path(pixel, globals.first_sample + i);
-        sums.w += f32(path.rays);
+    var sums = PixelStatistics();
+    for (var i = 0u; i < tile.sample_count; i++) {
+        let sample = tile.first_sample + i;
+        let path = trace_path(pixel, sample);
+        sums.rays += f32(path.rays);
         if is_sound(path.radiance) {
             let y = luminance(path.radiance);
+            let odd = f32(sample % 2u);
             color += vec4f(path.radiance, path.alpha);
-            taken += path.clamped;
-            sums += vec4f(y * y, 1.0, 0.0, 0.0);
+            sums.luminance_squared += y * y;
+            sums.kept += 1.0;
+            sums.clamped += path.clamped;
+            sums.odd_luminance += odd * y;
+            sums.odd_luminance_squared += odd * y * y;
+            sums.odd_kept += odd;
         } else {
-            sums.z += 1.0;
+            sums.dropped += 1.0;
         }
     }
-    let index = pixel.y * globals.image_size.x + pixel.x;
     color_sums[index] += color;
-    statistics[index] += sums;
+    statistics[index].luminance_squared += sums.luminance_squared;
+    statistics[index].kept += sums.kept;
+    statistics[index].odd_luminance += sums.odd_luminance;
+    statistics[index].odd_luminance_squared += sums.odd_luminance_squared;
+    statistics[index].odd_kept += sums.odd_kept;
+    statistics[index].dropped += sums.dropped;
+    statistics[index].rays += sums.rays;
     if PLAN_FIREFLY_CLAMP == 1u {
-        statistics[globals.image_size.x * globals.image_size.y + index].x += taken;
+        statistics[index].clamped += sums.clamped;
     }
 }

@@ -34,17 +34,22 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let distance = length(towards);
     let direction = normalize_or(towards, vec3f(0.0, 1.0, 0.0));
     let normal = normalize_or(cross(p1 - p0, p2 - p0), direction);
-    let radiance = materials[triangle_slots[index]].emission;
+    let material = materials[triangle_slots[index]];
+    var radiance = material.emission;
+    if PLAN_EMISSION_TEXTURES == 1u || PLAN_ALPHA == 1u {
+        let uvs = uvs_at(vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w), weights);
+        radiance = emission_at(material, uvs);
+    }
     let cosine = abs(dot(normal, direction));
     let error = position_error(p0, p1, p2, weights, normal) + origin_error + POSITION_ERROR * distance;
     return LightSample(
-        direction, light_density(radiance, cosine, distance), radiance, distance - error / max(cosine, COSINE_MIN),
+        direction, light_density(material.light_luminance, cosine, distance), radiance, distance - error / max(cosine, COSINE_MIN),
     );
 }
 
-// The density, per steradian, with which light_sample draws the direction to a place that emits `emission` and is seen
-// under this cosine from this distance.
-fn light_density(emission: vec3f, cosine: f32, distance: f32) -> f32 {
-    let per_area = globals.density_per_luminance * luminance(emission);
+// The density, per steradian, with which light_sample draws the direction to a place of a material with this
+// luminance that is seen under this cosine from this distance.
+fn light_density(light_luminance: f32, cosine: f32, distance: f32) -> f32 {
+    let per_area = globals.density_per_luminance * light_luminance;
     return per_area * distance * distance / max(cosine, COSINE_MIN);
 }

@@ -1,6 +1,7 @@
 // A ray's hit made into a surface to shade. Twin of src/scene/surface.rs.
 #import "optics/material"
 #import "scene/bvh"
+#import "scene/texture"
 
 struct SurfacePoint {
     surface: Surface,
@@ -8,6 +9,8 @@ struct SurfacePoint {
     // How far off the true place `position` may be, along the normal.
     error: f32,
     slot: u32,
+    // Both sets of texture coordinates.
+    uvs: vec4f,
 }
 
 // Rounding of the position's three products and sums, with what the box test and the transforms add.
@@ -21,17 +24,41 @@ fn bent_normal(shading: vec3f, wo: vec3f) -> vec3f {
     return select(shading, bent, lean < VIEW_COSINE_MIN);
 }
 
-fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
+// Where a ray met the geometry.
+struct HitPlace {
+    position: vec3f,
+    // How far off the true place `position` may be, along the normal.
+    error: f32,
+    // The geometric normal, on the side of the ray's origin.
+    normal: vec3f,
+    is_back: bool,
+}
+
+fn hit_place(hit: Hit, direction: vec3f) -> HitPlace {
     let triangle = triangles[hit.triangle];
     let p0 = bitcast<vec3f>(triangle.corners[0].xyz);
     let p1 = bitcast<vec3f>(triangle.corners[1].xyz);
     let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
-    let w = 1.0 - hit.u - hit.v;
-    let position = p0 * w + p1 * hit.u + p2 * hit.v;
-    let wo = -direction;
-    let out = normalize_or(cross(p1 - p0, p2 - p0), wo);
-    let is_back = dot(out, wo) < 0.0;
+    let weights = vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
+    let position = p0 * weights.x + p1 * weights.y + p2 * weights.z;
+    let out = normalize_or(cross(p1 - p0, p2 - p0), -direction);
+    let is_back = dot(out, -direction) < 0.0;
     let normal = select(out, -out, is_back);
+    return HitPlace(position, position_error(p0, p1, p2, weights, normal), normal, is_back);
+}
+
+// Where a ray goes on that a surface did not stop.
+fn passed_origin(hit: Hit, direction: vec3f) -> vec3f {
+    let place = hit_place(hit, direction);
+    return place.position - place.normal * place.error;
+}
+
+fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
+    let triangle = triangles[hit.triangle];
+    let w = 1.0 - hit.u - hit.v;
+    let place = hit_place(hit, direction);
+    let normal = place.normal;
+    let wo = -direction;
     let a = vertices[triangle.corners[0].w];
     let b = vertices[triangle.corners[1].w];
     let c = vertices[triangle.corners[2].w];
@@ -41,19 +68,48 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
         a.normal[2] * w + b.normal[2] * hit.u + c.normal[2] * hit.v,
     );
     let smoothed = normalize_or(interpolated, normal);
-    let shading = bent_normal(select(smoothed, -smoothed, dot(smoothed, normal) < 0.0), wo);
+    let side = select(1.0, -1.0, dot(smoothed, normal) < 0.0);
+    let coat_normal = bent_normal(side * smoothed, wo);
     let slot = triangle_slots[hit.triangle];
+    var uvs = vec4f(0.0);
+    if looks_up_textures() {
+        uvs = hit_uvs(hit);
+    }
+    let tangent = vec4f(
+        a.tangent[0] * w + b.tangent[0] * hit.u + c.tangent[0] * hit.v,
+        a.tangent[1] * w + b.tangent[1] * hit.u + c.tangent[1] * hit.v,
+        a.tangent[2] * w + b.tangent[2] * hit.u + c.tangent[2] * hit.v,
+        a.tangent[3] * w + b.tangent[3] * hit.u + c.tangent[3] * hit.v,
+    );
+    var shading = coat_normal;
+    if PLAN_NORMAL_MAPS == 1u && materials[slot].textures.z != NO_TEXTURE {
+        shading = bent_normal(side * mapped_normal(materials[slot], uvs, smoothed, tangent), wo);
+    }
     var frame = frame_from_normal(shading);
     if PLAN_ANISOTROPY == 1u && materials[slot].anisotropy != 0.0 {
-        let tangent = vec3f(
-            a.tangent[0] * w + b.tangent[0] * hit.u + c.tangent[0] * hit.v,
-            a.tangent[1] * w + b.tangent[1] * hit.u + c.tangent[1] * hit.v,
-            a.tangent[2] * w + b.tangent[2] * hit.u + c.tangent[2] * hit.v,
-        );
-        frame = frame_from_tangent(shading, tangent, materials[slot].rotation_rad);
+        frame = frame_from_tangent(shading, tangent.xyz, materials[slot].rotation_rad);
     }
-    let error = position_error(p0, p1, p2, vec3f(w, hit.u, hit.v), normal);
-    return SurfacePoint(Surface(frame, normal, wo, is_back), position, error, slot);
+    let surface = Surface(frame, normal, wo, coat_normal, place.is_back);
+    return SurfacePoint(surface, place.position, place.error, slot, uvs);
+}
+
+fn looks_up_textures() -> bool {
+    return PLAN_COLOR_TEXTURES == 1u || PLAN_ROUGHNESS_TEXTURES == 1u || PLAN_EMISSION_TEXTURES == 1u ||
+        PLAN_NORMAL_MAPS == 1u;
+}
+
+fn hit_uvs(hit: Hit) -> vec4f {
+    let corners = triangles[hit.triangle].corners;
+    return uvs_at(vec3u(corners[0].w, corners[1].w, corners[2].w), vec3f(1.0 - hit.u - hit.v, hit.u, hit.v));
+}
+
+// The share of light that is stopped where a ray met the geometry.
+fn hit_opacity(hit: Hit) -> f32 {
+    let slot = triangle_slots[hit.triangle];
+    if !material_has_holes(materials[slot]) {
+        return 1.0;
+    }
+    return opacity_at(materials[slot], hit_uvs(hit));
 }
 
 // How far off its plane, along the normal, the place may be that is interpolated between a triangle's corners.

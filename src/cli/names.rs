@@ -1,7 +1,8 @@
 //! Names on the command line, looked up in the registries.
 
 use crate::analysis::lobe_view::ViewKind;
-use crate::document::{PixelFilter, Strategy};
+use crate::document::turntable::Turn;
+use crate::document::{ImportLobe, PixelFilter, Strategy};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::random::Sequence;
@@ -33,8 +34,10 @@ parsers! {
     strategy: Strategy;
     tone: ToneCurve;
     sequence: Sequence;
+    import_lobe: ImportLobe;
     lobe: Lobe;
     curve: Curve;
     horizon: Horizon;
     view_kind: ViewKind;
+    turn: Turn;
 }

@@ -1,17 +1,20 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
 
 use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
-use crate::optics::material::{Material, MaterialNumbers, material_evaluate, material_sample};
-use crate::optics::random::{RandomState, random_pair, random_state};
+use crate::optics::frame::{frame_from_normal, world_from_local};
+use crate::optics::material::{Material, MaterialNumbers, material_albedo, material_evaluate, material_sample};
+use crate::optics::random::{RandomState, path_state, random_pair};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
-use crate::scene::camera::{Camera, camera_ray, filter_offset};
+use crate::optics::warp::uniform_disc;
+use crate::scene::camera::{Camera, pixel_ray};
 use crate::scene::environment::{
     Environment, environment_density, environment_local_from_world, environment_radiance, environment_sample,
     environment_world_from_local,
 };
-use crate::scene::light::{LightSample, Lights, light_density, light_sample};
-use crate::scene::surface::{SurfacePoint, surface_at};
+use crate::scene::light::{Emitters, LightSample, Lights, light_density, light_sample};
+use crate::scene::surface::{SurfacePoint, hit_opacity, passed_origin, surface_at};
+use crate::scene::texture::{Textures, textured_material};
 use crate::scene::{Geometry, Hit};
 
 /// Pairs of numbers before the first bounce: pixel, lens.
@@ -20,6 +23,10 @@ pub const FIRST_DIMENSION: u32 = 2;
 pub const BOUNCE_DIMENSIONS: u32 = 4;
 /// The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
 pub const BELOW_DIMENSION: u32 = 4096;
+/// The first of the pairs of numbers that choose whether a surface stops a ray, one a bounce.
+pub const OPACITY_DIMENSION: u32 = 8192;
+/// Surfaces that a ray may go straight on through.
+pub const PASSES_MAX: u32 = 256;
 /// Bounces before Russian roulette.
 pub const ROULETTE_START: u32 = 3;
 /// Beyond it the square would overflow f32: dropped and counted.
@@ -38,11 +45,24 @@ pub struct PathResult<T> {
     pub clamped: T,
 }
 
+/// What one sample of the camera sees first.
+#[derive(Clone, Copy, Debug)]
+pub struct FeatureSample<T> {
+    /// See [`material_albedo`].
+    pub albedo: Vec3<T>,
+    /// Shading normal in the world.
+    pub normal: Vec3<T>,
+    /// Along the camera's axis, in the geometry's units.
+    pub depth: T,
+}
+
 /// A job with its numbers in the precision of the shading.
 pub struct Integrator<'a, T> {
     geometry: &'a Geometry,
     environment: &'a Environment,
     tables: &'a [f32],
+    textures: &'a Textures,
+    has_holes: bool,
     settings: &'a Settings,
     materials: Vec<Material<T>>,
     camera: Camera<T>,
@@ -52,6 +72,7 @@ pub struct Integrator<'a, T> {
     density_per_luminance: T,
     samples_environment: bool,
     samples_emitters: bool,
+    is_interreflecting: bool,
     /// Where fireflies are limited.
     firefly_clamp: Option<T>,
 }
@@ -65,6 +86,8 @@ impl<'a, T: Real> Integrator<'a, T> {
             geometry: &job.geometry,
             environment: &job.environment,
             tables: &job.tables,
+            textures: &job.textures,
+            has_holes: job.plan.has("alpha"),
             settings: &job.settings,
             materials: job.materials.iter().map(Material::cast).collect(),
             camera: job.settings.camera.cast(),
@@ -72,9 +95,15 @@ impl<'a, T: Real> Integrator<'a, T> {
             lights: &job.lights,
             environment_probability: T::from_f64(choice.environment_probability),
             density_per_luminance: T::from_f64(choice.density_per_luminance),
-            samples_environment: job.plan.light_sampling && samples_light,
-            samples_emitters: job.plan.emitter_sampling && samples_light,
-            firefly_clamp: job.plan.firefly_clamp.then(|| T::from_f64(job.settings.firefly_clamp)),
+            samples_environment: job.plan.has("light-sampling")
+                && samples_light
+                && choice.environment_probability > 0.0,
+            samples_emitters: job.plan.has("emitter-sampling") && samples_light && choice.density_per_luminance > 0.0,
+            is_interreflecting: job.plan.has("interreflection"),
+            firefly_clamp: job
+                .plan
+                .has("firefly-clamp")
+                .then(|| T::from_f64(job.settings.firefly_clamp)),
         }
     }
 
@@ -99,8 +128,15 @@ impl<'a, T: Real> Integrator<'a, T> {
     }
 
     /// What a surface emits that a path met at `distance`, weighed against light sampling.
-    fn emitted_light(&self, point: &SurfacePoint<T>, distance: T, lobe_density: T, is_mirror: bool) -> Vec3<T> {
-        let emission = self.materials[point.slot as usize].emission;
+    fn emitted_light(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        distance: T,
+        lobe_density: T,
+        is_mirror: bool,
+    ) -> Vec3<T> {
+        let emission = material.emission;
         if !self.samples_emitters || is_mirror {
             return emission;
         }
@@ -108,7 +144,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             return Vec3::zero();
         }
         let cosine = point.surface.normal.dot(point.surface.wo);
-        let light_density = light_density(emission, cosine, distance, self.density_per_luminance);
+        let light_density = light_density(material.light_luminance, cosine, distance, self.density_per_luminance);
         emission * lobe_share(lobe_density, light_density)
     }
 
@@ -118,10 +154,14 @@ impl<'a, T: Real> Integrator<'a, T> {
         let share = self.environment_probability;
         if self.samples_emitters && !(self.samples_environment && xi.z.less(share).any()) {
             let xi = vec3(xi.x, xi.y, (xi.z - share) / (T::one() - share));
-            let (materials, density) = (&self.materials, self.density_per_luminance);
-            let (lights, place) = (self.lights, point.position);
-            let sample = light_sample(self.geometry, materials, lights, density, place, point.error, xi);
-            return (sample, false);
+            let emitters = Emitters {
+                geometry: self.geometry,
+                materials: &self.materials,
+                textures: self.textures,
+                lights: self.lights,
+                density_per_luminance: self.density_per_luminance,
+            };
+            return (light_sample(&emitters, point.position, point.error, xi), false);
         }
         let (local, density) = environment_sample(self.environment, vec3(xi.x, xi.y, xi.z / share));
         let sample = LightSample {
@@ -134,12 +174,18 @@ impl<'a, T: Real> Integrator<'a, T> {
     }
 
     /// Light that arrives straight from the environment or from what emits, one direction drawn.
-    fn direct_light(&self, point: &SurfacePoint<T>, state: RandomState, dimension: u32, rays: &mut u32) -> Vec3<T> {
+    fn direct_light(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        state: RandomState,
+        dimension: u32,
+        rays: &mut u32,
+    ) -> Vec3<T> {
         let [a, b] = random_pair(state, dimension);
         let [c, _] = random_pair(state, dimension + 1);
         let (light, is_far) = self.draw_light(point, vec3(a, b, c));
         let (wi, density) = (light.direction, light.density);
-        let material = &self.materials[point.slot as usize];
         let is_behind = point.surface.normal.dot(wi).to_f64() <= 0.0;
         if density.to_f64() <= 0.0 || (is_behind && !material.transmits()) {
             return Vec3::zero();
@@ -153,14 +199,79 @@ impl<'a, T: Real> Integrator<'a, T> {
         if value.max_component().to_f64() <= 0.0 {
             return Vec3::zero();
         }
-        *rays += 1;
-        let origin = point.ray_origin(wi, material.transmits());
-        let distance = light.distance.to_f64() as f32;
-        if self.geometry.occluded(origin.to_f32(), wi.to_f32(), distance) {
+        let mut transmittance = T::one();
+        if !self.meets_nothing(point, wi) {
+            let origin = point.ray_origin(wi, material.transmits());
+            transmittance = self.transmittance(origin, wi, light.distance, rays);
+        }
+        if transmittance.to_f64() <= 0.0 {
             return Vec3::zero();
         }
         let radiance = if is_far { self.far_radiance(wi) } else { light.radiance };
-        value * radiance / density
+        value * radiance * (transmittance / density)
+    }
+
+    /// The share of light that reaches the origin of a ray from so far.
+    fn transmittance(&self, mut origin: Vec3<T>, direction: Vec3<T>, distance: T, rays: &mut u32) -> T {
+        if !self.has_holes {
+            *rays += 1;
+            let distance = distance.to_f64() as f32;
+            let is_occluded = self.geometry.occluded(origin.to_f32(), direction.to_f32(), distance);
+            return if is_occluded { T::zero() } else { T::one() };
+        }
+        let (mut share, mut left) = (T::one(), distance);
+        for _ in 0..PASSES_MAX {
+            *rays += 1;
+            let far = left.to_f64() as f32;
+            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), far) else {
+                return share;
+            };
+            share = share * (T::one() - hit_opacity(self.geometry, &self.materials, self.textures, &hit));
+            if share.to_f64() <= 0.0 {
+                break;
+            }
+            left = left - T::from_f64(f64::from(hit.t));
+            origin = passed_origin(self.geometry, &hit, direction);
+        }
+        T::zero()
+    }
+
+    /// The surface that stops a ray, with its distance from the origin; the origin moves on with the ray through
+    /// surfaces that do not.
+    fn stop(
+        &self,
+        mut origin: Vec3<T>,
+        direction: Vec3<T>,
+        state: RandomState,
+        bounce: u32,
+        rays: &mut u32,
+    ) -> Option<(SurfacePoint<T>, T)> {
+        let mut xi = T::zero();
+        if self.has_holes {
+            [xi, _] = random_pair(state, OPACITY_DIMENSION + bounce);
+        }
+        let mut distance = T::zero();
+        for _ in 0..PASSES_MAX {
+            *rays += 1;
+            let hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX)?;
+            distance += T::from_f64(f64::from(hit.t));
+            if !self.has_holes {
+                return Some((self.surface(&hit, direction), distance));
+            }
+            let opacity = hit_opacity(self.geometry, &self.materials, self.textures, &hit);
+            if xi.less(opacity).any() {
+                return Some((self.surface(&hit, direction), distance));
+            }
+            // Uniform again, given that the surface did not stop the ray.
+            xi = (xi - opacity) / (T::one() - opacity).max(T::from_f64(1e-20));
+            origin = passed_origin(self.geometry, &hit, direction);
+        }
+        None
+    }
+
+    /// True where it is proven that nothing lies ahead: outside a convex body.
+    fn meets_nothing(&self, point: &SurfacePoint<T>, wi: Vec3<T>) -> bool {
+        !self.is_interreflecting && !point.surface.is_inside && point.surface.normal.dot(wi).to_f64() > 0.0
     }
 
     /// What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
@@ -169,14 +280,27 @@ impl<'a, T: Real> Integrator<'a, T> {
         let Some(limit) = self.firefly_clamp.filter(|_| reflections > 1) else {
             return contribution;
         };
-        let kept = limit / contribution.max_component().max(limit);
+        let largest = contribution.max_component();
+        if !limit.less(largest).any() {
+            return contribution;
+        }
+        let kept = limit / largest;
         *taken += contribution.luminance() * (T::one() - kept);
         contribution * kept
     }
 
-    fn camera_background(&self, direction: Vec3<T>, rays: u32) -> PathResult<T> {
+    fn camera_background(&self, direction: Vec3<T>, state: RandomState, rays: u32) -> PathResult<T> {
         let (radiance, alpha) = match self.settings.background {
             BackgroundKind::Environment => (self.far_radiance(direction), T::one()),
+            BackgroundKind::Blurred(sine) => {
+                // The numbers of the first bounce, which there is none of.
+                let disc: [T; 2] = uniform_disc(random_pair(state, FIRST_DIMENSION));
+                let disc = disc.map(|x| x * T::from_f64(sine));
+                let height = (T::one() - disc[0] * disc[0] - disc[1] * disc[1]).safe_sqrt();
+                let around = frame_from_normal(direction);
+                let blurred = world_from_local(&around, vec3(disc[0], disc[1], height));
+                (self.far_radiance(blurred), T::one())
+            }
             BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
             BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
         };
@@ -191,11 +315,8 @@ impl<'a, T: Real> Integrator<'a, T> {
     /// One path through a pixel.
     pub fn trace_path(&self, pixel: [u32; 2], sample: u32) -> PathResult<T> {
         let settings = self.settings;
-        let state = random_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        let offset: [T; 2] = filter_offset(self.camera.filter_kind, random_pair(state, 0));
-        let half = T::from_f64(0.5);
-        let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
-        let [mut origin, mut direction] = camera_ray(&self.camera, place, settings.image_size, random_pair(state, 1));
+        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
+        let [mut origin, mut direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
         let samples_light = self.samples_environment || self.samples_emitters;
         let mut throughput = Vec3::splat(T::one());
         let mut radiance = Vec3::zero();
@@ -203,30 +324,39 @@ impl<'a, T: Real> Integrator<'a, T> {
         let mut lobe_density = T::zero();
         let mut was_mirror = true;
         let mut rays = 0;
+        let mut leaves = false;
         for bounce in 0.. {
-            rays += 1;
-            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX) else {
+            let mut met = None;
+            if !leaves {
+                met = self.stop(origin, direction, state, bounce, &mut rays);
+            }
+            let Some((point, distance)) = met else {
                 if bounce == 0 {
-                    return self.camera_background(direction, rays);
+                    return self.camera_background(direction, state, rays);
                 }
                 let found = throughput * self.far_light(direction, lobe_density, was_mirror);
                 radiance += self.limited(found, bounce, &mut clamped);
                 break;
             };
-            let point = self.surface(&hit, direction);
-            let material = &self.materials[point.slot as usize];
-            let distance = T::from_f64(f64::from(hit.t));
+            let plain = &self.materials[point.slot as usize];
+            let textured;
+            let material = if plain.is_textured() {
+                textured = textured_material(self.textures, self.tables, plain, point.uvs);
+                &textured
+            } else {
+                plain
+            };
             if point.surface.is_inside && material.transmits() {
                 throughput = throughput * material.absorption.map(|absorption| (-absorption * distance).exp());
             }
-            let found = throughput * self.emitted_light(&point, distance, lobe_density, was_mirror);
+            let found = throughput * self.emitted_light(&point, material, distance, lobe_density, was_mirror);
             radiance += self.limited(found, bounce, &mut clamped);
             if bounce >= settings.bounces {
                 break;
             }
             let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
             if samples_light {
-                let found = throughput * self.direct_light(&point, state, dimension + 2, &mut rays);
+                let found = throughput * self.direct_light(&point, material, state, dimension + 2, &mut rays);
                 radiance += self.limited(found, bounce + 1, &mut clamped);
             }
             let [a, b] = random_pair(state, dimension);
@@ -258,6 +388,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             }
             lobe_density = drawn.density;
             was_mirror = drawn.is_mirror;
+            leaves = self.meets_nothing(&point, drawn.wi);
             (origin, direction) = (point.ray_origin(drawn.wi, material.transmits()), drawn.wi);
         }
         PathResult {
@@ -268,8 +399,24 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
     }
 
+    /// What the camera sees first through a pixel, with the same ray as [`Integrator::trace_path`]; `None` where it meets
+    /// nothing.
+    pub fn trace_features(&self, pixel: [u32; 2], sample: u32) -> Option<FeatureSample<T>> {
+        let settings = self.settings;
+        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
+        let [origin, direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
+        let (point, distance) = self.stop(origin, direction, state, 0, &mut 0)?;
+        let plain = &self.materials[point.slot as usize];
+        let material = textured_material(self.textures, self.tables, plain, point.uvs);
+        Some(FeatureSample {
+            albedo: material_albedo(&material, self.tables, &point.surface),
+            normal: point.surface.frame.normal,
+            depth: distance * direction.dot(self.camera.forward),
+        })
+    }
+
     fn surface(&self, hit: &Hit, direction: Vec3<T>) -> SurfacePoint<T> {
-        surface_at(self.geometry, &self.materials, hit, direction)
+        surface_at(self.geometry, &self.materials, self.textures, hit, direction)
     }
 }
 

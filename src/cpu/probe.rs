@@ -74,6 +74,7 @@ pub fn probe_material<T: Real>(scene: &ProbeScene<'_>, question: &MaterialQuesti
     let surface = Surface {
         frame: frame_from_normal(vector(q.shading)),
         normal: vector(q.normal),
+        coat_normal: vector(q.shading),
         wo: vector(q.wo),
         is_inside: q.is_inside == 1,
     };

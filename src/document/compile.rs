@@ -3,11 +3,15 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::MaterialSettings;
+use super::import::{MATCHED, ggx_from_geometric};
+use crate::optics::albedo::{albedo_table, rough_albedo_table};
+use crate::optics::coat::coat_shape;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
-use crate::optics::material::{Material, albedo_table};
+use crate::optics::material::{Material, NO_TEXTURE};
 use crate::optics::vector::Vec3;
+use crate::scene::texture::SlotTextures;
 
 /// Samples of each node of an albedo table.
 const ALBEDO_SAMPLES: u32 = 1024;
@@ -16,13 +20,24 @@ const TRANSMITTANCE_MIN: f32 = 1e-4;
 /// Albedo tables that are remembered.
 const REMEMBERED: usize = 32;
 
+/// Samples of each node of a table over the roughness too, of which there are many.
+const ROUGH_ALBEDO_SAMPLES: u32 = 256;
+
 /// The materials in the same order, and the tables they refer to; never without a number, since a GPU's buffer cannot be
 /// empty.
 pub fn compile(materials: &[MaterialSettings]) -> (Vec<Material<f32>>, Vec<f32>) {
+    compile_textured(materials, &[])
+}
+
+/// The same with the textures of the first slots; the others have none.
+pub fn compile_textured(materials: &[MaterialSettings], textures: &[SlotTextures]) -> (Vec<Material<f32>>, Vec<f32>) {
     let mut tables = Vec::new();
-    let compiled = materials
-        .iter()
-        .map(|settings| compile_one(settings, &mut tables))
+    let compiled = (0..)
+        .zip(materials)
+        .map(|(slot, settings)| {
+            let textures = textures.get::<usize>(slot).copied().unwrap_or_default();
+            compile_one(settings, textures, &mut tables)
+        })
         .collect();
     if tables.is_empty() {
         tables.push(0.0);
@@ -30,9 +45,19 @@ pub fn compile(materials: &[MaterialSettings]) -> (Vec<Material<f32>>, Vec<f32>)
     (compiled, tables)
 }
 
-fn compile_one(settings: &MaterialSettings, tables: &mut Vec<f32>) -> Material<f32> {
+/// The plain numbers of a material, its tables still to be made.
+fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f32> {
+    let looked_up = |is_on: bool, texture: u32| if is_on { texture } else { NO_TEXTURE };
+    let uses = settings.textures;
+    let emission = Vec3::from_f32(settings.emission_color) * settings.emission_strength;
+    let emission_texture = looked_up(uses.emission, slot.emission);
+    let mean_emission = if emission_texture == NO_TEXTURE {
+        emission
+    } else {
+        emission * Vec3::from_f32(slot.mean_emission)
+    };
     let mut material = Material {
-        base_color: Vec3::from_f32(settings.base_color),
+        base_color: Vec3::from_f32(settings.base_color) * settings.base_weight,
         metalness: settings.metalness,
         specular_color: Vec3::from_f32(settings.specular_color),
         specular_weight: settings.specular_weight,
@@ -40,7 +65,7 @@ fn compile_one(settings: &MaterialSettings, tables: &mut Vec<f32>) -> Material<f
         ior: settings.ior,
         k: Vec3::from_f32(settings.k),
         roughness: settings.roughness,
-        emission: Vec3::from_f32(settings.emission_color) * settings.emission_strength,
+        emission,
         anisotropy: settings.anisotropy,
         transmission_tint: Vec3::splat(1.0),
         transmission_weight: settings.transmission_weight,
@@ -54,8 +79,31 @@ fn compile_one(settings: &MaterialSettings, tables: &mut Vec<f32>) -> Material<f
         curve_table: 0,
         albedo_table: 0,
         inner_albedo_table: 0,
+        edge_tint: Vec3::from_f32(settings.edge_tint),
+        opacity: settings.opacity,
+        coat_color: Vec3::from_f32(settings.coat_color),
+        coat_weight: settings.coat_weight,
+        coat_roughness: settings.coat_roughness,
+        coat_ior: settings.coat_ior,
+        coat_table: 0,
+        light_luminance: mean_emission.luminance(),
+        textures: [
+            looked_up(uses.color, slot.base_color),
+            looked_up(uses.roughness, slot.metallic_roughness),
+            looked_up(uses.normal, slot.normal),
+            emission_texture,
+        ],
+        opacity_texture: looked_up(uses.opacity, slot.opacity),
+        alpha_cutoff: if uses.opacity { slot.alpha_cutoff } else { -1.0 },
+        normal_strength: settings.normal_strength,
+        has_rough_tables: 0,
+        texture_roughness: settings.roughness,
+        roughness_table: NO_TEXTURE,
+        reserved: [0; 2],
     };
-    if material.transmits() {
+    let is_colored_metal = material.textures[0] != NO_TEXTURE && material.metalness > 0.0;
+    material.has_rough_tables = u32::from(material.textures[1] != NO_TEXTURE || is_colored_metal);
+    if material.least_metallic().transmits() {
         // Only the exact equations know total reflection.
         material.fresnel = Fresnel::Dielectric as u32;
         let color = Vec3::from_f32(settings.transmission_color);
@@ -65,21 +113,57 @@ fn compile_one(settings: &MaterialSettings, tables: &mut Vec<f32>) -> Material<f
             material.transmission_tint = color;
         }
     }
+    material
+}
+
+fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut Vec<f32>) -> Material<f32> {
+    let mut material = without_tables(settings, textures);
+    let anywhere = material.least_metallic();
     let mut curve_table = Vec::new();
     if settings.lobe == Lobe::Geometric && settings.curve == Curve::Custom {
         curve_table = settings.custom_curve.table();
         material.curve_table = tables.len() as u32;
         tables.extend(&curve_table);
     }
-    if (material.has_base() || material.transmits()) && material.has_specular() {
+    if (anywhere.has_base() || anywhere.transmits()) && anywhere.has_specular() {
         material.albedo_table = tables.len() as u32;
         tables.extend(remembered_albedo(&material, &curve_table, false).iter());
     }
-    if material.transmits() {
+    if anywhere.transmits() {
         material.inner_albedo_table = tables.len() as u32;
         tables.extend(remembered_albedo(&material, &curve_table, true).iter());
     }
+    if material.textures[1] != NO_TEXTURE && settings.lobe == Lobe::Geometric {
+        // A texture's values are meant for GGX.
+        material.texture_roughness = ggx_from_geometric(settings.roughness);
+        material.roughness_table = tables.len() as u32;
+        tables.extend(*MATCHED);
+    }
+    if material.coat_weight > 0.0 {
+        material.coat_table = tables.len() as u32;
+        tables.extend(remembered_albedo(&coat_alone(&material), &[], false).iter());
+    }
     material
+}
+
+/// A material whose specular lobe is the coat of another one.
+fn coat_alone(material: &Material<f32>) -> Material<f32> {
+    let shape = coat_shape(material);
+    Material {
+        metalness: 0.0,
+        specular_color: Vec3::splat(1.0),
+        specular_weight: 1.0,
+        ior: material.coat_ior,
+        roughness: shape.roughness,
+        anisotropy: shape.anisotropy,
+        lobe: shape.lobe as u32,
+        curve: shape.curve as u32,
+        horizon: shape.horizon as u32,
+        fresnel: Fresnel::Dielectric as u32,
+        transmission_weight: 0.0,
+        has_rough_tables: 0,
+        ..*material
+    }
 }
 
 /// What an albedo table depends on.
@@ -104,8 +188,12 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
     if let Some(table) = known {
         return table;
     }
-    let table: Arc<[f32]> =
-        albedo_table(&key.material.cast::<f64>(), &key.curve_table, ALBEDO_SAMPLES, is_inside).into();
+    let of = key.material.cast::<f64>();
+    let table: Arc<[f32]> = if material.has_rough_tables == 1 {
+        rough_albedo_table(&of, &key.curve_table, ROUGH_ALBEDO_SAMPLES, is_inside).into()
+    } else {
+        albedo_table(&of, &key.curve_table, ALBEDO_SAMPLES, is_inside).into()
+    };
     let mut memory = memory();
     if memory.len() >= REMEMBERED {
         memory.remove(0);
@@ -115,8 +203,29 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
 }
 
 fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> AlbedoKey {
-    let is_metallic = material.metalness > 0.0;
+    // A table over the roughness serves every roughness, metalness and colour.
+    let is_rough = material.has_rough_tables == 1;
+    let is_metallic = material.metalness > 0.0 && !is_rough;
+    let white = Vec3::splat(1.0);
+    let unless_rough = |x: f32| if is_rough { 0.0 } else { x };
+    let transmits = material.least_metallic().transmits();
     let material = Material {
+        metalness: unless_rough(material.metalness),
+        roughness: unless_rough(material.roughness),
+        edge_tint: if is_metallic { material.edge_tint } else { white },
+        opacity: 0.0,
+        coat_color: white,
+        coat_weight: 0.0,
+        coat_roughness: 0.0,
+        coat_ior: 1.0,
+        coat_table: 0,
+        light_luminance: 0.0,
+        textures: [NO_TEXTURE; 4],
+        opacity_texture: NO_TEXTURE,
+        alpha_cutoff: 0.0,
+        normal_strength: 0.0,
+        texture_roughness: 0.0,
+        roughness_table: NO_TEXTURE,
         base_color: if is_metallic { material.base_color } else { Vec3::zero() },
         emission: Vec3::zero(),
         rotation_rad: 0.0,
@@ -124,7 +233,7 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         albedo_table: 0,
         inner_albedo_table: 0,
         transmission_tint: Vec3::zero(),
-        transmission_weight: if material.transmits() { 1.0 } else { 0.0 },
+        transmission_weight: if transmits { 1.0 } else { 0.0 },
         absorption: Vec3::zero(),
         transmission_roughness: 0.0,
         ..*material

@@ -8,6 +8,7 @@ use crate::scene::Geometry;
 use crate::scene::camera::Camera;
 use crate::scene::environment::Environment;
 use crate::scene::light::{LightChoice, Lights};
+use crate::scene::texture::Textures;
 
 use super::plan::Plan;
 pub use super::settings::Strategy;
@@ -23,6 +24,8 @@ pub struct Job {
     pub lights: Arc<Lights>,
     /// The materials by slot: the model's, the ground's, the area lights'.
     pub materials: Arc<Vec<Material<f32>>>,
+    /// What the materials look up.
+    pub textures: Arc<Textures>,
     /// Custom curves and albedo tables; never empty.
     pub tables: Arc<Vec<f32>>,
     /// Camera, light and sampling.
@@ -63,6 +66,8 @@ pub struct Settings {
 pub enum BackgroundKind {
     /// The environment.
     Environment,
+    /// The environment, averaged around each direction; the sine of the largest angle.
+    Blurred(f64),
     /// Nothing: alpha 0.
     Transparent,
     /// A linear colour.

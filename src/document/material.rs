@@ -4,10 +4,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
 use super::CustomCurve;
+use super::import::{ImportLobe, geometric_from_ggx};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
-use crate::scene::Slot;
+use crate::scene::{AlphaMode, Slot};
 
 /// A material as it is edited. Ranges, labels and meanings of the fields: [`super::PARAMETERS`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -15,6 +16,8 @@ use crate::scene::Slot;
 pub struct MaterialSettings {
     /// Name in lists and files.
     pub name: String,
+    /// Factor of the base colour, in [0, 1].
+    pub base_weight: f32,
     /// Linear RGB in [0, 1].
     pub base_color: [f32; 3],
     /// In [0, 1].
@@ -41,12 +44,22 @@ pub struct MaterialSettings {
     pub ior: f32,
     /// Tint of the reflection, linear RGB in [0, 1].
     pub specular_color: [f32; 3],
+    /// What a metal's reflection is multiplied by near 82 degrees, linear RGB in [0, 1].
+    pub edge_tint: [f32; 3],
     /// Where `eta` and `k` come from.
     pub conductor: Conductor,
     /// Real part of the conductor's index of refraction at about 650, 550 and 450 nm, in [0, 20].
     pub eta: [f32; 3],
     /// Imaginary part, in [0, 20].
     pub k: [f32; 3],
+    /// Share of the surface that has a coat, in [0, 1].
+    pub coat_weight: f32,
+    /// In [0, 1].
+    pub coat_roughness: f32,
+    /// The coat's index of refraction, in [1, 4].
+    pub coat_ior: f32,
+    /// What the coat leaves of the light that crosses it twice, linear RGB in [0, 1].
+    pub coat_color: [f32; 3],
     /// Share of the base that refracts, in [0, 1].
     pub transmission_weight: f32,
     /// Linear RGB in [0, 1]: tint at each refraction, or what is left of white after `transmission_depth`.
@@ -59,6 +72,12 @@ pub struct MaterialSettings {
     pub emission_color: [f32; 3],
     /// Emitted radiance is `emission_color` times this.
     pub emission_strength: f32,
+    /// Share of light that the surface stops, in [0, 1].
+    pub opacity: f32,
+    /// Scales the slopes of the normal texture, in [−10, 10].
+    pub normal_strength: f32,
+    /// Which of the slot's textures are looked up.
+    pub textures: TextureUse,
     /// What the file's "material" had that this version does not know.
     pub extra: Map<String, Json>,
     /// What the file had beside it.
@@ -70,6 +89,7 @@ impl Default for MaterialSettings {
     fn default() -> Self {
         let mut material = Self {
             name: "material".to_owned(),
+            base_weight: 1.0,
             base_color: [0.8; 3],
             metalness: 1.0,
             specular_weight: 1.0,
@@ -83,15 +103,23 @@ impl Default for MaterialSettings {
             fresnel: Fresnel::Schlick,
             ior: 1.5,
             specular_color: [1.0; 3],
+            edge_tint: [1.0; 3],
             conductor: Conductor::Custom,
             eta: [1.0; 3],
             k: [1.0; 3],
+            coat_weight: 0.0,
+            coat_roughness: 0.1,
+            coat_ior: 1.5,
+            coat_color: [1.0; 3],
             transmission_weight: 0.0,
             transmission_color: [1.0; 3],
             transmission_depth: 0.0,
             transmission_roughness: 0.0,
             emission_color: [1.0; 3],
             emission_strength: 0.0,
+            opacity: 1.0,
+            normal_strength: 1.0,
+            textures: TextureUse::default(),
             extra: Map::new(),
             file_extra: Map::new(),
         };
@@ -112,9 +140,9 @@ impl MaterialSettings {
         }
     }
 
-    /// The material that a model's file gives one of its slots, its textures left aside. What is out of range is
-    /// brought into it.
-    pub fn from_slot(slot: &Slot) -> Self {
+    /// The material that a model's file gives one of its slots, which looks up the textures that the slot has. What is
+    /// out of range is brought into it. The lobe's roughness is the one that looks like the file's.
+    pub fn from_slot(slot: &Slot, lobe: ImportLobe) -> Self {
         let unit = |x: f32| x.clamp(0.0, 1.0);
         let strength = slot.emission.into_iter().fold(0.0_f32, f32::max);
         let mut material = Self {
@@ -125,6 +153,22 @@ impl MaterialSettings {
             ior: slot.ior.clamp(1.0, 4.0),
             ..Self::default()
         };
+        lobe.apply(&mut material);
+        material.textures = TextureUse {
+            color: slot.base_color_texture.is_some(),
+            roughness: slot.metallic_roughness_texture.is_some(),
+            normal: slot.normal_texture.is_some(),
+            emission: slot.emissive_texture.is_some(),
+            opacity: slot.alpha_mode != AlphaMode::Opaque,
+        };
+        material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
+        if slot.alpha_mode != AlphaMode::Opaque {
+            material.opacity = unit(slot.opacity);
+        }
+        material.coat_weight = unit(slot.coat);
+        if slot.coat > 0.0 {
+            material.coat_roughness = geometric_from_ggx(unit(slot.coat_roughness));
+        }
         material.transmission_weight = unit(slot.transmission);
         if slot.attenuation_distance.is_finite() {
             material.transmission_color = slot.attenuation_color.map(unit);
@@ -155,6 +199,22 @@ impl MaterialSettings {
         }
         (self.eta, self.k) = (eta, k);
     }
+}
+
+/// Which of a slot's textures a material looks up. None, unless the material comes with the model: a material that is
+/// put in its place is plain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TextureUse {
+    /// The base colour is multiplied by its texture.
+    pub color: bool,
+    /// Roughness and metalness are multiplied by theirs.
+    pub roughness: bool,
+    /// The normal is bent by its texture.
+    pub normal: bool,
+    /// The emission is multiplied by its texture.
+    pub emission: bool,
+    /// The opacity is multiplied by the alpha of the base colour's texture, and cut off where the model says so.
+    pub opacity: bool,
 }
 
 /// Where the conductor's η and k come from.

@@ -141,7 +141,7 @@ fn migrate_0(object: &mut Map<String, Json>) {
         let mut meant = PARAMETERS
             .iter()
             .map(|parameter| parameter.key)
-            .filter(|known| is_meant(known) && !known.starts_with("transmission."));
+            .filter(|known| is_meant(known) && !is_newer(known));
         if let (Some(known), None) = (meant.next(), meant.next())
             && let Some(value) = object.remove(&key)
         {
@@ -152,6 +152,12 @@ fn migrate_0(object: &mut Map<String, Json>) {
         object.insert("material".to_owned(), Json::Object(material));
         object.insert(MARK.to_owned(), json!(1));
     }
+}
+
+/// True of parameters that came after version 0.
+fn is_newer(key: &str) -> bool {
+    let groups = ["transmission.", "coat.", "geometry."];
+    groups.iter().any(|group| key.starts_with(group)) || key == "base.weight" || key.ends_with("_texture")
 }
 
 /// A sentence for each key of "material" that has no effect.

@@ -23,6 +23,20 @@ macro_rules! field {
     };
 }
 
+/// Reads and writes whether a kind of texture is looked up.
+macro_rules! texture {
+    ($kind:ident) => {
+        (
+            |material: &MaterialSettings| Value::Toggle(material.textures.$kind),
+            |material: &mut MaterialSettings, value: Value| {
+                if let Value::Toggle(is_on) = value {
+                    material.textures.$kind = is_on;
+                }
+            },
+        )
+    };
+}
+
 /// Reads and writes a field that is an entry of a registry with `ALL` and `name`.
 macro_rules! choice_field {
     ($type:ident $field:ident) => {
@@ -63,17 +77,29 @@ pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
     let mut all = base();
     all.extend(specular_shape());
     all.extend(specular_fresnel());
+    all.extend(coat());
     all.extend(transmission());
     all.extend(emission());
+    all.extend(geometry());
     all
 });
 
 fn base() -> Vec<Parameter> {
     vec![
         Parameter {
+            label: "Weight",
+            help: "Darkens the base: its colour is multiplied by it.",
+            ..of("base.weight", unit_number(), field!(Number base_weight))
+        },
+        Parameter {
             label: "Colour",
             help: "Colour of the diffuse base; of a metal, its reflection seen head-on.",
             ..of("base.color", Kind::Color, field!(Color base_color))
+        },
+        Parameter {
+            label: "Colour texture",
+            help: "Multiplies the colour by the model's texture.",
+            ..of("base.color_texture", Kind::Toggle, texture!(color))
         },
         Parameter {
             label: "Metalness",
@@ -101,6 +127,11 @@ fn specular_shape() -> Vec<Parameter> {
             help: "How far the reflection is spread: from a mirror at 0 to, for the geometric lobe, perfectly diffuse at 1.",
             applies: |material| has_specular(material) && material.lobe != Lobe::Lambert,
             ..of("specular.roughness", unit_number(), field!(Number roughness))
+        },
+        Parameter {
+            label: "Roughness texture",
+            help: "Multiplies roughness and metalness by the model's texture.",
+            ..of("specular.roughness_texture", Kind::Toggle, texture!(roughness))
         },
         Parameter {
             label: "Curve",
@@ -178,6 +209,15 @@ fn specular_fresnel() -> Vec<Parameter> {
             ..of("specular.color", Kind::Color, field!(Color specular_color))
         },
         Parameter {
+            label: "Edge tint",
+            help: "Colours a metal's reflection towards the edge, strongest at 82° (F82 tint); white leaves it alone.",
+            applies: |material| {
+                let of_metal = !matches!(material.fresnel, Fresnel::None | Fresnel::Conductor) || transmits(material);
+                has_specular(material) && of_metal && material.metalness > 0.0
+            },
+            ..of("specular.edge_tint", Kind::Color, field!(Color edge_tint))
+        },
+        Parameter {
             label: "Metal",
             help: "Takes the index of refraction of a measured metal.",
             applies: is_conductor,
@@ -196,6 +236,38 @@ fn specular_fresnel() -> Vec<Parameter> {
             help: "Imaginary part: how strongly the metal absorbs red, green and blue.",
             applies: is_conductor,
             ..of("specular.k", Kind::Triple { range: [0.0, 20.0] }, k())
+        },
+    ]
+}
+
+fn coat() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Weight",
+            help: "A layer of clear lacquer over everything else, by the geometric lobe.",
+            applies: |_| true,
+            ..of("coat.weight", unit_number(), field!(Number coat_weight))
+        },
+        Parameter {
+            label: "Roughness",
+            symbol: "R",
+            help: "How far the coat spreads its reflection; what is seen through it stays as sharp as it is.",
+            ..of("coat.roughness", unit_number(), field!(Number coat_roughness))
+        },
+        Parameter {
+            label: "Index of refraction",
+            symbol: "n",
+            help: "How strongly the coat reflects: lacquer 1.5, oil 1.4, at 1 nothing.",
+            ..of(
+                "coat.ior",
+                number([1.0, 4.0], [1.0, 2.5], "", 0.01),
+                field!(Number coat_ior),
+            )
+        },
+        Parameter {
+            label: "Colour",
+            help: "Colours what is seen through the coat.",
+            ..of("coat.color", Kind::Color, field!(Color coat_color))
         },
     ]
 }
@@ -244,6 +316,11 @@ fn emission() -> Vec<Parameter> {
             ..of("emission.color", Kind::Color, field!(Color emission_color))
         },
         Parameter {
+            label: "Colour texture",
+            help: "Multiplies the emission by the model's texture.",
+            ..of("emission.color_texture", Kind::Toggle, texture!(emission))
+        },
+        Parameter {
             label: "Strength",
             help: "Radiance of the light that the surface gives off; at 1, white looks as bright as the furnace.",
             applies: |_| true,
@@ -256,13 +333,45 @@ fn emission() -> Vec<Parameter> {
     ]
 }
 
+fn geometry() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Opacity",
+            help: "The share of light that the surface stops; the rest goes straight on, as if nothing were there.",
+            ..of("geometry.opacity", unit_number(), field!(Number opacity))
+        },
+        Parameter {
+            label: "Opacity texture",
+            help: "Multiplies the opacity by the alpha of the model's colour texture, cut off where the model says so.",
+            ..of("geometry.opacity_texture", Kind::Toggle, texture!(opacity))
+        },
+        Parameter {
+            label: "Normal strength",
+            help: "How steep the normal texture's bumps are; at 0 the surface is smooth, below 0 dents are bumps.",
+            applies: |material| material.textures.normal,
+            ..of(
+                "geometry.normal_strength",
+                number([-10.0, 10.0], [0.0, 2.0], "", 0.01),
+                field!(Number normal_strength),
+            )
+        },
+        Parameter {
+            label: "Normal texture",
+            help: "Bends the surface's normal by the model's texture.",
+            ..of("geometry.normal_texture", Kind::Toggle, texture!(normal))
+        },
+    ]
+}
+
 /// A parameter that still needs its words. The group is the key's first part.
 fn of(key: &'static str, kind: Kind, (get, set): (Get, Set)) -> Parameter {
     let (group, applies): (_, fn(&MaterialSettings) -> bool) = match key.split_once('.') {
         Some(("base", _)) => ("Base", |_| true),
         Some(("specular", "weight")) => ("Specular", |_| true),
         Some(("specular", _)) => ("Specular", has_specular),
+        Some(("coat", _)) => ("Coat", |material| material.coat_weight > 0.0),
         Some(("transmission", _)) => ("Transmission", transmits),
+        Some(("geometry", _)) => ("Geometry", |_| true),
         _ => ("Emission", |_| true),
     };
     Parameter {

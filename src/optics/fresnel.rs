@@ -54,6 +54,8 @@ pub struct FresnelTerms<T> {
     pub metalness: T,
     /// Tint: of the reflectance at normal incidence where the model is Schlick's for a dielectric, else of all of it.
     pub tint: Vec3<T>,
+    /// What the metal's reflection is multiplied by near 82 degrees; 1 leaves it as it is.
+    pub edge_tint: Vec3<T>,
     /// Share of the reflection that is kept at any angle, in [0, 1].
     pub weight: T,
     /// Index of refraction of the dielectric against what surrounds it.
@@ -67,7 +69,7 @@ pub struct FresnelTerms<T> {
 /// The share reflected, linear RGB in [0, 1]; `cosine` between the half vector and either direction, in [0, 1].
 #[inline(always)]
 pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
-    let metal = |metal_f0| fresnel_schlick(metal_f0, cosine) * terms.tint;
+    let metal = |metal_f0| fresnel_metal(metal_f0, terms.edge_tint, cosine) * terms.tint;
     let share = match terms.model {
         Fresnel::None => terms.tint,
         Fresnel::Schlick => {
@@ -112,6 +114,34 @@ pub fn fresnel_schlick<T: Real>(f0: Vec3<T>, cosine: T) -> Vec3<T> {
     let x2 = x * x;
     let grazing = x2 * x2 * x;
     f0 + (Vec3::splat(T::one()) - f0) * grazing
+}
+
+/// The reflectance of a metal that is `f0` at normal incidence: Schlick's, darkened near 82 degrees by `edge_tint` (the
+/// F82-tint model: Kutz, Hasan and Edmondson, "Novel aspects of the Adobe Standard Material", 2021; OpenPBR 1.1).
+#[inline(always)]
+pub fn fresnel_metal<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>, cosine: T) -> Vec3<T> {
+    if (edge_tint.x + edge_tint.y + edge_tint.z).to_f64() >= 3.0 {
+        return fresnel_schlick(f0, cosine);
+    }
+    let darkening = edge_darkening(f0, edge_tint) * edge_shape(cosine);
+    (fresnel_schlick(f0, cosine) - darkening).map(|x| x.max(T::zero()))
+}
+
+/// What [`edge_shape`] is multiplied by, so that at a cosine of 1/7 the tint is what is left.
+#[inline(always)]
+pub fn edge_darkening<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>) -> Vec3<T> {
+    let seventh = T::from_f64(1.0 / 7.0);
+    let white = Vec3::splat(T::one());
+    fresnel_schlick(f0, seventh) * (white - edge_tint) * (T::one() / edge_shape(seventh))
+}
+
+/// How the darkening towards the edge depends on the angle: cosθ (1 − cosθ)⁶, largest at a cosine of 1/7.
+#[inline(always)]
+pub fn edge_shape<T: Real>(cosine: T) -> T {
+    let c = cosine.clamp(T::zero(), T::one());
+    let x = T::one() - c;
+    let x2 = x * x;
+    c * x2 * x2 * x2
 }
 
 /// Fresnel's equations for unpolarised light at a boundary of two dielectrics. `cosine` in [0, 1] on the incident side,

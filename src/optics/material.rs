@@ -6,21 +6,20 @@
 //! or transmits all light: the layering neither loses nor makes energy. A material that transmits has a second table for
 //! views from within. Lobes made of facets refract at each facet what that facet does not reflect.
 
+use super::albedo::{albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
+use super::coat::{coat_evaluate, coat_probability, coat_sample, coat_share, coat_transmittance};
 use super::curve::Curve;
 use super::frame::Frame;
 use super::fresnel::{Fresnel, FresnelTerms, fresnel, half_vector_cosine};
 use super::lobe::{Horizon, Lobe, LobeSample, LobeShape, is_mirror, lobe_evaluate, lobe_sample, refracts_at_facets};
-use super::random::{Sequence, random_pair, random_state};
 use super::real::{Mask, Real};
-use super::refraction::{refracted_square, refracting_cosine};
-use super::vector::{Vec3, vec3};
+use super::refraction::refracting_cosine;
+use super::vector::Vec3;
 
-/// Nodes of an albedo table, equidistant in the cosine of the view.
-pub const ALBEDO_NODES: usize = 64;
-/// Of the nodes of a table for views from within, those below the critical angle: there the reflection is total.
-pub const TOTAL_NODES: usize = 16;
-/// Numbers of an albedo table: red, green and blue a node.
-pub const ALBEDO_LENGTH: usize = 3 * ALBEDO_NODES;
+/// The number of a texture that is not there.
+pub const NO_TEXTURE: u32 = u32::MAX;
+/// Nodes of the table that has a lobe's roughness for that of GGX.
+pub const MATCHED_NODES: usize = 17;
 
 /// A material with its tables' places. The f32 form is what the GPU reads, byte for byte (`shaders/optics/material.wgsl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,9 +69,41 @@ pub struct Material<T> {
     pub albedo_table: u32,
     /// Where the albedo table for views from within begins.
     pub inner_albedo_table: u32,
+    /// What the metal's reflection is multiplied by near 82 degrees, linear RGB in [0, 1].
+    pub edge_tint: Vec3<T>,
+    /// Share of light that the surface stops, in [0, 1].
+    pub opacity: T,
+    /// What a coat of weight 1 leaves of the light that crosses it twice, linear RGB in [0, 1].
+    pub coat_color: Vec3<T>,
+    /// Share of the surface that has a coat, in [0, 1].
+    pub coat_weight: T,
+    /// Roughness of the coat in [0, 1].
+    pub coat_roughness: T,
+    /// Index of refraction of the coat.
+    pub coat_ior: T,
+    /// Where the coat's albedo table begins.
+    pub coat_table: u32,
+    /// The luminance by which the surface is sampled as a light: the mean over its emission texture.
+    pub light_luminance: T,
+    /// Textures of base colour, metalness and roughness, normal, emission; [`NO_TEXTURE`] where there is none.
+    pub textures: [u32; 4],
+    /// The texture whose alpha multiplies the opacity, or [`NO_TEXTURE`].
+    pub opacity_texture: u32,
+    /// The surface is there where its opacity reaches this; negative where the opacity is a share.
+    pub alpha_cutoff: T,
+    /// Scales the slopes of the normal texture.
+    pub normal_strength: T,
+    /// 1 where the albedo tables go over the roughness too ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
+    pub has_rough_tables: u32,
+    /// The roughness that the texture multiplies: that of GGX where `roughness_table` is there.
+    pub texture_roughness: T,
+    /// Where the table begins that has the lobe's roughness for that of GGX; [`NO_TEXTURE`] where both are the same.
+    pub roughness_table: u32,
+    /// Fills the last 16 bytes.
+    pub reserved: [u32; 2],
 }
 
-// SAFETY: f32 and u32 fields without padding (4 × 4 × 7 + 8 × 4 bytes); any bit pattern is valid.
+// SAFETY: f32 and u32 fields without padding (15 × 16 bytes); any bit pattern is valid.
 unsafe impl bytemuck::Zeroable for Material<f32> {}
 // SAFETY: as above.
 unsafe impl bytemuck::Pod for Material<f32> {}
@@ -105,6 +136,22 @@ impl<T: Real> Material<T> {
             curve_table: self.curve_table,
             albedo_table: self.albedo_table,
             inner_albedo_table: self.inner_albedo_table,
+            edge_tint: vector(self.edge_tint),
+            opacity: number(self.opacity),
+            coat_color: vector(self.coat_color),
+            coat_weight: number(self.coat_weight),
+            coat_roughness: number(self.coat_roughness),
+            coat_ior: number(self.coat_ior),
+            coat_table: self.coat_table,
+            light_luminance: number(self.light_luminance),
+            textures: self.textures,
+            opacity_texture: self.opacity_texture,
+            alpha_cutoff: number(self.alpha_cutoff),
+            normal_strength: number(self.normal_strength),
+            has_rough_tables: self.has_rough_tables,
+            texture_roughness: number(self.texture_roughness),
+            roughness_table: self.roughness_table,
+            reserved: self.reserved,
         }
     }
 
@@ -152,6 +199,7 @@ impl<T: Real> Material<T> {
             model: by_index(Fresnel::ALL, self.fresnel),
             metal_f0: self.base_color,
             metalness: self.metalness,
+            edge_tint: self.edge_tint,
             tint: if is_bare {
                 Vec3::splat(T::one())
             } else {
@@ -162,6 +210,30 @@ impl<T: Real> Material<T> {
             eta: self.eta,
             k: self.k,
         }
+    }
+
+    /// The material where its textures make it the least metallic: what calls for a base or for transmission.
+    pub fn least_metallic(&self) -> Self {
+        let metalness = if self.textures[1] == NO_TEXTURE {
+            self.metalness
+        } else {
+            T::zero()
+        };
+        Self { metalness, ..*self }
+    }
+
+    /// True where a texture is looked up.
+    #[inline(always)]
+    pub fn is_textured(&self) -> bool {
+        self.opacity_texture != NO_TEXTURE || self.textures != [NO_TEXTURE; 4]
+    }
+
+    /// True where some light may go straight on, as if the surface were not there.
+    #[inline(always)]
+    pub fn has_holes(&self) -> bool {
+        let is_masked = self.alpha_cutoff.to_f64() > self.opacity.to_f64();
+        let is_clear = self.alpha_cutoff.to_f64() < 0.0 && self.opacity.to_f64() < 1.0;
+        is_masked || is_clear || self.opacity_texture != NO_TEXTURE
     }
 
     /// True where a Lambertian base shows.
@@ -175,6 +247,13 @@ impl<T: Real> Material<T> {
     #[inline(always)]
     pub fn transmits(&self) -> bool {
         self.transmission_weight.to_f64() > 0.0 && self.metalness.to_f64() < 1.0
+    }
+
+    /// True where every direction that it can draw is weighed as a mirror's.
+    pub fn is_mirror(&self) -> bool {
+        let through = self.transmission_shape(&[], false);
+        let reflects_alike = !self.has_specular() || is_mirror(&self.shape(&[])).any();
+        !self.has_base() && reflects_alike && (!self.transmits() || is_mirror(&through).any())
     }
 
     /// True where the specular lobe reflects anything: if not from without, then from within.
@@ -213,6 +292,8 @@ pub struct Surface<T> {
     pub normal: Vec3<T>,
     /// Towards the viewer.
     pub wo: Vec3<T>,
+    /// The shading normal without the normal texture, on the side of the viewer: a coat is smooth over it.
+    pub coat_normal: Vec3<T>,
     /// True where the viewer is on the back of the triangle: within the solid, if its mesh is closed.
     pub is_inside: bool,
 }
@@ -224,14 +305,18 @@ pub struct Layers<T> {
     pub base: Vec3<T>,
     /// What is refracted, on average over the lobe.
     pub transmission: Vec3<T>,
-    /// Probability of sampling the specular lobe.
+    /// Probability of sampling the specular lobe, where the coat is not sampled.
     pub specular_probability: T,
-    /// Probability of sampling the refracting lobe.
+    /// Probability of sampling the refracting lobe, where the coat is not sampled.
     pub transmission_probability: T,
+    /// Probability of sampling the coat.
+    pub coat_probability: T,
+    /// What the coat leaves of everything below it.
+    pub below_coat: Vec3<T>,
 }
 
 impl<T: Real> Layers<T> {
-    /// Probability of sampling the Lambertian base.
+    /// Probability of sampling the Lambertian base, where the coat is not sampled.
     #[inline(always)]
     pub fn base_probability(&self) -> T {
         T::one() - self.specular_probability - self.transmission_probability
@@ -242,12 +327,16 @@ impl<T: Real> Layers<T> {
 /// transmits, the specular lobe at least one time in twenty and at most nineteen, unless it is alone or has nothing.
 pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Layers<T> {
     let (zero, one) = (T::zero(), T::one());
+    let coat = coat_share(material, tables, surface);
     if !material.has_base() && !material.transmits() {
+        let below = if material.has_specular() { one } else { zero };
         return Layers {
             base: Vec3::zero(),
             transmission: Vec3::zero(),
             specular_probability: one,
             transmission_probability: zero,
+            coat_probability: coat_probability(coat, below),
+            below_coat: coat_transmittance(material, surface, coat),
         };
     }
     let taken = if material.has_specular() {
@@ -271,17 +360,39 @@ pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface:
         transmission,
         specular_probability: share,
         transmission_probability: (one - share) * (through / rest.max(tiny)),
+        coat_probability: coat_probability(coat, specular + rest),
+        below_coat: coat_transmittance(material, surface, coat),
     }
 }
 
 /// What the specular lobe reflects of this view.
 fn specular_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Vec3<T> {
-    let cosine = surface.frame.normal.dot(surface.wo);
+    let mut place = surface.frame.normal.dot(surface.wo);
+    let mut first = material.albedo_table;
     if surface.is_inside && material.transmits() {
-        let place = albedo_place(cosine, material.ior_ahead(true));
-        return albedo_lookup(tables, material.inner_albedo_table, place);
+        place = albedo_place(place, material.ior_ahead(true));
+        first = material.inner_albedo_table;
     }
-    albedo_lookup(tables, material.albedo_table, cosine)
+    if material.has_rough_tables == 1 {
+        let integrals = rough_albedo_lookup(tables, first, place, material.roughness);
+        return rough_albedo(&material.fresnel_terms(surface.is_inside), integrals);
+    }
+    albedo_lookup(tables, first, place)
+}
+
+/// The share of the light from everywhere that reaches the viewer by all layers, in [0, 1] for each colour: where there
+/// is only the specular lobe, its Fresnel term at the view's angle.
+pub fn material_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Vec3<T> {
+    let specular = if !material.has_specular() {
+        Vec3::zero()
+    } else if material.has_base() || material.transmits() {
+        specular_albedo(material, tables, surface)
+    } else {
+        let cosine = surface.frame.normal.dot(surface.wo);
+        fresnel(&material.fresnel_terms(surface.is_inside), cosine)
+    };
+    let layers = material_layers(material, tables, surface);
+    specular + layers.base + layers.transmission
 }
 
 /// The base's lobe: Lambert's, its rare samples below the geometric surface mirrored.
@@ -296,6 +407,13 @@ fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
         eta: T::zero(),
         table: &[],
     }
+}
+
+/// A number in [0, 1) that was not below `share`, stretched to [0, 1) again.
+#[inline(always)]
+fn rescaled<T: Real>(number: T, share: T) -> T {
+    let stretched = (number - share) / (T::one() - share).max(T::from_f64(1e-20));
+    stretched.min(T::from_f64(1.0 - 1.0 / 16_777_216.0))
 }
 
 /// The numbers that a sample of a material takes, each in [0, 1).
@@ -329,17 +447,26 @@ pub fn material_sample<T: Real>(
     let layers = material_layers(material, tables, surface);
     let base = layers.base_probability();
     let through = layers.transmission_probability;
+    let mut layer = numbers.layer;
+    if material.has_coat(surface) {
+        if layer.less(layers.coat_probability).any() {
+            return coat_sample(material, surface, numbers.lobe, layers.coat_probability, wants_density);
+        }
+        layer = rescaled(layer, layers.coat_probability);
+    }
+    let below = T::one() - layers.coat_probability;
     let draw = |shape: &LobeShape<'_, T>, xi| lobe_sample(shape, &surface.frame, surface.normal, surface.wo, xi);
     let finish = |shape: &LobeShape<'_, T>, drawn: LobeSample<T>, color: Vec3<T>, probability: T| {
         let is_mirror = is_mirror(shape).any();
         let density = if wants_density && !is_mirror {
-            probability * lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, drawn.wi)[1]
+            below * probability * lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, drawn.wi)[1]
         } else {
             T::zero()
         };
+        let scale = drawn.weight / (below * probability).max(T::from_f64(1e-20));
         MaterialSample {
             wi: drawn.wi,
-            throughput: color * (drawn.weight / probability.max(T::from_f64(1e-20))),
+            throughput: color * layers.below_coat * scale,
             density,
             is_mirror,
         }
@@ -347,7 +474,7 @@ pub fn material_sample<T: Real>(
     let mut xi = numbers.lobe;
     let mut specular = layers.specular_probability;
     let is_passed_on = passes_on(material);
-    if is_passed_on || numbers.layer.less(specular).any() {
+    if is_passed_on || layer.less(specular).any() {
         let shape = material.shape(tables);
         let drawn = draw(&shape, xi);
         let terms = material.fresnel_terms(surface.is_inside);
@@ -356,12 +483,12 @@ pub fn material_sample<T: Real>(
             specular = T::select(T::zero().less(drawn.weight), color.luminance(), T::zero());
             xi = numbers.below;
         }
-        if numbers.layer.less(specular).any() {
+        if layer.less(specular).any() {
             return finish(&shape, drawn, color, specular);
         }
     }
     let base_end = specular + (T::one() - specular) * (base / (base + through).max(T::from_f64(1e-20)));
-    if numbers.layer.less(base_end).any() || !T::zero().less(through).any() {
+    if layer.less(base_end).any() || !T::zero().less(through).any() {
         let shape = base_shape();
         return finish(&shape, draw(&shape, xi), layers.base, base);
     }
@@ -402,12 +529,13 @@ pub fn material_evaluate<T: Real>(
     competing: T,
 ) -> Vec3<T> {
     let layers = material_layers(material, tables, surface);
+    let below = T::one() - layers.coat_probability;
     let mut sum = Vec3::zero();
     let mut add = |shape: &LobeShape<'_, T>, probability: T, color: Vec3<T>| {
         if !is_mirror(shape).any() {
             let [value, density] = lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, wi);
-            let share = light_density / (light_density + competing * probability * density);
-            sum += color * (value * share);
+            let share = light_density / (light_density + competing * below * probability * density);
+            sum += color * layers.below_coat * (value * share);
         }
     };
     if material.has_specular() {
@@ -428,70 +556,10 @@ pub fn material_evaluate<T: Real>(
         let color = transmission_color(material, &layers, &shape, surface, wi);
         add(&shape, layers.transmission_probability, color);
     }
+    if material.has_coat(surface) {
+        let [value, density] = coat_evaluate(material, surface, wi);
+        let share = light_density / (light_density + competing * layers.coat_probability * density);
+        sum += Vec3::splat(value * share);
+    }
     sum
-}
-
-/// The specular albedo at a `place` of a table, linear between its nodes: from without the view's cosine, from within
-/// what [`albedo_place`] makes of it.
-pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> Vec3<T> {
-    let last = T::from_f64(ALBEDO_NODES as f64 - 1.0);
-    let position = place.clamp(T::zero(), T::one()) * last;
-    let low = position.floor().min(last - T::one());
-    let first = albedo_table as usize + 3 * low.to_f64() as usize;
-    let number = |i: usize| T::from_f64(f64::from(tables[i]));
-    let node = |i: usize| vec3(number(i), number(i + 1), number(i + 2));
-    node(first).mix(node(first + 3), position - low)
-}
-
-/// Where in a table a view is found, in [0, 1]. At the critical angle the albedo of a smooth interface rises with a
-/// vertical tangent: below it the nodes are equidistant in the view's cosine, above it in that of the refracted direction.
-pub fn albedo_place<T: Real>(cosine: T, eta: T) -> T {
-    let critical = (-refracted_square(T::zero(), eta)).safe_sqrt();
-    let share = T::from_f64(TOTAL_NODES as f64 / (ALBEDO_NODES as f64 - 1.0));
-    if !T::zero().less(critical).any() {
-        return cosine;
-    }
-    let square = refracted_square(cosine, eta);
-    let above = share + (T::one() - share) * (square.safe_sqrt() / eta);
-    let below = share * (cosine.max(T::zero()) / critical);
-    T::select(square.less(T::zero()), below, above)
-}
-
-/// The view's cosine at a node of a table: [`albedo_place`] backwards.
-fn node_cosine(node: usize, eta: f64) -> f64 {
-    let critical_square = (1.0 - eta * eta).max(0.0);
-    if critical_square == 0.0 {
-        return node as f64 / (ALBEDO_NODES as f64 - 1.0);
-    }
-    if node < TOTAL_NODES {
-        return critical_square.sqrt() * node as f64 / TOTAL_NODES as f64;
-    }
-    let refracted = (node - TOTAL_NODES) as f64 / (ALBEDO_NODES - 1 - TOTAL_NODES) as f64;
-    (critical_square + (eta * refracted).powi(2)).sqrt().min(1.0)
-}
-
-/// The specular lobe's albedo against the view's cosine, from within or without: what [`albedo_lookup`] reads. `samples`
-/// a node.
-pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
-    let normal = vec3(0.0, 0.0, 1.0);
-    let frame = super::frame::frame_from_normal(normal);
-    let shape = material.shape(tables);
-    let terms = material.fresnel_terms(is_inside);
-    let eta = if is_inside { material.ior_ahead(true) } else { 1.0 };
-    let mut table = Vec::with_capacity(ALBEDO_LENGTH);
-    for node in 0..ALBEDO_NODES {
-        // At exactly grazing the microfacet lobes are 0/0.
-        let cosine = node_cosine(node, eta).max(1e-3);
-        let wo = vec3((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
-        let mut sum = Vec3::zero();
-        for i in 0..samples {
-            let state = random_state(node as u32, 0, 0, i, Sequence::Sobol);
-            let [a, b] = random_pair(state, 0);
-            let [c, _] = random_pair(state, 1);
-            let drawn = lobe_sample(&shape, &frame, normal, wo, [a, b, c]);
-            sum += fresnel(&terms, half_vector_cosine(wo, drawn.wi)) * drawn.weight;
-        }
-        table.extend((sum / f64::from(samples)).to_f32());
-    }
-    table
 }

@@ -5,7 +5,9 @@
 //! pointing away from the surface; `wo` is towards the viewer, `wi` towards the light; evaluating a lobe includes the
 //! cosine; a density is per steradian.
 
+pub mod albedo;
 pub mod chord;
+pub mod coat;
 pub mod curve;
 pub mod frame;
 pub mod fresnel;

@@ -6,6 +6,7 @@ use glam::DVec3;
 use obvhs::cwbvh::CwBvh;
 
 use super::bvh;
+use super::convex::is_convex;
 use super::light::AreaShape;
 use super::mesh::{Mesh, any_tangent};
 use super::model::{Model, Slot};
@@ -16,7 +17,7 @@ const GROUND_HALF_SIDE: f64 = 20.0;
 /// How far the ground is below the lowest point, in bounding radii: enough that flat bottoms do not flicker with it.
 const GROUND_GAP: f64 = 1e-4;
 
-/// What shading needs of a vertex besides its position. 36 bytes, scalars only: the same layout in WGSL.
+/// What shading needs of a vertex besides its position. 44 bytes, scalars only: the same layout in WGSL.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Vertex {
@@ -24,6 +25,8 @@ pub struct Vertex {
     pub normal: [f32; 3],
     /// Texture coordinates, v downwards.
     pub uv: [f32; 2],
+    /// The second set of texture coordinates.
+    pub second_uv: [f32; 2],
     /// Unit tangent and the sign of the bitangent, see [`Mesh::tangents`].
     pub tangent: [f32; 4],
 }
@@ -45,6 +48,8 @@ pub struct Geometry {
     /// The hierarchy; without `primitive_indices`, as nothing needs to be looked up. No nodes where there are no
     /// triangles.
     pub bvh: CwBvh,
+    /// No ray that leaves a face on its outside meets anything: the scene is one convex body.
+    pub is_convex: bool,
     /// The middle of the model's bounding box in the world.
     pub center_world: DVec3,
     /// The model's bounding radius in the world: from that middle to the farthest vertex of a triangle; 1 where there
@@ -81,6 +86,7 @@ impl Geometry {
             triangles: Vec::new(),
             slots: Vec::new(),
             bvh: CwBvh::default(),
+            is_convex: false,
             center_world,
             world_units_per_unit,
             bounds_world,
@@ -100,6 +106,7 @@ impl Geometry {
             geometry.add(&light, 0..light.triangles.len(), |place| place.as_vec3().to_array());
         }
         geometry.build_hierarchy(bvh::DEPTH_MAX);
+        geometry.is_convex = is_convex(&geometry.positions, &geometry.triangles);
         geometry
     }
 
@@ -143,6 +150,21 @@ impl Geometry {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
+    /// Centre and radius, in the geometry's units, of a sphere around the triangles of a slot; `None` where there are
+    /// none.
+    pub fn sphere_around(&self, slot: u32) -> Option<([f32; 3], f64)> {
+        let of_slot = || (0..self.triangles.len()).filter(|&triangle| self.slots[triangle] == slot);
+        let places = || {
+            of_slot()
+                .flat_map(|triangle| self.corners(triangle))
+                .map(|corner| DVec3::from_array(corner.map(f64::from)))
+        };
+        let (low, high) = (places().reduce(DVec3::min)?, places().reduce(DVec3::max)?);
+        let center = low.midpoint(high);
+        let radius = places().map(|place| place.distance(center)).fold(0.0, f64::max);
+        Some((center.as_vec3().to_array(), radius.max(1e-6)))
+    }
+
     /// A place in the world of one in the geometry's units.
     pub fn world_from_units(&self, place: [f32; 3]) -> DVec3 {
         self.center_world + self.world_units_per_unit * DVec3::from_array(place.map(f64::from))
@@ -167,6 +189,7 @@ impl Geometry {
             self.vertices.push(Vertex {
                 normal: normal.to_array(),
                 uv: mesh.uvs[vertex].to_array(),
+                second_uv: mesh.second_uvs.get(vertex).copied().unwrap_or_default().to_array(),
                 tangent: tangent.to_array(),
             });
         }

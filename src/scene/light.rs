@@ -3,7 +3,7 @@
 //!
 //! A triangle emits the same radiance from both sides. It is picked in proportion to area × luminance, and a place on it
 //! uniformly; so the density per area is luminance / power for every place of every triangle, and a hit needs no table
-//! to know it. The functions that start with `light_` have WGSL twins in `shaders/scene/light.wgsl`.
+//! to know it. With an emission texture the luminance is its mean. The functions that start with `light_` have WGSL twins in `shaders/scene/light.wgsl`.
 
 use std::f64::consts::PI;
 
@@ -17,6 +17,7 @@ use super::geometry::Geometry;
 use super::mesh::Mesh;
 use super::shapes;
 use super::surface::{POSITION_ERROR, position_error};
+use super::texture::{Textures, emission_at, uvs_at};
 use crate::optics::material::Material;
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real};
@@ -76,7 +77,7 @@ impl Lights {
     pub fn new(geometry: &Geometry, materials: &[Material<f32>]) -> Self {
         let luminances: Vec<f64> = materials
             .iter()
-            .map(|material| material.emission.luminance().into())
+            .map(|material| material.light_luminance.into())
             .collect();
         if luminances.iter().all(|luminance| *luminance <= 0.0) {
             return Self::default();
@@ -175,18 +176,31 @@ pub struct LightSample<T> {
     pub radiance: Vec3<T>,
 }
 
+/// What light samples are drawn from.
+#[derive(Clone, Copy, Debug)]
+pub struct Emitters<'a, T> {
+    /// The triangles.
+    pub geometry: &'a Geometry,
+    /// The materials of their slots.
+    pub materials: &'a [Material<T>],
+    /// What these look up.
+    pub textures: &'a Textures,
+    /// Which triangles emit.
+    pub lights: &'a Lights,
+    /// See [`LightChoice`].
+    pub density_per_luminance: T,
+}
+
 /// A place on an emitting triangle, drawn with three uniform numbers in [0, 1): `xi.x` and `xi.y` choose an entry of the
 /// table and the place, `xi.z` whether the entry or its alias is taken. There must be such a triangle. The ray towards it
 /// may start up to `origin_error` off `origin`.
 pub fn light_sample<T: Real>(
-    geometry: &Geometry,
-    materials: &[Material<T>],
-    lights: &Lights,
-    density_per_luminance: T,
+    emitters: &Emitters<'_, T>,
     origin: Vec3<T>,
     origin_error: T,
     xi: Vec3<T>,
 ) -> LightSample<T> {
+    let Emitters { geometry, lights, .. } = *emitters;
     let (drawn, [x, y]) = grid_place([xi.x, xi.y], lights.cells_size);
     let cell = lights.cells[drawn as usize];
     let keep = xi.z.less(T::from_f64(f64::from(cell.threshold)));
@@ -201,12 +215,22 @@ pub fn light_sample<T: Real>(
     let distance = towards.length();
     let direction = normalize_or(towards, vec3(T::zero(), T::one(), T::zero()));
     let normal = normalize_or((p1 - p0).cross(p2 - p0), direction);
-    let radiance = materials[geometry.slots[triangle] as usize].emission;
+    let material = &emitters.materials[geometry.slots[triangle] as usize];
+    let mut radiance = material.emission;
+    if material.is_textured() || material.has_holes() {
+        let uvs = uvs_at(geometry, triangle, weights);
+        radiance = emission_at(emitters.textures, material, uvs);
+    }
     let cosine = normal.dot(direction).abs();
     let error = position_error([p0, p1, p2], weights, normal) + origin_error + T::from_f64(POSITION_ERROR) * distance;
     LightSample {
         direction,
-        density: light_density(radiance, cosine, distance, density_per_luminance),
+        density: light_density(
+            material.light_luminance,
+            cosine,
+            distance,
+            emitters.density_per_luminance,
+        ),
         distance: distance - error / cosine.max(T::from_f64(COSINE_MIN)),
         radiance,
     }
@@ -215,9 +239,9 @@ pub fn light_sample<T: Real>(
 /// Keeps densities finite where a triangle is seen edge-on.
 pub const COSINE_MIN: f64 = 1e-6;
 
-/// The density, per steradian, with which [`light_sample`] draws the direction to a place that emits `emission` and is
-/// seen under this cosine from this distance.
-pub fn light_density<T: Real>(emission: Vec3<T>, cosine: T, distance: T, density_per_luminance: T) -> T {
-    let per_area = density_per_luminance * emission.luminance();
+/// The density, per steradian, with which [`light_sample`] draws the direction to a place of a material with this
+/// `light_luminance` that is seen under this cosine from this distance.
+pub fn light_density<T: Real>(light_luminance: T, cosine: T, distance: T, density_per_luminance: T) -> T {
+    let per_area = density_per_luminance * light_luminance;
     per_area * distance * distance / cosine.max(T::from_f64(COSINE_MIN))
 }

@@ -2,11 +2,12 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec3, Vec2, Vec3, Vec4};
+use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
 
 /// Triangles with attributes at their vertices. Counter-clockwise order seen from outside; right-handed, +Y up.
 ///
-/// All attribute vectors have the length of `positions`, `slots` has the length of `triangles`.
+/// All attribute vectors have the length of `positions` (`second_uvs` may be empty), `slots` has the length of
+/// `triangles`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Places in model units. Double precision, so that a small part far from the origin keeps its shape.
@@ -15,6 +16,8 @@ pub struct Mesh {
     pub normals: Vec<Vec3>,
     /// Texture coordinates, v growing downwards in the image as in glTF; zero where the source has none.
     pub uvs: Vec<Vec2>,
+    /// The second set of texture coordinates; empty where no texture looks it up.
+    pub second_uvs: Vec<Vec2>,
     /// Unit tangents along growing u (xyz) and the sign (w, ±1) of the bitangent w · (normal × tangent), which points
     /// upwards in the image (along falling v), as in glTF.
     pub tangents: Vec<Vec4>,
@@ -31,7 +34,24 @@ impl Mesh {
         self.positions.push(position);
         self.normals.push(normal);
         self.uvs.push(uv);
+        if !self.second_uvs.is_empty() {
+            self.second_uvs.push(Vec2::ZERO);
+        }
         self.tangents.push(tangent);
+        index
+    }
+
+    /// Adds a vertex like another one and gives its index.
+    fn copy_vertex(&mut self, from: usize) -> u32 {
+        let index = self.push_vertex(
+            self.positions[from],
+            self.normals[from],
+            self.uvs[from],
+            self.tangents[from],
+        );
+        if let Some(&uv) = self.second_uvs.get(from) {
+            self.second_uvs[index as usize] = uv;
+        }
         index
     }
 
@@ -47,6 +67,12 @@ impl Mesh {
     /// Adds all vertices and triangles of `other`, with their slots as they are.
     pub fn append(&mut self, other: Mesh) {
         let base = self.positions.len() as u32;
+        if !(self.second_uvs.is_empty() && other.second_uvs.is_empty()) {
+            self.second_uvs.resize(self.positions.len(), Vec2::ZERO);
+            self.second_uvs.extend(&other.second_uvs);
+            self.second_uvs
+                .resize(self.positions.len() + other.positions.len(), Vec2::ZERO);
+        }
         self.positions.extend(other.positions);
         self.normals.extend(other.normals);
         self.uvs.extend(other.uvs);
@@ -87,6 +113,10 @@ impl Mesh {
             });
             flat.triangles.push(corners);
         }
+        if !self.second_uvs.is_empty() {
+            let corners = self.triangles.iter().flatten();
+            flat.second_uvs = corners.map(|&vertex| self.second_uvs[vertex as usize]).collect();
+        }
         flat.slots = std::mem::take(&mut self.slots);
         *self = flat;
     }
@@ -122,15 +152,16 @@ impl Mesh {
         count
     }
 
-    /// Tangents along growing u, averaged over the triangles at a vertex by their angles there. A vertex whose
-    /// triangles disagree about the handedness of the texture is split; one without usable texture coordinates gets
-    /// any tangent. Needs unit normals.
-    pub fn generate_tangents(&mut self) {
+    /// Tangents along growing u of a texture that the texture coordinates look into by these coefficients
+    /// (`TextureRef::texture_from_mesh_uv`), averaged over the triangles at a vertex by their angles there. A vertex
+    /// whose triangles disagree about the handedness of the texture is split; one without usable texture coordinates
+    /// gets any tangent. Needs unit normals.
+    pub fn generate_tangents(&mut self, texture_from_uv: [f32; 6]) {
         let mut sums = vec![DVec3::ZERO; self.positions.len()];
         let mut signs = vec![0.0f32; self.positions.len()];
         let mut mirrored: HashMap<u32, u32> = HashMap::new();
         for triangle in 0..self.triangles.len() {
-            let Some((along_u, sign)) = self.texture_frame(triangle) else {
+            let Some((along_u, sign)) = self.texture_frame(triangle, texture_from_uv) else {
                 continue;
             };
             let corners = self.corners(triangle);
@@ -140,13 +171,7 @@ impl Mesh {
                     vertex = *mirrored.entry(vertex).or_insert_with(|| {
                         sums.push(DVec3::ZERO);
                         signs.push(sign);
-                        let from = vertex as usize;
-                        self.push_vertex(
-                            self.positions[from],
-                            self.normals[from],
-                            self.uvs[from],
-                            self.tangents[from],
-                        )
+                        self.copy_vertex(vertex as usize)
                     });
                     self.triangles[triangle][corner] = vertex;
                 }
@@ -171,11 +196,13 @@ impl Mesh {
 
     /// The direction of growing u on a triangle and the sign of its bitangent; nothing where the texture coordinates
     /// or the triangle are degenerate.
-    fn texture_frame(&self, triangle: usize) -> Option<(DVec3, f32)> {
+    fn texture_frame(&self, triangle: usize, texture_from_uv: [f32; 6]) -> Option<(DVec3, f32)> {
         let [a, b, c] = self.corners(triangle);
         let [uv_a, uv_b, uv_c] = self.triangles[triangle].map(|vertex| self.uvs[vertex as usize].as_dvec2());
+        let [uu, uv, _, vu, vv, _] = texture_from_uv.map(f64::from);
+        let in_texture = |step: DVec2| DVec2::new(uu * step.x + uv * step.y, vu * step.x + vv * step.y);
         let (to_b, to_c) = (b - a, c - a);
-        let (uv_to_b, uv_to_c) = (uv_b - uv_a, uv_c - uv_a);
+        let (uv_to_b, uv_to_c) = (in_texture(uv_b - uv_a), in_texture(uv_c - uv_a));
         let determinant = uv_to_b.perp_dot(uv_to_c);
         let along_u = (to_b * uv_to_c.y - to_c * uv_to_b.y) * determinant.signum();
         // v grows downwards: a texture that is not mirrored has a negative determinant seen from outside.

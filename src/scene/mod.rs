@@ -3,6 +3,7 @@
 mod alias;
 mod bvh;
 pub mod camera;
+mod convex;
 pub mod environment;
 mod geometry;
 mod gltf;
@@ -13,8 +14,9 @@ mod model;
 pub mod shapes;
 pub mod surface;
 pub mod teapot;
+pub mod texture;
 mod traverse;
 
 pub use geometry::{Geometry, Vertex};
 pub use intersect::{Hit, RayFrame, intersect_triangle};
-pub use model::{AlphaMode, Model, ModelError, ModelSource, Slot, Texture, TextureRef, Wrap, load};
+pub use model::{AlphaMode, Filter, Model, ModelError, ModelSource, Slot, Texture, TextureRef, Wrap, load};

@@ -117,6 +117,10 @@ pub struct Slot {
     pub ior: f32,
     /// Fraction of light that is refracted instead of scattered, in [0, 1] (KHR_materials_transmission).
     pub transmission: f32,
+    /// Share of the surface that has a coat, in [0, 1] (KHR_materials_clearcoat).
+    pub coat: f32,
+    /// Roughness of the coat in [0, 1], α = roughness².
+    pub coat_roughness: f32,
     /// What is left of white light after `attenuation_distance` inside, linear (KHR_materials_volume).
     pub attenuation_color: [f32; 3],
     /// In bounding radii of the model, above 0; infinite where nothing is absorbed.
@@ -148,6 +152,8 @@ impl Default for Slot {
             double_sided: false,
             ior: 1.5,
             transmission: 0.0,
+            coat: 0.0,
+            coat_roughness: 0.0,
             attenuation_color: [1.0; 3],
             attenuation_distance: f32::INFINITY,
             base_color_texture: None,
@@ -200,11 +206,25 @@ pub enum AlphaMode {
 pub struct TextureRef {
     /// Which of [`Model::textures`].
     pub texture: usize,
+    /// Which of the mesh's sets of texture coordinates: 0 or 1.
+    pub uv_set: usize,
     /// Places in the texture from those of the mesh: (m[0]·u + m[1]·v + m[2], m[3]·u + m[4]·v + m[5])
     /// (KHR_texture_transform).
     pub texture_from_mesh_uv: [f32; 6],
     /// What is beyond 0 and 1 in u and in v.
     pub wrap: [Wrap; 2],
+    /// What is between texels.
+    pub filter: Filter,
+}
+
+/// What a texture is between the middles of its texels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Filter {
+    /// The four around the place, weighed by their nearness.
+    #[default]
+    Linear,
+    /// The texel in which the place is.
+    Nearest,
 }
 
 /// How a texture goes on beyond its edge.

@@ -1,11 +1,12 @@
 //! A ray's hit made into a surface to shade.
 
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
-use crate::optics::material::{Material, Surface};
+use crate::optics::material::{Material, NO_TEXTURE, Surface};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 
+use super::texture::{Textures, mapped_normal, opacity_at, uvs_at};
 use super::{Geometry, Hit};
 
 /// Rounding of the position's three products and sums, with what the box test and the transforms add.
@@ -24,6 +25,8 @@ pub struct SurfacePoint<T> {
     pub error: T,
     /// Material slot.
     pub slot: u32,
+    /// Both sets of texture coordinates; zero where the material looks up no texture.
+    pub uvs: [[T; 2]; 2],
 }
 
 impl<T: Real> SurfacePoint<T> {
@@ -45,37 +48,95 @@ pub fn bent_normal<T: Real>(shading: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
     Vec3::select(lean.less(least), bent, shading)
 }
 
+/// Where a ray met the geometry.
+#[derive(Clone, Copy, Debug)]
+pub struct HitPlace<T> {
+    /// The point, in the geometry's units.
+    pub position: Vec3<T>,
+    /// How far off the true place `position` may be, along the normal.
+    pub error: T,
+    /// The geometric normal, on the side of the ray's origin.
+    pub normal: Vec3<T>,
+    /// True where the back of the triangle was met.
+    pub is_back: bool,
+}
+
+/// The weights of a hit triangle's corners.
+#[inline(always)]
+fn hit_weights<T: Real>(hit: &Hit) -> [T; 3] {
+    let (u, v) = (T::from_f64(f64::from(hit.u)), T::from_f64(f64::from(hit.v)));
+    [T::one() - u - v, u, v]
+}
+
+/// The place where a ray of unit `direction` met the geometry.
+#[inline(always)]
+pub fn hit_place<T: Real>(geometry: &Geometry, hit: &Hit, direction: Vec3<T>) -> HitPlace<T> {
+    let corners = geometry.corners(hit.triangle as usize).map(Vec3::from_f32);
+    let [p0, p1, p2] = corners;
+    let weights: [T; 3] = hit_weights(hit);
+    let out = normalize_or((p1 - p0).cross(p2 - p0), -direction);
+    let is_back = out.dot(-direction).less(T::zero());
+    let normal = Vec3::select(is_back, -out, out);
+    HitPlace {
+        position: p0 * weights[0] + p1 * weights[1] + p2 * weights[2],
+        error: position_error(corners, weights, normal),
+        normal,
+        is_back: is_back.any(),
+    }
+}
+
+/// Where a ray goes on that a surface did not stop.
+#[inline(always)]
+pub fn passed_origin<T: Real>(geometry: &Geometry, hit: &Hit, direction: Vec3<T>) -> Vec3<T> {
+    let place = hit_place(geometry, hit, direction);
+    place.position - place.normal * place.error
+}
+
 /// The surface where a ray of unit `direction` met the geometry.
 #[inline(always)]
 pub fn surface_at<T: Real>(
     geometry: &Geometry,
     materials: &[Material<T>],
+    textures: &Textures,
     hit: &Hit,
     direction: Vec3<T>,
 ) -> SurfacePoint<T> {
     let index = hit.triangle as usize;
-    let [p0, p1, p2] = geometry.corners(index).map(Vec3::from_f32);
-    let (u, v) = (T::from_f64(f64::from(hit.u)), T::from_f64(f64::from(hit.v)));
-    let w = T::one() - u - v;
-    let position = p0 * w + p1 * u + p2 * v;
+    let [w, u, v] = hit_weights(hit);
+    let HitPlace {
+        position,
+        error,
+        normal,
+        is_back,
+    } = hit_place(geometry, hit, direction);
     let wo = -direction;
-    let out = normalize_or((p1 - p0).cross(p2 - p0), wo);
-    let is_back = out.dot(wo).less(T::zero());
-    let normal = Vec3::select(is_back, -out, out);
     let corners = geometry.triangles[index].map(|vertex| &geometry.vertices[vertex as usize]);
     let interpolate =
         |a: [f32; 3], b: [f32; 3], c: [f32; 3]| Vec3::from_f32(a) * w + Vec3::from_f32(b) * u + Vec3::from_f32(c) * v;
     let interpolated = interpolate(corners[0].normal, corners[1].normal, corners[2].normal);
     let smoothed = normalize_or(interpolated, normal);
-    let shading = bent_normal(
-        Vec3::select(smoothed.dot(normal).less(T::zero()), -smoothed, smoothed),
-        wo,
-    );
+    let is_turned = smoothed.dot(normal).less(T::zero());
+    let facing = |shading: Vec3<T>| bent_normal(Vec3::select(is_turned, -shading, shading), wo);
     let slot = geometry.slots[index];
     let material = &materials[slot as usize];
-    let frame = if material.anisotropy.to_f64() != 0.0 {
+    let uvs = if material.is_textured() {
+        uvs_at(geometry, index, [w, u, v])
+    } else {
+        [[T::zero(); 2]; 2]
+    };
+    let tangent = || {
         let axis = |i: usize| [corners[i].tangent[0], corners[i].tangent[1], corners[i].tangent[2]];
-        frame_from_tangent(shading, interpolate(axis(0), axis(1), axis(2)), material.rotation_rad)
+        interpolate(axis(0), axis(1), axis(2))
+    };
+    let coat_normal = facing(smoothed);
+    let mut shading = coat_normal;
+    if material.textures[2] != NO_TEXTURE {
+        let side = |i: usize| T::from_f64(f64::from(corners[i].tangent[3]));
+        let sign = side(0) * w + side(1) * u + side(2) * v;
+        shading = facing(mapped_normal(textures, material, uvs, [smoothed, tangent()], sign));
+    }
+    let frame = if material.anisotropy.to_f64() != 0.0 {
+        frame_from_tangent(shading, tangent(), material.rotation_rad)
     } else {
         frame_from_normal(shading)
     };
@@ -84,12 +145,25 @@ pub fn surface_at<T: Real>(
             frame,
             normal,
             wo,
-            is_inside: is_back.any(),
+            coat_normal,
+            is_inside: is_back,
         },
         position,
-        error: position_error([p0, p1, p2], [w, u, v], normal),
+        error,
         slot,
+        uvs,
     }
+}
+
+/// The share of light that is stopped where a ray met the geometry, in [0, 1].
+#[inline(always)]
+pub fn hit_opacity<T: Real>(geometry: &Geometry, materials: &[Material<T>], textures: &Textures, hit: &Hit) -> T {
+    let material = &materials[geometry.slots[hit.triangle as usize] as usize];
+    if !material.has_holes() {
+        return T::one();
+    }
+    let uvs = uvs_at(geometry, hit.triangle as usize, hit_weights(hit));
+    opacity_at(textures, material, uvs)
 }
 
 /// How far off its plane, along the unit `normal`, the place may be that is interpolated between a triangle's corners

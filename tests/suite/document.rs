@@ -4,12 +4,12 @@ use glossmith::document::custom_curve::CustomCurve;
 use glossmith::document::history::History;
 use glossmith::document::parameter::{Kind, Parameter, Value, assign, parameter, parse_color};
 use glossmith::document::{
-    AreaLight, Background, Change, Conductor, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy, compile,
-    preset,
+    AreaLight, Background, Change, Conductor, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter,
+    Strategy, compile, preset,
 };
+use glossmith::optics::albedo::{ALBEDO_LENGTH, albedo_table};
 use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};
 use glossmith::optics::lobe::Lobe;
-use glossmith::optics::material::{ALBEDO_LENGTH, albedo_table};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::ToneCurve;
 use glossmith::scene::environment::EnvironmentSource;
@@ -227,7 +227,7 @@ fn slots_of_a_model_become_materials_in_range() {
         roughness: 0.4,
         ..Slot::neutral("lamp")
     };
-    let material = MaterialSettings::from_slot(&slot);
+    let material = MaterialSettings::from_slot(&slot, ImportLobe::Ggx);
     assert!(is_in_range(&material));
     assert_eq!(
         (material.emission_color, material.emission_strength),
@@ -423,6 +423,14 @@ fn every_edit_is_the_change_that_it_is() {
     assert_eq!(change(|d| d.ground = true), Change { geometry: true, ..none });
     assert_eq!(change(|d| d.render.samples = 1), Change { target: true, ..none });
     assert_eq!(change(|d| d.render.time_s = Some(1.0)), Change { target: true, ..none });
+    assert_eq!(change(|d| d.render.noise = Some(0.1)), Change { target: true, ..none });
+    assert_eq!(change(|d| d.render.min_samples = 64), Change { target: true, ..none });
+    assert_eq!(
+        change(|d| d.render.adaptive = Some(true)),
+        Change { target: true, ..none }
+    );
+    // What it is without a noise to reach.
+    assert_eq!(change(|d| d.render.adaptive = Some(false)), none);
     let sampling = Change { sampling: true, ..none };
     assert_eq!(change(|d| d.render.bounces = 1), sampling);
     assert_eq!(change(|d| d.render.seed = 1), sampling);

@@ -2,13 +2,14 @@
 
 use std::mem::offset_of;
 
-use glossmith::gpu::layout::{Globals, Triangle};
+use glossmith::gpu::layout::{Globals, PixelStatistics, Tile, Triangle};
 use glossmith::gpu::scatter::Scatter;
 use glossmith::optics::material::Material;
 use glossmith::scene::Vertex;
 use glossmith::scene::camera::Camera;
 use glossmith::scene::environment::AliasCell;
 use glossmith::scene::light::LightCell;
+use glossmith::scene::texture::TextureRecord;
 
 use super::shaders::modules;
 
@@ -41,9 +42,13 @@ macro_rules! layout {
 fn rust_layouts() -> Vec<Layout> {
     vec![
         layout!(Globals: Globals {
-            camera, image_size, tile_origin, tile_size, first_sample, sample_count, background, background_kind,
-            environment_rotation, environment_cells_size, environment_strength, bounces, sequence, strategy, seed,
-            node_count, light_cells_size, environment_probability, density_per_luminance, firefly_clamp, reserved,
+            camera, image_size, bounces, sequence, background, background_kind, environment_rotation,
+            environment_cells_size, environment_strength, strategy, seed, node_count, light_cells_size,
+            environment_probability, density_per_luminance, firefly_clamp, reserved, reserved_pair,
+        }),
+        layout!(Tile: Tile { origin, first_sample, sample_count }),
+        layout!(PixelStatistics: PixelStatistics {
+            luminance_squared, kept, odd_luminance, odd_luminance_squared, odd_kept, dropped, rays, clamped,
         }),
         layout!(Camera: Camera<f32> {
             origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,
@@ -51,10 +56,15 @@ fn rust_layouts() -> Vec<Layout> {
         layout!(Material: Material<f32> {
             base_color, metalness, specular_color, specular_weight, eta, ior, k, roughness, emission, anisotropy,
             transmission_tint, transmission_weight, absorption, transmission_roughness, rotation_rad, lobe, curve,
-            horizon, fresnel, curve_table, albedo_table, inner_albedo_table,
+            horizon, fresnel, curve_table, albedo_table, inner_albedo_table, edge_tint, opacity,
+            coat_color, coat_weight, coat_roughness, coat_ior, coat_table, light_luminance, textures,
+            opacity_texture, alpha_cutoff, normal_strength, has_rough_tables, texture_roughness, roughness_table, reserved,
         }),
         layout!(Triangle: Triangle { corners }),
-        layout!(Vertex: Vertex { normal, uv, tangent }),
+        layout!(Vertex: Vertex { normal, uv, second_uv, tangent }),
+        layout!(TextureRecord: TextureRecord {
+            u_from_uv, first_texel, v_from_uv, width, height, wrap, flags,
+        }),
         layout!(Scatter: Scatter {
             wo, roughness, anisotropy, eta, lobe, curve, horizon, seed, first, count,
         }),

@@ -2,19 +2,22 @@
 //! interfaces, and has the constants of its Rust twin.
 
 use glossmith::cpu::integrator;
+use glossmith::document::Document;
 use glossmith::document::job::{BackgroundKind, Settings, Strategy};
 use glossmith::document::plan::Plan;
 use glossmith::gpu::layout::Globals;
 use glossmith::gpu::shader::{EXTRA, Linked, link, link_with, module_names};
+use glossmith::optics::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, TOTAL_NODES};
 use glossmith::optics::chord;
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, LONG_TAIL_MAX};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::{ALPHA_MIN, Facets, Horizon, Lobe, MIRROR_WIDTH};
-use glossmith::optics::material::{ALBEDO_NODES, TOTAL_NODES};
+use glossmith::optics::material::{MATCHED_NODES, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::{self, ToneCurve};
+use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::camera::{Camera, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA, PixelFilter};
-use glossmith::scene::{light, surface};
+use glossmith::scene::{light, surface, texture};
 use naga::back::{hlsl, msl, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
@@ -210,6 +213,7 @@ fn background_number(background: BackgroundKind) -> u32 {
         environment_strength: 1.0,
         light_choice: Default::default(),
         bounces: 1,
+        firefly_clamp: f64::INFINITY,
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
         seed: 0,
@@ -270,6 +274,15 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("LONG_TAIL_MAX", LONG_TAIL_MAX),
         ("ALBEDO_NODES", ALBEDO_NODES as f64),
         ("TOTAL_NODES", TOTAL_NODES as f64),
+        ("ROUGHNESS_NODES", ROUGHNESS_NODES as f64),
+        ("MATCHED_NODES", MATCHED_NODES as f64),
+        ("NO_TEXTURE", f64::from(NO_TEXTURE)),
+        ("WRAP_REPEAT", f64::from(texture::WRAP_REPEAT)),
+        ("WRAP_MIRRORED", f64::from(texture::WRAP_MIRRORED)),
+        ("WRAP_CLAMP", f64::from(texture::WRAP_CLAMP)),
+        ("IS_SRGB", f64::from(texture::IS_SRGB)),
+        ("IS_NEAREST", f64::from(texture::IS_NEAREST)),
+        ("IS_SECOND_SET", f64::from(texture::IS_SECOND_SET)),
         ("FACETS_NONE", f64::from(Facets::None as u32)),
         ("FACETS_VISIBLE", f64::from(Facets::Visible as u32)),
         ("FACETS_ALL", f64::from(Facets::All as u32)),
@@ -288,6 +301,8 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("FIRST_DIMENSION", f64::from(integrator::FIRST_DIMENSION)),
         ("BOUNCE_DIMENSIONS", f64::from(integrator::BOUNCE_DIMENSIONS)),
         ("BELOW_DIMENSION", f64::from(integrator::BELOW_DIMENSION)),
+        ("OPACITY_DIMENSION", f64::from(integrator::OPACITY_DIMENSION)),
+        ("PASSES_MAX", f64::from(integrator::PASSES_MAX)),
         ("ROULETTE_START", f64::from(integrator::ROULETTE_START)),
         ("RADIANCE_MAX", integrator::RADIANCE_MAX),
     ] {
@@ -307,6 +322,7 @@ const WITHOUT_TWIN: &[&str] = &[
     "LAYER_SPECULAR",
     "LAYER_BASE",
     "LAYER_TRANSMISSION",
+    "LAYER_COAT",
 ];
 
 #[test]
@@ -345,32 +361,24 @@ fn overrides_are_those_of_the_plan() {
         .map(|(_, o)| (o.name.clone().unwrap_or_default(), numbers(&module, o.init.unwrap())[0]))
         .collect();
     // The defaults are those of the general plan, so that a pipeline without constants leaves nothing out.
-    let mut rust: Vec<_> = Plan::GENERAL
-        .constants()
+    let constants = Plan::general().constants();
+    let mut rust: Vec<_> = constants
+        .into_iter()
         .map(|(name, value)| (name.to_owned(), value))
-        .into();
+        .collect();
     wgsl.sort_by(|a, b| a.0.cmp(&b.0));
     rust.sort_by(|a, b| a.0.cmp(&b.0));
     assert_eq!(wgsl, rust);
 }
 
-/// A plan that fixes all that a plan can fix.
-const NARROW_PLAN: Plan = Plan {
-    lobe: Some(Lobe::Geometric as u32),
-    curve: Some(Curve::Smooth as u32),
-    horizon: Some(Horizon::Mirror as u32),
-    fresnel: Some(Fresnel::Conductor as u32),
-    anisotropy: false,
-    base: false,
-    specular: true,
-    emission: false,
-    transmission: false,
-    absorption: false,
-    light_sampling: true,
-    emitter_sampling: false,
-    lens: false,
-    firefly_clamp: false,
-};
+/// The plan of the default document: it fixes all that a plan can fix.
+fn narrow_plan() -> Plan {
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(&Document::default()).unwrap();
+    let plan = session.job().unwrap().plan.clone();
+    assert!(plan.left_out() >= 8, "{plan:?}");
+    plan
+}
 
 #[test]
 fn passes_translate_for_every_graphics_interface() {
@@ -378,10 +386,11 @@ fn passes_translate_for_every_graphics_interface() {
     for name in module_names() {
         let (module, info) = validate(&link(&name).unwrap()).unwrap();
         for entry in &module.entry_points {
-            for plan in [Plan::GENERAL, NARROW_PLAN] {
+            for plan in [Plan::general(), narrow_plan()] {
                 let point = (entry.stage, entry.name.as_str());
-                let constants = plan.constants().map(|(name, value)| (name.to_owned(), value));
-                let constants = constants.into_iter().filter(|(name, _)| {
+                let constants = plan.constants().into_iter();
+                let constants = constants.map(|(name, value)| (name.to_owned(), value));
+                let constants = constants.filter(|(name, _)| {
                     module
                         .overrides
                         .iter()

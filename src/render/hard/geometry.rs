@@ -14,6 +14,7 @@ use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Horizon;
 use crate::optics::random::hash_bits;
 use crate::scene::environment::EnvironmentSource;
+use crate::scene::texture::Textures;
 use crate::scene::mesh::{Mesh, plane_normal};
 use crate::scene::surface::surface_at;
 use crate::scene::{Geometry, Hit, Model, ModelSource, shapes, teapot};
@@ -557,6 +558,7 @@ fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
         let geometry = Geometry::build(&model(mesh), false);
         let materials = [Default::default(), Default::default()];
         let (materials, _) = crate::document::compile(&materials);
+        let textures = Textures::default();
         let mut rays = Vec::new();
         let mut is_outward = Vec::new();
         for i in 0..stage.rays() / 4 {
@@ -577,7 +579,7 @@ fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
             let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
             let hit = Hit { t: 1.0, triangle, u, v };
             let eye = crate::optics::vector::Vec3::from_f32((-normal).to_array());
-            let point = surface_at::<f32>(&geometry, &materials, &hit, eye);
+            let point = surface_at::<f32>(&geometry, &materials, &textures, &hit, eye);
             for direction in [out, -out] {
                 let wi = crate::optics::vector::Vec3::from_f32(direction.to_array());
                 rays.push(ray(Vec3::from_array(point.ray_origin(wi, true).to_f32()), direction));

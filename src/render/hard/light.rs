@@ -5,10 +5,10 @@ use std::f64::consts::{PI, TAU};
 use super::stage::document;
 use super::{HardCase, HardError, Stage};
 use crate::document::{Background, Document, MaterialSettings};
-use crate::optics::random::{random_pair, random_state};
+use crate::optics::random::path_state;
 use crate::optics::vector::Vec3;
 use crate::scene::ModelSource;
-use crate::scene::camera::{camera_ray, filter_offset};
+use crate::scene::camera::pixel_ray;
 use crate::scene::environment::{Environment, EnvironmentSource, environment_direction, environment_radiance};
 
 pub(super) const CASES: &[HardCase] = &[
@@ -196,10 +196,8 @@ fn background_error(stage: &mut Stage, document: &Document, environment: &Enviro
     let mut worst = 0.0_f64;
     for (i, pixel) in film.image().pixels.iter().enumerate() {
         let (x, y) = (i as u32 % film.width, i as u32 / film.width);
-        let state = random_state(x, y, settings.seed, 0, settings.sequence);
-        let offset: [f64; 2] = filter_offset(settings.camera.filter_kind, random_pair(state, 0));
-        let place = [f64::from(x) + 0.5 + offset[0], f64::from(y) + 0.5 + offset[1]];
-        let [_, direction] = camera_ray(&settings.camera, place, settings.image_size, random_pair(state, 1));
+        let state = path_state(x, y, settings.seed, 0, settings.sequence);
+        let [_, direction] = pixel_ray(&settings.camera, [x, y], settings.image_size, state);
         let expected = environment_radiance(environment, direction).to_f64();
         for (found, expected) in pixel.iter().zip(expected) {
             worst = worst.max((f64::from(*found) / expected - 1.0).abs());

@@ -6,7 +6,7 @@ use std::time::Duration;
 use std::{fs, io};
 
 use crate::analysis::film::{Film, Image};
-use crate::document::{Document, PixelFilter, ViewSettings};
+use crate::document::{Document, PixelFilter};
 use crate::gpu::GpuError;
 use crate::optics::random::Sequence;
 use crate::render::engine::{EngineChoice, EngineInfo};
@@ -141,7 +141,7 @@ impl Stage {
             pixels: pixels.collect(),
         };
         let path = self.path(name);
-        output::write(&path, &image, &ViewSettings::default())?;
+        output::write(&path, &image, &Document::default())?;
         Ok(EnvironmentSource::File(path))
     }
 

@@ -8,9 +8,10 @@ use gltf::json;
 use crate::scene::model::ModelError;
 
 /// Extensions that change nothing here or are understood. Required ones beyond these are errors.
-pub(super) const UNDERSTOOD: [&str; 11] = [
+pub(super) const UNDERSTOOD: [&str; 12] = [
     "KHR_texture_transform",
     "KHR_mesh_quantization",
+    "KHR_materials_clearcoat",
     "KHR_materials_ior",
     "KHR_materials_transmission",
     "KHR_materials_emissive_strength",

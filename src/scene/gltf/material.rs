@@ -11,14 +11,32 @@ use json::texture::WrappingMode;
 use json::validation::Checked;
 
 use super::container::Document;
-use crate::scene::model::{AlphaMode, ModelError, Slot, Texture, TextureRef, Wrap};
+use crate::scene::model::{AlphaMode, Filter, ModelError, Slot, Texture, TextureRef, Wrap};
+
+/// The texture coordinates that a slot's pictures look up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct UvUse {
+    /// The number of the first set, and that of the second where there is one.
+    pub sets: [Option<u32>; 2],
+    /// How the normal texture is placed: tangents follow it.
+    pub normal_texture_from_uv: [f32; 6],
+}
+
+impl Default for UvUse {
+    fn default() -> Self {
+        Self {
+            sets: [Some(0), None],
+            normal_texture_from_uv: affine(&TextureTransform::default()),
+        }
+    }
+}
 
 /// The materials that primitives have asked for so far.
 pub(super) struct Materials<'a> {
     document: &'a Document,
     /// Slot of a material, none for the default one.
     slot_of: HashMap<Option<usize>, u32>,
-    slots: Vec<(Slot, u32)>,
+    slots: Vec<(Slot, UvUse)>,
     /// The images in use; a texture's number is its place here.
     images: Vec<usize>,
     /// What was left out.
@@ -43,7 +61,7 @@ impl<'a> Materials<'a> {
         }
         let read = match material {
             Some(index) => self.read(index),
-            None => (Slot::default(), 0),
+            None => (Slot::default(), UvUse::default()),
         };
         let slot = self.slots.len() as u32;
         self.slots.push(read);
@@ -51,8 +69,8 @@ impl<'a> Materials<'a> {
         slot
     }
 
-    /// Which set of texture coordinates a slot's pictures use.
-    pub fn uv_set(&self, slot: u32) -> u32 {
+    /// Which texture coordinates a slot's pictures use.
+    pub fn uvs(&self, slot: u32) -> UvUse {
         self.slots[slot as usize].1
     }
 
@@ -66,9 +84,9 @@ impl<'a> Materials<'a> {
         Ok((self.slots.into_iter().map(|(slot, _)| slot).collect(), textures))
     }
 
-    /// A material and the set of texture coordinates of its pictures: that of the first that it has; pictures on
-    /// another set are left out.
-    fn read(&mut self, index: usize) -> (Slot, u32) {
+    /// A material and the texture coordinates of its pictures: the normal texture's are the first set, since tangents
+    /// follow it; pictures on a third set are left out.
+    fn read(&mut self, index: usize) -> (Slot, UvUse) {
         let root = &self.document.root;
         let material = &root.materials[index];
         let pbr = &material.pbr_metallic_roughness;
@@ -89,13 +107,22 @@ impl<'a> Materials<'a> {
                 "material {index}: its volume colours what is seen through, not its base colour"
             ));
         }
-        let mut uv_set = None;
+        let mut sets = [None; 2];
         let info = |info: &Option<json::texture::Info>| {
             let info = info.as_ref()?;
             let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
             Some((info.index.value(), info.tex_coord, transform))
         };
         let normal = material.normal_texture.as_ref();
+        let normal_texture = self.texture(
+            normal.map(|normal| (normal.index.value(), normal.tex_coord, self.normal_transform(index))),
+            &mut sets,
+        );
+        let mut uv_use = UvUse::default();
+        if let Some(texture) = &normal_texture {
+            uv_use.normal_texture_from_uv = texture.texture_from_mesh_uv;
+        }
+        let [coat, coat_roughness] = self.coat(index);
         let slot = Slot {
             name: material.name.clone().unwrap_or_else(|| format!("material {index}")),
             base_color: [red, green, blue].map(unit),
@@ -110,36 +137,39 @@ impl<'a> Materials<'a> {
                 .and_then(|e| e.ior.as_ref())
                 .map_or(1.5, |e| e.ior.0.clamp(1.0, 100.0)),
             transmission,
+            coat,
+            coat_roughness,
             attenuation_color: volume.map_or([1.0; 3], |volume| volume.attenuation_color.0.map(unit)),
             attenuation_distance: attenuation_distance.unwrap_or(f32::INFINITY),
-            base_color_texture: self.texture(info(&pbr.base_color_texture), &mut uv_set),
-            metallic_roughness_texture: self.texture(info(&pbr.metallic_roughness_texture), &mut uv_set),
-            normal_texture: self.texture(
-                normal.map(|normal| (normal.index.value(), normal.tex_coord, self.normal_transform(index))),
-                &mut uv_set,
-            ),
+            base_color_texture: self.texture(info(&pbr.base_color_texture), &mut sets),
+            metallic_roughness_texture: self.texture(info(&pbr.metallic_roughness_texture), &mut sets),
+            normal_texture,
             normal_scale: normal.map_or(1.0, |normal| normal.scale),
-            emissive_texture: self.texture(info(&material.emissive_texture), &mut uv_set),
+            emissive_texture: self.texture(info(&material.emissive_texture), &mut sets),
         };
-        (slot, uv_set.unwrap_or(0))
+        uv_use.sets = [sets[0].or(Some(0)), sets[1]];
+        (slot, uv_use)
     }
 
     /// A reference to the picture of a texture, given as (texture, set of coordinates, transform).
     fn texture(
         &mut self,
         reference: Option<(usize, u32, Option<TextureTransform>)>,
-        uv_set: &mut Option<u32>,
+        sets: &mut [Option<u32>; 2],
     ) -> Option<TextureRef> {
         let (texture, set, transform) = reference?;
         let set = transform
             .as_ref()
             .and_then(|transform| transform.tex_coord)
             .unwrap_or(set);
-        if *uv_set.get_or_insert(set) != set {
-            self.warnings
-                .push(format!("a texture on TEXCOORD_{set} beside others is left out"));
+        let place = sets.iter().position(|known| known.is_none_or(|known| known == set));
+        let Some(uv_set) = place else {
+            self.warnings.push(format!(
+                "a texture on TEXCOORD_{set} is left out: its material looks up two other sets already"
+            ));
             return None;
-        }
+        };
+        sets[uv_set] = Some(set);
         let texture = &self.document.root.textures[texture];
         let image = texture.source.value();
         let place = self.images.iter().position(|&known| known == image).unwrap_or_else(|| {
@@ -152,10 +182,37 @@ impl<'a> Materials<'a> {
         let wrap = sampler.map_or([Wrap::Repeat; 2], |sampler| {
             [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]
         });
+        let is_nearest = sampler.is_some_and(|sampler| {
+            matches!(
+                sampler.mag_filter,
+                Some(Checked::Valid(json::texture::MagFilter::Nearest))
+            )
+        });
         Some(TextureRef {
             texture: place,
+            uv_set,
+            filter: if is_nearest { Filter::Nearest } else { Filter::Linear },
             texture_from_mesh_uv: affine(&transform.unwrap_or_default()),
             wrap,
+        })
+    }
+
+    /// Weight and roughness of the coat (KHR_materials_clearcoat), which the crate does not know.
+    fn coat(&mut self, material: usize) -> [f32; 2] {
+        let coat = &self.document.raw["materials"][material]["extensions"]["KHR_materials_clearcoat"];
+        let kinds = [
+            "clearcoatTexture",
+            "clearcoatRoughnessTexture",
+            "clearcoatNormalTexture",
+        ];
+        if kinds.iter().any(|kind| coat.get(kind).is_some()) {
+            self.warnings
+                .push(format!("material {material}: the textures of its coat are left out"));
+        }
+        ["clearcoatFactor", "clearcoatRoughnessFactor"].map(|key| {
+            coat.get(key)
+                .and_then(serde_json::Value::as_f64)
+                .map_or(0.0, |x| unit(x as f32))
         })
     }
 

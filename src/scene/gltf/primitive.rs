@@ -6,7 +6,7 @@ use json::mesh::{Mode, Primitive, Semantic};
 use json::validation::Checked;
 
 use super::container::Document;
-use super::material::Materials;
+use super::material::{Materials, UvUse};
 use crate::scene::mesh::Mesh;
 use crate::scene::model::ModelError;
 
@@ -35,13 +35,13 @@ pub(super) fn read_mesh(
             continue;
         };
         let slot = materials.slot(primitive.material.map(|material| material.value()));
-        let uv_set = materials.uv_set(slot);
+        let uvs = materials.uvs(slot);
         let mesh = Reader {
             document,
             primitive,
             place: format!("{place}, primitive {part}"),
         };
-        whole.append(mesh.read(mode, slot, uv_set)?);
+        whole.append(mesh.read(mode, slot, &uvs)?);
     }
     Ok(whole)
 }
@@ -61,12 +61,12 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    fn read(&self, mode: Mode, slot: u32, uv_set: u32) -> Result<Mesh, ModelError> {
+    fn read(&self, mode: Mode, slot: u32, uv_use: &UvUse) -> Result<Mesh, ModelError> {
         let positions: Vec<[f32; 3]> = self.vectors(&Semantic::Positions, "POSITION")?.unwrap_or_default();
         let count = positions.len();
         let normals: Option<Vec<[f32; 3]>> = self.optional(&Semantic::Normals, "NORMAL", count)?;
         let tangents: Option<Vec<[f32; 4]>> = self.optional(&Semantic::Tangents, "TANGENT", count)?;
-        let uvs: Option<Vec<[f32; 2]>> = self.optional(&Semantic::TexCoords(uv_set), "TEXCOORD", count)?;
+        let [uvs, second_uvs] = uv_use.sets.map(|set| self.uvs(set, count));
         let triangles = triangles(mode, &self.indices(count)?);
         let mut mesh = Mesh {
             positions: positions
@@ -74,10 +74,8 @@ impl Reader<'_> {
                 .map(|p| DVec3::from_array(p.map(f64::from)))
                 .collect(),
             normals: vec![Vec3::ZERO; count],
-            uvs: uvs.map_or_else(
-                || vec![Vec2::ZERO; count],
-                |uvs| uvs.into_iter().map(finite_uv).collect(),
-            ),
+            uvs: uvs?.unwrap_or_else(|| vec![Vec2::ZERO; count]),
+            second_uvs: second_uvs?.unwrap_or_default(),
             tangents: vec![Vec4::W; count],
             slots: vec![slot; triangles.len()],
             triangles,
@@ -94,7 +92,7 @@ impl Reader<'_> {
             Some(tangents) if attribute(self.primitive, &Semantic::Normals).is_some() => {
                 mesh.tangents = tangents.into_iter().map(Vec4::from_array).collect();
             }
-            _ => mesh.generate_tangents(),
+            _ => mesh.generate_tangents(uv_use.normal_texture_from_uv),
         }
         Ok(mesh)
     }
@@ -120,6 +118,13 @@ impl Reader<'_> {
             }
             _ => Ok(values),
         }
+    }
+
+    /// A set of texture coordinates, where one is wanted and there.
+    fn uvs(&self, set: Option<u32>, count: usize) -> Result<Option<Vec<Vec2>>, ModelError> {
+        let Some(set) = set else { return Ok(None) };
+        let uvs: Option<Vec<[f32; 2]>> = self.optional(&Semantic::TexCoords(set), "TEXCOORD", count)?;
+        Ok(uvs.map(|uvs| uvs.into_iter().map(finite_uv).collect()))
     }
 
     /// The order of vertices, every one in range.

@@ -1,0 +1,71 @@
+// The share of light that a lobe reflects of each view. Twin of src/optics/albedo.rs.
+#import "optics/fresnel"
+#import "optics/refraction"
+#import "scene/layout"
+
+const ALBEDO_NODES: u32 = 64u;
+const TOTAL_NODES: u32 = 16u;
+const ROUGHNESS_NODES: u32 = 17u;
+
+fn albedo_lookup(albedo_table: u32, place: f32) -> vec3f {
+    let last = f32(ALBEDO_NODES) - 1.0;
+    let position = clamp(place, 0.0, 1.0) * last;
+    let low = min(floor(position), last - 1.0);
+    let first = albedo_table + 3u * u32(low);
+    let left = vec3f(tables[first], tables[first + 1u], tables[first + 2u]);
+    let right = vec3f(tables[first + 3u], tables[first + 4u], tables[first + 5u]);
+    return mix(left, right, position - low);
+}
+
+fn albedo_place(cosine: f32, eta: f32) -> f32 {
+    let critical = safe_sqrt(-refracted_square(0.0, eta));
+    let share = f32(TOTAL_NODES) / (f32(ALBEDO_NODES) - 1.0);
+    if !(critical > 0.0) {
+        return cosine;
+    }
+    let square = refracted_square(cosine, eta);
+    let above = share + (1.0 - share) * (safe_sqrt(square) / eta);
+    let below = share * (max(cosine, 0.0) / critical);
+    return select(above, below, square < 0.0);
+}
+
+fn table_lookup(table: u32, nodes: u32, place: f32) -> f32 {
+    let last = f32(nodes) - 1.0;
+    let position = clamp(place, 0.0, 1.0) * last;
+    let low = min(floor(position), last - 1.0);
+    let first = table + u32(low);
+    return tables[first] + (tables[first + 1u] - tables[first]) * (position - low);
+}
+
+fn rough_albedo_lookup(albedo_table: u32, place: f32, roughness: f32) -> vec4f {
+    let last_step = f32(ROUGHNESS_NODES) - 1.0;
+    let rough_position = clamp(roughness, 0.0, 1.0) * last_step;
+    let step = min(floor(rough_position), last_step - 1.0);
+    let last = f32(ALBEDO_NODES) - 1.0;
+    let position = clamp(place, 0.0, 1.0) * last;
+    let low = min(floor(position), last - 1.0);
+    let first = albedo_table + 4u * (u32(step) * ALBEDO_NODES + u32(low));
+    let row = 4u * ALBEDO_NODES;
+    let smooth_mix = mix(rough_node(first), rough_node(first + 4u), position - low);
+    let rough_mix = mix(rough_node(first + row), rough_node(first + row + 4u), position - low);
+    return mix(smooth_mix, rough_mix, rough_position - step);
+}
+
+fn rough_node(first: u32) -> vec4f {
+    return vec4f(tables[first], tables[first + 1u], tables[first + 2u], tables[first + 3u]);
+}
+
+fn rough_albedo(terms: FresnelTerms, integrals: vec4f) -> vec3f {
+    if terms.model != FRESNEL_SCHLICK && terms.model != FRESNEL_DIELECTRIC {
+        return terms.weight * terms.tint * integrals.xyz;
+    }
+    var dielectric = terms.tint * integrals.x;
+    if terms.model == FRESNEL_SCHLICK {
+        dielectric = terms.tint * (fresnel_f0(terms.ior) * integrals.y) + integrals.z;
+    }
+    var metal = terms.metal_f0 * integrals.y + integrals.z;
+    if PLAN_EDGE_TINT == 1u {
+        metal = max(metal - edge_darkening(terms.metal_f0, terms.edge_tint) * integrals.w, vec3f(0.0));
+    }
+    return terms.weight * mix(dielectric, metal * terms.tint, terms.metalness);
+}

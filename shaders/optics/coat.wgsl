@@ -1,0 +1,45 @@
+// A clear dielectric coat over everything else. Twin of src/optics/coat.rs.
+#import "optics/albedo"
+#import "optics/material"
+
+fn material_has_coat(material: Material, surface: Surface) -> bool {
+    return PLAN_COAT == 1u && material.coat_weight > 0.0 && !(surface.is_inside && material_transmits(material));
+}
+
+fn coat_shape(material: Material) -> LobeShape {
+    return LobeShape(LOBE_GEOMETRIC, CURVE_SMOOTH, HORIZON_MIRROR, 0u, material.coat_roughness, 0.0, 0.0);
+}
+
+fn coat_share(material: Material, surface: Surface) -> f32 {
+    if !material_has_coat(material, surface) {
+        return 0.0;
+    }
+    return material.coat_weight * albedo_lookup(material.coat_table, dot(surface.coat_normal, surface.wo)).x;
+}
+
+fn coat_transmittance(material: Material, surface: Surface, share: f32) -> vec3f {
+    if !material_has_coat(material, surface) {
+        return vec3f(1.0);
+    }
+    return mix(vec3f(1.0), material.coat_color, material.coat_weight) * max(1.0 - share, 0.0);
+}
+
+fn coat_probability(share: f32, below: f32) -> f32 {
+    let rest = (1.0 - share) * below;
+    let probability = clamp(share / max(share + rest, 1e-9), 0.05, 0.95);
+    return select(0.0, select(1.0, probability, rest > 0.0), share > 0.0);
+}
+
+fn coat_fresnel(material: Material, wo: vec3f, wi: vec3f) -> f32 {
+    return material.coat_weight * fresnel_dielectric(half_vector_cosine(wo, wi), material.coat_ior);
+}
+
+// (evaluate, density); both 0 where the coat is weighed as a mirror.
+fn coat_evaluate(material: Material, surface: Surface, wi: vec3f) -> vec2f {
+    let shape = coat_shape(material);
+    if is_mirror(shape) {
+        return vec2f(0.0);
+    }
+    let lobe = lobe_evaluate(shape, frame_from_normal(surface.coat_normal), surface.normal, surface.wo, wi);
+    return vec2f(lobe.x * coat_fresnel(material, surface.wo, wi), lobe.y);
+}

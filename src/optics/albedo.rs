@@ -1,0 +1,196 @@
+//! The share of light that a lobe reflects of each view, tabulated: what is left over reaches the layer below.
+//!
+//! Where a texture changes roughness, metalness or colour from point to point, the table goes over the roughness too and
+//! holds the four integrals of which every Fresnel factor's albedo is a sum ([`rough_albedo`]).
+
+use super::frame::frame_from_normal;
+use super::fresnel::{
+    Fresnel, FresnelTerms, edge_darkening, edge_shape, fresnel, fresnel_dielectric, fresnel_f0, fresnel_schlick,
+    half_vector_cosine,
+};
+use super::lobe::{LobeShape, lobe_sample};
+use super::material::Material;
+use super::random::{Sequence, random_pair, random_state};
+use super::real::{Mask, Real};
+use super::refraction::refracted_square;
+use super::vector::{Vec3, vec3};
+
+/// Nodes of an albedo table, equidistant in the cosine of the view.
+pub const ALBEDO_NODES: usize = 64;
+/// Of the nodes of a table for views from within, those below the critical angle: there the reflection is total.
+pub const TOTAL_NODES: usize = 16;
+/// Numbers of an albedo table: red, green and blue a node.
+pub const ALBEDO_LENGTH: usize = 3 * ALBEDO_NODES;
+/// Nodes of a rough albedo table over the roughness, equidistant in it.
+pub const ROUGHNESS_NODES: usize = 17;
+/// Numbers of a rough albedo table: [`ROUGHNESS_NODES`] times the nodes of an albedo table, each four integrals.
+pub const ROUGH_ALBEDO_LENGTH: usize = 4 * ROUGHNESS_NODES * ALBEDO_NODES;
+
+/// The specular albedo at a `place` of a table, linear between its nodes: from without the view's cosine, from within
+/// what [`albedo_place`] makes of it.
+pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> Vec3<T> {
+    let last = T::from_f64(ALBEDO_NODES as f64 - 1.0);
+    let position = place.clamp(T::zero(), T::one()) * last;
+    let low = position.floor().min(last - T::one());
+    let first = albedo_table as usize + 3 * low.to_f64() as usize;
+    let number = |i: usize| T::from_f64(f64::from(tables[i]));
+    let node = |i: usize| vec3(number(i), number(i + 1), number(i + 2));
+    node(first).mix(node(first + 3), position - low)
+}
+
+/// Where in a table a view is found, in [0, 1]. At the critical angle the albedo of a smooth interface rises with a
+/// vertical tangent: below it the nodes are equidistant in the view's cosine, above it in that of the refracted direction.
+pub fn albedo_place<T: Real>(cosine: T, eta: T) -> T {
+    let critical = (-refracted_square(T::zero(), eta)).safe_sqrt();
+    let share = T::from_f64(TOTAL_NODES as f64 / (ALBEDO_NODES as f64 - 1.0));
+    if !T::zero().less(critical).any() {
+        return cosine;
+    }
+    let square = refracted_square(cosine, eta);
+    let above = share + (T::one() - share) * (square.safe_sqrt() / eta);
+    let below = share * (cosine.max(T::zero()) / critical);
+    T::select(square.less(T::zero()), below, above)
+}
+
+/// The view's cosine at a node of a table: [`albedo_place`] backwards.
+fn node_cosine(node: usize, eta: f64) -> f64 {
+    let critical_square = (1.0 - eta * eta).max(0.0);
+    if critical_square == 0.0 {
+        return node as f64 / (ALBEDO_NODES as f64 - 1.0);
+    }
+    if node < TOTAL_NODES {
+        return critical_square.sqrt() * node as f64 / TOTAL_NODES as f64;
+    }
+    let refracted = (node - TOTAL_NODES) as f64 / (ALBEDO_NODES - 1 - TOTAL_NODES) as f64;
+    (critical_square + (eta * refracted).powi(2)).sqrt().min(1.0)
+}
+
+/// The specular lobe's albedo against the view's cosine, from within or without: what [`albedo_lookup`] reads. `samples`
+/// a node.
+pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
+    let shape = material.shape(tables);
+    let terms = material.fresnel_terms(is_inside);
+    let means = |node: usize| {
+        node_means(node, is_inside, material, &shape, samples, |cosine| {
+            fresnel(&terms, cosine).to_f64()
+        })
+    };
+    (0..ALBEDO_NODES).flat_map(means).map(|x| x as f32).collect()
+}
+
+/// At a node of a table, the mean over a lobe of its weight times what `factors` gives for the half vector's cosine.
+fn node_means<const N: usize>(
+    node: usize,
+    is_inside: bool,
+    material: &Material<f64>,
+    shape: &LobeShape<'_, f64>,
+    samples: u32,
+    factors: impl Fn(f64) -> [f64; N],
+) -> [f64; N] {
+    let normal = vec3(0.0, 0.0, 1.0);
+    let frame = frame_from_normal(normal);
+    let eta = if is_inside { material.ior_ahead(true) } else { 1.0 };
+    // At exactly grazing the microfacet lobes are 0/0.
+    let cosine = node_cosine(node, eta).max(1e-3);
+    let wo = vec3((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
+    let mut sums = [0.0; N];
+    for i in 0..samples {
+        let state = random_state(node as u32, 0, 0, i, Sequence::Sobol);
+        let [a, b] = random_pair(state, 0);
+        let [c, _] = random_pair(state, 1);
+        let drawn = lobe_sample(shape, &frame, normal, wo, [a, b, c]);
+        let factors = factors(half_vector_cosine(wo, drawn.wi));
+        for (sum, factor) in sums.iter_mut().zip(factors) {
+            *sum += factor * drawn.weight;
+        }
+    }
+    sums.map(|sum| sum / f64::from(samples))
+}
+
+/// The table of a material whose roughness, metalness or base colour changes from point to point: what
+/// [`rough_albedo_lookup`] reads. `samples` a node.
+pub fn rough_albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_inside: bool) -> Vec<f32> {
+    let terms = material.fresnel_terms(is_inside);
+    let mut table = Vec::with_capacity(ROUGH_ALBEDO_LENGTH);
+    for step in 0..ROUGHNESS_NODES {
+        let shape = LobeShape {
+            roughness: step as f64 / (ROUGHNESS_NODES - 1) as f64,
+            ..material.shape(tables)
+        };
+        for node in 0..ALBEDO_NODES {
+            let factors = |cosine: f64| fresnel_basis(&terms, cosine);
+            let means = node_means(node, is_inside, material, &shape, samples, factors);
+            table.extend(means.map(|x| x as f32));
+        }
+    }
+    table
+}
+
+/// What a Fresnel factor is a sum of, whatever the metalness and the base colour: the exact dielectric, Schlick's two
+/// terms and the darkening towards the edge; or the untinted factor of each channel, then 0.
+fn fresnel_basis(terms: &FresnelTerms<f64>, cosine: f64) -> [f64; 4] {
+    if matches!(terms.model, Fresnel::None | Fresnel::Conductor) {
+        let untinted = FresnelTerms {
+            tint: Vec3::splat(1.0),
+            weight: 1.0,
+            ..*terms
+        };
+        let [r, g, b] = fresnel(&untinted, cosine).to_f64();
+        return [r, g, b, 0.0];
+    }
+    let grazing = fresnel_schlick(Vec3::zero(), cosine).x;
+    [
+        fresnel_dielectric(cosine, terms.ior),
+        1.0 - grazing,
+        grazing,
+        edge_shape(cosine),
+    ]
+}
+
+/// A value between the equidistant nodes of a table, the first for 0, the last for 1; linear.
+pub fn table_lookup<T: Real>(tables: &[f32], table: u32, nodes: usize, place: T) -> T {
+    let last = T::from_f64(nodes as f64 - 1.0);
+    let position = place.clamp(T::zero(), T::one()) * last;
+    let low = position.floor().min(last - T::one());
+    let first = table as usize + low.to_f64() as usize;
+    let [left, right] = [first, first + 1].map(|i| T::from_f64(f64::from(tables[i])));
+    left + (right - left) * (position - low)
+}
+
+/// The four integrals at a `place` as in [`albedo_lookup`] and a roughness, linear between the nodes.
+pub fn rough_albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T, roughness: T) -> [T; 4] {
+    let node = |value: T, nodes: usize| {
+        let last = T::from_f64(nodes as f64 - 1.0);
+        let position = value.clamp(T::zero(), T::one()) * last;
+        let low = position.floor().min(last - T::one());
+        (low.to_f64() as usize, position - low)
+    };
+    let (step, between_steps) = node(roughness, ROUGHNESS_NODES);
+    let (low, between) = node(place, ALBEDO_NODES);
+    let first = albedo_table as usize + 4 * (step * ALBEDO_NODES + low);
+    [0, 1, 2, 3].map(|i| {
+        let number = |offset: usize| T::from_f64(f64::from(tables[first + offset + i]));
+        let mix = |a: T, b: T, t: T| a + (b - a) * t;
+        let row = 4 * ALBEDO_NODES;
+        let smooth = mix(number(0), number(4), between);
+        let rough = mix(number(row), number(row + 4), between);
+        mix(smooth, rough, between_steps)
+    })
+}
+
+/// The albedo under a Fresnel factor, from its integrals.
+pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4]) -> Vec3<T> {
+    let [first, constant, grazing, edge] = integrals;
+    if matches!(terms.model, Fresnel::None | Fresnel::Conductor) {
+        return vec3(first, constant, grazing) * terms.tint * terms.weight;
+    }
+    let schlick = |f0: Vec3<T>| f0 * constant + Vec3::splat(grazing);
+    let dielectric = if terms.model == Fresnel::Schlick {
+        schlick(terms.tint * fresnel_f0(terms.ior))
+    } else {
+        terms.tint * first
+    };
+    let darkening = edge_darkening(terms.metal_f0, terms.edge_tint) * edge;
+    let metal = (schlick(terms.metal_f0) - darkening).map(|x| x.max(T::zero())) * terms.tint;
+    dielectric.mix(metal, terms.metalness) * terms.weight
+}
