@@ -20,6 +20,8 @@ pub struct Film {
     pub rays: Vec<f64>,
     /// Samples left out because they were not finite or negative.
     pub dropped: u64,
+    /// Luminance that limiting fireflies took from all samples together.
+    pub clamped: f64,
 }
 
 /// Luminance of linear Rec. 709.
@@ -39,6 +41,17 @@ impl Film {
             odd: vec![[0.0; 3]; pixels],
             rays: vec![0.0; pixels],
             dropped: 0,
+            clamped: 0.0,
+        }
+    }
+
+    /// The part of the picture's energy, in [0, 1], that limiting fireflies took.
+    pub fn clamped_share(&self) -> f64 {
+        let kept: f64 = self.color.iter().map(|sum| luminance(*sum)).sum();
+        if self.clamped > 0.0 {
+            self.clamped / (self.clamped + kept)
+        } else {
+            0.0
         }
     }
 
@@ -57,7 +70,7 @@ impl Film {
         }
     }
 
-    /// Copies a smaller film into this one, its top left pixel to `origin`; counts of dropped samples add up.
+    /// Copies a smaller film into this one, its top left pixel to `origin`; what was dropped or taken adds up.
     pub fn place(&mut self, origin: [u32; 2], tile: &Film) {
         let width = tile.width as usize;
         for row in 0..tile.height as usize {
@@ -69,6 +82,7 @@ impl Film {
             self.rays[to].copy_from_slice(&tile.rays[from]);
         }
         self.dropped += tile.dropped;
+        self.clamped += tile.clamped;
     }
 
     /// The chosen pixels alone, in a row.

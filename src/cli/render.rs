@@ -127,6 +127,10 @@ pub struct SceneArguments {
     /// Reflections that a path may have, 1 to 64.
     #[arg(long, default_value_t = 64, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
     bounces: u32,
+    /// Limit the radiance of light that was reflected twice or more; the report tells how much energy that takes
+    /// (`clamped_energy`). Off unless given.
+    #[arg(long, value_name = "X", value_parser = parse::number_in(range::FIREFLY_CLAMP), allow_negative_numbers = true)]
+    firefly_clamp: Option<f64>,
     /// Random numbers: sobol (Owen-scrambled, less noise) or independent.
     #[arg(long, default_value = "sobol", value_name = "sobol|independent", value_parser = names::sequence)]
     sequence: Sequence,
@@ -362,6 +366,7 @@ fn json_report(
         "rays": rays,
         "rays_per_second": rays as f64 / seconds,
         "dropped_samples": film.dropped,
+        "clamped_energy": film.clamped_share(),
         "effects": effects,
         "seed": document.render.seed,
     }))
@@ -430,6 +435,7 @@ impl SceneArguments {
         render.min_samples = self.min_samples;
         render.adaptive = self.adaptive;
         render.bounces = self.bounces;
+        render.firefly_clamp = self.firefly_clamp.map(|limit| limit as f32);
         render.sequence = self.sequence;
         render.strategy = self.strategy;
         render.seed = self.seed;

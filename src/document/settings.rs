@@ -50,6 +50,8 @@ pub mod range {
     pub const MIN_SAMPLES: RangeInclusive<f64> = 2.0..=65536.0;
     /// Longest path, bounces.
     pub const BOUNCES: RangeInclusive<f64> = 1.0..=64.0;
+    /// The largest radiance that an indirect contribution keeps.
+    pub const FIREFLY_CLAMP: RangeInclusive<f64> = 1e-6..=1e9;
     /// Distance and sides of an area light, bounding radii.
     pub const AREA_LENGTH: RangeInclusive<f64> = 1e-3..=1e3;
     /// How many area lights there may be.
@@ -249,6 +251,9 @@ pub struct RenderSettings {
     pub adaptive: Option<bool>,
     /// Longest path, 1 to 64 bounces.
     pub bounces: u32,
+    /// The largest radiance that light keeps that was reflected twice or more; what is beyond is taken from the picture,
+    /// and told. `None`: nothing is taken.
+    pub firefly_clamp: Option<f32>,
     /// Which random numbers are drawn.
     pub sequence: Sequence,
     /// How light is found.
@@ -274,6 +279,7 @@ impl Default for RenderSettings {
             min_samples: 16,
             adaptive: None,
             bounces: 64,
+            firefly_clamp: None,
             sequence: Sequence::default(),
             strategy: Strategy::default(),
             seed: 0,
@@ -397,6 +403,11 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
         ("render.noise", render.noise.unwrap_or(1.0), r::NOISE),
         ("render.min_samples", f64::from(render.min_samples), r::MIN_SAMPLES),
         ("render.bounces", f64::from(render.bounces), r::BOUNCES),
+        (
+            "render.firefly_clamp",
+            f64::from(render.firefly_clamp.unwrap_or(1.0)),
+            r::FIREFLY_CLAMP,
+        ),
         (
             "the number of lighting.area_lights",
             lighting.area_lights.len() as f64,

@@ -213,6 +213,7 @@ fn background_number(background: BackgroundKind) -> u32 {
         environment_strength: 1.0,
         light_choice: Default::default(),
         bounces: 1,
+        firefly_clamp: f64::INFINITY,
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
         seed: 0,
