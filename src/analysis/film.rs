@@ -96,6 +96,7 @@ impl Film {
             odd: chosen.iter().map(|&pixel| self.odd[pixel]).collect(),
             rays: chosen.iter().map(|&pixel| self.rays[pixel]).collect(),
             dropped: self.dropped,
+            clamped: self.clamped,
         }
     }
 
