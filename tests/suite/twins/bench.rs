@@ -393,6 +393,7 @@ fn settings() -> Settings {
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
         seed: 0,
+        firefly_clamp: f64::INFINITY,
     }
 }
 
