@@ -80,6 +80,14 @@ mod ui_scene;
 #[path = "suite/worker.rs"]
 mod worker;
 
+#[path = "suite/firefly.rs"]
+mod firefly;
+#[path = "suite/fuzz.rs"]
+mod fuzz;
+#[path = "suite/fuzz_documents.rs"]
+mod fuzz_documents;
+#[path = "suite/hard.rs"]
+mod hard;
 #[path = "suite/layouts.rs"]
 mod layouts;
 #[path = "suite/shaders.rs"]

@@ -28,6 +28,8 @@ struct PathResult {
     radiance: vec3f,
     alpha: f32,
     rays: u32,
+    // Luminance that limiting fireflies took.
+    clamped: f32,
 }
 
 fn far_radiance(direction: vec3f) -> vec3f {
@@ -135,18 +137,30 @@ fn meets_nothing(point: SurfacePoint, wi: vec3f) -> bool {
     return PLAN_INTERREFLECTION == 0u && !point.surface.is_inside && dot(point.surface.normal, wi) > 0.0;
 }
 
+// What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
+fn limited(contribution: vec3f, reflections: u32, taken: ptr<function, f32>) -> vec3f {
+    let largest = max(max(contribution.x, contribution.y), contribution.z);
+    if PLAN_FIREFLY_CLAMP == 0u || reflections <= 1u || !(largest > globals.firefly_clamp) {
+        return contribution;
+    }
+    let kept = globals.firefly_clamp / largest;
+    *taken += luminance(contribution) * (1.0 - kept);
+    return contribution * kept;
+}
+
 fn camera_background(direction: vec3f, state: RandomState, rays: u32) -> PathResult {
     if globals.background_kind == BACKGROUND_BLURRED {
         // The numbers of the first bounce, which there is none of.
         let disc = globals.background.x * uniform_disc(random_pair(state, FIRST_DIMENSION));
         let blurred = world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
-        return PathResult(far_radiance(blurred), 1.0, rays);
+        return PathResult(far_radiance(blurred), 1.0, rays, 0.0);
     }
     if globals.background_kind == BACKGROUND_ENVIRONMENT {
-        return PathResult(far_radiance(direction), 1.0, rays);
+        return PathResult(far_radiance(direction), 1.0, rays, 0.0);
     }
     let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
-    return PathResult(select(globals.background, vec3f(0.0), is_transparent), select(1.0, 0.0, is_transparent), rays);
+    let color = select(globals.background, vec3f(0.0), is_transparent);
+    return PathResult(color, select(1.0, 0.0, is_transparent), rays, 0.0);
 }
 
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
@@ -156,6 +170,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var ray = pixel_ray(camera, pixel, globals.image_size, state);
     var throughput = vec3f(1.0);
     var radiance = vec3f(0.0);
+    var clamped = 0.0;
     var lobe_density = 0.0;
     var was_mirror = true;
     var rays = 0u;
@@ -169,7 +184,8 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             if bounce == 0u {
                 return camera_background(ray.direction, state, rays);
             }
-            radiance += throughput * far_light(ray.direction, lobe_density, was_mirror);
+            let found = throughput * far_light(ray.direction, lobe_density, was_mirror);
+            radiance += limited(found, bounce, &clamped);
             break;
         }
         let point = surface_at(hit, ray.direction);
@@ -178,14 +194,16 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             throughput *= exp(-material.absorption * hit.t);
         }
         if PLAN_EMISSION == 1u {
-            radiance += throughput * emitted_light(point, material, hit.t, lobe_density, was_mirror);
+            let found = throughput * emitted_light(point, material, hit.t, lobe_density, was_mirror);
+            radiance += limited(found, bounce, &clamped);
         }
         if bounce >= globals.bounces {
             break;
         }
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
         if samples_light() {
-            radiance += throughput * direct_light(point, material, state, dimension + 2u, &rays);
+            let found = throughput * direct_light(point, material, state, dimension + 2u, &rays);
+            radiance += limited(found, bounce + 1u, &clamped);
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
         let wants_density = samples_light() && globals.strategy == STRATEGY_MIS;
@@ -211,7 +229,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         leaves = meets_nothing(point, drawn.wi);
         ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
     }
-    return PathResult(radiance, 1.0, rays);
+    return PathResult(radiance, 1.0, rays, clamped);
 }
 
 // Finite and not negative: what may be added to the picture.
@@ -241,6 +259,7 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
             color += vec4f(path.radiance, path.alpha);
             sums.luminance_squared += y * y;
             sums.kept += 1.0;
+            sums.clamped += path.clamped;
             sums.odd_luminance += odd * y;
             sums.odd_luminance_squared += odd * y * y;
             sums.odd_kept += odd;
@@ -256,4 +275,7 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     statistics[index].odd_kept += sums.odd_kept;
     statistics[index].dropped += sums.dropped;
     statistics[index].rays += sums.rays;
+    if PLAN_FIREFLY_CLAMP == 1u {
+        statistics[index].clamped += sums.clamped;
+    }
 }

@@ -36,6 +36,10 @@ struct Globals {
     environment_probability: f32,
     // Density per area of the emitting triangles over the luminance of their emission.
     density_per_luminance: f32,
+    // The largest radiance of an indirect contribution.
+    firefly_clamp: f32,
+    reserved: u32,
+    reserved_pair: vec2u,
 }
 
 // What a dispatch renders of one tile.
@@ -46,7 +50,7 @@ struct Tile {
     sample_count: u32,
 }
 
-// Sums over the samples of a pixel since the host last took them; scalars, so that the stride is 28 bytes.
+// Sums over the samples of a pixel since the host last took them; scalars, so that the stride is 32 bytes.
 struct PixelStatistics {
     luminance_squared: f32,
     // Samples in the sums.
@@ -58,6 +62,8 @@ struct PixelStatistics {
     // Samples that were not sound.
     dropped: f32,
     rays: f32,
+    // Luminance that limiting fireflies took.
+    clamped: f32,
 }
 
 struct Material {

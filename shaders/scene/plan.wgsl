@@ -40,6 +40,8 @@ override PLAN_ROUGH_TABLES: u32 = 1u;
 override PLAN_ALPHA: u32 = 1u;
 // 1: the lens may be open.
 override PLAN_LENS: u32 = 1u;
+// 1: indirect contributions are limited.
+override PLAN_FIREFLY_CLAMP: u32 = 1u;
 
 fn planned(value: u32, plan: u32) -> u32 {
     return select(plan, value, plan == ANY);

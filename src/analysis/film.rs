@@ -20,6 +20,8 @@ pub struct Film {
     pub rays: Vec<f64>,
     /// Samples left out because they were not finite or negative.
     pub dropped: u64,
+    /// Luminance that limiting fireflies took from all samples together.
+    pub clamped: f64,
 }
 
 /// Luminance of linear Rec. 709.
@@ -39,6 +41,17 @@ impl Film {
             odd: vec![[0.0; 3]; pixels],
             rays: vec![0.0; pixels],
             dropped: 0,
+            clamped: 0.0,
+        }
+    }
+
+    /// The part of the picture's energy, in [0, 1], that limiting fireflies took.
+    pub fn clamped_share(&self) -> f64 {
+        let kept: f64 = self.color.iter().map(|sum| luminance(*sum)).sum();
+        if self.clamped > 0.0 {
+            self.clamped / (self.clamped + kept)
+        } else {
+            0.0
         }
     }
 
@@ -57,7 +70,7 @@ impl Film {
         }
     }
 
-    /// Copies a smaller film into this one, its top left pixel to `origin`; counts of dropped samples add up.
+    /// Copies a smaller film into this one, its top left pixel to `origin`; what was dropped or taken adds up.
     pub fn place(&mut self, origin: [u32; 2], tile: &Film) {
         let width = tile.width as usize;
         for row in 0..tile.height as usize {
@@ -69,6 +82,22 @@ impl Film {
             self.rays[to].copy_from_slice(&tile.rays[from]);
         }
         self.dropped += tile.dropped;
+        self.clamped += tile.clamped;
+    }
+
+    /// The chosen pixels alone, in a row.
+    pub fn of_pixels(&self, is_chosen: impl Fn(usize) -> bool) -> Film {
+        let chosen: Vec<usize> = (0..self.color.len()).filter(|&pixel| is_chosen(pixel)).collect();
+        Film {
+            width: chosen.len() as u32,
+            height: 1,
+            color: chosen.iter().map(|&pixel| self.color[pixel]).collect(),
+            statistics: chosen.iter().map(|&pixel| self.statistics[pixel]).collect(),
+            odd: chosen.iter().map(|&pixel| self.odd[pixel]).collect(),
+            rays: chosen.iter().map(|&pixel| self.rays[pixel]).collect(),
+            dropped: self.dropped,
+            clamped: self.clamped,
+        }
     }
 
     /// Rays traced for all pixels together.

@@ -15,6 +15,7 @@ pub mod lobe_model;
 pub mod lobe_view;
 pub mod noise;
 pub mod plot;
+pub mod probe;
 pub mod quadrature;
 pub mod scatter;
 pub mod sphere_grid;

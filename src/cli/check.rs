@@ -1,12 +1,13 @@
 //! `glossmith check`: proof on the user's own machine.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use clap::Args;
 
 use crate::render::EngineChoice;
 use crate::render::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
+use crate::render::hard::{self, HardOptions, HardRow};
 
 /// Arguments of `glossmith check`.
 #[derive(Debug, Args)]
@@ -23,6 +24,15 @@ pub struct CheckArguments {
     /// Write all checks as JSON.
     #[arg(long, value_name = "FILE.json")]
     output: Option<PathBuf>,
+    /// Run the hard cases instead: places where naive code breaks, each with its verdict.
+    #[arg(long)]
+    hard: bool,
+    /// Only hard cases whose names contain this.
+    #[arg(long, value_name = "NAME", default_value = "", requires = "hard")]
+    only: String,
+    /// Write the hard cases as a table in Markdown, on this engine and on the processor.
+    #[arg(long, value_name = "FILE.md", requires = "hard")]
+    markdown: Option<PathBuf>,
 }
 
 /// Runs the checks and prints a table.
@@ -30,19 +40,27 @@ pub struct CheckArguments {
 /// # Errors
 /// Where a check fails, the engine does, or the file can't be written.
 pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
+    if arguments.hard {
+        return run_hard(arguments);
+    }
     let options = CheckOptions {
         engine: arguments.engine,
         thorough: arguments.thorough,
     };
     let checks = run_checks(options, |group| eprintln!("checking {group} …"))?;
     print_table(&checks, arguments.verbose);
+    conclude(arguments, &checks)
+}
+
+/// Writes the checks where that is wanted, and fails where one failed.
+fn conclude(arguments: &CheckArguments, checks: &[Check]) -> anyhow::Result<()> {
     if let Some(path) = &arguments.output {
         let text = serde_json::to_string_pretty(&serde_json::json!({
             "version": env!("CARGO_PKG_VERSION"),
             "passed": checks.iter().all(|check| check.passed),
             "checks": checks,
         }))?;
-        std::fs::write(path, text + "\n").with_context(|| format!("{}: could not be written", path.display()))?;
+        write(path, &(text + "\n"))?;
     }
     let failed = checks.iter().filter(|check| !check.passed).count();
     if failed > 0 {
@@ -52,6 +70,51 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
         );
     }
     Ok(())
+}
+
+/// Runs the hard cases and prints a line each.
+fn run_hard(arguments: &CheckArguments) -> anyhow::Result<()> {
+    let run_on = |engine| {
+        let options = HardOptions {
+            engine,
+            thorough: arguments.thorough,
+            only: arguments.only.clone(),
+        };
+        hard::run(&options, |name| eprintln!("{name} …"))
+    };
+    let (engine, rows) = run_on(arguments.engine)?;
+    println!("{engine}\n{:8} {:34} {:>7}  verdict", "group", "case", "seconds");
+    for row in &rows {
+        let HardRow {
+            case, check, seconds, ..
+        } = row;
+        let verdict = if check.passed { "ok" } else { "FAILED" };
+        let Check {
+            measure, value, limit, ..
+        } = check;
+        println!(
+            "{:8} {:34} {seconds:>7.2}  {verdict}: {measure} {value:.2e}, limit {limit:.0e}; naive: {}",
+            case.group,
+            case.name,
+            (case.naive)()
+        );
+        if arguments.verbose || !check.passed {
+            println!("         {}; {}; {}", case.danger, case.made, case.must);
+        }
+    }
+    let checks: Vec<Check> = rows.iter().map(|row| row.check.clone()).collect();
+    if let Some(path) = &arguments.markdown {
+        let mut engines = vec![(engine, rows)];
+        if engines[0].0.kind != "cpu" {
+            engines.push(run_on(EngineChoice::Cpu)?);
+        }
+        write(path, &hard::markdown(&engines))?;
+    }
+    conclude(arguments, &checks)
+}
+
+fn write(path: &Path, text: &str) -> anyhow::Result<()> {
+    std::fs::write(path, text).with_context(|| format!("{}: could not be written", path.display()))
 }
 
 /// A line a group, and a line for each check that failed (or every one).

@@ -60,9 +60,9 @@ pub struct SceneArguments {
     /// Factor of the environment's radiance.
     #[arg(long, default_value = "1", value_name = "X", value_parser = parse::number_in(range::STRENGTH), allow_negative_numbers = true)]
     environment_strength: f64,
-    /// A rectangle that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
+    /// A rectangle (or triangle) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
     /// in bounding radii of the model) and radiance. May be repeated up to 8 times.
-    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,#rrggbb]", value_parser = parse::area_light, allow_hyphen_values = true)]
+    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle][,#rrggbb]", value_parser = parse::area_light, allow_hyphen_values = true)]
     area_lights: Vec<AreaLight>,
     /// What the camera sees where it meets nothing.
     #[arg(long, default_value = "environment", value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
@@ -106,6 +106,9 @@ pub struct SceneArguments {
     /// Width and height in pixels.
     #[arg(long, default_value = "512x512", value_name = "WxH", value_parser = parse::size)]
     size: [u32; 2],
+    /// Render this part of the picture only, the rest staying transparent: shares of width and height.
+    #[arg(long, value_name = "LEFT,TOP,RIGHT,BOTTOM", value_parser = parse::region)]
+    region: Option<[f64; 4]>,
     /// Samples a pixel; with --adaptive on the most of a pixel [default: 256, or no limit with --time or --noise].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
@@ -124,6 +127,10 @@ pub struct SceneArguments {
     /// Reflections that a path may have, 1 to 64.
     #[arg(long, default_value_t = 64, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
     bounces: u32,
+    /// Limit the radiance of light that was reflected twice or more; the report tells how much energy that takes
+    /// (`clamped_energy`). Off unless given.
+    #[arg(long, value_name = "X", value_parser = parse::number_in(range::FIREFLY_CLAMP), allow_negative_numbers = true)]
+    firefly_clamp: Option<f64>,
     /// Random numbers: sobol (Owen-scrambled, less noise) or independent.
     #[arg(long, default_value = "sobol", value_name = "sobol|independent", value_parser = names::sequence)]
     sequence: Sequence,
@@ -151,6 +158,9 @@ pub struct SceneArguments {
     /// Exposure of .png pictures, in stops.
     #[arg(long, default_value = "0", value_name = "EV", value_parser = parse::number_in(range::EXPOSURE_EV), allow_negative_numbers = true)]
     exposure: f64,
+    /// Expose .png pictures so that their mean brightness is middle grey; --exposure is added.
+    #[arg(long)]
+    auto_exposure: bool,
 }
 
 /// Renders as the arguments say.
@@ -356,6 +366,7 @@ fn json_report(
         "rays": rays,
         "rays_per_second": rays as f64 / seconds,
         "dropped_samples": film.dropped,
+        "clamped_energy": film.clamped_share(),
         "effects": effects,
         "seed": document.render.seed,
     }))
@@ -410,6 +421,7 @@ impl SceneArguments {
         camera.focus_distance = self.focus_distance;
         document.view.tone_map = self.tone_map;
         document.view.exposure_ev = self.exposure as f32;
+        document.view.auto_exposure = self.auto_exposure;
         let render = &mut document.render;
         [render.width, render.height] = self.size;
         // With a time or noise to reach only, samples are not limited.
@@ -417,11 +429,13 @@ impl SceneArguments {
         render.samples = self
             .samples
             .unwrap_or(if is_limited { u32::MAX } else { render.samples });
+        render.region = self.region;
         render.time_s = self.time;
         render.noise = self.noise;
         render.min_samples = self.min_samples;
         render.adaptive = self.adaptive;
         render.bounces = self.bounces;
+        render.firefly_clamp = self.firefly_clamp.map(|limit| limit as f32);
         render.sequence = self.sequence;
         render.strategy = self.strategy;
         render.seed = self.seed;

@@ -41,6 +41,8 @@ pub struct PathResult<T> {
     pub alpha: T,
     /// Rays traced.
     pub rays: u32,
+    /// Luminance that limiting fireflies took.
+    pub clamped: T,
 }
 
 /// What one sample of the camera sees first.
@@ -71,6 +73,8 @@ pub struct Integrator<'a, T> {
     samples_environment: bool,
     samples_emitters: bool,
     is_interreflecting: bool,
+    /// Where fireflies are limited.
+    firefly_clamp: Option<T>,
 }
 
 impl<'a, T: Real> Integrator<'a, T> {
@@ -96,6 +100,10 @@ impl<'a, T: Real> Integrator<'a, T> {
                 && choice.environment_probability > 0.0,
             samples_emitters: job.plan.has("emitter-sampling") && samples_light && choice.density_per_luminance > 0.0,
             is_interreflecting: job.plan.has("interreflection"),
+            firefly_clamp: job
+                .plan
+                .has("firefly-clamp")
+                .then(|| T::from_f64(job.settings.firefly_clamp)),
         }
     }
 
@@ -266,6 +274,21 @@ impl<'a, T: Real> Integrator<'a, T> {
         !self.is_interreflecting && !point.surface.is_inside && point.surface.normal.dot(wi).to_f64() > 0.0
     }
 
+    /// What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
+    #[inline(always)]
+    fn limited(&self, contribution: Vec3<T>, reflections: u32, taken: &mut T) -> Vec3<T> {
+        let Some(limit) = self.firefly_clamp.filter(|_| reflections > 1) else {
+            return contribution;
+        };
+        let largest = contribution.max_component();
+        if !limit.less(largest).any() {
+            return contribution;
+        }
+        let kept = limit / largest;
+        *taken += contribution.luminance() * (T::one() - kept);
+        contribution * kept
+    }
+
     fn camera_background(&self, direction: Vec3<T>, state: RandomState, rays: u32) -> PathResult<T> {
         let (radiance, alpha) = match self.settings.background {
             BackgroundKind::Environment => (self.far_radiance(direction), T::one()),
@@ -281,7 +304,12 @@ impl<'a, T: Real> Integrator<'a, T> {
             BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
             BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
         };
-        PathResult { radiance, alpha, rays }
+        PathResult {
+            radiance,
+            alpha,
+            rays,
+            clamped: T::zero(),
+        }
     }
 
     /// One path through a pixel.
@@ -292,6 +320,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         let samples_light = self.samples_environment || self.samples_emitters;
         let mut throughput = Vec3::splat(T::one());
         let mut radiance = Vec3::zero();
+        let mut clamped = T::zero();
         let mut lobe_density = T::zero();
         let mut was_mirror = true;
         let mut rays = 0;
@@ -305,7 +334,8 @@ impl<'a, T: Real> Integrator<'a, T> {
                 if bounce == 0 {
                     return self.camera_background(direction, state, rays);
                 }
-                radiance += throughput * self.far_light(direction, lobe_density, was_mirror);
+                let found = throughput * self.far_light(direction, lobe_density, was_mirror);
+                radiance += self.limited(found, bounce, &mut clamped);
                 break;
             };
             let plain = &self.materials[point.slot as usize];
@@ -319,13 +349,15 @@ impl<'a, T: Real> Integrator<'a, T> {
             if point.surface.is_inside && material.transmits() {
                 throughput = throughput * material.absorption.map(|absorption| (-absorption * distance).exp());
             }
-            radiance += throughput * self.emitted_light(&point, material, distance, lobe_density, was_mirror);
+            let found = throughput * self.emitted_light(&point, material, distance, lobe_density, was_mirror);
+            radiance += self.limited(found, bounce, &mut clamped);
             if bounce >= settings.bounces {
                 break;
             }
             let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
             if samples_light {
-                radiance += throughput * self.direct_light(&point, material, state, dimension + 2, &mut rays);
+                let found = throughput * self.direct_light(&point, material, state, dimension + 2, &mut rays);
+                radiance += self.limited(found, bounce + 1, &mut clamped);
             }
             let [a, b] = random_pair(state, dimension);
             let [c, layer] = random_pair(state, dimension + 1);
@@ -363,6 +395,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             radiance,
             alpha: T::one(),
             rays,
+            clamped,
         }
     }
 

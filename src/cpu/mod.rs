@@ -2,6 +2,7 @@
 
 pub mod features;
 pub mod integrator;
+pub mod probe;
 pub mod scatter;
 
 use std::sync::Arc;
@@ -92,7 +93,7 @@ impl CpuEngine {
     pub fn film(&mut self) -> &Film {
         if !self.is_film_made {
             let grid = self.schedule.grid();
-            self.film.dropped = 0;
+            (self.film.dropped, self.film.clamped) = (0, 0.0);
             for (tile, sums) in self.tiles.iter().enumerate() {
                 self.film.place(grid.origin(tile), sums);
             }
@@ -133,6 +134,7 @@ fn render_tile<T: Real>(integrator: &Integrator<'_, T>, origin: [u32; 2], work: 
             if is_sound(path.radiance) {
                 let [r, g, b] = path.radiance.to_f64();
                 sums.add(pixel, sample, [r, g, b, path.alpha.to_f64()]);
+                sums.clamped += path.clamped.to_f64();
             } else {
                 sums.dropped += 1;
             }

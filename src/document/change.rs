@@ -53,6 +53,7 @@ impl Change {
                 || !stand_alike(&light.area_lights, &other_light.area_lights),
             sampling: (
                 render.bounces,
+                render.firefly_clamp,
                 render.sequence,
                 render.strategy,
                 render.seed,
@@ -60,6 +61,7 @@ impl Change {
                 render.effects,
             ) != (
                 other.bounces,
+                other.firefly_clamp,
                 other.sequence,
                 other.strategy,
                 other.seed,
@@ -127,9 +129,10 @@ fn aim(render: &RenderSettings) -> impl PartialEq {
         time_s,
         noise,
         min_samples,
+        region,
         ..
     } = *render;
-    (samples, time_s, noise, min_samples, render.is_adaptive())
+    (samples, time_s, noise, min_samples, region, render.is_adaptive())
 }
 
 fn shine_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {

@@ -51,6 +51,8 @@ pub struct Settings {
     pub light_choice: LightChoice,
     /// Reflections a path may have.
     pub bounces: u32,
+    /// The largest radiance that light keeps that was reflected twice or more; infinite where all is kept.
+    pub firefly_clamp: f64,
     /// Random numbers.
     pub sequence: Sequence,
     /// How light is found.

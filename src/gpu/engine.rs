@@ -211,6 +211,7 @@ impl GpuEngine {
             of_odd[2] += f64::from(sums.odd_kept);
             self.film.rays[pixel] += f64::from(sums.rays);
             self.film.dropped += sums.dropped as u64;
+            self.film.clamped += f64::from(sums.clamped);
         }
         resources.clear_sums(&self.gpu);
         (self.unflushed, self.is_flushed) = (0, true);

@@ -40,6 +40,12 @@ pub struct Globals {
     pub environment_probability: f32,
     /// Density per area of the emitting triangles over the luminance of their emission.
     pub density_per_luminance: f32,
+    /// The largest radiance of an indirect contribution.
+    pub firefly_clamp: f32,
+    /// Fills the last 16 bytes, with the next.
+    pub reserved: u32,
+    /// See `reserved`.
+    pub reserved_pair: [u32; 2],
 }
 
 /// What a dispatch renders of one tile.
@@ -72,6 +78,8 @@ pub struct PixelStatistics {
     pub dropped: f32,
     /// Rays traced.
     pub rays: f32,
+    /// Luminance that limiting fireflies took.
+    pub clamped: f32,
 }
 
 impl Globals {
@@ -99,6 +107,9 @@ impl Globals {
             light_cells_size: settings.light_choice.cells_size,
             environment_probability: settings.light_choice.environment_probability as f32,
             density_per_luminance: settings.light_choice.density_per_luminance as f32,
+            firefly_clamp: settings.firefly_clamp as f32,
+            reserved: 0,
+            reserved_pair: [0; 2],
         }
     }
 }

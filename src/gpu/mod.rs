@@ -5,6 +5,7 @@ mod engine;
 mod kernel_cache;
 pub mod layout;
 mod pipeline;
+pub mod probe;
 mod resources;
 pub mod scatter;
 pub mod shader;

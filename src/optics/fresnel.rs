@@ -166,11 +166,18 @@ pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
     let c = cosine.clamp(T::zero(), T::one());
     let cos2 = c * c;
     let sin2 = T::one() - cos2;
-    let eta2 = eta * eta;
-    let k2 = k * k;
-    let t0 = eta2 - k2 - sin2;
-    let a2_plus_b2 = (t0 * t0 + T::from_f64(4.0) * eta2 * k2).safe_sqrt();
-    let a = (T::from_f64(0.5) * (a2_plus_b2 + t0)).safe_sqrt();
+    // (a + ib)² = t0 + iu, so written that nothing cancels; its size without the squares, which would overflow.
+    let t0 = refracted_square(c, eta) - k * k;
+    let u = T::from_f64(2.0) * eta * k;
+    let largest = t0.abs().max(u).max(T::from_f64(1e-30));
+    let (x, y) = (t0 / largest, u / largest);
+    let a2_plus_b2 = largest * (x * x + y * y).sqrt();
+    let leg = (T::from_f64(0.5) * (a2_plus_b2 + t0.abs())).sqrt();
+    let a = T::select(
+        t0.less(T::zero()),
+        T::from_f64(0.5) * u / leg.max(T::from_f64(1e-30)),
+        leg,
+    );
     let t1 = a2_plus_b2 + cos2;
     let t2 = T::from_f64(2.0) * a * c;
     let tiny = T::from_f64(1e-12);

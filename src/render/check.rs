@@ -54,6 +54,20 @@ pub struct Check {
     pub passed: bool,
 }
 
+impl Check {
+    /// A value held against a limit: a probability `p` must be above it, anything else at most that.
+    pub fn new(group: &'static str, name: impl Into<String>, measure: &'static str, value: f64, limit: f64) -> Self {
+        Self {
+            group,
+            name: name.into(),
+            measure,
+            value,
+            limit,
+            passed: if measure == "p" { value > limit } else { value <= limit },
+        }
+    }
+}
+
 impl std::fmt::Display for Check {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let comparison = if self.measure == "p" { "above" } else { "at most" };
@@ -148,7 +162,7 @@ pub fn sample_cases(thorough: bool) -> Vec<ScatterRequest> {
 }
 
 /// Every lobe, curve and stretch.
-fn shapes() -> Vec<(Lobe, Curve, f32)> {
+pub(super) fn shapes() -> Vec<(Lobe, Curve, f32)> {
     let mut shapes = Vec::new();
     for &lobe in Lobe::ALL {
         let stretched: &[f32] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
@@ -227,14 +241,7 @@ fn samples(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
     let limit = sidak_level(LEVEL, cases.len());
     let check = |(case, cloud): (&ScatterRequest, &ScatterCloud)| {
         let value = chi_square(case, cloud, |_| 1.0);
-        Check {
-            group: "samples",
-            name: describe(case),
-            measure: "p",
-            value,
-            limit,
-            passed: value > limit,
-        }
+        Check::new("samples", describe(case), "p", value, limit)
     };
     Ok(cases.par_iter().zip(&clouds).map(check).collect())
 }
@@ -270,14 +277,8 @@ fn summed_up(group: &'static str, what: &str, all: Vec<Check>) -> Vec<Check> {
     let count = all.len();
     let worst = all.iter().map(|check| check.value / check.limit).fold(0.0, f64::max);
     let mut checks: Vec<Check> = all.into_iter().filter(|check| !check.passed).collect();
-    checks.push(Check {
-        group,
-        name: format!("{what} over {count} cases, worst share of its limit"),
-        measure: "error",
-        value: worst,
-        limit: 1.0,
-        passed: worst <= 1.0,
-    });
+    let name = format!("{what} over {count} cases, worst share of its limit");
+    checks.push(Check::new(group, name, "error", worst, 1.0));
     checks
 }
 
@@ -307,14 +308,7 @@ fn energy() -> Vec<Check> {
         } else {
             2e-3
         };
-        Check {
-            group: "energy",
-            name: describe(case),
-            measure: "error",
-            value,
-            limit,
-            passed: value <= limit,
-        }
+        Check::new("energy", describe(case), "error", value, limit)
     };
     summed_up(
         "energy",
@@ -335,14 +329,7 @@ fn weights() -> Vec<Check> {
             (value - drawn.weight * density).abs() / value.max(f64::MIN_POSITIVE)
         };
         let value = twin_samples(case, 256).map(error).fold(0.0, f64::max);
-        Check {
-            group: "weights",
-            name: describe(case),
-            measure: "error",
-            value,
-            limit: WEIGHT_ERROR,
-            passed: value <= WEIGHT_ERROR,
-        }
+        Check::new("weights", describe(case), "error", value, WEIGHT_ERROR)
     };
     summed_up(
         "weights",
@@ -381,14 +368,7 @@ fn furnace(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
         let error = |pixel: &[f32; 4]| f64::from((pixel[1] - 1.0).abs());
         let value = image.pixels.iter().map(error).fold(0.0, f64::max);
         let name = format!("teapot, geometric, roughness {roughness}: worst pixel");
-        Ok(Check {
-            group: "furnace",
-            name,
-            measure: "error",
-            value,
-            limit: 5e-3,
-            passed: value <= 5e-3,
-        })
+        Ok(Check::new("furnace", name, "error", value, 5e-3))
     };
     [0.0, 0.1, 0.5, 1.0].into_iter().map(check).collect()
 }
@@ -416,14 +396,7 @@ fn pictures(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
     let processor = film(EngineChoice::Cpu, &with(Strategy::Mis, 3))?;
     let compare = |group, name: &str, other: &Film| {
         let value = mis.difference_in_sigma(other).abs();
-        Check {
-            group,
-            name: name.to_owned(),
-            measure: "sigma",
-            value,
-            limit: 4.0,
-            passed: value <= 4.0,
-        }
+        Check::new(group, name, "sigma", value, 4.0)
     };
     let dropped = [&mis, &lobe, &light, &processor]
         .iter()
@@ -437,13 +410,12 @@ fn pictures(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
         ),
         compare("strategies", "mis against lobe, whole picture", &lobe),
         compare("strategies", "mis against light, whole picture", &light),
-        Check {
-            group: "soundness",
-            name: "samples dropped because they were not finite".to_owned(),
-            measure: "count",
-            value: dropped,
-            limit: 0.0,
-            passed: dropped == 0.0,
-        },
+        Check::new(
+            "soundness",
+            "samples dropped because they were not finite",
+            "count",
+            dropped,
+            0.0,
+        ),
     ])
 }

@@ -60,6 +60,7 @@ impl Compiler {
             environment_strength,
             light_choice: LightChoice::new(&environment, environment_strength, &lights),
             bounces: document.render.bounces,
+            firefly_clamp: document.render.firefly_clamp.map_or(f64::INFINITY, f64::from),
             sequence: document.render.sequence,
             strategy: document.render.strategy,
             seed: document.render.seed,

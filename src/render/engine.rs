@@ -169,6 +169,19 @@ fn auto() -> (Engine, EngineInfo) {
     }
 }
 
+/// The device on which single functions run; nothing where the processor runs them: `auto` takes it where there is no
+/// hardware GPU.
+///
+/// # Errors
+/// Where a GPU was asked for and fails.
+pub(super) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
+    match choice {
+        EngineChoice::Cpu => Ok(None),
+        EngineChoice::Gpu => GpuDevice::open(AdapterKind::Any).map(Some),
+        EngineChoice::Auto => Ok(GpuDevice::open(AdapterKind::Hardware).ok()),
+    }
+}
+
 /// Draws samples of lobes with the function that the chosen engine renders with.
 pub enum Sampler {
     /// The processor's.
@@ -183,15 +196,10 @@ impl Sampler {
     /// # Errors
     /// Where a GPU was asked for and fails.
     pub fn open(choice: EngineChoice) -> Result<Self, GpuError> {
-        let device = match choice {
-            EngineChoice::Cpu => return Ok(Self::Cpu),
-            EngineChoice::Gpu => GpuDevice::open(AdapterKind::Any)?,
-            EngineChoice::Auto => match GpuDevice::open(AdapterKind::Hardware) {
-                Ok(device) => device,
-                Err(_) => return Ok(Self::Cpu),
-            },
-        };
-        Ok(Self::Gpu(Box::new(Scatterer::new(device)?)))
+        Ok(match device_for_functions(choice)? {
+            Some(device) => Self::Gpu(Box::new(Scatterer::new(device)?)),
+            None => Self::Cpu,
+        })
     }
 
     /// Draws the samples.

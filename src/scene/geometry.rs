@@ -105,10 +105,21 @@ impl Geometry {
             let light = light.mesh(slot);
             geometry.add(&light, 0..light.triangles.len(), |place| place.as_vec3().to_array());
         }
-        geometry.bvh = bvh::build(geometry.triangles.iter().map(|triangle| geometry.corners_of(triangle)));
-        geometry.sort_by_leaves();
+        geometry.build_hierarchy(bvh::DEPTH_MAX);
         geometry.is_convex = is_convex(&geometry.positions, &geometry.triangles);
         geometry
+    }
+
+    /// Builds the hierarchy, no deeper than `depth_max` levels if that can be, and puts triangles into its order.
+    pub fn build_hierarchy(&mut self, depth_max: usize) {
+        let corners = self.triangles.iter().map(|triangle| self.corners_of(triangle));
+        self.bvh = bvh::build(corners, depth_max);
+        self.sort_by_leaves();
+    }
+
+    /// Levels of the hierarchy.
+    pub fn hierarchy_depth(&self) -> usize {
+        bvh::depth(&self.bvh)
     }
 
     /// The material of the ground, for the slot after the model's.

@@ -53,10 +53,10 @@ impl RayFrame {
 
 /// The ray against one triangle, from either side: (t, u, v) as in [`Hit`] where 0 < t < `t_max`.
 ///
-/// Watertight: a corner is projected alike for every triangle it belongs to, and the products of an edge's test are
-/// the negatives of each other in the two triangles that share the edge. Rounding keeps their order, so a ray through
-/// a closed mesh always hits some triangle at each crossing; one exactly on an edge hits both. A twin must keep the
-/// products as they are (no fused multiply-add, no reordering).
+/// Watertight: a corner is projected alike for every triangle it belongs to, and an edge's area is computed from its
+/// corners in an order of their own (by their projections), then given the triangle's sign. So the two triangles that
+/// share an edge get the same number with opposite signs however the products are rounded, also where a GPU's driver
+/// fuses them; a ray through a closed mesh always hits some triangle at each crossing, one exactly on an edge hits both.
 #[inline(always)]
 pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max: f32) -> Option<(f32, f32, f32)> {
     let a = v0 - ray.origin;
@@ -65,7 +65,18 @@ pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max
     let px = x * ray.axis_x.x + y * ray.axis_x.y + z * ray.axis_x.z;
     let py = x * ray.axis_y.x + y * ray.axis_y.y + z * ray.axis_y.z;
     // Twice the areas that the ray cuts the projected triangle into, opposite to v0, v1 and v2.
-    let areas = px.zxy() * py.yzx() - py.zxy() * px.yzx();
+    let (from_x, from_y, to_x, to_y) = (px.zxy(), py.zxy(), px.yzx(), py.yzx());
+    let is_turned = from_x.cmpgt(to_x) | (from_x.cmpeq(to_x) & from_y.cmpgt(to_y));
+    let (low_x, high_x) = (
+        Vec3A::select(is_turned, to_x, from_x),
+        Vec3A::select(is_turned, from_x, to_x),
+    );
+    let (low_y, high_y) = (
+        Vec3A::select(is_turned, to_y, from_y),
+        Vec3A::select(is_turned, from_y, to_y),
+    );
+    let ordered = low_x * high_y - low_y * high_x;
+    let areas = Vec3A::select(is_turned, -ordered, ordered);
     let area = areas.x + areas.y + areas.z;
     if (areas.min_element() < 0.0 && areas.max_element() > 0.0) || area == 0.0 {
         return None;

@@ -44,11 +44,11 @@ fn rust_layouts() -> Vec<Layout> {
         layout!(Globals: Globals {
             camera, image_size, bounces, sequence, background, background_kind, environment_rotation,
             environment_cells_size, environment_strength, strategy, seed, node_count, light_cells_size,
-            environment_probability, density_per_luminance,
+            environment_probability, density_per_luminance, firefly_clamp, reserved, reserved_pair,
         }),
         layout!(Tile: Tile { origin, first_sample, sample_count }),
         layout!(PixelStatistics: PixelStatistics {
-            luminance_squared, kept, odd_luminance, odd_luminance_squared, odd_kept, dropped, rays,
+            luminance_squared, kept, odd_luminance, odd_luminance_squared, odd_kept, dropped, rays, clamped,
         }),
         layout!(Camera: Camera<f32> {
             origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,

@@ -3,6 +3,7 @@
 use egui::Ui;
 
 use super::Desk;
+use super::hard_cases::{self, HardState};
 use crate::app::widgets;
 use crate::render::EngineChoice;
 use crate::render::background::Background;
@@ -21,6 +22,7 @@ enum Standing {
 pub(in crate::app) struct CheckState {
     worker: Option<Background<CheckOptions, Standing>>,
     thorough: bool,
+    hard: HardState,
 }
 
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -77,6 +79,8 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
         Some(Standing::Done(checks)) => table(ui, &checks),
     }
+    ui.separator();
+    hard_cases::show(ui, &mut state.hard, engine);
 }
 
 fn table(ui: &mut Ui, checks: &[Check]) {

@@ -6,6 +6,7 @@ pub(super) mod check;
 pub(super) mod convergence;
 pub(super) mod curve;
 pub(super) mod effects;
+mod hard_cases;
 pub(super) mod lighting;
 pub(super) mod lobe;
 mod lobe_match;

@@ -54,6 +54,7 @@ effects! {
     emission_texture
     alpha
     depth_of_field
+    firefly_clamp
 }
 
 /// Something that costs time and that not every scene needs.

@@ -1,0 +1,107 @@
+//! Single functions asked about inputs of one's own. Twin of `shaders/pass/probe.wgsl`; the material in f64, too, as the
+//! oracle.
+
+use rayon::prelude::*;
+
+use crate::analysis::probe::{
+    FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, NO_HIT, ProbeScene, RandomQuestion, RayAnswer,
+    RayQuestion,
+};
+use crate::optics::curve::Curve;
+use crate::optics::frame::frame_from_normal;
+use crate::optics::fresnel::{fresnel_conductor, fresnel_dielectric};
+use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample};
+use crate::optics::material::{Material, Surface, material_evaluate};
+use crate::optics::random::{Sequence, random_pair_bits, random_state};
+use crate::optics::real::Real;
+use crate::optics::vector::Vec3;
+
+fn by_number<E: Copy>(all: &[E], number: u32) -> E {
+    all[(number as usize).min(all.len() - 1)]
+}
+
+/// A direction drawn from a lobe, and its value and density there and elsewhere.
+pub fn probe_lobe(scene: &ProbeScene<'_>, questions: &[LobeQuestion]) -> Vec<LobeAnswer> {
+    let answer = |q: &LobeQuestion| {
+        let shape = LobeShape {
+            lobe: by_number(Lobe::ALL, q.lobe),
+            curve: by_number(Curve::ALL, q.curve),
+            horizon: by_number(Horizon::ALL, q.horizon),
+            roughness: q.roughness,
+            anisotropy: q.anisotropy,
+            eta: q.eta,
+            table: &scene.tables[q.table as usize..],
+        };
+        let frame = frame_from_normal(q.shading);
+        let drawn = lobe_sample(&shape, &frame, q.normal, q.wo, q.xi);
+        LobeAnswer {
+            wi: drawn.wi,
+            weight: drawn.weight,
+            drawn: lobe_evaluate(&shape, &frame, q.normal, q.wo, drawn.wi),
+            given: lobe_evaluate(&shape, &frame, q.normal, q.wo, q.wi),
+        }
+    };
+    questions.par_iter().map(answer).collect()
+}
+
+/// The share reflected by a dielectric or a conductor.
+pub fn probe_fresnel(questions: &[FresnelQuestion]) -> Vec<f32> {
+    let answer = |q: &FresnelQuestion| match q.model {
+        1 => fresnel_conductor(q.cosine, q.eta, q.k),
+        _ => fresnel_dielectric(q.cosine, q.eta),
+    };
+    questions.iter().map(answer).collect()
+}
+
+/// The bits of pairs of random numbers.
+pub fn probe_random(questions: &[RandomQuestion]) -> Vec<[u32; 2]> {
+    let answer = |q: &RandomQuestion| {
+        let sequence = by_number(&[Sequence::Sobol, Sequence::Independent], q.sequence);
+        random_pair_bits(
+            random_state(q.pixel[0], q.pixel[1], q.seed, q.sample, sequence),
+            q.dimension,
+        )
+    };
+    questions.par_iter().map(answer).collect()
+}
+
+/// A material's evaluate for light from a direction that was drawn with some density, in the precision `T`; `moved` is
+/// added to the direction, in units of f32's last bit along two tangents.
+pub fn probe_material<T: Real>(scene: &ProbeScene<'_>, question: &MaterialQuestion, moved: [f64; 2]) -> Vec3<T> {
+    let q = question;
+    let vector = |v: Vec3<f32>| Vec3::<T>::from_f64(v.to_f64());
+    let material: Material<T> = scene.materials[q.material as usize].cast();
+    let surface = Surface {
+        frame: frame_from_normal(vector(q.shading)),
+        normal: vector(q.normal),
+        coat_normal: vector(q.shading),
+        wo: vector(q.wo),
+        is_inside: q.is_inside == 1,
+    };
+    let mut wi = vector(q.wi);
+    if moved != [0.0; 2] {
+        let around = frame_from_normal(wi);
+        let [along, across] = moved.map(|by| T::from_f64(by * f64::from(f32::EPSILON)));
+        wi += around.tangent * along + around.bitangent * across;
+    }
+    let density = T::from_f64(f64::from(q.light_density));
+    material_evaluate(&material, scene.tables, &surface, wi, density, T::one())
+}
+
+/// Materials' values in f32.
+pub fn probe_materials(scene: &ProbeScene<'_>, questions: &[MaterialQuestion]) -> Vec<Vec3<f32>> {
+    let answer = |q: &MaterialQuestion| probe_material(scene, q, [0.0; 2]);
+    questions.par_iter().map(answer).collect()
+}
+
+/// The nearest triangles on rays.
+pub fn probe_ray(scene: &ProbeScene<'_>, questions: &[RayQuestion]) -> Vec<RayAnswer> {
+    let answer = |q: &RayQuestion| {
+        let hit = scene.geometry.and_then(|g| g.intersect(q.origin, q.direction, q.t_max));
+        RayAnswer {
+            triangle: hit.map_or(NO_HIT, |hit| hit.triangle),
+            t: hit.map_or(q.t_max, |hit| hit.t),
+        }
+    };
+    questions.par_iter().map(answer).collect()
+}

@@ -1,0 +1,633 @@
+//! Geometry at the ends of what f32 tells apart: scale and place, needles, duplicates, broken normals, and rays that meet
+//! edges, vertices and planes exactly.
+
+use glam::{DVec3, Vec3, Vec4};
+use serde_json::json;
+
+use super::glb::Glb;
+use super::stage::document;
+use super::{HardCase, HardError, Stage};
+use crate::analysis::film::Film;
+use crate::analysis::probe::{NO_HIT, ProbeScene, RayAnswer, RayQuestion};
+use crate::document::Document;
+use crate::optics::fresnel::Fresnel;
+use crate::optics::lobe::Horizon;
+use crate::optics::random::hash_bits;
+use crate::scene::environment::EnvironmentSource;
+use crate::scene::mesh::{Mesh, plane_normal};
+use crate::scene::surface::surface_at;
+use crate::scene::texture::Textures;
+use crate::scene::{Geometry, Hit, Model, ModelSource, shapes, teapot};
+
+/// The most that the mean of a picture may differ where only scale or place do: silhouettes by a rounding.
+const SAME_PICTURE: f64 = 1e-3;
+/// The most that a pixel of the white furnace may be off.
+const WHITE: f64 = 5e-3;
+
+pub(super) const CASES: &[HardCase] = &[
+    HardCase {
+        name: "scene-scaled",
+        group: "geometry",
+        danger: "a ray offset of a fixed length swallows a model of 1e-6 and does nothing for one of 1e6",
+        made: "a teapot scaled by 1e-6, 1e-3, 1e3 and 1e6 through its node",
+        must: "the picture of the unscaled one, numbers drawn alike: mean difference over mean",
+        naive: || format!("an offset of 1e-4 is {:.0} radii", 1e-4 / 1e-6),
+        measure: "error",
+        limit: SAME_PICTURE,
+        find: |stage| {
+            let scaled = [1e-6, 1e-3, 1e3, 1e6].map(|scale| json!({"scale": [scale, scale, scale]}));
+            picture_difference(stage, &scaled)
+        },
+    },
+    HardCase {
+        name: "scene-moved",
+        group: "geometry",
+        danger: "f32 places 1e5 from the origin are 0.008 apart: the model crumbles",
+        made: "a teapot moved by 1e5 along each axis and along all through its node",
+        must: "the picture of the unmoved one, numbers drawn alike: mean difference over mean",
+        naive: || {
+            format!(
+                "vertices off by {:.1e}",
+                f64::from((1e5_f32 + 0.123_456).fract() - 0.123_456).abs()
+            )
+        },
+        measure: "error",
+        limit: SAME_PICTURE,
+        find: |stage| {
+            let far = 1e5;
+            let places = [[far, 0.0, 0.0], [0.0, -far, 0.0], [0.0, 0.0, far], [far, far, far]];
+            picture_difference(stage, &places.map(|place| json!({"translation": place})))
+        },
+    },
+    HardCase {
+        name: "scene-scaled-and-moved",
+        group: "geometry",
+        danger: "a model of 1e-6 at 1e5: places differ in their twelfth digit, f64 transforms leave four of them",
+        made: "a teapot scaled by 1e-6 or 1e6 and moved by 1e5 along all axes through its node",
+        must: "the picture of the unscaled, unmoved one, numbers drawn alike: mean difference over mean",
+        naive: || format!("vertices off by {:.0} radii", 0.004 / 1e-6),
+        measure: "error",
+        limit: SAME_PICTURE,
+        find: |stage| {
+            let moved = [1e-6, 1e6].map(|s| json!({"scale": [s, s, s], "translation": [1e5, 1e5, 1e5]}));
+            picture_difference(stage, &moved)
+        },
+    },
+    HardCase {
+        name: "triangles-of-a-millionth",
+        group: "geometry",
+        danger: "a triangle of 1e-6 beside one of 1: its area is rounding noise, rays slip through",
+        made: "a closed ball of radius 1e-6 in a scene of radius 1; rays from within, and from outside to its middle",
+        must: "no ray leaks out of it or misses it; those that do are counted",
+        naive: || {
+            format!(
+                "{} of 10 000 rays",
+                naive_leaks(&small_ball(), DVec3::new(0.4, 0.3, 0.2), 10_000)
+            )
+        },
+        measure: "count",
+        limit: 0.0,
+        find: |stage| {
+            let middle = DVec3::new(0.4, 0.3, 0.2);
+            let mut mesh = small_ball();
+            mesh.append(shapes::plane());
+            let geometry = Geometry::build(&model(mesh), false);
+            let middle = geometry.units_from_world(middle).as_vec3();
+            let directions = || (0..stage.rays() / 10).map(direction);
+            let outwards: Vec<_> = directions().map(|d| ray(middle, d)).collect();
+            let inwards: Vec<_> = directions().map(|d| ray(middle + d * 0.7, -d)).collect();
+            Ok(leaks(stage, &geometry, &outwards, 1e-5)? + leaks(stage, &geometry, &inwards, 0.700_01)?)
+        },
+    },
+    HardCase {
+        name: "needles",
+        group: "geometry",
+        danger: "triangles 1e5 times as long as wide: normals and areas cancel, rays slip through",
+        made: "a closed rod of 1 × 1e-5 × 1e-5, turned off the axes; rays from within",
+        must: "no ray leaks out; those that do are counted",
+        naive: || format!("{} of 10 000 rays", naive_leaks(&needle(), DVec3::ZERO, 10_000)),
+        measure: "count",
+        limit: 0.0,
+        find: |stage| {
+            let geometry = Geometry::build(&model(needle()), false);
+            let rays: Vec<_> = (0..stage.rays() / 10).map(|i| ray(Vec3::ZERO, direction(i))).collect();
+            leaks(stage, &geometry, &rays, f32::INFINITY)
+        },
+    },
+    HardCase {
+        name: "closed-mesh-leaks-nothing",
+        group: "geometry",
+        danger: "a ray at a shared edge or vertex is outside both triangles by rounding: black or bright specks",
+        made: "a sphere of 18 000 triangles; a million rays (100 000 in a quick run) from within to its edges and vertices",
+        must: "no ray leaks out; those that do are counted",
+        naive: || {
+            let sphere = shapes::sphere(24, 12);
+            let aims = edge_aims(&sphere, 10_000);
+            format!(
+                "{} of 10 000 rays",
+                naive_misses(&sphere, DVec3::new(0.1, 0.2, 0.05), &aims)
+            )
+        },
+        measure: "count",
+        limit: 0.0,
+        find: |stage| {
+            let mesh = shapes::sphere(96, 96);
+            let geometry = Geometry::build(&model(mesh), false);
+            let rays: Vec<_> = (0..stage.rays())
+                .map(|i| {
+                    let origin = direction(i) * 0.9 * unit(hash_bits(i ^ 0x55));
+                    ray(origin, edge_aim(&geometry, i) - origin)
+                })
+                .collect();
+            leaks(stage, &geometry, &rays, f32::INFINITY)
+        },
+    },
+    HardCase {
+        name: "rays-along-axes-and-in-planes",
+        group: "geometry",
+        danger: "a direction with zeros makes 0 · inf = NaN in the test against boxes; in a triangle's plane the distance \
+                 is 0/0",
+        made: "a cube of 6 × 8 × 8 squares; rays from places of its grid along axes (±0), diagonals, and in its planes",
+        must: "each leaves at the wall that it must; others are counted",
+        naive: || {
+            let (origin, inverse) = (0.5_f32, 1.0 / 0.0_f32);
+            format!("(0.5 − {origin}) · {inverse} = {}", (0.5 - origin) * inverse)
+        },
+        measure: "count",
+        limit: 0.0,
+        find: |stage| axis_rays(stage),
+    },
+    HardCase {
+        name: "seen-from-afar",
+        group: "geometry",
+        danger: "the places of boxes and triangles relative to a far eye round apart: triangles vanish from their boxes",
+        made: "a sphere seen from 30, 1e3 and 3e4 radii away; rays into its inner part, at edges and vertices too",
+        must: "no ray misses it; those that do are counted",
+        naive: || format!("relative places round by {:.0e} radii", 3e4 * f32::EPSILON),
+        measure: "count",
+        limit: 0.0,
+        find: |stage| {
+            let geometry = Geometry::build(&model(shapes::sphere(192, 96)), false);
+            let mut rays = Vec::new();
+            for i in 0..stage.rays() / 2 {
+                let away = direction(i);
+                let distance = [30.0, 1e3, 3e4][i as usize % 3];
+                // What the direction's own rounding moves the ray by stays below a tenth.
+                let aim = edge_aim(&geometry, i) * 0.85;
+                rays.push(ray(aim + away * distance, -away));
+            }
+            leaks(stage, &geometry, &rays, f32::INFINITY)
+        },
+    },
+    HardCase {
+        name: "rays-leave-their-surface",
+        group: "geometry",
+        danger: "a place on a surface is rounded to beside it: a ray from there meets the surface that it left",
+        made: "a convex mesh of radius 1, and one of 1e-3 at the edge of a scene of radius 1; rays leaving hits at all \
+               angles, outwards and inwards",
+        must: "outwards nothing is met, inwards the mesh is; others are counted",
+        naive: || {
+            let (place, offset) = (0.7_f32, 1e-8_f32);
+            format!("0.7 + 1e-8 is 0.7: {}", place + offset == place)
+        },
+        measure: "count",
+        limit: 0.0,
+        find: |stage| leaving_rays(stage),
+    },
+    HardCase {
+        name: "deep-hierarchy",
+        group: "geometry",
+        danger: "a stack of fixed size drops boxes that do not fit: parts of the model vanish",
+        made: "20 000 triangles in spirals, each 0.968 times the last, down to 1e-8; those above 3e-6 are aimed at",
+        must: "each triangle is found by a ray at its middle, or one before it; those that are not are counted",
+        naive: || "boxes beyond the 32nd level dropped".to_owned(),
+        measure: "count",
+        limit: 0.0,
+        find: |stage| {
+            let geometry = Geometry::build(&model(spirals()), false);
+            let rays: Vec<_> = (0..geometry.triangles.len())
+                .map(|triangle| geometry.corners(triangle).map(Vec3::from_array))
+                // The ray's own place rounds to 3e-8.
+                .filter(|[a, b, _]| a.distance(*b) > 3e-6)
+                .map(|[a, b, c]| {
+                    let middle = (a + b + c) / 3.0;
+                    let normal = (b - a).cross(c - a).normalize_or(Vec3::Y);
+                    ray(middle + normal * 0.5, -normal)
+                })
+                .collect();
+            leaks(stage, &geometry, &rays, 0.5001)
+        },
+    },
+    HardCase {
+        name: "zero-area-and-duplicates",
+        group: "geometry",
+        danger: "no normal, 0/0 in the weights; thousands of equal boxes take the builder for ever",
+        made: "a sphere whose triangles are there three times, with 1000 of no area; white furnace",
+        must: "the furnace is white: worst pixel",
+        naive: || format!("a normal of {}", (0.0_f32 / 0.0).to_string().to_lowercase()),
+        measure: "error",
+        limit: WHITE,
+        find: |stage| {
+            let mut mesh = shapes::sphere(48, 24);
+            let once = mesh.triangles.clone();
+            for i in 0..once.len() {
+                mesh.push_triangle(once[i], 0);
+                mesh.push_triangle([once[i][1], once[i][2], once[i][0]], 0);
+            }
+            for i in 0..1000_u32 {
+                let vertex = i % mesh.positions.len() as u32;
+                mesh.triangles.push([vertex, vertex, (vertex + 1) % 100]);
+                mesh.slots.push(0);
+            }
+            let model = Glb::of(&mesh, json!({})).write(stage, "duplicates.glb")?;
+            furnace(stage, model)
+        },
+    },
+    HardCase {
+        name: "broken-normals-and-tangents",
+        group: "geometry",
+        danger: "zero, opposite, endless or missing normals and tangents: NaN frames, black patches",
+        made: "a sphere whose normals are by turns right, 0, opposite, NaN and 1e30 long, its tangents 0, NaN or along the \
+               normal; anisotropy 1; white furnace",
+        must: "the furnace is white: worst pixel",
+        naive: || format!("a frame of {}", (Vec3::ZERO / 0.0).x.to_string().to_lowercase()),
+        measure: "error",
+        limit: WHITE,
+        find: |stage| {
+            let mut mesh = shapes::sphere(32, 16);
+            for (i, normal) in mesh.normals.iter_mut().enumerate() {
+                *normal = [*normal, Vec3::ZERO, -*normal, Vec3::NAN, *normal * 1e30][i % 5];
+            }
+            let along = |(i, n): (usize, &Vec3)| [Vec4::ZERO, Vec4::NAN, n.extend(1.0), Vec4::X][i % 4];
+            let tangents: Vec<Vec4> = mesh.normals.iter().enumerate().map(along).collect();
+            let mut glb = Glb::of(&mesh, json!({}));
+            glb.tangents(0, &tangents);
+            let model = glb.write(stage, "normals.glb")?;
+            furnace(stage, model)
+        },
+    },
+    HardCase {
+        name: "non-manifold-and-coplanar",
+        group: "geometry",
+        danger: "faces in one place hide each other by turns; a fan of faces on one edge has no inside",
+        made: "eight squares in one plane, turned against each other, and seven on one edge; white furnace",
+        must: "the furnace is white: worst pixel",
+        naive: || "rays that start inside the other face: dark".to_owned(),
+        measure: "error",
+        limit: WHITE,
+        find: |stage| {
+            let mut mesh = Mesh::default();
+            for i in 0..8 {
+                let (sin, cos) = (f64::from(i) * 0.4).sin_cos();
+                let (u, v) = (DVec3::new(cos, 0.0, sin), DVec3::new(-sin, 0.0, cos));
+                add_square(&mut mesh, [-u - v, u - v, u + v, v - u], i % 2 == 0);
+            }
+            for i in 0..7 {
+                let (sin, cos) = (f64::from(i) * 0.9 + 0.1).sin_cos();
+                let (edge, out) = (DVec3::Y, DVec3::new(cos, 0.0, sin));
+                let corners = [DVec3::ZERO, edge, edge + out, out];
+                add_square(&mut mesh, corners, i % 2 == 0);
+            }
+            let model = Glb::of(&mesh, json!({})).write(stage, "coplanar.glb")?;
+            furnace(stage, model)
+        },
+    },
+    HardCase {
+        name: "ten-glasses-in-each-other",
+        group: "geometry",
+        danger: "rays caught between surfaces that nearly touch, offsets into the next glass, paths of 64 bounces cut off",
+        made: "ten instances of a sphere of clear glass inside each other, each 0.95 of the last; white furnace",
+        must: "the mean of the picture is white",
+        naive: || "0.96²⁰ = 0.44 where reflected light is dropped".to_owned(),
+        measure: "error",
+        limit: WHITE,
+        find: |stage| {
+            let mut glb = Glb::default();
+            let ball = glb.mesh(&shapes::sphere(64, 32), true);
+            for i in 0..10 {
+                let scale = 0.95_f64.powi(i);
+                glb.node(ball, json!({"scale": [scale, scale, scale]}));
+            }
+            let model = glb.write(stage, "glasses.glb")?;
+            let mut document = document(model, EnvironmentSource::Furnace, 24, 32);
+            let glass = &mut document.materials[0];
+            glass.transmission_weight = 1.0;
+            glass.roughness = 0.0;
+            glass.transmission_roughness = 0.0;
+            glass.transmission_depth = 0.0;
+            glass.transmission_color = [1.0; 3];
+            let film = stage.film(&document)?;
+            let image = film.image();
+            let mean = image.pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / image.pixels.len() as f64;
+            Ok((mean - 1.0).abs() + film.dropped as f64)
+        },
+    },
+];
+
+impl Stage {
+    /// Rays to aim at what might leak.
+    fn rays(&self) -> u32 {
+        if self.thorough { 1_000_000 } else { 100_000 }
+    }
+}
+
+fn model(mesh: Mesh) -> Model {
+    Model {
+        mesh,
+        ..Model::default()
+    }
+}
+
+/// A number in [0, 1) from bits.
+fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 / 16_777_216.0
+}
+
+/// The i-th of many directions.
+fn direction(i: u32) -> Vec3 {
+    let (a, b) = (hash_bits(i), hash_bits(i ^ 0x9e37_79b9));
+    Vec3::from_array(crate::optics::warp::uniform_sphere([unit(a), unit(b)]).to_f32()).normalize()
+}
+
+fn ray(origin: Vec3, direction: Vec3) -> RayQuestion {
+    RayQuestion {
+        origin: origin.to_array(),
+        direction: direction.to_array(),
+        t_max: 1e30,
+    }
+}
+
+/// A vertex, or a place on an edge, of a triangle.
+fn edge_aim(geometry: &Geometry, i: u32) -> Vec3 {
+    let triangle = hash_bits(i ^ 0x1234) as usize % geometry.triangles.len();
+    let corners = geometry.corners(triangle).map(Vec3::from_array);
+    aim_at(corners, i)
+}
+
+fn aim_at(corners: [Vec3; 3], i: u32) -> Vec3 {
+    match i % 3 {
+        0 => corners[0],
+        1 => corners[0].lerp(corners[1], unit(hash_bits(i ^ 0x777))),
+        _ => corners[1].midpoint(corners[2]),
+    }
+}
+
+/// How many rays meet nothing, or nothing before `t_max`.
+fn leaks(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion], t_max: f32) -> Result<f64, HardError> {
+    let answers = trace(stage, geometry, rays)?;
+    let is_lost = |answer: &&RayAnswer| answer.triangle == NO_HIT || answer.t.is_nan() || answer.t > t_max;
+    Ok(answers.iter().filter(is_lost).count() as f64)
+}
+
+fn trace(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion]) -> Result<Vec<RayAnswer>, HardError> {
+    let scene = ProbeScene {
+        geometry: Some(geometry),
+        ..ProbeScene::default()
+    };
+    Ok(stage.prober.rays(&scene, rays)?)
+}
+
+/// The mean difference over the mean of pictures of the same model at other nodes.
+fn picture_difference(stage: &mut Stage, nodes: &[serde_json::Value]) -> Result<f64, HardError> {
+    let mesh = teapot::mesh(4);
+    let mut picture = |node: serde_json::Value, name: &str| {
+        let model = Glb::of(&mesh, node).write(stage, name)?;
+        let mut document = document(model, EnvironmentSource::Studio, 48, 8);
+        document.ground = true;
+        document.materials[0].roughness = 0.3;
+        stage.film(&document)
+    };
+    let still = picture(json!({}), "still.glb")?;
+    let mut worst = 0.0_f64;
+    for (i, node) in nodes.iter().enumerate() {
+        let moved = picture(node.clone(), &format!("moved-{i}.glb"))?;
+        worst = worst.max(difference(&still, &moved));
+    }
+    Ok(worst)
+}
+
+/// Σ|a − b| / Σ a over pixels; infinite where a picture has nothing or a sample was dropped.
+fn difference(a: &Film, b: &Film) -> f64 {
+    let (mut apart, mut size) = (0.0, 0.0);
+    for (a, b) in a.luminance().iter().zip(b.luminance()) {
+        apart += (a - b).abs();
+        size += a;
+    }
+    let value = apart / size;
+    if value.is_nan() || b.dropped > 0 {
+        f64::INFINITY
+    } else {
+        value
+    }
+}
+
+/// How far the worst pixel of a picture in the white furnace is from white, plus the samples dropped.
+fn furnace(stage: &mut Stage, model: ModelSource) -> Result<f64, HardError> {
+    let mut document: Document = document(model, EnvironmentSource::Furnace, 40, 4);
+    let material = &mut document.materials[0];
+    material.fresnel = Fresnel::None;
+    material.horizon = Horizon::Mirror;
+    material.roughness = 0.5;
+    material.anisotropy = 1.0;
+    let film = stage.film(&document)?;
+    let off = |pixel: &[f32; 4]| f64::from((pixel[1] - 1.0).abs());
+    Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped as f64)
+}
+
+/// A square of two triangles with flat normals, facing one way or the other.
+fn add_square(mesh: &mut Mesh, mut corners: [DVec3; 4], is_turned: bool) {
+    if is_turned {
+        corners.reverse();
+    }
+    let normal = plane_normal([corners[0], corners[1], corners[2]]).as_vec3();
+    let [a, b, c, d] = corners.map(|corner| mesh.push_vertex(corner, normal, Default::default(), Vec4::X));
+    mesh.push_triangle([a, b, c], 0);
+    mesh.push_triangle([a, c, d], 0);
+}
+
+/// A cube from −half to half, each face in `cells` × `cells` squares.
+pub(super) fn cube(half: DVec3, cells: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let [u, v] = [axes[(axis + 1) % 3], axes[(axis + 2) % 3]];
+            let place = |i: u32| 2.0 * f64::from(i) / f64::from(cells) - 1.0;
+            for (i, j) in (0..cells).flat_map(|i| (0..cells).map(move |j| (i, j))) {
+                let corner = |i: u32, j: u32| (axes[axis] * side + u * place(i) + v * place(j)) * half;
+                let corners = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+                add_square(&mut mesh, corners, side < 0.0);
+            }
+        }
+    }
+    mesh
+}
+
+fn needle() -> Mesh {
+    let mut mesh = cube(DVec3::new(1.0, 1e-5, 1e-5), 1);
+    let turn = glam::DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.7, 0.5);
+    mesh.positions.iter_mut().for_each(|place| *place = turn * *place);
+    mesh
+}
+
+/// A ball of radius 1e-6.
+fn small_ball() -> Mesh {
+    let mut mesh = shapes::sphere(24, 12);
+    for place in &mut mesh.positions {
+        *place = *place * 1e-6 + DVec3::new(0.4, 0.3, 0.2);
+    }
+    mesh
+}
+
+/// Triangles along spirals, each smaller than the one before by a factor.
+fn spirals() -> Mesh {
+    let mut mesh = Mesh::default();
+    for spiral in 0..40 {
+        let turn = glam::DQuat::from_euler(
+            glam::EulerRot::XYZ,
+            f64::from(spiral) * 0.7,
+            f64::from(spiral) * 1.3,
+            0.2,
+        );
+        let mut size = 1.0;
+        for step in 0..500 {
+            let (sin, cos) = (f64::from(step) * 0.3).sin_cos();
+            let place = turn * (DVec3::new(cos, sin, 0.3) * size);
+            let (u, v) = (turn * DVec3::X * (size * 0.1), turn * DVec3::Y * (size * 0.1));
+            let normal = (turn * DVec3::Z).as_vec3();
+            let corners = [place, place + u, place + v]
+                .map(|corner| mesh.push_vertex(corner, normal, Default::default(), Vec4::X));
+            mesh.push_triangle(corners, 0);
+            size *= 0.968;
+        }
+    }
+    mesh
+}
+
+/// Rays of [`CASES`]' case of axes and planes: how many do not leave the cube where they must.
+fn axis_rays(stage: &Stage) -> Result<f64, HardError> {
+    let geometry = Geometry::build(&model(cube(DVec3::ONE, 8)), false);
+    let wall = (1.0 / geometry.world_units_per_unit) as f32;
+    let mut rays = Vec::new();
+    let steps = [-0.75_f32, -0.5, 0.0, 0.25, 0.5];
+    for x in steps {
+        for y in steps {
+            for z in steps {
+                let origin = Vec3::new(x, y, z) * wall;
+                for axis in 0..3 {
+                    for (size, zero) in [(1.0, 0.0), (-1.0, 0.0), (1.0, -0.0), (-1.0, -0.0)] {
+                        let mut along = [zero; 3];
+                        along[axis] = size;
+                        rays.push(ray(origin, Vec3::from_array(along)));
+                        // In the planes of the walls' own squares, along their diagonals.
+                        along[(axis + 1) % 3] = size;
+                        rays.push(ray(origin, Vec3::from_array(along)));
+                    }
+                }
+                rays.push(ray(origin, Vec3::ONE));
+                rays.push(ray(origin, -Vec3::ONE));
+            }
+        }
+    }
+    let answers = trace(stage, &geometry, &rays)?;
+    let is_wrong = |(ray, answer): &(&RayQuestion, &RayAnswer)| {
+        let exits = (0..3).filter(|&i| ray.direction[i] != 0.0);
+        let exits = exits.map(|i| (wall * ray.direction[i].signum() - ray.origin[i]) / ray.direction[i]);
+        let exit = exits.fold(f32::INFINITY, f32::min);
+        answer.triangle == NO_HIT || answer.t.is_nan() || (answer.t - exit).abs() > 1e-6
+    };
+    Ok(rays.iter().zip(&answers).filter(is_wrong).count() as f64)
+}
+
+/// Rays that leave a convex mesh outwards and inwards: how many meet something, and nothing.
+fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
+    let mut wrong = 0.0;
+    for radius in [1.0, 1e-3] {
+        let mut mesh = shapes::sphere(48, 24);
+        for place in &mut mesh.positions {
+            *place = *place * radius + DVec3::new(0.6, 0.5, 0.3) * f64::from(u8::from(radius < 1.0));
+        }
+        if radius < 1.0 {
+            // Far off: what is met there does not count.
+            add_square(
+                &mut mesh,
+                [[-1.0, -1.0], [-0.9, -1.0], [-0.9, -0.9], [-1.0, -0.9]].map(|[x, z]| DVec3::new(x, -1.0, z)),
+                false,
+            );
+        }
+        let geometry = Geometry::build(&model(mesh), false);
+        let materials = [Default::default(), Default::default()];
+        let (materials, _) = crate::document::compile(&materials);
+        let textures = Textures::default();
+        let mut rays = Vec::new();
+        let mut is_outward = Vec::new();
+        for i in 0..stage.rays() / 4 {
+            let triangle = hash_bits(i ^ 0x4321) % geometry.triangles.len() as u32;
+            let corners = geometry.corners(triangle as usize).map(Vec3::from_array);
+            if radius < 1.0 && corners[0].distance(corners[1]) > 0.05 {
+                continue;
+            }
+            let normal = (corners[1] - corners[0])
+                .cross(corners[2] - corners[0])
+                .normalize_or(Vec3::Y);
+            // Half of the directions graze.
+            let flat = if i % 2 == 0 { 1.0 } else { 1e-3 };
+            let along = direction(i);
+            let height = normal.dot(along);
+            let out = (along - normal * height + normal * height.abs() * flat).normalize_or(normal);
+            let (u, v) = (unit(hash_bits(i ^ 1)), unit(hash_bits(i ^ 2)));
+            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let hit = Hit { t: 1.0, triangle, u, v };
+            let eye = crate::optics::vector::Vec3::from_f32((-normal).to_array());
+            let point = surface_at::<f32>(&geometry, &materials, &textures, &hit, eye);
+            for direction in [out, -out] {
+                let wi = crate::optics::vector::Vec3::from_f32(direction.to_array());
+                rays.push(ray(Vec3::from_array(point.ray_origin(wi, true).to_f32()), direction));
+                is_outward.push(direction == out);
+            }
+        }
+        let answers = trace(stage, &geometry, &rays)?;
+        let is_met = |answer: &RayAnswer| answer.triangle != NO_HIT && (radius == 1.0 || answer.t < 0.1);
+        let bad = |(answer, outward): &(&RayAnswer, &bool)| is_met(answer) == **outward;
+        wrong += answers.iter().zip(&is_outward).filter(bad).count() as f64;
+    }
+    Ok(wrong)
+}
+
+/// Places on the edges of a mesh.
+fn edge_aims(mesh: &Mesh, count: u32) -> Vec<Vec3> {
+    let aim = |i: u32| {
+        let triangle = hash_bits(i ^ 0x1234) as usize % mesh.triangles.len();
+        aim_at(mesh.corners(triangle).map(|corner| corner.as_vec3()), i)
+    };
+    (0..count).map(aim).collect()
+}
+
+/// How many rays from a place in a closed mesh leak under the textbook test of Möller and Trumbore in f32.
+fn naive_leaks(mesh: &Mesh, origin: DVec3, count: u32) -> usize {
+    let aims: Vec<Vec3> = (0..count).map(|i| origin.as_vec3() + direction(i)).collect();
+    naive_misses(mesh, origin, &aims)
+}
+
+fn naive_misses(mesh: &Mesh, origin: DVec3, aims: &[Vec3]) -> usize {
+    let origin = origin.as_vec3();
+    let triangles: Vec<_> = (0..mesh.triangles.len())
+        .map(|triangle| mesh.corners(triangle).map(|corner| corner.as_vec3()))
+        .collect();
+    let is_met = |direction: Vec3, [a, b, c]: [Vec3; 3]| {
+        let (to_b, to_c) = (b - a, c - a);
+        let across = direction.cross(to_c);
+        let determinant = to_b.dot(across);
+        // The guard against parallel planes as it is usually copied.
+        if determinant.abs() < 1e-7 {
+            return false;
+        }
+        let from_a = origin - a;
+        let u = from_a.dot(across) / determinant;
+        let other = from_a.cross(to_b);
+        let v = direction.dot(other) / determinant;
+        u >= 0.0 && v >= 0.0 && u + v <= 1.0 && to_c.dot(other) / determinant > 0.0
+    };
+    let misses = |aim: &&Vec3| !triangles.iter().any(|corners| is_met(**aim - origin, *corners));
+    aims.iter().filter(misses).count()
+}

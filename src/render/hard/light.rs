@@ -1,0 +1,207 @@
+//! Light at the ends of what files hold: a sun beside a dark sky, black, one pixel, poles and seam, what is no radiance.
+
+use std::f64::consts::{PI, TAU};
+
+use super::stage::document;
+use super::{HardCase, HardError, Stage};
+use crate::document::{Background, Document, MaterialSettings};
+use crate::optics::random::path_state;
+use crate::optics::vector::Vec3;
+use crate::scene::ModelSource;
+use crate::scene::camera::pixel_ray;
+use crate::scene::environment::{Environment, EnvironmentSource, environment_direction, environment_radiance};
+
+pub(super) const CASES: &[HardCase] = &[
+    HardCase {
+        name: "sun-in-one-pixel",
+        group: "light",
+        danger: "a sun of 1e6 in one pixel beside a sky of 1e-2: found once in 10 000 samples, a speck 1e4 times too bright",
+        made: "a white plane under a map of 64 × 32 with one such pixel, 45° up",
+        must: "the mean radiance is the integral in f64: difference in standard deviations, and 1e-4 for roundings",
+        naive: || {
+            // Sampling the lobe alone: the variance of a texel of 0.005 steradians that is 1e8 times as bright.
+            let share = 0.0068_f64 * 0.7 / PI;
+            format!(
+                "noise of {:.0} times the mean at 64 samples",
+                ((1.0 - share) / share / 64.0).sqrt()
+            )
+        },
+        measure: "sigma",
+        limit: 4.0,
+        find: |stage| {
+            let sky = |x, y| if (x, y) == (40, 8) { [1e6; 3] } else { [1e-2; 3] };
+            let light = stage.environment("sun.exr", [64, 32], sky)?;
+            let expected = irradiance(&stage.load_environment(&light)?) / PI;
+            let film = stage.film(&plane_from_above(light, 64))?;
+            let pixels = film.luminance();
+            let mean = pixels.iter().sum::<f64>() / pixels.len() as f64;
+            let variance = film.variance_of_mean().iter().sum::<f64>() / (pixels.len() as f64).powi(2);
+            Ok((mean - expected).abs() / (variance + (1e-4 * expected).powi(2)).sqrt() + film.dropped as f64)
+        },
+    },
+    HardCase {
+        name: "black-environment",
+        group: "light",
+        danger: "a density of 0/0: NaN for every sample of the light",
+        made: "a sphere under a map of zeros",
+        must: "black, nothing dropped: largest pixel and samples dropped",
+        naive: || format!("{}", (0.0_f32 / 0.0).to_string().to_lowercase()),
+        measure: "error",
+        limit: 0.0,
+        find: |stage| {
+            let light = stage.environment("black.exr", [16, 8], |_, _| [0.0; 3])?;
+            let film = stage.film(&document(ModelSource::Sphere, light, 16, 4))?;
+            let largest = film.color.iter().map(|c| c[0].abs().max(c[1].abs()).max(c[2].abs()));
+            Ok(largest.fold(0.0, f64::max) + film.dropped as f64)
+        },
+    },
+    HardCase {
+        name: "one-pixel-environment",
+        group: "light",
+        danger: "neighbours of the only texel lie outside: the look-up reads beyond the map",
+        made: "a white furnace of 1 × 1 texels, coloured; a sphere that reflects all",
+        must: "that colour everywhere: worst relative error of a pixel",
+        naive: || "reads texel −1".to_owned(),
+        measure: "error",
+        limit: 1e-4,
+        find: |stage| {
+            let color = [0.5, 0.25, 0.125];
+            let light = stage.environment("one.exr", [1, 1], |_, _| color)?;
+            let mut document = document(ModelSource::Sphere, light, 16, 4);
+            document.materials[0].fresnel = crate::optics::fresnel::Fresnel::None;
+            let film = stage.film(&document)?;
+            let off = |pixel: &[f32; 4]| {
+                (0..3)
+                    .map(|i| f64::from((pixel[i] / color[i] - 1.0).abs()))
+                    .fold(0.0, f64::max)
+            };
+            Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped as f64)
+        },
+    },
+    HardCase {
+        name: "poles-and-seam",
+        group: "light",
+        danger: "at the poles the azimuth is atan2(0, 0), at the seam −1e-9 turns round to a whole one: beyond the map",
+        made: "a map of 64 × 32 random texels seen straight up, straight down and along the seam",
+        must: "each pixel is the look-up in f64 in the same direction: worst relative error",
+        naive: || format!("column {} of 64", (64.0 * (1.0 + -1e-9_f32)) as u32),
+        measure: "error",
+        limit: 1e-3,
+        find: |stage| {
+            let noise = |x: u32, y: u32| {
+                let bits = crate::optics::random::hash_bits(x + 64 * y);
+                [0, 10, 20].map(|shift| 0.1 + ((bits >> shift) & 0x3ff) as f32 / 1023.0)
+            };
+            let light = stage.environment("noise.exr", [64, 32], noise)?;
+            let environment = stage.load_environment(&light)?;
+            let views = [
+                ([0.0, 3.0, 0.0], [0.0, 4.0, 0.0]),
+                ([0.0, -3.0, 0.0], [0.0, -4.0, 0.0]),
+                ([0.0, 3.0, 0.0], [0.0, 3.0, -1.0]),
+            ];
+            let mut worst = 0.0_f64;
+            for (position, target) in views {
+                let mut document = document(ModelSource::Plane, light.clone(), 33, 1);
+                (document.camera.position, document.camera.target) = (Some(position), Some(target));
+                worst = worst.max(background_error(stage, &document, &environment)?);
+            }
+            Ok(worst)
+        },
+    },
+    HardCase {
+        name: "no-radiance-in-a-file",
+        group: "light",
+        danger: "NaN, infinity or a negative number in a file spreads over everything that it lights",
+        made: "an .exr with 3 values that are NaN, 2 infinite and 4 negative; a sphere under it",
+        must: "each is replaced and told of, the picture is clean: what is not told of or dropped is counted",
+        naive: || format!("a mean of {}", (f32::NAN + 1.0).to_string().to_lowercase()),
+        measure: "count",
+        limit: 0.0,
+        find: |stage| {
+            let odd = |x: u32, y: u32| match (x, y) {
+                (0..3, 0) => [f32::NAN, 1.0, 1.0],
+                (3..5, 3) => [1.0, f32::INFINITY, 1.0],
+                (5..9, 5) => [1.0, 1.0, -2.0],
+                _ => [1.0; 3],
+            };
+            let light = stage.environment("odd.exr", [16, 8], odd)?;
+            let warnings = stage.load_environment(&light)?.warnings;
+            let told = ["3 not-a-number", "2 infinite", "4 negative"];
+            let untold = told
+                .iter()
+                .filter(|words| !warnings.iter().any(|line| line.contains(*words)));
+            let film = stage.film(&document(ModelSource::Sphere, light, 16, 8))?;
+            let unsound = film.color.iter().flatten().filter(|x| !(x.is_finite() && **x >= 0.0));
+            Ok((untold.count() + unsound.count()) as f64 + film.dropped as f64)
+        },
+    },
+    HardCase {
+        name: "radiance-above-half",
+        group: "light",
+        danger: "half floats end at 65 504: brighter light is infinite, and infinity times 0 is NaN",
+        made: "a map of 1e6 everywhere, seen itself and in a sphere that reflects all",
+        must: "1e6 everywhere: worst relative error of a pixel",
+        naive: || format!("{} as a half float", half::f16::from_f32(1e6)),
+        measure: "error",
+        limit: 1e-4,
+        find: |stage| {
+            let light = stage.environment("bright.exr", [16, 8], |_, _| [1e6; 3])?;
+            let mut document = document(ModelSource::Sphere, light, 16, 4);
+            document.materials[0].fresnel = crate::optics::fresnel::Fresnel::None;
+            let film = stage.film(&document)?;
+            let off = |pixel: &[f32; 4]| f64::from((pixel[1] / 1e6 - 1.0).abs());
+            Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped as f64)
+        },
+    },
+];
+
+/// A white Lambertian plane that fills the picture.
+fn plane_from_above(light: EnvironmentSource, samples: u32) -> Document {
+    let mut document = document(ModelSource::Plane, light, 16, samples);
+    document.materials = vec![MaterialSettings::diffuse("white", [1.0; 3])];
+    (document.camera.pitch_deg, document.camera.distance) = (90.0, Some(1.5));
+    document
+}
+
+/// ∫ radiance × cosine to +Y over the upper hemisphere, luminance, by midpoints of the bilinear map.
+fn irradiance(environment: &Environment) -> f64 {
+    const FINER: u32 = 16;
+    let (columns, rows) = (environment.width * FINER, environment.height * FINER / 2);
+    let mut sum = 0.0;
+    for row in 0..rows {
+        let v = (f64::from(row) + 0.5) / f64::from(2 * rows);
+        let weight = (PI * v).sin() * (PI * v).cos() * TAU / f64::from(columns) * PI / f64::from(2 * rows);
+        for column in 0..columns {
+            let u = (f64::from(column) + 0.5) / f64::from(columns);
+            let radiance: Vec3<f64> = environment_radiance(environment, environment_direction([u, v]));
+            sum += weight * radiance.luminance();
+        }
+    }
+    sum
+}
+
+/// The worst relative error of a picture of nothing but the environment, against the look-up in f64 along the very rays.
+fn background_error(stage: &mut Stage, document: &Document, environment: &Environment) -> Result<f64, HardError> {
+    let document = Document {
+        lighting: crate::document::Lighting {
+            background: Background::Environment,
+            ..document.lighting.clone()
+        },
+        ..document.clone()
+    };
+    let film = stage.film(&document)?;
+    let Some(settings) = stage.session().job().map(|job| job.settings.clone()) else {
+        return Ok(f64::INFINITY);
+    };
+    let mut worst = 0.0_f64;
+    for (i, pixel) in film.image().pixels.iter().enumerate() {
+        let (x, y) = (i as u32 % film.width, i as u32 / film.width);
+        let state = path_state(x, y, settings.seed, 0, settings.sequence);
+        let [_, direction] = pixel_ray(&settings.camera, [x, y], settings.image_size, state);
+        let expected = environment_radiance(environment, direction).to_f64();
+        for (found, expected) in pixel.iter().zip(expected) {
+            worst = worst.max((f64::from(*found) / expected - 1.0).abs());
+        }
+    }
+    Ok(worst + film.dropped as f64)
+}

@@ -1,0 +1,152 @@
+//! Hard cases: places where naive code breaks, as data. Each says what goes wrong, how it is made and what must hold, and
+//! is run on the user's own machine by `glossmith check --hard`, in the editor and by the tests.
+
+mod fresnel;
+mod geometry;
+mod glb;
+mod light;
+mod lobe;
+mod precision;
+mod stage;
+mod sums;
+
+use std::fmt::Write as _;
+use std::time::Instant;
+
+use super::check::Check;
+use super::engine::{EngineChoice, EngineInfo};
+use crate::analysis::film::Image;
+pub use stage::{HardError, Stage};
+
+/// A place where naive code breaks.
+#[derive(Clone, Copy)]
+pub struct HardCase {
+    /// Its name on the command line and in tables.
+    pub name: &'static str,
+    /// `lobe`, `fresnel`, `geometry`, `light` or `sums`.
+    pub group: &'static str,
+    /// What goes wrong in naive code.
+    pub danger: &'static str,
+    /// How the case is made.
+    pub made: &'static str,
+    /// What must hold.
+    pub must: &'static str,
+    /// What the naive form gives, computed where that is cheap.
+    pub naive: fn() -> String,
+    /// What is measured, as in [`Check::measure`].
+    pub measure: &'static str,
+    /// What the measure is held against.
+    pub limit: f64,
+    /// Measures.
+    pub find: fn(&mut Stage) -> Result<f64, HardError>,
+}
+
+/// Every case, group by group.
+pub fn catalogue() -> impl Iterator<Item = &'static HardCase> {
+    [
+        lobe::CASES,
+        precision::CASES,
+        fresnel::CASES,
+        geometry::CASES,
+        light::CASES,
+        sums::CASES,
+    ]
+    .into_iter()
+    .flatten()
+}
+
+impl HardCase {
+    /// Runs the case on an engine.
+    ///
+    /// # Errors
+    /// Where the engine fails or a file of the case can't be written.
+    pub fn run(&'static self, stage: &mut Stage) -> Result<HardRow, HardError> {
+        let begun = Instant::now();
+        stage.take_picture();
+        let value = (self.find)(stage)?;
+        Ok(HardRow {
+            case: self,
+            check: Check::new(self.group, self.name, self.measure, value, self.limit),
+            seconds: begun.elapsed().as_secs_f64(),
+            picture: stage.take_picture(),
+        })
+    }
+}
+
+/// What a case gave.
+#[derive(Clone)]
+pub struct HardRow {
+    /// The case.
+    pub case: &'static HardCase,
+    /// The verdict.
+    pub check: Check,
+    /// How long it took.
+    pub seconds: f64,
+    /// What it rendered, where it is about pictures.
+    pub picture: Option<Image>,
+}
+
+/// Which cases to run, and where.
+#[derive(Clone, Debug)]
+pub struct HardOptions {
+    /// The engine to check.
+    pub engine: EngineChoice,
+    /// A million pairs a lobe and ten million samples, not a part of them.
+    pub thorough: bool,
+    /// Only cases whose names contain this.
+    pub only: String,
+}
+
+/// Runs the catalogue; `progress` is told each case's name before it starts.
+///
+/// # Errors
+/// Where the engine can't be opened or fails, or a file of a case can't be written.
+pub fn run(options: &HardOptions, progress: impl Fn(&str)) -> Result<(EngineInfo, Vec<HardRow>), HardError> {
+    let mut stage = Stage::open(options.engine, options.thorough)?;
+    let mut rows = Vec::new();
+    for case in catalogue().filter(|case| case.name.contains(&options.only)) {
+        progress(case.name);
+        rows.push(case.run(&mut stage)?);
+    }
+    Ok((stage.engine().clone(), rows))
+}
+
+/// The rows of several engines as a table in Markdown, engines side by side. All have the same cases.
+pub fn markdown(engines: &[(EngineInfo, Vec<HardRow>)]) -> String {
+    let mut text =
+        String::from("| case | what goes wrong in naive code | how it is made, what must hold | naive | limit |");
+    for (engine, _) in engines {
+        let _ = write!(text, " {engine} |");
+    }
+    text.push_str("\n| --- | --- | --- | --- | --- |");
+    text.push_str(&" --- |".repeat(engines.len()));
+    text.push('\n');
+    let Some((_, first)) = engines.first() else {
+        return text;
+    };
+    for (index, row) in first.iter().enumerate() {
+        let case = row.case;
+        let _ = write!(
+            text,
+            "| {}: {} | {} | {}: {} | {} | {} {:.0e} |",
+            case.group,
+            case.name,
+            case.danger,
+            case.made,
+            case.must,
+            (case.naive)(),
+            case.measure,
+            case.limit
+        );
+        for check in engines
+            .iter()
+            .filter_map(|(_, rows)| rows.get(index))
+            .map(|row| &row.check)
+        {
+            let verdict = if check.passed { "" } else { "**fails** " };
+            let _ = write!(text, " {verdict}{:.2e} |", check.value);
+        }
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,175 @@
+//! f32 against f64 over random pairs of a document's material and a ray, a case a lobe.
+
+use rayon::prelude::*;
+
+use super::{HardCase, HardError, Stage};
+use crate::analysis::probe::{MaterialQuestion, ProbeScene};
+use crate::cpu::probe::probe_material;
+use crate::document::{Kind, MaterialSettings, PARAMETERS, Value, compile};
+use crate::optics::frame::{frame_from_normal, world_from_local};
+use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_sample};
+use crate::optics::random::hash_bits;
+use crate::optics::vector::{Vec3, vec3};
+use crate::optics::warp::uniform_sphere;
+use crate::scene::surface::bent_normal;
+
+/// Pairs a lobe: of a thorough run and of a quick one.
+const PAIRS: [usize; 2] = [1_000_000, 10_000];
+/// Documents that the pairs are spread over.
+const DOCUMENTS: [usize; 2] = [250, 10];
+/// Values below this part of a white Lambertian's count as if they were that large.
+const SMALL: f64 = 1e-3 / std::f64::consts::PI;
+/// A singularity is where one rounding of the direction changes the value, in f64, by more than this part.
+const SINGULAR: f64 = 2e-5;
+/// Densities of the light's sample, per steradian: the weights of the competing strategies are tried, too.
+const LIGHT_DENSITIES: [f32; 3] = [0.08, 10.0, 1e6];
+
+macro_rules! cases {
+    ($($lobe:ident $name:literal,)*) => {
+        pub(super) const CASES: &[HardCase] = &[$(HardCase {
+            name: concat!("f32-against-f64-", $name),
+            group: "lobe",
+            danger: "terms that cancel lose the digits that f32 has to lose",
+            made: "a million random pairs (10 000 in a quick run) of material, any value of every parameter, and of \
+                   view, normals and light; where one rounding of the light's direction changes the f64 value by more \
+                   than 2e-5 is a singularity, and left out",
+            must: "largest error of the material's value, relative to it (or to 1e-3 of white), against f64",
+            naive: || "–".to_owned(),
+            measure: "error",
+            limit: 1e-3,
+            find: |stage| largest_error(stage, Lobe::$lobe),
+        },)*];
+    };
+}
+
+cases! {
+    Geometric "geometric",
+    Ggx "ggx",
+    Ggx2018 "ggx-2018",
+    GgxNdf "ggx-ndf",
+    BlinnPhong "blinn-phong",
+    Phong "phong",
+    Lambert "lambert",
+}
+
+/// Numbers that depend on their place only.
+struct Numbers(u32);
+
+impl Numbers {
+    fn bits(&mut self) -> u32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9);
+        hash_bits(hash_bits(self.0) ^ 0x5bd1_e995)
+    }
+    /// In [0, 1).
+    fn unit(&mut self) -> f32 {
+        (self.bits() >> 8) as f32 / 16_777_216.0
+    }
+    fn below(&mut self, count: usize) -> usize {
+        self.bits() as usize % count.max(1)
+    }
+    fn direction(&mut self) -> Vec3<f32> {
+        uniform_sphere([self.unit(), self.unit()]).normalize()
+    }
+}
+
+/// Any value of every parameter, one in four of a number's at an end of its range.
+fn random_material(numbers: &mut Numbers) -> MaterialSettings {
+    let mut material = MaterialSettings::default();
+    for parameter in PARAMETERS.iter() {
+        let mut within = |[low, high]: [f32; 2]| match numbers.below(8) {
+            0 => low,
+            1 => high,
+            _ => low + (high - low) * numbers.unit(),
+        };
+        let value = match &parameter.kind {
+            Kind::Number { range, .. } => Value::Number(within(*range)),
+            Kind::Color => Value::Color([(); 3].map(|()| within([0.0, 1.0]))),
+            Kind::Triple { range } => Value::Triple([(); 3].map(|()| within(*range))),
+            Kind::Choice(all) => Value::Choice(all[numbers.below(all.len())].name),
+            Kind::Toggle => Value::Toggle(numbers.below(2) == 0),
+            Kind::Curve => continue,
+        };
+        // A value out of its range is refused; these are not.
+        let _ = parameter.set(&mut material, value);
+    }
+    material
+}
+
+/// A view of a surface, and a direction of the light: drawn from the lobe every other time.
+fn random_question(numbers: &mut Numbers, material: u32, shape: &LobeShape<'_, f32>) -> MaterialQuestion {
+    let normal = numbers.direction();
+    let around = frame_from_normal(normal);
+    let height = numbers.unit().max(1e-3);
+    let across = (1.0 - height * height).sqrt();
+    let phi_rad = std::f32::consts::TAU * numbers.unit();
+    let wo = world_from_local(&around, vec3(across * phi_rad.cos(), across * phi_rad.sin(), height)).normalize();
+    let leaning = normal + numbers.direction() * (0.5 * numbers.unit());
+    let shading = bent_normal(leaning.normalize(), wo);
+    let wi = match numbers.below(2) {
+        0 => numbers.direction(),
+        _ => {
+            let xi = [(); 3].map(|()| numbers.unit());
+            lobe_sample(shape, &frame_from_normal(shading), normal, wo, xi).wi
+        }
+    };
+    MaterialQuestion {
+        material,
+        is_inside: numbers.below(2) as u32,
+        shading,
+        normal,
+        wo,
+        wi,
+        light_density: LIGHT_DENSITIES[numbers.below(3)],
+    }
+}
+
+fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
+    let which = usize::from(!stage.thorough);
+    let (pairs, documents) = (PAIRS[which], DOCUMENTS[which]);
+    let settings: Vec<MaterialSettings> = (0..documents)
+        .map(|document| {
+            let mut numbers = Numbers((document as u32 + 1) * 0x1_0001);
+            MaterialSettings {
+                lobe,
+                ..random_material(&mut numbers)
+            }
+        })
+        .collect();
+    let (materials, tables) = compile(&settings);
+    let question = |pair: usize| {
+        let mut numbers = Numbers(hash_bits(pair as u32) ^ lobe as u32);
+        let material = pair % documents;
+        let shape = LobeShape {
+            horizon: Horizon::Mirror,
+            ..materials[material].shape(&tables)
+        };
+        random_question(&mut numbers, material as u32, &shape)
+    };
+    let questions: Vec<MaterialQuestion> = (0..pairs).into_par_iter().map(question).collect();
+    let scene = ProbeScene {
+        tables: &tables,
+        materials: &materials,
+        geometry: None,
+    };
+    let answers = stage.prober.materials(&scene, &questions)?;
+    let errors: Vec<Option<f64>> = questions
+        .par_iter()
+        .zip(&answers)
+        .map(|(question, answer)| error(&scene, question, answer))
+        .collect();
+    let regular = errors.iter().flatten().count();
+    log::debug!("{}: {} of {pairs} pairs are singular", lobe.name(), pairs - regular);
+    Ok(errors.into_iter().flatten().fold(0.0, f64::max))
+}
+
+/// The relative error of an answer; nothing at a singularity.
+fn error(scene: &ProbeScene<'_>, question: &MaterialQuestion, answer: &Vec3<f32>) -> Option<f64> {
+    let oracle = |moved: [f64; 2]| probe_material::<f64>(scene, question, moved);
+    let right = oracle([0.0; 2]);
+    let size = right.max_component().max(SMALL);
+    let off = |other: Vec3<f64>| (other - right).map(f64::abs).max_component() / size;
+    let moves = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+    let is_regular = moves.into_iter().all(|moved| off(oracle(moved)) < SINGULAR);
+    let error = off(Vec3::from_f64(answer.to_f64()));
+    is_regular.then_some(if error.is_nan() { f64::INFINITY } else { error })
+}

@@ -1,0 +1,191 @@
+//! What cases run on: an engine, asked for pictures and for single functions, and a folder for files.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
+use std::{fs, io};
+
+use crate::analysis::film::{Film, Image};
+use crate::document::{Document, PixelFilter};
+use crate::gpu::GpuError;
+use crate::optics::random::Sequence;
+use crate::render::engine::{EngineChoice, EngineInfo};
+use crate::render::output::{self, OutputError};
+use crate::render::probe::Prober;
+use crate::render::session::{Session, SessionError};
+use crate::scene::environment::EnvironmentSource;
+use crate::scene::{ModelSource, environment};
+
+/// Why a case can't be run.
+#[derive(Debug, thiserror::Error)]
+pub enum HardError {
+    /// The engine, or what it was given.
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    /// A picture for a case could not be written.
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    /// A file or folder for a case could not be written.
+    #[error("{}: cannot be written: {source}; make room in the system's temporary folder", path.display())]
+    Folder {
+        /// Which.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+}
+
+impl From<GpuError> for HardError {
+    fn from(error: GpuError) -> Self {
+        Self::Session(error.into())
+    }
+}
+
+/// An engine, and a folder that goes with it.
+pub struct Stage {
+    /// More samples and rays.
+    pub thorough: bool,
+    /// Single functions of the engine.
+    pub prober: Prober,
+    /// The engine's choice, for clouds of samples.
+    pub choice: EngineChoice,
+    session: Session,
+    folder: Folder,
+    /// The last picture that was rendered.
+    picture: Option<Image>,
+}
+
+impl Stage {
+    /// Opens an engine. Where that falls to the processor, single functions do, too.
+    ///
+    /// # Errors
+    /// Where a GPU was asked for and fails, or there is no temporary folder.
+    pub fn open(choice: EngineChoice, thorough: bool) -> Result<Self, HardError> {
+        let session = Session::open(choice)?;
+        let choice = match session.engine().kind {
+            "gpu" => EngineChoice::Gpu,
+            _ => EngineChoice::Cpu,
+        };
+        Ok(Self {
+            thorough,
+            prober: Prober::open(choice)?,
+            choice,
+            session,
+            folder: Folder::new()?,
+            picture: None,
+        })
+    }
+
+    /// The last picture that was rendered since this was asked for.
+    pub fn take_picture(&mut self) -> Option<Image> {
+        self.picture.take()
+    }
+
+    /// What renders.
+    pub fn engine(&self) -> &EngineInfo {
+        self.session.engine()
+    }
+
+    /// The session, for what a film does not tell.
+    pub fn session(&mut self) -> &mut Session {
+        &mut self.session
+    }
+
+    /// Renders a document to its end.
+    ///
+    /// # Errors
+    /// A model or environment that can't be loaded, or an engine that fails.
+    pub fn film(&mut self, document: &Document) -> Result<Film, HardError> {
+        self.session.forget();
+        self.session.submit(document)?;
+        while !self.session.step(Duration::from_secs(1))?.is_done {}
+        let film = self.session.film()?.clone();
+        self.picture = Some(film.image());
+        Ok(film)
+    }
+
+    /// Where a case's file of this name lies.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.folder.0.join(name)
+    }
+
+    /// Writes a file for a case.
+    ///
+    /// # Errors
+    /// Where the folder can't be written to.
+    pub fn write(&self, name: &str, bytes: &[u8]) -> Result<PathBuf, HardError> {
+        let path = self.path(name);
+        match fs::write(&path, bytes) {
+            Ok(()) => Ok(path),
+            Err(source) => Err(HardError::Folder { path, source }),
+        }
+    }
+
+    /// A latitude-longitude map of linear radiances, written as .exr in f32 and to be read again.
+    ///
+    /// # Errors
+    /// Where the folder can't be written to.
+    pub fn environment(
+        &self,
+        name: &str,
+        [width, height]: [u32; 2],
+        radiance: impl Fn(u32, u32) -> [f32; 3],
+    ) -> Result<EnvironmentSource, HardError> {
+        let pixels = (0..width * height).map(|i| {
+            let [red, green, blue] = radiance(i % width, i / width);
+            [red, green, blue, 1.0]
+        });
+        let image = Image {
+            width,
+            height,
+            pixels: pixels.collect(),
+        };
+        let path = self.path(name);
+        output::write(&path, &image, &Document::default())?;
+        Ok(EnvironmentSource::File(path))
+    }
+
+    /// The map of a source, loaded as the engines load it.
+    ///
+    /// # Errors
+    /// Where it can't be read.
+    pub fn load_environment(&self, source: &EnvironmentSource) -> Result<environment::Environment, HardError> {
+        Ok(environment::load(source).map_err(SessionError::from)?)
+    }
+}
+
+/// A small document with honest variances: box filter, independent samples.
+pub fn document(model: ModelSource, light: EnvironmentSource, side: u32, samples: u32) -> Document {
+    let mut document = Document {
+        model,
+        ..Document::default()
+    };
+    document.lighting.environment = light;
+    (document.render.width, document.render.height) = (side, side);
+    document.render.samples = samples;
+    document.render.filter = PixelFilter::Box;
+    document.render.sequence = Sequence::Independent;
+    document
+}
+
+/// A folder that is removed with this value.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new() -> Result<Self, HardError> {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("glossmith-hard-{}-{number}", std::process::id()));
+        match fs::create_dir_all(&path) {
+            Ok(()) => Ok(Self(path)),
+            Err(source) => Err(HardError::Folder { path, source }),
+        }
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What is left behind in the temporary folder does no harm.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

@@ -1,0 +1,291 @@
+//! Sums over many samples and many bounces, and the random numbers behind them.
+
+use std::time::Duration;
+
+use glam::DVec3;
+use rayon::prelude::*;
+use serde_json::json;
+
+use super::geometry::cube;
+use super::glb::Glb;
+use super::stage::document;
+use super::{HardCase, HardError, Stage};
+use crate::analysis::probe::RandomQuestion;
+use crate::cpu::CpuEngine;
+use crate::cpu::probe::probe_random;
+use crate::document::{MaterialSettings, Strategy};
+use crate::optics::fresnel::Fresnel;
+use crate::optics::random::{Sequence, hash_bits, random_state};
+use crate::scene::ModelSource;
+use crate::scene::environment::EnvironmentSource;
+
+pub(super) const CASES: &[HardCase] = &[
+    HardCase {
+        name: "ten-million-samples",
+        group: "sums",
+        danger: "a sum in f32 stalls once a sample is below its last bit: the mean falls as more are added",
+        made: "a pixel of the edge between two soft boxes, 10⁷ samples (3 · 10⁵ in a quick run)",
+        must: "mean and variance are those of the same samples in f64: worst relative error",
+        naive: || {
+            let sum = (0..20_000_000).fold(0.0_f32, |sum, _| sum + 1.0);
+            format!("2 · 10⁷ ones add up to {:.2e}", sum)
+        },
+        measure: "error",
+        limit: 1e-5,
+        find: |stage| many_samples(stage),
+    },
+    HardCase {
+        name: "white-box-lambert",
+        group: "sums",
+        danger: "64 bounces between white walls multiply 64 roundings and whatever a sample loses",
+        made: "the inside of a closed cube, Lambertian and white, that emits 1/65; paths of 64 bounces, two strategies",
+        must: "the mean is 1",
+        naive: || format!("0.99⁶⁴ = {:.2} where each bounce loses 1 %", 0.99_f64.powi(64)),
+        measure: "error",
+        limit: 5e-3,
+        find: |stage| white_box(stage, MaterialSettings::diffuse("white", [1.0; 3])),
+    },
+    HardCase {
+        name: "white-box-geometric",
+        group: "sums",
+        danger: "the same with the geometric lobe: what it samples below the horizon is lost",
+        made: "the same cube with the geometric lobe at R = 0.5 that reflects all",
+        must: "the mean is 1",
+        naive: || "a third of the samples are below the horizon at grazing views".to_owned(),
+        measure: "error",
+        limit: 5e-3,
+        find: |stage| {
+            let material = MaterialSettings {
+                fresnel: Fresnel::None,
+                roughness: 0.5,
+                specular_color: [1.0; 3],
+                specular_weight: 1.0,
+                base_color: [0.0; 3],
+                ..MaterialSettings::default()
+            };
+            white_box(stage, material)
+        },
+    },
+    HardCase {
+        name: "random-streams-never-repeat",
+        group: "sums",
+        danger: "a short period or a hash that collides: samples that repeat add nothing, and show",
+        made: "a pixel's number for samples all over 2³², both sequences, computed backwards",
+        must: "each number tells its sample, so that no two of 2³² share one; those that do not are counted",
+        naive: || format!("{} of 10⁵ repeat under 16-bit state", 100_000 - 65_536),
+        measure: "count",
+        limit: 0.0,
+        find: |stage| not_invertible(stage),
+    },
+    HardCase {
+        name: "neighbours-uncorrelated",
+        group: "sums",
+        danger: "pixels, samples and dimensions next to each other draw related numbers: patterns in the noise",
+        made: "65 536 samples each of neighbouring pixels, seeds and dimensions, both numbers of both sequences",
+        must: "the largest correlation of 96 pairs, in standard deviations of independent numbers",
+        naive: || "a seed of x + 1024 · y: neighbours differ in one bit".to_owned(),
+        measure: "sigma",
+        limit: 5.0,
+        find: |stage| largest_correlation(stage),
+    },
+    HardCase {
+        name: "random-bits-everywhere-equal",
+        group: "sums",
+        danger: "numbers made with floats (fract(sin(x) · 43758)) differ from adapter to adapter",
+        made: "a million (100 000 in a quick run) random pixels, seeds, samples and dimensions, both sequences",
+        must: "the engine's bits are the processor's; those that are not are counted",
+        naive: || {
+            let sine = (12.9898_f32 * 1000.0).sin();
+            let exact = (f64::from(12.9898_f32) * 1000.0).sin();
+            format!("off by {:.1e}", (f64::from(sine) * 43758.5 - exact * 43758.5).abs())
+        },
+        measure: "count",
+        limit: 0.0,
+        find: |stage| {
+            let count = if stage.thorough { 1_000_000 } else { 100_000 };
+            let question = |i: u32| {
+                let any = |salt: u32| hash_bits(hash_bits(i).wrapping_add(salt));
+                RandomQuestion {
+                    pixel: [any(1) & 0xffff, any(2) & 0xffff],
+                    seed: any(3),
+                    sample: any(4),
+                    sequence: i % 2,
+                    dimension: any(5) % 8192,
+                }
+            };
+            let questions: Vec<_> = (0..count).map(question).collect();
+            let answers = stage.prober.random(&questions)?;
+            let differ = |(a, b): &(&[u32; 2], &[u32; 2])| a != b;
+            Ok(answers.iter().zip(&probe_random(&questions)).filter(differ).count() as f64)
+        },
+    },
+];
+
+/// Mean and variance of a pixel against the engine of the processor in f64, which draws the same numbers.
+fn many_samples(stage: &mut Stage) -> Result<f64, HardError> {
+    let samples = if stage.thorough { 10_000_000 } else { 300_000 };
+    let light = stage.environment("steps.exr", [64, 32], |x, y| {
+        [0.1 + (x % 7) as f32, 0.3 + (y % 5) as f32, 0.7 + ((x + y) % 3) as f32]
+    })?;
+    let mut document = document(ModelSource::Plane, light, 1, samples);
+    (document.camera.position, document.camera.target) = (Some([0.0, 3.0, 0.0]), Some([0.0, 4.0, 0.3]));
+    let found = stage.film(&document)?;
+    let Some(job) = stage.session().job().cloned() else {
+        return Ok(f64::INFINITY);
+    };
+    let mut oracle = CpuEngine::default();
+    oracle.submit(job);
+    while oracle.samples_per_pixel() < samples {
+        oracle.step_in::<f64>(Duration::from_secs(10), samples);
+    }
+    let expected = oracle.film();
+    let of = |film: &crate::analysis::film::Film| [film.luminance()[0], film.variance_of_mean()[0]];
+    let errors = of(&found)
+        .into_iter()
+        .zip(of(expected))
+        .map(|(a, b)| (a / b - 1.0).abs());
+    Ok(errors.fold(0.0, |a: f64, b| if b.is_nan() { f64::INFINITY } else { a.max(b) }))
+}
+
+/// How far the mean is from 1 in a closed box that emits as much at each of 65 places of a path.
+fn white_box(stage: &mut Stage, mut material: MaterialSettings) -> Result<f64, HardError> {
+    material.emission_color = [1.0; 3];
+    material.emission_strength = 1.0 / 65.0;
+    let model = Glb::of(&cube(DVec3::ONE, 2), json!({})).write(stage, "box.glb")?;
+    let mut worst = 0.0_f64;
+    for strategy in [Strategy::Lobe, Strategy::Mis] {
+        let mut document = document(model.clone(), EnvironmentSource::Furnace, 16, 16);
+        document.materials = vec![material.clone()];
+        document.render.strategy = strategy;
+        document.render.bounces = 64;
+        (document.camera.position, document.camera.target) = (Some([0.3, 0.2, 0.1]), Some([-0.5, -0.4, -0.9]));
+        let film = stage.film(&document)?;
+        let pixels = film.luminance();
+        let mean = pixels.iter().sum::<f64>() / pixels.len() as f64;
+        worst = worst.max((mean - 1.0).abs() + film.dropped as f64);
+    }
+    Ok(worst)
+}
+
+/// How many of a pixel's numbers do not give back their sample when all that was done to it is undone.
+fn not_invertible(stage: &Stage) -> Result<f64, HardError> {
+    let (pixel, seed, dimension) = ([123, 456], 7, 9);
+    let count = 1 << 17;
+    let mut lost = 0;
+    for sequence in Sequence::ALL {
+        // The first, the last, and many in between.
+        let sample = |i: u32| match i % 3 {
+            0 => i,
+            1 => u32::MAX - i,
+            _ => hash_bits(i),
+        };
+        let question = |i: u32| RandomQuestion {
+            pixel,
+            seed,
+            sample: sample(i),
+            sequence: *sequence as u32,
+            dimension,
+        };
+        let questions: Vec<_> = (0..count).map(question).collect();
+        let key = random_state(pixel[0], pixel[1], seed, 0, *sequence).key;
+        let answers = stage.prober.random(&questions)?;
+        lost += questions
+            .par_iter()
+            .zip(&answers)
+            .filter(|(question, bits)| sample_from_bits(key, dimension, *sequence, bits[0]) != question.sample)
+            .count();
+    }
+    Ok(lost as f64)
+}
+
+/// The sample that a pixel's first number of a pair came from: the sequences backwards.
+fn sample_from_bits(key: u32, dimension: u32, sequence: Sequence, bits: u32) -> u32 {
+    let place = dimension.wrapping_mul(0x9e37_79b9);
+    match sequence {
+        Sequence::Independent => {
+            let stream = hash_bits(key ^ (2 * dimension).wrapping_mul(0x9e37_79b9));
+            unhash(unhash(bits).wrapping_sub(stream.rotate_left(16) ^ key)) ^ stream
+        }
+        Sequence::Sobol => {
+            let seed = hash_bits(key ^ place.wrapping_add(0x2545_f491));
+            let index = unscramble(bits.reverse_bits(), hash_bits(seed ^ 0x68bc_21eb));
+            unscramble(index.reverse_bits(), seed).reverse_bits()
+        }
+    }
+}
+
+/// The inverse of an odd number modulo 2³², by Newton's iteration.
+fn inverse(odd: u32) -> u32 {
+    (0..5).fold(odd, |x, _| x.wrapping_mul(2u32.wrapping_sub(odd.wrapping_mul(x))))
+}
+
+/// [`hash_bits`] backwards.
+fn unhash(bits: u32) -> u32 {
+    let mut x = bits;
+    x ^= x >> 16;
+    x = x.wrapping_mul(inverse(0x846c_a68b));
+    x ^= (x >> 15) ^ (x >> 30);
+    x = x.wrapping_mul(inverse(0x7feb_352d));
+    x ^ (x >> 16)
+}
+
+/// x from x ^ x · `even`, bit by bit from the lowest: each is only changed by those below it.
+fn undo(y: u32, even: u32) -> u32 {
+    (0..32).fold(y, |x, _| y ^ x.wrapping_mul(even))
+}
+
+/// Owen's scramble backwards.
+fn unscramble(bits: u32, seed: u32) -> u32 {
+    let mut x = undo(bits, 0x53a2_2864);
+    x = undo(x, 0x0552_6c56);
+    x = x.wrapping_mul(inverse((seed >> 16) | 1));
+    x = x.wrapping_sub(seed);
+    undo(x, 0x3d20_adea)
+}
+
+/// The largest correlation between numbers drawn at places next to each other, times √n.
+fn largest_correlation(stage: &Stage) -> Result<f64, HardError> {
+    const SAMPLES: u32 = 1 << 16;
+    let mut worst = 0.0_f64;
+    for sequence in Sequence::ALL {
+        let draw = |x: u32, y: u32, seed: u32, first: u32, dimension: u32| {
+            let question = |i: u32| RandomQuestion {
+                pixel: [x, y],
+                seed,
+                sample: first.wrapping_add(i),
+                sequence: *sequence as u32,
+                dimension,
+            };
+            stage.prober.random(&(0..SAMPLES).map(question).collect::<Vec<_>>())
+        };
+        let middle = draw(100, 200, 0, 0, 3)?;
+        let mut others = vec![
+            draw(101, 200, 0, 0, 3)?,
+            draw(100, 201, 0, 0, 3)?,
+            draw(101, 201, 0, 0, 3)?,
+            draw(102, 200, 0, 0, 3)?,
+            draw(100, 200, 1, 0, 3)?,
+            draw(200, 100, 0, 0, 3)?,
+            draw(100, 200, 0, 0, 4)?,
+            draw(100, 200, 0, 0, 2)?,
+            draw(100, 200, 0, 0, 4096)?,
+        ];
+        if *sequence == Sequence::Independent {
+            // Points of Sobol's sequence are not independent of those after them: that is what they are for.
+            others.push(draw(100, 200, 0, 1, 3)?);
+        }
+        for other in &others {
+            for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                worst = worst.max(correlation(&middle, a, other, b).abs() * f64::from(SAMPLES).sqrt());
+            }
+        }
+        worst = worst.max(correlation(&middle, 0, &middle, 1).abs() * f64::from(SAMPLES).sqrt());
+    }
+    Ok(worst)
+}
+
+fn correlation(left: &[[u32; 2]], a: usize, right: &[[u32; 2]], b: usize) -> f64 {
+    let unit = |bits: u32| f64::from(bits) / f64::from(u32::MAX) - 0.5;
+    let sum: f64 = left.iter().zip(right).map(|(l, r)| unit(l[a]) * unit(r[b])).sum();
+    12.0 * sum / left.len() as f64
+}

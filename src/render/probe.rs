@@ -1,0 +1,90 @@
+//! Questions to single functions of an engine.
+
+use super::engine::{EngineChoice, device_for_functions};
+use crate::analysis::probe::{
+    FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, ProbeScene, RandomQuestion, RayAnswer, RayQuestion,
+};
+use crate::cpu::probe as cpu;
+use crate::gpu::GpuError;
+use crate::gpu::probe::Probe;
+use crate::optics::vector::Vec3;
+
+/// Answers with the functions that the chosen engine renders with.
+pub enum Prober {
+    /// The processor's.
+    Cpu,
+    /// The shader's.
+    Gpu(Box<Probe>),
+}
+
+impl Prober {
+    /// Opens what was asked for; `auto` takes the processor where there is no hardware GPU.
+    ///
+    /// # Errors
+    /// Where a GPU was asked for and fails.
+    pub fn open(choice: EngineChoice) -> Result<Self, GpuError> {
+        Ok(match device_for_functions(choice)? {
+            Some(device) => Self::Gpu(Box::new(Probe::new(device)?)),
+            None => Self::Cpu,
+        })
+    }
+
+    /// What lobes draw, and their values and densities.
+    ///
+    /// # Errors
+    /// If the GPU fails; so do all that follow.
+    pub fn lobes(&self, scene: &ProbeScene<'_>, questions: &[LobeQuestion]) -> Result<Vec<LobeAnswer>, GpuError> {
+        match self {
+            Self::Cpu => Ok(cpu::probe_lobe(scene, questions)),
+            Self::Gpu(probe) => probe.ask("probe_lobe", scene, questions),
+        }
+    }
+
+    /// The shares that boundaries reflect.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn fresnel(&self, questions: &[FresnelQuestion]) -> Result<Vec<f32>, GpuError> {
+        match self {
+            Self::Cpu => Ok(cpu::probe_fresnel(questions)),
+            Self::Gpu(probe) => probe.ask("probe_fresnel", &ProbeScene::default(), questions),
+        }
+    }
+
+    /// The bits of pairs of random numbers.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn random(&self, questions: &[RandomQuestion]) -> Result<Vec<[u32; 2]>, GpuError> {
+        match self {
+            Self::Cpu => Ok(cpu::probe_random(questions)),
+            Self::Gpu(probe) => probe.ask("probe_random", &ProbeScene::default(), questions),
+        }
+    }
+
+    /// Materials' values, linear RGB.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn materials(
+        &self,
+        scene: &ProbeScene<'_>,
+        questions: &[MaterialQuestion],
+    ) -> Result<Vec<Vec3<f32>>, GpuError> {
+        match self {
+            Self::Cpu => Ok(cpu::probe_materials(scene, questions)),
+            Self::Gpu(probe) => probe.ask("probe_material", scene, questions),
+        }
+    }
+
+    /// What rays meet.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn rays(&self, scene: &ProbeScene<'_>, questions: &[RayQuestion]) -> Result<Vec<RayAnswer>, GpuError> {
+        match self {
+            Self::Cpu => Ok(cpu::probe_ray(scene, questions)),
+            Self::Gpu(probe) => probe.ask("probe_ray", scene, questions),
+        }
+    }
+}

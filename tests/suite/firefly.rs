@@ -1,0 +1,86 @@
+//! Limiting fireflies: off unless asked for, and honest about what it takes.
+
+use std::time::Duration;
+
+use glossmith::analysis::film::Film;
+use glossmith::document::{AreaLight, Document, PixelFilter};
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+
+/// A shader ball in front of its light: much is reflected twice.
+fn scene(firefly_clamp: Option<f32>) -> Document {
+    let mut document = Document {
+        model: ModelSource::Shaderball,
+        ground: true,
+        ..Document::default()
+    };
+    document.materials[0].roughness = 0.2;
+    document.lighting.area_lights = vec![AreaLight {
+        strength: 200.0,
+        ..AreaLight::default()
+    }];
+    (document.render.width, document.render.height, document.render.samples) = (48, 48, 16);
+    document.render.filter = PixelFilter::Box;
+    document.render.firefly_clamp = firefly_clamp;
+    document
+}
+
+fn film(engine: EngineChoice, document: &Document) -> (Film, Vec<&'static str>) {
+    let mut session = Session::open(engine).unwrap();
+    session.submit(document).unwrap();
+    while !session.step(Duration::from_secs(1)).unwrap().is_done {}
+    let effects = session.job().unwrap().plan.effects();
+    (session.film().unwrap().clone(), effects)
+}
+
+fn energy(film: &Film) -> f64 {
+    let luminance = |sum: &[f64; 4]| 0.2126 * sum[0] + 0.7152 * sum[1] + 0.0722 * sum[2];
+    film.color.iter().map(luminance).sum()
+}
+
+/// The same paths are traced: what is missing from the picture is what the film says was taken.
+#[test]
+fn what_is_taken_is_told() {
+    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let (free, effects) = film(engine, &scene(None));
+        assert_eq!(free.clamped, 0.0);
+        assert!(!effects.contains(&"firefly-clamp"));
+        let (limited, effects) = film(engine, &scene(Some(0.5)));
+        assert!(effects.contains(&"firefly-clamp"));
+        let missing = energy(&free) - energy(&limited);
+        assert!(
+            missing > 0.01 * energy(&free),
+            "{engine:?}: {missing} of {}",
+            energy(&free)
+        );
+        assert!(
+            (limited.clamped / missing - 1.0).abs() < 1e-3,
+            "{engine:?}: {} told, {missing} missing",
+            limited.clamped
+        );
+        assert!((limited.clamped_share() - missing / energy(&free)).abs() < 1e-4);
+        // A limit that nothing reaches takes nothing, to the bit on the processor.
+        let (loose, _) = film(engine, &scene(Some(1e9)));
+        assert_eq!(loose.clamped, 0.0, "{engine:?}");
+        if engine == EngineChoice::Cpu {
+            assert_eq!(loose.color, free.color);
+        }
+    }
+}
+
+/// Light that was reflected once or not at all is never limited: the sun itself, and what it lights.
+#[test]
+fn direct_light_is_left_alone() {
+    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let direct = |firefly_clamp| {
+            let mut document = scene(firefly_clamp);
+            document.render.bounces = 1;
+            film(engine, &document).0
+        };
+        assert_eq!(direct(Some(1e-3)).clamped, 0.0, "{engine:?}");
+        assert!(
+            (energy(&direct(Some(1e-3))) / energy(&direct(None)) - 1.0).abs() < 1e-6,
+            "{engine:?}"
+        );
+    }
+}

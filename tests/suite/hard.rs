@@ -1,0 +1,119 @@
+//! The catalogue of hard cases on both engines, its page of documentation, and that shipped scenes drop no sample.
+
+use std::collections::HashSet;
+use std::path::Path;
+use std::time::Duration;
+
+use glossmith::document::{Document, PRESETS};
+use glossmith::render::hard::{HardOptions, catalogue, markdown, run};
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+
+fn options(engine: EngineChoice, thorough: bool) -> HardOptions {
+    HardOptions {
+        engine,
+        thorough,
+        only: String::new(),
+    }
+}
+
+fn assert_all_hold(engine: EngineChoice) {
+    let (info, rows) = run(&options(engine, false), |_| {}).expect("an engine: install mesa-vulkan-drivers");
+    for row in &rows {
+        println!(
+            "{info}: {:34} {:6.2} s  {:.2e}",
+            row.case.name, row.seconds, row.check.value
+        );
+    }
+    let failed: Vec<_> = rows
+        .iter()
+        .filter(|row| !row.check.passed)
+        .map(|row| &row.check)
+        .collect();
+    assert!(failed.is_empty(), "{info}: {failed:#?}");
+    assert_eq!(rows.len(), catalogue().count());
+}
+
+#[test]
+fn hard_cases_hold_on_the_processor() {
+    assert_all_hold(EngineChoice::Cpu);
+}
+
+#[test]
+fn hard_cases_hold_on_the_gpu() {
+    assert_all_hold(EngineChoice::Gpu);
+}
+
+#[test]
+fn cases_are_told_apart() {
+    let names: HashSet<_> = catalogue().map(|case| case.name).collect();
+    assert_eq!(names.len(), catalogue().count());
+    for group in ["lobe", "fresnel", "geometry", "light", "sums"] {
+        assert!(catalogue().any(|case| case.group == group), "{group}");
+    }
+}
+
+/// What does not depend on the machine stands in docs/STABILITY.md to the letter; UPDATE_DOCS=1 runs all cases
+/// thoroughly and writes it anew.
+#[test]
+fn the_table_of_stability_is_the_programs_own() {
+    const BEGIN: &str = "<!-- made from the program: hard cases -->\n\n";
+    const END: &str = "<!-- end -->";
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/STABILITY.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (head, rest) = text.split_once(BEGIN).expect("a table");
+    let (table, tail) = rest.split_once(END).expect("an end");
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        let engines = [EngineChoice::Gpu, EngineChoice::Cpu].map(|engine| run(&options(engine, true), |_| {}).unwrap());
+        let table = markdown(&engines);
+        std::fs::write(&path, format!("{head}{BEGIN}{table}{END}{tail}")).unwrap();
+        return;
+    }
+    assert_eq!(
+        table.lines().count(),
+        2 + catalogue().count(),
+        "run UPDATE_DOCS=1 cargo test hard"
+    );
+    for (line, case) in table.lines().skip(2).zip(catalogue()) {
+        let fixed = format!(
+            "| {}: {} | {} | {}: {} |",
+            case.group, case.name, case.danger, case.made, case.must
+        );
+        assert!(line.starts_with(&fixed), "{line}: run UPDATE_DOCS=1 cargo test hard");
+        assert!(!line.contains("**fails**"), "{line}");
+    }
+}
+
+/// Every shipped material, on the shipped models by turns, under the shipped lights by turns.
+#[test]
+fn shipped_scenes_drop_no_sample() {
+    let models = [
+        ModelSource::Teapot,
+        ModelSource::Shaderball,
+        ModelSource::Sphere,
+        ModelSource::Plane,
+    ];
+    let lights = [
+        EnvironmentSource::Sky,
+        EnvironmentSource::Studio,
+        EnvironmentSource::Furnace,
+    ];
+    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let mut session = Session::open(engine).unwrap();
+        for (i, material) in PRESETS.iter().enumerate() {
+            let mut document = Document {
+                model: models[i % models.len()].clone(),
+                ground: i % 2 == 0,
+                materials: vec![material.clone()],
+                ..Document::default()
+            };
+            document.lighting.environment = lights[i % lights.len()].clone();
+            (document.render.width, document.render.height) = (32, 32);
+            document.render.samples = if engine == EngineChoice::Cpu { 64 } else { 16 };
+            session.submit(&document).unwrap();
+            while !session.step(Duration::from_secs(1)).unwrap().is_done {}
+            assert_eq!(session.film().unwrap().dropped, 0, "{engine:?} {}", material.name);
+        }
+    }
+}
