@@ -5,6 +5,8 @@
 mod check;
 #[path = "suite/cli_errors.rs"]
 mod cli_errors;
+#[path = "suite/cli_pictures.rs"]
+mod cli_pictures;
 #[path = "suite/cli_render.rs"]
 mod cli_render;
 #[path = "suite/cli_scatter.rs"]
@@ -13,6 +15,8 @@ mod cli_scatter;
 mod cli_support;
 #[path = "suite/coat.rs"]
 mod coat;
+#[path = "suite/compare.rs"]
+mod compare;
 #[path = "suite/density.rs"]
 mod density;
 #[path = "suite/docs.rs"]
@@ -49,8 +53,12 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/noise.rs"]
+mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/plan.rs"]
+mod plan;
 #[path = "suite/renders.rs"]
 mod renders;
 #[path = "suite/statistics.rs"]
@@ -67,6 +75,8 @@ mod tone_twin;
 mod transmission;
 #[path = "suite/ui.rs"]
 mod ui;
+#[path = "suite/ui_scene.rs"]
+mod ui_scene;
 #[path = "suite/worker.rs"]
 mod worker;
 

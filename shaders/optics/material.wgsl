@@ -127,6 +127,20 @@ fn specular_albedo(material: Material, surface: Surface) -> vec3f {
     return albedo_lookup(first, place);
 }
 
+fn material_albedo(material: Material, surface: Surface) -> vec3f {
+    var specular = vec3f(0.0);
+    if material_has_specular(material) {
+        if material_has_base(material) || material_transmits(material) {
+            specular = specular_albedo(material, surface);
+        } else {
+            let cosine = dot(surface.frame.normal, surface.wo);
+            specular = fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
+        }
+    }
+    let layers = material_layers(material, surface);
+    return specular + layers.base + layers.transmission;
+}
+
 fn base_probability(layers: Layers) -> f32 {
     return 1.0 - layers.specular_probability - layers.transmission_probability;
 }

@@ -12,6 +12,15 @@ fn random_state(x: u32, y: u32, seed: u32, sample: u32, sequence: u32) -> Random
     return RandomState(hash_bits((x | (y << 16u)) ^ hash_bits(seed)), sample, sequence);
 }
 
+fn path_state(x: u32, y: u32, seed: u32, sample: u32, sequence: u32) -> RandomState {
+    let state = random_state(x, y, seed, sample, sequence);
+    if sequence == SEQUENCE_SOBOL {
+        let key = select(hash_bits(state.key ^ 0x5851f42du), state.key, sample % 2u == 0u);
+        return RandomState(key, sample / 2u, sequence);
+    }
+    return state;
+}
+
 fn hash_bits(bits: u32) -> u32 {
     var x = bits;
     x = (x ^ (x >> 16u)) * 0x7feb352du;

@@ -1,25 +1,24 @@
 // The path tracer. Twin of src/cpu/integrator.rs.
 #import "optics/material"
 #import "optics/random"
+#import "optics/warp"
 #import "scene/camera"
 #import "scene/environment"
 #import "scene/light"
 #import "scene/surface"
+#import "scene/visibility"
 
 const STRATEGY_LOBE: u32 = 0u;
 const STRATEGY_LIGHT: u32 = 1u;
 const STRATEGY_MIS: u32 = 2u;
 const BACKGROUND_ENVIRONMENT: u32 = 0u;
 const BACKGROUND_TRANSPARENT: u32 = 1u;
+const BACKGROUND_BLURRED: u32 = 3u;
 // Pairs of numbers before the first bounce (pixel, lens) and a bounce (lobe twice, light twice).
 const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
 // The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
 const BELOW_DIMENSION: u32 = 4096u;
-// The first of the pairs of numbers that choose whether a surface stops a ray, one a bounce.
-const OPACITY_DIMENSION: u32 = 8192u;
-// Surfaces that a ray may go straight on through.
-const PASSES_MAX: u32 = 256u;
 // Bounces before Russian roulette.
 const ROULETTE_START: u32 = 3u;
 // Beyond it the square would overflow: dropped and counted.
@@ -39,7 +38,7 @@ fn far_radiance(direction: vec3f) -> vec3f {
 // What a path that left the scene sees, weighed against light sampling.
 fn far_light(direction: vec3f, lobe_density: f32, is_mirror: bool) -> vec3f {
     let radiance = far_radiance(direction);
-    if PLAN_LIGHT_SAMPLING == 0u || is_mirror || globals.strategy == STRATEGY_LOBE {
+    if !samples_environment() || is_mirror {
         return radiance;
     }
     if globals.strategy == STRATEGY_LIGHT {
@@ -55,7 +54,7 @@ fn emitted_light(
     point: SurfacePoint, material: Material, distance: f32, lobe_density: f32, is_mirror: bool,
 ) -> vec3f {
     let emission = material.emission;
-    if PLAN_EMITTER_SAMPLING == 0u || is_mirror || globals.strategy == STRATEGY_LOBE {
+    if !samples_emitters() || is_mirror {
         return emission;
     }
     if globals.strategy == STRATEGY_LIGHT {
@@ -70,14 +69,24 @@ fn lobe_share(lobe_density: f32, light_density: f32) -> f32 {
     return lobe_density / max(lobe_density + light_density, 1e-30);
 }
 
+// Whether directions are drawn from the environment.
+fn samples_environment() -> bool {
+    return PLAN_LIGHT_SAMPLING == 1u && globals.environment_probability > 0.0 && globals.strategy != STRATEGY_LOBE;
+}
+
+// Whether directions are drawn towards the triangles that emit.
+fn samples_emitters() -> bool {
+    return PLAN_EMITTER_SAMPLING == 1u && globals.density_per_luminance > 0.0 && globals.strategy != STRATEGY_LOBE;
+}
+
 // Whether light is sampled at all.
 fn samples_light() -> bool {
-    return (PLAN_LIGHT_SAMPLING == 1u || PLAN_EMITTER_SAMPLING == 1u) && globals.strategy != STRATEGY_LOBE;
+    return samples_environment() || samples_emitters();
 }
 
 // Whether one light sample is drawn from the environment, not from the triangles that emit.
 fn is_from_afar(xi: f32) -> bool {
-    return PLAN_EMITTER_SAMPLING == 0u || (PLAN_LIGHT_SAMPLING == 1u && xi < globals.environment_probability);
+    return !samples_emitters() || (samples_environment() && xi < globals.environment_probability);
 }
 
 // A direction drawn from the triangles that emit or from the environment, whose radiance is looked up once it is known
@@ -108,7 +117,10 @@ fn direct_light(
     if all(value <= vec3f(0.0)) {
         return vec3f(0.0);
     }
-    let share = transmittance(ray_origin(point, wi, transmits), wi, light.distance, rays);
+    var share = 1.0;
+    if !meets_nothing(point, wi) {
+        share = transmittance(ray_origin(point, wi, transmits), wi, light.distance, rays);
+    }
     if share <= 0.0 {
         return vec3f(0.0);
     }
@@ -118,60 +130,18 @@ fn direct_light(
     return value * light.radiance * (share / light.density);
 }
 
-// The share of light that reaches the origin of a ray from so far.
-fn transmittance(start: vec3f, direction: vec3f, distance: f32, rays: ptr<function, u32>) -> f32 {
-    if PLAN_ALPHA == 0u {
-        *rays += 1u;
-        return select(0.0, 1.0, trace(start, direction, distance, true).triangle == NO_HIT);
-    }
-    var origin = start;
-    var share = 1.0;
-    var left = distance;
-    for (var i = 0u; i < PASSES_MAX; i++) {
-        *rays += 1u;
-        let hit = trace(origin, direction, left, false);
-        if hit.triangle == NO_HIT {
-            return share;
-        }
-        share *= 1.0 - hit_opacity(hit);
-        if share <= 0.0 {
-            break;
-        }
-        left -= hit.t;
-        origin = passed_origin(hit, direction);
-    }
-    return 0.0;
+// True where it is proven that nothing lies ahead: outside a convex body.
+fn meets_nothing(point: SurfacePoint, wi: vec3f) -> bool {
+    return PLAN_INTERREFLECTION == 0u && !point.surface.is_inside && dot(point.surface.normal, wi) > 0.0;
 }
 
-// The hit that stops a ray, its t the distance from the ray's origin.
-fn stop(ray: Ray, state: RandomState, bounce: u32, rays: ptr<function, u32>) -> Hit {
-    if PLAN_ALPHA == 0u {
-        *rays += 1u;
-        return trace(ray.origin, ray.direction, 1e30, false);
+fn camera_background(direction: vec3f, state: RandomState, rays: u32) -> PathResult {
+    if globals.background_kind == BACKGROUND_BLURRED {
+        // The numbers of the first bounce, which there is none of.
+        let disc = globals.background.x * uniform_disc(random_pair(state, FIRST_DIMENSION));
+        let blurred = world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
+        return PathResult(far_radiance(blurred), 1.0, rays);
     }
-    var origin = ray.origin;
-    var xi = random_pair(state, OPACITY_DIMENSION + bounce).x;
-    var distance = 0.0;
-    for (var i = 0u; i < PASSES_MAX; i++) {
-        *rays += 1u;
-        var hit = trace(origin, ray.direction, 1e30, false);
-        if hit.triangle == NO_HIT {
-            return hit;
-        }
-        distance += hit.t;
-        hit.t = distance;
-        let opacity = hit_opacity(hit);
-        if xi < opacity {
-            return hit;
-        }
-        // Uniform again, given that the surface did not stop the ray.
-        xi = (xi - opacity) / max(1.0 - opacity, 1e-20);
-        origin = passed_origin(hit, ray.direction);
-    }
-    return Hit(0.0, NO_HIT, 0.0, 0.0);
-}
-
-fn camera_background(direction: vec3f, rays: u32) -> PathResult {
     if globals.background_kind == BACKGROUND_ENVIRONMENT {
         return PathResult(far_radiance(direction), 1.0, rays);
     }
@@ -180,21 +150,24 @@ fn camera_background(direction: vec3f, rays: u32) -> PathResult {
 }
 
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
-    let state = random_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
-    let offset = filter_offset(globals.camera.filter_kind, random_pair(state, 0u));
+    let state = path_state(pixel.x, pixel.y, globals.seed, sample, globals.sequence);
     var camera = globals.camera;
     camera.lens_radius = select(0.0, camera.lens_radius, PLAN_LENS == 1u);
-    var ray = camera_ray(camera, vec2f(pixel) + 0.5 + offset, globals.image_size, random_pair(state, 1u));
+    var ray = pixel_ray(camera, pixel, globals.image_size, state);
     var throughput = vec3f(1.0);
     var radiance = vec3f(0.0);
     var lobe_density = 0.0;
     var was_mirror = true;
     var rays = 0u;
+    var leaves = false;
     for (var bounce = 0u; ; bounce++) {
-        let hit = stop(ray, state, bounce, &rays);
+        var hit = Hit(0.0, NO_HIT, 0.0, 0.0);
+        if !leaves {
+            hit = stop(ray, state, bounce, &rays);
+        }
         if hit.triangle == NO_HIT {
             if bounce == 0u {
-                return camera_background(ray.direction, rays);
+                return camera_background(ray.direction, state, rays);
             }
             radiance += throughput * far_light(ray.direction, lobe_density, was_mirror);
             break;
@@ -235,6 +208,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         lobe_density = drawn.density;
         was_mirror = drawn.is_mirror;
+        leaves = meets_nothing(point, drawn.wi);
         ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
     }
     return PathResult(radiance, 1.0, rays);
@@ -246,27 +220,40 @@ fn is_sound(color: vec3f) -> bool {
     return all(color >= vec3f(0.0)) && all(color <= vec3f(RADIANCE_MAX));
 }
 
+
 @compute @workgroup_size(8, 8)
-fn path_trace(@builtin(global_invocation_id) id: vec3u) {
-    if any(id.xy >= globals.tile_size) {
+fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) place: vec3u) {
+    let tile = tiles[workgroup.x / (TILE_WORKGROUPS * TILE_WORKGROUPS)];
+    let pixel = tile_pixel(tile, workgroup.x, place.xy);
+    if any(pixel >= globals.image_size) {
         return;
     }
-    let pixel = globals.tile_origin + id.xy;
+    let index = pixel.y * globals.image_size.x + pixel.x;
     var color = vec4f(0.0);
-    // Luminance squared, kept, dropped, rays.
-    var sums = vec4f(0.0);
-    for (var i = 0u; i < globals.sample_count; i++) {
-        let path = trace_path(pixel, globals.first_sample + i);
-        sums.w += f32(path.rays);
+    var sums = PixelStatistics();
+    for (var i = 0u; i < tile.sample_count; i++) {
+        let sample = tile.first_sample + i;
+        let path = trace_path(pixel, sample);
+        sums.rays += f32(path.rays);
         if is_sound(path.radiance) {
             let y = luminance(path.radiance);
+            let odd = f32(sample % 2u);
             color += vec4f(path.radiance, path.alpha);
-            sums += vec4f(y * y, 1.0, 0.0, 0.0);
+            sums.luminance_squared += y * y;
+            sums.kept += 1.0;
+            sums.odd_luminance += odd * y;
+            sums.odd_luminance_squared += odd * y * y;
+            sums.odd_kept += odd;
         } else {
-            sums.z += 1.0;
+            sums.dropped += 1.0;
         }
     }
-    let index = pixel.y * globals.image_size.x + pixel.x;
     color_sums[index] += color;
-    statistics[index] += sums;
+    statistics[index].luminance_squared += sums.luminance_squared;
+    statistics[index].kept += sums.kept;
+    statistics[index].odd_luminance += sums.odd_luminance;
+    statistics[index].odd_luminance_squared += sums.odd_luminance_squared;
+    statistics[index].odd_kept += sums.odd_kept;
+    statistics[index].dropped += sums.dropped;
+    statistics[index].rays += sums.rays;
 }

@@ -1,4 +1,5 @@
 // The camera's rays. Twin of src/scene/camera.rs.
+#import "optics/random"
 #import "optics/warp"
 #import "scene/layout"
 
@@ -19,6 +20,11 @@ fn filter_offset(filter_kind: u32, xi: vec2f) -> vec2f {
     let radius = GAUSSIAN_SIGMA * safe_sqrt(-2.0 * log(1.0 - xi.x * GAUSSIAN_KEPT));
     let phi_rad = 2.0 * PI * xi.y;
     return vec2f(radius * cos(phi_rad), radius * sin(phi_rad));
+}
+
+fn pixel_ray(camera: Camera, pixel: vec2u, image_size: vec2u, state: RandomState) -> Ray {
+    let offset = filter_offset(camera.filter_kind, random_pair(state, 0u));
+    return camera_ray(camera, vec2f(pixel) + 0.5 + offset, image_size, random_pair(state, 1u));
 }
 
 fn camera_ray(camera: Camera, place: vec2f, image_size: vec2u, xi_lens: vec2f) -> Ray {

@@ -18,19 +18,15 @@ struct Camera {
 struct Globals {
     camera: Camera,
     image_size: vec2u,
-    // The part of the picture that this dispatch renders.
-    tile_origin: vec2u,
-    tile_size: vec2u,
-    first_sample: u32,
-    sample_count: u32,
+    bounces: u32,
+    sequence: u32,
+    // Its colour; where the environment is blurred, the sine of the angle.
     background: vec3f,
     background_kind: u32,
     // Cosine and sine.
     environment_rotation: vec2f,
     environment_cells_size: vec2u,
     environment_strength: f32,
-    bounces: u32,
-    sequence: u32,
     strategy: u32,
     seed: u32,
     node_count: u32,
@@ -40,7 +36,28 @@ struct Globals {
     environment_probability: f32,
     // Density per area of the emitting triangles over the luminance of their emission.
     density_per_luminance: f32,
-    reserved: vec2u,
+}
+
+// What a dispatch renders of one tile.
+struct Tile {
+    // Its top left pixel.
+    origin: vec2u,
+    first_sample: u32,
+    sample_count: u32,
+}
+
+// Sums over the samples of a pixel since the host last took them; scalars, so that the stride is 28 bytes.
+struct PixelStatistics {
+    luminance_squared: f32,
+    // Samples in the sums.
+    kept: f32,
+    // The same of the odd samples alone: one of two independent halves.
+    odd_luminance: f32,
+    odd_luminance_squared: f32,
+    odd_kept: f32,
+    // Samples that were not sound.
+    dropped: f32,
+    rays: f32,
 }
 
 struct Material {
@@ -130,9 +147,19 @@ struct LightCell {
 @group(0) @binding(8) var<storage, read> environment_cells: array<AliasCell>;
 // Sums over the samples of a pixel since the host last took them: red, green, blue, alpha.
 @group(0) @binding(9) var<storage, read_write> color_sums: array<vec4f>;
-// The same of luminance squared; samples kept; samples dropped; rays traced.
-@group(0) @binding(10) var<storage, read_write> statistics: array<vec4f>;
+@group(0) @binding(10) var<storage, read_write> statistics: array<PixelStatistics>;
 @group(0) @binding(11) var<storage, read> light_cells: array<LightCell>;
-@group(0) @binding(12) var<storage, read> texture_records: array<TextureRecord>;
+// What this dispatch renders.
+@group(0) @binding(12) var<storage, read> tiles: array<Tile>;
+@group(0) @binding(13) var<storage, read> texture_records: array<TextureRecord>;
 // The linear values of the 256 sRGB codes as bits, then texels of 4 x 8 bits.
-@group(0) @binding(13) var<storage, read> texture_words: array<u32>;
+@group(0) @binding(14) var<storage, read> texture_words: array<u32>;
+
+// Workgroups along a tile's side.
+const TILE_WORKGROUPS: u32 = 2u;
+
+// The pixel of an invocation: a tile is 2 × 2 workgroups of 8 × 8 pixels.
+fn tile_pixel(tile: Tile, workgroup: u32, place: vec2u) -> vec2u {
+    let quarter = vec2u(workgroup % TILE_WORKGROUPS, workgroup / TILE_WORKGROUPS % TILE_WORKGROUPS);
+    return tile.origin + 8u * quarter + place;
+}

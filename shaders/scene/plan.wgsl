@@ -1,5 +1,5 @@
 // What the plan fixes for all materials of a scene when the pipeline is made; ANY where materials differ or the general
-// pipeline is wanted. Twin of src/render/plan.rs. Fixed values let the driver drop what the scene does not call for.
+// pipeline is wanted. Twin of src/document/effect. Fixed values let the driver drop what the scene does not call for.
 
 const ANY: u32 = 0xffffffffu;
 
@@ -13,6 +13,8 @@ override PLAN_ANISOTROPY: u32 = 1u;
 override PLAN_BASE: u32 = 1u;
 // 1: some material may have a specular lobe.
 override PLAN_SPECULAR: u32 = 1u;
+// 1: rays that leave a surface may meet another one.
+override PLAN_INTERREFLECTION: u32 = 1u;
 // 1: some material may emit.
 override PLAN_EMISSION: u32 = 1u;
 // 1: some material may transmit light.

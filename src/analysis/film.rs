@@ -1,5 +1,7 @@
 //! The picture as sums: what the engines accumulate and everything shown is read from.
 
+use rayon::prelude::*;
+
 /// Sums over the samples of each pixel, in f64: they do not stall after millions of samples.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Film {
@@ -11,10 +13,18 @@ pub struct Film {
     pub color: Vec<[f64; 4]>,
     /// Sum of the squared luminance, and the number of samples in the sums.
     pub statistics: Vec<[f64; 2]>,
+    /// Sums of the luminance and of its square, and the number, of the odd ones among these samples: one of two
+    /// independent halves, see [`crate::optics::random::path_state`].
+    pub odd: Vec<[f64; 3]>,
+    /// Rays traced for each pixel: what it cost.
+    pub rays: Vec<f64>,
     /// Samples left out because they were not finite or negative.
     pub dropped: u64,
-    /// Rays traced.
-    pub rays: u64,
+}
+
+/// Luminance of linear Rec. 709.
+pub(super) fn luminance([red, green, blue, _]: [f64; 4]) -> f64 {
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
 
 impl Film {
@@ -26,9 +36,44 @@ impl Film {
             height,
             color: vec![[0.0; 4]; pixels],
             statistics: vec![[0.0; 2]; pixels],
+            odd: vec![[0.0; 3]; pixels],
+            rays: vec![0.0; pixels],
             dropped: 0,
-            rays: 0,
         }
+    }
+
+    /// Adds sample number `sample` of a pixel: linear colour with coverage.
+    pub fn add(&mut self, pixel: usize, sample: u32, color: [f64; 4]) {
+        let luminance = luminance(color);
+        for (sum, x) in self.color[pixel].iter_mut().zip(color) {
+            *sum += x;
+        }
+        self.statistics[pixel][0] += luminance * luminance;
+        self.statistics[pixel][1] += 1.0;
+        if sample % 2 == 1 {
+            self.odd[pixel][0] += luminance;
+            self.odd[pixel][1] += luminance * luminance;
+            self.odd[pixel][2] += 1.0;
+        }
+    }
+
+    /// Copies a smaller film into this one, its top left pixel to `origin`; counts of dropped samples add up.
+    pub fn place(&mut self, origin: [u32; 2], tile: &Film) {
+        let width = tile.width as usize;
+        for row in 0..tile.height as usize {
+            let to = (origin[1] as usize + row) * self.width as usize + origin[0] as usize;
+            let (to, from) = (to..to + width, row * width..(row + 1) * width);
+            self.color[to.clone()].copy_from_slice(&tile.color[from.clone()]);
+            self.statistics[to.clone()].copy_from_slice(&tile.statistics[from.clone()]);
+            self.odd[to.clone()].copy_from_slice(&tile.odd[from.clone()]);
+            self.rays[to].copy_from_slice(&tile.rays[from]);
+        }
+        self.dropped += tile.dropped;
+    }
+
+    /// Rays traced for all pixels together.
+    pub fn total_rays(&self) -> u64 {
+        self.rays.iter().sum::<f64>() as u64
     }
 
     /// Samples in the sums of all pixels together.
@@ -49,8 +94,8 @@ impl Film {
 
     /// Mean luminance of each pixel; NaN where there is no sample.
     pub fn luminance(&self) -> Vec<f64> {
-        let mean = |(sum, s): (&[f64; 4], &[f64; 2])| (0.2126 * sum[0] + 0.7152 * sum[1] + 0.0722 * sum[2]) / s[1];
-        self.color.iter().zip(&self.statistics).map(mean).collect()
+        let mean = |(sum, s): (&[f64; 4], &[f64; 2])| luminance(*sum) / s[1];
+        self.color.par_iter().zip(&self.statistics).map(mean).collect()
     }
 
     /// By how many standard deviations the luminance summed over the whole picture differs from that of another render
@@ -62,17 +107,18 @@ impl Film {
         (a - b) / (variance + (1e-4 * a).powi(2)).sqrt()
     }
 
-    /// Variance of the mean luminance of each pixel, unbiased; infinite below two samples.
+    /// Variance of the mean luminance of each pixel as if its samples were independent, from the running sums; infinite
+    /// below two samples. Unbiased for independent numbers, too large for Sobol's: see [`super::noise`].
     pub fn variance_of_mean(&self) -> Vec<f64> {
         let of_pixel = |(sum, s): (&[f64; 4], &[f64; 2])| {
             let n = s[1];
             if n < 2.0 {
                 return f64::INFINITY;
             }
-            let mean = (0.2126 * sum[0] + 0.7152 * sum[1] + 0.0722 * sum[2]) / n;
+            let mean = luminance(*sum) / n;
             ((s[0] / n - mean * mean) / (n - 1.0)).max(0.0)
         };
-        self.color.iter().zip(&self.statistics).map(of_pixel).collect()
+        self.color.par_iter().zip(&self.statistics).map(of_pixel).collect()
     }
 }
 

@@ -3,14 +3,19 @@
 //!
 //! The tests are f64 and take plain directions and slices, so that samples of either engine can be tested.
 
+pub mod adaptive;
 pub mod chi_square;
+pub mod difference;
 pub mod error;
+pub mod features;
 pub mod film;
 pub mod fit;
 pub mod histogram;
 pub mod lobe_model;
 pub mod lobe_view;
+pub mod noise;
 pub mod plot;
 pub mod quadrature;
 pub mod scatter;
 pub mod sphere_grid;
+pub mod tiles;

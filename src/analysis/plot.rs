@@ -5,6 +5,8 @@ mod lines;
 mod maps;
 mod solids;
 
+pub use maps::scale_color;
+
 use std::path::{Path, PathBuf};
 use std::sync::Once;
 

@@ -4,10 +4,13 @@ use std::path::PathBuf;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
+use super::compare::Rival;
 use super::library::Change;
+use super::snapshots::PinChange;
 use crate::document::ImportLobe;
 use crate::document::MaterialSettings;
 use crate::render::EngineChoice;
+use crate::render::display::Shown;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 
@@ -28,10 +31,18 @@ pub enum Action {
     SelectSlot(usize),
     /// Changes the user's folder of materials.
     ChangeLibrary(Change),
+    /// Changes the pinned states.
+    ChangeSnapshots(PinChange),
+    /// Brings the pinned state of a file back as the document.
+    UseSnapshot(PathBuf),
+    /// Compares the document with something.
+    CompareWith(Rival),
     /// Looks from a direction: yaw and pitch in degrees.
     LookFrom(f64, f64),
     /// Changes the engine.
     UseEngine(EngineChoice),
+    /// Shows the picture or a map of its error or samples.
+    Show(Shown),
     /// Which lobe the materials of models get that are opened from now on.
     ImportAs(ImportLobe),
 }
@@ -126,14 +137,21 @@ commands! {
     SaveAs, File, "Save project as…", "Saves the project under another name.", keys(CTRL_SHIFT, Key::S), 1;
     SaveMaterial, File, "Save material…", "Saves the selected material (.json).", None, 1;
     SaveToMyPresets, File, "Save to my presets", "Adds the selected material to your own presets.", None, 1;
-    SavePicture, File, "Save picture…", "Saves what has been rendered so far (.png, .exr, .hdr).", keys(CTRL, Key::E), 1;
+    SavePicture, File, "Save picture…", "Saves what has been rendered so far (.png with the document inside, .exr, .hdr).", keys(CTRL, Key::E), 1;
+    SaveLayers, File, "Save picture with layers…", "Saves albedo, normal, depth, samples and variance beside the colour (.exr).", None, 1;
     CopyPicture, File, "Copy picture", "Copies what has been rendered so far to the clipboard.", keys(CTRL_SHIFT, Key::C), 1;
+    Turntable, File, "Turntable…", "Renders a turn of camera, model or light as numbered pictures.", None, 1;
     Quit, File, "Quit", "Closes the window.", keys(CTRL, Key::Q), 2;
     Undo, Edit, "Undo", "Takes the last change back.", keys(CTRL, Key::Z), 0;
     Redo, Edit, "Redo", "Makes the change again that was taken back.", keys(CTRL_SHIFT, Key::Z), 0;
     ResetMaterial, Edit, "Reset material", "Gives the selected material its defaults, keeping its name.", None, 1;
     ResetCamera, Edit, "Reset camera", "Puts the camera where it was at first.", None, 1;
     FrameAll, View, "Frame all", "Moves the camera so that the whole model is seen.", key(Key::F), 0;
+    FrameSelected, View, "Frame selected", "Moves the camera so that the surfaces of the selected material are seen.", keys(Modifiers::SHIFT, Key::F), 0;
+    Compare, View, "Compare A and B", "Shows the material beside another one, or beside another lobe.", key(Key::C), 2;
+    SwapCompared, View, "Swap A and B", "Makes B the document, and what the document was B.", key(Key::X), 2;
+    TakeCompared, View, "Take B as the document", "Gives the document B's materials and ends the comparison.", None, 2;
+    Pin, View, "Pin a snapshot", "Keeps material, light and camera with the picture, to come back to.", key(Key::P), 2;
     Maximise, View, "Viewport only", "Hides the panels, or shows them again.", key(Key::F11), 1;
     ToggleTheme, View, "Light or dark", "Changes between the light and the dark theme.", None, 1;
     ResetLayout, View, "Reset layout", "Puts all panels back to where they were at first.", None, 1;

@@ -24,6 +24,7 @@ pub(super) enum Purpose {
     OpenMeasured,
     SaveMaterial,
     SavePicture,
+    SaveLayers,
 }
 
 impl Purpose {
@@ -37,14 +38,15 @@ impl Purpose {
             Self::OpenMeasured => "Open a measured material",
             Self::SaveMaterial => "Save the material",
             Self::SavePicture => "Save the picture",
+            Self::SaveLayers => "Save the picture with layers",
         }
     }
 
     fn kind(self) -> (&'static str, &'static [&'static str]) {
         match self {
             Self::Open => (
-                "Projects, materials, models, environments",
-                &["json", "glb", "gltf", "hdr", "exr"],
+                "Projects, materials, models, environments, pictures with a document",
+                &["json", "glb", "gltf", "hdr", "exr", "png"],
             ),
             Self::SaveProject => ("Projects", &["json"]),
             Self::OpenModel => ("glTF models", &["glb", "gltf"]),
@@ -52,11 +54,15 @@ impl Purpose {
             Self::OpenMaterial | Self::SaveMaterial => ("Materials", &["json"]),
             Self::OpenMeasured => ("Measured materials (MERL)", &["binary"]),
             Self::SavePicture => ("Pictures", &["png", "exr", "hdr"]),
+            Self::SaveLayers => ("OpenEXR pictures", &["exr"]),
         }
     }
 
     fn is_saving(self) -> bool {
-        matches!(self, Self::SaveProject | Self::SaveMaterial | Self::SavePicture)
+        matches!(
+            self,
+            Self::SaveProject | Self::SaveMaterial | Self::SavePicture | Self::SaveLayers
+        )
     }
 }
 

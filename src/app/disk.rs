@@ -3,8 +3,9 @@
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use super::library::Listed;
+use super::snapshots::PinsListed;
 use crate::document::file::Opened;
-use crate::document::library::Entry;
 use crate::document::{Document, FileError};
 use crate::render::worker::Level;
 
@@ -15,9 +16,13 @@ pub(super) enum Done {
     /// The document was written, such as it was then.
     SavedProject(PathBuf, Box<Document>, Result<(), FileError>),
     /// The user's materials were listed.
-    Listed(Result<(String, Vec<Entry>), FileError>),
-    /// The user's materials were changed; what to say about it, and which there are.
-    ChangedLibrary(Result<(String, Vec<Entry>), FileError>),
+    Listed(Result<Listed, FileError>),
+    /// The user's materials were changed.
+    ChangedLibrary(Result<Listed, FileError>),
+    /// The pinned states were listed.
+    ListedPins(Result<PinsListed, FileError>),
+    /// The pinned states were changed.
+    ChangedPins(Result<PinsListed, FileError>),
     /// Something else was written; what to say about it.
     Wrote(Result<String, String>),
 }
@@ -108,8 +113,8 @@ impl Disk {
         let done: Vec<Done> = self.done.try_iter().collect();
         for done in &done {
             match done {
-                Done::Read(..) | Done::Listed(_) => self.reads = self.reads.saturating_sub(1),
-                Done::SavedProject(..) | Done::ChangedLibrary(_) | Done::Wrote(_) => {
+                Done::Read(..) | Done::Listed(_) | Done::ListedPins(_) => self.reads = self.reads.saturating_sub(1),
+                Done::SavedProject(..) | Done::ChangedLibrary(_) | Done::ChangedPins(_) | Done::Wrote(_) => {
                     self.writes = self.writes.saturating_sub(1)
                 }
             }

@@ -9,7 +9,7 @@ use super::disk::{Disk, Done, words};
 use super::unsaved::Then;
 use crate::document::file::Opened;
 use crate::document::{Document, FileError, Loaded, file, preset, save_document, save_material};
-use crate::render::output;
+use crate::render::output::{self, Layers};
 use crate::render::worker::Level;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
@@ -50,7 +50,7 @@ impl Files {
 enum FileKind {
     Model,
     Environment,
-    Json,
+    Document,
     Unknown,
 }
 
@@ -63,7 +63,7 @@ fn kind_of(path: &Path) -> FileKind {
     match ending.as_str() {
         "glb" | "gltf" => FileKind::Model,
         "hdr" | "exr" => FileKind::Environment,
-        "json" => FileKind::Json,
+        "json" | "png" => FileKind::Document,
         _ => FileKind::Unknown,
     }
 }
@@ -74,12 +74,13 @@ impl App {
         match kind_of(&path) {
             FileKind::Model => self.worker.open_model(ModelSource::File(path)),
             FileKind::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
-            FileKind::Json => self.files.disk.read(move || {
+            FileKind::Document => self.files.disk.read(move || {
                 let opened = file::open(&path);
                 Done::Read(path, opened)
             }),
             FileKind::Unknown => {
-                let text = "opened are models (.glb, .gltf), environments (.hdr, .exr), materials and projects (.json)";
+                let text = "opened are models (.glb, .gltf), environments (.hdr, .exr), materials and projects (.json), \
+                            and pictures saved here (.png)";
                 self.say(
                     Level::Error,
                     format!("{}: not a kind of file that can be opened; {text}", path.display()),
@@ -110,6 +111,11 @@ impl App {
                     has_failed |= changed.is_err();
                     self.take_library(changed);
                 }
+                Done::ListedPins(listed) => self.take_snapshots(listed),
+                Done::ChangedPins(changed) => {
+                    has_failed |= changed.is_err();
+                    self.take_snapshots(changed);
+                }
                 Done::Wrote(result) => {
                     has_failed |= result.is_err();
                     let (level, text) = words(result);
@@ -128,6 +134,11 @@ impl App {
                 self.use_material(loaded.value);
                 self.say_all(loaded.warnings);
                 self.recent.add(&path);
+                self.count_as_start(is_at_start && is_saved);
+            }
+            Ok(Opened::Picture(loaded)) => {
+                let is_saved = self.edits.is_saved(&self.document);
+                self.adopt_picture(*loaded, &path);
                 self.count_as_start(is_at_start && is_saved);
             }
             Ok(Opened::Document(loaded)) => self.unless_unsaved(ctx, Then::Adopt(loaded, path)),
@@ -154,6 +165,16 @@ impl App {
         self.edits.note(format!("Open {}", self.files.project_name()), "");
         self.edits.record(&self.document, false);
         self.edits.mark_saved();
+    }
+
+    /// Goes on with the document in a picture: an edit like others, so that saving does not replace the picture.
+    fn adopt_picture(&mut self, loaded: Loaded<Document>, path: &Path) {
+        self.say_all(loaded.warnings);
+        self.recent.add(path);
+        self.document = loaded.value;
+        self.panels.slot = 0;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        self.edits.note(format!("Open {name}"), "");
     }
 
     /// Goes on with the default document.
@@ -198,6 +219,7 @@ impl App {
             Command::OpenMaterial => (Purpose::OpenMaterial, String::new()),
             Command::OpenMeasured => (Purpose::OpenMeasured, String::new()),
             Command::SaveMaterial => (Purpose::SaveMaterial, material_file()),
+            Command::SaveLayers => (Purpose::SaveLayers, format!("{}.exr", self.files.project_name())),
             Command::SavePicture => (Purpose::SavePicture, format!("{}.png", self.files.project_name())),
             // The others are done where this is called.
             _ => return,
@@ -214,6 +236,7 @@ impl App {
             Purpose::OpenMeasured => self.panels.lobe.measured = Some(path),
             Purpose::SaveProject => self.save_project(with_ending(path, "json")),
             Purpose::SaveMaterial => self.save_material(with_ending(path, "json")),
+            Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
             Purpose::SavePicture => self.save_picture(with_ending(path, "png")),
         }
     }
@@ -246,15 +269,22 @@ impl App {
             self.say(Level::Warning, "there is no picture to save yet");
             return;
         };
-        let view = self.document.view;
         self.files.disk.write_beside(move || {
-            output::write(&path, &picture.image, &view).map_err(|error| error.to_string())?;
+            output::write(&path, &picture.image, &picture.document).map_err(|error| error.to_string())?;
             let size = format!("{} × {}", picture.width, picture.height);
             Ok(format!(
                 "saved {} ({size}, {} samples a pixel)",
                 path.display(),
                 picture.samples_per_pixel
             ))
+        });
+    }
+
+    /// Writes the layers that the renderer made.
+    pub(super) fn write_layers(&mut self, path: PathBuf, layers: Box<Layers>) {
+        self.files.disk.write_beside(move || {
+            output::write_layers(&path, &layers).map_err(|error| error.to_string())?;
+            Ok(format!("saved {} with layers", path.display()))
         });
     }
 

@@ -24,31 +24,40 @@ pub enum Pane {
     Samples,
     /// The lobe itself.
     Lobe,
+    /// Error against time.
+    Convergence,
     /// Environment, background, ground.
     Lighting,
     /// Camera, view and render settings.
     Camera,
     /// Materials to start from.
     Presets,
+    /// Pinned states.
+    Snapshots,
     /// What was said.
     Log,
     /// The proof on this machine.
     Check,
+    /// What is simulated, and why.
+    Effects,
 }
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 13] = [
         Self::Viewport,
         Self::Material,
         Self::Curve,
         Self::Samples,
         Self::Lobe,
+        Self::Convergence,
         Self::Lighting,
         Self::Camera,
         Self::Presets,
+        Self::Snapshots,
         Self::Log,
         Self::Check,
+        Self::Effects,
     ];
 
     /// What it is called.
@@ -59,11 +68,14 @@ impl Pane {
             Self::Curve => "Curve",
             Self::Samples => "Samples",
             Self::Lobe => "Lobe",
+            Self::Convergence => "Convergence",
             Self::Lighting => "Light",
             Self::Camera => "Camera & picture",
             Self::Presets => "Presets",
+            Self::Snapshots => "Snapshots",
             Self::Log => "Log",
             Self::Check => "Check",
+            Self::Effects => "Effects",
         }
     }
 }
@@ -77,14 +89,16 @@ pub(super) fn default_layout() -> Tree<Pane> {
     let mut tiles = Tiles::default();
     let mut pane = |pane| tiles.insert_pane(pane);
     let (viewport, material) = (pane(Pane::Viewport), pane(Pane::Material));
-    let upper_left = [Pane::Presets, Pane::Log, Pane::Check].map(&mut pane).to_vec();
-    let lower_left = [Pane::Lighting, Pane::Camera].map(&mut pane).to_vec();
-    let lower_right = [Pane::Curve, Pane::Samples, Pane::Lobe].map(&mut pane).to_vec();
+    let upper_left = [Pane::Presets, Pane::Snapshots, Pane::Log, Pane::Check]
+        .map(&mut pane)
+        .to_vec();
+    let lower_left = [Pane::Lighting, Pane::Camera, Pane::Effects].map(&mut pane).to_vec();
+    let lower_right = [Pane::Curve, Pane::Samples, Pane::Lobe, Pane::Convergence].map(&mut pane);
     let upper_left = tiles.insert_tab_tile(upper_left);
     let lower_left = tiles.insert_tab_tile(lower_left);
     let left = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [upper_left, lower_left], 0.42));
     let upper_right = tiles.insert_tab_tile(vec![material]);
-    let lower_right = tiles.insert_tab_tile(lower_right);
+    let lower_right = tiles.insert_tab_tile(lower_right.to_vec());
     let right = tiles.insert_container(Linear::new_binary(
         LinearDir::Vertical,
         [upper_right, lower_right],
@@ -131,11 +145,14 @@ impl Behavior<Pane> for Panes<'_, '_> {
                     Pane::Curve => panels::curve::show(ui, self.desk),
                     Pane::Samples => panels::samples::show(ui, self.desk),
                     Pane::Lobe => panels::lobe::show(ui, self.desk),
+                    Pane::Convergence => panels::convergence::show(ui, self.desk),
                     Pane::Lighting => panels::lighting::show(ui, self.desk),
                     Pane::Camera => panels::camera::show(ui, self.desk),
                     Pane::Presets => panels::presets::show(ui, self.desk),
+                    Pane::Snapshots => panels::snapshots::show(ui, self.desk),
                     Pane::Log => panels::log::show(ui, self.desk),
                     Pane::Check => panels::check::show(ui, self.desk),
+                    Pane::Effects => panels::effects::show(ui, self.desk),
                     Pane::Viewport => {}
                 });
             });

@@ -3,12 +3,13 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use egui::{ColorImage, TextureHandle, TextureOptions};
 
 use super::App;
 use super::disk::Done;
-use crate::document::library::{self, Entry};
+use crate::document::library::{self, Entry, Removed};
 use crate::document::{FileError, MaterialSettings, PRESETS};
 use crate::render::thumbnails::{self, SIDE, ThumbnailWorker, Thumbnails};
 use crate::render::worker::Level;
@@ -20,8 +21,19 @@ pub enum Change {
     Add,
     /// A file's material gets another name.
     Rename(PathBuf, String),
+    /// A file's material is added once more under another name.
+    Duplicate(PathBuf),
     /// A file is removed.
     Remove(PathBuf),
+    /// What was removed last comes back.
+    Restore,
+}
+
+/// What came of a change: what to say, which materials there are, and what was removed.
+pub(super) struct Listed {
+    words: String,
+    entries: Vec<Entry>,
+    removed: Option<Removed>,
 }
 
 /// A material of the panel, with the key of its picture.
@@ -39,6 +51,10 @@ pub(super) struct Library {
     /// Keys of the shipped ones.
     shipped: Vec<u64>,
     pub(super) renaming: Option<(PathBuf, String)>,
+    /// What was removed last.
+    pub(super) removed: Option<Removed>,
+    /// Set while the viewport goes first.
+    hold: Arc<AtomicBool>,
     cache: Option<PathBuf>,
     worker: Option<ThumbnailWorker>,
     is_asked: bool,
@@ -52,8 +68,14 @@ impl Library {
         Self {
             folder,
             cache,
+            hold: Arc::new(AtomicBool::new(true)),
             ..Self::default()
         }
+    }
+
+    /// Whether pictures have to wait.
+    pub(super) fn hold(&self, is_held: bool) {
+        self.hold.store(is_held, Ordering::Relaxed);
     }
 
     /// The picture of a shipped material, by its place among them.
@@ -85,7 +107,9 @@ impl Library {
         }
         if self.worker.is_none() {
             let repainting = ctx.clone();
-            let worker = thumbnails::spawn_thumbnails(cache.join("thumbnails"), move || repainting.request_repaint());
+            let folder = cache.join("thumbnails");
+            let repaint = move || repainting.request_repaint();
+            let worker = thumbnails::spawn_thumbnails(folder, self.hold.clone(), repaint);
             match worker {
                 Ok(worker) => self.worker = Some(worker),
                 // Colours stand in for pictures.
@@ -119,9 +143,13 @@ impl App {
     /// Lists the user's folder, beside the window.
     pub(super) fn list_library(&mut self) {
         if let Some(folder) = self.panels.library.folder.clone() {
-            self.files
-                .disk
-                .read(move || Done::Listed(library::list(&folder).map(|entries| (String::new(), entries))));
+            self.files.disk.read(move || {
+                Done::Listed(library::list(&folder).map(|entries| Listed {
+                    words: String::new(),
+                    entries,
+                    removed: None,
+                }))
+            });
         }
     }
 
@@ -135,32 +163,44 @@ impl App {
             return;
         };
         let material = self.desk_material();
+        let kept = self.panels.library.removed.take();
         self.files.disk.write(move || {
-            let changed = || -> Result<_, FileError> {
+            let changed = || -> Result<Listed, FileError> {
+                let mut removed = None;
                 let words = match &change {
                     Change::Add => format!("saved {}", library::add(&folder, &material)?.display()),
                     Change::Rename(path, name) => {
                         format!("renamed to {name}: {}", library::rename(path, name)?.display())
                     }
                     Change::Remove(path) => {
-                        library::remove(path)?;
+                        removed = Some(library::remove(path)?);
                         format!("removed {}", path.display())
                     }
+                    Change::Duplicate(path) => format!("saved {}", library::duplicate(path)?.display()),
+                    Change::Restore => match &kept {
+                        Some(kept) => format!("restored {}", library::restore(kept)?.display()),
+                        None => String::new(),
+                    },
                 };
-                Ok((words, library::list(&folder)?))
+                Ok(Listed {
+                    words,
+                    entries: library::list(&folder)?,
+                    removed,
+                })
             };
             Done::ChangedLibrary(changed())
         });
     }
 
     /// Takes the folder's contents, or says why there are none.
-    pub(super) fn take_library(&mut self, listed: Result<(String, Vec<Entry>), FileError>) {
+    pub(super) fn take_library(&mut self, listed: Result<Listed, FileError>) {
         match listed {
-            Ok((words, entries)) => {
-                if !words.is_empty() {
-                    self.say(Level::Info, words);
+            Ok(listed) => {
+                if !listed.words.is_empty() {
+                    self.say(Level::Info, listed.words);
                 }
-                self.panels.library.take_list(entries);
+                self.panels.library.removed = listed.removed;
+                self.panels.library.take_list(listed.entries);
             }
             Err(error) => self.say(Level::Error, error.to_string()),
         }

@@ -6,6 +6,7 @@
 
 pub mod actions;
 mod autosave;
+pub mod compare;
 mod dialogs;
 mod disk;
 mod edits;
@@ -19,8 +20,10 @@ mod panels;
 mod recent;
 mod recovery_sheet;
 mod settings;
+pub mod snapshots;
 pub mod status;
 mod theme;
+mod turntable_sheet;
 mod unsaved;
 mod viewport;
 mod widgets;
@@ -43,12 +46,14 @@ pub use panels::Resolution;
 use panels::{Desk, PanelState};
 use recent::Recent;
 use status::FrameMeter;
+use turntable_sheet::TurntableSheet;
 use unsaved::Unsaved;
 use viewport::Viewport;
 
 use crate::document::{CameraSettings, Change, Document, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
+use crate::scene::camera::framing_distance;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelSource};
 
@@ -116,6 +121,7 @@ pub struct App {
     viewport: Viewport,
     dialogs: Dialogs,
     sheet: Sheet,
+    turntable: TurntableSheet,
     files: files::Files,
     recent: Recent,
     autosave: Autosave,
@@ -152,6 +158,7 @@ impl App {
                 resolution: options.resolution.unwrap_or(kept.resolution),
                 import_lobe: kept.import_lobe,
                 library: library::Library::new(options.data.as_ref().map(|data| data.join("materials")), options.cache),
+                snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
                 ..PanelState::default()
             },
             layout: kept.layout.unwrap_or_else(layout::default_layout),
@@ -159,6 +166,7 @@ impl App {
             viewport: Viewport::default(),
             dialogs: Dialogs::default(),
             sheet: Sheet::None,
+            turntable: TurntableSheet::default(),
             files: files::Files::new(creation.egui_ctx.clone())?,
             recent: Recent::new(kept.recent),
             autosave: match options.data {
@@ -175,6 +183,7 @@ impl App {
             theme: kept.theme,
         };
         app.list_library();
+        app.list_snapshots();
         for path in options.files {
             app.awaited += usize::from(app.open(path));
         }
@@ -248,6 +257,10 @@ impl App {
                     self.edits.note("Change the environment", "");
                     self.count_as_start(is_start);
                 }
+                Event::LayersMade(path, layers) => {
+                    self.write_layers(path, layers);
+                    continue;
+                }
                 Event::OpenFailed(_, why) => self.say(Level::Error, why),
             }
             self.awaited = self.awaited.saturating_sub(1);
@@ -270,6 +283,23 @@ impl App {
         let camera = &mut self.document.camera;
         (camera.target, camera.distance, camera.position) = (None, None, None);
         self.edits.note(format!("Change the model to {}", model.name), "");
+    }
+
+    /// Looks at the surfaces of the selected slot from where the camera is.
+    fn frame_selected(&mut self) {
+        let snapshot = self.worker.snapshot();
+        let Some(scene) = &snapshot.scene else { return };
+        let geometry = &scene.job.geometry;
+        let Some((center, radius)) = geometry.sphere_around(self.panels.slot as u32) else {
+            return;
+        };
+        let size = scene.job.settings.image_size.map(f64::from);
+        let camera = &mut self.document.camera;
+        let distance = framing_distance(camera.fov_deg, size[0] / size[1].max(1.0)) * radius;
+        camera.target = Some(geometry.world_from_units(center).to_array());
+        camera.distance = Some(distance * geometry.world_units_per_unit);
+        camera.position = None;
+        self.edits.note("Frame selected", "");
     }
 
     fn desk_material(&self) -> MaterialSettings {
@@ -296,12 +326,19 @@ impl App {
                 self.edits.seal();
             }
             Action::ChangeLibrary(change) => self.change_library(change),
+            Action::ChangeSnapshots(change) => self.change_snapshots(change),
+            Action::UseSnapshot(path) => self.use_snapshot(&path),
+            Action::CompareWith(rival) => self.compare_with(rival),
             Action::LookFrom(yaw_deg, pitch_deg) => {
                 let camera = &mut self.document.camera;
                 (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
                 self.edits.note("Look from a side", "");
             }
             Action::UseEngine(choice) => self.worker.use_engine(choice),
+            Action::Show(shown) => {
+                self.panels.shown = shown;
+                self.worker.show(shown);
+            }
         }
     }
 
@@ -331,6 +368,7 @@ impl App {
                 (camera.target, camera.distance, camera.position) = (None, None, None);
                 self.edits.note("Frame all", "");
             }
+            Command::FrameSelected => self.frame_selected(),
             Command::Maximise => {
                 self.is_maximised = !self.is_maximised;
                 layout::set_maximised(&mut self.layout, self.is_maximised);
@@ -352,8 +390,22 @@ impl App {
                 self.panels.is_paused = !self.panels.is_paused;
                 self.worker.pause(self.panels.is_paused);
             }
-            Command::Reload => self.worker.reload(),
-            Command::Restart => self.worker.restart(),
+            Command::Reload => {
+                self.worker.reload();
+                self.restart_rival();
+            }
+            Command::Restart => {
+                self.worker.restart();
+                self.restart_rival();
+            }
+            Command::Compare => self.toggle_compare(),
+            Command::SwapCompared => self.swap_compared(),
+            Command::TakeCompared => self.take_compared(),
+            Command::Pin => {
+                self.change_snapshots(snapshots::PinChange::Add);
+                self.reveal(Pane::Snapshots);
+            }
+            Command::Turntable => self.open_turntable(),
             Command::Palette => {
                 self.sheet = Sheet::Palette {
                     search: String::new(),
@@ -398,15 +450,25 @@ impl App {
             .submitted
             .as_ref()
             .map_or(Change::everything(), |old| Change::between(old, &wanted));
+        let is_moving = is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
+        let pace = if is_moving { Pace::Moving } else { Pace::Still };
+        self.keep_up_rival(ctx, &wanted, pace);
         if change.is_none() {
             return;
         }
-        let is_moving = is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
-        self.revision = self
-            .worker
-            .submit(&wanted, if is_moving { Pace::Moving } else { Pace::Still });
+        self.revision = self.worker.submit(&wanted, pace);
         self.submitted = Some(wanted);
         self.submitted_at = Instant::now();
+    }
+
+    /// Small pictures of materials wait until the picture is there, and while something is being changed.
+    fn hold_thumbnails(&self, ctx: &egui::Context) {
+        let has_picture = self.worker.snapshot().picture.is_some();
+        let is_changing = ctx.input(|input| input.pointer.any_down()) || self.edits.is_in_flow();
+        self.panels.library.hold(!has_picture || is_changing);
+        if is_changing {
+            ctx.request_repaint_after(MOVING);
+        }
     }
 
     fn show(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
@@ -451,13 +513,15 @@ impl App {
         if let Some((purpose, path)) = self.dialogs.show(ui) {
             self.chosen(purpose, path);
         }
+        self.show_turntable(ui.ctx());
         self.show_recovery(ui.ctx());
         self.show_question(ui.ctx());
     }
 
     /// Whether something lies over the window that takes the keys.
     fn is_covered(&self) -> bool {
-        let is_asked = self.dialogs.is_open() || self.unsaved.is_open() || !self.leftovers.is_empty();
+        let is_asked =
+            self.dialogs.is_open() || self.turntable.is_open() || self.unsaved.is_open() || !self.leftovers.is_empty();
         is_asked || self.sheet != Sheet::None
     }
 
@@ -496,6 +560,7 @@ impl eframe::App for App {
             self.apply(&ctx, action);
         }
         self.record_and_submit(&ctx);
+        self.hold_thumbnails(&ctx);
         self.put_aside(&ctx);
         self.guard_close(&ctx);
         self.set_title(&ctx);

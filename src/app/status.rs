@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use egui::{RichText, Ui};
 
+use crate::render::Progress;
 use crate::render::worker::{Activity, Snapshot};
 
 /// How long a frame counts as recent.
@@ -103,11 +104,16 @@ pub(super) fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter) {
         activity(ui, snapshot);
         let progress = &snapshot.progress;
         if progress.samples_wanted > 0 {
-            ui.label(format!(
-                "{} / {} samples",
-                progress.samples_per_pixel, progress.samples_wanted
-            ))
-            .on_hover_text("Samples a pixel: rendered, and to be rendered");
+            ui.label(samples(progress))
+                .on_hover_text("Samples a pixel: rendered (in the mean, where some rest), and to be rendered");
+            if let Some(noise) = progress.noise {
+                ui.label(format!("error {}", percent(noise.relative)))
+                    .on_hover_ui(|ui| {
+                        ui.label("Standard error of a pixel, root mean square, relative to the mean luminance");
+                        let (low, high) = (percent(noise.low), percent(noise.high));
+                        ui.label(format!("The true one lies between {low} and {high} (95 %)."));
+                    });
+            }
             ui.label(format!("{:.1} s", progress.render_seconds))
                 .on_hover_text("Render time of this picture");
             ui.label(format!("{} samples/s", short_number(snapshot.samples_per_second)))
@@ -152,8 +158,13 @@ fn activity(ui: &mut Ui, snapshot: &Snapshot) {
     }
     ui.label(snapshot.activity.to_string());
     if snapshot.activity == Activity::Rendering {
-        let progress = &snapshot.progress;
-        let share = f64::from(progress.samples_per_pixel) / f64::from(progress.samples_wanted.max(1));
+        if snapshot.progress.is_standing_in {
+            ui.add(egui::Spinner::new().size(12.0));
+            ui.weak("compiling the kernel")
+                .on_hover_text("The processor draws until the GPU's kernel for this scene is compiled.");
+        }
+        let limit = snapshot.scene.as_ref().and_then(|scene| scene.document.render.time_s);
+        let share = snapshot.progress.share_done(limit);
         ui.add(
             egui::ProgressBar::new(share as f32)
                 .desired_width(90.0)
@@ -173,6 +184,30 @@ fn window_time(ui: &mut Ui, meter: &FrameMeter, snapshot: &Snapshot) {
                 ));
             }
         });
+}
+
+fn samples(progress: &Progress) -> String {
+    let most = progress.samples_per_pixel;
+    let has_resting = progress.mean_samples < 0.99 * f64::from(most);
+    let mean = if has_resting {
+        format!(" (mean {:.0})", progress.mean_samples)
+    } else {
+        String::new()
+    };
+    format!("{most} / {} samples{mean}", progress.samples_wanted)
+}
+
+/// A share as a percentage with three digits.
+pub(super) fn percent(share: f64) -> String {
+    let value = 100.0 * share;
+    let decimals = match value {
+        v if v >= 100.0 => 0,
+        v if v >= 10.0 => 1,
+        v if v >= 1.0 || v == 0.0 => 2,
+        v if v >= 0.1 => 3,
+        _ => 4,
+    };
+    format!("{value:.decimals$} %")
 }
 
 /// A number with three digits and a prefix.
@@ -202,6 +237,8 @@ mod tests {
         assert_eq!(short_number(1234.0), "1.23 k");
         assert_eq!(short_number(45_670_000.0), "45.7 M");
         assert_eq!(short_number(3.21e11), "321 G");
+        let percents = [0.0, 0.000_412, 0.0123, 0.5, 2.0].map(percent);
+        assert_eq!(percents, ["0.00 %", "0.0412 %", "1.23 %", "50.0 %", "200 %"]);
     }
 
     #[test]

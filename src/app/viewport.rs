@@ -4,21 +4,24 @@
 //! and the wheel zoom, shift and left turns the light. As in Blender: shift and middle pans. A click selects the
 //! material of what was clicked.
 
+mod compare;
 mod header;
-
-use std::sync::Arc;
+mod legend;
 
 use egui::{
-    Color32, ColorImage, Image, Key, Modifiers, PointerButton, Pos2, Rect, Response, Sense, TextureHandle,
-    TextureOptions, Ui, Vec2, pos2, vec2,
+    Color32, ColorImage, Key, Modifiers, PointerButton, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui,
+    Vec2, pos2, vec2,
 };
 
+use super::compare::View;
 use super::icons::{self, Icon};
 use super::orbit::Orbit;
 use super::panels::{Desk, Resolution};
 use super::theme;
+use crate::optics::material::Material;
 use crate::render::worker::{Level, Picture, Scene};
 use crate::scene::camera::camera_ray;
+use crate::scene::surface::surface_at;
 
 /// Degrees of the environment's turn for a drag of one point.
 const LIGHT_DEG_PER_POINT: f32 = 0.35;
@@ -36,13 +39,58 @@ const SIDE_MAX_PX: u32 = 8192;
 /// The viewport's own state.
 #[derive(Default)]
 pub(super) struct Viewport {
-    texture: Option<TextureHandle>,
-    shown_serial: u64,
+    picture: Shown,
+    /// B's, where two are compared.
+    rival: Shown,
+    /// How B differs from A.
+    difference: Shown,
     /// Where the picture may be, points.
     area: Option<Rect>,
     pixels_per_point: f32,
     is_software: bool,
     id: Option<egui::Id>,
+}
+
+/// A texture, and what it shows.
+#[derive(Default)]
+struct Shown {
+    texture: Option<TextureHandle>,
+    key: Option<[u64; 2]>,
+}
+
+impl Shown {
+    /// Makes the texture show what the key stands for.
+    fn upload(&mut self, ui: &Ui, key: [u64; 2], image: impl FnOnce() -> ColorImage) {
+        if self.key == Some(key) {
+            return;
+        }
+        match &mut self.texture {
+            Some(texture) => texture.set(image(), TextureOptions::LINEAR),
+            None => self.texture = Some(ui.ctx().load_texture("picture", image(), TextureOptions::LINEAR)),
+        }
+        self.key = Some(key);
+    }
+
+    fn show(&self, ui: &Ui, clip: Rect, place: Rect) {
+        if let Some(texture) = &self.texture {
+            let painter = ui.painter_at(clip);
+            let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+            painter.image(texture.id(), place, whole, Color32::WHITE);
+        }
+    }
+
+    /// Paints a picture as far as `clip` shows it; `source` tells renderers apart whose serials may be the same.
+    fn paint(&mut self, ui: &Ui, clip: Rect, place: Rect, picture: &Picture, source: u64) {
+        self.upload(ui, [source, picture.serial], || {
+            let size = [picture.width as usize, picture.height as usize];
+            ColorImage::from_rgba_premultiplied(size, &picture.rgba)
+        });
+        let is_opaque = picture.image.pixels.first().is_none_or(|pixel| pixel[3] >= 1.0);
+        if !is_opaque {
+            checker(ui, clip.intersect(place));
+        }
+        self.show(ui, clip, place);
+    }
 }
 
 impl Viewport {
@@ -71,19 +119,40 @@ impl Viewport {
         let is_dark = ui.visuals().dark_mode;
         ui.painter().rect_filled(whole, 0.0, theme::surround(is_dark));
         let bar = Rect::from_min_size(whole.min, vec2(whole.width(), theme::BAR_HEIGHT));
-        let area = Rect::from_min_max(pos2(whole.left(), bar.bottom()), whole.max);
-        self.area = Some(area);
+        let is_compared = desk.state.compare.is_on;
+        let below = if is_compared { compare::BAR_HEIGHT } else { 0.0 };
+        let compare_bar = Rect::from_min_size(bar.left_bottom(), vec2(whole.width(), below));
+        let area = Rect::from_min_max(compare_bar.left_bottom(), whole.max);
+        self.area = Some(if is_compared {
+            compare::area_of_a(area, desk.state.compare.view)
+        } else {
+            area
+        });
         self.pixels_per_point = ui.ctx().pixels_per_point();
         self.is_software = desk.snapshot.engine.as_ref().is_none_or(|engine| engine.is_software);
         header::show(ui, bar, desk);
+        if is_compared {
+            compare::bar(ui, compare_bar, desk);
+        }
 
         let response = ui.interact(area, ui.scope_id().with("viewport"), Sense::click_and_drag());
         self.id = Some(response.id);
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Viewport"));
         let picture = desk.snapshot.picture.clone();
         if let Some(picture) = &picture {
-            let place = placed(area, picture, desk.state.resolution);
-            self.paint(ui, place, picture);
+            let place = if is_compared {
+                self.compared(ui, area, picture, desk)
+            } else {
+                let place = placed(area, picture, desk.state.resolution);
+                self.picture.paint(ui, place, place, picture, 0);
+                place
+            };
+            if is_compared && desk.state.compare.view == View::Wipe {
+                Self::divider(ui, place, desk);
+            }
+            if let Some((shown, scale)) = picture.map {
+                legend::show(ui, area, shown, scale);
+            }
             if let Some(scene) = desk.snapshot.scene.clone() {
                 self.navigate(ui, &response, place, &scene, desk);
             }
@@ -96,25 +165,6 @@ impl Viewport {
         }
         messages(ui, area, desk);
         drop_hint(ui, area);
-    }
-
-    fn paint(&mut self, ui: &mut Ui, place: Rect, picture: &Arc<Picture>) {
-        if self.texture.is_none() || self.shown_serial != picture.serial {
-            let size = [picture.width as usize, picture.height as usize];
-            let image = ColorImage::from_rgba_premultiplied(size, &picture.rgba);
-            match &mut self.texture {
-                Some(texture) => texture.set(image, TextureOptions::LINEAR),
-                None => self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR)),
-            }
-            self.shown_serial = picture.serial;
-        }
-        let is_opaque = picture.image.pixels.first().is_none_or(|pixel| pixel[3] >= 1.0);
-        if !is_opaque {
-            checker(ui, place);
-        }
-        if let Some(texture) = &self.texture {
-            Image::new(texture).paint_at(ui, place);
-        }
     }
 
     fn navigate(&self, ui: &mut Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
@@ -155,9 +205,24 @@ impl Viewport {
             && let Some(at) = response.interact_pointer_pos()
         {
             response.request_focus();
-            if let Some(slot) = slot_at(at, place, scene) {
-                desk.actions.push(super::actions::Action::SelectSlot(slot));
-            }
+            self.clicked(ui, at, place, scene, desk);
+        }
+    }
+
+    /// A click says what is sharp, where that was asked for or ctrl is held; otherwise it selects a slot, and the plots
+    /// take the angle of the place.
+    fn clicked(&self, ui: &Ui, at: Pos2, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
+        let Some(hit) = hit_at(at, place, scene) else { return };
+        let picks_focus = desk.state.picks_focus || ui.input(|input| input.modifiers.command);
+        if picks_focus && desk.document.camera.aperture > 0.0 {
+            desk.document.camera.focus_distance = Some(hit.depth);
+            desk.state.picks_focus = false;
+            desk.edits.note("Focus", "");
+            return;
+        }
+        desk.state.samples.view_angle_deg = Some(hit.view_angle_deg);
+        if let Some(slot) = hit.slot {
+            desk.actions.push(super::actions::Action::SelectSlot(slot));
         }
     }
 
@@ -215,8 +280,17 @@ fn placed(area: Rect, picture: &Picture, resolution: Resolution) -> Rect {
     Rect::from_center_size(area.center(), size * scale)
 }
 
-/// The material slot of what is seen at a place of the window.
-fn slot_at(at: Pos2, place: Rect, scene: &Scene) -> Option<usize> {
+/// What is seen at a place of the window.
+struct SeenSurface {
+    /// The material slot; `None` for the ground and area lights, which are no materials of the document.
+    slot: Option<usize>,
+    /// Along the camera's viewing direction, scene units.
+    depth: f64,
+    /// Between view and shading normal, degrees.
+    view_angle_deg: f32,
+}
+
+fn hit_at(at: Pos2, place: Rect, scene: &Scene) -> Option<SeenSurface> {
     if !place.contains(at) {
         return None;
     }
@@ -226,11 +300,18 @@ fn slot_at(at: Pos2, place: Rect, scene: &Scene) -> Option<usize> {
         f64::from(share.x) * f64::from(size[0]),
         f64::from(share.y) * f64::from(size[1]),
     ];
-    let [origin, direction] = camera_ray(&scene.job.settings.camera, pixel, size, [0.5; 2]).map(|v| v.to_f32());
-    let hit = scene.job.geometry.intersect(origin, direction, f32::INFINITY)?;
-    let slot = *scene.job.geometry.slots.get(hit.triangle as usize)? as usize;
-    // The ground's slot is no material of the document.
-    (slot < scene.model.slots.len()).then_some(slot)
+    let (camera, geometry) = (&scene.job.settings.camera, &scene.job.geometry);
+    let [origin, direction] = camera_ray(camera, pixel, size, [0.5; 2]);
+    let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::INFINITY)?;
+    let slot = *geometry.slots.get(hit.triangle as usize)? as usize;
+    let materials: Vec<_> = scene.job.materials.iter().map(Material::cast).collect();
+    let point = surface_at(geometry, &materials, &scene.job.textures, &hit, direction);
+    let cosine: f64 = point.surface.frame.normal.dot(point.surface.wo);
+    Some(SeenSurface {
+        slot: (slot < scene.model.slots.len()).then_some(slot),
+        depth: f64::from(hit.t) * direction.dot(camera.forward) * geometry.world_units_per_unit,
+        view_angle_deg: cosine.clamp(0.0, 1.0).acos().to_degrees() as f32,
+    })
 }
 
 /// Squares that show through where the picture is transparent.
@@ -319,7 +400,8 @@ fn drop_hint(ui: &Ui, area: Rect) {
         egui::StrokeKind::Inside,
     );
     let font = egui::TextStyle::Heading.resolve(ui.style());
-    let text = "Drop a model (.glb, .gltf), an environment (.hdr, .exr), a material or a project (.json)";
+    let text =
+        "Drop a model (.glb, .gltf), an environment (.hdr, .exr), a material or project (.json), a picture (.png)";
     ui.painter()
         .text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
 }

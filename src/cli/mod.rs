@@ -9,8 +9,10 @@ mod lobe;
 mod lobe_spec;
 mod names;
 mod parse;
+mod plan;
 mod render;
 mod scatter;
+mod turntable;
 
 use std::path::PathBuf;
 
@@ -21,7 +23,7 @@ use crate::render::EngineChoice;
 /// Glossmith: a material editor around the geometric lobe.
 ///
 /// Without a subcommand the editor opens, with the files given: models (.glb, .gltf), environments (.hdr, .exr),
-/// materials (.json).
+/// materials and projects (.json), pictures saved here (.png).
 #[derive(Debug, Parser)]
 #[command(version, args_conflicts_with_subcommands = true, after_help = EXIT_CODES)]
 pub struct Arguments {
@@ -42,6 +44,10 @@ const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, ren
 pub enum Command {
     /// Render a picture.
     Render(Box<render::RenderArguments>),
+    /// Show which effects a scene calls for, and why.
+    Plan(Box<plan::PlanArguments>),
+    /// Render a turn about the model as numbered pictures.
+    Turntable(Box<turntable::TurntableArguments>),
     /// Prove on this machine that the renderer is right.
     Check(check::CheckArguments),
     /// Draw samples of a lobe, as the renderer draws them.
@@ -60,6 +66,8 @@ impl Command {
     pub fn run(self) -> anyhow::Result<()> {
         match self {
             Command::Render(arguments) => render::run(&arguments),
+            Command::Plan(arguments) => plan::run(&arguments),
+            Command::Turntable(arguments) => turntable::run(&arguments),
             Command::Check(arguments) => check::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),

@@ -1,6 +1,7 @@
 //! Names on the command line, looked up in the registries.
 
 use crate::analysis::lobe_view::ViewKind;
+use crate::document::turntable::Turn;
 use crate::document::{ImportLobe, PixelFilter, Strategy};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::{Horizon, Lobe};
@@ -38,4 +39,5 @@ parsers! {
     curve: Curve;
     horizon: Horizon;
     view_kind: ViewKind;
+    turn: Turn;
 }

@@ -141,3 +141,12 @@ pub(super) fn check_writable(path: &Path) -> anyhow::Result<()> {
     }
     Ok(())
 }
+
+/// `on` or `off`.
+pub(super) fn on_or_off(text: &str) -> Result<bool, String> {
+    match text {
+        "on" => Ok(true),
+        "off" => Ok(false),
+        other => Err(format!("{other} is neither on nor off")),
+    }
+}

@@ -9,13 +9,15 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{names, parse};
+use crate::document::effect::EffectSwitches;
 use crate::document::file::{self, Opened};
 use crate::document::{
     AreaLight, Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, assign, preset, range,
 };
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
-use crate::render::{EngineChoice, Progress, Session, SessionError, output};
+use crate::render::output::{self, Format};
+use crate::render::{EngineChoice, Progress, Session, SessionError};
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelSource};
 
@@ -27,6 +29,22 @@ const DEFAULT_SCENE_SECONDS: f64 = 8.0;
 /// Arguments of `glossmith render`.
 #[derive(Debug, Args)]
 pub struct RenderArguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Picture to write: .png (with exposure and tone curve, the document inside), .exr or .hdr (linear). May be repeated.
+    #[arg(long = "output", default_value = "glossmith.png", value_name = "FILE", value_parser = parse::picture)]
+    outputs: Vec<PathBuf>,
+    /// Write albedo, normal, depth, number of samples and variance as layers into .exr pictures.
+    #[arg(long)]
+    aovs: bool,
+    /// Write what was rendered, how and how fast, as JSON.
+    #[arg(long, value_name = "FILE")]
+    report: Option<PathBuf>,
+}
+
+/// Arguments that describe what is rendered, and how.
+#[derive(Debug, Args)]
+pub struct SceneArguments {
     /// What to render: a built-in model or a .glb or .gltf file.
     #[arg(long, default_value = "teapot", value_name = "FILE|teapot|sphere|plane|shaderball")]
     model: ModelSource,
@@ -49,6 +67,9 @@ pub struct RenderArguments {
     /// What the camera sees where it meets nothing.
     #[arg(long, default_value = "environment", value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
     background: Background,
+    /// Blur the environment where the camera sees it, over this angle; light and reflections stay sharp.
+    #[arg(long, default_value = "0", value_name = "DEG", value_parser = parse::number_in(range::BACKGROUND_BLUR_DEG), allow_negative_numbers = true)]
+    background_blur: f64,
     /// The material of everything: the name of a shipped one, or a .json file. Without it a file's own materials stay.
     #[arg(long, value_name = "FILE|NAME")]
     material: Option<String>,
@@ -73,18 +94,33 @@ pub struct RenderArguments {
     /// Vertical field of view.
     #[arg(long, default_value = "30", value_name = "DEG", value_parser = parse::number_in(range::FOV_DEG), allow_negative_numbers = true)]
     fov: f64,
+    /// Radius of the lens, in bounding radii of the model; 0 is a pinhole, with which everything is sharp.
+    #[arg(long, default_value = "0", value_name = "X", value_parser = parse::number_in(range::APERTURE), allow_negative_numbers = true)]
+    aperture: f64,
+    /// How far away things are sharp, in the model's units. Without it at the target.
+    #[arg(long, value_name = "X", value_parser = parse::number_in(range::DISTANCE), allow_negative_numbers = true)]
+    focus_distance: Option<f64>,
     /// Pixel filter: box (to compare with other renderers) or gaussian (smoother edges).
     #[arg(long, default_value = "gaussian", value_name = "box|gaussian", value_parser = names::filter)]
     filter: PixelFilter,
     /// Width and height in pixels.
     #[arg(long, default_value = "512x512", value_name = "WxH", value_parser = parse::size)]
     size: [u32; 2],
-    /// Samples a pixel [default: 256, or no limit with --time].
+    /// Samples a pixel; with --adaptive on the most of a pixel [default: 256, or no limit with --time or --noise].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
     /// Stop after this time of rendering.
     #[arg(long, value_name = "SECONDS", value_parser = parse::number_in(range::TIME_S), allow_negative_numbers = true)]
     time: Option<f64>,
+    /// Stop at this relative error of the picture: 0.02 is 2 %.
+    #[arg(long, value_name = "X", value_parser = parse::number_in(range::NOISE), allow_negative_numbers = true)]
+    noise: Option<f64>,
+    /// Samples that each pixel has before its error is believed, so that small lights are not missed.
+    #[arg(long, default_value_t = 16, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(2..=65536))]
+    min_samples: u32,
+    /// Whether samples go where the error is, or evenly over the picture [default: on with --noise, else off].
+    #[arg(long, value_name = "on|off", value_parser = parse::on_or_off)]
+    adaptive: Option<bool>,
     /// Reflections that a path may have, 1 to 64.
     #[arg(long, default_value_t = 64, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=64))]
     bounces: u32,
@@ -94,24 +130,27 @@ pub struct RenderArguments {
     /// How light is found: by sampling the lobe, the light, or both weighed against each other.
     #[arg(long, default_value = "mis", value_name = "lobe|light|mis", value_parser = names::strategy)]
     strategy: Strategy,
+    /// Which effects are simulated: those that the scene calls for; all, needed or not; or these alone (names of
+    /// `glossmith plan`, with commas between; +NAME and -NAME change what the scene calls for).
+    #[arg(
+        long,
+        default_value = "auto",
+        value_name = "auto|all|LIST",
+        allow_hyphen_values = true
+    )]
+    effects: EffectSwitches,
     /// Changes all random numbers.
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
     seed: u32,
     /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
-    engine: EngineChoice,
+    pub(super) engine: EngineChoice,
     /// Tone curve of .png pictures.
     #[arg(long, default_value = "agx", value_name = "agx|aces|pbr-neutral|none", value_parser = names::tone)]
     tone_map: ToneCurve,
     /// Exposure of .png pictures, in stops.
     #[arg(long, default_value = "0", value_name = "EV", value_parser = parse::number_in(range::EXPOSURE_EV), allow_negative_numbers = true)]
     exposure: f64,
-    /// Picture to write: .png (with exposure and tone curve), .exr or .hdr (linear). May be repeated.
-    #[arg(long = "output", default_value = "glossmith.png", value_name = "FILE", value_parser = parse::picture)]
-    outputs: Vec<PathBuf>,
-    /// Write what was rendered, how and how fast, as JSON.
-    #[arg(long, value_name = "FILE")]
-    report: Option<PathBuf>,
 }
 
 /// Renders as the arguments say.
@@ -122,18 +161,28 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     for path in arguments.outputs.iter().chain(&arguments.report) {
         parse::check_writable(path)?;
     }
+    let takes_layers = |path: &PathBuf| output::format_of(path).is_ok_and(|format| format == Format::Exr);
+    if arguments.aovs && !arguments.outputs.iter().any(takes_layers) {
+        bail!("--aovs writes layers into .exr pictures; give --output FILE.exr");
+    }
     let begun = Instant::now();
-    let mut session = Session::open(arguments.engine)?;
-    let document = document(arguments, &mut session)?;
-    let engine = arguments.engine;
-    render(
-        session,
-        engine,
-        &document,
-        begun,
-        &arguments.outputs,
-        arguments.report.as_deref(),
-    )
+    let scene = &arguments.scene;
+    let mut session = Session::open(scene.engine)?;
+    let document = scene.document(&mut session)?;
+    let targets = Targets {
+        outputs: &arguments.outputs,
+        has_layers: arguments.aovs,
+        report: arguments.report.as_deref(),
+    };
+    render(session, scene.engine, &document, begun, &targets)
+}
+
+/// What is written.
+struct Targets<'a> {
+    outputs: &'a [PathBuf],
+    /// .exr pictures have layers.
+    has_layers: bool,
+    report: Option<&'a Path>,
 }
 
 /// Renders the default scene, with the files given in the place of its parts, to `glossmith.png` in the working folder.
@@ -150,7 +199,12 @@ pub fn run_default(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()
         open(file, &mut document, &mut session)?;
     }
     document.render.time_s = Some(DEFAULT_SCENE_SECONDS);
-    render(session, engine, &document, begun, &[path], None)
+    let targets = Targets {
+        outputs: &[path],
+        has_layers: false,
+        report: None,
+    };
+    render(session, engine, &document, begun, &targets)
 }
 
 /// Puts what a file holds in the document: a model, an environment, a material or a whole project.
@@ -163,12 +217,12 @@ fn open(path: &Path, document: &mut Document, session: &mut Session) -> anyhow::
             document.materials = slot_materials(&model, ImportLobe::default());
         }
         "hdr" | "exr" => document.lighting.environment = EnvironmentSource::File(path.to_owned()),
-        "json" => match file::open(path)? {
+        "json" | "png" => match file::open(path)? {
             Opened::Material(material) => {
                 warn(&material.warnings);
                 document.materials = vec![material.value];
             }
-            Opened::Document(project) => {
+            Opened::Document(project) | Opened::Picture(project) => {
                 warn(&project.warnings);
                 *document = project.value;
             }
@@ -178,8 +232,8 @@ fn open(path: &Path, document: &mut Document, session: &mut Session) -> anyhow::
             path.display()
         ),
         _ => bail!(
-            "{}: neither a model (.glb, .gltf) nor an environment (.hdr, .exr), material or project (.json); give one \
-             of these",
+            "{}: neither a model (.glb, .gltf) nor an environment (.hdr, .exr), material or project (.json), or a \
+             picture saved here (.png); give one of these",
             path.display()
         ),
     }
@@ -196,8 +250,7 @@ fn render(
     engine: EngineChoice,
     document: &Document,
     begun: Instant,
-    outputs: &[PathBuf],
-    report: Option<&Path>,
+    targets: &Targets<'_>,
 ) -> anyhow::Result<()> {
     let submitted = session.submit(document).map(|_| ());
     or_fall_back(submitted, &mut session, engine, document)?;
@@ -205,11 +258,15 @@ fn render(
     let setup_seconds = begun.elapsed().as_secs_f64();
     let progress = step_to_end(&mut session, engine, document)?;
     let image = session.image()?;
-    for path in outputs {
-        output::write(path, &image, &document.view)?;
+    for path in targets.outputs {
+        if targets.has_layers && output::format_of(path)? == Format::Exr {
+            output::write_layers(path, &session.layers()?)?;
+        } else {
+            output::write(path, &image, document)?;
+        }
         eprintln!("wrote {}", path.display());
     }
-    if let Some(path) = report {
+    if let Some(path) = targets.report {
         let text = serde_json::to_string_pretty(&json_report(&mut session, document, setup_seconds, progress)?)?;
         std::fs::write(path, text + "\n")
             .with_context(|| format!("{}: the report could not be written", path.display()))?;
@@ -221,26 +278,27 @@ fn render(
     Ok(())
 }
 
+/// A progress bar on a terminal, else none.
+pub(super) fn bar(template: &str, steps: u64) -> anyhow::Result<ProgressBar> {
+    if !std::io::stderr().is_terminal() {
+        return Ok(ProgressBar::hidden());
+    }
+    Ok(ProgressBar::new(steps).with_style(ProgressStyle::with_template(template)?))
+}
+
 /// Steps until the session is done, with a progress bar on a terminal.
 fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document) -> anyhow::Result<Progress> {
     const BAR_STEPS: f64 = 1000.0;
-    let bar = if std::io::stderr().is_terminal() {
-        let style = ProgressStyle::with_template("{bar:40} {msg} samples a pixel, {eta} left")?;
-        ProgressBar::new(BAR_STEPS as u64).with_style(style)
-    } else {
-        ProgressBar::hidden()
-    };
+    let bar = bar("{bar:40} {msg}, {eta} left", BAR_STEPS as u64)?;
     loop {
         let stepped = session.step(STEP).map(|_| ());
         or_fall_back(stepped, session, engine, document)?;
         let progress = session.progress();
-        let by_samples = f64::from(progress.samples_per_pixel) / f64::from(progress.samples_wanted.max(1));
-        let by_time = document
-            .render
-            .time_s
-            .map_or(0.0, |limit| progress.render_seconds / limit);
-        bar.set_position((BAR_STEPS * by_samples.max(by_time)) as u64);
-        bar.set_message(progress.samples_per_pixel.to_string());
+        bar.set_position((BAR_STEPS * progress.share_done(document.render.time_s)) as u64);
+        let error = progress.noise.map_or(String::new(), |noise| {
+            format!(", error {:.2} %", 100.0 * noise.relative)
+        });
+        bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
         if progress.is_done {
             bar.finish_and_clear();
             return Ok(progress);
@@ -277,6 +335,7 @@ fn json_report(
     let film = session.film()?;
     let seconds = progress.render_seconds.max(1e-9);
     let samples = film.samples() + film.dropped;
+    let rays = film.total_rays();
     Ok(serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
         "engine": engine.kind,
@@ -285,11 +344,17 @@ fn json_report(
         "width": film.width,
         "height": film.height,
         "samples_per_pixel": progress.samples_per_pixel,
+        "mean_samples_per_pixel": progress.mean_samples,
+        "noise": progress.noise.map(|noise| noise.relative),
+        "noise_low": progress.noise.map(|noise| noise.low),
+        "noise_high": progress.noise.map(|noise| noise.high),
+        "converged": progress.is_converged(),
+        "stopped_by": progress.stopped_by,
         "setup_seconds": setup_seconds,
         "render_seconds": progress.render_seconds,
         "samples_per_second": samples as f64 / seconds,
-        "rays": film.rays,
-        "rays_per_second": film.rays as f64 / seconds,
+        "rays": rays,
+        "rays_per_second": rays as f64 / seconds,
         "dropped_samples": film.dropped,
         "effects": effects,
         "seed": document.render.seed,
@@ -302,56 +367,67 @@ fn slot_materials(model: &Model, lobe: ImportLobe) -> Vec<MaterialSettings> {
     slots.map(|slot| MaterialSettings::from_slot(slot, lobe)).collect()
 }
 
-/// The document that the arguments describe.
-fn document(arguments: &RenderArguments, session: &mut Session) -> anyhow::Result<Document> {
-    let model = session.assets().model(&arguments.model)?;
-    let mut document = Document {
-        model: arguments.model.clone(),
-        ground: arguments.ground,
-        ..Document::default()
-    };
-    if let Some(name) = &arguments.material {
-        let material = preset::find(name)?;
-        warn(&material.warnings);
-        document.materials = vec![material.value];
-    } else if matches!(arguments.model, ModelSource::File(_)) {
-        document.materials = slot_materials(&model, arguments.import_lobe);
-    }
-    for assignment in &arguments.assignments {
-        for material in &mut document.materials {
-            assign(material, assignment)?;
+impl SceneArguments {
+    /// The document that the arguments describe.
+    ///
+    /// # Errors
+    /// One line that names the file, what is wrong and what to do.
+    pub(super) fn document(&self, session: &mut Session) -> anyhow::Result<Document> {
+        let model = session.assets().model(&self.model)?;
+        let mut document = Document {
+            model: self.model.clone(),
+            ground: self.ground,
+            ..Document::default()
+        };
+        if let Some(name) = &self.material {
+            let material = preset::find(name)?;
+            warn(&material.warnings);
+            document.materials = vec![material.value];
+        } else if matches!(self.model, ModelSource::File(_)) {
+            document.materials = slot_materials(&model, self.import_lobe);
         }
+        for assignment in &self.assignments {
+            for material in &mut document.materials {
+                assign(material, assignment)?;
+            }
+        }
+        let lighting = &mut document.lighting;
+        lighting.environment = self.environment.clone();
+        lighting.rotation_deg = self.environment_rotation as f32;
+        lighting.strength = self.environment_strength as f32;
+        lighting.background = self.background;
+        lighting.background_blur_deg = self.background_blur as f32;
+        lighting.area_lights = self.area_lights.clone();
+        let camera = &mut document.camera;
+        if let Some([yaw_deg, pitch_deg]) = self.camera_orbit {
+            (camera.yaw_deg, camera.pitch_deg) = (yaw_deg, pitch_deg);
+        }
+        camera.target = self.camera_target;
+        camera.distance = self.camera_distance;
+        camera.position = self.camera_position;
+        camera.fov_deg = self.fov;
+        camera.aperture = self.aperture;
+        camera.focus_distance = self.focus_distance;
+        document.view.tone_map = self.tone_map;
+        document.view.exposure_ev = self.exposure as f32;
+        let render = &mut document.render;
+        [render.width, render.height] = self.size;
+        // With a time or noise to reach only, samples are not limited.
+        let is_limited = self.time.or(self.noise).is_some();
+        render.samples = self
+            .samples
+            .unwrap_or(if is_limited { u32::MAX } else { render.samples });
+        render.time_s = self.time;
+        render.noise = self.noise;
+        render.min_samples = self.min_samples;
+        render.adaptive = self.adaptive;
+        render.bounces = self.bounces;
+        render.sequence = self.sequence;
+        render.strategy = self.strategy;
+        render.seed = self.seed;
+        render.filter = self.filter;
+        render.effects = self.effects;
+        document.check()?;
+        Ok(document)
     }
-    let lighting = &mut document.lighting;
-    lighting.environment = arguments.environment.clone();
-    lighting.rotation_deg = arguments.environment_rotation as f32;
-    lighting.strength = arguments.environment_strength as f32;
-    lighting.background = arguments.background;
-    lighting.area_lights = arguments.area_lights.clone();
-    let camera = &mut document.camera;
-    if let Some([yaw_deg, pitch_deg]) = arguments.camera_orbit {
-        (camera.yaw_deg, camera.pitch_deg) = (yaw_deg, pitch_deg);
-    }
-    camera.target = arguments.camera_target;
-    camera.distance = arguments.camera_distance;
-    camera.position = arguments.camera_position;
-    camera.fov_deg = arguments.fov;
-    document.view.tone_map = arguments.tone_map;
-    document.view.exposure_ev = arguments.exposure as f32;
-    let render = &mut document.render;
-    [render.width, render.height] = arguments.size;
-    // With a time limit only, samples are not limited.
-    render.samples = arguments.samples.unwrap_or(if arguments.time.is_some() {
-        u32::MAX
-    } else {
-        render.samples
-    });
-    render.time_s = arguments.time;
-    render.bounces = arguments.bounces;
-    render.sequence = arguments.sequence;
-    render.strategy = arguments.strategy;
-    render.seed = arguments.seed;
-    render.filter = arguments.filter;
-    document.check()?;
-    Ok(document)
 }

@@ -1,11 +1,13 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
 
 use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
-use crate::optics::material::{Material, MaterialNumbers, material_evaluate, material_sample};
-use crate::optics::random::{RandomState, random_pair, random_state};
+use crate::optics::frame::{frame_from_normal, world_from_local};
+use crate::optics::material::{Material, MaterialNumbers, material_albedo, material_evaluate, material_sample};
+use crate::optics::random::{RandomState, path_state, random_pair};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
-use crate::scene::camera::{Camera, camera_ray, filter_offset};
+use crate::optics::warp::uniform_disc;
+use crate::scene::camera::{Camera, pixel_ray};
 use crate::scene::environment::{
     Environment, environment_density, environment_local_from_world, environment_radiance, environment_sample,
     environment_world_from_local,
@@ -41,6 +43,17 @@ pub struct PathResult<T> {
     pub rays: u32,
 }
 
+/// What one sample of the camera sees first.
+#[derive(Clone, Copy, Debug)]
+pub struct FeatureSample<T> {
+    /// See [`material_albedo`].
+    pub albedo: Vec3<T>,
+    /// Shading normal in the world.
+    pub normal: Vec3<T>,
+    /// Along the camera's axis, in the geometry's units.
+    pub depth: T,
+}
+
 /// A job with its numbers in the precision of the shading.
 pub struct Integrator<'a, T> {
     geometry: &'a Geometry,
@@ -57,6 +70,7 @@ pub struct Integrator<'a, T> {
     density_per_luminance: T,
     samples_environment: bool,
     samples_emitters: bool,
+    is_interreflecting: bool,
 }
 
 impl<'a, T: Real> Integrator<'a, T> {
@@ -69,7 +83,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             environment: &job.environment,
             tables: &job.tables,
             textures: &job.textures,
-            has_holes: job.plan.alpha,
+            has_holes: job.plan.has("alpha"),
             settings: &job.settings,
             materials: job.materials.iter().map(Material::cast).collect(),
             camera: job.settings.camera.cast(),
@@ -77,8 +91,11 @@ impl<'a, T: Real> Integrator<'a, T> {
             lights: &job.lights,
             environment_probability: T::from_f64(choice.environment_probability),
             density_per_luminance: T::from_f64(choice.density_per_luminance),
-            samples_environment: job.plan.light_sampling && samples_light,
-            samples_emitters: job.plan.emitter_sampling && samples_light,
+            samples_environment: job.plan.has("light-sampling")
+                && samples_light
+                && choice.environment_probability > 0.0,
+            samples_emitters: job.plan.has("emitter-sampling") && samples_light && choice.density_per_luminance > 0.0,
+            is_interreflecting: job.plan.has("interreflection"),
         }
     }
 
@@ -174,8 +191,11 @@ impl<'a, T: Real> Integrator<'a, T> {
         if value.max_component().to_f64() <= 0.0 {
             return Vec3::zero();
         }
-        let origin = point.ray_origin(wi, material.transmits());
-        let transmittance = self.transmittance(origin, wi, light.distance, rays);
+        let mut transmittance = T::one();
+        if !self.meets_nothing(point, wi) {
+            let origin = point.ray_origin(wi, material.transmits());
+            transmittance = self.transmittance(origin, wi, light.distance, rays);
+        }
         if transmittance.to_f64() <= 0.0 {
             return Vec3::zero();
         }
@@ -241,9 +261,23 @@ impl<'a, T: Real> Integrator<'a, T> {
         None
     }
 
-    fn camera_background(&self, direction: Vec3<T>, rays: u32) -> PathResult<T> {
+    /// True where it is proven that nothing lies ahead: outside a convex body.
+    fn meets_nothing(&self, point: &SurfacePoint<T>, wi: Vec3<T>) -> bool {
+        !self.is_interreflecting && !point.surface.is_inside && point.surface.normal.dot(wi).to_f64() > 0.0
+    }
+
+    fn camera_background(&self, direction: Vec3<T>, state: RandomState, rays: u32) -> PathResult<T> {
         let (radiance, alpha) = match self.settings.background {
             BackgroundKind::Environment => (self.far_radiance(direction), T::one()),
+            BackgroundKind::Blurred(sine) => {
+                // The numbers of the first bounce, which there is none of.
+                let disc: [T; 2] = uniform_disc(random_pair(state, FIRST_DIMENSION));
+                let disc = disc.map(|x| x * T::from_f64(sine));
+                let height = (T::one() - disc[0] * disc[0] - disc[1] * disc[1]).safe_sqrt();
+                let around = frame_from_normal(direction);
+                let blurred = world_from_local(&around, vec3(disc[0], disc[1], height));
+                (self.far_radiance(blurred), T::one())
+            }
             BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
             BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
         };
@@ -253,21 +287,23 @@ impl<'a, T: Real> Integrator<'a, T> {
     /// One path through a pixel.
     pub fn trace_path(&self, pixel: [u32; 2], sample: u32) -> PathResult<T> {
         let settings = self.settings;
-        let state = random_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        let offset: [T; 2] = filter_offset(self.camera.filter_kind, random_pair(state, 0));
-        let half = T::from_f64(0.5);
-        let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
-        let [mut origin, mut direction] = camera_ray(&self.camera, place, settings.image_size, random_pair(state, 1));
+        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
+        let [mut origin, mut direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
         let samples_light = self.samples_environment || self.samples_emitters;
         let mut throughput = Vec3::splat(T::one());
         let mut radiance = Vec3::zero();
         let mut lobe_density = T::zero();
         let mut was_mirror = true;
         let mut rays = 0;
+        let mut leaves = false;
         for bounce in 0.. {
-            let Some((point, distance)) = self.stop(origin, direction, state, bounce, &mut rays) else {
+            let mut met = None;
+            if !leaves {
+                met = self.stop(origin, direction, state, bounce, &mut rays);
+            }
+            let Some((point, distance)) = met else {
                 if bounce == 0 {
-                    return self.camera_background(direction, rays);
+                    return self.camera_background(direction, state, rays);
                 }
                 radiance += throughput * self.far_light(direction, lobe_density, was_mirror);
                 break;
@@ -320,6 +356,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             }
             lobe_density = drawn.density;
             was_mirror = drawn.is_mirror;
+            leaves = self.meets_nothing(&point, drawn.wi);
             (origin, direction) = (point.ray_origin(drawn.wi, material.transmits()), drawn.wi);
         }
         PathResult {
@@ -327,6 +364,22 @@ impl<'a, T: Real> Integrator<'a, T> {
             alpha: T::one(),
             rays,
         }
+    }
+
+    /// What the camera sees first through a pixel, with the same ray as [`Integrator::trace_path`]; `None` where it meets
+    /// nothing.
+    pub fn trace_features(&self, pixel: [u32; 2], sample: u32) -> Option<FeatureSample<T>> {
+        let settings = self.settings;
+        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
+        let [origin, direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
+        let (point, distance) = self.stop(origin, direction, state, 0, &mut 0)?;
+        let plain = &self.materials[point.slot as usize];
+        let material = textured_material(self.textures, self.tables, plain, point.uvs);
+        Some(FeatureSample {
+            albedo: material_albedo(&material, self.tables, &point.surface),
+            normal: point.surface.frame.normal,
+            depth: distance * direction.dot(self.camera.forward),
+        })
     }
 
     fn surface(&self, hit: &Hit, direction: Vec3<T>) -> SurfacePoint<T> {

@@ -1,5 +1,6 @@
 //! The engine on the processor: the same path tracer as the GPU's, on all cores.
 
+pub mod features;
 pub mod integrator;
 pub mod scatter;
 
@@ -8,34 +9,40 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
+use crate::analysis::features::Features;
 use crate::analysis::film::Film;
+use crate::analysis::tiles::{Schedule, Work};
 use crate::document::job::Job;
 use crate::optics::real::Real;
 use integrator::{Integrator, is_sound};
 
-/// Pixels of a work item: small enough to spread over the cores and to stop in time.
-const CHUNK_PIXELS: usize = 256;
-
-/// Renders on the processor's cores.
+/// Renders on the processor's cores, which take a tile each at a time.
 #[derive(Default)]
 pub struct CpuEngine {
     job: Option<Arc<Job>>,
+    schedule: Schedule,
+    /// The sums of each tile, so that no two cores write to the same memory.
+    tiles: Vec<Film>,
+    /// All of them in one, made when asked for.
     film: Film,
-    /// The first pixel that has not had its sample of the pass in progress.
-    next_pixel: usize,
-    /// Passes begun and completed.
-    next_sample: u32,
-    /// Pixels a second, to cut work to a budget.
-    pixels_per_second: f64,
+    is_film_made: bool,
+    /// Tiles a second, to cut work to a budget.
+    tiles_per_second: f64,
 }
 
 impl CpuEngine {
     /// Starts a job over.
     pub fn submit(&mut self, job: Arc<Job>) {
         let [width, height] = job.settings.image_size;
+        self.schedule = Schedule::new(width, height);
+        let grid = self.schedule.grid();
+        let tile = |tile| {
+            let [width, height] = grid.size(tile);
+            Film::new(width, height)
+        };
+        self.tiles = (0..grid.tiles()).map(tile).collect();
         self.film = Film::new(width, height);
-        self.next_pixel = 0;
-        self.next_sample = 0;
+        self.is_film_made = true;
         self.job = Some(job);
     }
 
@@ -46,67 +53,89 @@ impl CpuEngine {
 
     /// The same with shading in `T`; rays meet the geometry in f32 in either case.
     pub fn step_in<T: Real>(&mut self, budget: Duration, samples: u32) {
+        let goals = vec![samples; self.tiles.len()];
+        self.step_towards::<T>(budget, &goals);
+    }
+
+    /// The same up to a number of samples a pixel for each tile.
+    pub fn step_towards<T: Real>(&mut self, budget: Duration, goals: &[u32]) {
         let Some(job) = self.job.clone() else { return };
         let integrator = Integrator::<T>::new(&job);
+        self.schedule.aim(goals);
         let start = Instant::now();
-        let pixels = self.film.color.len();
-        while self.next_sample < samples && pixels > 0 {
+        while self.schedule.begin(|_| 1) {
             let left = budget.saturating_sub(start.elapsed()).as_secs_f64();
-            let count = (self.pixels_per_second * left) as usize;
-            let count = count
-                .max(CHUNK_PIXELS * rayon::current_num_threads())
-                .min(pixels - self.next_pixel);
+            let count = (self.tiles_per_second * left) as usize;
+            let works = self.schedule.next(count.max(rayon::current_num_threads()));
             let slice_start = Instant::now();
-            self.render(&integrator, job.settings.image_size[0], self.next_pixel, count);
-            self.pixels_per_second = count as f64 / slice_start.elapsed().as_secs_f64().max(1e-9);
-            self.next_pixel += count;
-            if self.next_pixel == pixels {
-                self.next_pixel = 0;
-                self.next_sample += 1;
-            }
+            self.render(&integrator, &works);
+            self.tiles_per_second = works.len() as f64 / slice_start.elapsed().as_secs_f64().max(1e-9);
+            self.schedule.finish(&works);
             if start.elapsed() >= budget {
                 break;
             }
         }
     }
 
-    /// One sample for each of `count` pixels from `first` on.
-    fn render<T: Real>(&mut self, integrator: &Integrator<'_, T>, width: u32, first: usize, count: usize) {
-        let sample = self.next_sample;
-        let colors = self.film.color[first..first + count].par_chunks_mut(CHUNK_PIXELS);
-        let statistics = self.film.statistics[first..first + count].par_chunks_mut(CHUNK_PIXELS);
-        let chunks = colors.zip(statistics).enumerate().map(|(chunk, (colors, statistics))| {
-            let (mut dropped, mut rays) = (0, 0);
-            for (i, (color, statistics)) in colors.iter_mut().zip(statistics).enumerate() {
-                let index = (first + chunk * CHUNK_PIXELS + i) as u32;
-                let path = integrator.trace_path([index % width, index / width], sample);
-                rays += u64::from(path.rays);
-                if is_sound(path.radiance) {
-                    let [r, g, b] = path.radiance.to_f64();
-                    let luminance = path.radiance.luminance().to_f64();
-                    for (sum, x) in color.iter_mut().zip([r, g, b, path.alpha.to_f64()]) {
-                        *sum += x;
-                    }
-                    statistics[0] += luminance * luminance;
-                    statistics[1] += 1.0;
-                } else {
-                    dropped += 1;
-                }
-            }
-            (dropped, rays)
-        });
-        let (dropped, rays) = chunks.reduce(|| (0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
-        self.film.dropped += dropped;
-        self.film.rays += rays;
+    /// Renders tiles, in the order of their numbers.
+    fn render<T: Real>(&mut self, integrator: &Integrator<'_, T>, works: &[Work]) {
+        let grid = self.schedule.grid();
+        let mut works = works.iter().peekable();
+        let with_sums = |(tile, sums)| works.next_if(|work| work.tile == tile).map(|work| (work, sums));
+        let jobs: Vec<_> = self.tiles.iter_mut().enumerate().filter_map(with_sums).collect();
+        jobs.into_par_iter()
+            .for_each(|(work, sums)| render_tile(integrator, grid.origin(work.tile), work, sums));
+        self.is_film_made = false;
     }
 
     /// What has been accumulated.
-    pub fn film(&self) -> &Film {
+    pub fn film(&mut self) -> &Film {
+        if !self.is_film_made {
+            let grid = self.schedule.grid();
+            self.film.dropped = 0;
+            for (tile, sums) in self.tiles.iter().enumerate() {
+                self.film.place(grid.origin(tile), sums);
+            }
+            self.is_film_made = true;
+        }
         &self.film
+    }
+
+    /// What has been rendered of each tile.
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
+    /// What has been rendered, for another engine to go on with.
+    pub fn hand_over(mut self) -> (Film, Schedule) {
+        self.film();
+        (self.film, self.schedule)
+    }
+
+    /// What the camera sees first, over the first `samples` of each pixel; `None` without a job.
+    pub fn features(&self, samples: u32) -> Option<Features> {
+        Some(features::features(self.job.as_deref()?, samples))
     }
 
     /// Completed samples a pixel.
     pub fn samples_per_pixel(&self) -> u32 {
-        self.next_sample
+        self.schedule.samples_per_pixel()
+    }
+}
+
+fn render_tile<T: Real>(integrator: &Integrator<'_, T>, origin: [u32; 2], work: &Work, sums: &mut Film) {
+    for pixel in 0..sums.color.len() {
+        let place = [pixel as u32 % sums.width, pixel as u32 / sums.width];
+        let place = [origin[0] + place[0], origin[1] + place[1]];
+        for sample in work.first_sample..work.first_sample + work.count {
+            let path = integrator.trace_path(place, sample);
+            sums.rays[pixel] += f64::from(path.rays);
+            if is_sound(path.radiance) {
+                let [r, g, b] = path.radiance.to_f64();
+                sums.add(pixel, sample, [r, g, b, path.alpha.to_f64()]);
+            } else {
+                sums.dropped += 1;
+            }
+        }
     }
 }

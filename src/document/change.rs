@@ -1,6 +1,6 @@
 //! What differs between two documents, and what follows from it.
 
-use super::{AreaLight, Document, PARAMETERS};
+use super::{AreaLight, Document, PARAMETERS, RenderSettings};
 
 /// What differs between two documents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -19,9 +19,9 @@ pub struct Change {
     pub materials: bool,
     /// The model, whether there is a ground, or the place of an area light.
     pub geometry: bool,
-    /// Bounces, sequence, strategy, seed, pixel filter.
+    /// Bounces, sequence, strategy, seed, pixel filter, effects switched on or off.
     pub sampling: bool,
-    /// Samples or seconds to reach.
+    /// What is to be reached: samples, seconds, noise, and how samples are shared out on the way.
     pub target: bool,
 }
 
@@ -35,8 +35,17 @@ impl Change {
             camera: old.camera != new.camera,
             size: (render.width, render.height) != (other.width, other.height),
             environment: light.environment != other_light.environment,
-            lighting: (light.rotation_deg, light.strength, light.background)
-                != (other_light.rotation_deg, other_light.strength, other_light.background),
+            lighting: (
+                light.rotation_deg,
+                light.strength,
+                light.background,
+                light.background_blur_deg,
+            ) != (
+                other_light.rotation_deg,
+                other_light.strength,
+                other_light.background,
+                other_light.background_blur_deg,
+            ),
             materials: light.ground_color != other_light.ground_color
                 || !look_alike(old, new)
                 || !shine_alike(&light.area_lights, &other_light.area_lights),
@@ -48,8 +57,16 @@ impl Change {
                 render.strategy,
                 render.seed,
                 render.filter,
-            ) != (other.bounces, other.sequence, other.strategy, other.seed, other.filter),
-            target: (render.samples, render.time_s) != (other.samples, other.time_s),
+                render.effects,
+            ) != (
+                other.bounces,
+                other.sequence,
+                other.strategy,
+                other.seed,
+                other.filter,
+                other.effects,
+            ),
+            target: aim(render) != aim(other),
         }
     }
 
@@ -102,6 +119,17 @@ impl Change {
     pub fn needs_display(self) -> bool {
         self.display || self.restarts()
     }
+}
+
+fn aim(render: &RenderSettings) -> impl PartialEq {
+    let RenderSettings {
+        samples,
+        time_s,
+        noise,
+        min_samples,
+        ..
+    } = *render;
+    (samples, time_s, noise, min_samples, render.is_adaptive())
 }
 
 fn shine_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {

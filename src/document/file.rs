@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value as Json};
 
-use super::{Document, MaterialSettings, preset, project};
+use super::{Document, MaterialSettings, picture, preset, project};
 
 /// Bytes above which a file is taken for something else.
-const SIZE_MAX: u64 = 16 << 20;
+pub(super) const SIZE_MAX: u64 = 16 << 20;
 
 /// What was read from a file, and what was odd about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,6 +55,12 @@ pub enum FileError {
         /// The key that tells.
         mark: &'static str,
     },
+    /// A picture that was not saved by Glossmith, or whose text another program left out.
+    #[error("{}: a picture without a Glossmith document inside; open one that was saved here", path.display())]
+    NoDocument {
+        /// The file.
+        path: PathBuf,
+    },
     /// Contents out of range, with what would be right.
     #[error("{}: {reason}", path.display())]
     Content {
@@ -81,20 +87,25 @@ pub enum FileError {
     },
 }
 
-/// A JSON file of either kind.
+/// A file that holds what is edited.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Opened {
     /// A material.
     Material(Box<Loaded<MaterialSettings>>),
     /// A whole document.
     Document(Box<Loaded<Document>>),
+    /// A picture with the document that it shows.
+    Picture(Box<Loaded<Document>>),
 }
 
-/// Opens a material or a project file, whichever it is.
+/// Opens a material, a project file or a picture with a document inside, whichever it is.
 ///
 /// # Errors
 /// What is wrong with the file.
 pub fn open(path: &Path) -> Result<Opened, FileError> {
+    if picture::is_png(path) {
+        return Ok(Opened::Picture(Box::new(picture::load_picture_document(path)?)));
+    }
     let bytes = read(path)?;
     if object(path, &bytes)?.contains_key(project::MARK) {
         Ok(Opened::Document(Box::new(project::parse_document(path, &bytes)?)))

@@ -1,11 +1,11 @@
-//! A folder of the user's materials.
+//! A folder of the user's materials; what is removed can be restored.
 
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 use super::MaterialSettings;
-use super::file::FileError;
+use super::file::{FileError, save_atomically};
 use super::preset::{command_line_name, load_material, save_material};
 
 /// A file of the folder.
@@ -62,7 +62,7 @@ pub fn list(folder: &Path) -> Result<Vec<Entry>, FileError> {
 /// [`FileError::Write`].
 pub fn add(folder: &Path, material: &MaterialSettings) -> Result<PathBuf, FileError> {
     fs::create_dir_all(folder).map_err(cannot_write(folder))?;
-    let path = free_path(folder, &material.name);
+    let path = free_path(folder, &file_stem(&material.name), "json");
     save_material(&path, material)?;
     Ok(path)
 }
@@ -82,23 +82,73 @@ pub fn rename(path: &Path, name: &str) -> Result<PathBuf, FileError> {
     Ok(renamed)
 }
 
-/// Removes a material's file.
+/// Adds a copy of a material under another name.
+///
+/// # Errors
+/// What is wrong with the file, or [`FileError::Write`].
+pub fn duplicate(path: &Path) -> Result<PathBuf, FileError> {
+    let mut material = load_material(path)?.value;
+    material.name.push_str(" copy");
+    add(path.parent().unwrap_or(Path::new(".")), &material)
+}
+
+/// A file that was removed, to be restored.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Removed {
+    path: PathBuf,
+    bytes: Vec<u8>,
+}
+
+impl Removed {
+    /// Where it was.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+}
+
+/// Removes a file.
+///
+/// # Errors
+/// [`FileError`]; the file is then still there.
+pub fn remove(path: &Path) -> Result<Removed, FileError> {
+    let bytes = fs::read(path).map_err(|source| FileError::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    fs::remove_file(path).map_err(cannot_write(path))?;
+    Ok(Removed {
+        path: path.to_owned(),
+        bytes,
+    })
+}
+
+/// Puts a removed file back, beside one that has taken its name meanwhile.
 ///
 /// # Errors
 /// [`FileError::Write`].
-pub fn remove(path: &Path) -> Result<(), FileError> {
-    fs::remove_file(path).map_err(cannot_write(path))
+pub fn restore(removed: &Removed) -> Result<PathBuf, FileError> {
+    let text = |part: Option<&std::ffi::OsStr>| part.unwrap_or_default().to_string_lossy().into_owned();
+    let folder = removed.path.parent().unwrap_or(Path::new("."));
+    let path = free_path(folder, &text(removed.path.file_stem()), &text(removed.path.extension()));
+    save_atomically(&path, &removed.bytes)?;
+    Ok(path)
 }
 
-/// A file's name that is allowed everywhere and not taken yet.
-fn free_path(folder: &Path, name: &str) -> PathBuf {
+/// A material's name as that of a file, with what is allowed everywhere.
+fn file_stem(name: &str) -> String {
     let allowed = |c: char| if c.is_alphanumeric() || c == '-' { c } else { '-' };
-    let mut stem: String = command_line_name(name).chars().map(allowed).take(60).collect();
+    let stem: String = command_line_name(name).chars().map(allowed).take(60).collect();
     if stem.trim_matches('-').is_empty() {
-        stem = "material".to_owned();
+        "material".to_owned()
+    } else {
+        stem
     }
-    let first = folder.join(format!("{stem}.json"));
-    let others = (2..).map(|number| folder.join(format!("{stem}-{number}.json")));
+}
+
+/// A file of the folder that is not there yet: `stem.ending`, else with a number.
+pub(super) fn free_path(folder: &Path, stem: &str, ending: &str) -> PathBuf {
+    let first = folder.join(format!("{stem}.{ending}"));
+    let others = (2..).map(|number| folder.join(format!("{stem} {number}.{ending}")));
     let is_free = |path: &PathBuf| !path.exists();
     std::iter::once(first.clone())
         .chain(others)
@@ -132,8 +182,13 @@ mod tests {
         assert_eq!(names, ["../Odd: name", "Alpha", "broken"]);
         material.name = "Alpha".to_owned();
         assert_eq!(load_material(&renamed).expect("whole").value, material);
-        remove(&renamed).expect("removed");
+        let removed = remove(&renamed).expect("removed");
         assert_eq!(list(&folder).expect("listed").len(), 2);
+        assert_eq!(restore(&removed).expect("restored"), renamed);
+        let copy = duplicate(&renamed).expect("copied");
+        assert_eq!(load_material(&copy).expect("whole").value.name, "Alpha copy");
+        remove(&renamed).expect("removed");
+        assert_eq!(list(&folder).expect("listed").len(), 3);
         assert!(remove(&renamed).is_err() && rename(&renamed, "Beta").is_err());
     }
 

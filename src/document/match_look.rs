@@ -223,6 +223,24 @@ pub fn match_look(target: &Target, lobe: Lobe, view_angle_deg: f64) -> Result<Lo
     })
 }
 
+/// The lobe with its default curve that comes closest to the specular lobe of a material, seen along the normal: only
+/// the roughness is looked for, as that is what `lobe` has in common with others.
+///
+/// # Errors
+/// [`MatchError`].
+pub fn matched_lobe(model: &LobeModel, lobe: Lobe) -> Result<LobeModel, MatchError> {
+    let target = Target::Lobe(model.clone());
+    let target_profile = TargetProfile::new(&target, 0.0)?;
+    let profile: Profile = &|wi| target_profile.value(wi);
+    let default = MaterialSettings::default();
+    let start = LobeModel {
+        horizon: default.horizon,
+        ..LobeModel::new(lobe, model.roughness, default.curve)
+    };
+    let found = nearest_roughness(profile, &start, 0.0, Measure::Evaluate);
+    Ok(start.with_roughness(rounded(found.roughness)))
+}
+
 /// Target and candidates side by side: the normalised profiles in the plane of incidence, around the mirror direction
 /// as far as the target is not negligible.
 ///

@@ -4,6 +4,7 @@
 pub mod change;
 mod compile;
 pub mod custom_curve;
+pub mod effect;
 pub mod file;
 pub mod history;
 pub mod import;
@@ -13,12 +14,15 @@ pub mod match_look;
 mod material;
 pub mod measured_look;
 pub mod parameter;
+pub mod picture;
 pub mod plan;
 pub mod preset;
 pub mod project;
 pub mod recovery;
 mod registry;
 mod settings;
+pub mod snapshots;
+pub mod turntable;
 
 use serde::{Deserialize, Serialize};
 
@@ -34,7 +38,8 @@ pub use preset::{PRESETS, load_material, material_by_name, save_material};
 pub use project::{load_document, save_document};
 pub use registry::PARAMETERS;
 pub use settings::{
-    AreaLight, Background, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings, range,
+    AreaLight, Background, Bookmark, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings,
+    range,
 };
 
 pub use crate::scene::camera::PixelFilter;
@@ -55,6 +60,8 @@ pub struct Document {
     pub lighting: Lighting,
     /// Where it is seen from.
     pub camera: CameraSettings,
+    /// Cameras to come back to; no picture depends on them.
+    pub bookmarks: Vec<Bookmark>,
     /// How radiance becomes a picture.
     pub view: ViewSettings,
     /// How, and for how long, it is rendered.
@@ -72,6 +79,7 @@ impl Default for Document {
             materials: vec![MaterialSettings::default()],
             lighting: Lighting::default(),
             camera: CameraSettings::default(),
+            bookmarks: Vec::new(),
             view: ViewSettings::default(),
             render: RenderSettings::default(),
             extra: serde_json::Map::new(),

@@ -1,174 +1,110 @@
-//! The plan: which effects a scene with these materials calls for. Pipelines are specialised for it
+//! The plan: for every effect, whether a scene calls for it, and why. Pipelines are specialised for it
 //! (`shaders/scene/plan.wgsl`).
 
-use crate::optics::lobe::Lobe;
-use crate::optics::material::{Material, NO_TEXTURE};
-use crate::optics::vector::Vec3;
-use crate::scene::light::LightChoice;
+use super::Document;
+use super::effect::{Constant, Decision, EFFECTS, Effect, EffectSwitches, Facts, Switch};
 
-/// What every material of the scene has in common, and what can be left out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// What is decided about every effect, in the order of [`EFFECTS`].
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Plan {
-    /// The lobe, curve, horizon policy and Fresnel model as numbers, where all specular materials share them.
-    pub lobe: Option<u32>,
-    /// See `lobe`.
-    pub curve: Option<u32>,
-    /// See `lobe`.
-    pub horizon: Option<u32>,
-    /// See `lobe`.
-    pub fresnel: Option<u32>,
-    /// Some lobe is stretched.
-    pub anisotropy: bool,
-    /// Some material has a Lambertian base.
-    pub base: bool,
-    /// Some material has a specular lobe.
-    pub specular: bool,
-    /// Some material emits.
-    pub emission: bool,
-    /// Some material transmits light.
-    pub transmission: bool,
-    /// Some material that transmits light absorbs it inside.
-    pub absorption: bool,
-    /// The environment is sampled: not where it is equally bright everywhere or black.
-    pub light_sampling: bool,
-    /// Emitting triangles are sampled.
-    pub emitter_sampling: bool,
-    /// Some metal's reflection is tinted towards the edge.
-    pub edge_tint: bool,
-    /// Some material has a coat.
-    pub coat: bool,
-    /// Some base colour has a texture.
-    pub color_textures: bool,
-    /// Some roughness and metalness have a texture.
-    pub roughness_textures: bool,
-    /// Some emission has a texture.
-    pub emission_textures: bool,
-    /// Some material has a normal texture.
-    pub normal_maps: bool,
-    /// Some material's albedo tables go over the roughness.
-    pub rough_tables: bool,
-    /// Light may go straight on through some surface.
-    pub alpha: bool,
-    /// The lens is open.
-    pub lens: bool,
+    decisions: Vec<Decision>,
 }
 
-impl Plan {
-    /// The plan that leaves nothing out.
-    pub const GENERAL: Plan = Plan {
-        lobe: None,
-        curve: None,
-        horizon: None,
-        fresnel: None,
-        anisotropy: true,
-        base: true,
-        specular: true,
-        emission: true,
-        transmission: true,
-        absorption: true,
-        light_sampling: true,
-        emitter_sampling: true,
-        edge_tint: true,
-        coat: true,
-        color_textures: true,
-        roughness_textures: true,
-        emission_textures: true,
-        normal_maps: true,
-        rough_tables: true,
-        alpha: true,
-        lens: true,
-    };
+/// What a pipeline is made for: the values of the constants, in the order of [`Plan::constants`]. Plans that differ in
+/// their reasons only share it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Specialisation(Vec<u32>);
 
-    /// What these materials call for under light that is shared out like this.
-    pub fn new(materials: &[Material<f32>], light: &LightChoice, lens_radius: f64) -> Self {
-        let anywhere: Vec<_> = materials.iter().map(Material::least_metallic).collect();
-        let specular: Vec<_> = anywhere.iter().filter(|m| m.has_specular()).collect();
-        let has_texture = |kind: usize| materials.iter().any(|m| m.textures[kind] != NO_TEXTURE);
-        let shared = |number: fn(&Material<f32>) -> u32| {
-            let first = specular.first().map(|m| number(m))?;
-            specular.iter().all(|m| number(m) == first).then_some(first)
+impl Plan {
+    /// What a scene calls for, and what the user switched on besides. What was switched off must be taken out of the
+    /// scene before, see [`without_what_is_off`].
+    pub fn new(facts: &Facts<'_>) -> Self {
+        let switches = facts.document.render.effects;
+        let decide = |effect: &Effect| {
+            let decision = (effect.decide)(facts);
+            match switches.get(effect.name) {
+                Switch::Auto => decision,
+                Switch::On => Decision::which(effect.constant.map_or(1, |c| c.general), "switched on by you"),
+                Switch::Off => Decision {
+                    is_on: false,
+                    reason: "switched off by you".to_owned(),
+                    ..decision
+                },
+            }
         };
-        Plan {
-            lobe: shared(|m| m.lobe),
-            curve: shared(|m| if m.lobe == Lobe::Geometric as u32 { m.curve } else { 0 }),
-            horizon: shared(|m| m.horizon),
-            fresnel: shared(|m| m.fresnel),
-            anisotropy: specular.iter().any(|m| m.anisotropy != 0.0),
-            base: anywhere.iter().any(Material::has_base),
-            specular: !specular.is_empty(),
-            emission: materials.iter().any(|m| m.emission.max_component() > 0.0),
-            transmission: anywhere.iter().any(Material::transmits),
-            absorption: anywhere
-                .iter()
-                .any(|m| m.transmits() && m.absorption.max_component() > 0.0),
-            light_sampling: light.environment_probability > 0.0,
-            emitter_sampling: light.density_per_luminance > 0.0,
-            edge_tint: specular.iter().any(|m| m.edge_tint != Vec3::splat(1.0)),
-            coat: materials.iter().any(|m| m.coat_weight > 0.0),
-            color_textures: has_texture(0),
-            roughness_textures: has_texture(1),
-            normal_maps: has_texture(2),
-            emission_textures: has_texture(3),
-            rough_tables: materials.iter().any(|m| m.has_rough_tables == 1),
-            alpha: materials.iter().any(Material::has_holes),
-            lens: lens_radius > 0.0,
+        Self {
+            decisions: EFFECTS.iter().map(decide).collect(),
         }
+    }
+
+    /// The plan that leaves nothing out.
+    pub fn general() -> Self {
+        let on = |effect: &Effect| Decision::which(effect.constant.map_or(1, |c| c.general), "nothing is left out");
+        Self {
+            decisions: EFFECTS.iter().map(on).collect(),
+        }
+    }
+
+    /// The same with another decision about one effect.
+    pub fn with(mut self, name: &str, decision: Decision) -> Self {
+        if let Some(place) = EFFECTS.iter().position(|effect| effect.name == name) {
+            self.decisions[place] = decision;
+        }
+        self
+    }
+
+    /// Every effect with what was decided.
+    pub fn table(&self) -> impl Iterator<Item = (&'static Effect, &Decision)> {
+        EFFECTS.iter().zip(&self.decisions)
+    }
+
+    /// Whether the effect of this name is simulated.
+    pub fn has(&self, name: &str) -> bool {
+        self.table()
+            .any(|(effect, decision)| effect.name == name && decision.is_on)
     }
 
     /// The names of the effects that are simulated.
     pub fn effects(&self) -> Vec<&'static str> {
-        let effects = [
-            ("environment", true),
-            ("light-sampling", self.light_sampling),
-            ("emitter-sampling", self.emitter_sampling),
-            ("specular", self.specular),
-            ("base", self.base),
-            ("anisotropy", self.anisotropy),
-            ("emission", self.emission),
-            ("transmission", self.transmission),
-            ("absorption", self.absorption),
-            ("edge-tint", self.edge_tint),
-            ("coat", self.coat),
-            ("color-texture", self.color_textures),
-            ("roughness-texture", self.roughness_textures),
-            ("normal-map", self.normal_maps),
-            ("emission-texture", self.emission_textures),
-            ("alpha", self.alpha),
-            ("depth-of-field", self.lens),
-        ];
-        effects
-            .into_iter()
-            .filter(|(_, is_on)| *is_on)
-            .map(|(name, _)| name)
+        self.table()
+            .filter(|(_, decision)| decision.is_on)
+            .map(|(effect, _)| effect.name)
             .collect()
     }
 
-    /// The override constants of the pipeline, by their names in `shaders/scene/plan.wgsl`.
-    pub fn constants(&self) -> [(&'static str, f64); 21] {
-        let number = |value: Option<u32>| f64::from(value.unwrap_or(u32::MAX));
-        let flag = |value: bool| f64::from(u8::from(value));
-        [
-            ("PLAN_LOBE", number(self.lobe)),
-            ("PLAN_CURVE", number(self.curve)),
-            ("PLAN_HORIZON", number(self.horizon)),
-            ("PLAN_FRESNEL", number(self.fresnel)),
-            ("PLAN_ANISOTROPY", flag(self.anisotropy)),
-            ("PLAN_BASE", flag(self.base)),
-            ("PLAN_SPECULAR", flag(self.specular)),
-            ("PLAN_EMISSION", flag(self.emission)),
-            ("PLAN_TRANSMISSION", flag(self.transmission)),
-            ("PLAN_ABSORPTION", flag(self.absorption)),
-            ("PLAN_LIGHT_SAMPLING", flag(self.light_sampling)),
-            ("PLAN_EMITTER_SAMPLING", flag(self.emitter_sampling)),
-            ("PLAN_EDGE_TINT", flag(self.edge_tint)),
-            ("PLAN_COAT", flag(self.coat)),
-            ("PLAN_COLOR_TEXTURES", flag(self.color_textures)),
-            ("PLAN_ROUGHNESS_TEXTURES", flag(self.roughness_textures)),
-            ("PLAN_EMISSION_TEXTURES", flag(self.emission_textures)),
-            ("PLAN_NORMAL_MAPS", flag(self.normal_maps)),
-            ("PLAN_ROUGH_TABLES", flag(self.rough_tables)),
-            ("PLAN_ALPHA", flag(self.alpha)),
-            ("PLAN_LENS", flag(self.lens)),
-        ]
+    /// How many effects' code is left out of the kernel, or narrowed down to one choice.
+    pub fn left_out(&self) -> usize {
+        self.switched()
+            .filter(|(constant, value)| *value != constant.general)
+            .count()
     }
+
+    /// The override constants of the pipeline, by their names in `shaders/scene/plan.wgsl`.
+    pub fn constants(&self) -> Vec<(&'static str, f64)> {
+        self.switched()
+            .map(|(constant, value)| (constant.name, f64::from(value)))
+            .collect()
+    }
+
+    /// What a pipeline for this plan is made for.
+    pub fn specialisation(&self) -> Specialisation {
+        Specialisation(self.switched().map(|(_, value)| value).collect())
+    }
+
+    fn switched(&self) -> impl Iterator<Item = (Constant, u32)> {
+        self.table()
+            .filter_map(|(effect, decision)| Some((effect.constant?, decision.value)))
+    }
+}
+
+/// The document with the effects taken out that the user switched off.
+pub fn without_what_is_off(document: &Document) -> Document {
+    let switches: EffectSwitches = document.render.effects;
+    let mut document = document.clone();
+    for effect in EFFECTS {
+        if let (Switch::Off, Some(remove)) = (switches.get(effect.name), effect.remove) {
+            remove(&mut document);
+        }
+    }
+    document
 }

@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
+use super::effect::EffectSwitches;
 use super::{Document, MaterialSettings};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
@@ -19,6 +20,8 @@ pub mod range {
     pub const STRENGTH: RangeInclusive<f64> = 0.0..=1e6;
     /// Turn of the environment, degrees.
     pub const ROTATION_DEG: RangeInclusive<f64> = -3600.0..=3600.0;
+    /// Blur of the environment as a background, degrees.
+    pub const BACKGROUND_BLUR_DEG: RangeInclusive<f64> = 0.0..=90.0;
     /// Coordinates and distances of the camera, scene units.
     pub const COORDINATE: RangeInclusive<f64> = -1e9..=1e9;
     /// Distance of the camera from its target, scene units.
@@ -29,6 +32,8 @@ pub mod range {
     pub const PITCH_DEG: RangeInclusive<f64> = -90.0..=90.0;
     /// Vertical field of view, degrees.
     pub const FOV_DEG: RangeInclusive<f64> = 0.1..=170.0;
+    /// Radius of the lens, bounding radii.
+    pub const APERTURE: RangeInclusive<f64> = 0.0..=10.0;
     /// Exposure, stops.
     pub const EXPOSURE_EV: RangeInclusive<f64> = -32.0..=32.0;
     /// Width and height, pixels; the random numbers' counters have 16 bits for each.
@@ -37,6 +42,10 @@ pub mod range {
     pub const SAMPLES: RangeInclusive<f64> = 1.0..=4_294_967_295.0;
     /// Render time, seconds.
     pub const TIME_S: RangeInclusive<f64> = 0.001..=1e9;
+    /// Relative error of the picture at which rendering stops.
+    pub const NOISE: RangeInclusive<f64> = 1e-5..=1.0;
+    /// Samples a pixel before an estimate of the error is believed.
+    pub const MIN_SAMPLES: RangeInclusive<f64> = 2.0..=65536.0;
     /// Longest path, bounces.
     pub const BOUNCES: RangeInclusive<f64> = 1.0..=64.0;
     /// Distance and sides of an area light, bounding radii.
@@ -59,6 +68,9 @@ pub struct Lighting {
     pub strength: f32,
     /// What the camera sees beside the model.
     pub background: Background,
+    /// How far the environment is blurred where the camera sees it: the angle around each direction over which it is
+    /// averaged, degrees. Light and reflections stay sharp.
+    pub background_blur_deg: f32,
     /// Albedo of the ground plane, linear RGB in [0, 1].
     pub ground_color: [f32; 3],
     /// Rectangles that shine, at most 8.
@@ -72,6 +84,7 @@ impl Default for Lighting {
             rotation_deg: 0.0,
             strength: 1.0,
             background: Background::default(),
+            background_blur_deg: 0.0,
             ground_color: [0.3; 3],
             area_lights: Vec::new(),
         }
@@ -166,6 +179,10 @@ pub struct CameraSettings {
     pub position: Option<[f64; 3]>,
     /// Vertical field of view, degrees.
     pub fov_deg: f64,
+    /// Radius of the lens, bounding radii of the model; 0: a pinhole, everything is sharp.
+    pub aperture: f64,
+    /// Distance along the viewing direction of what is sharp, scene units; `None`: that of the target.
+    pub focus_distance: Option<f64>,
 }
 
 impl Default for CameraSettings {
@@ -177,8 +194,20 @@ impl Default for CameraSettings {
             distance: None,
             position: None,
             fov_deg: 30.0,
+            aperture: 0.0,
+            focus_distance: None,
         }
     }
+}
+
+/// A camera to come back to.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Bookmark {
+    /// What the user calls it.
+    pub name: String,
+    /// Where the scene is seen from.
+    pub camera: CameraSettings,
 }
 
 /// How radiance becomes a picture.
@@ -203,6 +232,13 @@ pub struct RenderSettings {
     pub samples: u32,
     /// Seconds after which it stops earlier.
     pub time_s: Option<f64>,
+    /// Relative error of the picture (see [`crate::analysis::noise`]) at which it stops earlier; 0.01 is 1 %.
+    pub noise: Option<f64>,
+    /// Samples that each pixel has before the error is believed, so that small lights are not missed; at least 2.
+    pub min_samples: u32,
+    /// Whether samples go where the error is; `None`: only where a noise is to be reached. `samples` is then the most
+    /// that a pixel gets.
+    pub adaptive: Option<bool>,
     /// Longest path, 1 to 64 bounces.
     pub bounces: u32,
     /// Which random numbers are drawn.
@@ -213,6 +249,8 @@ pub struct RenderSettings {
     pub seed: u32,
     /// How samples are spread over a pixel and its neighbours.
     pub filter: PixelFilter,
+    /// What the user decides about effects, against the plan.
+    pub effects: EffectSwitches,
 }
 
 impl Default for RenderSettings {
@@ -222,12 +260,23 @@ impl Default for RenderSettings {
             height: 512,
             samples: 256,
             time_s: None,
+            noise: None,
+            min_samples: 16,
+            adaptive: None,
             bounces: 64,
             sequence: Sequence::default(),
             strategy: Strategy::default(),
             seed: 0,
             filter: PixelFilter::default(),
+            effects: EffectSwitches::default(),
         }
+    }
+}
+
+impl RenderSettings {
+    /// Whether samples go where the error is.
+    pub fn is_adaptive(&self) -> bool {
+        self.adaptive.unwrap_or(self.noise.is_some())
     }
 }
 
@@ -305,15 +354,28 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
             r::ROTATION_DEG,
         ),
         ("lighting.strength", f64::from(lighting.strength), r::STRENGTH),
+        (
+            "lighting.background_blur_deg",
+            f64::from(lighting.background_blur_deg),
+            r::BACKGROUND_BLUR_DEG,
+        ),
         ("camera.yaw_deg", camera.yaw_deg, r::YAW_DEG),
         ("camera.pitch_deg", camera.pitch_deg, r::PITCH_DEG),
         ("camera.fov_deg", camera.fov_deg, r::FOV_DEG),
         ("camera.distance", camera.distance.unwrap_or(1.0), r::DISTANCE),
+        ("camera.aperture", camera.aperture, r::APERTURE),
+        (
+            "camera.focus_distance",
+            camera.focus_distance.unwrap_or(1.0),
+            r::DISTANCE,
+        ),
         ("view.exposure_ev", f64::from(view.exposure_ev), r::EXPOSURE_EV),
         ("render.width", f64::from(render.width), r::SIZE),
         ("render.height", f64::from(render.height), r::SIZE),
         ("render.samples", f64::from(render.samples), r::SAMPLES),
         ("render.time_s", render.time_s.unwrap_or(1.0), r::TIME_S),
+        ("render.noise", render.noise.unwrap_or(1.0), r::NOISE),
+        ("render.min_samples", f64::from(render.min_samples), r::MIN_SAMPLES),
         ("render.bounces", f64::from(render.bounces), r::BOUNCES),
         (
             "the number of lighting.area_lights",

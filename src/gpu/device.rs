@@ -69,7 +69,7 @@ pub struct GpuDevice {
 }
 
 /// Storage buffers that the path tracer binds.
-const STORAGE_BUFFERS: u32 = 12;
+const STORAGE_BUFFERS: u32 = 13;
 
 impl GpuDevice {
     /// Opens the best adapter of a kind.
@@ -119,6 +119,7 @@ impl GpuDevice {
         }
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("glossmith"),
+            required_features: adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PIPELINE_CACHE),
             required_limits: limits,
             ..Default::default()
         };

@@ -4,35 +4,44 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::device::{GpuDevice, GpuError};
-use super::layout::Globals;
+use super::layout::{PixelStatistics, Tile};
 use super::pipeline::Pipelines;
-use super::resources::Resources;
+use super::resources::{DISPATCH_TILES, Resources};
+use super::timer::Timer;
+use crate::analysis::features::{FeatureSums, Features};
 use crate::analysis::film::Film;
+use crate::analysis::tiles::{Schedule, TILE_SIDE, Work};
 use crate::document::job::Job;
+use crate::document::plan::Specialisation;
 
 /// Longest dispatch: other users of the adapter, the window among them, wait for its end.
 const SLICE: Duration = Duration::from_millis(30);
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
-/// Rows and columns of a workgroup.
-const WORKGROUP: u32 = 8;
+/// Workgroups of a tile: 8 × 8 pixels each, as the shaders say.
+const TILE_WORKGROUPS: u32 = 4;
+/// Tiles of a dispatch that looks for features: one ray a pixel.
+const FEATURE_TILES: usize = 512;
 
 /// Renders on a GPU.
 #[derive(Debug)]
 pub struct GpuEngine {
     gpu: GpuDevice,
     pipelines: Pipelines,
+    /// Compiled at the first use.
+    feature_pipelines: Option<Pipelines>,
     resources: Option<Resources>,
     film: Film,
-    /// Completed samples a pixel, and the first row that has not had the samples of the pass in progress.
-    samples: u32,
-    next_row: u32,
-    /// Samples of the pass in progress.
-    pass_samples: u32,
-    /// Samples in the GPU's sums.
+    schedule: Schedule,
+    /// Most samples of a pixel in the GPU's sums.
     unflushed: u32,
+    /// Whether there is anything in them.
+    is_flushed: bool,
     /// Pixel samples a second, to cut work to a budget; 0 before the first slice.
     samples_per_second: f64,
+    timer: Option<Timer>,
+    /// What the dispatches of the job took by the timer.
+    gpu_seconds: f64,
 }
 
 impl GpuEngine {
@@ -43,15 +52,17 @@ impl GpuEngine {
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
         let pipelines = Pipelines::new(&gpu)?;
         Ok(Self {
+            timer: Timer::new(&gpu),
             gpu,
             pipelines,
+            feature_pipelines: None,
             resources: None,
             film: Film::default(),
-            samples: 0,
-            next_row: 0,
-            pass_samples: 0,
+            schedule: Schedule::default(),
             unflushed: 0,
+            is_flushed: true,
             samples_per_second: 0.0,
+            gpu_seconds: 0.0,
         })
     }
 
@@ -67,13 +78,42 @@ impl GpuEngine {
     pub fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         let [width, height] = job.settings.image_size;
         let old = self.resources.take();
-        if old.as_ref().is_some_and(|old| old.job().plan != job.plan) {
+        if old
+            .as_ref()
+            .is_some_and(|old| old.job().plan.specialisation() != job.plan.specialisation())
+        {
             self.samples_per_second = 0.0;
         }
         self.resources = Some(Resources::new(&self.gpu, &self.pipelines.bindings, job, old)?);
         self.film = Film::new(width, height);
-        (self.samples, self.next_row, self.pass_samples, self.unflushed) = (0, 0, 0, 0);
+        self.schedule = Schedule::new(width, height);
+        (self.unflushed, self.is_flushed, self.gpu_seconds) = (0, true, 0.0);
         Ok(())
+    }
+
+    /// Whether the kernel is ready that is made for this.
+    pub fn has_kernel(&self, specialisation: &Specialisation) -> bool {
+        self.pipelines.has(specialisation)
+    }
+
+    /// Compiles the kernel of a job's plan: some drivers do that at the first dispatch, so one is made that renders
+    /// nothing. Takes seconds.
+    ///
+    /// # Errors
+    /// [`GpuError::Shader`] where the driver refuses the kernel; [`GpuError::TooLarge`].
+    pub fn prepare(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
+        self.submit(job)?;
+        self.dispatch(&[Tile::default()])
+    }
+
+    /// Lets the scene go and keeps the kernels.
+    pub fn rest(&mut self) {
+        self.resources = None;
+    }
+
+    /// Goes on with what another engine rendered of the same job.
+    pub fn take_over(&mut self, film: Film, schedule: Schedule) {
+        (self.film, self.schedule) = (film, schedule);
     }
 
     /// Renders for about `budget`, at most up to `samples` a pixel.
@@ -81,10 +121,26 @@ impl GpuEngine {
     /// # Errors
     /// If the device fails.
     pub fn step(&mut self, budget: Duration, samples: u32) -> Result<(), GpuError> {
+        let goals = vec![samples; self.schedule.grid().tiles()];
+        self.step_towards(budget, &goals)
+    }
+
+    /// The same up to a number of samples a pixel for each tile.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn step_towards(&mut self, budget: Duration, goals: &[u32]) -> Result<(), GpuError> {
+        self.schedule.aim(goals);
         let start = Instant::now();
-        while self.resources.is_some() && self.samples < samples {
+        while self.resources.is_some() {
             let left = budget.saturating_sub(start.elapsed());
-            self.slice(left.min(SLICE), samples)?;
+            let affordable = self.samples_per_second * left.min(SLICE).as_secs_f64();
+            let most = FLUSH_SAMPLES - self.unflushed;
+            let samples_of = |pixels: u64| ((affordable / pixels.max(1) as f64) as u32).clamp(1, most);
+            if !self.schedule.begin(samples_of) {
+                break;
+            }
+            self.slice(affordable)?;
             if start.elapsed() >= budget {
                 break;
             }
@@ -92,53 +148,26 @@ impl GpuEngine {
         Ok(())
     }
 
-    /// One dispatch of about `duration`: some rows of a pass, or a pass of several samples where the GPU is fast.
-    fn slice(&mut self, duration: Duration, samples: u32) -> Result<(), GpuError> {
-        let Some(resources) = &self.resources else {
-            return Ok(());
+    /// One dispatch of about so many samples: some tiles of a pass, or a pass of several samples where the GPU is fast.
+    fn slice(&mut self, affordable: f64) -> Result<(), GpuError> {
+        let grid = self.schedule.grid();
+        let tile_samples = f64::from(TILE_SIDE * TILE_SIDE * self.schedule.pass_samples());
+        // At least a row's: fewer leave a GPU idle.
+        let count = ((affordable / tile_samples) as usize).clamp(grid.columns(), DISPATCH_TILES);
+        let works = self.schedule.next(count);
+        let tile = |work: &Work| Tile {
+            origin: grid.origin(work.tile),
+            first_sample: work.first_sample,
+            sample_count: work.count,
         };
-        let job = resources.job();
-        let [width, height] = job.settings.image_size;
-        let affordable = self.samples_per_second * duration.as_secs_f64();
-        if self.next_row == 0 {
-            let picture = f64::from(width) * f64::from(height);
-            let most = (samples - self.samples).min(FLUSH_SAMPLES - self.unflushed);
-            self.pass_samples = ((affordable / picture) as u32).clamp(1, most);
-        }
-        let rows = (affordable / f64::from(width * self.pass_samples)) as u32;
-        let rows = rows
-            .next_multiple_of(WORKGROUP)
-            .max(WORKGROUP)
-            .min(height - self.next_row);
-        let cells = [job.environment.cells_width, job.environment.cells_height];
-        let globals = Globals {
-            tile_origin: [0, self.next_row],
-            tile_size: [width, rows],
-            first_sample: self.samples,
-            sample_count: self.pass_samples,
-            ..Globals::new(&job.settings, job.geometry.bvh.nodes.len(), cells)
-        };
-        self.gpu
-            .queue
-            .write_buffer(&resources.globals, 0, bytemuck::bytes_of(&globals));
-        let pipeline = self.pipelines.get(&self.gpu, job.plan)?;
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&Default::default());
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, &resources.bind_group, &[]);
-            pass.dispatch_workgroups(width.div_ceil(WORKGROUP), rows.div_ceil(WORKGROUP), 1);
-        }
+        let tiles: Vec<Tile> = works.iter().map(tile).collect();
         let begun = Instant::now();
-        self.gpu.queue.submit([encoder.finish()]);
-        self.gpu.wait()?;
+        self.dispatch(&tiles)?;
         let seconds = begun.elapsed().as_secs_f64().max(1e-6);
-        self.samples_per_second = f64::from(width * rows * self.pass_samples) / seconds;
-        self.next_row += rows;
-        if self.next_row >= height {
-            self.next_row = 0;
-            self.samples += self.pass_samples;
-            self.unflushed += self.pass_samples;
+        let samples_of = |work: &Work| grid.pixels(work.tile) * u64::from(work.count);
+        self.samples_per_second = works.iter().map(samples_of).sum::<u64>() as f64 / seconds;
+        if self.schedule.finish(&works) {
+            self.unflushed += self.schedule.pass_samples();
             if self.unflushed >= FLUSH_SAMPLES {
                 self.flush()?;
             }
@@ -146,27 +175,45 @@ impl GpuEngine {
         Ok(())
     }
 
+    /// Renders tiles and waits for them.
+    fn dispatch(&mut self, tiles: &[Tile]) -> Result<(), GpuError> {
+        let Some(resources) = &self.resources else {
+            return Ok(());
+        };
+        let pipeline = self.pipelines.get(&self.gpu, &resources.job().plan)?;
+        self.is_flushed = false;
+        dispatch(&self.gpu, resources, pipeline, tiles, self.timer.as_ref())?;
+        if let Some(timer) = &self.timer {
+            self.gpu_seconds += timer.seconds()?;
+        }
+        Ok(())
+    }
+
     /// Adds the GPU's sums to the film and sets them to zero.
     fn flush(&mut self) -> Result<(), GpuError> {
-        let Some(resources) = &self.resources else {
+        let Some(resources) = self.resources.as_ref().filter(|_| !self.is_flushed) else {
             return Ok(());
         };
         let pixels = self.film.color.len();
         let colors: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
-        let statistics: Vec<[f32; 4]> = self.gpu.read(&resources.sums[1], pixels)?;
+        let statistics: Vec<PixelStatistics> = self.gpu.read(&resources.sums[1], pixels)?;
         for (sum, color) in self.film.color.iter_mut().zip(colors) {
             for (sum, x) in sum.iter_mut().zip(color) {
                 *sum += f64::from(x);
             }
         }
-        for (sum, [luminance_squared, kept, dropped, rays]) in self.film.statistics.iter_mut().zip(statistics) {
-            sum[0] += f64::from(luminance_squared);
-            sum[1] += f64::from(kept);
-            self.film.dropped += dropped as u64;
-            self.film.rays += rays as u64;
+        for (pixel, sums) in statistics.iter().enumerate() {
+            let (of_all, of_odd) = (&mut self.film.statistics[pixel], &mut self.film.odd[pixel]);
+            of_all[0] += f64::from(sums.luminance_squared);
+            of_all[1] += f64::from(sums.kept);
+            of_odd[0] += f64::from(sums.odd_luminance);
+            of_odd[1] += f64::from(sums.odd_luminance_squared);
+            of_odd[2] += f64::from(sums.odd_kept);
+            self.film.rays[pixel] += f64::from(sums.rays);
+            self.film.dropped += sums.dropped as u64;
         }
         resources.clear_sums(&self.gpu);
-        self.unflushed = 0;
+        (self.unflushed, self.is_flushed) = (0, true);
         Ok(())
     }
 
@@ -179,8 +226,93 @@ impl GpuEngine {
         Ok(&self.film)
     }
 
+    /// What the camera sees first, over the first `samples` of each pixel; `None` without a job.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
+        // The sums lend their place.
+        self.flush()?;
+        let Some(resources) = &self.resources else {
+            return Ok(None);
+        };
+        let pipelines = match self.feature_pipelines.take() {
+            Some(pipelines) => pipelines,
+            None => self.pipelines.beside(&self.gpu, "features")?,
+        };
+        let pipelines = self.feature_pipelines.insert(pipelines);
+        let job = resources.job();
+        let pipeline = pipelines.get(&self.gpu, &job.plan)?;
+        let grid = self.schedule.grid();
+        let numbers: Vec<usize> = (0..grid.tiles()).collect();
+        for first_sample in 0..samples {
+            for some in numbers.chunks(FEATURE_TILES) {
+                let tile = |&number: &usize| Tile {
+                    origin: grid.origin(number),
+                    first_sample,
+                    sample_count: 1,
+                };
+                let tiles: Vec<Tile> = some.iter().map(tile).collect();
+                dispatch(&self.gpu, resources, pipeline, &tiles, None)?;
+            }
+        }
+        let pixels = self.film.color.len();
+        let albedo_hits: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
+        let normal_depth: Vec<PixelStatistics> = self.gpu.read(&resources.sums[1], pixels)?;
+        resources.clear_sums(&self.gpu);
+        let both = albedo_hits.into_iter().zip(normal_depth);
+        let sums: Vec<_> = both
+            .map(|(albedo_hits, lent)| FeatureSums {
+                albedo_hits,
+                normal_depth: [lent.luminance_squared, lent.kept, lent.odd_luminance, lent.odd_kept],
+            })
+            .collect();
+        let units = job.geometry.world_units_per_unit;
+        let size = [grid.width, grid.height];
+        Ok(Some(Features::from_sums(size, &sums, samples, units)))
+    }
+
+    /// What has been rendered of each tile.
+    pub fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
     /// Completed samples a pixel.
     pub fn samples_per_pixel(&self) -> u32 {
-        self.samples
+        self.schedule.samples_per_pixel()
     }
+
+    /// How long the GPU rendered the job by its own clock; `None` where it has none.
+    pub fn gpu_seconds(&self) -> Option<f64> {
+        self.timer.as_ref().map(|_| self.gpu_seconds)
+    }
+}
+
+/// Runs a pass over tiles, and waits for its end.
+fn dispatch(
+    gpu: &GpuDevice,
+    resources: &Resources,
+    pipeline: &wgpu::ComputePipeline,
+    tiles: &[Tile],
+    timer: Option<&Timer>,
+) -> Result<(), GpuError> {
+    gpu.queue.write_buffer(&resources.tiles, 0, bytemuck::cast_slice(tiles));
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: Some("tiles"),
+            timestamp_writes: timer.map(Timer::writes),
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, &resources.bind_group, &[]);
+        pass.dispatch_workgroups(TILE_WORKGROUPS * tiles.len() as u32, 1, 1);
+    }
+    if let Some(timer) = timer {
+        timer.resolve(&mut encoder);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    if let Some(timer) = timer {
+        timer.request();
+    }
+    gpu.wait()
 }

@@ -6,7 +6,7 @@ use crate::document::job::{BackgroundKind, Settings};
 use crate::scene::Geometry;
 use crate::scene::camera::Camera;
 
-/// The uniforms of a dispatch.
+/// The uniforms of a job.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct Globals {
@@ -14,17 +14,13 @@ pub struct Globals {
     pub camera: Camera<f32>,
     /// Width and height in pixels.
     pub image_size: [u32; 2],
-    /// Top left pixel of the dispatch.
-    pub tile_origin: [u32; 2],
-    /// Pixels of the dispatch.
-    pub tile_size: [u32; 2],
-    /// Index of the first sample.
-    pub first_sample: u32,
-    /// Samples a pixel.
-    pub sample_count: u32,
-    /// Linear colour of the background.
+    /// Reflections a path may have.
+    pub bounces: u32,
+    /// Random numbers.
+    pub sequence: u32,
+    /// Linear colour of the background; where the environment is blurred, the sine of the angle, 0, 0.
     pub background: [f32; 3],
-    /// 0 environment, 1 transparent, 2 colour.
+    /// 0 environment, 1 transparent, 2 colour, 3 environment blurred.
     pub background_kind: u32,
     /// Cosine and sine.
     pub environment_rotation: [f32; 2],
@@ -32,10 +28,6 @@ pub struct Globals {
     pub environment_cells_size: [u32; 2],
     /// Factor of the environment's radiance.
     pub environment_strength: f32,
-    /// Reflections a path may have.
-    pub bounces: u32,
-    /// Random numbers.
-    pub sequence: u32,
     /// How light is found.
     pub strategy: u32,
     /// Changes all random numbers.
@@ -48,39 +40,65 @@ pub struct Globals {
     pub environment_probability: f32,
     /// Density per area of the emitting triangles over the luminance of their emission.
     pub density_per_luminance: f32,
-    /// Fills the last 16 bytes.
-    pub reserved: [u32; 2],
+}
+
+/// What a dispatch renders of one tile.
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[repr(C)]
+pub struct Tile {
+    /// Its top left pixel.
+    pub origin: [u32; 2],
+    /// Index of the first sample.
+    pub first_sample: u32,
+    /// Samples a pixel.
+    pub sample_count: u32,
+}
+
+/// Sums over the samples of a pixel since the host last took them.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct PixelStatistics {
+    /// Sum of the squared luminance.
+    pub luminance_squared: f32,
+    /// Samples in the sums.
+    pub kept: f32,
+    /// Sum of the odd samples' luminance.
+    pub odd_luminance: f32,
+    /// Sum of the odd samples' squared luminance.
+    pub odd_luminance_squared: f32,
+    /// Odd samples in the sums.
+    pub odd_kept: f32,
+    /// Samples that were not sound.
+    pub dropped: f32,
+    /// Rays traced.
+    pub rays: f32,
 }
 
 impl Globals {
-    /// The uniforms of a job, for the whole picture and no sample yet.
+    /// The uniforms of a job.
     pub fn new(settings: &Settings, node_count: usize, environment_cells_size: [u32; 2]) -> Self {
         let (background_kind, background) = match settings.background {
             BackgroundKind::Environment => (0, [0.0; 3]),
             BackgroundKind::Transparent => (1, [0.0; 3]),
             BackgroundKind::Color(color) => (2, color),
+            BackgroundKind::Blurred(sine) => (3, [sine as f32, 0.0, 0.0]),
         };
         Self {
             camera: settings.camera.cast(),
             image_size: settings.image_size,
-            tile_origin: [0; 2],
-            tile_size: settings.image_size,
-            first_sample: 0,
-            sample_count: 0,
+            bounces: settings.bounces,
+            sequence: settings.sequence as u32,
             background,
             background_kind,
             environment_rotation: settings.environment_rotation.map(|x| x as f32),
             environment_cells_size,
             environment_strength: settings.environment_strength as f32,
-            bounces: settings.bounces,
-            sequence: settings.sequence as u32,
             strategy: settings.strategy as u32,
             seed: settings.seed,
             node_count: node_count as u32,
             light_cells_size: settings.light_choice.cells_size,
             environment_probability: settings.light_choice.environment_probability as f32,
             density_per_luminance: settings.light_choice.density_per_luminance as f32,
-            reserved: [0; 2],
         }
     }
 }

@@ -2,11 +2,13 @@
 
 pub mod device;
 mod engine;
+mod kernel_cache;
 pub mod layout;
 mod pipeline;
 mod resources;
 pub mod scatter;
 pub mod shader;
+mod timer;
 
 pub use device::{AdapterKind, GpuDevice, GpuError};
 pub use engine::GpuEngine;

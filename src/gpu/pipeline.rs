@@ -3,29 +3,49 @@
 use std::collections::HashMap;
 
 use super::device::{GpuDevice, GpuError};
+use super::kernel_cache::KernelCache;
 use super::shader;
-use crate::document::plan::Plan;
+use crate::document::plan::{Plan, Specialisation};
 
-/// The path tracer's shader, its binding layout, and a pipeline for each plan met.
+/// A pass over the picture: its shader, its binding layout, and a pipeline for each plan met.
 #[derive(Debug)]
 pub struct Pipelines {
     module: wgpu::ShaderModule,
     layout: wgpu::PipelineLayout,
     /// Bindings of `shaders/scene/layout.wgsl`.
     pub bindings: wgpu::BindGroupLayout,
-    of_plan: HashMap<Plan, wgpu::ComputePipeline>,
+    /// The pass, and its entry point.
+    name: &'static str,
+    of_plan: HashMap<Specialisation, wgpu::ComputePipeline>,
+    cache: Option<KernelCache>,
 }
 
 impl Pipelines {
-    /// Links and compiles the shader.
+    /// Links and compiles the path tracer.
     ///
     /// # Errors
     /// [`GpuError::Shader`] with the module and line.
     pub fn new(gpu: &GpuDevice) -> Result<Self, GpuError> {
-        let linked = shader::link("pass/path_trace").map_err(GpuError::Shader)?;
+        let bindings = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("scene"),
+            entries: &binding_entries(),
+        });
+        Self::of_pass(gpu, "path_trace", bindings)
+    }
+
+    /// Links and compiles another pass that reads the same bindings.
+    ///
+    /// # Errors
+    /// As [`Pipelines::new`].
+    pub fn beside(&self, gpu: &GpuDevice, name: &'static str) -> Result<Self, GpuError> {
+        Self::of_pass(gpu, name, self.bindings.clone())
+    }
+
+    fn of_pass(gpu: &GpuDevice, name: &'static str, bindings: wgpu::BindGroupLayout) -> Result<Self, GpuError> {
+        let linked = shader::link(&format!("pass/{name}")).map_err(GpuError::Shader)?;
         let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let descriptor = wgpu::ShaderModuleDescriptor {
-            label: Some("path_trace"),
+            label: Some(name),
             source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
         };
         // SAFETY: every index is made by our own code from sizes that it uploads itself: hierarchy and triangles from
@@ -38,12 +58,8 @@ impl Pipelines {
         if let Some(error) = pollster::block_on(scope.pop()) {
             return Err(GpuError::Shader(error.to_string()));
         }
-        let bindings = gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("path_trace"),
-            entries: &binding_entries(),
-        });
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("path_trace"),
+            label: Some(name),
             bind_group_layouts: &[Some(&bindings)],
             immediate_size: 0,
         });
@@ -51,38 +67,49 @@ impl Pipelines {
             module,
             layout,
             bindings,
+            name,
             of_plan: HashMap::new(),
+            cache: KernelCache::open(gpu),
         })
+    }
+
+    /// Whether a pipeline of this kind has been compiled.
+    pub fn has(&self, specialisation: &Specialisation) -> bool {
+        self.of_plan.contains_key(specialisation)
     }
 
     /// The pipeline of a plan, compiled at its first use.
     ///
     /// # Errors
     /// [`GpuError::Shader`] where the driver refuses it.
-    pub fn get(&mut self, gpu: &GpuDevice, plan: Plan) -> Result<&wgpu::ComputePipeline, GpuError> {
-        if !self.of_plan.contains_key(&plan) {
+    pub fn get(&mut self, gpu: &GpuDevice, plan: &Plan) -> Result<&wgpu::ComputePipeline, GpuError> {
+        let specialisation = plan.specialisation();
+        if !self.of_plan.contains_key(&specialisation) {
             let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
             let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some("path_trace"),
+                label: Some(self.name),
                 layout: Some(&self.layout),
                 module: &self.module,
-                entry_point: Some("path_trace"),
+                entry_point: Some(self.name),
                 compilation_options: wgpu::PipelineCompilationOptions {
                     constants: &plan.constants(),
                     zero_initialize_workgroup_memory: false,
                 },
-                cache: None,
+                cache: self.cache.as_ref().map(KernelCache::cache),
             });
             if let Some(error) = pollster::block_on(scope.pop()) {
                 return Err(GpuError::Shader(error.to_string()));
             }
-            self.of_plan.insert(plan, pipeline);
+            self.of_plan.insert(specialisation.clone(), pipeline);
+            if let Some(cache) = &self.cache {
+                cache.save();
+            }
         }
-        Ok(&self.of_plan[&plan])
+        Ok(&self.of_plan[&specialisation])
     }
 }
 
-/// Uniforms, ten read-only buffers, the environment's map, two buffers of sums.
+/// Uniforms, eleven read-only buffers, the environment's map, two buffers of sums.
 fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let buffer = |ty| wgpu::BindingType::Buffer {
         ty,
@@ -107,5 +134,5 @@ fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
             count: None,
         }
     };
-    (0..=13).map(entry).collect()
+    (0..=14).map(entry).collect()
 }

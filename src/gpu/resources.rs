@@ -3,16 +3,18 @@
 use std::sync::Arc;
 
 use super::device::{GpuDevice, GpuError};
-use super::layout::{self, Globals};
+use super::layout::{self, Globals, PixelStatistics, Tile};
 use crate::document::job::Job;
 use crate::scene::Geometry;
 use crate::scene::environment::Environment;
+
+/// Most tiles of a dispatch: four workgroups each, of which WebGPU lets 65 535 stand in a row.
+pub const DISPATCH_TILES: usize = 16_383;
 
 /// Buffers and textures of a job; what a new job shares with the old one is kept.
 #[derive(Debug)]
 pub struct Resources {
     job: Arc<Job>,
-    pub globals: wgpu::Buffer,
     /// Nodes, triangles, vertices, slots.
     geometry: [wgpu::Buffer; 4],
     materials: wgpu::Buffer,
@@ -24,6 +26,8 @@ pub struct Resources {
     textures: [wgpu::Buffer; 2],
     /// Sums of colours and of statistics since the last flush.
     pub sums: [wgpu::Buffer; 2],
+    /// What a dispatch renders: [`Tile`] by tile.
+    pub tiles: wgpu::Buffer,
     pub bind_group: wgpu::BindGroup,
 }
 
@@ -67,21 +71,25 @@ impl Resources {
                 gpu.storage("the model's pictures", bytemuck::cast_slice(&job.textures.words))?,
             ],
         };
-        let size_of_sums = pixels(&job) * 16;
+        let bytes_of = |size: usize| pixels(&job) * size as u64;
         let sums = match old.filter(|old| pixels(&old.job) == pixels(&job)) {
             Some(old) => old.sums.clone(),
             None => [
-                gpu.empty_storage("the picture", size_of_sums)?,
-                gpu.empty_storage("the picture", size_of_sums)?,
+                gpu.empty_storage("the picture", bytes_of(size_of::<[f32; 4]>()))?,
+                gpu.empty_storage("the picture", bytes_of(size_of::<PixelStatistics>()))?,
             ],
         };
         clear(gpu, &sums);
+        let tiles = gpu.empty_storage("the list of tiles", (DISPATCH_TILES * size_of::<Tile>()) as u64)?;
         let globals = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("globals"),
             size: size_of::<Globals>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
+        let cells = [job.environment.cells_width, job.environment.cells_height];
+        let values = Globals::new(&job.settings, job.geometry.bvh.nodes.len(), cells);
+        gpu.queue.write_buffer(&globals, 0, bytemuck::bytes_of(&values));
         let [nodes, triangles, vertices, slots] = &geometry;
         let resources = [
             globals.as_entire_binding(),
@@ -96,6 +104,7 @@ impl Resources {
             sums[0].as_entire_binding(),
             sums[1].as_entire_binding(),
             light_cells.as_entire_binding(),
+            tiles.as_entire_binding(),
             textures[0].as_entire_binding(),
             textures[1].as_entire_binding(),
         ];
@@ -110,7 +119,6 @@ impl Resources {
         });
         Ok(Self {
             job,
-            globals,
             geometry,
             materials,
             tables,
@@ -119,6 +127,7 @@ impl Resources {
             light_cells,
             textures,
             sums,
+            tiles,
             bind_group,
         })
     }

@@ -249,6 +249,13 @@ impl<T: Real> Material<T> {
         self.transmission_weight.to_f64() > 0.0 && self.metalness.to_f64() < 1.0
     }
 
+    /// True where every direction that it can draw is weighed as a mirror's.
+    pub fn is_mirror(&self) -> bool {
+        let through = self.transmission_shape(&[], false);
+        let reflects_alike = !self.has_specular() || is_mirror(&self.shape(&[])).any();
+        !self.has_base() && reflects_alike && (!self.transmits() || is_mirror(&through).any())
+    }
+
     /// True where the specular lobe reflects anything: if not from without, then from within.
     #[inline(always)]
     pub fn has_specular(&self) -> bool {
@@ -371,6 +378,21 @@ fn specular_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Su
         return rough_albedo(&material.fresnel_terms(surface.is_inside), integrals);
     }
     albedo_lookup(tables, first, place)
+}
+
+/// The share of the light from everywhere that reaches the viewer by all layers, in [0, 1] for each colour: where there
+/// is only the specular lobe, its Fresnel term at the view's angle.
+pub fn material_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Vec3<T> {
+    let specular = if !material.has_specular() {
+        Vec3::zero()
+    } else if material.has_base() || material.transmits() {
+        specular_albedo(material, tables, surface)
+    } else {
+        let cosine = surface.frame.normal.dot(surface.wo);
+        fresnel(&material.fresnel_terms(surface.is_inside), cosine)
+    };
+    let layers = material_layers(material, tables, surface);
+    specular + layers.base + layers.transmission
 }
 
 /// The base's lobe: Lambert's, its rare samples below the geometric surface mirrored.

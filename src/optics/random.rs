@@ -52,6 +52,26 @@ pub fn random_state(x: u32, y: u32, seed: u32, sample: u32, sequence: Sequence) 
     }
 }
 
+/// The stream of sample number `sample` of a render. Even and odd samples are two independent randomisations of Sobol's
+/// points, each in its order: so the difference of their means tells the error of the whole, which the samples' spread
+/// does not where they are not independent (docs/MATHEMATICS.md, section 8).
+#[inline(always)]
+pub fn path_state(x: u32, y: u32, seed: u32, sample: u32, sequence: Sequence) -> RandomState {
+    let state = random_state(x, y, seed, sample, sequence);
+    match sequence {
+        Sequence::Sobol => RandomState {
+            key: if sample % 2 == 0 {
+                state.key
+            } else {
+                hash_bits(state.key ^ 0x5851_f42d)
+            },
+            sample: sample / 2,
+            sequence,
+        },
+        Sequence::Independent => state,
+    }
+}
+
 /// A bijection of the 32-bit numbers without visible structure (Wellons' lowbias32).
 #[inline(always)]
 pub fn hash_bits(bits: u32) -> u32 {

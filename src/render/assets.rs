@@ -1,6 +1,6 @@
 //! What a document names and a session keeps: models, their geometry, environments.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::session::SessionError;
 use crate::scene::environment::{self, Environment, EnvironmentSource};
@@ -11,9 +11,13 @@ use crate::scene::{self, Geometry, Model, ModelSource};
 /// What a geometry is made of: model, ground, area lights.
 type GeometryKey = (ModelSource, bool, Vec<AreaShape>);
 
-/// The last of each kind that was asked for: an edit that leaves a source alone costs nothing.
+/// The last of each kind that was asked for: an edit that leaves a source alone costs nothing. Clones share what they
+/// keep, so that two sessions with the same scene load it once.
 #[derive(Clone, Debug, Default)]
-pub struct Assets {
+pub struct Assets(Arc<Mutex<Kept>>);
+
+#[derive(Debug, Default)]
+struct Kept {
     model: Option<(ModelSource, Arc<Model>)>,
     textures: Option<(ModelSource, Arc<Textures>)>,
     geometry: Option<(GeometryKey, Arc<Geometry>)>,
@@ -21,11 +25,56 @@ pub struct Assets {
 }
 
 impl Assets {
+    /// What a panic left is whole: every change is a single assignment.
+    fn kept(&self) -> MutexGuard<'_, Kept> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     /// The model of a source, loaded unless it is the last one.
     ///
     /// # Errors
     /// Names the file, what is wrong with it and what to do.
-    pub fn model(&mut self, source: &ModelSource) -> Result<Arc<Model>, SessionError> {
+    pub fn model(&self, source: &ModelSource) -> Result<Arc<Model>, SessionError> {
+        self.kept().model(source)
+    }
+
+    /// The textures of a source, packed.
+    ///
+    /// # Errors
+    /// As [`Assets::model`].
+    pub fn textures(&self, source: &ModelSource) -> Result<Arc<Textures>, SessionError> {
+        self.kept().textures(source)
+    }
+
+    /// The geometry of a source, with or without ground, with area lights.
+    ///
+    /// # Errors
+    /// As [`Assets::model`].
+    pub fn geometry(
+        &self,
+        source: &ModelSource,
+        ground: bool,
+        area_lights: Vec<AreaShape>,
+    ) -> Result<Arc<Geometry>, SessionError> {
+        self.kept().geometry(source, ground, area_lights)
+    }
+
+    /// The environment of a source.
+    ///
+    /// # Errors
+    /// Names the file, what is wrong with it and what to do.
+    pub fn environment(&self, source: &EnvironmentSource) -> Result<Arc<Environment>, SessionError> {
+        self.kept().environment(source)
+    }
+
+    /// Forgets files, so that they are read again.
+    pub fn reload(&self) {
+        *self.kept() = Kept::default();
+    }
+}
+
+impl Kept {
+    fn model(&mut self, source: &ModelSource) -> Result<Arc<Model>, SessionError> {
         if let Some((_, model)) = self.model.as_ref().filter(|(of, _)| of == source) {
             return Ok(model.clone());
         }
@@ -35,11 +84,7 @@ impl Assets {
         Ok(model)
     }
 
-    /// The textures of a source, packed.
-    ///
-    /// # Errors
-    /// As [`Assets::model`].
-    pub fn textures(&mut self, source: &ModelSource) -> Result<Arc<Textures>, SessionError> {
+    fn textures(&mut self, source: &ModelSource) -> Result<Arc<Textures>, SessionError> {
         if let Some((_, textures)) = self.textures.as_ref().filter(|(of, _)| of == source) {
             return Ok(textures.clone());
         }
@@ -49,11 +94,7 @@ impl Assets {
         Ok(textures)
     }
 
-    /// The geometry of a source, with or without ground, with area lights.
-    ///
-    /// # Errors
-    /// As [`Assets::model`].
-    pub fn geometry(
+    fn geometry(
         &mut self,
         source: &ModelSource,
         ground: bool,
@@ -68,11 +109,7 @@ impl Assets {
         Ok(geometry)
     }
 
-    /// The environment of a source.
-    ///
-    /// # Errors
-    /// Names the file, what is wrong with it and what to do.
-    pub fn environment(&mut self, source: &EnvironmentSource) -> Result<Arc<Environment>, SessionError> {
+    fn environment(&mut self, source: &EnvironmentSource) -> Result<Arc<Environment>, SessionError> {
         if let Some((_, environment)) = self.environment.as_ref().filter(|(of, _)| of == source) {
             return Ok(environment.clone());
         }
@@ -80,10 +117,5 @@ impl Assets {
         environment.warnings.iter().for_each(|warning| log::warn!("{warning}"));
         self.environment = Some((source.clone(), environment.clone()));
         Ok(environment)
-    }
-
-    /// Forgets files, so that they are read again.
-    pub fn reload(&mut self) {
-        *self = Self::default();
     }
 }

@@ -78,7 +78,7 @@ impl Verdict {
 fn measure(software: &mut Engine, machine: String) -> Option<Verdict> {
     let mut document = Document::default();
     (document.render.width, document.render.height) = (SIZE, SIZE);
-    let job = Arc::new(Compiler::default().compile(&document, &mut Assets::default()).ok()?);
+    let job = Arc::new(Compiler::default().compile(&document, &Assets::default()).ok()?);
     let (mut processor, _) = cpu(String::new());
     let ratio = samples_per_second(&mut processor, &job)? / samples_per_second(software, &job)?;
     Some(Verdict { machine, ratio })
@@ -87,10 +87,11 @@ fn measure(software: &mut Engine, machine: String) -> Option<Verdict> {
 fn samples_per_second(engine: &mut Engine, job: &Arc<Job>) -> Option<f64> {
     engine.submit(job.clone()).ok()?;
     // The first sample compiles.
-    engine.step(Duration::from_secs(60), 1).ok()?;
+    let tiles = engine.schedule().grid().tiles();
+    engine.step(Duration::from_secs(60), &vec![1; tiles]).ok()?;
     engine.submit(job.clone()).ok()?;
     let begun = Instant::now();
-    engine.step(DURATION, u32::MAX).ok()?;
+    engine.step(DURATION, &vec![u32::MAX; tiles]).ok()?;
     let samples = engine.film().ok()?.samples();
     Some(samples as f64 / begun.elapsed().as_secs_f64())
 }

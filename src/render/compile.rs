@@ -4,19 +4,17 @@ use std::sync::Arc;
 
 use super::assets::Assets;
 use super::session::SessionError;
+use crate::document::effect::Facts;
 use crate::document::job::{BackgroundKind, Job, Settings};
-use crate::document::plan::Plan;
+use crate::document::plan::{Plan, without_what_is_off};
 use crate::document::{
     AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile_textured,
 };
 use crate::optics::material::Material;
 use crate::scene::Geometry;
-use crate::scene::camera::{Camera, orbit_direction};
+use crate::scene::camera::{Camera, framing_distance, orbit_direction};
 use crate::scene::light::{LightChoice, Lights};
 use crate::scene::texture::Textures;
-
-/// How much room a framed model is given.
-const FRAME_MARGIN: f64 = 1.05;
 
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
@@ -35,13 +33,15 @@ pub(super) struct Compiler {
 }
 
 impl Compiler {
-    pub(super) fn compile(&mut self, document: &Document, assets: &mut Assets) -> Result<Job, SessionError> {
+    pub(super) fn compile(&mut self, document: &Document, assets: &Assets) -> Result<Job, SessionError> {
+        let document = &without_what_is_off(document);
         let model = assets.model(&document.model)?;
         let shapes = document.lighting.area_lights.iter().map(AreaLight::shape).collect();
         let geometry = assets.geometry(&document.model, document.ground, shapes)?;
         let environment = assets.environment(&document.lighting.environment)?;
         let textures = assets.textures(&document.model)?;
-        let (materials, tables) = self.materials(slot_materials(document, model.slots.len()), &textures);
+        let slots = slot_materials(document, model.slots.len());
+        let (materials, tables) = self.materials(&slots, &textures);
         let lights = self.lights(&geometry, &materials);
         let environment_strength = f64::from(document.lighting.strength);
         let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
@@ -49,7 +49,10 @@ impl Compiler {
             image_size: [document.render.width, document.render.height],
             camera: camera(&document.camera, &document.render, &geometry),
             background: match document.lighting.background {
-                Background::Environment => BackgroundKind::Environment,
+                Background::Environment => match f64::from(document.lighting.background_blur_deg).to_radians().sin() {
+                    sine if sine > 0.0 => BackgroundKind::Blurred(sine),
+                    _ => BackgroundKind::Environment,
+                },
                 Background::Transparent => BackgroundKind::Transparent,
                 Background::Color(color) => BackgroundKind::Color(color),
             },
@@ -61,7 +64,14 @@ impl Compiler {
             strategy: document.render.strategy,
             seed: document.render.seed,
         };
-        let plan = Plan::new(&materials, &settings.light_choice, settings.camera.lens_radius);
+        let plan = Plan::new(&Facts {
+            document,
+            slots: &slots,
+            materials: &materials,
+            geometry: &geometry,
+            environment: &environment,
+            settings: &settings,
+        });
         Ok(Job {
             geometry,
             environment,
@@ -74,14 +84,14 @@ impl Compiler {
         })
     }
 
-    fn materials(&mut self, wanted: Vec<MaterialSettings>, textures: &Arc<Textures>) -> Compiled {
-        let is_known = |(of, looked_up): &MaterialsKey| *of == wanted && Arc::ptr_eq(looked_up, textures);
+    fn materials(&mut self, wanted: &[MaterialSettings], textures: &Arc<Textures>) -> Compiled {
+        let is_known = |(of, looked_up): &MaterialsKey| of == wanted && Arc::ptr_eq(looked_up, textures);
         if let Some((_, compiled)) = self.materials.as_ref().filter(|(key, _)| is_known(key)) {
             return compiled.clone();
         }
-        let (materials, tables) = compile_textured(&wanted, &textures.slots);
+        let (materials, tables) = compile_textured(wanted, &textures.slots);
         let compiled = (Arc::new(materials), Arc::new(tables));
-        self.materials = Some(((wanted, textures.clone()), compiled.clone()));
+        self.materials = Some(((wanted.to_vec(), textures.clone()), compiled.clone()));
         compiled
     }
 
@@ -122,18 +132,19 @@ fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometr
         };
         target + distance * orbit_direction(settings.yaw_deg, settings.pitch_deg)
     });
-    Camera::look_at(
+    let pinhole = Camera::look_at(
         position.to_array(),
         target.to_array(),
         settings.fov_deg,
         aspect,
         render.filter,
-    )
-}
-
-/// The distance at which the bounding sphere, of radius 1, just fits the picture's shorter side.
-fn framing_distance(fov_deg: f64, aspect: f64) -> f64 {
-    let half_height = (0.5 * fov_deg.to_radians()).tan();
-    let half = (half_height * aspect.min(1.0)).atan();
-    FRAME_MARGIN / half.sin()
+    );
+    let focus_distance = settings
+        .focus_distance
+        .map(|distance| distance / geometry.world_units_per_unit);
+    Camera {
+        lens_radius: settings.aperture,
+        focus_distance: focus_distance.unwrap_or(pinhole.focus_distance),
+        ..pinhole
+    }
 }

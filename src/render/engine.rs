@@ -5,8 +5,10 @@ use std::str::FromStr;
 use std::sync::Arc;
 use std::time::Duration;
 
+use crate::analysis::features::Features;
 use crate::analysis::film::Film;
 use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
+use crate::analysis::tiles::Schedule;
 use crate::cpu::CpuEngine;
 use crate::document::job::Job;
 use crate::gpu::scatter::Scatterer;
@@ -84,13 +86,29 @@ impl Engine {
         }
     }
 
-    pub(super) fn step(&mut self, budget: Duration, samples: u32) -> Result<(), GpuError> {
+    /// Renders for about `budget` towards a number of samples a pixel for each tile.
+    pub(super) fn step(&mut self, budget: Duration, goals: &[u32]) -> Result<(), GpuError> {
         match self {
             Engine::Cpu(engine) => {
-                engine.step(budget, samples);
+                engine.step_towards::<f32>(budget, goals);
                 Ok(())
             }
-            Engine::Gpu(engine) => engine.step(budget, samples),
+            Engine::Gpu(engine) => engine.step_towards(budget, goals),
+        }
+    }
+
+    pub(super) fn schedule(&self) -> &Schedule {
+        match self {
+            Engine::Cpu(engine) => engine.schedule(),
+            Engine::Gpu(engine) => engine.schedule(),
+        }
+    }
+
+    /// How long the job was rendered by the GPU's own clock; `None` without one.
+    pub(super) fn gpu_seconds(&self) -> Option<f64> {
+        match self {
+            Engine::Cpu(_) => None,
+            Engine::Gpu(engine) => engine.gpu_seconds(),
         }
     }
 
@@ -101,10 +119,10 @@ impl Engine {
         }
     }
 
-    pub(super) fn samples_per_pixel(&self) -> u32 {
+    pub(super) fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
         match self {
-            Engine::Cpu(engine) => engine.samples_per_pixel(),
-            Engine::Gpu(engine) => engine.samples_per_pixel(),
+            Engine::Cpu(engine) => Ok(engine.features(samples)),
+            Engine::Gpu(engine) => engine.features(samples),
         }
     }
 }

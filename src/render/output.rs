@@ -4,13 +4,15 @@ use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
 
+use image::Rgb;
 use image::codecs::hdr::HdrEncoder;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{ExtendedColorType, ImageEncoder as _, Rgb};
 
 use super::display::display;
+use crate::analysis::features::Features;
 use crate::analysis::film::Image;
-use crate::document::ViewSettings;
+use crate::document::Document;
+use crate::document::picture::png_bytes;
+use crate::document::project::document_text;
 
 /// Why a picture can't be written.
 #[derive(Debug, thiserror::Error)]
@@ -29,6 +31,19 @@ pub enum OutputError {
         /// What the system said.
         reason: String,
     },
+}
+
+/// A picture with what is known beside it about each pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Layers {
+    /// The linear picture.
+    pub image: Image,
+    /// What the camera sees first.
+    pub features: Features,
+    /// Samples in each pixel's mean.
+    pub samples: Vec<f32>,
+    /// Variance of each pixel's mean luminance; infinite below two samples.
+    pub variance: Vec<f32>,
 }
 
 /// The formats, by a file's ending.
@@ -60,13 +75,14 @@ pub fn format_of(path: &Path) -> Result<Format, OutputError> {
     }
 }
 
-/// Writes a picture in the format of the file's ending.
+/// Writes a picture of a document in the format of the file's ending. A .png has the document's exposure and tone curve,
+/// and the document itself inside.
 ///
 /// # Errors
 /// [`OutputError`] naming the file.
-pub fn write(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), OutputError> {
+pub fn write(path: &Path, image: &Image, document: &Document) -> Result<(), OutputError> {
     let written = match format_of(path)? {
-        Format::Png => write_png(path, image, view),
+        Format::Png => write_png(path, image, document),
         Format::Exr => write_exr(path, image),
         Format::Hdr => write_hdr(path, image),
     };
@@ -76,18 +92,14 @@ pub fn write(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), Outp
     })
 }
 
-fn write_png(path: &Path, image: &Image, view: &ViewSettings) -> Result<(), String> {
-    let pixels = display(image, view);
-    // Not the encoder's fastest setting: what noise there is makes files half as large again with it.
-    let (compression, filter) = (CompressionType::Default, FilterType::Adaptive);
-    write_buffered(path, |file| {
-        PngEncoder::new_with_quality(file, compression, filter).write_image(
-            &pixels,
-            image.width,
-            image.height,
-            ExtendedColorType::Rgba8,
-        )
-    })
+fn write_png(path: &Path, image: &Image, document: &Document) -> Result<(), String> {
+    let text = document_text(path, document);
+    if let Err(error) = &text {
+        log::warn!("the picture is saved without its document: {error}");
+    }
+    let pixels = display(image, &document.view);
+    let bytes = png_bytes([image.width, image.height], &pixels, text.as_deref().ok())?;
+    std::fs::write(path, bytes).map_err(|error| error.to_string())
 }
 
 /// Writes a file through a buffer, and notices where the last of it does not fit on the disc.
@@ -106,6 +118,49 @@ fn write_exr(path: &Path, image: &Image) -> Result<(), String> {
         (r, g, b, a)
     };
     exr::prelude::write_rgba_file(path, image.width as usize, image.height as usize, pixel)
+        .map_err(|error| error.to_string())
+}
+
+/// Writes an EXR file with layers beside the colour: `albedo.R`, `.G`, `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`;
+/// `samples.Y`; `variance.Y`.
+///
+/// # Errors
+/// [`OutputError`] naming the file.
+pub fn write_layers(path: &Path, layers: &Layers) -> Result<(), OutputError> {
+    write_exr_layers(path, layers).map_err(|reason| OutputError::Write {
+        path: path.to_owned(),
+        reason,
+    })
+}
+
+fn write_exr_layers(path: &Path, layers: &Layers) -> Result<(), String> {
+    use exr::prelude::{
+        AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage as _,
+    };
+    let image = &layers.image;
+    let features = &layers.features;
+    let channel = |name: &str, values: Vec<f32>| AnyChannel::new(name, FlatSamples::F32(values));
+    let color = (0..4).map(|i| image.pixels.iter().map(|pixel| pixel[i]).collect());
+    let vector = |values: &[[f32; 3]], i: usize| values.iter().map(|value| value[i]).collect::<Vec<f32>>();
+    let mut channels: Vec<_> = ["R", "G", "B", "A"]
+        .into_iter()
+        .zip(color)
+        .map(|(name, of)| channel(name, of))
+        .collect();
+    for (i, (color, axis)) in ["R", "G", "B"].into_iter().zip(["X", "Y", "Z"]).enumerate() {
+        channels.push(channel(&format!("albedo.{color}"), vector(&features.albedo, i)));
+        channels.push(channel(&format!("normal.{axis}"), vector(&features.normal, i)));
+    }
+    channels.push(channel("depth.Z", features.depth.clone()));
+    channels.push(channel("samples.Y", layers.samples.clone()));
+    channels.push(channel("variance.Y", layers.variance.clone()));
+    let size = (image.width as usize, image.height as usize);
+    let attributes = LayerAttributes::default();
+    let channels = AnyChannels::sort(channels.into_iter().collect());
+    let layer = Layer::new(size, attributes, Encoding::FAST_LOSSLESS, channels);
+    Image::from_layer(layer)
+        .write()
+        .to_file(path)
         .map_err(|error| error.to_string())
 }
 

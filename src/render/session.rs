@@ -5,14 +5,21 @@ use std::time::{Duration, Instant};
 
 use super::assets::Assets;
 use super::compile::Compiler;
+use super::convergence::{Convergence, Measurement, mean_samples};
 use super::engine::{Engine, EngineChoice, EngineInfo, cpu};
+use super::output::Layers;
+use super::workshop::Workshop;
 use crate::analysis::film::{Film, Image};
+use crate::analysis::noise::Noise;
 use crate::document::Document;
 use crate::document::change::Change;
 use crate::document::job::Job;
 use crate::gpu::GpuError;
 use crate::scene::ModelError;
 use crate::scene::environment::EnvironmentError;
+
+/// Samples of a pixel over which albedo, normal and depth are averaged.
+const FEATURE_SAMPLES: u32 = 32;
 
 /// What a session can't do.
 #[derive(Debug, thiserror::Error)]
@@ -28,23 +35,62 @@ pub enum SessionError {
     Gpu(#[from] GpuError),
 }
 
+/// What ended a render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StopReason {
+    /// Every pixel, or the one with the most, has the samples that were asked for.
+    Samples,
+    /// The time is over.
+    Time,
+    /// The picture is as exact as was asked for.
+    Noise,
+}
+
 /// How far a render has come.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Progress {
-    /// Completed samples a pixel.
+    /// Completed samples a pixel, where there are most.
     pub samples_per_pixel: u32,
     /// Samples a pixel to reach.
     pub samples_wanted: u32,
-    /// The engine's own time on this picture, seconds.
+    /// Samples a pixel in the mean over the picture: fewer where tiles rest.
+    pub mean_samples: f64,
+    /// Pixel samples a second by the engine's own time, over the whole render.
+    pub samples_per_second: f64,
+    /// Time spent on this picture, seconds.
     pub render_seconds: f64,
+    /// Of it the engine's own: by the GPU's clock where it has one.
+    pub engine_seconds: f64,
+    /// Of it the time for looking at the error.
+    pub measure_seconds: f64,
+    /// The error when it was last looked at.
+    pub noise: Option<Noise>,
+    /// The relative error to reach.
+    pub noise_wanted: Option<f64>,
+    /// The processor draws, because the GPU's kernel is being compiled.
+    pub is_standing_in: bool,
+    /// Why nothing more is rendered.
+    pub stopped_by: Option<StopReason>,
     /// All that was asked for has been done.
     pub is_done: bool,
 }
 
 impl Progress {
-    /// Pixel samples a second, over the whole render.
-    pub fn samples_per_second(&self, pixels: u64) -> f64 {
-        f64::from(self.samples_per_pixel) * pixels as f64 / self.render_seconds.max(1e-9)
+    /// Whether the picture is as exact as was asked for.
+    pub fn is_converged(&self) -> bool {
+        let pair = self.noise.zip(self.noise_wanted);
+        pair.is_some_and(|(noise, wanted)| noise.relative <= wanted)
+    }
+
+    /// How much has been done of what is to be done, in [0, 1]: of samples, time and noise the one that is nearest.
+    pub fn share_done(&self, time_limit_s: Option<f64>) -> f64 {
+        let by_samples = f64::from(self.samples_per_pixel) / f64::from(self.samples_wanted.max(1));
+        let by_time = time_limit_s.map_or(0.0, |limit| self.render_seconds / limit);
+        // The time that a noise takes goes with the inverse of its square.
+        let pair = self.noise.zip(self.noise_wanted);
+        let by_noise = pair.map_or(0.0, |(noise, wanted)| (wanted / noise.relative.max(1e-30)).powi(2));
+        by_samples.max(by_time).max(by_noise).clamp(0.0, 1.0)
     }
 }
 
@@ -56,7 +102,14 @@ pub struct Session {
     compiler: Compiler,
     document: Option<Document>,
     job: Option<Arc<Job>>,
+    convergence: Convergence,
     render_time: Duration,
+    /// Of it the time in the engine's steps.
+    step_time: Duration,
+    /// Engine time of the stand-in, before the engine took over, seconds.
+    stand_in_seconds: f64,
+    /// Where kernels are compiled beside the picture; `None` where the session waits for them.
+    workshop: Option<Workshop>,
 }
 
 impl Session {
@@ -65,16 +118,68 @@ impl Session {
     /// # Errors
     /// [`GpuError`] where a GPU was asked for and there is none that works; `auto` and `cpu` always work.
     pub fn open(choice: EngineChoice) -> Result<Self, SessionError> {
+        Self::open_with(choice, Assets::default())
+    }
+
+    /// The same with models and environments that it may share with other sessions.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         let (engine, info) = Engine::open(choice)?;
         Ok(Self {
             engine,
             info,
-            assets: Assets::default(),
+            assets,
             compiler: Compiler::default(),
             document: None,
             job: None,
+            convergence: Convergence::default(),
             render_time: Duration::ZERO,
+            step_time: Duration::ZERO,
+            stand_in_seconds: 0.0,
+            workshop: None,
         })
+    }
+
+    /// The same, but never waits for a kernel to be compiled: until it is ready the processor draws, and what it has
+    /// drawn then counts.
+    ///
+    /// # Errors
+    /// As [`Session::open`].
+    pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
+        let mut session = Self::open_with(choice, assets)?;
+        let stand_in = Engine::Cpu(Box::default());
+        match std::mem::replace(&mut session.engine, stand_in) {
+            Engine::Gpu(engine) => session.workshop = Some(Workshop::new(*engine)),
+            cpu => session.engine = cpu,
+        }
+        Ok(session)
+    }
+
+    /// True while the processor draws because the GPU's kernel is being compiled.
+    pub fn is_standing_in(&self) -> bool {
+        self.workshop.is_some() && matches!(self.engine, Engine::Cpu(_))
+    }
+
+    /// Lets the GPU take over where its kernel is ready by now.
+    fn change_over(&mut self) -> Result<(), SessionError> {
+        let (true, Some(job)) = (self.is_standing_in(), &self.job) else {
+            return Ok(());
+        };
+        let finished = self.workshop.as_mut().map(|workshop| workshop.finished(job));
+        let Some(mut engine) = finished.transpose()?.flatten() else {
+            return Ok(());
+        };
+        engine.submit(job.clone())?;
+        self.stand_in_seconds += self.engine_seconds();
+        self.step_time = Duration::ZERO;
+        if let Engine::Cpu(stand_in) = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
+            let (film, schedule) = stand_in.hand_over();
+            engine.take_over(film, schedule);
+        }
+        self.engine = Engine::Gpu(Box::new(engine));
+        Ok(())
     }
 
     /// What renders.
@@ -83,8 +188,8 @@ impl Session {
     }
 
     /// Models and environments, loaded and kept.
-    pub fn assets(&mut self) -> &mut Assets {
-        &mut self.assets
+    pub fn assets(&self) -> &Assets {
+        &self.assets
     }
 
     /// Forgets what was rendered, so that the next submission starts over even with the same document.
@@ -114,13 +219,26 @@ impl Session {
             None => Change::everything(),
         };
         if change.restarts() {
-            let job = Arc::new(self.compiler.compile(document, &mut self.assets)?);
+            let job = Arc::new(self.compiler.compile(document, &self.assets)?);
+            if let Some(workshop) = &mut self.workshop {
+                let current = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default()));
+                self.engine = workshop.engine_for(&job, current);
+            }
             self.engine.submit(job.clone())?;
             self.job = Some(job);
-            self.render_time = Duration::ZERO;
+            self.start_clocks();
         }
         self.document = Some(document.clone());
+        if change.target {
+            // The goals in force were those of another aim.
+            self.convergence.goals.clear();
+        }
         Ok(change)
+    }
+
+    fn start_clocks(&mut self) {
+        self.convergence = Convergence::default();
+        (self.render_time, self.step_time, self.stand_in_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);
     }
 
     /// Renders for about `budget`.
@@ -128,29 +246,102 @@ impl Session {
     /// # Errors
     /// If the GPU fails; [`Session::fall_back_to_cpu`] goes on without it.
     pub fn step(&mut self, budget: Duration) -> Result<Progress, SessionError> {
-        let progress = self.progress();
-        if progress.is_done {
-            return Ok(progress);
-        }
-        let left = self.time_limit().map(|limit| limit.saturating_sub(self.render_time));
+        self.change_over()?;
+        let before = self.render_time;
         let begun = Instant::now();
-        self.engine
-            .step(left.map_or(budget, |left| budget.min(left)), progress.samples_wanted)?;
-        self.render_time += begun.elapsed();
+        while !self.progress().is_done {
+            self.plan()?;
+            let mut left = budget.saturating_sub(begun.elapsed());
+            if let Some(limit) = self.time_limit() {
+                left = left.min(limit.saturating_sub(self.render_time));
+            }
+            let step_begun = Instant::now();
+            self.engine.step(left, &self.convergence.goals)?;
+            self.step_time += step_begun.elapsed();
+            self.render_time = before + begun.elapsed();
+            if self.engine.schedule().is_at_goal() || self.progress().is_done {
+                self.measure()?;
+            }
+            self.render_time = before + begun.elapsed();
+            if begun.elapsed() >= budget {
+                break;
+            }
+        }
         Ok(self.progress())
+    }
+
+    /// Sets goals where those in force have been reached or given up.
+    fn plan(&mut self) -> Result<(), SessionError> {
+        let Some(document) = &self.document else { return Ok(()) };
+        let goals = &self.convergence.goals;
+        let is_in_force = goals.len() == self.engine.schedule().grid().tiles();
+        if is_in_force && !self.engine.schedule().is_at_goal() {
+            return Ok(());
+        }
+        let begun = Instant::now();
+        let seconds = self.engine_seconds();
+        let schedule = self.engine.schedule().clone();
+        let film = document.render.is_adaptive().then(|| self.engine.film()).transpose()?;
+        self.convergence.next_round(film, &schedule, &document.render, seconds);
+        self.convergence.plan_seconds = begun.elapsed().as_secs_f64();
+        self.convergence.total_seconds += self.convergence.plan_seconds;
+        Ok(())
+    }
+
+    /// Looks at the error where something was rendered since it was last looked at.
+    fn measure(&mut self) -> Result<(), SessionError> {
+        if !self.convergence.is_stale(self.engine.schedule()) {
+            return Ok(());
+        }
+        let begun = Instant::now();
+        let seconds = self.engine_seconds();
+        let schedule = self.engine.schedule().clone();
+        self.convergence.measure(self.engine.film()?, &schedule, seconds);
+        self.convergence.measure_seconds = begun.elapsed().as_secs_f64();
+        self.convergence.total_seconds += self.convergence.measure_seconds;
+        Ok(())
+    }
+
+    /// The engine's own time.
+    fn engine_seconds(&self) -> f64 {
+        self.stand_in_seconds + self.engine.gpu_seconds().unwrap_or(self.step_time.as_secs_f64())
     }
 
     /// How far the render has come.
     pub fn progress(&self) -> Progress {
-        let samples_per_pixel = self.engine.samples_per_pixel();
-        let samples_wanted = self.document.as_ref().map_or(0, |document| document.render.samples);
-        let is_late = self.time_limit().is_some_and(|limit| self.render_time >= limit);
-        Progress {
-            samples_per_pixel,
-            samples_wanted,
+        let schedule = self.engine.schedule();
+        let settings = self.document.as_ref().map(|document| document.render);
+        let engine_seconds = self.engine_seconds();
+        let mut progress = Progress {
+            samples_per_pixel: schedule.samples_per_pixel(),
+            samples_wanted: settings.map_or(0, |render| render.samples),
+            mean_samples: mean_samples(schedule),
+            samples_per_second: schedule.pixel_samples() as f64 / engine_seconds.max(1e-9),
             render_seconds: self.render_time.as_secs_f64(),
-            is_done: self.job.is_none() || samples_per_pixel >= samples_wanted || is_late,
-        }
+            engine_seconds,
+            measure_seconds: self.convergence.total_seconds,
+            is_standing_in: self.is_standing_in(),
+            noise: self.convergence.noise(),
+            noise_wanted: settings.and_then(|render| render.noise),
+            ..Progress::default()
+        };
+        let has_least = settings.is_some_and(|render| progress.samples_per_pixel >= render.min_samples);
+        progress.stopped_by = if progress.is_converged() && has_least {
+            Some(StopReason::Noise)
+        } else if progress.samples_per_pixel >= progress.samples_wanted {
+            Some(StopReason::Samples)
+        } else if self.time_limit().is_some_and(|limit| self.render_time >= limit) {
+            Some(StopReason::Time)
+        } else {
+            None
+        };
+        progress.is_done = self.job.is_none() || progress.stopped_by.is_some();
+        progress
+    }
+
+    /// The errors seen so far, oldest first.
+    pub fn history(&self) -> &[Measurement] {
+        &self.convergence.history
     }
 
     fn time_limit(&self) -> Option<Duration> {
@@ -174,13 +365,33 @@ impl Session {
         Ok(self.film()?.image())
     }
 
+    /// The mean picture with what is known beside it about each pixel.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn layers(&mut self) -> Result<Layers, SessionError> {
+        let features = self.engine.features(FEATURE_SAMPLES)?.unwrap_or_default();
+        let film = self.engine.film()?;
+        Ok(Layers {
+            image: film.image(),
+            features,
+            samples: film.statistics.iter().map(|statistics| statistics[1] as f32).collect(),
+            variance: film
+                .variance_of_mean()
+                .into_iter()
+                .map(|variance| variance as f32)
+                .collect(),
+        })
+    }
+
     /// Goes on with the processor after the GPU failed, with the same document from its start.
     pub fn fall_back_to_cpu(&mut self, why: &str) {
         (self.engine, self.info) = cpu(format!("the GPU failed: {why}"));
+        self.workshop = None;
         if let Some(job) = &self.job
             && self.engine.submit(job.clone()).is_ok()
         {
-            self.render_time = Duration::ZERO;
+            self.start_clocks();
         }
     }
 }

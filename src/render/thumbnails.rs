@@ -5,6 +5,7 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::io::{self, Cursor};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use image::{ImageFormat, RgbaImage};
@@ -21,6 +22,8 @@ use crate::scene::ModelSource;
 pub const SIDE: u32 = 64;
 /// Samples a pixel: noise is below what is seen at this size.
 const SAMPLES: u32 = 24;
+/// How long to wait before looking whether rendering may go on.
+const HOLD_STEP: Duration = Duration::from_millis(25);
 /// How long to render before looking whether something else is wanted.
 const STEP: Duration = Duration::from_millis(30);
 /// To be raised where thumbnails of the same material come out otherwise than before.
@@ -44,11 +47,16 @@ pub fn key(material: &MaterialSettings) -> u64 {
     hasher.finish()
 }
 
-/// Starts the worker; `folder` keeps the pictures from one start to the next and is made where it is not there.
+/// Starts the worker; `folder` keeps the pictures from one start to the next and is made where it is not there. Nothing
+/// is rendered while `hold` is set: the viewport goes first.
 ///
 /// # Errors
 /// If the system gives no thread.
-pub fn spawn_thumbnails(folder: PathBuf, repaint: impl Fn() + Send + 'static) -> io::Result<ThumbnailWorker> {
+pub fn spawn_thumbnails(
+    folder: PathBuf,
+    hold: Arc<AtomicBool>,
+    repaint: impl Fn() + Send + 'static,
+) -> io::Result<ThumbnailWorker> {
     let mut session: Option<Session> = None;
     let mut made: HashMap<u64, Thumbnail> = HashMap::new();
     Background::spawn("thumbnails", repaint, move |materials, desk| {
@@ -60,7 +68,7 @@ pub fn spawn_thumbnails(folder: PathBuf, repaint: impl Fn() + Send + 'static) ->
             let path = folder.join(format!("{key:016x}.png"));
             let kept = read(&path);
             let is_kept = kept.is_some();
-            match kept.map_or_else(|| make(&mut session, &material, desk), |kept| Ok(Some(kept))) {
+            match kept.map_or_else(|| make(&mut session, &material, &hold, desk), |kept| Ok(Some(kept))) {
                 Ok(Some(pixels)) => {
                     if !is_kept && let Err(error) = write(&path, &pixels) {
                         // A cache: where it can't be written, the next start renders again.
@@ -95,8 +103,18 @@ fn document(material: &MaterialSettings) -> Document {
 fn make<A>(
     session: &mut Option<Session>,
     material: &MaterialSettings,
+    hold: &AtomicBool,
     desk: &Desk<'_, Vec<MaterialSettings>, A>,
 ) -> Result<Option<Vec<u8>>, SessionError> {
+    let may_go_on = || {
+        while hold.load(Ordering::Relaxed) && !desk.is_superseded() {
+            std::thread::sleep(HOLD_STEP);
+        }
+        !desk.is_superseded()
+    };
+    if !may_go_on() {
+        return Ok(None);
+    }
     let session = match session {
         Some(session) => session,
         None => session.insert(Session::open(EngineChoice::Cpu)?),
@@ -104,7 +122,7 @@ fn make<A>(
     let document = document(material);
     session.submit(&document)?;
     while !session.step(STEP)?.is_done {
-        if desk.is_superseded() {
+        if !may_go_on() {
             return Ok(None);
         }
     }
@@ -161,7 +179,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a temporary folder");
         let cache = folder.path().join("new");
         let [gold, rubber] = ["gold", "rubber"].map(|name| material_by_name(name).expect("shipped").clone());
-        let worker = spawn_thumbnails(cache.clone(), || {}).expect("a thread");
+        let worker = spawn_thumbnails(cache.clone(), Arc::default(), || {}).expect("a thread");
         worker.ask(vec![gold.clone(), rubber.clone()]);
         let made = wait(&worker, 2);
         let (yellow, dark) = (mean(&made[&key(&gold)]), mean(&made[&key(&rubber)]));
@@ -172,9 +190,21 @@ mod tests {
         let marked = vec![77; 4 * (SIDE * SIDE) as usize];
         let path = cache.join(format!("{:016x}.png", key(&gold)));
         write(&path, &marked).expect("written");
-        let again = spawn_thumbnails(cache, || {}).expect("a thread");
+        let again = spawn_thumbnails(cache, Arc::default(), || {}).expect("a thread");
         again.ask(vec![gold.clone()]);
         assert_eq!(*wait(&again, 1)[&key(&gold)], marked);
+    }
+
+    #[test]
+    fn nothing_is_made_while_it_is_held() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let hold = Arc::new(AtomicBool::new(true));
+        let worker = spawn_thumbnails(folder.path().to_owned(), hold.clone(), || {}).expect("a thread");
+        worker.ask(vec![material_by_name("gold").expect("shipped").clone()]);
+        std::thread::sleep(Duration::from_millis(300));
+        assert!(worker.latest().is_none(), "held");
+        hold.store(false, Ordering::Relaxed);
+        wait(&worker, 1);
     }
 
     #[test]

@@ -12,7 +12,11 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use super::assets::Assets;
+use super::convergence::Measurement;
+use super::display::{Scale, Shown};
 use super::engine::{EngineChoice, EngineInfo};
+use super::output::Layers;
 use super::priority::lower_thread_priority;
 use super::session::Progress;
 use crate::analysis::film::Image;
@@ -29,6 +33,7 @@ const FAREWELL: Duration = Duration::from_secs(2);
 /// Renders on a thread of its own.
 pub struct Worker {
     shared: Arc<Shared>,
+    assets: Assets,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -95,6 +100,10 @@ pub struct Picture {
     pub reduction: u32,
     /// Samples a pixel in it.
     pub samples_per_pixel: u32,
+    /// What `rgba` is a map of, with its colours' meaning; `None` for the picture itself.
+    pub map: Option<(Shown, Scale)>,
+    /// What it shows, with the size at the full resolution.
+    pub document: Arc<Document>,
 }
 
 /// What is being rendered.
@@ -117,6 +126,8 @@ pub struct Snapshot {
     pub scene: Option<Arc<Scene>>,
     /// How far it has come.
     pub progress: Progress,
+    /// The errors seen so far in it, oldest first.
+    pub history: Arc<Vec<Measurement>>,
     /// Pixel samples a second.
     pub samples_per_second: f64,
     /// By how much the picture in progress is smaller than asked for.
@@ -151,6 +162,8 @@ pub enum Event {
     EnvironmentOpened(EnvironmentSource, Arc<Environment>),
     /// A file that could not be opened, and why.
     OpenFailed(PathBuf, String),
+    /// What was asked for by [`Worker::make_layers`], for this file.
+    LayersMade(PathBuf, Box<Layers>),
 }
 
 /// What the window wants.
@@ -159,7 +172,9 @@ struct Orders {
     submission: Option<Submission>,
     models: Vec<ModelSource>,
     environments: Vec<EnvironmentSource>,
+    layers: Vec<PathBuf>,
     engine: Option<EngineChoice>,
+    shown: Option<Shown>,
     reload: bool,
     restart: bool,
     quit: bool,
@@ -170,7 +185,9 @@ impl Orders {
         self.submission.is_none()
             && self.models.is_empty()
             && self.environments.is_empty()
+            && self.layers.is_empty()
             && self.engine.is_none()
+            && self.shown.is_none()
             && !self.reload
             && !self.restart
             && !self.quit
@@ -211,14 +228,27 @@ impl Worker {
     /// # Errors
     /// If the system gives no thread.
     pub fn spawn(choice: EngineChoice, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
+        Self::spawn_with(choice, Assets::default(), repaint)
+    }
+
+    /// Starts another one that shares models and environments with this one.
+    ///
+    /// # Errors
+    /// If the system gives no thread.
+    pub fn spawn_beside(&self, choice: EngineChoice, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
+        Self::spawn_with(choice, self.assets.clone(), repaint)
+    }
+
+    fn spawn_with(choice: EngineChoice, assets: Assets, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
         let shared = Arc::new(Shared::default());
-        let of_thread = shared.clone();
+        let (of_thread, its_assets) = (shared.clone(), assets.clone());
         let thread = std::thread::Builder::new().name("render".to_owned()).spawn(move || {
             lower_thread_priority();
-            thread::run(&of_thread, choice, &repaint);
+            thread::run(&of_thread, choice, its_assets, &repaint);
         })?;
         Ok(Self {
             shared,
+            assets,
             thread: Some(thread),
         })
     }
@@ -254,6 +284,12 @@ impl Worker {
         self.order(|orders| orders.environments.push(source));
     }
 
+    /// Makes the picture's layers as soon as it has samples at its full resolution; an [`Event`] brings them, with the
+    /// file that they are for.
+    pub fn make_layers(&self, path: PathBuf) {
+        self.order(|orders| orders.layers.push(path));
+    }
+
     /// Reads all files again.
     pub fn reload(&self) {
         self.order(|orders| orders.reload = true);
@@ -267,6 +303,11 @@ impl Worker {
     /// Goes on with another engine.
     pub fn use_engine(&self, choice: EngineChoice) {
         self.order(|orders| orders.engine = Some(choice));
+    }
+
+    /// Shows the picture or a map of its error or samples; what has been rendered stays.
+    pub fn show(&self, shown: Shown) {
+        self.order(|orders| orders.shown = Some(shown));
     }
 
     fn order(&self, change: impl FnOnce(&mut Orders)) {

@@ -3,6 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use crate::optics::random::{RandomState, random_pair};
 use crate::optics::real::Real;
 use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_disc;
@@ -144,6 +145,20 @@ pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
     [radius * phi_rad.cos(), radius * phi_rad.sin()]
 }
 
+/// The ray of a sample through its pixel, drawn with the path's first two pairs of numbers: (origin, unit direction).
+#[inline(always)]
+pub fn pixel_ray<T: Real>(
+    camera: &Camera<T>,
+    pixel: [u32; 2],
+    image_size: [u32; 2],
+    state: RandomState,
+) -> [Vec3<T>; 2] {
+    let offset: [T; 2] = filter_offset(camera.filter_kind, random_pair(state, 0));
+    let half = T::from_f64(0.5);
+    let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
+    camera_ray(camera, place, image_size, random_pair(state, 1))
+}
+
 /// The ray through a point of the picture, in pixels from its top left: (origin, unit direction).
 #[inline(always)]
 pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 2], xi_lens: [T; 2]) -> [Vec3<T>; 2] {
@@ -161,4 +176,14 @@ pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 
         camera.origin + shift,
         (along * camera.focus_distance - shift).normalize(),
     ]
+}
+
+/// How much room a framed model is given.
+const FRAME_MARGIN: f64 = 1.05;
+
+/// The distance at which the bounding sphere, of radius 1, just fits the picture's shorter side.
+pub fn framing_distance(fov_deg: f64, aspect: f64) -> f64 {
+    let half_height = (0.5 * fov_deg.to_radians()).tan();
+    let half = (half_height * aspect.min(1.0)).atan();
+    FRAME_MARGIN / half.sin()
 }

@@ -6,6 +6,7 @@ use glam::DVec3;
 use obvhs::cwbvh::CwBvh;
 
 use super::bvh;
+use super::convex::is_convex;
 use super::light::AreaShape;
 use super::mesh::{Mesh, any_tangent};
 use super::model::{Model, Slot};
@@ -47,6 +48,8 @@ pub struct Geometry {
     /// The hierarchy; without `primitive_indices`, as nothing needs to be looked up. No nodes where there are no
     /// triangles.
     pub bvh: CwBvh,
+    /// No ray that leaves a face on its outside meets anything: the scene is one convex body.
+    pub is_convex: bool,
     /// The middle of the model's bounding box in the world.
     pub center_world: DVec3,
     /// The model's bounding radius in the world: from that middle to the farthest vertex of a triangle; 1 where there
@@ -83,6 +86,7 @@ impl Geometry {
             triangles: Vec::new(),
             slots: Vec::new(),
             bvh: CwBvh::default(),
+            is_convex: false,
             center_world,
             world_units_per_unit,
             bounds_world,
@@ -103,6 +107,7 @@ impl Geometry {
         }
         geometry.bvh = bvh::build(geometry.triangles.iter().map(|triangle| geometry.corners_of(triangle)));
         geometry.sort_by_leaves();
+        geometry.is_convex = is_convex(&geometry.positions, &geometry.triangles);
         geometry
     }
 
@@ -132,6 +137,21 @@ impl Geometry {
     #[inline(always)]
     fn corners_of(&self, triangle: &[u32; 3]) -> [[f32; 3]; 3] {
         triangle.map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// Centre and radius, in the geometry's units, of a sphere around the triangles of a slot; `None` where there are
+    /// none.
+    pub fn sphere_around(&self, slot: u32) -> Option<([f32; 3], f64)> {
+        let of_slot = || (0..self.triangles.len()).filter(|&triangle| self.slots[triangle] == slot);
+        let places = || {
+            of_slot()
+                .flat_map(|triangle| self.corners(triangle))
+                .map(|corner| DVec3::from_array(corner.map(f64::from)))
+        };
+        let (low, high) = (places().reduce(DVec3::min)?, places().reduce(DVec3::max)?);
+        let center = low.midpoint(high);
+        let radius = places().map(|place| place.distance(center)).fold(0.0, f64::max);
+        Some((center.as_vec3().to_array(), radius.max(1e-6)))
     }
 
     /// A place in the world of one in the geometry's units.

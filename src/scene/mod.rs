@@ -3,6 +3,7 @@
 mod alias;
 mod bvh;
 pub mod camera;
+mod convex;
 pub mod environment;
 mod geometry;
 mod gltf;

@@ -82,6 +82,12 @@ fn the_report_has_its_keys_and_their_types() {
         "width",
         "height",
         "samples_per_pixel",
+        "mean_samples_per_pixel",
+        "noise",
+        "noise_low",
+        "noise_high",
+        "converged",
+        "stopped_by",
         "setup_seconds",
         "render_seconds",
         "samples_per_second",
@@ -109,6 +115,47 @@ fn the_report_has_its_keys_and_their_types() {
     assert!(near(number("rays_per_second"), number("rays") / seconds));
     let effects = report["effects"].as_array().unwrap();
     assert!(effects.iter().all(Value::is_string) && !effects.is_empty());
+}
+
+/// `--noise` ends the render at that error, with samples where they help; without it the report still tells the error.
+#[test]
+fn noise_ends_the_render_and_is_reported() {
+    let place = Workplace::new();
+    let arguments = "--model teapot --environment studio --size 32x32 --samples 100000";
+    let report = place.report(&format!("{arguments} --noise 0.05"));
+    assert_eq!(
+        (&report["stopped_by"], &report["converged"]),
+        (&"noise".into(), &true.into())
+    );
+    let number = |report: &Value, key: &str| report[key].as_f64().unwrap();
+    let noise = number(&report, "noise");
+    assert!(noise <= 0.05 && noise > 0.03, "{report}");
+    assert!(number(&report, "noise_low") < noise && noise < number(&report, "noise_high"));
+    assert!(
+        number(&report, "mean_samples_per_pixel") < number(&report, "samples_per_pixel"),
+        "{report}"
+    );
+    let even = place.report(&format!("{arguments} --noise 0.05 --adaptive off"));
+    assert_eq!(
+        number(&even, "mean_samples_per_pixel"),
+        number(&even, "samples_per_pixel")
+    );
+    let least = place.report(&format!("{arguments} --noise 0.9 --min-samples 40"));
+    assert_eq!(number(&least, "samples_per_pixel"), 40.0);
+    let short = place.report("--model sphere --samples 3");
+    assert_eq!(
+        (&short["stopped_by"], &short["converged"]),
+        (&"samples".into(), &false.into())
+    );
+    assert!(number(&short, "noise") > 0.0);
+    assert!(place.report("--model sphere --samples 1")["noise"].is_null());
+    assert_eq!(place.report(&format!("{arguments} --time 0.3"))["stopped_by"], "time");
+    place.done("render --model sphere --engine cpu --size 8x8 --noise 0.01 --report n.json");
+    let report: Value = serde_json::from_str(&place.read("n.json")).unwrap();
+    assert_eq!(
+        report["stopped_by"], "noise",
+        "without --samples only the noise limits: {report}"
+    );
 }
 
 #[test]

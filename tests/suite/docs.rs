@@ -6,6 +6,7 @@ use std::path::Path;
 
 use clap::{Arg, ArgAction, Command, CommandFactory};
 use glossmith::cli::Arguments;
+use glossmith::document::effect::EFFECTS;
 use glossmith::document::preset::command_line_name;
 use glossmith::document::{Kind, PARAMETERS, PRESETS, Value, parameter};
 use glossmith::optics::curve::Curve;
@@ -72,6 +73,23 @@ fn horizons() -> String {
         Kind::Choice(all) => choices(all.iter().map(|choice| (choice.name, choice.help))),
         _ => panic!("the horizon is a choice"),
     }
+}
+
+fn effects() -> String {
+    let row = |effect: &glossmith::document::effect::Effect| {
+        vec![
+            format!("`{}`", effect.name),
+            effect.help.to_owned(),
+            effect
+                .constant
+                .map_or_else(String::new, |constant| format!("`{}`", constant.name)),
+            if effect.remove.is_some() { "yes" } else { "no" }.to_owned(),
+        ]
+    };
+    table(
+        &["name", "what it is", "constant", "can be taken out"],
+        EFFECTS.iter().map(row),
+    )
 }
 
 fn presets() -> String {
@@ -159,6 +177,7 @@ fn block(name: &str) -> String {
         "fresnel" => choices(Fresnel::ALL.iter().map(|fresnel| (fresnel.name(), fresnel.help()))),
         "horizons" => horizons(),
         "tone curves" => choices(ToneCurve::ALL.iter().map(|tone| (tone.name(), tone.help()))),
+        "effects" => effects(),
         "presets" => presets(),
         name => match name.strip_prefix("options of glossmith") {
             Some(command) => options(command.trim()),
@@ -215,6 +234,7 @@ fn the_guide_has_every_part() {
             "fresnel",
             "horizons",
             "tone curves",
+            "effects",
             "presets",
         ]
         .map(String::from),

@@ -443,6 +443,14 @@ fn every_edit_is_the_change_that_it_is() {
     assert_eq!(change(|d| d.ground = true), Change { geometry: true, ..none });
     assert_eq!(change(|d| d.render.samples = 1), Change { target: true, ..none });
     assert_eq!(change(|d| d.render.time_s = Some(1.0)), Change { target: true, ..none });
+    assert_eq!(change(|d| d.render.noise = Some(0.1)), Change { target: true, ..none });
+    assert_eq!(change(|d| d.render.min_samples = 64), Change { target: true, ..none });
+    assert_eq!(
+        change(|d| d.render.adaptive = Some(true)),
+        Change { target: true, ..none }
+    );
+    // What it is without a noise to reach.
+    assert_eq!(change(|d| d.render.adaptive = Some(false)), none);
     let sampling = Change { sampling: true, ..none };
     assert_eq!(change(|d| d.render.bounces = 1), sampling);
     assert_eq!(change(|d| d.render.seed = 1), sampling);

@@ -2,7 +2,7 @@
 
 use std::mem::offset_of;
 
-use glossmith::gpu::layout::{Globals, Triangle};
+use glossmith::gpu::layout::{Globals, PixelStatistics, Tile, Triangle};
 use glossmith::gpu::scatter::Scatter;
 use glossmith::optics::material::Material;
 use glossmith::scene::Vertex;
@@ -42,9 +42,13 @@ macro_rules! layout {
 fn rust_layouts() -> Vec<Layout> {
     vec![
         layout!(Globals: Globals {
-            camera, image_size, tile_origin, tile_size, first_sample, sample_count, background, background_kind,
-            environment_rotation, environment_cells_size, environment_strength, bounces, sequence, strategy, seed,
-            node_count, light_cells_size, environment_probability, density_per_luminance, reserved,
+            camera, image_size, bounces, sequence, background, background_kind, environment_rotation,
+            environment_cells_size, environment_strength, strategy, seed, node_count, light_cells_size,
+            environment_probability, density_per_luminance,
+        }),
+        layout!(Tile: Tile { origin, first_sample, sample_count }),
+        layout!(PixelStatistics: PixelStatistics {
+            luminance_squared, kept, odd_luminance, odd_luminance_squared, odd_kept, dropped, rays,
         }),
         layout!(Camera: Camera<f32> {
             origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,

@@ -85,12 +85,24 @@ fn own_presets_are_saved_found_again_used_renamed_and_deleted() {
     see(&mut harness, "the new name", |harness| has_button(harness, "Zinc"));
     assert!(!has_button(&harness, "Zebra"));
     own.name = "Zinc".to_owned();
-    assert_eq!(files(&folder.path().join("materials")), [own]);
+    assert_eq!(files(&folder.path().join("materials")), [own.clone()]);
+
+    press(&mut harness, "Rename or delete Zinc");
+    press(&mut harness, "Duplicate");
+    see(&mut harness, "the copy", |harness| has_button(harness, "Zinc copy"));
+    press(&mut harness, "Rename or delete Zinc copy");
+    press(&mut harness, "Delete");
+    see(&mut harness, "the copy to go", |harness| {
+        !has_button(harness, "Zinc copy")
+    });
 
     press(&mut harness, "Rename or delete Zinc");
     press(&mut harness, "Delete");
     see(&mut harness, "it to go", |harness| !has_button(harness, "Zinc"));
     assert_eq!(files(&folder.path().join("materials")), []);
+    press(&mut harness, "Restore zinc");
+    see(&mut harness, "it to come back", |harness| has_button(harness, "Zinc"));
+    assert_eq!(files(&folder.path().join("materials")), [own]);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! interfaces, and has the constants of its Rust twin.
 
 use glossmith::cpu::integrator;
+use glossmith::document::Document;
 use glossmith::document::job::{BackgroundKind, Settings, Strategy};
 use glossmith::document::plan::Plan;
 use glossmith::gpu::layout::Globals;
@@ -14,6 +15,7 @@ use glossmith::optics::lobe::{ALPHA_MIN, Facets, Horizon, Lobe, MIRROR_WIDTH};
 use glossmith::optics::material::{MATCHED_NODES, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::{self, ToneCurve};
+use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::camera::{Camera, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA, PixelFilter};
 use glossmith::scene::{light, surface, texture};
 use naga::back::{hlsl, msl, spv};
@@ -359,39 +361,24 @@ fn overrides_are_those_of_the_plan() {
         .map(|(_, o)| (o.name.clone().unwrap_or_default(), numbers(&module, o.init.unwrap())[0]))
         .collect();
     // The defaults are those of the general plan, so that a pipeline without constants leaves nothing out.
-    let mut rust: Vec<_> = Plan::GENERAL
-        .constants()
+    let constants = Plan::general().constants();
+    let mut rust: Vec<_> = constants
+        .into_iter()
         .map(|(name, value)| (name.to_owned(), value))
-        .into();
+        .collect();
     wgsl.sort_by(|a, b| a.0.cmp(&b.0));
     rust.sort_by(|a, b| a.0.cmp(&b.0));
     assert_eq!(wgsl, rust);
 }
 
-/// A plan that fixes all that a plan can fix.
-const NARROW_PLAN: Plan = Plan {
-    lobe: Some(Lobe::Geometric as u32),
-    curve: Some(Curve::Smooth as u32),
-    horizon: Some(Horizon::Mirror as u32),
-    fresnel: Some(Fresnel::Conductor as u32),
-    anisotropy: false,
-    base: false,
-    specular: true,
-    emission: false,
-    transmission: false,
-    absorption: false,
-    light_sampling: true,
-    emitter_sampling: false,
-    edge_tint: false,
-    coat: false,
-    color_textures: false,
-    roughness_textures: false,
-    emission_textures: false,
-    normal_maps: false,
-    rough_tables: false,
-    alpha: false,
-    lens: false,
-};
+/// The plan of the default document: it fixes all that a plan can fix.
+fn narrow_plan() -> Plan {
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(&Document::default()).unwrap();
+    let plan = session.job().unwrap().plan.clone();
+    assert!(plan.left_out() >= 8, "{plan:?}");
+    plan
+}
 
 #[test]
 fn passes_translate_for_every_graphics_interface() {
@@ -399,10 +386,11 @@ fn passes_translate_for_every_graphics_interface() {
     for name in module_names() {
         let (module, info) = validate(&link(&name).unwrap()).unwrap();
         for entry in &module.entry_points {
-            for plan in [Plan::GENERAL, NARROW_PLAN] {
+            for plan in [Plan::general(), narrow_plan()] {
                 let point = (entry.stage, entry.name.as_str());
-                let constants = plan.constants().map(|(name, value)| (name.to_owned(), value));
-                let constants = constants.into_iter().filter(|(name, _)| {
+                let constants = plan.constants().into_iter();
+                let constants = constants.map(|(name, value)| (name.to_owned(), value));
+                let constants = constants.filter(|(name, _)| {
                     module
                         .overrides
                         .iter()

@@ -75,7 +75,7 @@ pub(super) fn settle(harness: &mut Harness<'static, App>) {
     harness.check_accessibility();
 }
 
-fn picture(harness: &Harness<'static, App>) -> Vec<[f32; 4]> {
+pub(super) fn picture(harness: &Harness<'static, App>) -> Vec<[f32; 4]> {
     let snapshot = harness.state().snapshot();
     snapshot
         .picture
@@ -86,7 +86,7 @@ fn picture(harness: &Harness<'static, App>) -> Vec<[f32; 4]> {
         .clone()
 }
 
-fn undo(harness: &mut Harness<'static, App>) {
+pub(super) fn undo(harness: &mut Harness<'static, App>) {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(harness);
 }

@@ -26,13 +26,17 @@ const SCALE: [[f64; 3]; 9] = [
 /// Steps of colour: neighbours of the same step are drawn at once.
 const STEPS: f64 = 96.0;
 
-/// The colour at a place in [0, 1] of the scale.
-fn color(place: f64) -> RGBColor {
+/// The colour at a place in [0, 1] of the scale that maps are drawn with: sRGB.
+pub fn scale_color(place: f64) -> [u8; 3] {
     let position = place.clamp(0.0, 1.0) * (SCALE.len() - 1) as f64;
     let low = (position as usize).min(SCALE.len() - 2);
     let share = position - low as f64;
-    let channel = |i: usize| (SCALE[low][i] * (1.0 - share) + SCALE[low + 1][i] * share).round() as u8;
-    RGBColor(channel(0), channel(1), channel(2))
+    [0, 1, 2].map(|i| (SCALE[low][i] * (1.0 - share) + SCALE[low + 1][i] * share).round() as u8)
+}
+
+fn color(place: f64) -> RGBColor {
+    let [red, green, blue] = scale_color(place);
+    RGBColor(red, green, blue)
 }
 
 impl Figure for MapPlot {

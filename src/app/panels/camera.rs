@@ -4,15 +4,21 @@ use egui::Ui;
 
 use super::{Desk, Resolution};
 use crate::app::actions::{Action, Command};
+use crate::app::icons::{self, Icon};
 use crate::app::widgets::{self, Name, NumberStyle};
-use crate::document::{PixelFilter, Strategy, range};
+use crate::document::{Bookmark, PixelFilter, Strategy, range};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 
+/// The noise limit when it is switched on.
+const NOISE_AT_FIRST: f64 = 0.01;
+
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     widgets::group(ui, "Camera", |ui| camera(ui, desk));
+    widgets::group(ui, "Bookmarks", |ui| bookmarks(ui, desk));
     widgets::group(ui, "View", |ui| view(ui, desk));
     widgets::group(ui, "Picture", |ui| picture(ui, desk));
+    widgets::group(ui, "Accuracy", |ui| accuracy(ui, desk));
     widgets::group(ui, "Sampling", |ui| sampling(ui, desk));
 }
 
@@ -57,6 +63,7 @@ fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
         widgets::number(ui, &mut camera.pitch_deg, &angle(range::PITCH_DEG, [-90.0, 90.0]))
     });
     desk.edited(response, "Camera pitch", |document| &mut document.camera.pitch_deg);
+    depth_of_field(ui, desk);
     ui.horizontal_wrapped(|ui| {
         if ui.button("Frame all").on_hover_text(Command::FrameAll.help()).clicked() {
             desk.act(Command::FrameAll);
@@ -66,7 +73,111 @@ fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
                 desk.actions.push(Action::LookFrom(yaw_deg, pitch_deg));
             }
         }
+        let help = Command::FrameSelected.help();
+        if ui.button("Frame selected").on_hover_text(help).clicked() {
+            desk.act(Command::FrameSelected);
+        }
     });
+}
+
+fn depth_of_field(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let style = NumberStyle {
+        range: range::APERTURE,
+        bar: Some([0.0, 0.2]),
+        unit: "",
+        speed: 0.001,
+        decimals: 4,
+    };
+    let name = Name::new(
+        "Aperture",
+        "Aperture",
+        "Radius of the lens in bounding radii of the model. At 0 everything is sharp; the larger, the less.",
+    );
+    let aperture = &mut desk.document.camera.aperture;
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, aperture, &style));
+    desk.edited(response, "Aperture", |document| &mut document.camera.aperture);
+    if desk.document.camera.aperture == 0.0 {
+        desk.state.picks_focus = false;
+        return;
+    }
+    let at_target = desk.scene().map_or(1.0, |scene| {
+        scene.job.settings.camera.focus_distance * scene.job.geometry.world_units_per_unit
+    });
+    let style = NumberStyle {
+        range: range::DISTANCE,
+        bar: None,
+        unit: "",
+        speed: 0.005 * at_target,
+        decimals: 4,
+    };
+    let mut distance = desk.document.camera.focus_distance.unwrap_or(at_target);
+    let name = Name::new(
+        "Focus distance",
+        "Focus",
+        "How far away things are sharp, in the model's units; at first at the camera's target. In the viewport: \
+         click with ctrl.",
+    );
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut distance, &style));
+    if response.changed {
+        desk.document.camera.focus_distance = Some(distance);
+    }
+    desk.edited(response, "Focus distance", |document| {
+        &mut document.camera.focus_distance
+    });
+    let toggle = ui.toggle_value(&mut desk.state.picks_focus, "Pick focus");
+    toggle.on_hover_text("The next click in the viewport says what is sharp.");
+}
+
+fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let mut bookmarks = desk.document.bookmarks.clone();
+    let mut removed = None;
+    for (index, bookmark) in bookmarks.iter_mut().enumerate() {
+        ui.horizontal(|ui| {
+            let is_here = bookmark.camera == desk.document.camera;
+            let name = format!("Camera bookmark {}", index + 1);
+            if ui
+                .selectable_label(is_here, "Go")
+                .on_hover_text("Looks from there.")
+                .clicked()
+            {
+                desk.document.camera = bookmark.camera;
+                desk.edits.note("Go to bookmark", "");
+            }
+            let width = (ui.available_width() - 72.0).max(40.0);
+            let field = egui::TextEdit::singleline(&mut bookmark.name).desired_width(width);
+            if ui.add(field).accessible_name(name.as_str()).changed() {
+                desk.edits.note("Rename bookmark", name.clone());
+            }
+            if ui
+                .button("Set")
+                .on_hover_text("Replaces it by the present camera.")
+                .clicked()
+            {
+                bookmark.camera = desk.document.camera;
+                desk.edits.note("Set bookmark", "");
+            }
+            let remove = format!("Remove {}", name.to_lowercase());
+            if icons::button(ui, Icon::Close, &remove, "Remove this bookmark").clicked() {
+                removed = Some(index);
+            }
+        });
+    }
+    if let Some(index) = removed {
+        bookmarks.remove(index);
+        desk.edits.note("Remove bookmark", "");
+    }
+    if ui
+        .button("Add bookmark")
+        .on_hover_text("Remembers the camera with the project.")
+        .clicked()
+    {
+        bookmarks.push(Bookmark {
+            name: format!("View {}", bookmarks.len() + 1),
+            camera: desk.document.camera,
+        });
+        desk.edits.note("Add bookmark", "");
+    }
+    desk.document.bookmarks = bookmarks;
 }
 
 fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -180,6 +291,61 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
             desk.edits.note("Time limit", "Time limit");
         }
     }
+}
+
+fn accuracy(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let mut is_limited = desk.document.render.noise.is_some();
+    let help = "Stops rendering when the picture's estimated relative error is small enough.";
+    let name = Name::new("Noise limit", "Noise limit", help);
+    let response = widgets::row(ui, name, |ui| ui.checkbox(&mut is_limited, ""));
+    if response.changed {
+        desk.document.render.noise = is_limited.then_some(NOISE_AT_FIRST);
+    }
+    desk.edited(response, "Noise limit", |document| &mut document.render.noise);
+    if let Some(noise) = &mut desk.document.render.noise {
+        let mut noise_percent = 100.0 * *noise;
+        let style = NumberStyle {
+            range: 100.0 * range::NOISE.start()..=100.0 * range::NOISE.end(),
+            bar: None,
+            unit: " %",
+            speed: 0.01,
+            decimals: 3,
+        };
+        let help = "Standard error of a pixel, root mean square over the picture, relative to its mean luminance.";
+        let name = Name::new("Noise to reach", "Error", help);
+        let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut noise_percent, &style));
+        if response.changed {
+            *noise = 0.01 * noise_percent;
+            desk.edits.note("Noise limit", "Noise limit");
+        }
+    }
+    let min_samples = &mut desk.document.render.min_samples;
+    let help = "Samples that every pixel has before its error is believed: with fewer a small light may be missed.";
+    let name = Name::new("Minimum samples", "At least", help);
+    let style = whole(range::MIN_SAMPLES, " samples");
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, min_samples, &style));
+    desk.edited(response, "Minimum samples", |document| &mut document.render.min_samples);
+    let adaptive = &mut desk.document.render.adaptive;
+    let choices = [
+        (
+            None,
+            "With a noise limit",
+            "Adaptive where a noise is to be reached, else even.",
+        ),
+        (
+            Some(true),
+            "On",
+            "Samples go where the error is; the number of samples is the most of a pixel.",
+        ),
+        (Some(false), "Off", "Every pixel has the same number of samples."),
+    ];
+    let name = Name::new(
+        "Adaptive sampling",
+        "Adaptive",
+        "Parts of the picture that are exact rest.",
+    );
+    let response = widgets::row(ui, name, |ui| widgets::choice(ui, "adaptive", adaptive, &choices));
+    desk.edited(response, "Adaptive sampling", |document| &mut document.render.adaptive);
 }
 
 fn sampling(ui: &mut Ui, desk: &mut Desk<'_>) {

@@ -3,7 +3,9 @@
 mod area_lights;
 pub(super) mod camera;
 pub(super) mod check;
+pub(super) mod convergence;
 pub(super) mod curve;
+pub(super) mod effects;
 pub(super) mod lighting;
 pub(super) mod lobe;
 mod lobe_match;
@@ -12,12 +14,16 @@ pub(super) mod log;
 pub(super) mod material;
 pub(super) mod presets;
 pub(super) mod samples;
+pub(super) mod snapshots;
 
 use super::actions::{Action, Command};
+use super::compare::Compare;
 use super::edits::Edits;
 use super::library::Library;
+use super::snapshots::Snapshots;
 use super::widgets::RowResponse;
 use crate::document::{Document, ImportLobe, MaterialSettings};
+use crate::render::display::Shown;
 use crate::render::worker::{Scene, Snapshot};
 
 /// What panels work on.
@@ -42,6 +48,8 @@ pub(super) struct PanelState {
     pub(super) import_lobe: ImportLobe,
     /// How large the picture is.
     pub(super) resolution: Resolution,
+    /// What of the render the viewport shows.
+    pub(super) shown: Shown,
     /// The curve editor's.
     pub(super) curve: curve::CurveState,
     /// The sample plots'.
@@ -50,12 +58,18 @@ pub(super) struct PanelState {
     pub(super) lobe: lobe::LobeState,
     /// The checks'.
     pub(super) check: check::CheckState,
+    /// The next click in the viewport says what is sharp.
+    pub(super) picks_focus: bool,
     /// Rendering was stopped by hand.
     pub(super) is_paused: bool,
     /// What is searched for among the presets.
     pub(super) preset_search: String,
     /// The materials to choose from.
     pub(super) library: Library,
+    /// The pinned states.
+    pub(super) snapshots: Snapshots,
+    /// The comparison of the document with something else.
+    pub(super) compare: Compare,
 }
 
 /// How large the picture is.

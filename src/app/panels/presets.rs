@@ -50,6 +50,12 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         widgets::note(ui, "No preset of that name.");
     }
     ui.add_space(theme::GAP);
+    let removed = desk.state.library.removed.as_ref();
+    if let Some(name) = removed.and_then(|removed| removed.path().file_stem())
+        && ui.button(format!("Restore {}", name.to_string_lossy())).clicked()
+    {
+        desk.actions.push(Action::ChangeLibrary(Change::Restore));
+    }
     let save = ui.button(Command::SaveToMyPresets.label());
     if save.on_hover_text(Command::SaveToMyPresets.help()).clicked() {
         desk.act(Command::SaveToMyPresets);
@@ -78,10 +84,12 @@ fn own_entry(ui: &mut Ui, shown: &Shown, library: &mut Library, current: &Materi
             is_renaming = true;
         }
         if ui
-            .button("Delete")
-            .on_hover_text("Removes the file for good.")
+            .add_enabled(shown.entry.material.is_ok(), egui::Button::new("Duplicate"))
             .clicked()
         {
+            actions.push(Action::ChangeLibrary(Change::Duplicate(path.clone())));
+        }
+        if ui.button("Delete").clicked() {
             actions.push(Action::ChangeLibrary(Change::Remove(path.clone())));
         }
     };

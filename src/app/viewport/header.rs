@@ -7,6 +7,7 @@ use crate::app::icons::{self, Icon};
 use crate::app::panels::{Desk, camera, lighting};
 use crate::app::widgets;
 use crate::optics::tone::ToneCurve;
+use crate::render::display::Shown;
 use crate::scene::ModelSource;
 
 /// The models that come with the program.
@@ -38,7 +39,7 @@ pub(super) fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
     let mut ui = ui.new_child(builder);
     ui.set_clip_rect(bar.intersect(ui.clip_rect()));
     // Narrow viewports keep what is looked at and give up the rest.
-    let is_wide = bar.width() > 560.0;
+    let is_wide = bar.width() > 650.0;
     models(&mut ui, desk);
     environments(&mut ui, desk);
     if is_wide {
@@ -101,6 +102,21 @@ fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
     if icons::button(ui, icon, Command::Pause.label(), help).clicked() {
         desk.act(Command::Pause);
     }
+    sized(ui, 84.0, |ui| {
+        let response = widgets::choice(ui, "header shown", &mut desk.state.shown, &Shown::ALL);
+        if response.changed() {
+            desk.actions.push(Action::Show(desk.state.shown));
+        }
+        response
+            .accessible_name("Viewport shows")
+            .on_hover_text("Picture, error or samples");
+    });
+    let compares = ui.selectable_label(desk.state.compare.is_on, "A | B");
+    let compares = compares.on_hover_text("Compare with another material or lobe (C)");
+    if compares.clicked() {
+        desk.act(Command::Compare);
+    }
+    compares.accessible_name("Compare");
     sized(ui, 104.0, |ui| {
         let response = widgets::choice(ui, "header size", &mut desk.state.resolution, &camera::RESOLUTIONS);
         response
@@ -132,7 +148,7 @@ fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
     });
 }
 
-fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
+pub(super) fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
     let layout = Layout::left_to_right(Align::Center);
     ui.allocate_ui_with_layout(vec2(width, crate::app::theme::ROW_HEIGHT), layout, add);
 }

@@ -10,7 +10,8 @@ use super::stage::Stage;
 use super::{Activity, Event, Level, Orders, Picture, STEP, Scene, Shared, Snapshot, Submission, lock};
 use crate::analysis::film::Image;
 use crate::document::{Change, Document, ViewSettings};
-use crate::render::display::display;
+use crate::render::assets::Assets;
+use crate::render::display::{Shown, display, map};
 use crate::render::engine::EngineChoice;
 use crate::render::session::{Session, SessionError};
 use crate::scene::ModelSource;
@@ -28,10 +29,12 @@ const SPEED_WEIGHT: f64 = 0.1;
 const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
 /// The thread's body.
-pub(super) fn run(shared: &Shared, choice: EngineChoice, repaint: &dyn Fn()) {
+pub(super) fn run(shared: &Shared, choice: EngineChoice, assets: Assets, repaint: &dyn Fn()) {
     let mut state = State {
         shared,
         repaint,
+        assets,
+        wanted_layers: Vec::new(),
         session: None,
         snapshot: Snapshot::default(),
         stage: None,
@@ -42,6 +45,7 @@ pub(super) fn run(shared: &Shared, choice: EngineChoice, repaint: &dyn Fn()) {
         publish_cost: Duration::ZERO,
         told_at: Instant::now(),
         serial: 0,
+        shown: Shown::default(),
     };
     state.open(choice);
     while state.turn().is_some() {}
@@ -50,6 +54,9 @@ pub(super) fn run(shared: &Shared, choice: EngineChoice, repaint: &dyn Fn()) {
 struct State<'a> {
     shared: &'a Shared,
     repaint: &'a dyn Fn(),
+    assets: Assets,
+    /// Files whose layers are to be made.
+    wanted_layers: Vec<PathBuf>,
     session: Option<Session>,
     snapshot: Snapshot,
     stage: Option<Stage>,
@@ -62,6 +69,8 @@ struct State<'a> {
     publish_cost: Duration,
     told_at: Instant,
     serial: u64,
+    /// What of a render is shown.
+    shown: Shown,
 }
 
 impl State<'_> {
@@ -87,11 +96,18 @@ impl State<'_> {
             });
             self.restart();
         }
+        if let Some(shown) = orders.shown {
+            self.shown = shown;
+            if self.stage.as_ref().is_some_and(|stage| stage.is_shown) {
+                self.guarded(Self::publish_picture);
+            }
+        }
         orders.models.into_iter().for_each(|source| self.load_model(source));
         orders
             .environments
             .into_iter()
             .for_each(|source| self.load_environment(source));
+        self.wanted_layers.extend(orders.layers);
         if let Some(submission) = orders.submission {
             self.take(submission);
         } else if self.stage.as_ref().is_some_and(Stage::is_settled) {
@@ -102,6 +118,7 @@ impl State<'_> {
         } else {
             self.rest(is_paused);
         }
+        self.make_layers();
         Some(())
     }
 
@@ -163,10 +180,27 @@ impl State<'_> {
         }
     }
 
+    /// Makes the layers that were asked for, once the picture is there at its full resolution.
+    fn make_layers(&mut self) {
+        let is_full = self.stage.as_ref().is_some_and(|stage| stage.reduction == 1);
+        let has_samples = |session: &Session| session.progress().samples_per_pixel > 0;
+        if self.wanted_layers.is_empty() || !is_full || !self.session.as_ref().is_some_and(has_samples) {
+            return;
+        }
+        for path in std::mem::take(&mut self.wanted_layers) {
+            self.guarded(|state| {
+                let layers = state.session()?.layers()?;
+                lock(&state.shared.events).push(Event::LayersMade(path, Box::new(layers)));
+                (state.repaint)();
+                Ok(())
+            });
+        }
+    }
+
     fn session(&mut self) -> Result<&mut Session, SessionError> {
         let session = match self.session.take() {
             Some(session) => session,
-            None => Session::open(EngineChoice::Cpu)?,
+            None => Session::open_with(EngineChoice::Cpu, self.assets.clone())?,
         };
         Ok(self.session.insert(session))
     }
@@ -177,7 +211,8 @@ impl State<'_> {
         self.snapshot.engine = None;
         self.samples_per_second = 0.0;
         self.tell(Activity::Starting);
-        let opened = catch_unwind(|| Session::open(choice)).map_err(|panic| panic_text(&*panic));
+        let opened = catch_unwind(AssertUnwindSafe(|| Session::open_fluid(choice, self.assets.clone())))
+            .map_err(|panic| panic_text(&*panic));
         let why = match opened {
             Ok(Ok(session)) => {
                 self.session = Some(session);
@@ -221,7 +256,7 @@ impl State<'_> {
             return false;
         }
         self.say(Level::Warning, "going on with the processor".to_owned());
-        let opened = Session::open(EngineChoice::Cpu).and_then(|mut session| {
+        let opened = Session::open_with(EngineChoice::Cpu, self.assets.clone()).and_then(|mut session| {
             if let Some(stage) = &self.stage {
                 session.submit(&stage.document())?;
             }
@@ -314,7 +349,7 @@ impl State<'_> {
             .clone()
             .filter(|_| stage.is_shown && change.display)
         {
-            self.publish(last.image.clone(), last.samples_per_pixel);
+            self.publish(last.image.clone(), last.samples_per_pixel)?;
         }
         Ok(())
     }
@@ -391,12 +426,14 @@ impl State<'_> {
     fn step(&mut self) -> Result<(), SessionError> {
         let progress = self.session()?.step(STEP)?;
         let Some(stage) = &self.stage else { return Ok(()) };
-        let document = stage.document();
-        let pixels = u64::from(document.render.width) * u64::from(document.render.height);
         self.snapshot.progress = progress;
+        let history = self.session.as_ref().map(Session::history).unwrap_or_default();
+        if self.snapshot.history.as_slice() != history {
+            self.snapshot.history = Arc::new(history.to_vec());
+        }
         self.snapshot.reduction = stage.reduction;
         if progress.samples_per_pixel > 0 {
-            self.snapshot.samples_per_second = progress.samples_per_second(pixels);
+            self.snapshot.samples_per_second = progress.samples_per_second;
             // Averaged, so that resolutions do not flicker while something is dragged.
             let weight = if self.samples_per_second > 0.0 {
                 SPEED_WEIGHT
@@ -424,17 +461,25 @@ impl State<'_> {
         let begun = Instant::now();
         let image = Arc::new(self.session()?.image()?);
         let progress = self.session()?.progress();
-        self.publish(image, progress.samples_per_pixel);
+        self.publish(image, progress.samples_per_pixel)?;
         self.published_samples = progress.samples_per_pixel;
         self.published_at = Instant::now();
         self.publish_cost = begun.elapsed();
         Ok(())
     }
 
-    fn publish(&mut self, image: Arc<Image>, samples_per_pixel: u32) {
-        let Some(stage) = &mut self.stage else { return };
+    fn publish(&mut self, image: Arc<Image>, samples_per_pixel: u32) -> Result<(), SessionError> {
+        let wanted = self.shown;
+        let map = match wanted {
+            Shown::Picture => None,
+            _ => map(self.session()?.film()?, wanted),
+        };
+        let Some(stage) = &mut self.stage else { return Ok(()) };
         self.serial += 1;
-        let rgba = shown(&image, &stage.submission.document.view);
+        let (rgba, scale) = match map {
+            Some((rgba, scale)) => (rgba, Some(scale)),
+            None => (shown(&image, &stage.submission.document.view), None),
+        };
         stage.is_shown = true;
         if self.snapshot.first_picture.is_none() {
             self.snapshot.first_picture = Some(stage.submission.at.elapsed());
@@ -448,8 +493,11 @@ impl State<'_> {
             revision: stage.submission.revision,
             reduction: stage.reduction,
             samples_per_pixel,
+            map: scale.map(|scale| (wanted, scale)),
+            document: Arc::new(stage.submission.document.clone()),
         }));
         self.tell(Activity::Rendering);
+        Ok(())
     }
 
     /// Publishes the snapshot.

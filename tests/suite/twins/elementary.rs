@@ -3,8 +3,8 @@
 use glossmith::optics::frame::{Frame, frame_from_normal, frame_from_tangent, local_from_world, world_from_local};
 use glossmith::optics::numeric::{expm1, log1p, normalize_or};
 use glossmith::optics::random::{
-    RandomState, Sequence, hash_bits, random_bits, random_pair, random_pair_bits, random_state, scramble_from_low,
-    sobol_second_reversed, unit_from_bits,
+    RandomState, Sequence, hash_bits, path_state, random_bits, random_pair, random_pair_bits, random_state,
+    scramble_from_low, sobol_second_reversed, unit_from_bits,
 };
 use glossmith::optics::real::Real;
 use glossmith::optics::warp::{uniform_disc, uniform_sphere};
@@ -198,6 +198,24 @@ fn random_numbers_are_equal_to_the_bit() {
                 twin!(|row| {
                     let [x, y, seed, sample] = [(); 4].map(|()| row.bits());
                     let state = random_state(x, y, seed, sample, Sequence::Independent);
+                    row.put_bits(state.key);
+                    row.put_bits(state.sample);
+                    row.put_bits(state.sequence as u32);
+                }),
+            )
+            .output("s.key", Output::Exact)
+            .output("s.sample", Output::Exact)
+            .output("s.sequence", Output::Exact)
+            .group("", |rng, _| {
+                inputs![rng.bits() >> 16, rng.bits() >> 16, counter(rng), counter(rng)]
+            }),
+            Case::new(
+                "path_state",
+                "x y seed sample",
+                "let s = path_state(x, y, seed, sample, 0u);",
+                twin!(|row| {
+                    let [x, y, seed, sample] = [(); 4].map(|()| row.bits());
+                    let state = path_state(x, y, seed, sample, Sequence::Sobol);
                     row.put_bits(state.key);
                     row.put_bits(state.sample);
                     row.put_bits(state.sequence as u32);

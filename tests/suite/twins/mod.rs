@@ -11,7 +11,7 @@ mod bench;
 mod curves;
 mod elementary;
 mod environment;
-mod harness;
+pub mod harness;
 mod light;
 mod lobes;
 mod material;

@@ -1,0 +1,101 @@
+//! How soon a drag shows: from a changed roughness, or a changed plan, to the first picture of it; quoted in
+//! docs/PERFORMANCE.md.
+//!
+//! `cargo bench --bench latency`. The viewport of a window of 1440 × 900, the default scene. Reduced resolutions count,
+//! as they do in the window.
+
+use std::time::{Duration, Instant};
+
+use glossmith::document::Document;
+use glossmith::render::EngineChoice;
+use glossmith::render::worker::{Activity, Pace, Worker};
+
+/// Steps of a drag.
+const STEPS: u32 = 60;
+/// How long a person's hand needs for one, at least.
+const INTERVAL: Duration = Duration::from_millis(16);
+
+fn main() -> std::io::Result<()> {
+    println!("| engine | edit | median ms | 95 % ms | longest ms |");
+    println!("| --- | --- | --- | --- | --- |");
+    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let worker = Worker::spawn(engine, || {})?;
+        let mut document = Document::default();
+        (document.render.width, document.render.height) = (806, 780);
+        document.render.samples = 1 << 20;
+        first_picture(&worker, &document);
+        await_kernel(&worker);
+        let name = worker
+            .snapshot()
+            .engine
+            .as_ref()
+            .map_or_else(String::new, ToString::to_string);
+        let drag = (0..STEPS).map(|step| {
+            document.materials[0].roughness = 0.1 + 0.8 * step as f32 / STEPS as f32;
+            let milliseconds = first_picture(&worker, &document);
+            std::thread::sleep(INTERVAL);
+            milliseconds
+        });
+        report(&name, "roughness dragged", drag.collect());
+        // Each crosses zero for the first time: its kernel has not been compiled.
+        let crossings: [fn(&mut Document); 4] = [
+            |document| document.materials[0].anisotropy = 0.3,
+            |document| document.materials[0].emission_strength = 0.2,
+            |document| document.camera.aperture = 0.05,
+            |document| {
+                (
+                    document.materials[0].metalness,
+                    document.materials[0].transmission_weight,
+                ) = (0.0, 0.1)
+            },
+        ];
+        let crossed = crossings.iter().map(|cross| {
+            cross(&mut document);
+            let milliseconds = first_picture(&worker, &document);
+            let begun = Instant::now();
+            await_kernel(&worker);
+            eprintln!("  kernel after {:.1} s", begun.elapsed().as_secs_f64());
+            milliseconds
+        });
+        report(&name, "plan changed", crossed.collect());
+    }
+    Ok(())
+}
+
+/// Milliseconds from submitting a document to its first picture.
+fn first_picture(worker: &Worker, document: &Document) -> f64 {
+    let revision = worker.submit(document, Pace::Moving);
+    loop {
+        let snapshot = worker.snapshot();
+        let is_shown = snapshot
+            .picture
+            .as_ref()
+            .is_some_and(|picture| picture.revision == revision);
+        if let Some(time) = snapshot.first_picture.filter(|_| is_shown) {
+            return 1e3 * time.as_secs_f64();
+        }
+        std::thread::sleep(Duration::from_millis(1));
+    }
+}
+
+/// Until the engine itself draws.
+fn await_kernel(worker: &Worker) {
+    loop {
+        std::thread::sleep(Duration::from_millis(100));
+        let snapshot = worker.snapshot();
+        if snapshot.activity == Activity::Rendering && !snapshot.progress.is_standing_in {
+            return;
+        }
+    }
+}
+
+fn report(engine: &str, edit: &str, mut milliseconds: Vec<f64>) {
+    milliseconds.sort_by(f64::total_cmp);
+    let at = |share: f64| milliseconds[((milliseconds.len() - 1) as f64 * share).round() as usize];
+    println!(
+        "| {engine} | {edit} | {:.0} | {:.0} | {:.0} |",
+        at(0.5),
+        at(0.95),
+        at(1.0)
+    );
+}

@@ -1,0 +1,196 @@
+//! What the error that is told is worth, what adaptive sampling gains and what looking at the error costs.
+//!
+//! `cargo bench --bench noise [-- quick]`: how often the true error, against a long render, lies in the band that is told,
+//! over scenes, sequences and numbers of samples; the time to a noise of 2 % with adaptive sampling on and off, in turns,
+//! for the teapot under `studio` and every other scene of the list; the share of the time that the looks take. `quick`
+//! does the same small, to see that it works. The processor engine; `gpu` as a further argument takes the GPU.
+
+use std::time::Duration;
+
+use glossmith::analysis::film::Film;
+use glossmith::analysis::noise::noise;
+use glossmith::document::{AreaLight, Document, preset};
+use glossmith::optics::random::Sequence;
+use glossmith::render::{EngineChoice, Progress, Session};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+
+type Failure = Box<dyn std::error::Error>;
+
+/// How much is done.
+struct Extent {
+    side: u32,
+    renders: u32,
+    reference_samples: u32,
+    samples: &'static [u32],
+    noise: f64,
+    rounds: u32,
+}
+
+const FULL: Extent = Extent {
+    side: 64,
+    renders: 64,
+    reference_samples: 65_536,
+    samples: &[16, 64, 256],
+    noise: 0.02,
+    rounds: 3,
+};
+const QUICK: Extent = Extent {
+    side: 24,
+    renders: 8,
+    reference_samples: 1024,
+    samples: &[16],
+    noise: 0.05,
+    rounds: 1,
+};
+
+fn main() -> Result<(), Failure> {
+    let arguments: Vec<String> = std::env::args().collect();
+    let has = |name: &str| arguments.iter().any(|argument| argument == name);
+    let extent = if has("quick") { QUICK } else { FULL };
+    let mut session = Session::open(if has("gpu") {
+        EngineChoice::Gpu
+    } else {
+        EngineChoice::Cpu
+    })?;
+    println!("{}", session.engine());
+    let scenes = scenes()?;
+    coverage(&mut session, &scenes, &extent)?;
+    adaptive(&mut session, &scenes, &extent)
+}
+
+fn scenes() -> Result<Vec<(&'static str, Document)>, Failure> {
+    let scene = |model: ModelSource, environment: EnvironmentSource, material: &str| -> Result<Document, Failure> {
+        let mut document = Document {
+            model,
+            materials: vec![preset::find(material)?.value],
+            ..Document::default()
+        };
+        document.lighting.environment = environment;
+        Ok(document)
+    };
+    let mut lit = scene(ModelSource::Shaderball, EnvironmentSource::Studio, "gold")?;
+    lit.ground = true;
+    lit.lighting.strength = 0.1;
+    lit.lighting.area_lights = vec![AreaLight {
+        width: 0.3,
+        height: 0.3,
+        strength: 100.0,
+        ..AreaLight::default()
+    }];
+    let default = Document::default();
+    Ok(vec![
+        ("teapot, studio", default),
+        (
+            "teapot, sky, gold",
+            scene(ModelSource::Teapot, EnvironmentSource::Sky, "gold")?,
+        ),
+        (
+            "sphere, sky, glass",
+            scene(ModelSource::Sphere, EnvironmentSource::Sky, "glass")?,
+        ),
+        (
+            "plane, studio, gold",
+            scene(ModelSource::Plane, EnvironmentSource::Studio, "gold")?,
+        ),
+        ("shader ball, ground, small light", lit),
+    ])
+}
+
+fn finish(session: &mut Session, document: &Document) -> Result<(Film, Progress), Failure> {
+    session.forget();
+    session.submit(document)?;
+    while !session.step(Duration::from_millis(100))?.is_done {}
+    let progress = session.progress();
+    Ok((session.film()?.clone(), progress))
+}
+
+/// Root mean square difference of the luminances over the mean of the reference's.
+fn true_error(film: &Film, reference: &[f64]) -> f64 {
+    let squares = film
+        .luminance()
+        .iter()
+        .zip(reference)
+        .map(|(x, y)| (x - y).powi(2))
+        .sum::<f64>();
+    (squares / reference.len() as f64).sqrt() / (reference.iter().sum::<f64>() / reference.len() as f64)
+}
+
+fn coverage(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent) -> Result<(), Failure> {
+    println!("## True error inside the 95 % band, of {} renders", extent.renders);
+    println!("| scene | sequence | samples | true error | told over true | by the spread over true | inside |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    for (name, document) in scenes {
+        let mut document = document.clone();
+        (document.render.width, document.render.height) = (extent.side, extent.side);
+        document.render.samples = extent.reference_samples;
+        document.render.seed = u32::MAX;
+        let reference = finish(session, &document)?.0.luminance();
+        for sequence in Sequence::ALL {
+            document.render.sequence = *sequence;
+            for samples in extent.samples {
+                document.render.samples = *samples;
+                let (mut inside, mut squares) = (0, [0.0; 3]);
+                for seed in 0..extent.renders {
+                    document.render.seed = seed;
+                    let (film, _) = finish(session, &document)?;
+                    let error = true_error(&film, &reference);
+                    let told = noise(&film).ok_or("no error is told")?;
+                    inside += u32::from((told.low..=told.high).contains(&error));
+                    for (sum, x) in squares.iter_mut().zip([error, told.relative, told.from_spread]) {
+                        *sum += x * x / f64::from(extent.renders);
+                    }
+                }
+                let [error, told, spread] = squares.map(f64::sqrt);
+                println!(
+                    "| {name} | {} | {samples} | {:.2} % | {:.3} | {:.3} | {:.1} % |",
+                    sequence.name(),
+                    100.0 * error,
+                    told / error,
+                    spread / error,
+                    100.0 * f64::from(inside) / f64::from(extent.renders)
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+fn adaptive(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent) -> Result<(), Failure> {
+    let side = 4 * extent.side;
+    println!(
+        "## Time to {} % at {side} x {side}, medians of {}",
+        100.0 * extent.noise,
+        extent.rounds
+    );
+    println!("| scene | even | adaptive | sooner by | samples even | samples adaptive | looks' share |");
+    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    for (name, document) in scenes {
+        let mut document = document.clone();
+        (document.render.width, document.render.height) = (side, side);
+        document.render.samples = u32::MAX;
+        document.render.noise = Some(extent.noise);
+        let mut seconds = [Vec::new(), Vec::new()];
+        let mut last = [Progress::default(); 2];
+        for round in 0..extent.rounds {
+            document.render.seed = round;
+            for (index, adaptive) in [false, true].into_iter().enumerate() {
+                document.render.adaptive = Some(adaptive);
+                last[index] = finish(session, &document)?.1;
+                seconds[index].push(last[index].render_seconds);
+            }
+        }
+        let [even, adaptive] = seconds.map(|mut times| {
+            times.sort_by(f64::total_cmp);
+            times[times.len() / 2]
+        });
+        println!(
+            "| {name} | {even:.2} s | {adaptive:.2} s | {:.2} × | {:.1} | {:.1} | {:.1} % |",
+            even / adaptive,
+            last[0].mean_samples,
+            last[1].mean_samples,
+            100.0 * last[1].measure_seconds / last[1].render_seconds
+        );
+    }
+    Ok(())
+}

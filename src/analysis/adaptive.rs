@@ -1,0 +1,222 @@
+//! Where further samples help most.
+//!
+//! For a given time the squared error of a picture, Σ σ²/n over its tiles, is least where n ∝ σ/√cost (Neyman 1934):
+//! σ² the variance of one sample, cost its rays. So a tile rests while it has more than its part, not when some error of
+//! its own is reached: that would give dark smooth tiles as few samples as they need, but noisy ones too many.
+
+use super::film::Film;
+use super::noise::{TileError, half_difference_variances, tile_errors};
+use super::tiles::TileGrid;
+
+/// A tile counts with at least this part of a neighbour's variance: the edge of a small bright feature does not starve.
+const NEIGHBOUR_SHARE: f64 = 0.25;
+/// No tile gets less than this part of the samples that it would get if all were equal.
+const LEAST_SHARE: f64 = 1.0 / 32.0;
+/// A tile's samples grow at most by this factor before its error is looked at again.
+const GROWTH_MAX: f64 = 2.0;
+/// The samples of all tiles grow at least by this factor, so that the last rounds are not many.
+const GROWTH_MIN: f64 = 1.02;
+/// Bisections of a factor: more than the bits of its mantissa.
+const BISECTIONS: usize = 64;
+
+/// How far the next round goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Round {
+    /// The samples of all pixels grow at most by this factor, above 1.
+    pub growth: f64,
+    /// The relative error to reach, above 0; no more samples are asked for than it should need.
+    pub noise: Option<f64>,
+    /// The most samples that a pixel gets.
+    pub samples_max: u32,
+}
+
+/// The samples a pixel that each tile is to have next, from what it has: never less, and somewhere more unless that tile
+/// has `samples_max`.
+pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
+    let grid = TileGrid {
+        width: film.width,
+        height: film.height,
+    };
+    let errors = tile_errors(film);
+    let tiles: Vec<Tile> = (0..grid.tiles())
+        .map(|tile| Tile {
+            pixels: grid.pixels(tile) as f64,
+            samples: f64::from(samples[tile]).max(1.0),
+            variance: errors[tile].sample_variance,
+            weight: weight(&errors, grid, tile),
+        })
+        .collect();
+    let tiles = with_least_weight(tiles);
+    let ratios = || tiles.iter().map(|tile| tile.samples / tile.weight);
+    let (least, most) = (ratios().fold(f64::MAX, f64::min), ratios().fold(0.0, f64::max));
+    let bracket = [least, round.growth * most];
+    let all = |value: &dyn Fn(&Tile) -> f64| tiles.iter().map(|tile| tile.pixels * value(tile)).sum::<f64>();
+    let total = all(&|tile| tile.samples);
+    let growing = |growth: f64| bisect(bracket, |factor| all(&|tile| tile.goal(factor)) >= growth * total);
+    let mut factor = growing(round.growth);
+    if let Some(noise) = round.noise {
+        let pixels = all(&|_| 1.0);
+        let luminance = film.luminance().iter().filter(|y| y.is_finite()).sum::<f64>() / pixels;
+        // The tiles' variances, averaged as they are, need not add up to what decides about the end.
+        let seen: f64 = half_difference_variances(film).iter().filter(|v| v.is_finite()).sum();
+        let told = all(&|tile| tile.variance / tile.samples);
+        let allowed = pixels * (noise * luminance).powi(2) * if seen > 0.0 { told / seen } else { 1.0 };
+        let enough = bisect(bracket, |factor| {
+            all(&|tile| tile.variance / tile.goal(factor)) <= allowed
+        });
+        factor = factor.min(enough).max(growing(GROWTH_MIN));
+    }
+    let goal = |(tile, n): (&Tile, &u32)| {
+        let goal = tile.goal(factor).min(GROWTH_MAX * tile.samples).ceil() as u32;
+        goal.min(round.samples_max).max(*n)
+    };
+    tiles.iter().zip(samples).map(goal).collect()
+}
+
+struct Tile {
+    pixels: f64,
+    samples: f64,
+    variance: f64,
+    /// What its samples are to be in proportion to.
+    weight: f64,
+}
+
+impl Tile {
+    fn goal(&self, factor: f64) -> f64 {
+        self.samples.max(factor * self.weight)
+    }
+}
+
+fn weight(errors: &[TileError], grid: TileGrid, tile: usize) -> f64 {
+    let near = grid.around(tile).map(|near| errors[near].sample_variance);
+    let variance = near.fold(0.0, f64::max) * NEIGHBOUR_SHARE;
+    (variance.max(errors[tile].sample_variance) / errors[tile].rays.max(1.0)).sqrt()
+}
+
+fn with_least_weight(mut tiles: Vec<Tile>) -> Vec<Tile> {
+    let pixels: f64 = tiles.iter().map(|tile| tile.pixels).sum();
+    let mean = tiles.iter().map(|tile| tile.pixels * tile.weight).sum::<f64>() / pixels.max(1.0);
+    // Without any error all are alike.
+    let least = if mean > 0.0 { LEAST_SHARE * mean } else { 1.0 };
+    tiles.iter_mut().for_each(|tile| tile.weight = tile.weight.max(least));
+    tiles
+}
+
+/// The least number in a range of positive numbers from which on `is_enough` holds, its upper end where it never does.
+fn bisect([mut low, mut high]: [f64; 2], is_enough: impl Fn(f64) -> bool) -> f64 {
+    for _ in 0..BISECTIONS {
+        let middle = (low * high).sqrt();
+        if is_enough(middle) {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::random::{Sequence, random_pair, random_state};
+
+    const SIDE: u32 = 96;
+
+    /// A film of 16 samples a pixel, each at the cost of `rays`, whose standard deviation a sample is `sigma` of its tile.
+    fn film(sigma: &dyn Fn(usize) -> f64, rays: &dyn Fn(usize) -> f64) -> Film {
+        let grid = TileGrid {
+            width: SIDE,
+            height: SIDE,
+        };
+        let mut film = Film::new(SIDE, SIDE);
+        for pixel in 0..(SIDE * SIDE) as usize {
+            let tile = grid.of_pixel(pixel);
+            for sample in 0..16 {
+                let state = random_state(pixel as u32, 0, 7, sample, Sequence::Independent);
+                let [x, _]: [f64; 2] = random_pair(state, 0);
+                let y = 1.0 + sigma(tile) * 12.0_f64.sqrt() * (x - 0.5);
+                film.add(pixel, sample, [y, y, y, 1.0]);
+                film.rays[pixel] += rays(tile);
+            }
+        }
+        film
+    }
+
+    fn goals(film: &Film, round: Round) -> Vec<u32> {
+        next_goals(film, &[16; 36], round)
+    }
+
+    const ROUND: Round = Round {
+        growth: 1.25,
+        noise: None,
+        samples_max: u32::MAX,
+    };
+
+    #[test]
+    fn samples_go_where_they_help_most() {
+        // Columns of tiles: exact, noisy, noisy at four times the cost.
+        let sigma = |tile: usize| if tile % 6 < 2 { 0.0 } else { 0.4 };
+        let rays = |tile: usize| if tile % 6 < 4 { 1.0 } else { 4.0 };
+        let film = film(&sigma, &rays);
+        let found = goals(&film, ROUND);
+        let total: u32 = found.iter().sum();
+        assert!((36 * 16 * 5 / 4..36 * 16 * 4 / 3).contains(&total), "{found:?}");
+        for row in found.chunks(6) {
+            assert_eq!(row[0], 16, "no error, nor beside it: {row:?}");
+            assert!(row[2] >= 24 && row[5] <= 20, "{row:?}");
+        }
+        // Far from the aim a tile at most doubles; near it only little is asked for.
+        let far = goals(
+            &film,
+            Round {
+                growth: 1e3,
+                noise: Some(1e-4),
+                ..ROUND
+            },
+        );
+        assert!(far.iter().all(|goal| *goal <= 32), "{far:?}");
+        let told = crate::analysis::noise::noise(&film).unwrap().relative;
+        let near = goals(
+            &film,
+            Round {
+                growth: 1e3,
+                noise: Some(0.98 * told),
+                ..ROUND
+            },
+        );
+        assert!(near.iter().sum::<u32>() < 36 * 16 * 11 / 10, "{near:?}");
+        let capped = goals(
+            &film,
+            Round {
+                samples_max: 20,
+                ..ROUND
+            },
+        );
+        assert!(
+            capped.iter().all(|goal| (16..=20).contains(goal)) && capped.contains(&20),
+            "{capped:?}"
+        );
+    }
+
+    #[test]
+    fn the_surroundings_of_a_small_bright_feature_do_not_starve() {
+        let hot = 14;
+        let film = film(&|tile| if tile == hot { 2.0 } else { 0.001 }, &|_| 1.0);
+        let grid = TileGrid {
+            width: SIDE,
+            height: SIDE,
+        };
+        // Rounds on end, as if the film stayed as it is but for the number of samples.
+        let mut samples = vec![16; 36];
+        for _ in 0..30 {
+            samples = next_goals(&film, &samples, ROUND);
+        }
+        let most = samples[hot];
+        assert!(most > 1000, "{samples:?}");
+        for tile in 0..36 {
+            let is_near = grid.around(hot).any(|near| near == tile);
+            let least = if is_near { 2 } else { 400 };
+            assert!(samples[tile] >= (most / least).max(16), "tile {tile}: {samples:?}");
+        }
+    }
+}

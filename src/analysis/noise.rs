@@ -1,0 +1,298 @@
+//! How far a picture is from the one that it converges to, estimated from its own sums.
+//!
+//! The samples of a pixel come in two halves that are independent of each other, whatever the sequence
+//! ([`crate::optics::random::path_state`]). With a and b the errors of the halves' means, ((a − b)/2)² estimates the
+//! squared error ((a + b)/2)² of the pixel without bias: they differ by −ab, whose expectation is 0. Summed over the
+//! pixels this is precise, and the spread of the sum of ab gives the band. The samples' own spread, as of independent
+//! numbers, is the cross-check: it agrees for independent numbers and overstates the error of Sobol's.
+//! docs/MATHEMATICS.md, section 8, tells the whole.
+
+use rayon::prelude::*;
+
+use super::film::{Film, luminance};
+use super::tiles::TileGrid;
+
+/// Standard deviations of a normal distribution that hold 95 %.
+const BAND: f64 = 1.959_964;
+/// Share of the pixels that must have samples in both halves.
+const MEASURED_SHARE: f64 = 0.99;
+/// Pixels to each side over which the gain of the sequence is averaged for a map.
+const MAP_RADIUS: usize = 3;
+
+/// The estimated error of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Noise {
+    /// Relative error: root mean square over the pixels of the standard error of luminance, over the mean luminance.
+    pub relative: f64,
+    /// The band in which the true relative error of this very picture lies with a probability of 95 %.
+    pub low: f64,
+    /// Its upper end.
+    pub high: f64,
+    /// The relative error that the samples' own spread tells, as if all were independent: the cross-check.
+    pub from_spread: f64,
+    /// Mean luminance of the picture.
+    pub mean_luminance: f64,
+}
+
+/// Variance of the mean luminance of each pixel from the difference of its halves: unbiased, with one degree of freedom
+/// each. NaN where a half has no sample.
+pub fn half_difference_variances(film: &Film) -> Vec<f64> {
+    let of_pixel = |((sum, [_, n]), [odd, _, odd_n]): ((&[f64; 4], &[f64; 2]), &[f64; 3])| {
+        let even_n = n - odd_n;
+        if *odd_n < 1.0 || even_n < 1.0 {
+            return f64::NAN;
+        }
+        let difference = (luminance(*sum) - odd) / even_n - odd / odd_n;
+        difference * difference * even_n * odd_n / (n * n)
+    };
+    let pixels = film.color.par_iter().zip(&film.statistics).zip(&film.odd);
+    pixels.map(of_pixel).collect()
+}
+
+/// The relative error of a picture; `None` before there are samples in both halves. A picture without light has none.
+pub fn noise(film: &Film) -> Option<Noise> {
+    let variances = half_difference_variances(film);
+    let measured = variances.iter().filter(|v| !v.is_nan()).count() as f64;
+    if measured < MEASURED_SHARE * variances.len() as f64 || variances.is_empty() {
+        return None;
+    }
+    let sum_of = |values: &[f64]| values.iter().filter(|v| v.is_finite()).sum::<f64>();
+    let mean_luminance = sum_of(&film.luminance()) / variances.len() as f64;
+    let sum = sum_of(&variances);
+    let relative = |sum: f64| {
+        if sum > 0.0 {
+            (sum / measured).sqrt() / mean_luminance
+        } else {
+            0.0
+        }
+    };
+    let freedom = (sum * sum / sum_of_squared_variances(film, &variances)).max(2.0);
+    let factor = (BAND / (freedom - 1.0).sqrt()).exp();
+    let value = relative(sum);
+    Some(Noise {
+        relative: value,
+        low: value / factor,
+        high: value * factor,
+        from_spread: relative(sum_of(&film.variance_of_mean())),
+        mean_luminance,
+    })
+}
+
+/// Σ V² over the pixels. The square of a pixel's half difference would be three times too large, and far more where
+/// samples are skewed. The product of the two halves' own spreads is not, as the halves are independent; the gain of the
+/// sequence around the pixel makes variances of means of them.
+fn sum_of_squared_variances(film: &Film, variances: &[f64]) -> f64 {
+    let width = film.width as usize;
+    let gains = gains(film, variances, width);
+    let product = |pixel: usize| -> f64 {
+        let ([squares, n], [odd, odd_squares, odd_n]) = (film.statistics[pixel], film.odd[pixel]);
+        let even = luminance(film.color[pixel]) - odd;
+        let even_n = n - odd_n;
+        if even_n < 2.0 || odd_n < 2.0 {
+            // Too few for spreads: a normal distribution's fourth moment is three times its squared variance.
+            return if variances[pixel].is_nan() {
+                0.0
+            } else {
+                variances[pixel].powi(2) / 3.0
+            };
+        }
+        let spread = |sum: f64, squares: f64, n: f64| ((squares - sum * sum / n) / (n - 1.0)).max(0.0);
+        let of_halves = spread(even, squares - odd_squares, even_n) * spread(odd, odd_squares, odd_n);
+        of_halves * (gains[pixel] / n).powi(2)
+    };
+    let total: f64 = (0..variances.len()).into_par_iter().map(product).sum();
+    total.max(f64::MIN_POSITIVE)
+}
+
+/// Around each pixel the variance of means by the halves' difference over that by the samples' spread: 1 for independent
+/// numbers, below where the sequence gains; 0 where there is no spread.
+fn gains(film: &Film, variances: &[f64], width: usize) -> Vec<f64> {
+    let spread: Vec<f64> = film.variance_of_mean().into_iter().map(finite_or_nan).collect();
+    let halves = box_sums(variances, width, MAP_RADIUS);
+    let around = box_sums(&spread, width, MAP_RADIUS);
+    let gain = |(halves, around): (&[f64; 2], &[f64; 2])| {
+        if around[0] > 0.0 { halves[0] / around[0] } else { 0.0 }
+    };
+    halves.iter().zip(&around).map(gain).collect()
+}
+
+/// For each pixel sum and number of the numbers in the square around it; NaN counts as missing.
+fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64; 2]> {
+    let height = values.len() / width.max(1);
+    let entry = |value: f64| if value.is_nan() { [0.0; 2] } else { [value, 1.0] };
+    let add = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a + c, b + d];
+    let windows = |row: &[f64]| -> Vec<[f64; 2]> {
+        let window = |x: usize| &row[x.saturating_sub(radius)..(x + radius + 1).min(width)];
+        let sum = |x: usize| window(x).iter().map(|value| entry(*value)).fold([0.0; 2], add);
+        (0..width).map(sum).collect()
+    };
+    let across: Vec<_> = values.par_chunks_exact(width.max(1)).map(windows).collect();
+    let down = |y: usize| {
+        let rows = &across[y.saturating_sub(radius)..(y + radius + 1).min(height)];
+        let sum = |x: usize| rows.iter().map(|row| row[x]).fold([0.0; 2], add);
+        (0..width).map(sum).collect::<Vec<_>>()
+    };
+    (0..height).into_par_iter().flat_map_iter(down).collect()
+}
+
+/// Standard error of each pixel's luminance over the picture's mean luminance: their root mean square is about the
+/// picture's relative error. From the samples' spread, times what the sequence gains around the pixel. 0 where nothing
+/// is known.
+pub fn relative_errors(film: &Film) -> Vec<f32> {
+    let width = film.width as usize;
+    let luminances = film.luminance();
+    let mean = luminances.iter().filter(|y| y.is_finite()).sum::<f64>() / luminances.len().max(1) as f64;
+    let gains = gains(film, &half_difference_variances(film), width);
+    let error = |(variance, gain): (f64, &f64)| {
+        let error = (variance * gain).sqrt() / mean;
+        if error.is_finite() { error as f32 } else { 0.0 }
+    };
+    film.variance_of_mean().into_iter().zip(&gains).map(error).collect()
+}
+
+fn finite_or_nan(value: f64) -> f64 {
+    if value.is_finite() { value } else { f64::NAN }
+}
+
+/// What the tiles of a picture show of its error.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TileError {
+    /// Variance of a pixel's luminance for one sample, as the sequence gains: of the mean, times the samples.
+    pub sample_variance: f64,
+    /// Rays of one sample.
+    pub rays: f64,
+}
+
+/// Errors of all tiles. The spread of a tile's samples is well known; what the sequence gains is averaged over its
+/// neighbours, too.
+pub fn tile_errors(film: &Film) -> Vec<TileError> {
+    let grid = TileGrid {
+        width: film.width,
+        height: film.height,
+    };
+    // Spread and half differences, for one sample each; samples; rays; pixels.
+    let mut sums = vec![[0.0; 5]; grid.tiles()];
+    let (halves, spread) = (half_difference_variances(film), film.variance_of_mean());
+    for (pixel, [_, n]) in film.statistics.iter().enumerate() {
+        let known = halves[pixel].is_finite() && spread[pixel].is_finite();
+        let values = if known {
+            [spread[pixel] * n, halves[pixel] * n, *n, film.rays[pixel], 1.0]
+        } else {
+            [0.0; 5]
+        };
+        let sum = &mut sums[grid.of_pixel(pixel)];
+        sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
+    }
+    let of_tile = |tile: usize| {
+        let [spread, _, samples, rays, pixels] = sums[tile];
+        let around = grid.around(tile).fold([0.0; 2], |[spread, halves], near| {
+            [spread + sums[near][0], halves + sums[near][1]]
+        });
+        let gain = if around[0] > 0.0 { around[1] / around[0] } else { 0.0 };
+        TileError {
+            sample_variance: gain * spread / f64::max(pixels, 1.0),
+            rays: rays / f64::max(samples, 1.0),
+        }
+    };
+    (0..grid.tiles()).map(of_tile).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::random::{Sequence, random_pair, random_state};
+
+    const SIDE: u32 = 48;
+
+    /// A film of known noise: pixel means 1, standard deviation of a sample 0 left of the middle and `sigma` right of it;
+    /// and the true squared error of its pixels' means, summed.
+    fn film(samples: u32, seed: u32, sigma: f64) -> (Film, f64) {
+        let mut film = Film::new(SIDE, SIDE);
+        let mut squared_error = 0.0;
+        for pixel in 0..(SIDE * SIDE) as usize {
+            let is_noisy = pixel as u32 % SIDE >= SIDE / 2;
+            let mut sum = 0.0;
+            for sample in 0..samples {
+                let state = random_state(pixel as u32, 0, seed, sample, Sequence::Independent);
+                let [x, _]: [f64; 2] = random_pair(state, 0);
+                // Uniform, of standard deviation 1.
+                let x = if is_noisy {
+                    sigma * 12.0_f64.sqrt() * (x - 0.5)
+                } else {
+                    0.0
+                };
+                film.add(pixel, sample, [1.0 + x, 1.0 + x, 1.0 + x, 1.0]);
+                film.rays[pixel] += 1.0;
+                sum += x;
+            }
+            squared_error += (sum / f64::from(samples)).powi(2);
+        }
+        (film, squared_error)
+    }
+
+    #[test]
+    fn the_error_of_known_noise() {
+        let mut inside = 0;
+        for seed in 0..60 {
+            let samples = 10 + seed % 7;
+            let (film, squared_error) = film(samples, seed, 0.3);
+            let found = noise(&film).unwrap();
+            let expected = 0.3 / f64::from(2 * samples).sqrt();
+            assert!((found.relative / expected - 1.0).abs() < 0.12, "{found:?} {expected}");
+            assert!(
+                (found.from_spread / expected - 1.0).abs() < 0.05,
+                "{found:?} {expected}"
+            );
+            let error = (squared_error / f64::from(SIDE * SIDE)).sqrt();
+            inside += usize::from((found.low..=found.high).contains(&error));
+        }
+        assert!((53..=60).contains(&inside), "{inside} of 60");
+    }
+
+    #[test]
+    fn halves_that_agree_better_than_their_spread_are_believed() {
+        // Each half holds the same values: as if a sequence had removed all error but that of one number.
+        let mut film = Film::new(SIDE, SIDE);
+        for pixel in 0..(SIDE * SIDE) as usize {
+            (0..8).for_each(|sample| {
+                let y = f64::from(sample / 2);
+                film.add(pixel, sample, [y, y, y, 1.0]);
+            });
+        }
+        let found = noise(&film).unwrap();
+        assert!(found.relative < 1e-12 && found.from_spread > 0.2, "{found:?}");
+    }
+
+    #[test]
+    fn no_error_is_told_before_there_are_two_halves_and_none_is_found_where_there_is_no_light() {
+        assert_eq!(noise(&film(1, 0, 0.3).0), None);
+        assert_eq!(noise(&Film::new(0, 0)), None);
+        assert_eq!(noise(&Film::new(4, 4)), None);
+        let mut black = Film::new(4, 4);
+        (0..16).for_each(|pixel| (0..2).for_each(|sample| black.add(pixel, sample, [0.0; 4])));
+        let found = noise(&black).unwrap();
+        assert_eq!((found.relative, found.low, found.high), (0.0, 0.0, 0.0));
+        assert!(relative_errors(&black).iter().all(|error| *error == 0.0));
+    }
+
+    #[test]
+    fn maps_and_tiles_show_where_the_error_is() {
+        let (film, _) = film(64, 5, 0.3);
+        let errors = relative_errors(&film);
+        let squares: f64 = errors.iter().map(|error| f64::from(*error).powi(2)).sum();
+        let told = noise(&film).unwrap().relative;
+        let of_map = (squares / f64::from(SIDE * SIDE)).sqrt();
+        assert!((of_map / told - 1.0).abs() < 0.1, "{of_map} {told}");
+        assert!(errors.iter().step_by(SIDE as usize).all(|error| *error < 1e-6));
+        let tiles = tile_errors(&film);
+        // The tiles in the middle column are half noisy.
+        for row in tiles.chunks(3) {
+            let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.2;
+            assert!(row[0].sample_variance < 1e-9 && row[0].rays == 1.0, "{row:?}");
+            assert!(
+                near(row[1].sample_variance, 0.045) && near(row[2].sample_variance, 0.09),
+                "{row:?}"
+            );
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! The picture in tiles, and how many samples each has had and is to have: what both engines work through.
+
+/// Side of a tile, pixels.
+pub const TILE_SIDE: u32 = 16;
+
+/// A picture cut into tiles, row by row from the top; those at the right and the bottom may be smaller.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct TileGrid {
+    /// Width of the picture, pixels.
+    pub width: u32,
+    /// Height of the picture, pixels.
+    pub height: u32,
+}
+
+impl TileGrid {
+    /// Tiles across.
+    pub fn columns(self) -> usize {
+        self.width.div_ceil(TILE_SIDE) as usize
+    }
+
+    /// Tiles down.
+    pub fn rows(self) -> usize {
+        self.height.div_ceil(TILE_SIDE) as usize
+    }
+
+    /// How many there are.
+    pub fn tiles(self) -> usize {
+        self.columns() * self.rows()
+    }
+
+    /// The top left pixel of a tile.
+    pub fn origin(self, tile: usize) -> [u32; 2] {
+        [tile % self.columns(), tile / self.columns()].map(|place| place as u32 * TILE_SIDE)
+    }
+
+    /// Width and height of a tile, pixels.
+    pub fn size(self, tile: usize) -> [u32; 2] {
+        let [x, y] = self.origin(tile);
+        [(self.width - x).min(TILE_SIDE), (self.height - y).min(TILE_SIDE)]
+    }
+
+    /// Pixels of a tile.
+    pub fn pixels(self, tile: usize) -> u64 {
+        let [width, height] = self.size(tile);
+        u64::from(width) * u64::from(height)
+    }
+
+    /// The tile of a pixel, by the pixel's number row by row.
+    pub fn of_pixel(self, pixel: usize) -> usize {
+        let (width, side) = (self.width as usize, TILE_SIDE as usize);
+        pixel / width / side * self.columns() + pixel % width / side
+    }
+
+    /// The tiles around a tile, itself among them.
+    pub fn around(self, tile: usize) -> impl Iterator<Item = usize> {
+        let (columns, rows) = (self.columns(), self.rows());
+        let (x, y) = (tile % columns, tile / columns);
+        let across = x.saturating_sub(1)..(x + 2).min(columns);
+        (y.saturating_sub(1)..(y + 2).min(rows)).flat_map(move |y| across.clone().map(move |x| y * columns + x))
+    }
+}
+
+/// What an engine renders of one tile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Work {
+    /// The tile.
+    pub tile: usize,
+    /// Index of its first sample.
+    pub first_sample: u32,
+    /// Samples a pixel.
+    pub count: u32,
+}
+
+/// Which samples have been rendered and which come next. A *pass* goes once over all tiles that lack samples.
+#[derive(Clone, Debug, Default)]
+pub struct Schedule {
+    grid: TileGrid,
+    samples: Vec<u32>,
+    goals: Vec<u32>,
+    /// The tiles of the pass in progress, how many of them have been rendered, and the most samples that each gets.
+    pass: Vec<usize>,
+    next: usize,
+    pass_samples: u32,
+    completed: u32,
+}
+
+impl Schedule {
+    /// Nothing rendered, nothing to render.
+    pub fn new(width: u32, height: u32) -> Self {
+        let grid = TileGrid { width, height };
+        Self {
+            grid,
+            samples: vec![0; grid.tiles()],
+            goals: vec![0; grid.tiles()],
+            ..Self::default()
+        }
+    }
+
+    /// The picture's tiles.
+    pub fn grid(&self) -> TileGrid {
+        self.grid
+    }
+
+    /// Sets how many samples a pixel of each tile is to have; one number a tile.
+    pub fn aim(&mut self, goals: &[u32]) {
+        self.goals.clear();
+        self.goals.extend_from_slice(goals);
+        self.goals.resize(self.samples.len(), 0);
+    }
+
+    /// Begins a pass where none is in progress. `samples_of` says how many samples the tiles get in it, at least 1 and at
+    /// most what they lack, from the number of pixels in the pass. False where no tile lacks any.
+    pub fn begin(&mut self, samples_of: impl FnOnce(u64) -> u32) -> bool {
+        if self.next < self.pass.len() {
+            return true;
+        }
+        let lacks = |tile: &usize| self.samples[*tile] < self.goals[*tile];
+        self.pass = (0..self.samples.len()).filter(lacks).collect();
+        self.next = 0;
+        if !self.pass.is_empty() {
+            self.pass_samples = samples_of(self.pass_pixels()).max(1);
+        }
+        !self.pass.is_empty()
+    }
+
+    fn pass_pixels(&self) -> u64 {
+        self.pass.iter().map(|tile| self.grid.pixels(*tile)).sum()
+    }
+
+    /// The most samples that a tile gets in the pass.
+    pub fn pass_samples(&self) -> u32 {
+        self.pass_samples
+    }
+
+    /// The next tiles of the pass, at most `most`.
+    pub fn next(&self, most: usize) -> Vec<Work> {
+        let work = |tile: &usize| {
+            let first_sample = self.samples[*tile];
+            let lacking = self.goals[*tile].saturating_sub(first_sample);
+            Work {
+                tile: *tile,
+                first_sample,
+                count: lacking.min(self.pass_samples),
+            }
+        };
+        self.pass[self.next..].iter().take(most).map(work).collect()
+    }
+
+    /// Notes that the next tiles have been rendered; true at the end of the pass.
+    pub fn finish(&mut self, works: &[Work]) -> bool {
+        for work in works {
+            self.samples[work.tile] += work.count;
+        }
+        self.next += works.len();
+        let is_end = self.next >= self.pass.len();
+        if is_end {
+            self.completed = self.samples.iter().copied().max().unwrap_or(0);
+        }
+        is_end
+    }
+
+    /// Whether every tile has what it is to have.
+    pub fn is_at_goal(&self) -> bool {
+        self.next >= self.pass.len() && std::iter::zip(&self.samples, &self.goals).all(|(n, goal)| n >= goal)
+    }
+
+    /// Samples a pixel of each tile.
+    pub fn samples(&self) -> &[u32] {
+        &self.samples
+    }
+
+    /// Samples a pixel where there are most, at the end of the last pass: with equal goals every pixel has as many.
+    pub fn samples_per_pixel(&self) -> u32 {
+        self.completed
+    }
+
+    /// Samples of all pixels together.
+    pub fn pixel_samples(&self) -> u64 {
+        let of_tile = |(tile, n): (usize, &u32)| self.grid.pixels(tile) * u64::from(*n);
+        self.samples.iter().enumerate().map(of_tile).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_cover_the_picture_once() {
+        let grid = TileGrid { width: 37, height: 16 };
+        assert_eq!((grid.columns(), grid.rows()), (3, 1));
+        let mut pixels = vec![0; grid.tiles()];
+        (0..37 * 16).for_each(|pixel| pixels[grid.of_pixel(pixel)] += 1);
+        assert_eq!(pixels, [256, 256, 80]);
+        assert_eq!((0..3).map(|tile| grid.pixels(tile)).collect::<Vec<_>>(), [256, 256, 80]);
+        assert_eq!((grid.origin(2), grid.size(2)), ([32, 0], [5, 16]));
+        assert_eq!(grid.around(0).collect::<Vec<_>>(), [0, 1]);
+        let middle = TileGrid { width: 48, height: 48 }.around(4);
+        assert_eq!(middle.collect::<Vec<_>>(), (0..9).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn every_tile_gets_what_it_lacks_and_nothing_twice() {
+        let mut schedule = Schedule::new(40, 20);
+        let goals = [5, 0, 3, 5, 5, 1];
+        schedule.aim(&goals);
+        let mut had = [0_u32; 6];
+        let mut completed = 0;
+        while schedule.begin(|_| 2) {
+            // No more than two tiles at a time, so that passes are cut.
+            let works = schedule.next(2);
+            for work in &works {
+                assert_eq!(work.first_sample, had[work.tile]);
+                had[work.tile] += work.count;
+            }
+            let is_end = schedule.finish(&works);
+            completed = schedule.samples_per_pixel();
+            assert!(!is_end || completed % 2 == 0 || completed == 5, "{completed}");
+        }
+        assert_eq!((had, completed), (goals, 5));
+        assert!(schedule.is_at_goal());
+        assert_eq!(schedule.pixel_samples(), 256 * 5 + 128 * 3 + 64 * (5 + 5) + 32);
+        // A tile that was left behind catches up.
+        schedule.aim(&[5; 6]);
+        assert!(!schedule.is_at_goal() && schedule.begin(|_| 8));
+        let works = schedule.next(9);
+        let counts: Vec<_> = works
+            .iter()
+            .map(|work| (work.tile, work.first_sample, work.count))
+            .collect();
+        assert_eq!(counts, [(1, 0, 5), (2, 3, 2), (5, 1, 4)]);
+        schedule.finish(&works);
+        assert_eq!(schedule.pixel_samples(), 40 * 20 * 5);
+    }
+}

@@ -1,0 +1,177 @@
+//! Error against time: how exact the picture is, and what more would cost.
+
+use std::ops::RangeInclusive;
+
+use egui::{Color32, Ui};
+use egui_plot::{GridInput, GridMark, HLine, Line, LineStyle, Plot, PlotPoints, Points};
+
+use super::Desk;
+use crate::app::status::percent;
+use crate::app::{theme, widgets};
+use crate::render::{Measurement, Progress};
+
+/// The errors that are aimed at where the document names none.
+const STEPS: [f64; 10] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005];
+
+pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let history = &desk.snapshot.history;
+    let Some(last) = history.last() else {
+        widgets::note(ui, "The error is known once every pixel has two samples.");
+        return;
+    };
+    let progress = &desk.snapshot.progress;
+    words(ui, last, progress);
+    plot(ui, history, progress.noise_wanted);
+    widgets::note(
+        ui,
+        "Dots: the estimated relative error against the engine's own time, thin lines its 95 % band, dashed the law \
+         1/√t through the last one.",
+    );
+}
+
+fn words(ui: &mut Ui, last: &Measurement, progress: &Progress) {
+    let noise = &last.noise;
+    ui.label(format!(
+        "Error {} ({} to {}) after {} and {:.0} samples a pixel",
+        percent(noise.relative),
+        percent(noise.low),
+        percent(noise.high),
+        duration(last.engine_seconds),
+        last.samples_per_pixel,
+    ));
+    if let Some(text) = outlook(last, progress.noise_wanted) {
+        ui.strong(text);
+    }
+    if noise.relative > 0.0 {
+        let share = noise.from_spread / noise.relative;
+        ui.weak(format!(
+            "As if the samples were independent: {} ({share:.2} ×)",
+            percent(noise.from_spread)
+        ))
+        .on_hover_text("The cross-check: equal for independent numbers, more for Sobol's, which do better than that");
+    }
+}
+
+/// What the next step takes: "1 % in 12 s more".
+fn outlook(last: &Measurement, wanted: Option<f64>) -> Option<String> {
+    let error = last.noise.relative;
+    let next = || STEPS.into_iter().find(|step| *step < error);
+    let goal = wanted.or_else(next)?;
+    let name = percent_short(goal);
+    if error <= goal {
+        return Some(format!("{name} reached"));
+    }
+    let seconds = last.engine_seconds * ((error / goal).powi(2) - 1.0);
+    Some(format!("{name} in {} more", duration(seconds)))
+}
+
+fn percent_short(share: f64) -> String {
+    // Fifteen digits hide what the hundredfold adds to a decimal number.
+    format!("{} %", (share * 1e10).round() / 1e8)
+}
+
+/// A time in words, two digits.
+fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.0995 => format!("{:.0} ms", 1e3 * s),
+        s if s < 9.95 => format!("{s:.1} s"),
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
+    let visible: Vec<&Measurement> = history
+        .iter()
+        .filter(|seen| seen.noise.relative > 0.0 && seen.engine_seconds > 0.0)
+        .collect();
+    let Some(last) = visible.last() else { return };
+    let accent = theme::accent(ui.visuals().dark_mode);
+    let weak = ui.visuals().weak_text_color();
+    let points = |value: &dyn Fn(&Measurement) -> f64| -> Vec<[f64; 2]> {
+        let place = |seen: &&Measurement| [seen.engine_seconds.log10(), value(seen).log10()];
+        visible.iter().map(place).collect()
+    };
+    // Over the time seen and a decade more.
+    let law = [visible[0].engine_seconds, 10.0 * last.engine_seconds].map(|seconds| {
+        let error = last.noise.relative * (last.engine_seconds / seconds).sqrt();
+        [seconds.log10(), error.log10()]
+    });
+    let shown = Plot::new("convergence")
+        .height((0.7 * ui.available_width()).clamp(160.0, 420.0))
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .show_background(false)
+        .x_grid_spacer(decades)
+        .y_grid_spacer(decades)
+        .x_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| duration(10.0_f64.powf(mark.value)))
+        .y_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| percent_short(10.0_f64.powf(mark.value)))
+        .set_margin_fraction(egui::vec2(0.04, 0.08))
+        .show(ui, |plot_ui| {
+            let dashed = |name: &str, points: Vec<[f64; 2]>, color: Color32| {
+                Line::new(name.to_owned(), PlotPoints::from(points))
+                    .color(color)
+                    .style(LineStyle::dashed_dense())
+            };
+            plot_ui.line(dashed("1/√t", law.to_vec(), weak));
+            for (name, end) in [
+                ("upper end", points(&|seen| seen.noise.high)),
+                ("lower end", points(&|seen| seen.noise.low)),
+            ] {
+                let color = accent.gamma_multiply(0.5);
+                plot_ui.line(Line::new(name, PlotPoints::from(end)).color(color).width(1.0));
+            }
+            let errors = points(&|seen| seen.noise.relative);
+            plot_ui.points(Points::new("error", PlotPoints::from(errors)).color(accent).radius(2.5));
+            if let Some(wanted) = wanted {
+                plot_ui.hline(HLine::new("to reach", wanted.log10()).color(weak).width(1.0));
+            }
+        });
+    shown.response.accessible_name("Error against time");
+}
+
+/// A line for each power of ten, fainter ones for its 2 and 5.
+fn decades(input: GridInput) -> Vec<GridMark> {
+    let (low, high) = input.bounds;
+    let (first, last) = (low.floor() as i32, high.ceil() as i32);
+    let marks = (first..=last).flat_map(|decade| {
+        [(1.0_f64, 1.0), (2.0, 0.3), (5.0, 0.3)].map(|(digit, step_size)| GridMark {
+            value: f64::from(decade) + digit.log10(),
+            step_size,
+        })
+    });
+    marks.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::noise::Noise;
+
+    fn seen(relative: f64, engine_seconds: f64) -> Measurement {
+        Measurement {
+            engine_seconds,
+            samples_per_pixel: 64.0,
+            noise: Noise {
+                relative,
+                low: relative,
+                high: relative,
+                from_spread: relative,
+                mean_luminance: 1.0,
+            },
+        }
+    }
+
+    #[test]
+    fn what_more_accuracy_costs_is_told_in_words() {
+        let text = |relative, seconds, wanted| outlook(&seen(relative, seconds), wanted);
+        assert_eq!(text(0.02, 4.0, Some(0.01)).as_deref(), Some("1 % in 12 s more"));
+        assert_eq!(text(0.012, 10.0, None).as_deref(), Some("1 % in 4.4 s more"));
+        assert_eq!(text(0.009, 4.0, Some(0.01)).as_deref(), Some("1 % reached"));
+        assert_eq!(text(0.004, 100.0, Some(0.001)).as_deref(), Some("0.1 % in 25 min more"));
+        assert_eq!(text(1e-5, 1.0, None), None);
+    }
+}

@@ -1,0 +1,91 @@
+//! Which effects are simulated, why, and what the user decides against the plan.
+
+use egui::{Align, Color32, Layout, RichText, Sense, Ui, vec2};
+
+use super::Desk;
+use crate::app::theme;
+use crate::app::widgets;
+use crate::document::effect::{Decision, Effect, EffectSwitches, Switch};
+
+/// Radius of the mark before an effect, points.
+const MARK_RADIUS: f32 = 3.5;
+
+pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let Some(job) = desk.snapshot.scene.as_ref().map(|scene| scene.job.clone()) else {
+        widgets::note(ui, "Nothing is rendered yet.");
+        return;
+    };
+    let plan = &job.plan;
+    let count = plan.table().count();
+    ui.label(format!(
+        "{} of {count} effects are simulated; the kernel leaves out {}.",
+        plan.effects().len(),
+        plan.left_out()
+    ))
+    .on_hover_text("An effect that the scene does not call for costs nothing: the kernel is compiled without it.");
+    let switches = desk.document.render.effects;
+    if switches != EffectSwitches::default() && ui.button("All automatic").clicked() {
+        desk.document.render.effects = EffectSwitches::default();
+        desk.edits.note("All effects automatic", "");
+    }
+    ui.add_space(theme::GAP);
+    for (effect, decision) in plan.table() {
+        row(ui, desk, effect, decision);
+    }
+}
+
+fn row(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect, decision: &Decision) {
+    ui.horizontal(|ui| {
+        mark(ui, decision.is_on);
+        ui.label(effect.label).on_hover_text(effect.help);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| switch(ui, desk, effect));
+    });
+    ui.horizontal(|ui| {
+        ui.add_space(4.0 * MARK_RADIUS);
+        ui.add(egui::Label::new(RichText::new(&decision.reason).weak().small()).wrap());
+    });
+}
+
+/// Filled where the effect is simulated.
+fn mark(ui: &mut Ui, is_on: bool) {
+    let size = vec2(2.0 * MARK_RADIUS, ui.spacing().interact_size.y);
+    let (place, response) = ui.allocate_exact_size(size, Sense::hover());
+    let color = if is_on {
+        ui.visuals().selection.bg_fill
+    } else {
+        Color32::TRANSPARENT
+    };
+    let stroke = egui::Stroke::new(1.0, ui.visuals().weak_text_color());
+    ui.painter().circle(place.center(), MARK_RADIUS, color, stroke);
+    response.on_hover_text(if is_on { "Simulated" } else { "Left out" });
+}
+
+fn switch(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect) {
+    let current = desk.document.render.effects.get(effect.name);
+    let mut chosen = current;
+    let menu = egui::ComboBox::from_id_salt(effect.name)
+        .width(64.0)
+        .selected_text(current.label());
+    let shown = menu.show_ui(ui, |ui| {
+        for switch in Switch::ALL {
+            let help = match switch {
+                Switch::Auto => "Simulated where the scene calls for it.",
+                Switch::On => "Its code runs whether it is needed or not: to see what it costs.",
+                Switch::Off => "Taken out of the scene: to see what it does to the picture.",
+            };
+            let is_possible = switch != Switch::Off || effect.remove.is_some();
+            ui.add_enabled_ui(is_possible, |ui| {
+                let item = ui.selectable_value(&mut chosen, switch, switch.label());
+                item.on_hover_text(help)
+                    .on_disabled_hover_text("Nothing can be rendered without it.");
+            });
+        }
+    });
+    shown
+        .response
+        .accessible_name(format!("{}: auto, on or off", effect.label));
+    if chosen != current {
+        desk.document.render.effects.set(effect.name, chosen);
+        desk.edits.note(format!("Switch {}", effect.label.to_lowercase()), "");
+    }
+}

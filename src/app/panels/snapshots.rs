@@ -1,0 +1,100 @@
+//! Pinned states as small pictures: to bring back, to compare with, to remove.
+
+use egui::{Rect, Sense, Ui, vec2};
+
+use super::Desk;
+use crate::app::actions::{Action, Command};
+use crate::app::compare::Rival;
+use crate::app::snapshots::PinChange;
+use crate::app::{theme, widgets};
+
+/// Width and height of a picture's place, points.
+const PLACE: egui::Vec2 = vec2(112.0, 74.0);
+
+pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    ui.horizontal_wrapped(|ui| {
+        let pin = ui.button(Command::Pin.label());
+        if pin.on_hover_text(Command::Pin.help()).clicked() {
+            desk.act(Command::Pin);
+        }
+        let removed = desk.state.snapshots.removed.as_ref();
+        let name = removed.and_then(|removed| removed.path().file_stem());
+        if let Some(name) = name
+            && ui.button(format!("Restore {}", name.to_string_lossy())).clicked()
+        {
+            desk.actions.push(Action::ChangeSnapshots(PinChange::Restore));
+        }
+    });
+    ui.add_space(theme::GAP);
+    if desk.state.snapshots.pinned.is_empty() {
+        widgets::note(
+            ui,
+            "P pins material, light and camera as they are, to come back to and to compare with.",
+        );
+        return;
+    }
+    ui.horizontal_wrapped(|ui| {
+        for index in 0..desk.state.snapshots.pinned.len() {
+            entry(ui, desk, index);
+        }
+    });
+}
+
+fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
+    let pinned = &desk.state.snapshots.pinned[index];
+    let (name, path) = (pinned.name.clone(), pinned.path.clone());
+    let materials = pinned.document.materials.clone();
+    let size = pinned.size.map(|side| side as f32);
+    let is_current = pinned.document.materials == desk.document.materials
+        && pinned.document.camera == desk.document.camera
+        && pinned.document.lighting == desk.document.lighting;
+    let (rect, response) = ui.allocate_exact_size(PLACE + vec2(0.0, theme::ROW_HEIGHT), Sense::click());
+    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_current, &name));
+    let visuals = ui.style().interact_selectable(&response, is_current);
+    if is_current || response.hovered() || response.has_focus() {
+        ui.painter()
+            .rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
+    }
+    let place = Rect::from_min_size(rect.min, PLACE).shrink(4.0);
+    // The middle of the picture fills the place.
+    let scale = (place.width() / size[0]).max(place.height() / size[1]);
+    let share = place.size() / (scale * vec2(size[0], size[1]));
+    let middle = Rect::from_center_size(egui::pos2(0.5, 0.5), share);
+    let ctx = ui.ctx().clone();
+    if let Some(picture) = desk.state.snapshots.picture(&ctx, index) {
+        egui::Image::new(picture)
+            .uv(middle)
+            .corner_radius(3.0)
+            .paint_at(ui, place);
+    }
+    let font = egui::TextStyle::Small.resolve(ui.style());
+    let mut job = egui::text::LayoutJob::simple_singleline(name.clone(), font, visuals.text_color());
+    job.wrap = egui::text::TextWrapping::truncate_at_width(PLACE.x - 8.0);
+    let galley = ui.painter().layout_job(job);
+    let below = egui::pos2(rect.center().x - 0.5 * galley.size().x, place.bottom() + 5.0);
+    ui.painter().galley(below, galley, visuals.text_color());
+    let mut more = |ui: &mut Ui| {
+        if ui.button("Bring back").clicked() {
+            desk.actions.push(Action::UseSnapshot(path.clone()));
+        }
+        if ui.button("Compare as B").clicked() {
+            let rival = Rival::Materials(name.clone(), materials.clone());
+            desk.actions.push(Action::CompareWith(rival));
+        }
+        if ui.button("Delete").clicked() {
+            desk.actions
+                .push(Action::ChangeSnapshots(PinChange::Remove(path.clone())));
+        }
+    };
+    response.context_menu(&mut more);
+    let corner = Rect::from_min_size(rect.right_top() + vec2(-28.0, 6.0), vec2(22.0, 18.0));
+    let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(corner).id_salt(("more", index)));
+    inside.spacing_mut().interact_size = corner.size();
+    inside.spacing_mut().button_padding = vec2(5.0, 0.0);
+    let button = inside.menu_button("…", &mut more).response;
+    button.accessible_name(format!("More of {name}"));
+    let help = "Click to bring it back; right-click for more";
+    if response.on_hover_text(help).clicked() {
+        desk.actions.push(Action::UseSnapshot(path));
+    }
+}

@@ -1,0 +1,163 @@
+//! What the user decides about effects, against the plan.
+
+use std::collections::BTreeMap;
+use std::str::FromStr;
+
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use super::{EFFECTS, Effect};
+
+/// What the user decides about an effect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Switch {
+    /// Simulated where the scene calls for it.
+    #[default]
+    Auto,
+    /// The code for it runs whether it is needed or not.
+    On,
+    /// Taken out of the scene, even if that changes the picture.
+    Off,
+}
+
+impl Switch {
+    /// The three, in the order of the panel.
+    pub const ALL: [Switch; 3] = [Switch::Auto, Switch::On, Switch::Off];
+
+    /// Name in the panel.
+    pub fn label(self) -> &'static str {
+        match self {
+            Switch::Auto => "auto",
+            Switch::On => "on",
+            Switch::Off => "off",
+        }
+    }
+}
+
+/// A switch for each effect. In files an object with the names of those that are not automatic; names that this version
+/// does not know are passed over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct EffectSwitches {
+    /// Bit i: effect i of the registry.
+    on: u64,
+    off: u64,
+}
+
+impl EffectSwitches {
+    /// Everything on: the general pipeline.
+    pub fn all_on() -> Self {
+        Self::of(|_| Switch::On)
+    }
+
+    /// The switch that `choose` gives for each effect's name.
+    pub fn of(choose: impl Fn(&'static str) -> Switch) -> Self {
+        let mut switches = Self::default();
+        for effect in EFFECTS {
+            switches.set(effect.name, choose(effect.name));
+        }
+        switches
+    }
+
+    /// The switch of an effect; automatic where there is none of that name.
+    pub fn get(&self, name: &str) -> Switch {
+        let bit = bit(name);
+        match (self.on & bit != 0, self.off & bit != 0) {
+            (true, _) => Switch::On,
+            (false, true) => Switch::Off,
+            (false, false) => Switch::Auto,
+        }
+    }
+
+    /// Sets the switch of an effect. What nothing can be rendered without is not switched off.
+    pub fn set(&mut self, name: &str, switch: Switch) {
+        let bit = bit(name);
+        let is_removable = super::named(name).is_some_and(|effect| effect.remove.is_some());
+        self.on &= !bit;
+        self.off &= !bit;
+        match switch {
+            Switch::Auto => {}
+            Switch::On => self.on |= bit,
+            Switch::Off if is_removable => self.off |= bit,
+            Switch::Off => {}
+        }
+    }
+}
+
+/// A list that is not understood.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SwitchError {
+    /// No effect has this name.
+    #[error("no effect is called {0}; there are {names}", names = names(|_| true))]
+    Unknown(String),
+    /// It is always there.
+    #[error("nothing can be rendered without {0}; what can be taken out: {names}", names = names(|e| e.remove.is_some()))]
+    Needed(String),
+    /// Names to keep and changes to what the scene calls for.
+    #[error("give either the names of the effects to keep, or changes such as +anisotropy,-ground")]
+    Mixed,
+}
+
+fn names(chosen: fn(&Effect) -> bool) -> String {
+    let names: Vec<_> = EFFECTS.iter().filter(|e| chosen(e)).map(|e| e.name).collect();
+    names.join(", ")
+}
+
+/// `auto`; `all`, needed or not; the names of the effects to keep, with commas between, whatever else can be taken out
+/// being taken out; or changes to what the scene calls for, such as `+anisotropy,-ground`.
+impl FromStr for EffectSwitches {
+    type Err = SwitchError;
+
+    fn from_str(text: &str) -> Result<Self, SwitchError> {
+        match text {
+            "auto" => return Ok(Self::default()),
+            "all" => return Ok(Self::all_on()),
+            _ => {}
+        }
+        let items: Vec<&str> = text.split(',').map(str::trim).collect();
+        let is_change = |item: &&str| item.starts_with(['+', '-']);
+        let changes = items.iter().filter(|item| is_change(item)).count();
+        if changes != 0 && changes != items.len() {
+            return Err(SwitchError::Mixed);
+        }
+        let mut switches = if changes == 0 {
+            Self::of(|_| Switch::Off)
+        } else {
+            Self::default()
+        };
+        for item in items {
+            let name = item.trim_start_matches(['+', '-']);
+            let effect = super::named(name).ok_or_else(|| SwitchError::Unknown(name.to_owned()))?;
+            let switch = match item.chars().next() {
+                Some('+') => Switch::On,
+                Some('-') if effect.remove.is_none() => return Err(SwitchError::Needed(name.to_owned())),
+                Some('-') => Switch::Off,
+                _ => Switch::Auto,
+            };
+            switches.set(name, switch);
+        }
+        Ok(switches)
+    }
+}
+
+fn bit(name: &str) -> u64 {
+    let place = EFFECTS.iter().position(|effect| effect.name == name);
+    place.map_or(0, |place| 1 << place)
+}
+
+impl Serialize for EffectSwitches {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let switched = EFFECTS.iter().map(|effect| (effect.name, self.get(effect.name)));
+        let switched = switched.filter(|(_, switch)| *switch != Switch::Auto);
+        switched.collect::<BTreeMap<_, _>>().serialize(serializer)
+    }
+}
+
+impl<'de> Deserialize<'de> for EffectSwitches {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut switches = Self::default();
+        for (name, switch) in BTreeMap::<String, Switch>::deserialize(deserializer)? {
+            switches.set(&name, switch);
+        }
+        Ok(switches)
+    }
+}

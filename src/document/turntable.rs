@@ -1,0 +1,152 @@
+//! The frames of a turntable: one document turned once about the vertical axis.
+
+use super::Document;
+
+/// What turns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Turn {
+    /// The camera goes around; model and light stay.
+    #[default]
+    Camera,
+    /// The model turns where it stands; camera and light stay.
+    Model,
+    /// The light goes around: environment and area lights; camera and model stay.
+    Light,
+}
+
+impl Turn {
+    /// All of them, in the order of the menus.
+    pub const ALL: &'static [Self] = &[Self::Camera, Self::Model, Self::Light];
+
+    /// Name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Camera => "camera",
+            Self::Model => "model",
+            Self::Light => "light",
+        }
+    }
+
+    /// Name in the menus.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Camera => "Camera",
+            Self::Model => "Model",
+            Self::Light => "Light",
+        }
+    }
+
+    /// What it does to the pictures.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Camera => "The camera goes around; model and light stay.",
+            Self::Model => "The model turns where it stands; camera and light stay.",
+            Self::Light => "The light goes around; camera and model stay.",
+        }
+    }
+}
+
+/// The document of a frame, counted from 0 to `frames` − 1, anticlockwise seen from above; frame 0 is the document
+/// itself. `center_world` is the middle of the model, which a camera without a target looks at.
+pub fn turned(document: &Document, turn: Turn, frame: u32, frames: u32, center_world: [f64; 3]) -> Document {
+    let angle_deg = 360.0 * f64::from(frame) / f64::from(frames.max(1));
+    let mut document = document.clone();
+    match turn {
+        Turn::Camera => {
+            let pivot = document.camera.target.unwrap_or(center_world);
+            turn_camera(&mut document, angle_deg, pivot);
+        }
+        Turn::Light => turn_light(&mut document, angle_deg),
+        // All else the other way round: geometry need not be built again, and the ground looks the same all round.
+        Turn::Model => {
+            turn_camera(&mut document, -angle_deg, center_world);
+            turn_light(&mut document, -angle_deg);
+        }
+    }
+    document
+}
+
+/// Turns the camera about the vertical axis through a place.
+fn turn_camera(document: &mut Document, angle_deg: f64, pivot: [f64; 3]) {
+    let camera = &mut document.camera;
+    camera.yaw_deg = wrapped_deg(camera.yaw_deg + angle_deg);
+    if let Some(target) = &mut camera.target {
+        *target = turned_about(*target, pivot, angle_deg);
+    }
+    if let Some(position) = &mut camera.position {
+        *position = turned_about(*position, pivot, angle_deg);
+    }
+}
+
+fn turn_light(document: &mut Document, angle_deg: f64) {
+    let lighting = &mut document.lighting;
+    lighting.rotation_deg = wrapped_deg(f64::from(lighting.rotation_deg) + angle_deg) as f32;
+    for light in &mut lighting.area_lights {
+        light.yaw_deg = wrapped_deg(light.yaw_deg + angle_deg);
+    }
+}
+
+/// A place turned about the vertical axis through another, anticlockwise seen from above.
+fn turned_about(place: [f64; 3], center: [f64; 3], angle_deg: f64) -> [f64; 3] {
+    let (sine, cosine) = angle_deg.to_radians().sin_cos();
+    let (x, z) = (place[0] - center[0], place[2] - center[2]);
+    [
+        center[0] + cosine * x + sine * z,
+        place[1],
+        center[2] - sine * x + cosine * z,
+    ]
+}
+
+/// In [−180, 180).
+fn wrapped_deg(angle: f64) -> f64 {
+    (angle + 180.0).rem_euclid(360.0) - 180.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::AreaLight;
+
+    #[test]
+    fn frames_turn_by_equal_angles_from_the_document_itself() {
+        let mut document = Document::default();
+        document.camera.yaw_deg = 170.0;
+        for turn in Turn::ALL {
+            assert_eq!(turned(&document, *turn, 0, 8, [0.0; 3]), document);
+        }
+        let quarter = turned(&document, Turn::Camera, 2, 8, [0.0; 3]);
+        assert_eq!((quarter.camera.yaw_deg, quarter.lighting.rotation_deg), (-100.0, 0.0));
+    }
+
+    #[test]
+    fn places_turn_with_the_yaw() {
+        // Yaw 0 is +Z, and the yaw goes towards +X.
+        let mut document = Document::default();
+        document.camera.position = Some([1.0, 2.0, 8.0]);
+        let quarter = turned(&document, Turn::Camera, 1, 4, [1.0, 0.0, 3.0]);
+        let place = quarter.camera.position.expect("it had one");
+        let expected = [6.0, 2.0, 3.0];
+        assert!(
+            std::iter::zip(place, expected).all(|(a, b)| (a - b).abs() < 1e-12),
+            "{place:?}"
+        );
+    }
+
+    #[test]
+    fn turning_the_model_is_turning_all_else_back() {
+        let mut document = Document::default();
+        document.lighting.area_lights.push(AreaLight::default());
+        let both = turned(
+            &turned(&document, Turn::Model, 1, 6, [0.0; 3]),
+            Turn::Camera,
+            1,
+            6,
+            [0.0; 3],
+        );
+        let back = turned(&both, Turn::Light, 1, 6, [0.0; 3]);
+        assert!((back.camera.yaw_deg - document.camera.yaw_deg).abs() < 1e-9);
+        assert!((back.lighting.rotation_deg - document.lighting.rotation_deg).abs() < 1e-4);
+        let yaws = [&back, &document].map(|document| document.lighting.area_lights[0].yaw_deg);
+        assert!((yaws[0] - yaws[1]).abs() < 1e-9);
+    }
+}

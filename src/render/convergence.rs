@@ -1,0 +1,112 @@
+//! When a session looks at the error of its picture, what it saw, and what it renders next.
+
+use crate::analysis::adaptive::{Round, next_goals};
+use crate::analysis::film::Film;
+use crate::analysis::noise::{Noise, noise};
+use crate::analysis::tiles::Schedule;
+use crate::document::RenderSettings;
+
+/// Looking at the error takes at most this share of the time.
+const COST_SHARE: f64 = 0.02;
+/// By how much samples grow from one look to the next: while only watched; on the way to a noise; where tiles rest; and
+/// in any case, so that the last rounds are not many.
+const GROWTH_WATCHED: f64 = 1.1;
+const GROWTH_MIN: f64 = 1.02;
+const GROWTH_AIMED: f64 = 1.5;
+const GROWTH_ADAPTIVE: f64 = 1.25;
+
+/// The error of a picture at some point of its render.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Measurement {
+    /// The engine's own time until then, seconds.
+    pub engine_seconds: f64,
+    /// Samples a pixel until then, in the mean over the picture.
+    pub samples_per_pixel: f64,
+    /// What was seen.
+    pub noise: Noise,
+}
+
+/// Rounds of rendering, with a look at the error after each.
+#[derive(Debug, Default)]
+pub(super) struct Convergence {
+    /// Samples a pixel that each tile is to have at the end of the round.
+    pub(super) goals: Vec<u32>,
+    /// What was seen, oldest first.
+    pub(super) history: Vec<Measurement>,
+    /// Samples of all pixels when the error was last looked at.
+    measured_samples: u64,
+    /// What a look and a plan took last, seconds.
+    pub(super) measure_seconds: f64,
+    pub(super) plan_seconds: f64,
+    /// What all looks and plans took, seconds.
+    pub(super) total_seconds: f64,
+}
+
+impl Convergence {
+    /// The latest error seen.
+    pub(super) fn noise(&self) -> Option<Noise> {
+        self.history.last().map(|measurement| measurement.noise)
+    }
+
+    /// Whether something was rendered since the last look.
+    pub(super) fn is_stale(&self, schedule: &Schedule) -> bool {
+        schedule.pixel_samples() > self.measured_samples
+    }
+
+    /// Looks at the error.
+    pub(super) fn measure(&mut self, film: &Film, schedule: &Schedule, engine_seconds: f64) {
+        self.measured_samples = schedule.pixel_samples();
+        if let Some(noise) = noise(film) {
+            self.history.push(Measurement {
+                engine_seconds,
+                samples_per_pixel: mean_samples(schedule),
+                noise,
+            });
+        }
+    }
+
+    /// Sets the goals of the next round: no pixel more than `settings.samples`. `film` is read where tiles may rest.
+    pub(super) fn next_round(
+        &mut self,
+        film: Option<&Film>,
+        schedule: &Schedule,
+        settings: &RenderSettings,
+        engine_seconds: f64,
+    ) {
+        let samples = schedule.samples();
+        let most = samples.iter().copied().max().unwrap_or(0);
+        let least = settings.min_samples.min(settings.samples);
+        let is_aimed = settings.noise.is_some() || settings.is_adaptive();
+        if is_aimed && most < least {
+            self.goals = vec![least; samples.len()];
+            return;
+        }
+        // So long that the look at its end takes no more than its share.
+        let seconds = (self.measure_seconds + self.plan_seconds) / COST_SHARE;
+        let paced = 1.0 + seconds / engine_seconds.max(1e-9);
+        if let Some(film) = film.filter(|_| settings.is_adaptive() && most > 1) {
+            let round = Round {
+                growth: paced.max(GROWTH_ADAPTIVE),
+                noise: settings.noise,
+                samples_max: settings.samples,
+            };
+            self.goals = next_goals(film, samples, round);
+            return;
+        }
+        let growth = match (settings.noise, self.noise()) {
+            // As the error falls with 1/√n, and a little short of it if need be.
+            (Some(wanted), Some(noise)) => (noise.relative / wanted).powi(2).min(paced.max(GROWTH_AIMED)),
+            _ => paced.max(GROWTH_WATCHED),
+        };
+        let growth = growth.max(GROWTH_MIN);
+        let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0);
+        self.goals = vec![(goal as u32).min(settings.samples); samples.len()];
+    }
+}
+
+/// Samples a pixel, in the mean over the picture.
+pub(super) fn mean_samples(schedule: &Schedule) -> f64 {
+    let grid = schedule.grid();
+    let pixels = u64::from(grid.width) * u64::from(grid.height);
+    schedule.pixel_samples() as f64 / pixels.max(1) as f64
+}

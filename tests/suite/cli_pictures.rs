@@ -1,0 +1,244 @@
+//! What pictures carry besides their colours: the document in a .png, layers in an .exr; and turntables.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use exr::prelude::{ReadChannels as _, ReadLayers as _, read};
+use glossmith::document::file::{self, Opened};
+use glossmith::document::picture::load_picture_document;
+use serde_json::Value;
+
+use crate::cli_support::Workplace;
+
+const SIZE: usize = 33;
+
+/// The channels of an EXR file by name.
+fn channels(path: &Path) -> HashMap<String, Vec<f32>> {
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(path)
+        .unwrap();
+    let channels = image.layer_data.channel_data.list.into_iter();
+    channels
+        .map(|channel| (channel.name.to_string(), channel.sample_data.values_as_f32().collect()))
+        .collect()
+}
+
+/// A white Lambertian sphere of radius 1 seen from 5 along +Z, 33 × 33 pixels.
+fn layers(place: &Workplace, engine: &str) -> HashMap<String, Vec<f32>> {
+    place.done(&format!(
+        "render --model sphere --environment furnace --size {SIZE}x{SIZE} --samples 8 --engine {engine} --camera-orbit 0,0 \
+         --camera-distance 5 --fov 30 --filter box --set specular.weight=0 --set base.metalness=0 \
+         --set base.color=0.5,0.25,0.125 --aovs --output {engine}.exr"
+    ));
+    channels(&place.path(&format!("{engine}.exr")))
+}
+
+#[test]
+fn layers_hold_the_spheres_depth_normals_and_albedo() {
+    let place = Workplace::new();
+    let layers = layers(&place, "cpu");
+    let mut names: Vec<_> = layers.keys().map(String::as_str).collect();
+    names.sort_unstable();
+    let expected = [
+        "A",
+        "B",
+        "G",
+        "R",
+        "albedo.B",
+        "albedo.G",
+        "albedo.R",
+        "depth.Z",
+        "normal.X",
+        "normal.Y",
+        "normal.Z",
+        "samples.Y",
+        "variance.Y",
+    ];
+    assert_eq!(names, expected);
+    let at = |name: &str, x: usize, y: usize| layers[name][y * SIZE + x];
+    let half_px = (15.0_f64).to_radians().tan() / (0.5 * SIZE as f64);
+    let mut seen = 0;
+    for y in 0..SIZE {
+        for x in 0..SIZE {
+            // The ray through the pixel's middle, from (0, 0, 5) along −Z, and where it meets the sphere.
+            let [across, up] = [(x as f64 - 16.0) * half_px, (16.0 - y as f64) * half_px];
+            let square = across * across + up * up;
+            let discriminant = 25.0 - 24.0 * (1.0 + square);
+            let radius = square.sqrt() / (1.0_f64 / 24.0).sqrt();
+            if radius > 1.1 {
+                assert_eq!(at("depth.Z", x, y), f32::INFINITY);
+                assert_eq!(
+                    [at("normal.X", x, y), at("normal.Z", x, y), at("albedo.R", x, y)],
+                    [0.0; 3]
+                );
+            }
+            // Towards the edge the mean over the pixel bends away from its middle.
+            if radius > 0.7 {
+                continue;
+            }
+            seen += 1;
+            let depth = (5.0 - discriminant.sqrt()) / (1.0 + square);
+            let normal = [across * depth, up * depth, 5.0 - depth];
+            let found = ["normal.X", "normal.Y", "normal.Z"].map(|name| f64::from(at(name, x, y)));
+            assert!(
+                (f64::from(at("depth.Z", x, y)) - depth).abs() < 0.01,
+                "depth at {x}, {y}"
+            );
+            for (found, expected) in std::iter::zip(found, normal) {
+                assert!((found - expected).abs() < 0.02, "{found} is not {expected} at {x}, {y}");
+            }
+            let albedo = ["albedo.R", "albedo.G", "albedo.B"].map(|name| at(name, x, y));
+            for (found, expected) in std::iter::zip(albedo, [0.5, 0.25, 0.125]) {
+                assert!((found - expected).abs() < 1e-4, "{albedo:?} at {x}, {y}");
+            }
+        }
+    }
+    assert!(seen > 200, "{seen} pixels were compared");
+    assert!(layers["samples.Y"].iter().all(|samples| *samples == 8.0));
+    assert!(
+        layers["variance.Y"]
+            .iter()
+            .all(|variance| (0.0..1.0).contains(variance))
+    );
+}
+
+#[test]
+fn both_engines_write_the_same_layers() {
+    let place = Workplace::new();
+    let [cpu, gpu] = ["cpu", "gpu"].map(|engine| layers(&place, engine));
+    for name in [
+        "albedo.R",
+        "albedo.G",
+        "albedo.B",
+        "normal.X",
+        "normal.Y",
+        "normal.Z",
+        "depth.Z",
+        "samples.Y",
+    ] {
+        let differing = std::iter::zip(&cpu[name], &gpu[name])
+            .filter(|(a, b)| !(a == b || (**a - **b).abs() < 1e-3))
+            .count();
+        // A ray that grazes the edge may meet it on one engine only.
+        assert!(differing <= 4, "{name}: {differing} pixels differ");
+    }
+    let mean = |layers: &HashMap<String, Vec<f32>>| layers["R"].iter().sum::<f32>() / (SIZE * SIZE) as f32;
+    assert!(
+        (mean(&cpu) / mean(&gpu) - 1.0).abs() < 0.01,
+        "the picture is there still"
+    );
+}
+
+#[test]
+fn layers_need_an_exr() {
+    let place = Workplace::new();
+    place.refused(1, "render --aovs --output a.png", &["--aovs", ".exr"]);
+}
+
+#[test]
+fn a_png_brings_its_document_back() {
+    let place = Workplace::new();
+    place.done(
+        "render --model sphere --environment sky --environment-rotation 40 --material gold --set specular.roughness=0.15 \
+         --camera-orbit 20,30 --exposure 0.5 --size 24x16 --samples 2 --engine cpu --output a.png --output a.exr",
+    );
+    let loaded = load_picture_document(&place.path("a.png")).unwrap();
+    assert!(loaded.warnings.is_empty());
+    let document = loaded.value;
+    assert_eq!(
+        (document.materials[0].name.as_str(), document.materials[0].roughness),
+        ("Gold", 0.15)
+    );
+    assert_eq!((document.camera.yaw_deg, document.camera.pitch_deg), (20.0, 30.0));
+    assert_eq!((document.lighting.rotation_deg, document.view.exposure_ev), (40.0, 0.5));
+    assert_eq!(
+        (document.render.width, document.render.height, document.render.samples),
+        (24, 16, 2)
+    );
+    assert!(matches!(file::open(&place.path("a.png")).unwrap(), Opened::Picture(opened) if opened.value == document));
+}
+
+#[test]
+fn pictures_given_to_the_program_are_opened_or_named() {
+    let place = Workplace::new();
+    image::RgbaImage::new(4, 4).save(place.path("plain.png")).unwrap();
+    place.refused(1, "plain.png", &["plain.png", "without a Glossmith document"]);
+    place.write("cut.png", &std::fs::read(place.path("plain.png")).unwrap()[..20]);
+    place.refused(1, "cut.png", &["cut.png", "PNG"]);
+    // A model that is gone is named.
+    let (buffer, gltf) = crate::gltf_builder::square();
+    place.write("square.glb", &crate::gltf_builder::glb(&gltf, &buffer.bytes));
+    place.done("render --model square.glb --size 16x16 --samples 1 --engine cpu --output square.png");
+    std::fs::remove_file(place.path("square.glb")).unwrap();
+    place.refused(1, "square.png --engine cpu", &["square.glb"]);
+}
+
+#[test]
+fn a_turntable_is_numbered_frames_of_a_turn() {
+    let place = Workplace::new();
+    place.done(
+        "turntable --frames 4 --turn camera --output turn --report report.json --model shaderball --size 24x24 --samples 8 \
+         --camera-orbit 30,20 --environment furnace --engine cpu",
+    );
+    let mut names: Vec<_> = std::fs::read_dir(place.path("turn"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort_unstable();
+    assert_eq!(
+        names,
+        ["frame-0001.png", "frame-0002.png", "frame-0003.png", "frame-0004.png"]
+    );
+    let yaws: Vec<f64> = names
+        .iter()
+        .map(|name| {
+            load_picture_document(&place.path("turn").join(name))
+                .unwrap()
+                .value
+                .camera
+                .yaw_deg
+        })
+        .collect();
+    assert_eq!(yaws, [30.0, 120.0, -150.0, -60.0]);
+    let report: Value = serde_json::from_str(&place.read("report.json")).unwrap();
+    assert_eq!(
+        (&report["frames"], &report["turn"], &report["engine"]),
+        (&4.into(), &"camera".into(), &"cpu".into())
+    );
+    // Frame 1 is what `render` makes of the same arguments.
+    place.done(
+        "render --model shaderball --size 24x24 --samples 8 --camera-orbit 30,20 --environment furnace --engine cpu \
+         --output same.png",
+    );
+    let pixels = |name: &str| image::open(place.path(name)).unwrap().into_rgba8();
+    assert_eq!(pixels("turn/frame-0001.png"), pixels("same.png"));
+    assert_ne!(pixels("turn/frame-0002.png"), pixels("same.png"));
+}
+
+#[test]
+fn the_model_turns_against_a_light_that_stays() {
+    // A round model: its turn shows nothing, the light's does.
+    let place = Workplace::new();
+    let frames = |turn: &str| {
+        place.done(&format!(
+            "turntable --frames 2 --turn {turn} --output {turn} --model sphere --environment studio --background transparent \
+             --size 16x16 --samples 64 --engine cpu"
+        ));
+        [1, 2].map(|number| {
+            let path = place.path(turn).join(format!("frame-000{number}.png"));
+            image::open(path).unwrap().into_rgba8().into_raw()
+        })
+    };
+    let difference = |[a, b]: [Vec<u8>; 2]| std::iter::zip(a, b).map(|(a, b)| u64::from(a.abs_diff(b))).sum::<u64>();
+    let (model, light) = (difference(frames("model")), difference(frames("light")));
+    assert!(
+        5 * model < light,
+        "the model's turn changes {model}, the light's {light}"
+    );
+    place.refused(2, "turntable --turn me", &["camera"]);
+}

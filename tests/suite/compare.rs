@@ -1,0 +1,377 @@
+//! Comparing, pinning, pictures that bring their document back, turntables: in the editor with the real renderer.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::compare::Rival;
+use glossmith::app::layout::Pane;
+use glossmith::app::{App, Options};
+use glossmith::document::match_look::{Target, lobe_of_material, match_look};
+use glossmith::document::{Document, PRESETS};
+use glossmith::optics::lobe::Lobe;
+use glossmith::render::worker::{Activity, Picture};
+
+use super::ui::{PATIENCE, editor, editor_of, options, request, settle, wait};
+use super::worker::small_document;
+
+type Editor = Harness<'static, App>;
+
+/// Waits until B, too, is finished and both have been compared.
+fn settle_both(harness: &mut Editor, what: &str, is_b: impl Fn(&Document) -> bool) {
+    settle(harness);
+    wait(harness, what, |app| {
+        let Some(snapshot) = app.rival_snapshot() else {
+            return false;
+        };
+        let is_current =
+            |picture: &Picture| picture.reduction == 1 && picture.samples_per_pixel == 3 && is_b(&picture.document);
+        snapshot.activity == Activity::Done && snapshot.picture.as_deref().is_some_and(is_current)
+    });
+    wait(harness, "the difference", |app| app.rms_difference().is_some());
+    harness.run_steps(2);
+    harness.check_accessibility();
+}
+
+fn rival(harness: &Editor) -> Document {
+    let snapshot = harness.state().rival_snapshot().expect("it is compared");
+    Document::clone(&snapshot.picture.as_ref().expect("it was waited for").document)
+}
+
+#[test]
+fn another_lobe_is_compared_with_its_look_matched() {
+    let mut harness = editor();
+    harness.key_press(Key::C);
+    harness.run_steps(2);
+    let before = harness.state().document().clone();
+    assert_eq!(before.materials[0].lobe, Lobe::Geometric);
+    settle_both(&mut harness, "B", |b| {
+        b.materials[0].lobe == Lobe::Ggx && b.materials[0].roughness != before.materials[0].roughness
+    });
+    let b = rival(&harness);
+    assert_eq!(
+        (b.camera, &b.lighting, b.render.seed),
+        (before.camera, &before.lighting, before.render.seed)
+    );
+    // The roughness is the one that "match look" finds.
+    let target = Target::Lobe(lobe_of_material(&before.materials[0]));
+    let found = match_look(&target, Lobe::Ggx, 0.0).expect("it has a highlight");
+    assert_eq!(b.materials[0].roughness, found.nearest.model.roughness as f32);
+    assert!(harness.query_by_label_contains("RMS ").is_some());
+    // B follows what is done to A.
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .set_value_accesskit(0.8);
+    let rough = b.materials[0].roughness;
+    settle_both(&mut harness, "a rougher B", |b| b.materials[0].roughness > rough + 0.1);
+    harness.key_press(Key::C);
+    harness.run_steps(2);
+    assert!(harness.state().rival_snapshot().is_none(), "B is not rendered any more");
+    settle(&mut harness);
+}
+
+#[test]
+fn a_and_b_have_the_same_random_numbers() {
+    let mut harness = editor();
+    let same = harness.state().document().materials[0].clone();
+    request(
+        &mut harness,
+        Action::CompareWith(Rival::Material(Box::new(same.clone()))),
+    );
+    settle_both(&mut harness, "B", |_| true);
+    let begun = Instant::now();
+    while harness.state().rms_difference() != Some(0.0) {
+        let found = harness.state().rms_difference();
+        assert!(begun.elapsed() < PATIENCE, "the same material differs by {found:?}");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(3));
+    }
+    let mut other = same;
+    other.roughness = 0.9;
+    request(&mut harness, Action::CompareWith(Rival::Material(Box::new(other))));
+    wait(&mut harness, "a difference", |app| {
+        app.rms_difference().is_some_and(|rms| rms > 0.01)
+    });
+}
+
+#[test]
+fn every_view_shows_what_it_says() {
+    let mut harness = editor();
+    let white = PRESETS
+        .iter()
+        .find(|preset| preset.name == "Lambert white")
+        .expect("shipped");
+    request(
+        &mut harness,
+        Action::CompareWith(Rival::Material(Box::new(white.clone()))),
+    );
+    settle_both(&mut harness, "B", |b| b.materials[0] == *white);
+    let colors = |harness: &mut Editor, at: [f32; 2]| {
+        harness.run_steps(2);
+        let rect = harness.get_by_label("Viewport").rect();
+        let window = harness
+            .render()
+            .expect("a Vulkan driver: apt install mesa-vulkan-drivers");
+        let at = rect.min + rect.size() * Vec2::from(at);
+        window.get_pixel(at.x as u32, at.y as u32).0
+    };
+    // The sphere's middle lies a little left and right of the divider.
+    let (left, right) = ([0.46, 0.5], [0.54, 0.5]);
+    let [a, b] = [colors(&mut harness, left), colors(&mut harness, right)];
+    assert_ne!(a, b, "metal left, white right");
+    let divider = harness.get_by_role_and_label(Role::Slider, "Divider").rect().center();
+    harness.hover_at(divider);
+    harness.step();
+    harness.drag_at(divider);
+    harness.step();
+    harness.hover_at(divider - Vec2::new(200.0, 0.0));
+    harness.step();
+    harness.drop_at(divider - Vec2::new(200.0, 0.0));
+    harness.run_steps(2);
+    assert_eq!(
+        harness.state().document().camera,
+        small_document().camera,
+        "the camera stays"
+    );
+    let wiped = colors(&mut harness, left);
+    assert_ne!(wiped, a, "B is wiped over A");
+
+    harness.get_by_role_and_label(Role::Button, "Difference").click();
+    harness.run_steps(3);
+    let [r, _, blue, _] = colors(&mut harness, right);
+    assert!(r > blue, "B is brighter: orange");
+    assert!(
+        harness
+            .query_by_role_and_label(Role::SpinButton, "Difference scale")
+            .is_some()
+    );
+    let background = colors(&mut harness, [0.02, 0.5]);
+    assert!(
+        background[0].abs_diff(background[2]) < 4,
+        "the background does not differ: {background:?}"
+    );
+
+    harness.get_by_role_and_label(Role::Button, "Side by side").click();
+    settle(&mut harness);
+    let [a, b] = [colors(&mut harness, [0.25, 0.5]), colors(&mut harness, [0.75, 0.5])];
+    assert_ne!(a, b);
+
+    harness.get_by_role_and_label(Role::Button, "Flicker").click();
+    harness.run_steps(3);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Flicker rate")
+        .set_value_accesskit(2.0);
+    let mut seen = std::collections::HashSet::new();
+    for _ in 0..20 {
+        seen.insert(colors(&mut harness, [0.5, 0.5]));
+    }
+    assert_eq!(seen.len(), 2, "A and B in turn: {seen:?}");
+    harness.check_accessibility();
+}
+
+#[test]
+fn swapping_and_taking_b_are_one_step_each() {
+    let mut harness = editor();
+    let before = harness.state().document().clone();
+    let gold = PRESETS.iter().find(|preset| preset.name == "Gold").expect("shipped");
+    request(
+        &mut harness,
+        Action::CompareWith(Rival::Material(Box::new(gold.clone()))),
+    );
+    settle_both(&mut harness, "B", |b| b.materials[0] == *gold);
+    harness.key_press(Key::X);
+    harness.run_steps(2);
+    assert_eq!(harness.state().document().materials[0], *gold);
+    settle_both(&mut harness, "the old A", |b| b.materials == before.materials);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(2);
+    assert_eq!(*harness.state().document(), before);
+    request(
+        &mut harness,
+        Action::CompareWith(Rival::Material(Box::new(gold.clone()))),
+    );
+    settle_both(&mut harness, "B", |b| b.materials[0] == *gold);
+    harness.get_by_role_and_label(Role::Button, "Use B").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().document().materials[0], *gold);
+    assert!(
+        harness.query_by_role_and_label(Role::Button, "Use B").is_none(),
+        "nothing to compare"
+    );
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(2);
+    assert_eq!(*harness.state().document(), before);
+}
+
+fn press(harness: &mut Editor, label: &str) {
+    harness.get_by_role_and_label(Role::Button, label).click();
+    harness.run_steps(3);
+}
+
+fn see(harness: &mut Editor, what: &str, until: impl Fn(&Editor) -> bool) {
+    let begun = Instant::now();
+    while !until(harness) {
+        let messages = harness.state().messages();
+        assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}: {messages:?}");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(3));
+    }
+}
+
+fn has_button(harness: &Editor, label: &str) -> bool {
+    harness.query_by_role_and_label(Role::Button, label).is_some()
+}
+
+#[test]
+fn snapshots_are_pinned_kept_brought_back_compared_and_deleted() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let with_data = || {
+        editor_of(Options {
+            data: Some(folder.path().to_owned()),
+            ..options()
+        })
+    };
+    let mut harness = with_data();
+    settle(&mut harness);
+    let mut pinned = harness.state().document().clone();
+    pinned.materials[0].name = "Zebra".to_owned();
+    pinned.materials[0].roughness = 0.77;
+    request(&mut harness, Action::UseMaterial(Box::new(pinned.materials[0].clone())));
+    settle(&mut harness);
+    harness.key_press(Key::P);
+    see(&mut harness, "the snapshot", |harness| has_button(harness, "Zebra"));
+    harness.check_accessibility();
+    eframe::App::on_exit(harness.state_mut());
+    drop(harness);
+
+    let mut harness = with_data();
+    settle(&mut harness);
+    harness.state_mut().reveal(Pane::Snapshots);
+    see(&mut harness, "the snapshot", |harness| has_button(harness, "Zebra"));
+    let before = harness.state().document().clone();
+    press(&mut harness, "Zebra");
+    assert_eq!(*harness.state().document(), pinned);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(2);
+    assert_eq!(*harness.state().document(), before);
+    press(&mut harness, "More of Zebra");
+    press(&mut harness, "Compare as B");
+    settle_both(&mut harness, "B", |b| b.materials == pinned.materials);
+    press(&mut harness, "Stop comparing");
+    press(&mut harness, "More of Zebra");
+    press(&mut harness, "Delete");
+    see(&mut harness, "it to go", |harness| !has_button(harness, "Zebra"));
+    press(&mut harness, "Restore Zebra");
+    see(&mut harness, "it to come back", |harness| has_button(harness, "Zebra"));
+}
+
+/// Chooses a file in the path field, which takes the dialog's place here.
+fn choose(harness: &mut Editor, command: Command, path: &Path) {
+    request(harness, Action::Do(command));
+    see(harness, "the path field", |harness| {
+        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
+    });
+    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
+    field.set_text_value_accesskit(&path.display().to_string());
+    harness.run_steps(2);
+    press(harness, "Save");
+    let name = path.file_name().expect("a file").to_string_lossy().into_owned();
+    wait(harness, "the file", |app| {
+        app.messages()
+            .iter()
+            .any(|text| text.contains("saved") && text.contains(&name))
+    });
+}
+
+#[test]
+fn a_picture_that_is_opened_brings_all_back_and_is_not_replaced() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("shown.png");
+    let mut harness = editor();
+    let shown = harness.state().document().clone();
+    choose(&mut harness, Command::SavePicture, &path);
+    let bytes = std::fs::read(&path).expect("written");
+    let mut other = shown.materials[0].clone();
+    other.roughness = 0.9;
+    request(&mut harness, Action::UseMaterial(Box::new(other)));
+    request(&mut harness, Action::LookFrom(90.0, 10.0));
+    settle(&mut harness);
+    let before = harness.state().document().clone();
+    request(&mut harness, Action::Open(path.clone()));
+    wait(&mut harness, "the document", |app| *app.document() == shown);
+    settle(&mut harness);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+    harness.run_steps(2);
+    assert_eq!(*harness.state().document(), before, "one step");
+    // Saving asks for a project's name: the picture stays.
+    request(&mut harness, Action::Do(Command::Save));
+    harness.run_steps(2);
+    assert_eq!(std::fs::read(&path).expect("there"), bytes);
+    // A picture without a document says so.
+    let plain = folder.path().join("plain.png");
+    image::RgbaImage::new(4, 4).save(&plain).expect("a temporary file");
+    request(&mut harness, Action::Open(plain));
+    wait(&mut harness, "the message", |app| {
+        app.messages()
+            .iter()
+            .any(|text| text.contains("plain.png") && text.contains("without a Glossmith document"))
+    });
+}
+
+#[test]
+fn layers_are_saved_from_the_window() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = folder.path().join("layers.exr");
+    let mut harness = editor();
+    choose(&mut harness, Command::SaveLayers, &path);
+    let meta = exr::meta::MetaData::read_from_file(&path, true).expect("an EXR file");
+    let names: Vec<String> = meta.headers[0]
+        .channels
+        .list
+        .iter()
+        .map(|channel| channel.name.to_string())
+        .collect();
+    assert_eq!(names.len(), 13, "{names:?}");
+    assert!(names.contains(&"normal.X".to_owned()) && names.contains(&"variance.Y".to_owned()));
+}
+
+#[test]
+fn a_turntable_is_rendered_beside_the_window_and_cancelled() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut harness = editor();
+    let set = |harness: &mut Editor, label: &str, value: f64| {
+        harness
+            .get_by_role_and_label(Role::SpinButton, label)
+            .set_value_accesskit(value);
+        harness.run_steps(2);
+    };
+    request(&mut harness, Action::Do(Command::Turntable));
+    // A sheet is first measured, then shown.
+    harness.run_steps(2);
+    harness.check_accessibility();
+    set(&mut harness, "Turntable frames", 3.0);
+    set(&mut harness, "Turntable width", 20.0);
+    set(&mut harness, "Turntable height", 12.0);
+    let field = harness.get_by_role_and_label(Role::TextInput, "Turntable folder");
+    field.set_text_value_accesskit(&folder.path().join("turn").display().to_string());
+    harness.run_steps(2);
+    press(&mut harness, "Render frames");
+    wait(&mut harness, "the frames", |app| {
+        app.messages().iter().any(|text| text.contains("turntable: 3 frames"))
+    });
+    assert_eq!(std::fs::read_dir(folder.path().join("turn")).expect("made").count(), 3);
+    let size = image::image_dimensions(folder.path().join("turn/frame-0003.png")).expect("a picture");
+    assert_eq!(size, (20, 12));
+    set(&mut harness, "Turntable frames", 9000.0);
+    set(&mut harness, "Turntable samples", 4000.0);
+    press(&mut harness, "Render frames");
+    harness.run_steps(2);
+    press(&mut harness, "Cancel the turntable");
+    wait(&mut harness, "its end", |app| {
+        app.messages().iter().any(|text| text.contains("turntable cancelled"))
+    });
+}

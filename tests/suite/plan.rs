@@ -1,0 +1,285 @@
+//! The plan: specialised pictures against general ones, and rules broken on purpose.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+use std::time::Duration;
+
+use glossmith::analysis::film::Film;
+use glossmith::document::effect::{Decision, EFFECTS, EffectSwitches, Switch};
+use glossmith::document::job::Job;
+use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, PRESETS, Strategy, Value, assign};
+use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
+use glossmith::render::{Assets, EngineChoice, Session};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+
+use crate::cli_support::Workplace;
+use crate::twins::harness::Rng;
+
+fn small(mut document: Document) -> Document {
+    (document.render.width, document.render.height) = (24, 24);
+    document.render.samples = 4;
+    document
+}
+
+fn of_material(model: ModelSource, material: MaterialSettings) -> Document {
+    small(Document {
+        model,
+        materials: vec![material],
+        ..Document::default()
+    })
+}
+
+fn film(session: &mut Session, document: &Document) -> Film {
+    session.submit(document).unwrap();
+    while !session.step(Duration::from_secs(1)).unwrap().is_done {}
+    session.film().unwrap().clone()
+}
+
+fn generally(document: &Document) -> Document {
+    let mut document = document.clone();
+    document.render.effects = EffectSwitches::all_on();
+    document
+}
+
+fn job(document: &Document) -> Job {
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(document).unwrap();
+    Job::clone(session.job().unwrap())
+}
+
+/// The two pictures of the same random numbers, bit for bit.
+fn assert_same_bits(specialised: &Film, general: &Film, what: &str) {
+    let differing = std::iter::zip(&specialised.color, &general.color).filter(|(a, b)| a != b);
+    assert_eq!(differing.count(), 0, "{what}: pixels differ");
+    assert_eq!(specialised.dropped, general.dropped, "{what}");
+}
+
+fn random_value(kind: &Kind, present: &Value, rng: &mut Rng) -> Value {
+    let mut triple = |low: f32, high: f32| [0; 3].map(|_| rng.range(low, high));
+    match kind {
+        Kind::Number {
+            soft_range: [low, high],
+            ..
+        } => Value::Number(rng.range(*low, *high)),
+        Kind::Color => Value::Color(triple(0.0, 1.0)),
+        Kind::Triple { range: [low, high] } => Value::Triple(triple(*low, high.min(5.0))),
+        Kind::Choice(choices) => Value::Choice(choices[rng.below(choices.len())].name),
+        Kind::Toggle => Value::Toggle(rng.below(2) == 0),
+        Kind::Curve => present.clone(),
+    }
+}
+
+/// A document with some of everything, in range.
+fn random_document(rng: &mut Rng) -> Document {
+    let models = [ModelSource::Sphere, ModelSource::Plane, ModelSource::Shaderball];
+    let lights = [
+        EnvironmentSource::Studio,
+        EnvironmentSource::Sky,
+        EnvironmentSource::Furnace,
+    ];
+    let mut material = PRESETS[rng.below(PRESETS.len())].clone();
+    for parameter in PARAMETERS.iter() {
+        if rng.below(4) == 0 {
+            let value = random_value(&parameter.kind, &parameter.get(&material), rng);
+            parameter.set(&mut material, value).unwrap();
+        }
+    }
+    let mut document = of_material(models[rng.below(3)].clone(), material);
+    document.ground = rng.below(2) == 0;
+    document.lighting.environment = lights[rng.below(3)].clone();
+    document.lighting.strength = [0.0, 1.0, 1.0, 3.0][rng.below(4)];
+    document.render.strategy = Strategy::ALL[rng.below(3)];
+    document.render.seed = rng.below(1000) as u32;
+    document.render.bounces = 1 + rng.below(6) as u32;
+    if rng.below(3) == 0 {
+        document.camera.aperture = 0.1;
+    }
+    if rng.below(3) == 0 {
+        document.lighting.area_lights.push(AreaLight::default());
+    }
+    document
+}
+
+#[test]
+fn effects_have_words_and_names_of_their_own() {
+    let mut names = HashSet::new();
+    for effect in EFFECTS {
+        assert!(names.insert(effect.name), "{} twice", effect.name);
+        assert!(
+            effect.help.ends_with('.') && !effect.label.is_empty(),
+            "{}",
+            effect.name
+        );
+    }
+    for (effect, decision) in job(&Document::default()).plan.table() {
+        assert!(decision.reason.len() > 5, "{}: no reason", effect.name);
+    }
+}
+
+#[test]
+fn a_convex_body_alone_sees_nothing_but_the_light() {
+    let sees = |model: ModelSource, edit: fn(&mut Document)| {
+        let mut document = of_material(model, MaterialSettings::default());
+        edit(&mut document);
+        job(&document).plan.has("interreflection")
+    };
+    assert!(!sees(ModelSource::Sphere, |_| {}));
+    assert!(!sees(ModelSource::Plane, |_| {}));
+    assert!(sees(ModelSource::Teapot, |_| {}));
+    assert!(sees(ModelSource::Sphere, |d| d.ground = true));
+    assert!(sees(ModelSource::Sphere, |d| d.lighting.area_lights =
+        vec![AreaLight::default()]));
+}
+
+#[test]
+fn specialised_pictures_equal_general_ones_on_the_processor() {
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    let mut rng = Rng::new(7);
+    let mut plans = HashSet::new();
+    for number in 0..200 {
+        let document = random_document(&mut rng);
+        let specialised = film(&mut session, &document);
+        plans.insert(session.job().unwrap().plan.specialisation());
+        let general = film(&mut session, &generally(&document));
+        assert_same_bits(&specialised, &general, &format!("document {number}: {document:?}"));
+    }
+    assert!(plans.len() > 40, "only {} plans were met", plans.len());
+}
+
+#[test]
+fn specialised_pictures_equal_general_ones_on_the_gpu() {
+    let mut session = Session::open(EngineChoice::Gpu).unwrap();
+    let mut rng = Rng::new(11);
+    let shipped = PRESETS
+        .iter()
+        .map(|material| of_material(ModelSource::Sphere, material.clone()));
+    let documents = shipped.chain((0..6).map(|_| random_document(&mut rng)));
+    for document in documents {
+        let specialised = film(&mut session, &document);
+        let general = film(&mut session, &generally(&document));
+        assert_same_bits(&specialised, &general, &format!("{document:?}"));
+    }
+}
+
+/// A document for each effect that has code of its own, which calls for it.
+fn needing(effect: &str) -> Document {
+    let assignments: &[&str] = match effect {
+        "base" => &["specular.fresnel=schlick", "base.metalness=0"],
+        "anisotropy" => &["specular.anisotropy=0.8", "specular.roughness=0.5"],
+        "emission" => &["emission.strength=2"],
+        "transmission" => &["base.metalness=0", "transmission.weight=1"],
+        "absorption" => &[
+            "base.metalness=0",
+            "transmission.weight=1",
+            "transmission.color=0.2,0.5,0.9",
+            "transmission.depth=0.5",
+        ],
+        _ => &[],
+    };
+    let mut material = MaterialSettings::default();
+    for assignment in assignments {
+        assign(&mut material, assignment).unwrap();
+    }
+    let mut document = of_material(ModelSource::Shaderball, material);
+    match effect {
+        "depth-of-field" => document.camera.aperture = 0.5,
+        "emitter-sampling" => document.lighting.area_lights.push(AreaLight::default()),
+        _ => {}
+    }
+    document
+}
+
+#[test]
+fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
+    let switched = |effect: &&glossmith::document::effect::Effect| effect.constant.is_some_and(|c| c.general == 1);
+    for effect in EFFECTS.iter().filter(switched) {
+        let right = job(&needing(effect.name));
+        assert!(right.plan.has(effect.name), "{} is not called for", effect.name);
+        let wrong = Job {
+            plan: right.plan.clone().with(effect.name, Decision::off("broken on purpose")),
+            ..right.clone()
+        };
+        let picture = |job: Job| {
+            let mut engine = GpuEngine::new(GpuDevice::open(AdapterKind::Any).unwrap()).unwrap();
+            engine.submit(Arc::new(job)).unwrap();
+            engine.step(Duration::from_secs(60), 4).unwrap();
+            engine.film().unwrap().color.clone()
+        };
+        assert!(
+            picture(right) != picture(wrong),
+            "{}: leaving it out shows nowhere",
+            effect.name
+        );
+    }
+}
+
+#[test]
+fn switching_an_effect_off_takes_it_out_of_the_scene_on_both_engines() {
+    let glass = PRESETS.iter().find(|material| material.name == "Amber").unwrap();
+    let mut document = of_material(ModelSource::Sphere, glass.clone());
+    let plan = job(&document).plan;
+    assert!(plan.has("transmission") && plan.has("absorption"));
+    document.render.effects.set("transmission", Switch::Off);
+    let plan = job(&document).plan;
+    assert!(!plan.has("transmission") && !plan.has("absorption"));
+    let (_, decision) = plan.table().find(|(effect, _)| effect.name == "transmission").unwrap();
+    assert!(decision.reason.contains("you"), "{}", decision.reason);
+}
+
+#[test]
+fn the_plan_is_printed_and_effects_are_chosen_on_the_command_line() {
+    let place = Workplace::new();
+    let text = place.done("plan --model sphere --json plan.json").stdout;
+    for effect in EFFECTS {
+        assert!(text.contains(effect.name), "{} is missing:\n{text}", effect.name);
+    }
+    let json: serde_json::Value = serde_json::from_str(&place.read("plan.json")).unwrap();
+    assert_eq!(json["effects"].as_array().unwrap().len(), EFFECTS.len());
+    let effects = |arguments: &str| -> Vec<String> {
+        serde_json::from_value(place.report(&format!("--model sphere --ground {arguments}"))["effects"].clone())
+            .unwrap()
+    };
+    let has = |effects: &[String], name: &str| effects.iter().any(|effect| effect == name);
+    assert!(has(&effects("--effects auto"), "ground"));
+    assert!(!has(&effects("--effects -ground"), "ground"));
+    assert_eq!(effects("--effects all").len(), EFFECTS.len());
+    let chosen = effects("--effects environment,specular");
+    assert!(has(&chosen, "specular") && !has(&chosen, "ground") && !has(&chosen, "base"));
+    place.refused(2, "render --effects no-such-effect", &["no-such-effect"]);
+    place.refused(2, "render --effects -lobe", &["lobe"]);
+}
+
+#[test]
+fn a_kernel_is_compiled_beside_the_picture() {
+    let mut document = small(Document::default());
+    document.render.samples = 100_000;
+    let mut session = Session::open_fluid(EngineChoice::Gpu, Assets::default()).unwrap();
+    let mut is_stood_in_for = |document: &Document| {
+        session.submit(document).unwrap();
+        let first = session.step(Duration::from_millis(10)).unwrap();
+        assert!(first.mean_samples > 0.0, "there is a picture before there is a kernel");
+        let begun = std::time::Instant::now();
+        let mut kept = first.mean_samples;
+        while session.step(Duration::from_millis(10)).unwrap().is_standing_in {
+            assert!(begun.elapsed() < Duration::from_secs(300), "the kernel never came");
+            let now = session.progress().mean_samples;
+            assert!(now >= kept, "what was drawn is lost");
+            kept = now;
+        }
+        assert!(session.progress().mean_samples >= kept);
+        let mean = |film: &Film| film.luminance().iter().sum::<f64>() / film.color.len() as f64;
+        let after = mean(session.film().unwrap());
+        (first.is_standing_in, after)
+    };
+    let (stood_in, mean) = is_stood_in_for(&document);
+    assert!(stood_in);
+    let mut clear = document.clone();
+    (clear.materials[0].metalness, clear.materials[0].transmission_weight) = (0.0, 0.1);
+    let (stood_in, other_mean) = is_stood_in_for(&clear);
+    assert!(stood_in && other_mean != mean);
+    // The kernel of the first document was kept.
+    let (stood_in, again) = is_stood_in_for(&document);
+    assert!(!stood_in);
+    assert!((again / mean - 1.0).abs() < 0.05, "{again} against {mean}");
+}

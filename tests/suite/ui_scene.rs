@@ -1,0 +1,126 @@
+//! Effects, depth of field, bookmarks and picking, in the editor with the real renderer.
+
+use egui::accesskit::Role;
+use egui::{Modifiers, Pos2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glossmith::app::App;
+use glossmith::app::layout::Pane;
+use glossmith::document::effect::Switch;
+use glossmith::scene::ModelSource;
+
+use super::ui::{editor, editor_of, options, picture, settle, undo};
+use super::worker::small_document;
+
+fn choose(harness: &mut Harness<'static, App>, menu: &str, item: &str) {
+    harness.get_by_role_and_label(Role::ComboBox, menu).click_accesskit();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, item).click_accesskit();
+    settle(harness);
+}
+
+fn click_at(harness: &mut Harness<'static, App>, at: Pos2) {
+    harness.hover_at(at);
+    harness.step();
+    harness.drag_at(at);
+    harness.step();
+    harness.drop_at(at);
+    harness.run_steps(2);
+}
+
+fn number(harness: &Harness<'static, App>, label: &str) -> f64 {
+    let node = harness.get_by_role_and_label(Role::SpinButton, label);
+    node.accesskit_node().numeric_value().expect("a number")
+}
+
+#[test]
+fn an_effect_is_switched_off_and_back() {
+    let mut document = small_document();
+    document.ground = true;
+    let mut harness = editor_of(glossmith::app::Options {
+        document: Some(document),
+        ..options()
+    });
+    settle(&mut harness);
+    let before = picture(&harness);
+    harness.state_mut().reveal(Pane::Effects);
+    harness.run_steps(2);
+    choose(&mut harness, "Ground: auto, on or off", "off");
+    assert_eq!(harness.state().document().render.effects.get("ground"), Switch::Off);
+    assert!(harness.state().document().ground, "the document keeps its ground");
+    assert_ne!(picture(&harness), before);
+    undo(&mut harness);
+    assert_eq!(picture(&harness), before);
+}
+
+#[test]
+fn a_bookmark_brings_the_camera_back() {
+    let mut harness = editor();
+    let first = harness.state().document().camera;
+    harness.state_mut().reveal(Pane::Camera);
+    harness.run_steps(2);
+    harness.get_by_label("Add bookmark").click_accesskit();
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Yaw")
+        .set_value_accesskit(-60.0);
+    harness.run_steps(3);
+    assert_ne!(harness.state().document().camera, first);
+    harness.get_by_label("Go").click_accesskit();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().camera, first);
+    undo(&mut harness);
+    assert_eq!(harness.state().document().camera.yaw_deg, -60.0);
+    harness.get_by_label("Remove camera bookmark 1").click_accesskit();
+    harness.run_steps(3);
+    assert_eq!(harness.state().document().bookmarks, []);
+}
+
+#[test]
+fn a_click_says_what_is_sharp() {
+    let mut harness = editor();
+    let sharp = picture(&harness);
+    harness.state_mut().reveal(Pane::Camera);
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Aperture")
+        .set_value_accesskit(0.3);
+    settle(&mut harness);
+    let at_target = picture(&harness);
+    assert_ne!(at_target, sharp);
+    let far = number(&harness, "Focus distance");
+    harness.get_by_label("Pick focus").click_accesskit();
+    harness.run_steps(2);
+    let center = harness.get_by_label("Viewport").rect().center();
+    click_at(&mut harness, center);
+    settle(&mut harness);
+    let near = harness.state().document().camera.focus_distance.expect("it was picked");
+    assert!(near < far && near > 0.3 * far, "{near} of {far}");
+    assert_ne!(picture(&harness), at_target);
+    // Ctrl does the same without the button.
+    undo(&mut harness);
+    assert_eq!(harness.state().document().camera.focus_distance, None);
+    harness.event(egui::Event::ModifiersChanged(Modifiers::COMMAND));
+    click_at(&mut harness, center);
+    harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    assert_eq!(harness.state().document().camera.focus_distance, Some(near));
+}
+
+#[test]
+fn a_click_in_the_viewport_gives_its_angle_to_the_plots() {
+    let mut document = small_document();
+    document.model = ModelSource::Sphere;
+    let mut harness = editor_of(glossmith::app::Options {
+        document: Some(document),
+        ..options()
+    });
+    settle(&mut harness);
+    harness.state_mut().reveal(Pane::Samples);
+    harness.run_steps(2);
+    let center = harness.get_by_label("Viewport").rect().center();
+    click_at(&mut harness, center);
+    assert!(
+        number(&harness, "Samples view angle") < 4.0,
+        "head-on in the middle of a sphere"
+    );
+}
