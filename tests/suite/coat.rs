@@ -158,7 +158,7 @@ fn engines_and_strategies_agree_on_a_coat() {
         "specular.roughness=0.5",
         "specular.edge_tint=0.2,0.6,1",
         "coat.weight=0.9",
-        "coat.roughness=0.15",
+        "coat.roughness=0.35",
         "coat.color=0.6,0.9,0.8",
     ];
     let mut document = document(ModelSource::Sphere, EnvironmentSource::Studio, &assignments);
