@@ -94,6 +94,7 @@ fn the_report_has_its_keys_and_their_types() {
         "rays",
         "rays_per_second",
         "dropped_samples",
+        "clamped_energy",
         "effects",
         "seed",
     ];
