@@ -14,6 +14,8 @@ use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 
 use crate::cli_support::Workplace;
+use crate::gltf_builder::Folder;
+use crate::textures::all_at_once;
 use crate::twins::harness::Rng;
 
 fn small(mut document: Document) -> Document {
@@ -166,6 +168,9 @@ fn specialised_pictures_equal_general_ones_on_the_gpu() {
 fn needing(effect: &str) -> Document {
     let assignments: &[&str] = match effect {
         "base" => &["specular.fresnel=schlick", "base.metalness=0"],
+        "coat" => &["coat.weight=1"],
+        "edge-tint" => &["specular.fresnel=schlick", "specular.edge_tint=0.1,0.9,0.1"],
+        "alpha" => &["geometry.opacity=0.4"],
         "anisotropy" => &["specular.anisotropy=0.8", "specular.roughness=0.5"],
         "emission" => &["emission.strength=2"],
         "transmission" => &["base.metalness=0", "transmission.weight=1"],
@@ -184,6 +189,7 @@ fn needing(effect: &str) -> Document {
     let mut document = of_material(ModelSource::Shaderball, material);
     match effect {
         "depth-of-field" => document.camera.aperture = 0.5,
+        "firefly-clamp" => document.render.firefly_clamp = Some(0.01),
         "emitter-sampling" => document.lighting.area_lights.push(AreaLight::default()),
         _ => {}
     }
@@ -192,9 +198,16 @@ fn needing(effect: &str) -> Document {
 
 #[test]
 fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
+    let folder = Folder::new();
     let switched = |effect: &&glossmith::document::effect::Effect| effect.constant.is_some_and(|c| c.general == 1);
     for effect in EFFECTS.iter().filter(switched) {
-        let right = job(&needing(effect.name));
+        let is_of_texture = effect.name.ends_with("texture") || ["normal-map", "rough-tables"].contains(&effect.name);
+        let document = if is_of_texture {
+            small(all_at_once(&folder))
+        } else {
+            needing(effect.name)
+        };
+        let right = job(&document);
         assert!(right.plan.has(effect.name), "{} is not called for", effect.name);
         let wrong = Job {
             plan: right.plan.clone().with(effect.name, Decision::off("broken on purpose")),

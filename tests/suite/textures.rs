@@ -348,7 +348,7 @@ fn textured_white_is_white_in_the_furnace() {
 }
 
 /// Everything at once: both engines and all strategies.
-fn all_at_once(folder: &Folder) -> Document {
+pub(super) fn all_at_once(folder: &Folder) -> Document {
     let material = json!({
         "normalTexture": {"index": 0, "scale": 0.7},
         "alphaMode": "MASK", "alphaCutoff": 0.4, "emissiveFactor": [0.3, 0.2, 0.1],

@@ -6,7 +6,7 @@ use serde_json::json;
 
 use super::glb::Glb;
 use super::stage::document;
-use super::{HardCase, HardError, Stage};
+use super::{HardCase, HardError, Stage, over_zero};
 use crate::analysis::film::Film;
 use crate::analysis::probe::{NO_HIT, ProbeScene, RayAnswer, RayQuestion};
 use crate::document::Document;
@@ -224,15 +224,15 @@ pub(super) const CASES: &[HardCase] = &[
         danger: "no normal, 0/0 in the weights; thousands of equal boxes take the builder for ever",
         made: "a sphere whose triangles are there three times, with 1000 of no area; white furnace",
         must: "the furnace is white: worst pixel",
-        naive: || format!("a normal of {}", (0.0_f32 / 0.0).to_string().to_lowercase()),
+        naive: || format!("a normal of {}", over_zero(0.0)),
         measure: "error",
         limit: WHITE,
         find: |stage| {
             let mut mesh = shapes::sphere(48, 24);
             let once = mesh.triangles.clone();
-            for i in 0..once.len() {
-                mesh.push_triangle(once[i], 0);
-                mesh.push_triangle([once[i][1], once[i][2], once[i][0]], 0);
+            for [a, b, c] in once {
+                mesh.push_triangle([a, b, c], 0);
+                mesh.push_triangle([b, c, a], 0);
             }
             for i in 0..1000_u32 {
                 let vertex = i % mesh.positions.len() as u32;

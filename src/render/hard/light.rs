@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::stage::document;
-use super::{HardCase, HardError, Stage};
+use super::{HardCase, HardError, Stage, over_zero};
 use crate::document::{Background, Document, MaterialSettings};
 use crate::optics::random::path_state;
 use crate::optics::vector::Vec3;
@@ -45,7 +45,7 @@ pub(super) const CASES: &[HardCase] = &[
         danger: "a density of 0/0: NaN for every sample of the light",
         made: "a sphere under a map of zeros",
         must: "black, nothing dropped: largest pixel and samples dropped",
-        naive: || format!("{}", (0.0_f32 / 0.0).to_string().to_lowercase()),
+        naive: || over_zero(0.0),
         measure: "error",
         limit: 0.0,
         find: |stage| {
