@@ -10,7 +10,7 @@ use glossmith::scene::surface::bent_normal;
 
 use super::bench::SCENE;
 use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};
-use super::lobes::{DENSITY, View, read_view};
+use super::lobes::{View, read_view};
 
 /// Colours that a material multiplies by are about 1.
 const COLOUR: Output = Output::Vector(0.1);
