@@ -12,6 +12,8 @@ use super::tiles::TileGrid;
 const NEIGHBOUR_SHARE: f64 = 0.25;
 /// No tile gets less than this part of the samples that it would get if all were equal.
 const LEAST_SHARE: f64 = 1.0 / 32.0;
+/// By how much a camera ray that meets nothing is cheaper than a ray with the shading where it starts.
+const CHEAPNESS: f64 = 0.8;
 /// A tile's samples grow at most by this factor before its error is looked at again.
 const GROWTH_MAX: f64 = 2.0;
 /// The samples of all tiles grow at least by this factor, so that the last rounds are not many.
@@ -90,7 +92,8 @@ impl Tile {
 fn weight(errors: &[TileError], grid: TileGrid, tile: usize) -> f64 {
     let near = grid.around(tile).map(|near| errors[near].sample_variance);
     let variance = near.fold(0.0, f64::max) * NEIGHBOUR_SHARE;
-    (variance.max(errors[tile].sample_variance) / errors[tile].rays.max(1.0)).sqrt()
+    let cost = (errors[tile].rays - CHEAPNESS).max(1.0 - CHEAPNESS);
+    (variance.max(errors[tile].sample_variance) / cost).sqrt()
 }
 
 fn with_least_weight(mut tiles: Vec<Tile>) -> Vec<Tile> {
