@@ -10,6 +10,7 @@ pub mod error;
 pub mod features;
 pub mod film;
 pub mod fit;
+pub mod halves;
 pub mod histogram;
 pub mod lobe_model;
 pub mod lobe_view;
