@@ -14,6 +14,7 @@ pub mod output;
 pub mod priority;
 pub mod samples;
 mod session;
+pub mod study;
 pub mod thumbnails;
 pub mod turntable;
 pub mod worker;
@@ -21,6 +22,6 @@ mod workshop;
 
 pub use assets::Assets;
 pub use convergence::Measurement;
-pub use engine::{EngineChoice, EngineInfo, Sampler};
+pub use engine::{EngineChoice, EngineInfo, Precision, Sampler};
 pub use output::Layers;
 pub use session::{Progress, Session, SessionError, StopReason};
