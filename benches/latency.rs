@@ -25,7 +25,11 @@ fn main() -> std::io::Result<()> {
         document.render.samples = 1 << 20;
         first_picture(&worker, &document);
         await_kernel(&worker);
-        let name = worker.snapshot().engine.as_ref().map_or_else(String::new, ToString::to_string);
+        let name = worker
+            .snapshot()
+            .engine
+            .as_ref()
+            .map_or_else(String::new, ToString::to_string);
         let drag = (0..STEPS).map(|step| {
             document.materials[0].roughness = 0.1 + 0.8 * step as f32 / STEPS as f32;
             let milliseconds = first_picture(&worker, &document);
@@ -38,7 +42,12 @@ fn main() -> std::io::Result<()> {
             |document| document.materials[0].anisotropy = 0.3,
             |document| document.materials[0].emission_strength = 0.2,
             |document| document.camera.aperture = 0.05,
-            |document| (document.materials[0].metalness, document.materials[0].transmission_weight) = (0.0, 0.1),
+            |document| {
+                (
+                    document.materials[0].metalness,
+                    document.materials[0].transmission_weight,
+                ) = (0.0, 0.1)
+            },
         ];
         let crossed = crossings.iter().map(|cross| {
             cross(&mut document);
@@ -58,7 +67,10 @@ fn first_picture(worker: &Worker, document: &Document) -> f64 {
     let revision = worker.submit(document, Pace::Moving);
     loop {
         let snapshot = worker.snapshot();
-        let is_shown = snapshot.picture.as_ref().is_some_and(|picture| picture.revision == revision);
+        let is_shown = snapshot
+            .picture
+            .as_ref()
+            .is_some_and(|picture| picture.revision == revision);
         if let Some(time) = snapshot.first_picture.filter(|_| is_shown) {
             return 1e3 * time.as_secs_f64();
         }
@@ -80,5 +92,10 @@ fn await_kernel(worker: &Worker) {
 fn report(engine: &str, edit: &str, mut milliseconds: Vec<f64>) {
     milliseconds.sort_by(f64::total_cmp);
     let at = |share: f64| milliseconds[((milliseconds.len() - 1) as f64 * share).round() as usize];
-    println!("| {engine} | {edit} | {:.0} | {:.0} | {:.0} |", at(0.5), at(0.95), at(1.0));
+    println!(
+        "| {engine} | {edit} | {:.0} | {:.0} | {:.0} |",
+        at(0.5),
+        at(0.95),
+        at(1.0)
+    );
 }

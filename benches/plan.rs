@@ -37,7 +37,13 @@ fn scenes() -> Vec<(String, Document)> {
     let mut scenes = vec![("plain metal teapot".to_owned(), plain.clone())];
     scenes.extend(PRESETS.iter().map(|material| {
         let materials = vec![material.clone()];
-        (material.name.clone(), Document { materials, ..plain.clone() })
+        (
+            material.name.clone(),
+            Document {
+                materials,
+                ..plain.clone()
+            },
+        )
     }));
     scenes
 }

@@ -17,6 +17,7 @@ pub mod lobe_view;
 pub mod noise;
 pub mod plot;
 pub mod quadrature;
+pub mod sampling;
 pub mod scatter;
 pub mod sphere_grid;
 pub mod tiles;

@@ -2,6 +2,7 @@
 
 pub mod features;
 pub mod integrator;
+pub mod sampling;
 pub mod scatter;
 
 use std::sync::Arc;

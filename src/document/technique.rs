@@ -325,7 +325,12 @@ impl FromStr for Setting {
         macro_rules! entry {
             ($registry:ident) => {{
                 let all = $registry::ALL;
-                let names = || all.iter().map(|entry| entry.name()).collect::<Vec<_>>().join(", ");
+                let names = || {
+                    all.iter()
+                        .map(|entry| entry.name())
+                        .collect::<Vec<_>>()
+                        .join(", ")
+                };
                 let found = all.iter().copied().find(|entry| entry.name() == value);
                 found.ok_or_else(|| wrong(names()))
             }};
@@ -397,7 +402,10 @@ impl FromStr for Technique {
         if text == AS_IS {
             return Ok(Self::as_is());
         }
-        text.split(',').map(|setting| setting.trim().parse()).collect::<Result<_, _>>().map(Self)
+        text.split(',')
+            .map(|setting| setting.trim().parse())
+            .collect::<Result<_, _>>()
+            .map(Self)
     }
 }
 

@@ -2,10 +2,11 @@
 
 pub mod device;
 mod engine;
-pub mod layout;
 mod kernel_cache;
+pub mod layout;
 mod pipeline;
 mod resources;
+pub mod sampling;
 pub mod scatter;
 pub mod shader;
 mod timer;

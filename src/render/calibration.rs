@@ -88,7 +88,9 @@ fn samples_per_second(engine: &mut Engine, job: &Arc<Job>) -> Option<f64> {
     engine.submit(job.clone()).ok()?;
     // The first sample compiles.
     let tiles = engine.schedule().grid().tiles();
-    engine.step(Duration::from_secs(60), &vec![1; tiles], Precision::Single).ok()?;
+    engine
+        .step(Duration::from_secs(60), &vec![1; tiles], Precision::Single)
+        .ok()?;
     engine.submit(job.clone()).ok()?;
     let begun = Instant::now();
     engine.step(DURATION, &vec![u32::MAX; tiles], Precision::Single).ok()?;

@@ -33,11 +33,7 @@ pub fn with_exact_fresnel(material: &mut MaterialSettings) {
 pub fn with_schlick(material: &mut MaterialSettings) {
     if material.fresnel == Fresnel::Conductor {
         let f0 = |channel: usize| {
-            fresnel_conductor(
-                1.0,
-                f64::from(material.eta[channel]),
-                f64::from(material.k[channel]),
-            ) as f32
+            fresnel_conductor(1.0, f64::from(material.eta[channel]), f64::from(material.k[channel])) as f32
         };
         material.base_color = [0, 1, 2].map(f0);
         material.base_weight = 1.0;

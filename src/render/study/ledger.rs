@@ -190,20 +190,42 @@ fn setting_rivals(document: &Document) -> Vec<Rival> {
     } else {
         try_out("fresnel", "Schlick's Fresnel", "exact", Setting::ExactFresnel(true))
     });
-    let lobe = document.materials.first().map_or(Lobe::Geometric, |material| material.lobe);
+    let lobe = document
+        .materials
+        .first()
+        .map_or(Lobe::Geometric, |material| material.lobe);
     let other = if lobe == Lobe::Ggx { Lobe::Geometric } else { Lobe::Ggx };
     let label = format!("{} lobe", lobe.label());
-    rivals.push(try_out("lobe", &label, &format!("{} of the same look", other.label()), Setting::Lobe(other)));
-    let other = if render.strategy == Strategy::Lobe { Strategy::Mis } else { Strategy::Lobe };
+    rivals.push(try_out(
+        "lobe",
+        &label,
+        &format!("{} of the same look", other.label()),
+        Setting::Lobe(other),
+    ));
+    let other = if render.strategy == Strategy::Lobe {
+        Strategy::Mis
+    } else {
+        Strategy::Lobe
+    };
     let label = format!("Light by {}", render.strategy.label().to_lowercase());
-    rivals.push(try_out("strategy", &label, &other.label().to_lowercase(), Setting::Strategy(other)));
+    rivals.push(try_out(
+        "strategy",
+        &label,
+        &other.label().to_lowercase(),
+        Setting::Strategy(other),
+    ));
     let (label, other) = match render.sequence {
         Sequence::Sobol => ("Sobol's points", Sequence::Independent),
         Sequence::Independent => ("Independent numbers", Sequence::Sobol),
     };
     rivals.push(try_out("sequence", label, other.name(), Setting::Sequence(other)));
     if render.is_adaptive() {
-        rivals.push(try_out("adaptive", "Adaptive sampling", "even", Setting::Adaptive(false)));
+        rivals.push(try_out(
+            "adaptive",
+            "Adaptive sampling",
+            "even",
+            Setting::Adaptive(false),
+        ));
     }
     let fewer = if render.bounces > 4 { 4 } else { 1 };
     if render.bounces > fewer {
@@ -212,7 +234,12 @@ fn setting_rivals(document: &Document) -> Vec<Rival> {
     }
     if render.filter == PixelFilter::Gaussian {
         let boxed = changed(&|document| document.render.filter = PixelFilter::Box);
-        rivals.push(rival("filter", "Gaussian pixel filter".to_owned(), "box".to_owned(), boxed));
+        rivals.push(rival(
+            "filter",
+            "Gaussian pixel filter".to_owned(),
+            "box".to_owned(),
+            boxed,
+        ));
     }
     let general = changed(&|document| {
         let switches = &mut document.render.effects;
@@ -383,7 +410,10 @@ mod tests {
     #[test]
     fn an_entry_is_told_in_plain_words() {
         let text = words(&measured());
-        assert_eq!(text, "Exact Fresnel (instead of Schlick's): +2 % time, changes the picture by 0.3 %");
+        assert_eq!(
+            text,
+            "Exact Fresnel (instead of Schlick's): +2 % time, changes the picture by 0.3 %"
+        );
         let entry = Entry {
             kind: EntryKind::Effect,
             label: "Ground".to_owned(),

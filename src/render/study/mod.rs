@@ -79,7 +79,11 @@ impl<'a, 'b> Steps<'a, 'b> {
             share,
             what: what.into(),
         };
-        if (self.watch)(progress) { Ok(()) } else { Err(StudyError::Stopped) }
+        if (self.watch)(progress) {
+            Ok(())
+        } else {
+            Err(StudyError::Stopped)
+        }
     }
 
     fn finish(&mut self, work: f64) {

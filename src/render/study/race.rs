@@ -139,7 +139,9 @@ impl Race {
     /// The least bias of the chart's axis: half of what could just be told from nothing.
     pub fn least_bias(&self) -> f64 {
         let resolved = self.runners.iter().filter(|runner| !runner.is_unbiased);
-        let least = resolved.map(|runner| runner.charted_bias(0.0)).filter(|bias| *bias > 0.0);
+        let least = resolved
+            .map(|runner| runner.charted_bias(0.0))
+            .filter(|bias| *bias > 0.0);
         (0.5 * least.fold(f64::INFINITY, f64::min)).clamp(1e-5, 1e-2)
     }
 }
@@ -194,9 +196,7 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
     let mut lanes: Vec<Lane> = Vec::new();
     for technique in std::iter::once(&Technique::as_is()).chain(&options.techniques) {
         let changed = without_aim(&technique.apply(document));
-        let is_there = |lane: &Lane| {
-            lane.document == changed && lane.technique.is_double() == technique.is_double()
-        };
+        let is_there = |lane: &Lane| lane.document == changed && lane.technique.is_double() == technique.is_double();
         if lanes.iter().any(is_there) {
             continue;
         }
@@ -251,7 +251,9 @@ fn references_of(
     let mut made: Vec<Arc<Converged>> = Vec::new();
     let mut make = |session: &mut Session, document: &Document, precision: Precision, what: &str| {
         let key = converged(document);
-        let known = made.iter().find(|known| known.document == key && known.precision == precision);
+        let known = made
+            .iter()
+            .find(|known| known.document == key && known.precision == precision);
         if let Some(known) = known {
             steps.finish(2.0);
             return Ok::<_, StudyError>(known.clone());
@@ -259,7 +261,9 @@ fn references_of(
         let what = format!("Reference: {what}");
         let mut go_on = |share: f64| steps.tell(what.clone(), 2.0 * share);
         go_on(0.0)?;
-        let reference = options.cache.reference(session, document, precision, effort, &mut go_on)?;
+        let reference = options
+            .cache
+            .reference(session, document, precision, effort, &mut go_on)?;
         steps.finish(2.0);
         let converged = Arc::new(Converged {
             reference,
@@ -271,11 +275,20 @@ fn references_of(
     };
     // As exact as anyone of them calculates.
     let is_double = lanes.iter().any(|lane| lane.technique.is_double());
-    let best_precision = if is_double { Precision::Double } else { Precision::Single };
+    let best_precision = if is_double {
+        Precision::Double
+    } else {
+        Precision::Single
+    };
     let Some(first) = lanes.first_mut() else {
         return Err(StudyError::Stopped);
     };
-    let best = make(&mut first.session, &most_accurate(document), best_precision, "most accurate")?;
+    let best = make(
+        &mut first.session,
+        &most_accurate(document),
+        best_precision,
+        "most accurate",
+    )?;
     let mut own = Vec::new();
     for lane in lanes {
         let (precision, label) = (precision(&lane.technique), lane.technique.label());
@@ -305,7 +318,9 @@ fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> 
             let slice = options.slice.min(Duration::from_secs_f64(left.max(1e-3)));
             lane.session.step(slice)?;
         }
-        let shares = lanes.iter().map(|lane| lane.session.progress().engine_seconds / options.seconds);
+        let shares = lanes
+            .iter()
+            .map(|lane| lane.session.progress().engine_seconds / options.seconds);
         let done: f64 = shares.map(|share| share.min(1.0)).sum();
         steps.tell(format!("Round {}", round + 1), done)?;
         if is_done {

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::{Machine, StudyError, UNLIMITED};
 use crate::analysis::film::Image;
 use crate::analysis::halves::Halves;
+use crate::document::Document;
 use crate::document::file::save_atomically;
 use crate::document::technique::converged;
-use crate::document::Document;
 use crate::render::{Precision, Session};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
@@ -79,8 +79,13 @@ impl ReferenceCache {
     /// In the folder that `GLOSSMITH_CACHE` names, else in the user's folder for what can be made again.
     pub fn of_user() -> Self {
         let named = std::env::var_os(FOLDER_VARIABLE).filter(|name| !name.is_empty());
-        let of_system =
-            || Some(directories::ProjectDirs::from("", "", "glossmith")?.cache_dir().to_owned());
+        let of_system = || {
+            Some(
+                directories::ProjectDirs::from("", "", "glossmith")?
+                    .cache_dir()
+                    .to_owned(),
+            )
+        };
         match named.map(PathBuf::from).or_else(of_system) {
             Some(folder) => Self::at(folder.join("references")),
             None => Self::none(),
