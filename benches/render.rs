@@ -58,7 +58,11 @@ fn measure(choice: EngineChoice, strategy: Strategy) -> Result<(String, f64, f64
     let seconds = begun.elapsed().as_secs_f64();
     let name = session.engine().to_string();
     let film = session.film()?;
-    Ok((name, film.rays as f64 / seconds, film.samples() as f64 / seconds))
+    Ok((
+        name,
+        film.rays.iter().sum::<f64>() / seconds,
+        film.samples() as f64 / seconds,
+    ))
 }
 
 /// Nanoseconds a sample and a density of each lobe, scalar Rust in f32, the cost of the random numbers taken off.

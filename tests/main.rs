@@ -13,6 +13,8 @@ mod cli_render;
 mod cli_scatter;
 #[path = "suite/cli_support.rs"]
 mod cli_support;
+#[path = "suite/coat.rs"]
+mod coat;
 #[path = "suite/compare.rs"]
 mod compare;
 #[path = "suite/density.rs"]
@@ -63,6 +65,8 @@ mod renders;
 mod statistics;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/textures.rs"]
+mod textures;
 #[path = "suite/tone.rs"]
 mod tone;
 #[path = "suite/tone_twin.rs"]

@@ -29,6 +29,14 @@ fn albedo_place(cosine: f32, eta: f32) -> f32 {
     return select(above, below, square < 0.0);
 }
 
+fn table_lookup(table: u32, nodes: u32, place: f32) -> f32 {
+    let last = f32(nodes) - 1.0;
+    let position = clamp(place, 0.0, 1.0) * last;
+    let low = min(floor(position), last - 1.0);
+    let first = table + u32(low);
+    return tables[first] + (tables[first + 1u] - tables[first]) * (position - low);
+}
+
 fn rough_albedo_lookup(albedo_table: u32, place: f32, roughness: f32) -> vec4f {
     let last_step = f32(ROUGHNESS_NODES) - 1.0;
     let rough_position = clamp(roughness, 0.0, 1.0) * last_step;

@@ -7,6 +7,7 @@
 #import "scene/plan"
 
 const NO_TEXTURE: u32 = 0xffffffffu;
+const MATCHED_NODES: u32 = 17u;
 
 struct MaterialSample {
     wi: vec3f,

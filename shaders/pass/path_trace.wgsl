@@ -1,6 +1,7 @@
 // The path tracer. Twin of src/cpu/integrator.rs.
 #import "optics/material"
 #import "optics/random"
+#import "optics/warp"
 #import "scene/camera"
 #import "scene/environment"
 #import "scene/light"
@@ -12,6 +13,7 @@ const STRATEGY_LIGHT: u32 = 1u;
 const STRATEGY_MIS: u32 = 2u;
 const BACKGROUND_ENVIRONMENT: u32 = 0u;
 const BACKGROUND_TRANSPARENT: u32 = 1u;
+const BACKGROUND_BLURRED: u32 = 3u;
 // Pairs of numbers before the first bounce (pixel, lens) and a bounce (lobe twice, light twice).
 const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
@@ -133,7 +135,13 @@ fn meets_nothing(point: SurfacePoint, wi: vec3f) -> bool {
     return PLAN_INTERREFLECTION == 0u && !point.surface.is_inside && dot(point.surface.normal, wi) > 0.0;
 }
 
-fn camera_background(direction: vec3f, rays: u32) -> PathResult {
+fn camera_background(direction: vec3f, state: RandomState, rays: u32) -> PathResult {
+    if globals.background_kind == BACKGROUND_BLURRED {
+        // The numbers of the first bounce, which there is none of.
+        let disc = globals.background.x * uniform_disc(random_pair(state, FIRST_DIMENSION));
+        let blurred = world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
+        return PathResult(far_radiance(blurred), 1.0, rays);
+    }
     if globals.background_kind == BACKGROUND_ENVIRONMENT {
         return PathResult(far_radiance(direction), 1.0, rays);
     }
@@ -159,7 +167,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         if hit.triangle == NO_HIT {
             if bounce == 0u {
-                return camera_background(ray.direction, rays);
+                return camera_background(ray.direction, state, rays);
             }
             radiance += throughput * far_light(ray.direction, lobe_density, was_mirror);
             break;

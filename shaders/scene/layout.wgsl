@@ -20,6 +20,7 @@ struct Globals {
     image_size: vec2u,
     bounces: u32,
     sequence: u32,
+    // Its colour; where the environment is blurred, the sine of the angle.
     background: vec3f,
     background_kind: u32,
     // Cosine and sine.
@@ -96,6 +97,9 @@ struct Material {
     alpha_cutoff: f32,
     normal_strength: f32,
     has_rough_tables: u32,
+    texture_roughness: f32,
+    roughness_table: u32,
+    reserved: array<u32, 2>,
 }
 
 // One use of a picture.

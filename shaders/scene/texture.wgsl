@@ -79,7 +79,10 @@ fn textured_material(material: Material, uvs: vec4f) -> Material {
     if PLAN_ROUGHNESS_TEXTURES == 1u && material.textures.y != NO_TEXTURE {
         let values = texture_lookup(material.textures.y, uvs);
         at_point.metalness = material.metalness * values.z;
-        at_point.roughness = material.roughness * values.y;
+        at_point.roughness = material.texture_roughness * values.y;
+        if material.roughness_table != NO_TEXTURE {
+            at_point.roughness = table_lookup(material.roughness_table, MATCHED_NODES, at_point.roughness);
+        }
         let rough = material.transmission_roughness + (at_point.roughness - material.roughness);
         at_point.transmission_roughness = clamp(rough, 0.0, 1.0);
     }

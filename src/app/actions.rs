@@ -7,6 +7,7 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 use super::compare::Rival;
 use super::library::Change;
 use super::snapshots::PinChange;
+use crate::document::ImportLobe;
 use crate::document::MaterialSettings;
 use crate::render::EngineChoice;
 use crate::render::display::Shown;
@@ -42,6 +43,8 @@ pub enum Action {
     UseEngine(EngineChoice),
     /// Shows the picture or a map of its error or samples.
     Show(Shown),
+    /// Which lobe the materials of models get that are opened from now on.
+    ImportAs(ImportLobe),
 }
 
 /// Where a command stands in the menus.

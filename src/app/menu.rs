@@ -7,6 +7,7 @@ use super::edits::Edits;
 use super::layout::Pane;
 use super::recent::Recent;
 use super::theme;
+use crate::document::ImportLobe;
 use crate::render::EngineChoice;
 
 /// What is open over the window.
@@ -27,7 +28,13 @@ pub(super) struct MenuAnswer {
     pub(super) reveal: Option<Pane>,
 }
 
-pub(super) fn bar(ui: &mut Ui, edits: &Edits, recent: &mut Recent, actions: &mut Vec<Action>) -> MenuAnswer {
+pub(super) fn bar(
+    ui: &mut Ui,
+    edits: &Edits,
+    recent: &mut Recent,
+    import_lobe: ImportLobe,
+    actions: &mut Vec<Action>,
+) -> MenuAnswer {
     let mut reveal = None;
     egui::MenuBar::new().ui(ui, |ui| {
         for menu in Menu::ALL {
@@ -47,6 +54,7 @@ pub(super) fn bar(ui: &mut Ui, edits: &Edits, recent: &mut Recent, actions: &mut
                 match menu {
                     Menu::View => panes(ui, &mut reveal),
                     Menu::Render => engines(ui, actions),
+                    Menu::File => import_lobes(ui, import_lobe, actions),
                     _ => {}
                 }
             });
@@ -114,6 +122,28 @@ fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
             actions.push(Action::UseEngine(choice));
         }
     }
+}
+
+fn import_lobes(ui: &mut Ui, chosen: ImportLobe, actions: &mut Vec<Action>) {
+    ui.separator();
+    ui.menu_button("Lobe of opened models", |ui| {
+        for (lobe, label, help) in [
+            (
+                ImportLobe::Geometric,
+                "Geometric",
+                "Materials of a model's file get the geometric lobe, its roughness matched to the look of the file's.",
+            ),
+            (
+                ImportLobe::Ggx,
+                "GGX",
+                "Materials of a model's file keep GGX and its roughness.",
+            ),
+        ] {
+            if ui.radio(lobe == chosen, label).on_hover_text(help).clicked() {
+                actions.push(Action::ImportAs(lobe));
+            }
+        }
+    });
 }
 
 /// Shows the sheet that is open.

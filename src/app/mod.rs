@@ -156,6 +156,7 @@ impl App {
             awaited: 0,
             panels: PanelState {
                 resolution: options.resolution.unwrap_or(kept.resolution),
+                import_lobe: kept.import_lobe,
                 library: library::Library::new(options.data.as_ref().map(|data| data.join("materials")), options.cache),
                 snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
                 ..PanelState::default()
@@ -270,7 +271,10 @@ impl App {
     fn adopt_model(&mut self, source: ModelSource, model: &Model) {
         let is_file = matches!(source, ModelSource::File(_));
         let edited = self.desk_material();
-        self.document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
+        let slots = model.slots.iter();
+        self.document.materials = slots
+            .map(|slot| MaterialSettings::from_slot(slot, self.panels.import_lobe))
+            .collect();
         if !is_file && let Some(first) = self.document.materials.first_mut() {
             *first = edited;
         }
@@ -315,6 +319,7 @@ impl App {
             }
             Action::UseModel(source) => self.worker.open_model(source),
             Action::UseEnvironment(source) => self.worker.open_environment(source),
+            Action::ImportAs(lobe) => self.panels.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
             Action::SelectSlot(slot) => {
                 self.panels.slot = slot;
@@ -475,7 +480,9 @@ impl App {
         let answer = egui::Panel::top("menu")
             .frame(bar)
             .show_separator_line(false)
-            .show(ui, |ui| menu::bar(ui, &self.edits, &mut self.recent, actions))
+            .show(ui, |ui| {
+                menu::bar(ui, &self.edits, &mut self.recent, self.panels.import_lobe, actions)
+            })
             .inner;
         if let Some(pane) = answer.reveal {
             layout::reveal(&mut self.layout, pane);
@@ -571,6 +578,7 @@ impl eframe::App for App {
             theme: self.theme,
             layout: Some(layout),
             resolution: self.panels.resolution,
+            import_lobe: self.panels.import_lobe,
             recent: self.recent.paths().to_vec(),
         };
         kept.save(storage);

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::layout::{self, Pane};
 use super::panels::Resolution;
+use crate::document::ImportLobe;
 
 /// Under which the window's state is stored.
 const KEY: &str = "editor";
@@ -71,6 +72,7 @@ pub(super) struct Kept {
     pub(super) theme: ThemePreference,
     pub(super) layout: Option<Tree<Pane>>,
     pub(super) resolution: Resolution,
+    pub(super) import_lobe: ImportLobe,
     /// Files opened and saved, the latest first.
     pub(super) recent: Vec<PathBuf>,
 }
@@ -81,6 +83,7 @@ impl Default for Kept {
             theme: ThemePreference::Dark,
             layout: None,
             resolution: Resolution::default(),
+            import_lobe: ImportLobe::default(),
             recent: Vec::new(),
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::analysis::lobe_view::ViewKind;
 use crate::document::turntable::Turn;
-use crate::document::{PixelFilter, Strategy};
+use crate::document::{ImportLobe, PixelFilter, Strategy};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::random::Sequence;
@@ -34,6 +34,7 @@ parsers! {
     strategy: Strategy;
     tone: ToneCurve;
     sequence: Sequence;
+    import_lobe: ImportLobe;
     lobe: Lobe;
     curve: Curve;
     horizon: Horizon;

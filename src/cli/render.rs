@@ -12,14 +12,14 @@ use super::{names, parse};
 use crate::document::effect::EffectSwitches;
 use crate::document::file::{self, Opened};
 use crate::document::{
-    AreaLight, Background, Document, MaterialSettings, PixelFilter, Strategy, assign, preset, range,
+    AreaLight, Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, assign, preset, range,
 };
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 use crate::render::output::{self, Format};
 use crate::render::{EngineChoice, Progress, Session, SessionError};
-use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
+use crate::scene::{Model, ModelSource};
 
 /// Step of the session between two looks at the clock and the progress bar.
 const STEP: Duration = Duration::from_millis(200);
@@ -67,9 +67,15 @@ pub struct SceneArguments {
     /// What the camera sees where it meets nothing.
     #[arg(long, default_value = "environment", value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
     background: Background,
+    /// Blur the environment where the camera sees it, over this angle; light and reflections stay sharp.
+    #[arg(long, default_value = "0", value_name = "DEG", value_parser = parse::number_in(range::BACKGROUND_BLUR_DEG), allow_negative_numbers = true)]
+    background_blur: f64,
     /// The material of everything: the name of a shipped one, or a .json file. Without it a file's own materials stay.
     #[arg(long, value_name = "FILE|NAME")]
     material: Option<String>,
+    /// The lobe of a file's own materials: geometric, its roughness matched to the look of the file's, or ggx.
+    #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::import_lobe)]
+    import_lobe: ImportLobe,
     /// Set a parameter of every material, such as specular.roughness=0.2. May be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse::assignment)]
     assignments: Vec<String>,
@@ -208,7 +214,7 @@ fn open(path: &Path, document: &mut Document, session: &mut Session) -> anyhow::
         "glb" | "gltf" => {
             document.model = ModelSource::File(path.to_owned());
             let model = session.assets().model(&document.model)?;
-            document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
+            document.materials = slot_materials(&model, ImportLobe::default());
         }
         "hdr" | "exr" => document.lighting.environment = EnvironmentSource::File(path.to_owned()),
         "json" | "png" => match file::open(path)? {
@@ -355,6 +361,12 @@ fn json_report(
     }))
 }
 
+/// The materials that a model's file gives its slots.
+fn slot_materials(model: &Model, lobe: ImportLobe) -> Vec<MaterialSettings> {
+    let slots = model.slots.iter();
+    slots.map(|slot| MaterialSettings::from_slot(slot, lobe)).collect()
+}
+
 impl SceneArguments {
     /// The document that the arguments describe.
     ///
@@ -372,7 +384,7 @@ impl SceneArguments {
             warn(&material.warnings);
             document.materials = vec![material.value];
         } else if matches!(self.model, ModelSource::File(_)) {
-            document.materials = model.slots.iter().map(MaterialSettings::from_slot).collect();
+            document.materials = slot_materials(&model, self.import_lobe);
         }
         for assignment in &self.assignments {
             for material in &mut document.materials {
@@ -384,6 +396,7 @@ impl SceneArguments {
         lighting.rotation_deg = self.environment_rotation as f32;
         lighting.strength = self.environment_strength as f32;
         lighting.background = self.background;
+        lighting.background_blur_deg = self.background_blur as f32;
         lighting.area_lights = self.area_lights.clone();
         let camera = &mut document.camera;
         if let Some([yaw_deg, pitch_deg]) = self.camera_orbit {

@@ -1,10 +1,12 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
 
 use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
+use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::material::{Material, MaterialNumbers, material_albedo, material_evaluate, material_sample};
 use crate::optics::random::{RandomState, path_state, random_pair};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
+use crate::optics::warp::uniform_disc;
 use crate::scene::camera::{Camera, pixel_ray};
 use crate::scene::environment::{
     Environment, environment_density, environment_local_from_world, environment_radiance, environment_sample,
@@ -148,6 +150,7 @@ impl<'a, T: Real> Integrator<'a, T> {
                 geometry: self.geometry,
                 materials: &self.materials,
                 textures: self.textures,
+                tables: self.tables,
                 lights: self.lights,
                 density_per_luminance: self.density_per_luminance,
             };
@@ -265,9 +268,18 @@ impl<'a, T: Real> Integrator<'a, T> {
         !self.is_interreflecting && !point.surface.is_inside && point.surface.normal.dot(wi).to_f64() > 0.0
     }
 
-    fn camera_background(&self, direction: Vec3<T>, rays: u32) -> PathResult<T> {
+    fn camera_background(&self, direction: Vec3<T>, state: RandomState, rays: u32) -> PathResult<T> {
         let (radiance, alpha) = match self.settings.background {
             BackgroundKind::Environment => (self.far_radiance(direction), T::one()),
+            BackgroundKind::Blurred(sine) => {
+                // The numbers of the first bounce, which there is none of.
+                let disc: [T; 2] = uniform_disc(random_pair(state, FIRST_DIMENSION));
+                let disc = disc.map(|x| x * T::from_f64(sine));
+                let height = (T::one() - disc[0] * disc[0] - disc[1] * disc[1]).safe_sqrt();
+                let around = frame_from_normal(direction);
+                let blurred = world_from_local(&around, vec3(disc[0], disc[1], height));
+                (self.far_radiance(blurred), T::one())
+            }
             BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
             BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
         };
@@ -293,7 +305,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             }
             let Some((point, distance)) = met else {
                 if bounce == 0 {
-                    return self.camera_background(direction, rays);
+                    return self.camera_background(direction, state, rays);
                 }
                 radiance += throughput * self.far_light(direction, lobe_density, was_mirror);
                 break;
@@ -301,7 +313,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             let plain = &self.materials[point.slot as usize];
             let textured;
             let material = if plain.is_textured() {
-                textured = textured_material(self.textures, plain, point.uvs);
+                textured = textured_material(self.textures, self.tables, plain, point.uvs);
                 &textured
             } else {
                 plain
@@ -364,7 +376,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         let [origin, direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
         let (point, distance) = self.stop(origin, direction, state, 0, &mut 0)?;
         let plain = &self.materials[point.slot as usize];
-        let material = textured_material(self.textures, plain, point.uvs);
+        let material = textured_material(self.textures, self.tables, plain, point.uvs);
         Some(FeatureSample {
             albedo: material_albedo(&material, self.tables, &point.surface),
             normal: point.surface.frame.normal,

@@ -35,8 +35,17 @@ impl Change {
             camera: old.camera != new.camera,
             size: (render.width, render.height) != (other.width, other.height),
             environment: light.environment != other_light.environment,
-            lighting: (light.rotation_deg, light.strength, light.background)
-                != (other_light.rotation_deg, other_light.strength, other_light.background),
+            lighting: (
+                light.rotation_deg,
+                light.strength,
+                light.background,
+                light.background_blur_deg,
+            ) != (
+                other_light.rotation_deg,
+                other_light.strength,
+                other_light.background,
+                other_light.background_blur_deg,
+            ),
             materials: light.ground_color != other_light.ground_color
                 || !look_alike(old, new)
                 || !shine_alike(&light.area_lights, &other_light.area_lights),

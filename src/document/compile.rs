@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::MaterialSettings;
+use super::import::{MATCHED, ggx_from_geometric};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
 use crate::optics::coat::coat_shape;
 use crate::optics::curve::Curve;
@@ -96,6 +97,9 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         alpha_cutoff: if uses.opacity { slot.alpha_cutoff } else { -1.0 },
         normal_strength: settings.normal_strength,
         has_rough_tables: 0,
+        texture_roughness: settings.roughness,
+        roughness_table: NO_TEXTURE,
+        reserved: [0; 2],
     };
     let is_colored_metal = material.textures[0] != NO_TEXTURE && material.metalness > 0.0;
     material.has_rough_tables = u32::from(material.textures[1] != NO_TEXTURE || is_colored_metal);
@@ -128,6 +132,12 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
     if anywhere.transmits() {
         material.inner_albedo_table = tables.len() as u32;
         tables.extend(remembered_albedo(&material, &curve_table, true).iter());
+    }
+    if material.textures[1] != NO_TEXTURE && settings.lobe == Lobe::Geometric {
+        // A texture's values are meant for GGX.
+        material.texture_roughness = ggx_from_geometric(settings.roughness);
+        material.roughness_table = tables.len() as u32;
+        tables.extend(*MATCHED);
     }
     if material.coat_weight > 0.0 {
         material.coat_table = tables.len() as u32;
@@ -214,6 +224,8 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         opacity_texture: NO_TEXTURE,
         alpha_cutoff: 0.0,
         normal_strength: 0.0,
+        texture_roughness: 0.0,
+        roughness_table: NO_TEXTURE,
         base_color: if is_metallic { material.base_color } else { Vec3::zero() },
         emission: Vec3::zero(),
         rotation_rad: 0.0,

@@ -64,6 +64,8 @@ pub struct Settings {
 pub enum BackgroundKind {
     /// The environment.
     Environment,
+    /// The environment, averaged around each direction; the sine of the largest angle.
+    Blurred(f64),
     /// Nothing: alpha 0.
     Transparent,
     /// A linear colour.

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value as Json};
 
 use super::CustomCurve;
+use super::import::{ImportLobe, geometric_from_ggx};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
@@ -140,8 +141,8 @@ impl MaterialSettings {
     }
 
     /// The material that a model's file gives one of its slots, which looks up the textures that the slot has. What is
-    /// out of range is brought into it.
-    pub fn from_slot(slot: &Slot) -> Self {
+    /// out of range is brought into it. The lobe's roughness is the one that looks like the file's.
+    pub fn from_slot(slot: &Slot, lobe: ImportLobe) -> Self {
         let unit = |x: f32| x.clamp(0.0, 1.0);
         let strength = slot.emission.into_iter().fold(0.0_f32, f32::max);
         let mut material = Self {
@@ -152,6 +153,7 @@ impl MaterialSettings {
             ior: slot.ior.clamp(1.0, 4.0),
             ..Self::default()
         };
+        lobe.apply(&mut material);
         material.textures = TextureUse {
             color: slot.base_color_texture.is_some(),
             roughness: slot.metallic_roughness_texture.is_some(),
@@ -165,7 +167,7 @@ impl MaterialSettings {
         }
         material.coat_weight = unit(slot.coat);
         if slot.coat > 0.0 {
-            material.coat_roughness = unit(slot.coat_roughness);
+            material.coat_roughness = geometric_from_ggx(unit(slot.coat_roughness));
         }
         material.transmission_weight = unit(slot.transmission);
         if slot.attenuation_distance.is_finite() {

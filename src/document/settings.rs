@@ -20,6 +20,8 @@ pub mod range {
     pub const STRENGTH: RangeInclusive<f64> = 0.0..=1e6;
     /// Turn of the environment, degrees.
     pub const ROTATION_DEG: RangeInclusive<f64> = -3600.0..=3600.0;
+    /// Blur of the environment as a background, degrees.
+    pub const BACKGROUND_BLUR_DEG: RangeInclusive<f64> = 0.0..=90.0;
     /// Coordinates and distances of the camera, scene units.
     pub const COORDINATE: RangeInclusive<f64> = -1e9..=1e9;
     /// Distance of the camera from its target, scene units.
@@ -66,6 +68,9 @@ pub struct Lighting {
     pub strength: f32,
     /// What the camera sees beside the model.
     pub background: Background,
+    /// How far the environment is blurred where the camera sees it: the angle around each direction over which it is
+    /// averaged, degrees. Light and reflections stay sharp.
+    pub background_blur_deg: f32,
     /// Albedo of the ground plane, linear RGB in [0, 1].
     pub ground_color: [f32; 3],
     /// Rectangles that shine, at most 8.
@@ -79,6 +84,7 @@ impl Default for Lighting {
             rotation_deg: 0.0,
             strength: 1.0,
             background: Background::default(),
+            background_blur_deg: 0.0,
             ground_color: [0.3; 3],
             area_lights: Vec::new(),
         }
@@ -348,6 +354,11 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
             r::ROTATION_DEG,
         ),
         ("lighting.strength", f64::from(lighting.strength), r::STRENGTH),
+        (
+            "lighting.background_blur_deg",
+            f64::from(lighting.background_blur_deg),
+            r::BACKGROUND_BLUR_DEG,
+        ),
         ("camera.yaw_deg", camera.yaw_deg, r::YAW_DEG),
         ("camera.pitch_deg", camera.pitch_deg, r::PITCH_DEG),
         ("camera.fov_deg", camera.fov_deg, r::FOV_DEG),

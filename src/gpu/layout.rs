@@ -18,9 +18,9 @@ pub struct Globals {
     pub bounces: u32,
     /// Random numbers.
     pub sequence: u32,
-    /// Linear colour of the background.
+    /// Linear colour of the background; where the environment is blurred, the sine of the angle, 0, 0.
     pub background: [f32; 3],
-    /// 0 environment, 1 transparent, 2 colour.
+    /// 0 environment, 1 transparent, 2 colour, 3 environment blurred.
     pub background_kind: u32,
     /// Cosine and sine.
     pub environment_rotation: [f32; 2],
@@ -79,6 +79,7 @@ impl Globals {
             BackgroundKind::Environment => (0, [0.0; 3]),
             BackgroundKind::Transparent => (1, [0.0; 3]),
             BackgroundKind::Color(color) => (2, color),
+            BackgroundKind::Blurred(sine) => (3, [sine as f32, 0.0, 0.0]),
         };
         Self {
             camera: settings.camera.cast(),

@@ -147,6 +147,16 @@ fn fresnel_basis(terms: &FresnelTerms<f64>, cosine: f64) -> [f64; 4] {
     ]
 }
 
+/// A value between the equidistant nodes of a table, the first for 0, the last for 1; linear.
+pub fn table_lookup<T: Real>(tables: &[f32], table: u32, nodes: usize, place: T) -> T {
+    let last = T::from_f64(nodes as f64 - 1.0);
+    let position = place.clamp(T::zero(), T::one()) * last;
+    let low = position.floor().min(last - T::one());
+    let first = table as usize + low.to_f64() as usize;
+    let [left, right] = [first, first + 1].map(|i| T::from_f64(f64::from(tables[i])));
+    left + (right - left) * (position - low)
+}
+
 /// The four integrals at a `place` as in [`albedo_lookup`] and a roughness, linear between the nodes.
 pub fn rough_albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T, roughness: T) -> [T; 4] {
     let node = |value: T, nodes: usize| {

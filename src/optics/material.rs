@@ -18,6 +18,8 @@ use super::vector::Vec3;
 
 /// The number of a texture that is not there.
 pub const NO_TEXTURE: u32 = u32::MAX;
+/// Nodes of the table that has a lobe's roughness for that of GGX.
+pub const MATCHED_NODES: usize = 17;
 
 /// A material with its tables' places. The f32 form is what the GPU reads, byte for byte (`shaders/optics/material.wgsl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -93,9 +95,15 @@ pub struct Material<T> {
     pub normal_strength: T,
     /// 1 where the albedo tables go over the roughness too ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
     pub has_rough_tables: u32,
+    /// The roughness that the texture multiplies: that of GGX where `roughness_table` is there.
+    pub texture_roughness: T,
+    /// Where the table begins that has the lobe's roughness for that of GGX; [`NO_TEXTURE`] where both are the same.
+    pub roughness_table: u32,
+    /// Fills the last 16 bytes.
+    pub reserved: [u32; 2],
 }
 
-// SAFETY: f32 and u32 fields without padding (14 × 16 bytes); any bit pattern is valid.
+// SAFETY: f32 and u32 fields without padding (15 × 16 bytes); any bit pattern is valid.
 unsafe impl bytemuck::Zeroable for Material<f32> {}
 // SAFETY: as above.
 unsafe impl bytemuck::Pod for Material<f32> {}
@@ -141,6 +149,9 @@ impl<T: Real> Material<T> {
             alpha_cutoff: number(self.alpha_cutoff),
             normal_strength: number(self.normal_strength),
             has_rough_tables: self.has_rough_tables,
+            texture_roughness: number(self.texture_roughness),
+            roughness_table: self.roughness_table,
+            reserved: self.reserved,
         }
     }
 

@@ -49,7 +49,10 @@ impl Compiler {
             image_size: [document.render.width, document.render.height],
             camera: camera(&document.camera, &document.render, &geometry),
             background: match document.lighting.background {
-                Background::Environment => BackgroundKind::Environment,
+                Background::Environment => match f64::from(document.lighting.background_blur_deg).to_radians().sin() {
+                    sine if sine > 0.0 => BackgroundKind::Blurred(sine),
+                    _ => BackgroundKind::Environment,
+                },
                 Background::Transparent => BackgroundKind::Transparent,
                 Background::Color(color) => BackgroundKind::Color(color),
             },

@@ -8,7 +8,8 @@ use bytemuck::{Pod, Zeroable};
 
 use super::geometry::{Geometry, Vertex};
 use super::model::{AlphaMode, Filter, Model, Slot, Texture, TextureRef, Wrap};
-use crate::optics::material::{Material, NO_TEXTURE};
+use crate::optics::albedo::table_lookup;
+use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
 use crate::optics::real::Real;
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::{Vec3, vec3};
@@ -19,17 +20,17 @@ const DECODED: usize = 256;
 pub const WORDS_MAX: usize = 1 << 25;
 
 /// [`TextureRecord::wrap`]: from the start again.
-const WRAP_REPEAT: u32 = 0;
+pub const WRAP_REPEAT: u32 = 0;
 /// [`TextureRecord::wrap`]: back and forth.
-const WRAP_MIRRORED: u32 = 1;
+pub const WRAP_MIRRORED: u32 = 1;
 /// [`TextureRecord::wrap`]: the texel at the edge.
-const WRAP_CLAMP: u32 = 2;
+pub const WRAP_CLAMP: u32 = 2;
 /// [`TextureRecord::flags`]: red, green and blue are sRGB codes.
-const IS_SRGB: u32 = 1;
+pub const IS_SRGB: u32 = 1;
 /// [`TextureRecord::flags`]: the nearest texel alone counts.
-const IS_NEAREST: u32 = 2;
+pub const IS_NEAREST: u32 = 2;
 /// [`TextureRecord::flags`]: the second set of texture coordinates is meant.
-const IS_SECOND_SET: u32 = 4;
+pub const IS_SECOND_SET: u32 = 4;
 
 /// One use of a picture. What the GPU reads, byte for byte (`shaders/scene/layout.wgsl`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -397,7 +398,13 @@ pub fn uvs_at<T: Real>(geometry: &Geometry, triangle: usize, weights: [T; 3]) ->
 }
 
 /// The material at a surface point: what its textures say multiplied in.
-pub fn textured_material<T: Real>(textures: &Textures, material: &Material<T>, uvs: [[T; 2]; 2]) -> Material<T> {
+/// `tables` holds all materials' tables.
+pub fn textured_material<T: Real>(
+    textures: &Textures,
+    tables: &[f32],
+    material: &Material<T>,
+    uvs: [[T; 2]; 2],
+) -> Material<T> {
     let mut at_point = *material;
     let [base_color, metallic_roughness, _, emission] = material.textures;
     if base_color != NO_TEXTURE {
@@ -408,7 +415,10 @@ pub fn textured_material<T: Real>(textures: &Textures, material: &Material<T>, u
     if metallic_roughness != NO_TEXTURE {
         let (values, _) = texture_lookup(textures, metallic_roughness, uvs);
         at_point.metalness = material.metalness * values.z;
-        at_point.roughness = material.roughness * values.y;
+        at_point.roughness = material.texture_roughness * values.y;
+        if material.roughness_table != NO_TEXTURE {
+            at_point.roughness = table_lookup(tables, material.roughness_table, MATCHED_NODES, at_point.roughness);
+        }
         // What the refraction is rougher by stays.
         let rough = material.transmission_roughness + (at_point.roughness - material.roughness);
         at_point.transmission_roughness = rough.clamp(T::zero(), T::one());

@@ -4,12 +4,12 @@ use glossmith::document::custom_curve::CustomCurve;
 use glossmith::document::history::History;
 use glossmith::document::parameter::{Kind, Parameter, Value, assign, parameter, parse_color};
 use glossmith::document::{
-    AreaLight, Background, Change, Conductor, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy, compile,
-    preset,
+    AreaLight, Background, Change, Conductor, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter,
+    Strategy, compile, preset,
 };
+use glossmith::optics::albedo::{ALBEDO_LENGTH, albedo_table};
 use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};
 use glossmith::optics::lobe::Lobe;
-use glossmith::optics::material::{ALBEDO_LENGTH, albedo_table};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::ToneCurve;
 use glossmith::scene::environment::EnvironmentSource;
@@ -227,7 +227,7 @@ fn slots_of_a_model_become_materials_in_range() {
         roughness: 0.4,
         ..Slot::neutral("lamp")
     };
-    let material = MaterialSettings::from_slot(&slot);
+    let material = MaterialSettings::from_slot(&slot, ImportLobe::Ggx);
     assert!(is_in_range(&material));
     assert_eq!(
         (material.emission_color, material.emission_strength),

@@ -9,6 +9,7 @@ use glossmith::scene::Vertex;
 use glossmith::scene::camera::Camera;
 use glossmith::scene::environment::AliasCell;
 use glossmith::scene::light::LightCell;
+use glossmith::scene::texture::TextureRecord;
 
 use super::shaders::modules;
 
@@ -55,10 +56,15 @@ fn rust_layouts() -> Vec<Layout> {
         layout!(Material: Material<f32> {
             base_color, metalness, specular_color, specular_weight, eta, ior, k, roughness, emission, anisotropy,
             transmission_tint, transmission_weight, absorption, transmission_roughness, rotation_rad, lobe, curve,
-            horizon, fresnel, curve_table, albedo_table, inner_albedo_table,
+            horizon, fresnel, curve_table, albedo_table, inner_albedo_table, edge_tint, opacity,
+            coat_color, coat_weight, coat_roughness, coat_ior, coat_table, light_luminance, textures,
+            opacity_texture, alpha_cutoff, normal_strength, has_rough_tables, texture_roughness, roughness_table, reserved,
         }),
         layout!(Triangle: Triangle { corners }),
-        layout!(Vertex: Vertex { normal, uv, tangent }),
+        layout!(Vertex: Vertex { normal, uv, second_uv, tangent }),
+        layout!(TextureRecord: TextureRecord {
+            u_from_uv, first_texel, v_from_uv, width, height, wrap, flags,
+        }),
         layout!(Scatter: Scatter {
             wo, roughness, anisotropy, eta, lobe, curve, horizon, seed, first, count,
         }),

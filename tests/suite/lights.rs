@@ -50,6 +50,9 @@ fn shards() -> (Geometry, Vec<Material<f32>>) {
     let (mut materials, _) = glossmith::document::compile(&vec![Default::default(); 3]);
     materials[0].emission = vec3(1.0, 2.0, 3.0);
     materials[1].emission = vec3(0.7, 0.1, 0.0);
+    for material in &mut materials {
+        material.light_luminance = material.emission.luminance();
+    }
     (Geometry::build(&model, false), materials)
 }
 

@@ -7,16 +7,17 @@ use glossmith::document::job::{BackgroundKind, Settings, Strategy};
 use glossmith::document::plan::Plan;
 use glossmith::gpu::layout::Globals;
 use glossmith::gpu::shader::{EXTRA, Linked, link, link_with, module_names};
+use glossmith::optics::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, TOTAL_NODES};
 use glossmith::optics::chord;
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, LONG_TAIL_MAX};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::{ALPHA_MIN, Facets, Horizon, Lobe, MIRROR_WIDTH};
-use glossmith::optics::material::{ALBEDO_NODES, TOTAL_NODES};
+use glossmith::optics::material::{MATCHED_NODES, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::{self, ToneCurve};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::camera::{Camera, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA, PixelFilter};
-use glossmith::scene::{light, surface};
+use glossmith::scene::{light, surface, texture};
 use naga::back::{hlsl, msl, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 
@@ -272,6 +273,15 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("LONG_TAIL_MAX", LONG_TAIL_MAX),
         ("ALBEDO_NODES", ALBEDO_NODES as f64),
         ("TOTAL_NODES", TOTAL_NODES as f64),
+        ("ROUGHNESS_NODES", ROUGHNESS_NODES as f64),
+        ("MATCHED_NODES", MATCHED_NODES as f64),
+        ("NO_TEXTURE", f64::from(NO_TEXTURE)),
+        ("WRAP_REPEAT", f64::from(texture::WRAP_REPEAT)),
+        ("WRAP_MIRRORED", f64::from(texture::WRAP_MIRRORED)),
+        ("WRAP_CLAMP", f64::from(texture::WRAP_CLAMP)),
+        ("IS_SRGB", f64::from(texture::IS_SRGB)),
+        ("IS_NEAREST", f64::from(texture::IS_NEAREST)),
+        ("IS_SECOND_SET", f64::from(texture::IS_SECOND_SET)),
         ("FACETS_NONE", f64::from(Facets::None as u32)),
         ("FACETS_VISIBLE", f64::from(Facets::Visible as u32)),
         ("FACETS_ALL", f64::from(Facets::All as u32)),
@@ -290,6 +300,8 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("FIRST_DIMENSION", f64::from(integrator::FIRST_DIMENSION)),
         ("BOUNCE_DIMENSIONS", f64::from(integrator::BOUNCE_DIMENSIONS)),
         ("BELOW_DIMENSION", f64::from(integrator::BELOW_DIMENSION)),
+        ("OPACITY_DIMENSION", f64::from(integrator::OPACITY_DIMENSION)),
+        ("PASSES_MAX", f64::from(integrator::PASSES_MAX)),
         ("ROULETTE_START", f64::from(integrator::ROULETTE_START)),
         ("RADIANCE_MAX", integrator::RADIANCE_MAX),
     ] {
@@ -309,6 +321,7 @@ const WITHOUT_TWIN: &[&str] = &[
     "LAYER_SPECULAR",
     "LAYER_BASE",
     "LAYER_TRANSMISSION",
+    "LAYER_COAT",
 ];
 
 #[test]

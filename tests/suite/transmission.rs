@@ -6,7 +6,7 @@ use std::time::Duration;
 use glossmith::analysis::film::Film;
 use glossmith::cpu::CpuEngine;
 use glossmith::document::job::Job;
-use glossmith::document::{Background, Document, MaterialSettings, Strategy, compile};
+use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, Strategy, compile};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
@@ -250,21 +250,24 @@ fn slots_that_transmit_become_glass() {
         ior: 1.75,
         ..Slot::default()
     };
-    let material = MaterialSettings::from_slot(&slot);
+    let material = MaterialSettings::from_slot(&slot, ImportLobe::Ggx);
     assert_eq!((material.transmission_weight, material.ior), (0.875, 1.75));
     assert_eq!(
         (material.transmission_color, material.transmission_depth),
         ([0.5, 0.25, 1.0], 0.0)
     );
-    let material = MaterialSettings::from_slot(&Slot {
-        attenuation_color: [0.1, 0.2, 0.3],
-        attenuation_distance: 2.5,
-        ..slot
-    });
+    let material = MaterialSettings::from_slot(
+        &Slot {
+            attenuation_color: [0.1, 0.2, 0.3],
+            attenuation_distance: 2.5,
+            ..slot
+        },
+        ImportLobe::Ggx,
+    );
     assert_eq!(
         (material.transmission_color, material.transmission_depth),
         ([0.1, 0.2, 0.3], 2.5)
     );
-    let opaque = MaterialSettings::from_slot(&Slot::neutral("wall"));
+    let opaque = MaterialSettings::from_slot(&Slot::neutral("wall"), ImportLobe::Ggx);
     assert_eq!((opaque.transmission_weight, opaque.transmission_color), (0.0, [1.0; 3]));
 }

@@ -8,7 +8,7 @@ use super::{Desk, area_lights};
 use crate::app::actions::{Action, Command};
 use crate::app::theme;
 use crate::app::widgets::{self, Name, NumberStyle};
-use crate::document::Background;
+use crate::document::{Background, range};
 use crate::scene::environment::{Environment, EnvironmentSource, thumbnail};
 
 /// Size of the environment's small picture.
@@ -205,6 +205,25 @@ fn background(ui: &mut Ui, desk: &mut Desk<'_>) {
         };
     }
     desk.edited(response, "Background", |document| &mut document.lighting.background);
+    if desk.document.lighting.background == Background::Environment {
+        let style = NumberStyle {
+            range: range::BACKGROUND_BLUR_DEG,
+            bar: Some([0.0, 45.0]),
+            unit: "°",
+            speed: 0.5,
+            decimals: 1,
+        };
+        let blur = &mut desk.document.lighting.background_blur_deg;
+        let name = Name::new(
+            "Background blur",
+            "Blur",
+            "Averages the environment over this angle where it is seen; light and reflections stay sharp.",
+        );
+        let response = widgets::row(ui, name, |ui| widgets::number(ui, blur, &style));
+        desk.edited(response, "Background blur", |document| {
+            &mut document.lighting.background_blur_deg
+        });
+    }
     if let Background::Color(color) = &mut desk.document.lighting.background {
         let name = Name::new(
             "Background colour",

@@ -1,5 +1,7 @@
 //! The selected material: every parameter of the registry, in its group, with the widget that suits its kind.
 
+use std::sync::Arc;
+
 use egui::Ui;
 
 use super::Desk;
@@ -8,6 +10,7 @@ use crate::app::icons::{self, Icon};
 use crate::app::theme;
 use crate::app::widgets::{self, Name, NumberStyle};
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter, Value};
+use crate::scene::{AlphaMode, Model, Texture};
 
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     slots(ui, desk);
@@ -16,7 +19,13 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     name(ui, desk, &mut material);
     ui.add_space(theme::GAP);
     let mut groups: Vec<&'static str> = Vec::new();
-    for parameter in PARAMETERS.iter().filter(|parameter| (parameter.applies)(&before)) {
+    let textures = textures(desk);
+    let is_shown = |parameter: &&Parameter| match parameter.kind {
+        // A texture's switch stands beside its picture, where the model has one.
+        Kind::Toggle => textures.iter().any(|(key, _)| *key == parameter.key),
+        _ => (parameter.applies)(&before),
+    };
+    for parameter in PARAMETERS.iter().filter(is_shown) {
         if !groups.contains(&parameter.group) {
             groups.push(parameter.group);
         }
@@ -24,8 +33,15 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     for group in groups {
         widgets::group(ui, group, |ui| {
             let of_group = PARAMETERS.iter().filter(|parameter| parameter.group == group);
-            for parameter in of_group.filter(|parameter| (parameter.applies)(&before)) {
-                show_parameter(ui, desk, parameter, &mut material);
+            for parameter in of_group.filter(is_shown) {
+                let picture = textures.iter().find(|(key, _)| *key == parameter.key);
+                show_parameter(
+                    ui,
+                    desk,
+                    parameter,
+                    picture.map(|(_, picture)| picture.as_ref()),
+                    &mut material,
+                );
             }
         });
     }
@@ -83,7 +99,81 @@ fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
     });
 }
 
-fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, material: &mut MaterialSettings) {
+/// The pictures of the selected slot, by the keys of the parameters that switch them.
+fn textures(desk: &Desk<'_>) -> Vec<(&'static str, Arc<SlotPicture>)> {
+    let Some(scene) = desk.scene() else { return Vec::new() };
+    let Some(slot) = scene.model.slots.get(desk.state.slot) else {
+        return Vec::new();
+    };
+    let opacity = slot.base_color_texture.filter(|_| slot.alpha_mode != AlphaMode::Opaque);
+    let kinds = [
+        ("base.color_texture", slot.base_color_texture),
+        ("specular.roughness_texture", slot.metallic_roughness_texture),
+        ("emission.color_texture", slot.emissive_texture),
+        ("geometry.opacity_texture", opacity),
+        ("geometry.normal_texture", slot.normal_texture),
+    ];
+    let found = kinds.into_iter().filter_map(|(key, reference)| {
+        let picture = Arc::new(SlotPicture {
+            model: scene.model.clone(),
+            texture: reference?.texture,
+        });
+        Some((key, picture))
+    });
+    found.collect()
+}
+
+/// A picture of a model.
+struct SlotPicture {
+    model: Arc<Model>,
+    texture: usize,
+}
+
+impl SlotPicture {
+    /// Its name, size and a small copy, which is made once for each model.
+    fn show(&self, ui: &mut Ui) {
+        let picture = &self.model.textures[self.texture];
+        let id = egui::Id::unique(("texture", Arc::as_ptr(&self.model) as usize, self.texture));
+        let known = ui.memory(|memory| memory.data.get_temp::<egui::TextureHandle>(id));
+        let handle = known.unwrap_or_else(|| {
+            let handle = ui
+                .ctx()
+                .load_texture(&picture.name, small_copy(picture), egui::TextureOptions::LINEAR);
+            ui.memory_mut(|memory| memory.data.insert_temp(id, handle.clone()));
+            handle
+        });
+        let side = egui::Vec2::splat(theme::ROW_HEIGHT - 2.0);
+        let about = format!("{}\n{} × {}", picture.name, picture.width, picture.height);
+        ui.add(egui::Image::new((handle.id(), side)).alt_text(&picture.name))
+            .on_hover_text(&about);
+        ui.add(egui::Label::new(&picture.name).truncate()).on_hover_text(about);
+    }
+}
+
+/// At most so many texels each way of a picture are shown.
+const SMALL_SIDE: u32 = 64;
+
+/// Every so manieth texel of a picture.
+fn small_copy(picture: &Texture) -> egui::ColorImage {
+    let [width, height] = [picture.width, picture.height].map(|side| side.clamp(1, SMALL_SIDE));
+    let pixels = (0..width * height).map(|i| {
+        let (x, y) = (i % width * picture.width / width, i / width * picture.height / height);
+        let place = 4 * (y * picture.width + x) as usize;
+        match picture.rgba8.get(place..place + 3) {
+            Some(&[r, g, b]) => egui::Color32::from_rgb(r, g, b),
+            _ => egui::Color32::BLACK,
+        }
+    });
+    egui::ColorImage::new([width as usize, height as usize], pixels.collect())
+}
+
+fn show_parameter(
+    ui: &mut Ui,
+    desk: &mut Desk<'_>,
+    parameter: &Parameter,
+    picture: Option<&SlotPicture>,
+    material: &mut MaterialSettings,
+) {
     let full = format!("{} {}", parameter.group, parameter.label.to_lowercase());
     let name = Name {
         full: &full,
@@ -92,7 +182,13 @@ fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, mater
         help: parameter.help,
     };
     let mut value = parameter.get(material);
-    let response = widgets::row(ui, name, |ui| control(ui, parameter, &full, &mut value));
+    let response = widgets::row(ui, name, |ui| {
+        let response = control(ui, parameter, &full, &mut value);
+        if let Some(picture) = picture {
+            picture.show(ui);
+        }
+        response
+    });
     if response.reset {
         value = parameter.default_value();
     }

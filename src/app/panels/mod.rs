@@ -22,7 +22,7 @@ use super::edits::Edits;
 use super::library::Library;
 use super::snapshots::Snapshots;
 use super::widgets::RowResponse;
-use crate::document::{Document, MaterialSettings};
+use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::render::display::Shown;
 use crate::render::worker::{Scene, Snapshot};
 
@@ -44,6 +44,8 @@ pub(super) struct PanelState {
     pub(super) log: Vec<log::Entry>,
     /// The environment's small picture.
     pub(super) thumbnail: lighting::Thumbnail,
+    /// The lobe of the materials of models that are opened.
+    pub(super) import_lobe: ImportLobe,
     /// How large the picture is.
     pub(super) resolution: Resolution,
     /// What of the render the viewport shows.

@@ -6,17 +6,19 @@ use bytemuck::{bytes_of, cast_slice};
 use glossmith::document::job::{BackgroundKind, Settings, Strategy};
 use glossmith::gpu::layout::{Globals, triangles};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
+use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::{Horizon, Lobe};
-use glossmith::optics::material::{Material, albedo_table};
+use glossmith::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Real;
 use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
 use glossmith::scene::light::{LightChoice, Lights};
-use glossmith::scene::{self, Geometry, ModelSource};
+use glossmith::scene::texture::Textures;
+use glossmith::scene::{self, Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 
 use super::harness::Rng;
 
@@ -35,6 +37,7 @@ pub struct Scene {
     pub tables: Vec<f32>,
     /// The teapot and the ground shine.
     pub lights: Lights,
+    pub textures: Textures,
 }
 
 /// The teapot on its ground in the studio, with a material for each combination of lobe, curve and Fresnel model.
@@ -59,12 +62,23 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         let density: Vec<f64> = (0..=CUSTOM_INTERVALS).map(density).collect();
         tables.extend(custom_table([1.0, 1.7, 0.6][curve], &density).unwrap());
     }
+    let textures = Textures::new(&pictures(&mut rng));
     let mut materials = Vec::new();
     for lobe in Lobe::ALL {
         for curve in Curve::ALL {
             for fresnel in Fresnel::ALL {
                 let mut material = random_material(&mut rng, *lobe, *curve, *fresnel);
                 material.curve_table = curves[rng.below(CUSTOM_CURVES)];
+                let mut texture = || {
+                    let record = rng.below(2 * textures.records.len());
+                    if record < textures.records.len() {
+                        record as u32
+                    } else {
+                        NO_TEXTURE
+                    }
+                };
+                material.textures = [(); 4].map(|()| texture());
+                material.opacity_texture = texture();
                 materials.push(material);
             }
         }
@@ -74,7 +88,32 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     materials[1].anisotropy = 0.0;
     materials[0].emission = vec3(0.7, 0.2, 0.4);
     materials[1].emission = vec3(0.001, 0.002, 0.003);
-    for material in &mut materials {
+    // Linear pictures: the first with a normal texture, the second with one that shines.
+    materials[0].textures = [NO_TEXTURE, NO_TEXTURE, 1, NO_TEXTURE];
+    materials[1].textures = [NO_TEXTURE, NO_TEXTURE, NO_TEXTURE, 0];
+    for material in &mut materials[..2] {
+        material.light_luminance = material.emission.luminance();
+        (material.opacity_texture, material.alpha_cutoff) = (NO_TEXTURE, -1.0);
+    }
+    for (number, material) in materials.iter_mut().enumerate() {
+        material.has_rough_tables = u32::from(number % 4 == 3);
+        if number % 3 == 1 {
+            material.roughness_table = tables.len() as u32;
+            tables.extend((0..MATCHED_NODES).map(|node| (node as f32 / 16.0).powf(0.7)));
+        }
+        let coat = Material {
+            metalness: 0.0,
+            ior: material.coat_ior,
+            roughness: material.coat_roughness,
+            ..*material
+        };
+        material.coat_table = tables.len() as u32;
+        tables.extend(albedo_table(&coat.cast(), &tables, ALBEDO_SAMPLES, false));
+        let albedo_table = if number % 4 == 3 {
+            rough_albedo_table
+        } else {
+            albedo_table
+        };
         let albedo = [false, true].map(|is_inside| {
             let table = albedo_table(&material.cast(), &tables, ALBEDO_SAMPLES, is_inside);
             tables.extend(&table);
@@ -90,8 +129,40 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         curves,
         materials,
         tables,
+        textures,
     }
 });
+
+/// Pictures of random texels, looked up in every way.
+fn pictures(rng: &mut Rng) -> Model {
+    let textures = [[5, 3], [8, 8], [1, 4]].map(|[width, height]| Texture {
+        name: format!("{width} × {height}"),
+        width,
+        height,
+        rgba8: (0..4 * width * height).map(|_| rng.bits() as u8).collect(),
+    });
+    let wraps = [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge];
+    let slots = (0..12).map(|number| {
+        let reference = TextureRef {
+            texture: number % 3,
+            uv_set: number / 3 % 2,
+            texture_from_mesh_uv: [(); 6].map(|()| rng.range(-1.5, 1.5)),
+            wrap: [wraps[rng.below(3)], wraps[number % 3]],
+            filter: if number == 7 { Filter::Nearest } else { Filter::Linear },
+        };
+        let mut slot = Slot::neutral("pictures");
+        match number % 4 {
+            3 => slot.base_color_texture = Some(reference),
+            _ => slot.normal_texture = Some(reference),
+        }
+        slot
+    });
+    Model {
+        slots: slots.collect(),
+        textures: textures.into(),
+        ..Model::default()
+    }
+}
 
 impl Scene {
     /// How light samples are shared out.
@@ -150,6 +221,22 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         curve_table: 0,
         albedo_table: 0,
         inner_albedo_table: 0,
+        edge_tint: if rng.chance(0.5) { tint } else { vec3(1.0, 1.0, 1.0) },
+        opacity: rng.range(0.2, 1.0),
+        coat_color: tint,
+        coat_weight: if rng.chance(0.5) { rng.range(0.1, 1.0) } else { 0.0 },
+        coat_roughness: if rng.chance(0.1) { 5e-4 } else { rng.range(0.1, 1.0) },
+        coat_ior: rng.range(1.1, 2.0),
+        coat_table: 0,
+        light_luminance: 0.0,
+        textures: [NO_TEXTURE; 4],
+        opacity_texture: NO_TEXTURE,
+        alpha_cutoff: if rng.chance(0.5) { rng.range(0.1, 0.6) } else { -1.0 },
+        normal_strength: rng.range(-1.0, 2.0),
+        has_rough_tables: 0,
+        texture_roughness: rng.range(0.1, 1.0),
+        roughness_table: NO_TEXTURE,
+        reserved: [0; 2],
     }
 }
 
@@ -180,7 +267,7 @@ impl Bench {
             gpu.device
                 .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries })
         };
-        let scene_entries: Vec<_> = (0..=8).chain([11]).map(scene_entry).collect();
+        let scene_entries: Vec<_> = (0..=8).chain(11..=13).map(scene_entry).collect();
         let rows_entries = [storage_entry(0, true), storage_entry(1, false)];
         let layouts = [layout_of(&scene_entries), layout_of(&rows_entries)];
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
@@ -314,6 +401,7 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
         materials,
         tables,
         lights,
+        textures,
         ..
     } = &*SCENE;
     let cells_size = [environment.cells_width, environment.cells_height];
@@ -335,12 +423,14 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
         gpu.storage("tables", cast_slice(tables))?,
         gpu.storage("cells", cast_slice(&environment.cells))?,
         gpu.storage("light cells", cast_slice(&lights.cells))?,
+        gpu.storage("texture records", cast_slice(&textures.records))?,
+        gpu.storage("texture words", cast_slice(&textures.words))?,
     ];
     let mut resources: Vec<_> = buffers.iter().map(wgpu::Buffer::as_entire_binding).collect();
     resources.insert(0, uniforms.as_entire_binding());
     resources.insert(7, wgpu::BindingResource::TextureView(&map));
     let entries: Vec<_> = (0..=8)
-        .chain([11])
+        .chain(11..=13)
         .zip(resources)
         .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
         .collect();

@@ -3,7 +3,7 @@
 use glossmith::optics::material::Material;
 use glossmith::optics::real::Real;
 use glossmith::optics::vector::vec3;
-use glossmith::scene::light::{light_density, light_sample};
+use glossmith::scene::light::{Emitters, light_density, light_sample};
 
 use super::bench::SCENE;
 use super::harness::{Case, Output, Value, check, inputs, twin};
@@ -34,8 +34,15 @@ fn lights_agree() {
                     let density = density_per_luminance();
                     let scene = &*SCENE;
                     let materials = materials();
-                    let (geometry, xi) = (&scene.geometry, vec3(a, b, c));
-                    let s = light_sample(geometry, &materials, &scene.lights, density, origin, error, xi);
+                    let emitters = Emitters {
+                        geometry: &scene.geometry,
+                        materials: &materials,
+                        textures: &scene.textures,
+                        tables: &scene.tables,
+                        lights: &scene.lights,
+                        density_per_luminance: density,
+                    };
+                    let s = light_sample(&emitters, origin, error, vec3(a, b, c));
                     row.put_vector(s.direction);
                     row.put(s.density);
                     row.put(s.distance);
@@ -57,17 +64,16 @@ fn lights_agree() {
             }),
             Case::new(
                 "light_density",
-                "emission cosine distance",
+                "light_luminance cosine distance",
                 "",
                 twin!(|row| {
-                    let (emission, [cosine, distance]) = (row.vector(), row.numbers());
-                    row.put(light_density(emission, cosine, distance, density_per_luminance()));
+                    let [luminance, cosine, distance] = row.numbers();
+                    row.put(light_density(luminance, cosine, distance, density_per_luminance()));
                 }),
             )
-            .output("light_density(emission, cosine, distance)", Output::Number(0.0))
+            .output("light_density(light_luminance, cosine, distance)", Output::Number(0.0))
             .group("", |rng, _| {
-                let emission = vec3(rng.range(0.1, 2.0), rng.range(0.1, 2.0), rng.range(0.1, 2.0));
-                inputs![emission, rng.range(0.0, 1.0), rng.log_range(1e-3, 100.0)]
+                inputs![rng.range(0.1, 2.0), rng.range(0.0, 1.0), rng.log_range(1e-3, 100.0)]
             }),
         ],
     );

@@ -1,11 +1,12 @@
 //! The layered material with real albedo tables, for every lobe.
 
+use glossmith::optics::albedo::{albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
 use glossmith::optics::lobe::{Lobe, lobe_sample, raw_sample};
 use glossmith::optics::material::{
-    Material, MaterialNumbers, Surface, albedo_lookup, albedo_place, material_evaluate, material_layers,
-    material_sample,
+    Material, MaterialNumbers, Surface, material_evaluate, material_layers, material_sample,
 };
 use glossmith::optics::real::Real;
+use glossmith::scene::surface::bent_normal;
 
 use super::bench::SCENE;
 use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};
@@ -17,19 +18,22 @@ const COLOUR: Output = Output::Vector(0.1);
 fn read_material_and_surface<T: Real>(row: &mut Row<'_, T>) -> (Material<T>, Surface<T>) {
     let material = SCENE.material(row.bits());
     let (frame, normal, wo) = read_view(row);
+    let coat_normal = row.vector();
     let is_inside = row.bits() == 1;
     let surface = Surface {
         frame,
         normal,
         wo,
+        coat_normal,
         is_inside,
     };
     (material, surface)
 }
 
-/// Seen from within one time in two.
-fn side(rng: &mut Rng) -> Value {
-    (rng.bits() & 1).into()
+/// The normal of the coat, not far from the other one; and seen from within one time in two.
+fn coat_and_side(rng: &mut Rng, view: &View) -> [Value; 2] {
+    let normal = bent_normal((view.frame.normal + rng.direction() * 0.3).normalize(), view.wo);
+    [normal.into(), (rng.bits() & 1).into()]
 }
 
 /// A material of this lobe.
@@ -42,14 +46,15 @@ fn random_index(rng: &mut Rng, lobe: Lobe) -> u32 {
     of_lobe[rng.below(of_lobe.len())]
 }
 
-const SURFACE: &str = "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, inside == 1u);";
+const SURFACE: &str =
+    "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, coat_normal, inside == 1u);";
 
 #[test]
 fn materials_agree() {
     let mut layers = Case::new(
         "material_layers",
-        "material tangent bitangent shading normal wo inside",
-        "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, inside == 1u); \
+        "material tangent bitangent shading normal wo coat_normal inside",
+        "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, coat_normal, inside == 1u); \
          let l = material_layers(materials[material], surface);",
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
@@ -58,16 +63,20 @@ fn materials_agree() {
             row.put_vector(layers.transmission);
             row.put(layers.specular_probability);
             row.put(layers.transmission_probability);
+            row.put(layers.coat_probability);
+            row.put_vector(layers.below_coat);
         }),
     )
     .output("l.base", COLOUR)
     .output("l.transmission", COLOUR)
     .output("l.specular_probability", Output::Number(0.05))
-    .output("l.transmission_probability", Output::Number(0.05));
+    .output("l.transmission_probability", Output::Number(0.05))
+    .output("l.coat_probability", Output::Number(0.05))
+    .output("l.below_coat", COLOUR);
     let mut sample = Case::new(
         "material_sample",
-        "material tangent bitangent shading normal wo inside a b c layer d e f wants_density",
-        "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, inside == 1u); \
+        "material tangent bitangent shading normal wo coat_normal inside a b c layer d e f wants_density",
+        "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, coat_normal, inside == 1u); \
          let s = material_sample(materials[material], surface, \
          MaterialNumbers(vec3f(a, b, c), layer, vec3f(d, e, f)), wants_density == 1u);",
         twin!(|row| {
@@ -91,7 +100,7 @@ fn materials_agree() {
     .output("f32(s.is_mirror)", Output::Number(1.0));
     let mut evaluate = Case::new(
         "material_evaluate",
-        "material tangent bitangent shading normal wo inside wi light_density competing",
+        "material tangent bitangent shading normal wo coat_normal inside wi light_density competing",
         SURFACE,
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
@@ -108,18 +117,20 @@ fn materials_agree() {
     for &lobe in Lobe::ALL {
         layers = layers.group(lobe.name(), move |rng, _| {
             let start = [random_index(rng, lobe).into()];
-            [&start[..], &View::random(rng).inputs(), &[side(rng)]].concat()
+            let view = View::random(rng);
+            [&start[..], &view.inputs(), &coat_and_side(rng, &view)].concat()
         });
         sample = sample.group_of(lobe.name(), 16_000, move |rng, _| {
             let xi = [(); 7].map(|()| Value::Unit(rng.unit()));
             let start = [random_index(rng, lobe).into()];
-            let view = View::random(rng).inputs();
-            [&start[..], &view, &[side(rng)], &xi, &[(rng.bits() & 1).into()]].concat()
+            let view = View::random(rng);
+            let sides = coat_and_side(rng, &view);
+            [&start[..], &view.inputs(), &sides, &xi, &[(rng.bits() & 1).into()]].concat()
         });
         evaluate = evaluate.group_of(lobe.name(), 16_000, move |rng, index| {
             let (material, view) = (random_index(rng, lobe), View::random(rng));
-            let (inside, xi) = (side(rng), [(); 3].map(|()| rng.unit()));
-            let is_inside = matches!(inside, Value::Bits(1));
+            let (sides, xi) = (coat_and_side(rng, &view), [(); 3].map(|()| rng.unit()));
+            let is_inside = matches!(sides[1], Value::Bits(1));
             let of_material = &SCENE.materials[material as usize];
             let wi = match index % 4 {
                 0 => raw_sample(&of_material.shape(&SCENE.tables), &view.frame, view.wo, xi),
@@ -131,7 +142,7 @@ fn materials_agree() {
             };
             let competing: f32 = if rng.chance(0.5) { 1.0 } else { 0.0 };
             let last = inputs![wi, rng.log_range(1e-3, 1e3), competing];
-            [&[material.into()][..], &view.inputs(), &[inside], &last].concat()
+            [&[material.into()][..], &view.inputs(), &sides, &last].concat()
         });
     }
     check(
@@ -153,6 +164,36 @@ fn materials_agree() {
             .output("albedo_lookup(materials[material].albedo_table, cosine)", COLOUR)
             .group("", |rng, _| {
                 inputs![rng.below(SCENE.materials.len()) as u32, Value::Unit(rng.unit())]
+            }),
+            Case::new(
+                "rough_albedo",
+                "material cosine roughness",
+                "let integrals = rough_albedo_lookup(materials[material].albedo_table, cosine, roughness); \
+                 let albedo = rough_albedo(material_fresnel_terms(materials[material], false), integrals);",
+                twin!(|row| {
+                    let material: Material<T> = SCENE.material(row.bits());
+                    let [cosine, roughness] = row.numbers();
+                    let integrals = rough_albedo_lookup(&SCENE.tables, material.albedo_table, cosine, roughness);
+                    row.put_numbers(integrals);
+                    row.put_vector(rough_albedo(&material.fresnel_terms(false), integrals));
+                }),
+            )
+            .output("integrals.x", Output::Number(0.1))
+            .output("integrals.y", Output::Number(0.1))
+            .output("integrals.z", Output::Number(0.1))
+            .output("integrals.w", Output::Number(0.1))
+            .output("albedo", COLOUR)
+            .group("", |rng, _| {
+                let rough: Vec<u32> = (0..)
+                    .zip(&SCENE.materials)
+                    .filter(|(_, material)| material.has_rough_tables == 1)
+                    .map(|(number, _)| number)
+                    .collect();
+                inputs![
+                    rough[rng.below(rough.len())],
+                    Value::Unit(rng.unit()),
+                    Value::Unit(rng.unit())
+                ]
             }),
             Case::new(
                 "albedo_place",

@@ -17,5 +17,6 @@ mod lobes;
 mod material;
 mod refraction;
 mod surface;
+mod texture;
 mod tone;
 mod trace;

@@ -42,12 +42,13 @@ fn surfaces_agree() {
                     let triangle = row.bits();
                     let [t, u, v] = row.numbers().map(|x: T| x.to_f64() as f32);
                     let hit = Hit { t, triangle, u, v };
-                    let point = surface_at(&SCENE.geometry, &slots(), &hit, row.vector());
+                    let point = surface_at(&SCENE.geometry, &slots(), &SCENE.textures, &hit, row.vector());
                     let surface = point.surface;
                     let frame = surface.frame;
                     for v in [frame.tangent, frame.bitangent, frame.normal, surface.normal, surface.wo] {
                         row.put_vector(v);
                     }
+                    row.put_vector(surface.coat_normal);
                     row.put_vector(point.position);
                     row.put(point.error);
                     for transmits in [false, true] {
@@ -62,6 +63,7 @@ fn surfaces_agree() {
             .output("p.surface.frame.normal", UNIT)
             .output("p.surface.normal", UNIT)
             .output("p.surface.wo", UNIT)
+            .output("p.surface.coat_normal", UNIT)
             .output("p.position", UNIT)
             .output("p.error", Output::Number(0.0))
             .output("ray_origin(p, -p.surface.frame.normal, false)", UNIT)

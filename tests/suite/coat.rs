@@ -1,0 +1,191 @@
+//! The coat and the edge tint: samples against the density of the whole mixture, energy, engines and strategies.
+
+use glossmith::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
+use glossmith::document::{MaterialSettings, Strategy, assign, compile};
+use glossmith::optics::coat::coat_evaluate;
+use glossmith::optics::frame::frame_from_normal;
+use glossmith::optics::fresnel::{fresnel_metal, fresnel_schlick};
+use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate};
+use glossmith::optics::material::{Material, MaterialNumbers, Surface, material_layers, material_sample};
+use glossmith::optics::random::{Sequence, random_pair, random_state};
+use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::render::EngineChoice;
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+
+use super::renders::{assert_same_picture, document, render, with_strategy};
+
+/// Samples of a case.
+const SAMPLES: u32 = 40_000;
+
+fn material(assignments: &[&str]) -> (Material<f64>, Vec<f32>) {
+    let mut settings = MaterialSettings::default();
+    for assignment in assignments {
+        assign(&mut settings, assignment).unwrap();
+    }
+    let (materials, tables) = compile(&[settings]);
+    (materials[0].cast(), tables)
+}
+
+/// Seen under this angle; the coat's normal 10 degrees off the other one.
+fn surface(angle_deg: f64) -> Surface<f64> {
+    let (sin, cos) = angle_deg.to_radians().sin_cos();
+    let normal = vec3(0.0, 0.0, 1.0);
+    Surface {
+        frame: frame_from_normal(vec3(0.0, 0.17, 1.0).normalize()),
+        normal,
+        wo: vec3(sin, 0.0, cos),
+        coat_normal: normal,
+        is_inside: false,
+    }
+}
+
+/// The density of whatever layer is drawn.
+fn density(material: &Material<f64>, tables: &[f32], surface: &Surface<f64>, wi: Vec3<f64>) -> f64 {
+    let layers = material_layers(material, tables, surface);
+    let of = |shape: &LobeShape<'_, f64>| lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, wi)[1];
+    let lambert = LobeShape {
+        lobe: Lobe::Lambert,
+        horizon: Horizon::Mirror,
+        ..material.shape(tables)
+    };
+    let below = layers.specular_probability * of(&material.shape(tables))
+        + if layers.base_probability() > 0.0 {
+            layers.base_probability() * of(&lambert)
+        } else {
+            0.0
+        };
+    let [_, coat] = coat_evaluate(material, surface, wi);
+    layers.coat_probability * coat + (1.0 - layers.coat_probability) * below
+}
+
+/// The p-value of samples under the mixture's density, the coat's roughness in it times `factor`.
+fn p_value(material: &Material<f64>, tables: &[f32], angle_deg: f64, seed: u32, factor: f64) -> f64 {
+    let surface = surface(angle_deg);
+    let draw = |i: u32| {
+        let state = random_state(17, 0, seed, i, Sequence::Independent);
+        let ([a, b], [c, layer]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
+        let numbers = MaterialNumbers {
+            lobe: [a, b, c],
+            layer,
+            below: [a, b, c],
+        };
+        material_sample(material, tables, &surface, numbers, false).wi
+    };
+    let samples: Vec<_> = (0..SAMPLES).map(|i| Some(draw(i))).collect();
+    let middle = surface.wo.mirrored_about(surface.normal);
+    let grid = PolarGrid::following(
+        frame_from_normal(middle),
+        12,
+        12,
+        samples.iter().flatten().take(4000).copied(),
+    );
+    let mut supposed = *material;
+    supposed.coat_roughness *= factor;
+    let cuts = [surface.normal, surface.frame.normal];
+    test_samples(&grid, &samples, &cuts, |wi| density(&supposed, tables, &surface, wi)).p_value
+}
+
+#[test]
+fn samples_follow_the_density_of_the_mixture() {
+    let coats = ["coat.weight=1", "coat.roughness=0.2"];
+    let cases = [
+        &["base.metalness=0", "specular.roughness=0.5"][..],
+        &["base.metalness=1", "specular.roughness=0.3", "coat.ior=2"],
+        &["base.metalness=0.5", "specular.lobe=ggx", "specular.roughness=0.6"],
+        &["base.metalness=0", "specular.weight=0", "coat.roughness=0.6"],
+    ];
+    let angles = [0.0, 45.0, 80.0];
+    let level = sidak_level(1e-3, cases.len() * angles.len());
+    let mut found = false;
+    for (number, case) in cases.iter().enumerate() {
+        let (material, tables) = material(&[&coats[..], case].concat());
+        for angle_deg in angles {
+            let p = p_value(&material, &tables, angle_deg, number as u32, 1.0);
+            assert!(p > level, "{case:?} at {angle_deg} degrees: p = {p:.1e}");
+            found |= p_value(&material, &tables, angle_deg, number as u32, 1.1) < level;
+        }
+    }
+    assert!(found, "a coat that is rougher than supposed is not found");
+}
+
+/// The coat takes what it reflects from what is below it.
+#[test]
+fn a_coat_over_white_is_white_in_the_furnace() {
+    for choice in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        for assignments in [
+            &["base.metalness=0", "base.color=1,1,1", "coat.roughness=0"][..],
+            &[
+                "base.metalness=0",
+                "base.color=1,1,1",
+                "coat.roughness=0.4",
+                "coat.weight=0.5",
+            ],
+            &[
+                "base.metalness=1",
+                "base.color=1,1,1",
+                "coat.roughness=0.8",
+                "coat.ior=2.2",
+            ],
+            &[
+                "base.metalness=0",
+                "base.color=1,1,1",
+                "transmission.weight=1",
+                "coat.roughness=0.3",
+            ],
+        ] {
+            let all = [&["coat.weight=1", "specular.roughness=0.3"], assignments].concat();
+            let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &all);
+            document.lighting.background = glossmith::document::Background::Transparent;
+            let film = render(choice, &document);
+            let alpha: f64 = film.color.iter().map(|color| color[3]).sum();
+            let value = film.color.iter().map(|color| color[1]).sum::<f64>() / alpha;
+            println!("{choice:?} {assignments:?} {value}");
+            assert!((value - 1.0).abs() < 4e-3, "{choice:?}, {assignments:?}: {value}");
+            assert_eq!(film.dropped, 0);
+        }
+    }
+}
+
+#[test]
+fn engines_and_strategies_agree_on_a_coat() {
+    let assignments = [
+        "base.metalness=0.3",
+        "base.color=0.7,0.1,0.05",
+        "base.weight=0.8",
+        "specular.roughness=0.5",
+        "specular.edge_tint=0.2,0.6,1",
+        "coat.weight=0.9",
+        "coat.roughness=0.15",
+        "coat.color=0.6,0.9,0.8",
+    ];
+    let document = document(ModelSource::Sphere, EnvironmentSource::Studio, &assignments);
+    let cpu = render(EngineChoice::Cpu, &document);
+    assert_eq!(cpu.dropped, 0);
+    for (choice, strategy) in [
+        (EngineChoice::Gpu, Strategy::Mis),
+        (EngineChoice::Cpu, Strategy::Lobe),
+        (EngineChoice::Cpu, Strategy::Light),
+    ] {
+        let other = render(choice, &with_strategy(&document, strategy, 9));
+        assert_same_picture(&cpu, &other, &format!("{choice:?} {strategy:?}"));
+    }
+}
+
+/// At a cosine of 1/7 the tint is what is left of Schlick's reflectance; head-on and at grazing angles nothing changes.
+#[test]
+fn the_edge_tint_is_what_is_left_at_82_degrees() {
+    let (f0, tint) = (vec3(0.9, 0.5, 0.2), vec3(0.3, 0.8, 1.0));
+    let seventh = 1.0 / 7.0;
+    let expected = fresnel_schlick(f0, seventh) * tint;
+    let found = fresnel_metal(f0, tint, seventh);
+    for (a, b) in found.to_f64().into_iter().zip(expected.to_f64()) {
+        assert!((a - b).abs() < 1e-12, "{a} {b}");
+    }
+    assert_eq!(fresnel_metal(f0, tint, 1.0), f0);
+    assert_eq!(fresnel_metal(f0, tint, 0.0), Vec3::splat(1.0));
+    for i in 0..=100 {
+        let value = fresnel_metal(vec3(0.0, 0.04, 1.0), Vec3::zero(), f64::from(i) / 100.0);
+        assert!(value.to_f64().iter().all(|x| (0.0..=1.0).contains(x)), "{value:?}");
+    }
+}

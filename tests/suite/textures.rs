@@ -1,0 +1,435 @@
+//! Textures against analytic look-ups, normal maps and opacity against energy, and both engines against each other.
+
+use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy};
+use glossmith::optics::random::Sequence;
+use glossmith::optics::tone::linear_from_srgb;
+use glossmith::optics::vector::Vec3;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::texture::{Textures, texture_lookup};
+use glossmith::scene::{Model, ModelSource};
+use image::{Rgba, RgbaImage};
+use serde_json::{Value, json};
+
+use super::gltf_builder::{Buffer, Folder, glb, square};
+use super::renders::{assert_same_picture, render, with_strategy};
+
+const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
+
+fn png(picture: &RgbaImage) -> Vec<u8> {
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    picture.write_to(&mut bytes, image::ImageFormat::Png).unwrap();
+    bytes.into_inner()
+}
+
+/// A square of this material whose textures show these pictures, each by one sampler.
+fn textured_square(material: &Value, pictures: &[RgbaImage], sampler: &Value) -> (Buffer, Value) {
+    let (mut buffer, mut document) = square();
+    let second = buffer.floats(&[[0.25, 0.75], [0.75, 0.75], [0.75, 0.25], [0.25, 0.25]]);
+    document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(second);
+    document["meshes"][0]["primitives"][0]["material"] = json!(0);
+    let views: Vec<usize> = pictures.iter().map(|picture| buffer.view(&png(picture))).collect();
+    document["images"] = views
+        .iter()
+        .map(|view| json!({"bufferView": view, "mimeType": "image/png"}))
+        .collect();
+    document["textures"] = (0..pictures.len())
+        .map(|i| json!({"source": i, "sampler": 0}))
+        .collect();
+    document["samplers"] = json!([sampler]);
+    document["materials"] = json!([material]);
+    document["extensionsUsed"] = json!(["KHR_texture_transform"]);
+    document["bufferViews"] = json!(buffer.views);
+    document["accessors"] = json!(buffer.accessors);
+    document["buffers"] = json!([{"byteLength": buffer.bytes.len()}]);
+    (buffer, document)
+}
+
+fn load(material: &Value, pictures: &[RgbaImage], sampler: &Value) -> Model {
+    let (buffer, document) = textured_square(material, pictures, sampler);
+    Folder::new().load_glb(&document, &buffer).expect("loads")
+}
+
+/// Two by two: black, a dark red; a green, white; the alpha of each its own.
+fn four_texels() -> RgbaImage {
+    let texels = [[0, 0, 0, 255], [100, 0, 0, 128], [0, 200, 0, 64], [255, 255, 255, 0]];
+    RgbaImage::from_fn(2, 2, |x, y| Rgba(texels[(x + 2 * y) as usize]))
+}
+
+fn linear(code: u8) -> f64 {
+    linear_from_srgb(Vec3::<f64>::splat(f64::from(code) / 255.0)).x
+}
+
+const CLAMP: u32 = 33071;
+const MIRROR: u32 = 33648;
+const REPEAT: u32 = 10497;
+const NEAREST: u32 = 9728;
+
+/// Red, green, blue and alpha of the base colour's texture.
+fn base_color(sampler: &Value, extension: &Value, uv: [f64; 2], is_srgb: bool) -> [f64; 4] {
+    let kind = if is_srgb {
+        "baseColorTexture"
+    } else {
+        "metallicRoughnessTexture"
+    };
+    let material = json!({"pbrMetallicRoughness": {kind: {"index": 0, "extensions": extension}}});
+    let textures = Textures::new(&load(&material, &[four_texels()], sampler));
+    let slot = textures.slots[0];
+    let index = if is_srgb {
+        slot.base_color
+    } else {
+        slot.metallic_roughness
+    };
+    let (color, alpha) = texture_lookup::<f64>(&textures, index, [uv, [0.0; 2]]);
+    let [r, g, b] = color.to_f64();
+    [r, g, b, alpha]
+}
+
+#[track_caller]
+fn assert_near(found: [f64; 4], expected: [f64; 4]) {
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a - b).abs() < 1e-6, "{found:?}, expected {expected:?}");
+    }
+}
+
+#[test]
+fn colours_are_decoded_before_they_are_filtered() {
+    let clamp = json!({"wrapS": CLAMP, "wrapT": CLAMP});
+    let red = linear(100);
+    assert_near(
+        base_color(&clamp, &json!({}), [0.75, 0.25], true),
+        [red, 0.0, 0.0, 128.0 / 255.0],
+    );
+    let middle = base_color(&clamp, &json!({}), [0.5, 0.25], true);
+    assert_near(middle, [0.5 * red, 0.0, 0.0, (255.0 + 128.0) / 510.0]);
+    assert!((0.5 * red - linear(50)).abs() > 0.02, "the order makes a difference");
+    // Of roughness and metalness the numbers themselves are meant.
+    let plain = base_color(&clamp, &json!({}), [0.25, 0.5], false);
+    assert_near(plain, [0.0, 100.0 / 255.0, 0.0, (255.0 + 64.0) / 510.0]);
+    let all = base_color(&clamp, &json!({}), [0.5, 0.5], false);
+    assert_near(all, [355.0 / 1020.0, 455.0 / 1020.0, 255.0 / 1020.0, 447.0 / 1020.0]);
+}
+
+#[test]
+fn textures_go_on_beyond_their_edges_as_the_sampler_says() {
+    let of = |wrap: u32, uv: [f64; 2]| base_color(&json!({"wrapS": wrap, "wrapT": CLAMP}), &json!({}), uv, false)[0];
+    let red = 100.0 / 255.0;
+    // Along the upper row: black, red.
+    for (wrap, u, expected) in [
+        (REPEAT, 1.25, 0.0),
+        (REPEAT, -0.25, red),
+        (REPEAT, 1.0, 0.5 * red),
+        (REPEAT, 7.75, red),
+        (MIRROR, 1.25, red),
+        (MIRROR, -0.25, 0.0),
+        (MIRROR, 1.0, red),
+        (MIRROR, 0.0, 0.0),
+        (MIRROR, 3.75, 0.0),
+        (MIRROR, 4.75, red),
+        (CLAMP, 1.25, red),
+        (CLAMP, 0.9, red),
+        (CLAMP, -5.0, 0.0),
+        (CLAMP, 0.5, 0.5 * red),
+    ] {
+        let found = of(wrap, [u, 0.0]);
+        assert!(
+            (found - expected).abs() < 1e-5,
+            "wrap {wrap} at {u}: {found}, expected {expected}"
+        );
+    }
+    let nearest = json!({"magFilter": NEAREST, "wrapS": CLAMP, "wrapT": CLAMP});
+    for (u, expected) in [(0.0, 0.0), (0.49, 0.0), (0.51, red), (1.0, red)] {
+        assert_near(
+            [base_color(&nearest, &json!({}), [u, 0.0], false)[0], 0.0, 0.0, 0.0],
+            [expected, 0.0, 0.0, 0.0],
+        );
+    }
+}
+
+/// A quarter turn, half the size, moved: the place that the extension's text gives.
+#[test]
+fn the_texture_transform_moves_turns_and_scales() {
+    let transform = json!({"KHR_texture_transform": {
+        "offset": [0.25, 1.0], "rotation": std::f64::consts::FRAC_PI_2, "scale": [0.5, 1.0]}});
+    let repeat = json!({});
+    for uv in [[0.3, 0.2], [0.8, 0.65]] {
+        let [u, v] = uv;
+        // Offset · rotation · scale: (0.5 u, v) turned to (v, −0.5 u).
+        let expected = base_color(&repeat, &json!({}), [v + 0.25, 1.0 - 0.5 * u], true);
+        assert_near(base_color(&repeat, &transform, uv, true), expected);
+    }
+}
+
+/// Two sets of texture coordinates side by side; a third one is left out and said to be.
+#[test]
+fn a_material_may_look_up_two_sets_of_coordinates() {
+    let material = json!({
+        "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}},
+        "emissiveTexture": {"index": 0, "texCoord": 1},
+        "normalTexture": {"index": 0, "texCoord": 0},
+    });
+    let model = load(&material, &[four_texels()], &json!({}));
+    assert_eq!(model.mesh.second_uvs[0].to_array(), [0.25, 0.75]);
+    let textures = Textures::new(&model);
+    let uvs = [[0.25, 0.25], [0.75, 0.25]];
+    let slot = textures.slots[0];
+    assert!(texture_lookup::<f64>(&textures, slot.base_color, uvs).0.x < 1e-6);
+    assert!((texture_lookup::<f64>(&textures, slot.emission, uvs).0.x - linear(100)).abs() < 1e-6);
+    assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+}
+
+/// Pictures that a GPU can't hold are halved, the largest first, by the mean of the light.
+#[test]
+fn pictures_that_are_too_large_are_halved() {
+    let material = json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}});
+    let stripes = RgbaImage::from_fn(64, 64, |x, _| {
+        Rgba(if x % 2 == 0 { [255, 0, 0, 255] } else { [0, 0, 0, 255] })
+    });
+    let model = load(&material, &[stripes], &json!({}));
+    let whole = Textures::new(&model);
+    assert_eq!((whole.words.len(), whole.warnings.len()), (256 + 64 * 64, 0));
+    let halved = Textures::within(&model, 256 + 2000);
+    assert_eq!(halved.words.len(), 256 + 32 * 32);
+    let warning = halved.warnings.join("");
+    assert!(warning.contains("32 × 32 instead of 64 × 64"), "{warning}");
+    let (color, _) = texture_lookup::<f64>(&halved, halved.slots[0].base_color, [[0.3, 0.4], [0.0; 2]]);
+    assert!(
+        (color.x - 0.5).abs() < 5e-3,
+        "{color:?}: half the light, not half the code"
+    );
+}
+
+/// The square seen head-on, filling the picture.
+fn head_on(folder: &Folder, buffer: &Buffer, json: &Value, light: EnvironmentSource) -> Document {
+    let path = folder.path("square.glb");
+    std::fs::write(&path, glb(json, &buffer.bytes)).unwrap();
+    let model = glossmith::scene::load(&ModelSource::File(path.clone())).unwrap();
+    let mut document = Document {
+        model: ModelSource::File(path),
+        materials: model
+            .slots
+            .iter()
+            .map(|slot| MaterialSettings::from_slot(slot, ImportLobe::Geometric))
+            .collect(),
+        ..Document::default()
+    };
+    document.lighting.environment = light;
+    document.render.width = 32;
+    document.render.height = 32;
+    document.render.samples = 64;
+    document.render.filter = PixelFilter::Box;
+    document.render.sequence = Sequence::Independent;
+    // Unit square: half of it over the distance is the half angle's tangent.
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
+    document.camera.distance = Some(10.0);
+    document.camera.fov_deg = 2.0 * 0.05_f64.atan().to_degrees();
+    document
+}
+
+/// What a texture shows is found where it belongs, upright: the upper left of the picture in that of the square.
+#[test]
+fn a_texture_lies_upright_on_the_square() {
+    let material = json!({"emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 0},
+        "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "roughnessFactor": 1}});
+    let (buffer, json) = textured_square(&material, &[four_texels()], &json!({"magFilter": NEAREST}));
+    for choice in ENGINES {
+        let folder = Folder::new();
+        let mut document = head_on(&folder, &buffer, &json, EnvironmentSource::Furnace);
+        document.lighting.strength = 0.0;
+        let image = render(choice, &document).image();
+        let at = |x: usize, y: usize| image.pixels[y * 32 + x];
+        let near = |a: f32, b: f64| (f64::from(a) - b).abs() < 2e-3;
+        assert!(
+            near(at(8, 8)[0], 0.0) && near(at(24, 8)[0], linear(100)),
+            "{choice:?} {:?}",
+            at(24, 8)
+        );
+        assert!(
+            near(at(8, 24)[1], linear(200)) && near(at(8, 24)[0], 0.0),
+            "{choice:?} {:?}",
+            at(8, 24)
+        );
+        assert!(near(at(24, 24)[2], 1.0), "{choice:?} {:?}", at(24, 24));
+    }
+}
+
+/// The share that is there, and the cut where there is one: alpha 1, 0.5, 0.25 and 0 of the four quarters.
+#[test]
+fn alpha_is_a_share_or_a_cut() {
+    let nearest = json!({"magFilter": NEAREST});
+    let shine = |mode: &str, cutoff: f64| {
+        json!({"emissiveFactor": [1, 1, 1], "alphaMode": mode, "alphaCutoff": cutoff,
+            "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1], "baseColorTexture": {"index": 0}}})
+    };
+    let shares = [1.0, 128.0 / 255.0, 64.0 / 255.0, 0.0];
+    for choice in ENGINES {
+        for (mode, cutoff) in [("BLEND", 0.5), ("MASK", 0.3), ("OPAQUE", 0.5)] {
+            let (buffer, json) = textured_square(&shine(mode, cutoff), &[four_texels()], &nearest);
+            let folder = Folder::new();
+            let mut document = head_on(&folder, &buffer, &json, EnvironmentSource::Furnace);
+            document.lighting.background = Background::Transparent;
+            document.render.bounces = 1;
+            document.lighting.strength = 0.0;
+            let film = render(choice, &document);
+            for (quarter, share) in shares.into_iter().enumerate() {
+                let expected = match mode {
+                    "BLEND" => share,
+                    "MASK" => f64::from(u8::from(share >= cutoff)),
+                    _ => 1.0,
+                };
+                let (left, top) = (16 * (quarter % 2) + 4, 16 * (quarter / 2) + 4);
+                let places = (0..64).map(|i| (top + i / 8) * 32 + left + i % 8);
+                let sums = places
+                    .map(|place| film.color[place])
+                    .fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[3]]);
+                let [emitted, alpha] = sums.map(|sum| sum / (64.0 * 64.0));
+                // 4096 samples.
+                assert!(
+                    (alpha - expected).abs() < 0.04,
+                    "{choice:?} {mode} {quarter}: {alpha}, {expected}"
+                );
+                assert!(
+                    (emitted - expected).abs() < 0.04,
+                    "{choice:?} {mode} {quarter}: {emitted}, {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// Random slopes of up to 45 degrees.
+fn bumps() -> RgbaImage {
+    RgbaImage::from_fn(16, 16, |x, y| {
+        let code = |i: u32| ((x * 37 + y * 101 + i * 71) * 2_654_435_761u32 >> 24) as u8;
+        Rgba([code(1), code(2), 200, 255])
+    })
+}
+
+/// Roughness and metalness that differ from texel to texel.
+fn rough() -> RgbaImage {
+    RgbaImage::from_fn(8, 8, |x, y| Rgba([0, (20 + 30 * x) as u8, (36 * y) as u8, 255]))
+}
+
+/// Roughness alone.
+fn rough_only() -> RgbaImage {
+    RgbaImage::from_fn(8, 8, |x, y| Rgba([0, (10 + 30 * x + y) as u8, 255, 255]))
+}
+
+fn white_bumpy(metallic: f64) -> Value {
+    json!({"normalTexture": {"index": 0},
+        "pbrMetallicRoughness": {"metallicFactor": metallic, "roughnessFactor": 1,
+            "metallicRoughnessTexture": {"index": 1}}})
+}
+
+/// Whatever the textures say, what comes in goes out, and no more: one reflection each, so that none is lost either.
+#[test]
+fn textured_white_is_white_in_the_furnace() {
+    for choice in ENGINES {
+        for metallic in [0.0, 1.0] {
+            for yaw_deg in [0.0, 60.0, 85.0] {
+                let (buffer, json) = textured_square(&white_bumpy(metallic), &[bumps(), rough_only()], &json!({}));
+                let folder = Folder::new();
+                let mut document = head_on(&folder, &buffer, &json, EnvironmentSource::Furnace);
+                document.camera.yaw_deg = yaw_deg;
+                document.lighting.background = Background::Transparent;
+                let film = render(choice, &document);
+                let alpha: f64 = film.color.iter().map(|color| color[3]).sum();
+                let value = film.color.iter().map(|color| color[1]).sum::<f64>() / alpha;
+                println!("{choice:?} {metallic} {yaw_deg} {value}");
+                assert!((value - 1.0).abs() < 4e-3, "{choice:?} {metallic} {yaw_deg}: {value}");
+                assert_eq!(film.dropped, 0);
+            }
+        }
+    }
+}
+
+/// Everything at once: both engines and all strategies.
+fn all_at_once(folder: &Folder) -> Document {
+    let material = json!({
+        "normalTexture": {"index": 0, "scale": 0.7},
+        "alphaMode": "MASK", "alphaCutoff": 0.4, "emissiveFactor": [0.3, 0.2, 0.1],
+        "emissiveTexture": {"index": 2, "texCoord": 1},
+        "pbrMetallicRoughness": {"metallicFactor": 0.8, "roughnessFactor": 0.9,
+            "baseColorFactor": [0.9, 0.8, 0.7, 1], "baseColorTexture": {"index": 2},
+            "metallicRoughnessTexture": {"index": 1}},
+    });
+    let (buffer, json) = textured_square(&material, &[bumps(), rough(), four_texels()], &json!({}));
+    let mut document = head_on(folder, &buffer, &json, EnvironmentSource::Studio);
+    document.ground = true;
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (30.0, 25.0);
+    (document.camera.distance, document.camera.fov_deg) = (Some(3.0), 40.0);
+    document
+}
+
+#[test]
+fn engines_and_strategies_agree_on_textures() {
+    let folder = Folder::new();
+    let mut document = all_at_once(&folder);
+    document.materials[0].opacity = 0.8;
+    let cpu = render(EngineChoice::Cpu, &document);
+    assert_eq!(cpu.dropped, 0);
+    for (choice, strategy) in [
+        (EngineChoice::Gpu, Strategy::Mis),
+        (EngineChoice::Cpu, Strategy::Lobe),
+        (EngineChoice::Cpu, Strategy::Light),
+    ] {
+        let other = render(choice, &with_strategy(&document, strategy, 9));
+        assert_same_picture(&cpu, &other, &format!("{choice:?} {strategy:?}"));
+    }
+    // Sees the test fail where a normal texture is left out.
+    document.materials[0].textures.normal = false;
+    let plain = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Mis, 9));
+    assert!(std::panic::catch_unwind(|| assert_same_picture(&cpu, &plain, "without bumps")).is_err());
+}
+
+/// Half-transparent surfaces in the way of light: the expected share that light sampling takes is what paths find.
+#[test]
+fn shadows_of_half_transparent_surfaces_are_half_dark() {
+    let folder = Folder::new();
+    let mut document = all_at_once(&folder);
+    document.materials[0].textures = Default::default();
+    (document.materials[0].opacity, document.materials[0].emission_strength) = (0.5, 0.0);
+    document.lighting.environment = EnvironmentSource::Sky;
+    let mis = render(EngineChoice::Cpu, &document);
+    for (choice, strategy) in [(EngineChoice::Gpu, Strategy::Mis), (EngineChoice::Cpu, Strategy::Light)] {
+        let other = render(choice, &with_strategy(&document, strategy, 3));
+        assert_same_picture(&mis, &other, &format!("{choice:?} {strategy:?}"));
+    }
+}
+
+/// What no material calls for is compiled out.
+#[test]
+fn the_plan_has_what_the_model_calls_for() {
+    let folder = Folder::new();
+    let all = all_at_once(&folder);
+    let names = [
+        "color-texture",
+        "roughness-texture",
+        "normal-map",
+        "emission-texture",
+        "alpha",
+        "coat",
+        "edge-tint",
+    ];
+    let effects = |document: &Document| {
+        let mut session = Session::open(EngineChoice::Cpu).unwrap();
+        session.submit(document).unwrap();
+        let effects = session.job().unwrap().plan.effects();
+        names.map(|name| effects.contains(&name))
+    };
+    assert_eq!(effects(&all), [true, true, true, true, true, false, false]);
+    let plain = Document {
+        materials: vec![MaterialSettings::default()],
+        ..all.clone()
+    };
+    assert_eq!(
+        effects(&plain),
+        [false; 7],
+        "a material put in the place of the model's is plain"
+    );
+    let mut coated = plain;
+    coated.materials[0].coat_weight = 0.5;
+    coated.materials[0].edge_tint = [1.0, 0.5, 0.5];
+    coated.materials[0].opacity = 0.5;
+    assert_eq!(effects(&coated), [false, false, false, false, true, true, true]);
+}

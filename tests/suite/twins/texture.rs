@@ -1,0 +1,140 @@
+//! Textures: every wrap mode, filter and set of coordinates, and what they do to a material.
+
+use glossmith::optics::material::{Material, NO_TEXTURE};
+use glossmith::optics::real::Real;
+use glossmith::scene::texture::{mapped_normal, opacity_at, texture_lookup, textured_material, wrapped};
+
+use super::bench::SCENE;
+use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};
+
+const SHARE: Output = Output::Number(0.1);
+const COLOUR: Output = Output::Vector(0.1);
+const UVS: &str = "let uvs = vec4f(u, v, second_u, second_v);";
+
+fn uvs<T: Real>(row: &mut Row<'_, T>) -> [[T; 2]; 2] {
+    [row.numbers(), row.numbers()]
+}
+
+fn random_uvs(rng: &mut Rng) -> [Value; 4] {
+    [(); 4].map(|()| rng.range(-3.0, 3.0).into())
+}
+
+fn with_uvs(rng: &mut Rng, first: u32) -> Vec<Value> {
+    [&[first.into()][..], &random_uvs(rng)].concat()
+}
+
+/// A material of the scene, with textures or without.
+fn any_material(rng: &mut Rng) -> u32 {
+    rng.below(SCENE.materials.len()) as u32
+}
+
+#[test]
+fn textures_agree() {
+    let mut lookup = Case::new(
+        "texture_lookup",
+        "index u v second_u second_v",
+        "let t = texture_lookup(index, vec4f(u, v, second_u, second_v));",
+        twin!(|row| {
+            let index = row.bits();
+            let (color, alpha) = texture_lookup(&SCENE.textures, index, uvs(row));
+            row.put_vector(color);
+            row.put(alpha);
+        }),
+    )
+    .output("t.xyz", COLOUR)
+    .output("t.w", SHARE);
+    for index in 0..SCENE.textures.records.len() as u32 {
+        lookup = lookup.group(&format!("record {index}"), move |rng, _| with_uvs(rng, index));
+    }
+    let mut wrap = Case::new(
+        "wrapped",
+        "wrap place",
+        "",
+        twin!(|row| {
+            let wrap = row.bits();
+            row.put(wrapped(row.number(), wrap));
+        }),
+    )
+    .output("wrapped(place, wrap)", SHARE);
+    for mode in 0..3u32 {
+        wrap = wrap.group(&format!("mode {mode}"), move |rng, _| {
+            inputs![mode, rng.range(-4.0, 4.0)]
+        });
+    }
+    check(&["scene/texture"], &[lookup, wrap]);
+}
+
+#[test]
+fn textured_materials_agree() {
+    check(
+        &["scene/texture"],
+        &[
+            Case::new(
+                "textured_material",
+                "material u v second_u second_v",
+                "let m = textured_material(materials[material], vec4f(u, v, second_u, second_v));",
+                twin!(|row| {
+                    let material: Material<T> = SCENE.material(row.bits());
+                    let m = textured_material(&SCENE.textures, &SCENE.tables, &material, uvs(row));
+                    row.put_vector(m.base_color);
+                    row.put_vector(m.transmission_tint);
+                    row.put_vector(m.emission);
+                    row.put_numbers([m.metalness, m.roughness, m.transmission_roughness]);
+                }),
+            )
+            .output("m.base_color", COLOUR)
+            .output("m.transmission_tint", COLOUR)
+            .output("m.emission", COLOUR)
+            .output("m.metalness", SHARE)
+            .output("m.roughness", SHARE)
+            .output("m.transmission_roughness", SHARE)
+            .group("", |rng, _| {
+                let material = any_material(rng);
+                with_uvs(rng, material)
+            }),
+            Case::new(
+                "opacity_at",
+                "material u v second_u second_v",
+                UVS,
+                twin!(|row| {
+                    let material: Material<T> = SCENE.material(row.bits());
+                    row.put(opacity_at(&SCENE.textures, &material, uvs(row)));
+                }),
+            )
+            .output("opacity_at(materials[material], uvs)", SHARE)
+            .group("", |rng, _| {
+                let material = any_material(rng);
+                with_uvs(rng, material)
+            }),
+            Case::new(
+                "mapped_normal",
+                "material normal tangent sign u v second_u second_v",
+                UVS,
+                twin!(|row| {
+                    let material: Material<T> = SCENE.material(row.bits());
+                    let frame = [row.vector(), row.vector()];
+                    let sign = row.number();
+                    row.put_vector(mapped_normal(&SCENE.textures, &material, uvs(row), frame, sign));
+                }),
+            )
+            .output(
+                "mapped_normal(materials[material], uvs, normal, vec4f(tangent, sign))",
+                Output::Vector(1.0),
+            )
+            .group("", |rng, _| {
+                let mapped: Vec<u32> = (0..)
+                    .zip(&SCENE.materials)
+                    .filter(|(_, material)| material.textures[2] != NO_TEXTURE)
+                    .map(|(number, _)| number)
+                    .collect();
+                let start = inputs![
+                    mapped[rng.below(mapped.len())],
+                    rng.direction(),
+                    rng.direction(),
+                    rng.sign()
+                ];
+                [&start[..], &random_uvs(rng)].concat()
+            }),
+        ],
+    );
+}
