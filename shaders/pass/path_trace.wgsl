@@ -237,12 +237,13 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
         sums.rays += f32(path.rays);
         if is_sound(path.radiance) {
             let y = luminance(path.radiance);
-            let is_odd = f32(sample % 2u);
+            let odd = f32(sample % 2u);
             color += vec4f(path.radiance, path.alpha);
             sums.luminance_squared += y * y;
             sums.kept += 1.0;
-            sums.odd_luminance += is_odd * y;
-            sums.odd_kept += is_odd;
+            sums.odd_luminance += odd * y;
+            sums.odd_luminance_squared += odd * y * y;
+            sums.odd_kept += odd;
         } else {
             sums.dropped += 1.0;
         }
@@ -251,6 +252,7 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     statistics[index].luminance_squared += sums.luminance_squared;
     statistics[index].kept += sums.kept;
     statistics[index].odd_luminance += sums.odd_luminance;
+    statistics[index].odd_luminance_squared += sums.odd_luminance_squared;
     statistics[index].odd_kept += sums.odd_kept;
     statistics[index].dropped += sums.dropped;
     statistics[index].rays += sums.rays;

@@ -46,13 +46,14 @@ struct Tile {
     sample_count: u32,
 }
 
-// Sums over the samples of a pixel since the host last took them; scalars, so that the stride is 24 bytes.
+// Sums over the samples of a pixel since the host last took them; scalars, so that the stride is 28 bytes.
 struct PixelStatistics {
     luminance_squared: f32,
     // Samples in the sums.
     kept: f32,
     // The same of the odd samples alone: one of two independent halves.
     odd_luminance: f32,
+    odd_luminance_squared: f32,
     odd_kept: f32,
     // Samples that were not sound.
     dropped: f32,

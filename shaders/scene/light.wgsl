@@ -38,10 +38,7 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     var radiance = material.emission;
     if PLAN_EMISSION_TEXTURES == 1u || PLAN_ALPHA == 1u {
         let uvs = uvs_at(vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w), weights);
-        radiance = textured_material(material, uvs).emission;
-        if material_has_holes(material) {
-            radiance *= opacity_at(material, uvs);
-        }
+        radiance = emission_at(material, uvs);
     }
     let cosine = abs(dot(normal, direction));
     let error = position_error(p0, p1, p2, weights, normal) + origin_error + POSITION_ERROR * distance;

@@ -24,17 +24,41 @@ fn bent_normal(shading: vec3f, wo: vec3f) -> vec3f {
     return select(shading, bent, lean < VIEW_COSINE_MIN);
 }
 
-fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
+// Where a ray met the geometry.
+struct HitPlace {
+    position: vec3f,
+    // How far off the true place `position` may be, along the normal.
+    error: f32,
+    // The geometric normal, on the side of the ray's origin.
+    normal: vec3f,
+    is_back: bool,
+}
+
+fn hit_place(hit: Hit, direction: vec3f) -> HitPlace {
     let triangle = triangles[hit.triangle];
     let p0 = bitcast<vec3f>(triangle.corners[0].xyz);
     let p1 = bitcast<vec3f>(triangle.corners[1].xyz);
     let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
-    let w = 1.0 - hit.u - hit.v;
-    let position = p0 * w + p1 * hit.u + p2 * hit.v;
-    let wo = -direction;
-    let out = normalize_or(cross(p1 - p0, p2 - p0), wo);
-    let is_back = dot(out, wo) < 0.0;
+    let weights = vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
+    let position = p0 * weights.x + p1 * weights.y + p2 * weights.z;
+    let out = normalize_or(cross(p1 - p0, p2 - p0), -direction);
+    let is_back = dot(out, -direction) < 0.0;
     let normal = select(out, -out, is_back);
+    return HitPlace(position, position_error(p0, p1, p2, weights, normal), normal, is_back);
+}
+
+// Where a ray goes on that a surface did not stop.
+fn passed_origin(hit: Hit, direction: vec3f) -> vec3f {
+    let place = hit_place(hit, direction);
+    return place.position - place.normal * place.error;
+}
+
+fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
+    let triangle = triangles[hit.triangle];
+    let w = 1.0 - hit.u - hit.v;
+    let place = hit_place(hit, direction);
+    let normal = place.normal;
+    let wo = -direction;
     let a = vertices[triangle.corners[0].w];
     let b = vertices[triangle.corners[1].w];
     let c = vertices[triangle.corners[2].w];
@@ -65,8 +89,8 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     if PLAN_ANISOTROPY == 1u && materials[slot].anisotropy != 0.0 {
         frame = frame_from_tangent(shading, tangent.xyz, materials[slot].rotation_rad);
     }
-    let error = position_error(p0, p1, p2, vec3f(w, hit.u, hit.v), normal);
-    return SurfacePoint(Surface(frame, normal, wo, coat_normal, is_back), position, error, slot, uvs);
+    let surface = Surface(frame, normal, wo, coat_normal, place.is_back);
+    return SurfacePoint(surface, place.position, place.error, slot, uvs);
 }
 
 fn looks_up_textures() -> bool {

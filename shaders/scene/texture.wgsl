@@ -70,14 +70,25 @@ fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
 }
 
 fn textured_material(material: Material, uvs: vec4f) -> Material {
+    if PLAN_COLOR_TEXTURES + PLAN_ROUGHNESS_TEXTURES + PLAN_EMISSION_TEXTURES == 0u {
+        return material;
+    }
+    // A loop, so that the look-up's code is there once.
+    var found = array<vec4f, 3>(vec4f(1.0), vec4f(1.0), vec4f(1.0));
+    let indices = array<u32, 3>(material.textures.x, material.textures.y, material.textures.w);
+    for (var kind = 0u; kind < 3u; kind++) {
+        let index = indices[kind];
+        if index != NO_TEXTURE {
+            found[kind] = texture_lookup(index, uvs);
+        }
+    }
     var at_point = material;
-    if PLAN_COLOR_TEXTURES == 1u && material.textures.x != NO_TEXTURE {
-        let color = texture_lookup(material.textures.x, uvs).xyz;
-        at_point.base_color = material.base_color * color;
-        at_point.transmission_tint = material.transmission_tint * color;
+    if PLAN_COLOR_TEXTURES == 1u {
+        at_point.base_color = material.base_color * found[0].xyz;
+        at_point.transmission_tint = material.transmission_tint * found[0].xyz;
     }
     if PLAN_ROUGHNESS_TEXTURES == 1u && material.textures.y != NO_TEXTURE {
-        let values = texture_lookup(material.textures.y, uvs);
+        let values = found[1];
         at_point.metalness = material.metalness * values.z;
         at_point.roughness = material.texture_roughness * values.y;
         if material.roughness_table != NO_TEXTURE {
@@ -86,10 +97,22 @@ fn textured_material(material: Material, uvs: vec4f) -> Material {
         let rough = material.transmission_roughness + (at_point.roughness - material.roughness);
         at_point.transmission_roughness = clamp(rough, 0.0, 1.0);
     }
-    if PLAN_EMISSION_TEXTURES == 1u && material.textures.w != NO_TEXTURE {
-        at_point.emission = material.emission * texture_lookup(material.textures.w, uvs).xyz;
+    if PLAN_EMISSION_TEXTURES == 1u {
+        at_point.emission = material.emission * found[2].xyz;
     }
     return at_point;
+}
+
+// What a surface point emits, its holes left out.
+fn emission_at(material: Material, uvs: vec4f) -> vec3f {
+    var share = 1.0;
+    if material_has_holes(material) {
+        share = opacity_at(material, uvs);
+    }
+    if PLAN_EMISSION_TEXTURES == 0u || material.textures.w == NO_TEXTURE {
+        return material.emission * share;
+    }
+    return material.emission * texture_lookup(material.textures.w, uvs).xyz * share;
 }
 
 // The share of light that a surface point stops.

@@ -29,7 +29,7 @@ fn transmittance(start: vec3f, direction: vec3f, distance: f32, rays: ptr<functi
             break;
         }
         left -= hit.t;
-        origin = ray_origin(surface_at(hit, direction), direction, true);
+        origin = passed_origin(hit, direction);
     }
     return 0.0;
 }
@@ -57,7 +57,7 @@ fn stop(ray: Ray, state: RandomState, bounce: u32, rays: ptr<function, u32>) -> 
         }
         // Uniform again, given that the surface did not stop the ray.
         xi = (xi - opacity) / max(1.0 - opacity, 1e-20);
-        origin = ray_origin(surface_at(hit, ray.direction), ray.direction, true);
+        origin = passed_origin(hit, ray.direction);
     }
     return Hit(0.0, NO_HIT, 0.0, 0.0);
 }

@@ -1,5 +1,7 @@
 //! The picture as sums: what the engines accumulate and everything shown is read from.
 
+use rayon::prelude::*;
+
 /// Sums over the samples of each pixel, in f64: they do not stall after millions of samples.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Film {
@@ -11,9 +13,9 @@ pub struct Film {
     pub color: Vec<[f64; 4]>,
     /// Sum of the squared luminance, and the number of samples in the sums.
     pub statistics: Vec<[f64; 2]>,
-    /// Sum of the luminance, and the number, of the odd ones among these samples: one of two independent halves, see
-    /// [`crate::optics::random::path_state`].
-    pub odd: Vec<[f64; 2]>,
+    /// Sums of the luminance and of its square, and the number, of the odd ones among these samples: one of two
+    /// independent halves, see [`crate::optics::random::path_state`].
+    pub odd: Vec<[f64; 3]>,
     /// Rays traced for each pixel: what it cost.
     pub rays: Vec<f64>,
     /// Samples left out because they were not finite or negative.
@@ -34,7 +36,7 @@ impl Film {
             height,
             color: vec![[0.0; 4]; pixels],
             statistics: vec![[0.0; 2]; pixels],
-            odd: vec![[0.0; 2]; pixels],
+            odd: vec![[0.0; 3]; pixels],
             rays: vec![0.0; pixels],
             dropped: 0,
         }
@@ -50,7 +52,8 @@ impl Film {
         self.statistics[pixel][1] += 1.0;
         if sample % 2 == 1 {
             self.odd[pixel][0] += luminance;
-            self.odd[pixel][1] += 1.0;
+            self.odd[pixel][1] += luminance * luminance;
+            self.odd[pixel][2] += 1.0;
         }
     }
 
@@ -92,7 +95,7 @@ impl Film {
     /// Mean luminance of each pixel; NaN where there is no sample.
     pub fn luminance(&self) -> Vec<f64> {
         let mean = |(sum, s): (&[f64; 4], &[f64; 2])| luminance(*sum) / s[1];
-        self.color.iter().zip(&self.statistics).map(mean).collect()
+        self.color.par_iter().zip(&self.statistics).map(mean).collect()
     }
 
     /// By how many standard deviations the luminance summed over the whole picture differs from that of another render
@@ -115,7 +118,7 @@ impl Film {
             let mean = luminance(*sum) / n;
             ((s[0] / n - mean * mean) / (n - 1.0)).max(0.0)
         };
-        self.color.iter().zip(&self.statistics).map(of_pixel).collect()
+        self.color.par_iter().zip(&self.statistics).map(of_pixel).collect()
     }
 }
 

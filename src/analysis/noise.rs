@@ -7,6 +7,8 @@
 //! numbers, is the cross-check: it agrees for independent numbers and overstates the error of Sobol's.
 //! docs/MATHEMATICS.md, section 8, tells the whole.
 
+use rayon::prelude::*;
+
 use super::film::{Film, luminance};
 use super::tiles::TileGrid;
 
@@ -35,7 +37,7 @@ pub struct Noise {
 /// Variance of the mean luminance of each pixel from the difference of its halves: unbiased, with one degree of freedom
 /// each. NaN where a half has no sample.
 pub fn half_difference_variances(film: &Film) -> Vec<f64> {
-    let of_pixel = |((sum, [_, n]), [odd, odd_n]): ((&[f64; 4], &[f64; 2]), &[f64; 2])| {
+    let of_pixel = |((sum, [_, n]), [odd, _, odd_n]): ((&[f64; 4], &[f64; 2]), &[f64; 3])| {
         let even_n = n - odd_n;
         if *odd_n < 1.0 || even_n < 1.0 {
             return f64::NAN;
@@ -43,7 +45,7 @@ pub fn half_difference_variances(film: &Film) -> Vec<f64> {
         let difference = (luminance(*sum) - odd) / even_n - odd / odd_n;
         difference * difference * even_n * odd_n / (n * n)
     };
-    let pixels = film.color.iter().zip(&film.statistics).zip(&film.odd);
+    let pixels = film.color.par_iter().zip(&film.statistics).zip(&film.odd);
     pixels.map(of_pixel).collect()
 }
 
@@ -64,7 +66,7 @@ pub fn noise(film: &Film) -> Option<Noise> {
             0.0
         }
     };
-    let freedom = (sum * sum / sum_of_squared_variances(&variances, film.width as usize)).max(2.0);
+    let freedom = (sum * sum / sum_of_squared_variances(film, &variances)).max(2.0);
     let factor = (BAND / (freedom - 1.0).sqrt()).exp();
     let value = relative(sum);
     Some(Noise {
@@ -76,21 +78,42 @@ pub fn noise(film: &Film) -> Option<Noise> {
     })
 }
 
-/// Σ V² from estimates of V with one degree of freedom: the square of one would be three times too large, and far more
-/// where samples are skewed. The product with the mean of its neighbours, which are independent, is not.
-fn sum_of_squared_variances(variances: &[f64], width: usize) -> f64 {
-    let sums = box_sums(variances, width, 1);
-    let product = |(v, [sum, count]): (&f64, &[f64; 2])| {
-        if v.is_nan() {
-            0.0
-        } else if *count > 1.0 {
-            v * (sum - v) / (count - 1.0)
-        } else {
-            v * v
+/// Σ V² over the pixels. The square of a pixel's half difference would be three times too large, and far more where
+/// samples are skewed. The product of the two halves' own spreads is not, as the halves are independent; the gain of the
+/// sequence around the pixel makes variances of means of them.
+fn sum_of_squared_variances(film: &Film, variances: &[f64]) -> f64 {
+    let width = film.width as usize;
+    let gains = gains(film, variances, width);
+    let product = |pixel: usize| -> f64 {
+        let ([squares, n], [odd, odd_squares, odd_n]) = (film.statistics[pixel], film.odd[pixel]);
+        let even = luminance(film.color[pixel]) - odd;
+        let even_n = n - odd_n;
+        if even_n < 2.0 || odd_n < 2.0 {
+            // Too few for spreads: a normal distribution's fourth moment is three times its squared variance.
+            return if variances[pixel].is_nan() {
+                0.0
+            } else {
+                variances[pixel].powi(2) / 3.0
+            };
         }
+        let spread = |sum: f64, squares: f64, n: f64| ((squares - sum * sum / n) / (n - 1.0)).max(0.0);
+        let of_halves = spread(even, squares - odd_squares, even_n) * spread(odd, odd_squares, odd_n);
+        of_halves * (gains[pixel] / n).powi(2)
     };
-    let total: f64 = variances.iter().zip(&sums).map(product).sum();
+    let total: f64 = (0..variances.len()).into_par_iter().map(product).sum();
     total.max(f64::MIN_POSITIVE)
+}
+
+/// Around each pixel the variance of means by the halves' difference over that by the samples' spread: 1 for independent
+/// numbers, below where the sequence gains; 0 where there is no spread.
+fn gains(film: &Film, variances: &[f64], width: usize) -> Vec<f64> {
+    let spread: Vec<f64> = film.variance_of_mean().into_iter().map(finite_or_nan).collect();
+    let halves = box_sums(variances, width, MAP_RADIUS);
+    let around = box_sums(&spread, width, MAP_RADIUS);
+    let gain = |(halves, around): (&[f64; 2], &[f64; 2])| {
+        if around[0] > 0.0 { halves[0] / around[0] } else { 0.0 }
+    };
+    halves.iter().zip(&around).map(gain).collect()
 }
 
 /// For each pixel sum and number of the numbers in the square around it; NaN counts as missing.
@@ -98,21 +121,18 @@ fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64; 2]> {
     let height = values.len() / width.max(1);
     let entry = |value: f64| if value.is_nan() { [0.0; 2] } else { [value, 1.0] };
     let add = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a + c, b + d];
-    let mut across = Vec::with_capacity(values.len());
-    for row in values.chunks_exact(width.max(1)) {
-        for x in 0..width {
-            let window = &row[x.saturating_sub(radius)..(x + radius + 1).min(width)];
-            across.push(window.iter().map(|value| entry(*value)).fold([0.0; 2], add));
-        }
-    }
-    let mut sums = Vec::with_capacity(values.len());
-    for y in 0..height {
-        let rows = y.saturating_sub(radius)..(y + radius + 1).min(height);
-        for x in 0..width {
-            sums.push(rows.clone().map(|row| across[row * width + x]).fold([0.0; 2], add));
-        }
-    }
-    sums
+    let windows = |row: &[f64]| -> Vec<[f64; 2]> {
+        let window = |x: usize| &row[x.saturating_sub(radius)..(x + radius + 1).min(width)];
+        let sum = |x: usize| window(x).iter().map(|value| entry(*value)).fold([0.0; 2], add);
+        (0..width).map(sum).collect()
+    };
+    let across: Vec<_> = values.par_chunks_exact(width.max(1)).map(windows).collect();
+    let down = |y: usize| {
+        let rows = &across[y.saturating_sub(radius)..(y + radius + 1).min(height)];
+        let sum = |x: usize| rows.iter().map(|row| row[x]).fold([0.0; 2], add);
+        (0..width).map(sum).collect::<Vec<_>>()
+    };
+    (0..height).into_par_iter().flat_map_iter(down).collect()
 }
 
 /// Standard error of each pixel's luminance over the picture's mean luminance: their root mean square is about the
@@ -122,15 +142,12 @@ pub fn relative_errors(film: &Film) -> Vec<f32> {
     let width = film.width as usize;
     let luminances = film.luminance();
     let mean = luminances.iter().filter(|y| y.is_finite()).sum::<f64>() / luminances.len().max(1) as f64;
-    let spread: Vec<f64> = film.variance_of_mean().into_iter().map(finite_or_nan).collect();
-    let halves = box_sums(&half_difference_variances(film), width, MAP_RADIUS);
-    let around = box_sums(&spread, width, MAP_RADIUS);
-    let error = |((variance, halves), around): ((&f64, &[f64; 2]), &[f64; 2])| {
-        let gain = halves[0] / around[0];
+    let gains = gains(film, &half_difference_variances(film), width);
+    let error = |(variance, gain): (f64, &f64)| {
         let error = (variance * gain).sqrt() / mean;
         if error.is_finite() { error as f32 } else { 0.0 }
     };
-    spread.iter().zip(&halves).zip(&around).map(error).collect()
+    film.variance_of_mean().into_iter().zip(&gains).map(error).collect()
 }
 
 fn finite_or_nan(value: f64) -> f64 {

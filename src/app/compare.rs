@@ -300,11 +300,6 @@ impl App {
         Some(self.panels.compare.compared()?.rms)
     }
 
-    /// Changes how A and B are shown.
-    pub fn set_compare_view(&mut self, view: View) {
-        self.panels.compare.view = view;
-    }
-
     /// Compares with something.
     pub(super) fn compare_with(&mut self, rival: Rival) {
         self.panels.compare.rival = rival;

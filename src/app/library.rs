@@ -68,6 +68,7 @@ impl Library {
         Self {
             folder,
             cache,
+            hold: Arc::new(AtomicBool::new(true)),
             ..Self::default()
         }
     }

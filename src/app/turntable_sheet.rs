@@ -1,6 +1,6 @@
 //! The turntable: what turns and how often it is taken, then a renderer of its own beside the window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -136,7 +136,11 @@ impl TurntableSheet {
         let help =
             "For frame-0001.png, frame-0002.png and so on; made where it is not there. What is there is replaced.";
         widgets::row(ui, widgets::Name::new("Turntable folder", "Folder", help), |ui| {
-            ui.add(egui::TextEdit::singleline(&mut self.folder).desired_width(f32::INFINITY))
+            ui.add(
+                egui::TextEdit::singleline(&mut self.folder)
+                    .desired_width(f32::INFINITY)
+                    .margin(egui::vec2(6.0, 4.0)),
+            )
         });
         ui.add_space(theme::GAP);
         let mut begins = false;
@@ -219,12 +223,9 @@ fn run(order: &Order, desk: &background::Desk<'_, Order, State>) -> Result<Strin
 impl App {
     /// Opens the sheet, with the size of the picture as it is.
     pub(super) fn open_turntable(&mut self) {
-        let folder = self
-            .files
-            .project
-            .as_ref()
-            .and_then(|path| path.parent().map(PathBuf::from));
-        let folder = folder.or_else(|| std::env::current_dir().ok()).unwrap_or_default();
+        let project = self.files.project.as_deref().and_then(Path::parent);
+        // Nothing but a place to begin with: where there is no working folder a path can be typed.
+        let folder = std::path::absolute(project.unwrap_or(Path::new("")).join("turntable")).unwrap_or_default();
         let render = self
             .submitted
             .as_ref()
@@ -234,7 +235,7 @@ impl App {
         sheet.size = [render.width, render.height];
         sheet.samples = render.samples.min(65536);
         if sheet.folder.is_empty() {
-            sheet.folder = folder.join("turntable").display().to_string();
+            sheet.folder = folder.display().to_string();
         }
     }
 

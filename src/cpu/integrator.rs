@@ -13,7 +13,7 @@ use crate::scene::environment::{
     environment_world_from_local,
 };
 use crate::scene::light::{Emitters, LightSample, Lights, light_density, light_sample};
-use crate::scene::surface::{SurfacePoint, hit_opacity, surface_at};
+use crate::scene::surface::{SurfacePoint, hit_opacity, passed_origin, surface_at};
 use crate::scene::texture::{Textures, textured_material};
 use crate::scene::{Geometry, Hit};
 
@@ -150,7 +150,6 @@ impl<'a, T: Real> Integrator<'a, T> {
                 geometry: self.geometry,
                 materials: &self.materials,
                 textures: self.textures,
-                tables: self.tables,
                 lights: self.lights,
                 density_per_luminance: self.density_per_luminance,
             };
@@ -224,7 +223,7 @@ impl<'a, T: Real> Integrator<'a, T> {
                 break;
             }
             left = left - T::from_f64(f64::from(hit.t));
-            origin = self.surface(&hit, direction).ray_origin(direction, true);
+            origin = passed_origin(self.geometry, &hit, direction);
         }
         T::zero()
     }
@@ -248,17 +247,16 @@ impl<'a, T: Real> Integrator<'a, T> {
             *rays += 1;
             let hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX)?;
             distance += T::from_f64(f64::from(hit.t));
-            let point = self.surface(&hit, direction);
             if !self.has_holes {
-                return Some((point, distance));
+                return Some((self.surface(&hit, direction), distance));
             }
             let opacity = hit_opacity(self.geometry, &self.materials, self.textures, &hit);
             if xi.less(opacity).any() {
-                return Some((point, distance));
+                return Some((self.surface(&hit, direction), distance));
             }
             // Uniform again, given that the surface did not stop the ray.
             xi = (xi - opacity) / (T::one() - opacity).max(T::from_f64(1e-20));
-            origin = point.ray_origin(direction, true);
+            origin = passed_origin(self.geometry, &hit, direction);
         }
         None
     }

@@ -25,7 +25,7 @@ pub enum ImportLobe {
 
 impl ImportLobe {
     /// Every choice, in the order of the menus.
-    pub const ALL: &'static [Self] = &[Self::Geometric, Self::Ggx];
+    pub const ALL: &[Self] = &[Self::Geometric, Self::Ggx];
 
     /// Name on the command line.
     pub fn name(self) -> &'static str {

@@ -35,6 +35,8 @@ pub struct GpuEngine {
     schedule: Schedule,
     /// Most samples of a pixel in the GPU's sums.
     unflushed: u32,
+    /// Whether there is anything in them.
+    is_flushed: bool,
     /// Pixel samples a second, to cut work to a budget; 0 before the first slice.
     samples_per_second: f64,
     timer: Option<Timer>,
@@ -58,6 +60,7 @@ impl GpuEngine {
             film: Film::default(),
             schedule: Schedule::default(),
             unflushed: 0,
+            is_flushed: true,
             samples_per_second: 0.0,
             gpu_seconds: 0.0,
         })
@@ -84,7 +87,7 @@ impl GpuEngine {
         self.resources = Some(Resources::new(&self.gpu, &self.pipelines.bindings, job, old)?);
         self.film = Film::new(width, height);
         self.schedule = Schedule::new(width, height);
-        (self.unflushed, self.gpu_seconds) = (0, 0.0);
+        (self.unflushed, self.is_flushed, self.gpu_seconds) = (0, true, 0.0);
         Ok(())
     }
 
@@ -178,6 +181,7 @@ impl GpuEngine {
             return Ok(());
         };
         let pipeline = self.pipelines.get(&self.gpu, &resources.job().plan)?;
+        self.is_flushed = false;
         dispatch(&self.gpu, resources, pipeline, tiles, self.timer.as_ref())?;
         if let Some(timer) = &self.timer {
             self.gpu_seconds += timer.seconds()?;
@@ -187,7 +191,7 @@ impl GpuEngine {
 
     /// Adds the GPU's sums to the film and sets them to zero.
     fn flush(&mut self) -> Result<(), GpuError> {
-        let Some(resources) = &self.resources else {
+        let Some(resources) = self.resources.as_ref().filter(|_| !self.is_flushed) else {
             return Ok(());
         };
         let pixels = self.film.color.len();
@@ -199,16 +203,17 @@ impl GpuEngine {
             }
         }
         for (pixel, sums) in statistics.iter().enumerate() {
-            let [of_all, of_odd] = [&mut self.film.statistics[pixel], &mut self.film.odd[pixel]];
+            let (of_all, of_odd) = (&mut self.film.statistics[pixel], &mut self.film.odd[pixel]);
             of_all[0] += f64::from(sums.luminance_squared);
             of_all[1] += f64::from(sums.kept);
             of_odd[0] += f64::from(sums.odd_luminance);
-            of_odd[1] += f64::from(sums.odd_kept);
+            of_odd[1] += f64::from(sums.odd_luminance_squared);
+            of_odd[2] += f64::from(sums.odd_kept);
             self.film.rays[pixel] += f64::from(sums.rays);
             self.film.dropped += sums.dropped as u64;
         }
         resources.clear_sums(&self.gpu);
-        self.unflushed = 0;
+        (self.unflushed, self.is_flushed) = (0, true);
         Ok(())
     }
 

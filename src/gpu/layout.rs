@@ -64,6 +64,8 @@ pub struct PixelStatistics {
     pub kept: f32,
     /// Sum of the odd samples' luminance.
     pub odd_luminance: f32,
+    /// Sum of the odd samples' squared luminance.
+    pub odd_luminance_squared: f32,
     /// Odd samples in the sums.
     pub odd_kept: f32,
     /// Samples that were not sound.

@@ -78,7 +78,7 @@ impl Verdict {
 fn measure(software: &mut Engine, machine: String) -> Option<Verdict> {
     let mut document = Document::default();
     (document.render.width, document.render.height) = (SIZE, SIZE);
-    let job = Arc::new(Compiler::default().compile(&document, &mut Assets::default()).ok()?);
+    let job = Arc::new(Compiler::default().compile(&document, &Assets::default()).ok()?);
     let (mut processor, _) = cpu(String::new());
     let ratio = samples_per_second(&mut processor, &job)? / samples_per_second(software, &job)?;
     Some(Verdict { machine, ratio })

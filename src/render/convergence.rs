@@ -35,9 +35,10 @@ pub(super) struct Convergence {
     pub(super) history: Vec<Measurement>,
     /// Samples of all pixels when the error was last looked at.
     measured_samples: u64,
-    /// What a look took last, seconds.
-    pub(super) last_seconds: f64,
-    /// What all looks took, seconds.
+    /// What a look and a plan took last, seconds.
+    pub(super) measure_seconds: f64,
+    pub(super) plan_seconds: f64,
+    /// What all looks and plans took, seconds.
     pub(super) total_seconds: f64,
 }
 
@@ -81,7 +82,7 @@ impl Convergence {
             return;
         }
         // So long that the look at its end takes no more than its share.
-        let seconds = self.last_seconds / COST_SHARE;
+        let seconds = (self.measure_seconds + self.plan_seconds) / COST_SHARE;
         let paced = 1.0 + seconds / engine_seconds.max(1e-9);
         if let Some(film) = film.filter(|_| settings.is_adaptive() && most > 1) {
             let round = Round {

@@ -259,11 +259,12 @@ impl Session {
         let begun = Instant::now();
         while !self.progress().is_done {
             self.plan()?;
-            let left = self.time_limit().map(|limit| limit.saturating_sub(self.render_time));
-            let budget = budget.saturating_sub(begun.elapsed());
+            let mut left = budget.saturating_sub(begun.elapsed());
+            if let Some(limit) = self.time_limit() {
+                left = left.min(limit.saturating_sub(self.render_time));
+            }
             let step_begun = Instant::now();
-            let slice = left.map_or(budget, |left| budget.min(left));
-            self.engine.step(slice, &self.convergence.goals, self.precision)?;
+            self.engine.step(left, &self.convergence.goals, self.precision)?;
             self.step_time += step_begun.elapsed();
             self.render_time = before + begun.elapsed();
             if self.engine.schedule().is_at_goal() || self.progress().is_done {
@@ -285,10 +286,13 @@ impl Session {
         if is_in_force && !self.engine.schedule().is_at_goal() {
             return Ok(());
         }
+        let begun = Instant::now();
         let seconds = self.engine_seconds();
         let schedule = self.engine.schedule().clone();
         let film = document.render.is_adaptive().then(|| self.engine.film()).transpose()?;
         self.convergence.next_round(film, &schedule, &document.render, seconds);
+        self.convergence.plan_seconds = begun.elapsed().as_secs_f64();
+        self.convergence.total_seconds += self.convergence.plan_seconds;
         Ok(())
     }
 
@@ -301,8 +305,8 @@ impl Session {
         let seconds = self.engine_seconds();
         let schedule = self.engine.schedule().clone();
         self.convergence.measure(self.engine.film()?, &schedule, seconds);
-        self.convergence.last_seconds = begun.elapsed().as_secs_f64();
-        self.convergence.total_seconds += self.convergence.last_seconds;
+        self.convergence.measure_seconds = begun.elapsed().as_secs_f64();
+        self.convergence.total_seconds += self.convergence.measure_seconds;
         Ok(())
     }
 

@@ -17,7 +17,7 @@ use super::geometry::Geometry;
 use super::mesh::Mesh;
 use super::shapes;
 use super::surface::{POSITION_ERROR, position_error};
-use super::texture::{Textures, opacity_at, textured_material, uvs_at};
+use super::texture::{Textures, emission_at, uvs_at};
 use crate::optics::material::Material;
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real};
@@ -185,8 +185,6 @@ pub struct Emitters<'a, T> {
     pub materials: &'a [Material<T>],
     /// What these look up.
     pub textures: &'a Textures,
-    /// The materials' tables.
-    pub tables: &'a [f32],
     /// Which triangles emit.
     pub lights: &'a Lights,
     /// See [`LightChoice`].
@@ -221,8 +219,7 @@ pub fn light_sample<T: Real>(
     let mut radiance = material.emission;
     if material.is_textured() || material.has_holes() {
         let uvs = uvs_at(geometry, triangle, weights);
-        radiance = textured_material(emitters.textures, emitters.tables, material, uvs).emission
-            * opacity_at(emitters.textures, material, uvs);
+        radiance = emission_at(emitters.textures, material, uvs);
     }
     let cosine = normal.dot(direction).abs();
     let error = position_error([p0, p1, p2], weights, normal) + origin_error + T::from_f64(POSITION_ERROR) * distance;

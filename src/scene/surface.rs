@@ -48,6 +48,50 @@ pub fn bent_normal<T: Real>(shading: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
     Vec3::select(lean.less(least), bent, shading)
 }
 
+/// Where a ray met the geometry.
+#[derive(Clone, Copy, Debug)]
+pub struct HitPlace<T> {
+    /// The point, in the geometry's units.
+    pub position: Vec3<T>,
+    /// How far off the true place `position` may be, along the normal.
+    pub error: T,
+    /// The geometric normal, on the side of the ray's origin.
+    pub normal: Vec3<T>,
+    /// True where the back of the triangle was met.
+    pub is_back: bool,
+}
+
+/// The weights of a hit triangle's corners.
+#[inline(always)]
+fn hit_weights<T: Real>(hit: &Hit) -> [T; 3] {
+    let (u, v) = (T::from_f64(f64::from(hit.u)), T::from_f64(f64::from(hit.v)));
+    [T::one() - u - v, u, v]
+}
+
+/// The place where a ray of unit `direction` met the geometry.
+#[inline(always)]
+pub fn hit_place<T: Real>(geometry: &Geometry, hit: &Hit, direction: Vec3<T>) -> HitPlace<T> {
+    let corners = geometry.corners(hit.triangle as usize).map(Vec3::from_f32);
+    let [p0, p1, p2] = corners;
+    let weights: [T; 3] = hit_weights(hit);
+    let out = normalize_or((p1 - p0).cross(p2 - p0), -direction);
+    let is_back = out.dot(-direction).less(T::zero());
+    let normal = Vec3::select(is_back, -out, out);
+    HitPlace {
+        position: p0 * weights[0] + p1 * weights[1] + p2 * weights[2],
+        error: position_error(corners, weights, normal),
+        normal,
+        is_back: is_back.any(),
+    }
+}
+
+/// Where a ray goes on that a surface did not stop.
+#[inline(always)]
+pub fn passed_origin<T: Real>(geometry: &Geometry, hit: &Hit, direction: Vec3<T>) -> Vec3<T> {
+    let place = hit_place(geometry, hit, direction);
+    place.position - place.normal * place.error
+}
+
 /// The surface where a ray of unit `direction` met the geometry.
 #[inline(always)]
 pub fn surface_at<T: Real>(
@@ -58,14 +102,14 @@ pub fn surface_at<T: Real>(
     direction: Vec3<T>,
 ) -> SurfacePoint<T> {
     let index = hit.triangle as usize;
-    let [p0, p1, p2] = geometry.corners(index).map(Vec3::from_f32);
-    let (u, v) = (T::from_f64(f64::from(hit.u)), T::from_f64(f64::from(hit.v)));
-    let w = T::one() - u - v;
-    let position = p0 * w + p1 * u + p2 * v;
+    let [w, u, v] = hit_weights(hit);
+    let HitPlace {
+        position,
+        error,
+        normal,
+        is_back,
+    } = hit_place(geometry, hit, direction);
     let wo = -direction;
-    let out = normalize_or((p1 - p0).cross(p2 - p0), wo);
-    let is_back = out.dot(wo).less(T::zero());
-    let normal = Vec3::select(is_back, -out, out);
     let corners = geometry.triangles[index].map(|vertex| &geometry.vertices[vertex as usize]);
     let interpolate =
         |a: [f32; 3], b: [f32; 3], c: [f32; 3]| Vec3::from_f32(a) * w + Vec3::from_f32(b) * u + Vec3::from_f32(c) * v;
@@ -102,10 +146,10 @@ pub fn surface_at<T: Real>(
             normal,
             wo,
             coat_normal,
-            is_inside: is_back.any(),
+            is_inside: is_back,
         },
         position,
-        error: position_error([p0, p1, p2], [w, u, v], normal),
+        error,
         slot,
         uvs,
     }
@@ -118,8 +162,7 @@ pub fn hit_opacity<T: Real>(geometry: &Geometry, materials: &[Material<T>], text
     if !material.has_holes() {
         return T::one();
     }
-    let (u, v) = (T::from_f64(f64::from(hit.u)), T::from_f64(f64::from(hit.v)));
-    let uvs = uvs_at(geometry, hit.triangle as usize, [T::one() - u - v, u, v]);
+    let uvs = uvs_at(geometry, hit.triangle as usize, hit_weights(hit));
     opacity_at(textures, material, uvs)
 }
 

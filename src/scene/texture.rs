@@ -429,6 +429,20 @@ pub fn textured_material<T: Real>(
     at_point
 }
 
+/// What a surface point emits, linear RGB, its holes left out.
+pub fn emission_at<T: Real>(textures: &Textures, material: &Material<T>, uvs: [[T; 2]; 2]) -> Vec3<T> {
+    let share = if material.has_holes() {
+        opacity_at(textures, material, uvs)
+    } else {
+        T::one()
+    };
+    let emission = material.textures[3];
+    if emission == NO_TEXTURE {
+        return material.emission * share;
+    }
+    material.emission * texture_lookup(textures, emission, uvs).0 * share
+}
+
 /// The share of light that a surface point stops, in [0, 1].
 pub fn opacity_at<T: Real>(textures: &Textures, material: &Material<T>, uvs: [[T; 2]; 2]) -> T {
     let mut opacity = material.opacity;

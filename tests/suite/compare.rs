@@ -8,9 +8,10 @@ use egui::{Key, Modifiers, Vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
-use glossmith::app::compare::{Rival, View};
+use glossmith::app::compare::Rival;
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options};
+use glossmith::document::match_look::{Target, lobe_of_material, match_look};
 use glossmith::document::{Document, PRESETS};
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::worker::{Activity, Picture};
@@ -56,6 +57,10 @@ fn another_lobe_is_compared_with_its_look_matched() {
         (b.camera, &b.lighting, b.render.seed),
         (before.camera, &before.lighting, before.render.seed)
     );
+    // The roughness is the one that "match look" finds.
+    let target = Target::Lobe(lobe_of_material(&before.materials[0]));
+    let found = match_look(&target, Lobe::Ggx, 0.0).expect("it has a highlight");
+    assert_eq!(b.materials[0].roughness, found.nearest.model.roughness as f32);
     assert!(harness.query_by_label_contains("RMS ").is_some());
     // B follows what is done to A.
     harness
@@ -345,6 +350,8 @@ fn a_turntable_is_rendered_beside_the_window_and_cancelled() {
         harness.run_steps(2);
     };
     request(&mut harness, Action::Do(Command::Turntable));
+    // A sheet is first measured, then shown.
+    harness.run_steps(2);
     harness.check_accessibility();
     set(&mut harness, "Turntable frames", 3.0);
     set(&mut harness, "Turntable width", 20.0);

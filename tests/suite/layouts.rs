@@ -48,7 +48,7 @@ fn rust_layouts() -> Vec<Layout> {
         }),
         layout!(Tile: Tile { origin, first_sample, sample_count }),
         layout!(PixelStatistics: PixelStatistics {
-            luminance_squared, kept, odd_luminance, odd_kept, dropped, rays,
+            luminance_squared, kept, odd_luminance, odd_luminance_squared, odd_kept, dropped, rays,
         }),
         layout!(Camera: Camera<f32> {
             origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,

@@ -14,8 +14,9 @@ use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::camera::camera_ray;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::light::{Lights, light_density, light_sample};
+use glossmith::scene::light::{Emitters, Lights, light_density, light_sample};
 use glossmith::scene::mesh::Mesh;
+use glossmith::scene::texture::Textures;
 use glossmith::scene::{Geometry, Model, ModelSource, Slot};
 
 use crate::environment::triple;
@@ -98,7 +99,7 @@ fn chi_square_p<T: Real>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> f6
     let from = DVec3::from_array(origin.to_f64());
     let mut expected = vec![0.0; geometry.triangles.len() * CELLS];
     for triangle in 0..geometry.triangles.len() {
-        let emission: Vec3<f64> = materials[geometry.slots[triangle] as usize].cast::<f64>().emission;
+        let luminance = f64::from(materials[geometry.slots[triangle] as usize].light_luminance);
         let corners = geometry.corners(triangle);
         let [a, b, c] = corners.map(|corner| DVec3::from_array(corner.map(f64::from)) - from);
         let normal = (b - a).cross(c - a).normalize();
@@ -106,7 +107,7 @@ fn chi_square_p<T: Real>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> f6
             let corners = weights.map(|[u, v]| a * (1.0 - u - v) + b * u + c * v);
             let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
             let cosine = normal.dot(middle.normalize()).abs();
-            let density = light_density(emission, cosine, middle.length(), per_luminance);
+            let density = light_density(luminance, cosine, middle.length(), per_luminance);
             let index = triangle * CELLS + cell;
             expected[index] = density * solid_angle(corners) * f64::from(DRAWS) * tamper(index);
         }
@@ -115,20 +116,26 @@ fn chi_square_p<T: Real>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> f6
     let origin: Vec3<T> = Vec3::from_f64(origin.to_f64());
     let mut observed = vec![0; expected.len()];
     let mut random = Random::new(9);
+    let density = T::from_f64(per_luminance);
+    let emitters = Emitters {
+        geometry: &geometry,
+        materials: &materials,
+        textures: &Textures::default(),
+        lights: &lights,
+        density_per_luminance: density,
+    };
     for _ in 0..DRAWS {
-        let density = T::from_f64(per_luminance);
-        let xi = triple(&mut random);
-        let sample = light_sample(&geometry, &materials, &lights, density, origin, T::zero(), xi);
+        let sample = light_sample(&emitters, origin, T::zero(), triple(&mut random));
         let hit = geometry.intersect(origin.to_f32(), sample.direction.to_f32(), f32::MAX);
         // Rounding at an edge.
         let Some(hit) = hit else { continue };
-        let emission = materials[geometry.slots[hit.triangle as usize] as usize].emission;
+        let luminance = materials[geometry.slots[hit.triangle as usize] as usize].light_luminance;
         let [a, b, c] = geometry
             .corners(hit.triangle as usize)
             .map(|corner| DVec3::from_array(corner.map(f64::from)));
         let normal = (b - a).cross(c - a).normalize();
         let cosine = normal.dot(DVec3::from_array(sample.direction.to_f64())).abs();
-        let at_hit = light_density(emission, T::from_f64(cosine), T::from_f64(hit.t.into()), density).to_f64();
+        let at_hit = light_density(luminance, T::from_f64(cosine), T::from_f64(hit.t.into()), density).to_f64();
         assert!(
             (sample.density.to_f64() / at_hit - 1.0).abs() < 1e-3,
             "{sample:?}, {at_hit} at the hit"

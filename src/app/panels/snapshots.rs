@@ -56,11 +56,16 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
             .rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
     }
     let place = Rect::from_min_size(rect.min, PLACE).shrink(4.0);
-    let scale = (place.width() / size[0]).min(place.height() / size[1]);
-    let at = Rect::from_center_size(place.center(), vec2(size[0], size[1]) * scale);
+    // The middle of the picture fills the place.
+    let scale = (place.width() / size[0]).max(place.height() / size[1]);
+    let share = place.size() / (scale * vec2(size[0], size[1]));
+    let middle = Rect::from_center_size(egui::pos2(0.5, 0.5), share);
     let ctx = ui.ctx().clone();
     if let Some(picture) = desk.state.snapshots.picture(&ctx, index) {
-        egui::Image::new(picture).corner_radius(3.0).paint_at(ui, at);
+        egui::Image::new(picture)
+            .uv(middle)
+            .corner_radius(3.0)
+            .paint_at(ui, place);
     }
     let font = egui::TextStyle::Small.resolve(ui.style());
     let mut job = egui::text::LayoutJob::simple_singleline(name.clone(), font, visuals.text_color());
@@ -82,8 +87,10 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
         }
     };
     response.context_menu(&mut more);
-    let corner = Rect::from_min_size(rect.right_top() + vec2(-28.0, 4.0), vec2(24.0, 20.0));
+    let corner = Rect::from_min_size(rect.right_top() + vec2(-28.0, 6.0), vec2(22.0, 18.0));
     let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(corner).id_salt(("more", index)));
+    inside.spacing_mut().interact_size = corner.size();
+    inside.spacing_mut().button_padding = vec2(5.0, 0.0);
     let button = inside.menu_button("…", &mut more).response;
     button.accessible_name(format!("More of {name}"));
     let help = "Click to bring it back; right-click for more";

@@ -89,7 +89,7 @@ impl Viewport {
                 let turns = ui.input(|input| input.time) * hz;
                 ui.ctx()
                     .request_repaint_after(Duration::from_secs_f64((1.0 - turns.fract()) / hz));
-                if turns as u64 % 2 == 0 {
+                if (turns as u64).is_multiple_of(2) {
                     self.picture.paint(ui, place, place, a, 0);
                     label(ui, place, Align2::LEFT_TOP, &name_a);
                 } else {

@@ -38,7 +38,6 @@ fn lights_agree() {
                         geometry: &scene.geometry,
                         materials: &materials,
                         textures: &scene.textures,
-                        tables: &scene.tables,
                         lights: &scene.lights,
                         density_per_luminance: density,
                     };

@@ -52,7 +52,8 @@ fn textures_agree() {
         "",
         twin!(|row| {
             let wrap = row.bits();
-            row.put(wrapped(row.number(), wrap));
+            let place = row.number();
+            row.put(wrapped(place, wrap));
         }),
     )
     .output("wrapped(place, wrap)", SHARE);
@@ -98,7 +99,8 @@ fn textured_materials_agree() {
                 UVS,
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
-                    row.put(opacity_at(&SCENE.textures, &material, uvs(row)));
+                    let uvs = uvs(row);
+                    row.put(opacity_at(&SCENE.textures, &material, uvs));
                 }),
             )
             .output("opacity_at(materials[material], uvs)", SHARE)
@@ -114,7 +116,8 @@ fn textured_materials_agree() {
                     let material: Material<T> = SCENE.material(row.bits());
                     let frame = [row.vector(), row.vector()];
                     let sign = row.number();
-                    row.put_vector(mapped_normal(&SCENE.textures, &material, uvs(row), frame, sign));
+                    let uvs = uvs(row);
+                    row.put_vector(mapped_normal(&SCENE.textures, &material, uvs, frame, sign));
                 }),
             )
             .output(
