@@ -43,9 +43,9 @@ impl Halves {
         let pixels = || film.color.iter().zip(&film.statistics).zip(&film.odd);
         Self {
             even: pixels()
-                .map(|((sum, [_, n]), [odd, odd_n, ..])| (luminance(*sum) - odd) / (n - odd_n))
+                .map(|((sum, [_, n]), [odd, _, odd_n])| (luminance(*sum) - odd) / (n - odd_n))
                 .collect(),
-            odd: film.odd.iter().map(|[sum, n, ..]| sum / n).collect(),
+            odd: film.odd.iter().map(|[sum, _, n]| sum / n).collect(),
         }
     }
 
