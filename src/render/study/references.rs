@@ -39,6 +39,8 @@ pub struct Reference {
     pub halves: Halves,
     /// Its relative error as it was told.
     pub noise: f64,
+    /// How long it was rendered, seconds.
+    pub seconds: f64,
     /// Whether it came from the disk.
     pub is_kept: bool,
 }
@@ -97,7 +99,7 @@ impl ReferenceCache {
         Self { limit_bytes, ..self }
     }
 
-    /// What a document converges to: kept, if it is exact enough, else rendered by the session and kept. `go_on` is
+    /// What a document converges to: kept, if it is exact enough or had the time that this one would have, else rendered by the session and kept. `go_on` is
     /// asked now and then, with the share of the time that has gone by.
     ///
     /// # Errors
@@ -113,7 +115,7 @@ impl ReferenceCache {
         let key = Key::of(document, &Machine::of(session.engine()), precision);
         let path = self.folder.as_ref().map(|folder| folder.join(key.file_name()));
         if let Some(kept) = path.as_deref().and_then(|path| read(path, &key))
-            && kept.noise <= effort.noise
+            && (kept.noise <= effort.noise || kept.seconds >= effort.seconds)
         {
             return Ok(kept);
         }
@@ -180,6 +182,7 @@ struct Header {
     width: u32,
     height: u32,
     noise: f64,
+    seconds: f64,
 }
 
 fn write(path: &Path, key: &Key, reference: &Reference) -> Result<(), Box<dyn std::error::Error>> {
@@ -191,6 +194,7 @@ fn write(path: &Path, key: &Key, reference: &Reference) -> Result<(), Box<dyn st
         width: reference.image.width,
         height: reference.image.height,
         noise: reference.noise,
+        seconds: reference.seconds,
     };
     let mut bytes = serde_json::to_vec(&header)?;
     bytes.push(b'\n');
@@ -231,6 +235,7 @@ fn read(path: &Path, key: &Key) -> Option<Reference> {
             odd: numbers.iter().map(|of_pixel| f64::from(of_pixel[5])).collect(),
         },
         noise: header.noise,
+        seconds: header.seconds,
         is_kept: true,
     })
 }
@@ -284,7 +289,8 @@ fn render(
             session.submit(&document)?;
         }
     }
-    let noise = session.progress().noise.map_or(f64::INFINITY, |noise| noise.relative);
+    let progress = session.progress();
+    let noise = progress.noise.map_or(f64::INFINITY, |noise| noise.relative);
     let film = session.film()?;
     let halves = Halves::of(film);
     let is_lit = halves.mean_luminance() > 1e-9;
@@ -292,6 +298,7 @@ fn render(
         image: film.image(),
         halves,
         noise,
+        seconds: progress.render_seconds,
         is_kept: false,
     };
     session.set_precision(Precision::Single);
