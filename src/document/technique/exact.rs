@@ -17,13 +17,12 @@ pub fn with_exact_fresnel(material: &mut MaterialSettings) {
             if textures.color || textures.roughness {
                 return;
             }
-            let mut eta_and_k = [[0.0; 3]; 2];
-            for channel in 0..3 {
+            let of_channel = |channel: usize| {
                 let f0 = f64::from(material.base_color[channel] * material.base_weight).clamp(0.0, F0_MAX);
-                let [eta, k] = conductor_of(f0, f64::from(material.eta[channel]));
-                (eta_and_k[0][channel], eta_and_k[1][channel]) = (eta as f32, k as f32);
-            }
-            material.set_eta_and_k(eta_and_k[0], eta_and_k[1]);
+                conductor_of(f0, f64::from(material.eta[channel])).map(|x| x as f32)
+            };
+            let [red, green, blue] = [0, 1, 2].map(of_channel);
+            material.set_eta_and_k([red[0], green[0], blue[0]], [red[1], green[1], blue[1]]);
             material.fresnel = Fresnel::Conductor;
         }
     }

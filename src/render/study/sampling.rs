@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::{Machine, Steps, StudyError, UNLIMITED, Watch, median, settled};
+use super::{Machine, Steps, StudyError, Watch, median, settled};
 use crate::analysis::sampling::{SamplingRequest, SamplingRun, SamplingStage};
 use crate::document::{AreaLight, Document, Strategy};
 use crate::gpu::sampling::SamplingMeter;
@@ -279,7 +279,7 @@ fn frames(
         for (place, (lobe, curve, name)) in shapes.iter().enumerate() {
             let within = (turn as f64 + place as f64 / shapes.len() as f64) / (options.turns + 1) as f64;
             steps.tell(format!("{name}, frame of {samples} a pixel"), within)?;
-            let mut document = quad(*lobe, *curve, samples.min(UNLIMITED), options);
+            let mut document = quad(*lobe, *curve, samples, options);
             document.render.seed = turn as u32;
             session.submit(&document)?;
             let progress = session.step(options.budget)?;
