@@ -63,6 +63,8 @@ mod plan;
 mod renders;
 #[path = "suite/statistics.rs"]
 mod statistics;
+#[path = "suite/study.rs"]
+mod study;
 #[path = "suite/support.rs"]
 mod support;
 #[path = "suite/textures.rs"]
@@ -77,6 +79,8 @@ mod transmission;
 mod ui;
 #[path = "suite/ui_scene.rs"]
 mod ui_scene;
+#[path = "suite/ui_study.rs"]
+mod ui_study;
 #[path = "suite/worker.rs"]
 mod worker;
 

@@ -1,10 +1,12 @@
 //! Plots as files: PNG and SVG by plotters, with the fonts that the window uses.
 
+mod charts;
 mod figure;
 mod lines;
 mod maps;
 mod solids;
 
+pub use charts::{BarPlot, NamedPoint, PictureSheet, PointPlot};
 pub use maps::scale_color;
 
 use std::path::{Path, PathBuf};
@@ -73,6 +75,30 @@ pub fn lobe_view_picture(view: &LobeView, zoom: f64, is_dark: bool) -> Option<im
 /// Where the file can't be written.
 pub fn line_plot_file(path: &Path, plot: &LinePlot) -> Result<(), PlotError> {
     figure::write(path, plot)
+}
+
+/// Points with names as .svg, or else as .png.
+///
+/// # Errors
+/// Where the file can't be written.
+pub fn point_plot_file(path: &Path, plot: &PointPlot) -> Result<(), PlotError> {
+    figure::write(path, plot)
+}
+
+/// Bars as .svg, or else as .png.
+///
+/// # Errors
+/// Where the file can't be written.
+pub fn bar_plot_file(path: &Path, plot: &BarPlot) -> Result<(), PlotError> {
+    figure::write(path, plot)
+}
+
+/// Pictures in rows as .png.
+///
+/// # Errors
+/// Where the file can't be written.
+pub fn picture_sheet_file(path: &Path, sheet: &PictureSheet) -> Result<(), PlotError> {
+    figure::write(path, sheet)
 }
 
 /// The samples seen from the lobe's middle, as in the paper's Fig. 1: the plane's horizontal axis lies in the plane of

@@ -38,13 +38,15 @@ pub enum Pane {
     Log,
     /// The proof on this machine.
     Check,
-    /// What is simulated, and why.
+    /// What is simulated, why, and what it costs.
     Effects,
+    /// Techniques against each other.
+    Race,
 }
 
 impl Pane {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Viewport,
         Self::Material,
         Self::Curve,
@@ -58,6 +60,7 @@ impl Pane {
         Self::Log,
         Self::Check,
         Self::Effects,
+        Self::Race,
     ];
 
     /// What it is called.
@@ -76,6 +79,7 @@ impl Pane {
             Self::Log => "Log",
             Self::Check => "Check",
             Self::Effects => "Effects",
+            Self::Race => "Race",
         }
     }
 }
@@ -92,7 +96,9 @@ pub(super) fn default_layout() -> Tree<Pane> {
     let upper_left = [Pane::Presets, Pane::Snapshots, Pane::Log, Pane::Check]
         .map(&mut pane)
         .to_vec();
-    let lower_left = [Pane::Lighting, Pane::Camera, Pane::Effects].map(&mut pane).to_vec();
+    let lower_left = [Pane::Lighting, Pane::Camera, Pane::Effects, Pane::Race]
+        .map(&mut pane)
+        .to_vec();
     let lower_right = [Pane::Curve, Pane::Samples, Pane::Lobe, Pane::Convergence].map(&mut pane);
     let upper_left = tiles.insert_tab_tile(upper_left);
     let lower_left = tiles.insert_tab_tile(lower_left);
@@ -153,6 +159,7 @@ impl Behavior<Pane> for Panes<'_, '_> {
                     Pane::Log => panels::log::show(ui, self.desk),
                     Pane::Check => panels::check::show(ui, self.desk),
                     Pane::Effects => panels::effects::show(ui, self.desk),
+                    Pane::Race => panels::race::show(ui, self.desk),
                     Pane::Viewport => {}
                 });
             });

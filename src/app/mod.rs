@@ -155,6 +155,7 @@ impl App {
             queue: Vec::new(),
             awaited: 0,
             panels: PanelState {
+                race: panels::race::RaceState::new(options.cache.as_ref().map(|cache| cache.join("references"))),
                 resolution: options.resolution.unwrap_or(kept.resolution),
                 import_lobe: kept.import_lobe,
                 library: library::Library::new(options.data.as_ref().map(|data| data.join("materials")), options.cache),

@@ -12,6 +12,7 @@ mod parse;
 mod plan;
 mod render;
 mod scatter;
+mod study;
 mod turntable;
 
 use std::path::PathBuf;
@@ -56,6 +57,8 @@ pub enum Command {
     Fit(fit::FitArguments),
     /// Show lobes: slices, bodies, densities, albedo, reciprocity, losses.
     Lobe(lobe::LobeArguments),
+    /// Measure what accuracy costs in time.
+    Study(study::StudyArguments),
 }
 
 impl Command {
@@ -72,6 +75,7 @@ impl Command {
             Command::Scatter(arguments) => scatter::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
             Command::Lobe(arguments) => lobe::run(&arguments),
+            Command::Study(arguments) => study::run(&arguments),
         }
     }
 }

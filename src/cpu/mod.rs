@@ -3,6 +3,7 @@
 pub mod features;
 pub mod integrator;
 pub mod probe;
+pub mod sampling;
 pub mod scatter;
 
 use std::sync::Arc;

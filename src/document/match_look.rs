@@ -229,13 +229,21 @@ pub fn match_look(target: &Target, lobe: Lobe, view_angle_deg: f64) -> Result<Lo
 /// # Errors
 /// [`MatchError`].
 pub fn matched_lobe(model: &LobeModel, lobe: Lobe) -> Result<LobeModel, MatchError> {
+    matched_lobe_and_curve(model, lobe, MaterialSettings::default().curve)
+}
+
+/// The same with a curve of choice.
+///
+/// # Errors
+/// [`MatchError`].
+pub fn matched_lobe_and_curve(model: &LobeModel, lobe: Lobe, curve: Curve) -> Result<LobeModel, MatchError> {
     let target = Target::Lobe(model.clone());
     let target_profile = TargetProfile::new(&target, 0.0)?;
     let profile: Profile = &|wi| target_profile.value(wi);
     let default = MaterialSettings::default();
     let start = LobeModel {
         horizon: default.horizon,
-        ..LobeModel::new(lobe, model.roughness, default.curve)
+        ..LobeModel::new(lobe, model.roughness, curve)
     };
     let found = nearest_roughness(profile, &start, 0.0, Measure::Evaluate);
     Ok(start.with_roughness(rounded(found.roughness)))

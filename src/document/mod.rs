@@ -22,6 +22,7 @@ pub mod recovery;
 mod registry;
 mod settings;
 pub mod snapshots;
+pub mod technique;
 pub mod turntable;
 
 use serde::{Deserialize, Serialize};

@@ -7,6 +7,7 @@ pub mod layout;
 mod pipeline;
 pub mod probe;
 mod resources;
+pub mod sampling;
 pub mod scatter;
 pub mod shader;
 mod timer;

@@ -50,7 +50,7 @@ impl Scatterer {
     /// # Errors
     /// [`GpuError::Shader`] where the driver refuses it.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
-        let pipeline = pipeline(&gpu)?;
+        let pipeline = lobe_pipeline(&gpu, "scatter", "draw", &[])?;
         Ok(Self { gpu, pipeline })
     }
 
@@ -110,11 +110,18 @@ fn uniforms(request: &ScatterRequest, first: u32, count: u32) -> Scatter {
     }
 }
 
-fn pipeline(gpu: &GpuDevice) -> Result<wgpu::ComputePipeline, GpuError> {
-    let linked = shader::link("pass/scatter").map_err(GpuError::Shader)?;
+/// A pass of `shaders/pass/` that needs nothing of a scene but the lobes: the tables in group 0, in group 1 uniforms and
+/// what is written.
+pub(super) fn lobe_pipeline(
+    gpu: &GpuDevice,
+    name: &str,
+    entry_point: &str,
+    constants: &[(&str, f64)],
+) -> Result<wgpu::ComputePipeline, GpuError> {
+    let linked = shader::link(&format!("pass/{name}")).map_err(GpuError::Shader)?;
     let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
     let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some("scatter"),
+        label: Some(name),
         source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
     });
     let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
@@ -130,23 +137,26 @@ fn pipeline(gpu: &GpuDevice) -> Result<wgpu::ComputePipeline, GpuError> {
     let storage = |read_only| wgpu::BufferBindingType::Storage { read_only };
     let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
         gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("scatter"),
+            label: Some(name),
             entries,
         })
     };
     let tables = layout(&[entry(6, storage(true))]);
     let own = layout(&[entry(0, wgpu::BufferBindingType::Uniform), entry(1, storage(false))]);
     let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("scatter"),
+        label: Some(name),
         bind_group_layouts: &[Some(&tables), Some(&own)],
         immediate_size: 0,
     });
     let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some("scatter"),
+        label: Some(name),
         layout: Some(&pipeline_layout),
         module: &module,
-        entry_point: Some("draw"),
-        compilation_options: Default::default(),
+        entry_point: Some(entry_point),
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants,
+            ..Default::default()
+        },
         cache: None,
     });
     match pollster::block_on(scope.pop()) {
@@ -155,7 +165,7 @@ fn pipeline(gpu: &GpuDevice) -> Result<wgpu::ComputePipeline, GpuError> {
     }
 }
 
-fn bind_group(
+pub(super) fn bind_group(
     gpu: &GpuDevice,
     pipeline: &wgpu::ComputePipeline,
     group: u32,

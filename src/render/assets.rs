@@ -67,6 +67,18 @@ impl Assets {
         self.kept().environment(source)
     }
 
+    /// Keeps a model under a name of its own, as if it had been loaded from there, until another one is asked for.
+    pub fn keep_model(&self, source: ModelSource, model: Model) {
+        let mut kept = self.kept();
+        (kept.textures, kept.geometry) = (None, None);
+        kept.model = Some((source, Arc::new(model)));
+    }
+
+    /// The same for an environment.
+    pub fn keep_environment(&self, source: EnvironmentSource, environment: Environment) {
+        self.kept().environment = Some((source, Arc::new(environment)));
+    }
+
     /// Forgets files, so that they are read again.
     pub fn reload(&self) {
         *self.kept() = Kept::default();

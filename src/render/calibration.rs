@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use super::assets::Assets;
 use super::compile::Compiler;
-use super::engine::{Engine, EngineInfo, cpu, gpu};
+use super::engine::{Engine, EngineInfo, Precision, cpu, gpu};
 use crate::document::Document;
 use crate::document::job::Job;
 use crate::gpu::{AdapterKind, GpuDevice};
@@ -88,10 +88,12 @@ fn samples_per_second(engine: &mut Engine, job: &Arc<Job>) -> Option<f64> {
     engine.submit(job.clone()).ok()?;
     // The first sample compiles.
     let tiles = engine.schedule().grid().tiles();
-    engine.step(Duration::from_secs(60), &vec![1; tiles]).ok()?;
+    engine
+        .step(Duration::from_secs(60), &vec![1; tiles], Precision::Single)
+        .ok()?;
     engine.submit(job.clone()).ok()?;
     let begun = Instant::now();
-    engine.step(DURATION, &vec![u32::MAX; tiles]).ok()?;
+    engine.step(DURATION, &vec![u32::MAX; tiles], Precision::Single).ok()?;
     let samples = engine.film().ok()?.samples();
     Some(samples as f64 / begun.elapsed().as_secs_f64())
 }

@@ -60,6 +60,18 @@ impl fmt::Display for EngineInfo {
     }
 }
 
+/// The numbers that the processor shades with; the GPU knows f32 only. Sums are f64 in either case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, serde::Serialize)]
+pub enum Precision {
+    /// f32.
+    #[default]
+    #[serde(rename = "f32")]
+    Single,
+    /// f64.
+    #[serde(rename = "f64")]
+    Double,
+}
+
 /// One of the two engines.
 pub(super) enum Engine {
     Cpu(Box<CpuEngine>),
@@ -87,10 +99,13 @@ impl Engine {
     }
 
     /// Renders for about `budget` towards a number of samples a pixel for each tile.
-    pub(super) fn step(&mut self, budget: Duration, goals: &[u32]) -> Result<(), GpuError> {
+    pub(super) fn step(&mut self, budget: Duration, goals: &[u32], precision: Precision) -> Result<(), GpuError> {
         match self {
             Engine::Cpu(engine) => {
-                engine.step_towards::<f32>(budget, goals);
+                match precision {
+                    Precision::Single => engine.step_towards::<f32>(budget, goals),
+                    Precision::Double => engine.step_towards::<f64>(budget, goals),
+                }
                 Ok(())
             }
             Engine::Gpu(engine) => engine.step_towards(budget, goals),

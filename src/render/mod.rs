@@ -16,6 +16,7 @@ pub mod priority;
 pub mod probe;
 pub mod samples;
 mod session;
+pub mod study;
 pub mod thumbnails;
 pub mod turntable;
 pub mod worker;
@@ -23,6 +24,6 @@ mod workshop;
 
 pub use assets::Assets;
 pub use convergence::Measurement;
-pub use engine::{EngineChoice, EngineInfo, Sampler};
+pub use engine::{EngineChoice, EngineInfo, Precision, Sampler};
 pub use output::Layers;
 pub use session::{Progress, Session, SessionError, StopReason};

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use super::assets::Assets;
 use super::compile::Compiler;
 use super::convergence::{Convergence, Measurement, mean_samples};
-use super::engine::{Engine, EngineChoice, EngineInfo, cpu};
+use super::engine::{Engine, EngineChoice, EngineInfo, Precision, cpu};
 use super::output::Layers;
 use super::workshop::Workshop;
 use crate::analysis::film::{Film, Image};
@@ -110,6 +110,7 @@ pub struct Session {
     stand_in_seconds: f64,
     /// Where kernels are compiled beside the picture; `None` where the session waits for them.
     workshop: Option<Workshop>,
+    precision: Precision,
 }
 
 impl Session {
@@ -139,6 +140,7 @@ impl Session {
             step_time: Duration::ZERO,
             stand_in_seconds: 0.0,
             workshop: None,
+            precision: Precision::default(),
         })
     }
 
@@ -185,6 +187,12 @@ impl Session {
     /// What renders.
     pub fn engine(&self) -> &EngineInfo {
         &self.info
+    }
+
+    /// What the processor shades with from the next submission on; the GPU goes on in f32.
+    pub fn set_precision(&mut self, precision: Precision) {
+        self.precision = precision;
+        self.forget();
     }
 
     /// Models and environments, loaded and kept.
@@ -256,7 +264,7 @@ impl Session {
                 left = left.min(limit.saturating_sub(self.render_time));
             }
             let step_begun = Instant::now();
-            self.engine.step(left, &self.convergence.goals)?;
+            self.engine.step(left, &self.convergence.goals, self.precision)?;
             self.step_time += step_begun.elapsed();
             self.render_time = before + begun.elapsed();
             if self.engine.schedule().is_at_goal() || self.progress().is_done {

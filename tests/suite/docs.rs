@@ -131,10 +131,20 @@ fn hex(color: [f32; 3]) -> String {
     format!("`#{r:02x}{g:02x}{b:02x}`")
 }
 
-/// The options of a subcommand; of the program itself where there is no such name.
+/// The options of a subcommand, or what it offers where it has subcommands itself; of the program itself without a name.
 fn options(name: &str) -> String {
     let root = Arguments::command();
-    let command = root.get_subcommands().find(|command| command.get_name() == name);
+    let command = name.split_whitespace().fold(&root, |command, word| {
+        let found = command.get_subcommands().find(|command| command.get_name() == word);
+        found.unwrap_or_else(|| panic!("there is no command {word} in '{name}'"))
+    });
+    if command.has_subcommands() && !name.is_empty() {
+        let row = |command: &Command| {
+            let help = command.get_about().map(ToString::to_string).unwrap_or_default();
+            vec![format!("`{}`", command.get_name()), help]
+        };
+        return table(&["command", "what it does"], command.get_subcommands().map(row));
+    }
     let is_shown = |argument: &&Arg| !matches!(argument.get_action(), ArgAction::Help | ArgAction::Version);
     let row = |argument: &Arg| {
         let values: Vec<_> = argument
@@ -162,7 +172,6 @@ fn options(name: &str) -> String {
             argument.get_help().map(ToString::to_string).unwrap_or_default(),
         ]
     };
-    let command = command.unwrap_or(&root);
     table(
         &["option", "default", "what it does"],
         command.get_arguments().filter(is_shown).map(row),
@@ -224,8 +233,16 @@ fn the_guide_tells_what_the_program_knows() {
 #[test]
 fn the_guide_has_every_part() {
     let guide = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/GUIDE.md")).unwrap();
-    let named = |command: &Command| format!("options of glossmith {}", command.get_name());
-    let mut wanted: Vec<String> = Arguments::command().get_subcommands().map(named).collect();
+    let mut wanted = Vec::new();
+    for command in Arguments::command().get_subcommands() {
+        let name = format!("options of glossmith {}", command.get_name());
+        wanted.extend(
+            command
+                .get_subcommands()
+                .map(|study| format!("{name} {}", study.get_name())),
+        );
+        wanted.push(name);
+    }
     wanted.extend(
         [
             "parameters",
@@ -250,7 +267,7 @@ fn the_guide_has_every_part() {
 #[test]
 fn pictures_that_the_documents_show_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    for document in ["README.md", "docs/GUIDE.md"] {
+    for document in ["README.md", "docs/GUIDE.md", "docs/FIGURES.md"] {
         let path = root.join(document);
         let text = std::fs::read_to_string(&path).unwrap();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {

@@ -53,12 +53,21 @@ fn title(plot: &LinePlot) -> String {
 }
 
 /// A value where it is drawn on its axis.
-fn place(axis: &Axis, value: f64) -> f64 {
+pub(super) fn place(axis: &Axis, value: f64) -> f64 {
     if axis.is_logarithmic {
         value.max(axis.range[0]).log10()
     } else {
         value
     }
+}
+
+/// What stands at a place of an axis.
+pub(super) fn axis_label(axis: &Axis, place: f64) -> String {
+    number(if axis.is_logarithmic {
+        10.0_f64.powf(place)
+    } else {
+        place
+    })
 }
 
 fn draw_cartesian<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
@@ -72,13 +81,6 @@ where
         .x_label_area_size(px(46.0, style))
         .y_label_area_size(px(66.0, style))
         .build_cartesian_2d(x, y)?;
-    let label = |axis: &Axis, place: f64| {
-        number(if axis.is_logarithmic {
-            10.0_f64.powf(place)
-        } else {
-            place
-        })
-    };
     chart
         .configure_mesh()
         .light_line_style(TRANSPARENT)
@@ -88,8 +90,8 @@ where
         .axis_desc_style(font(15.0, style))
         .x_labels(10)
         .y_labels(8)
-        .x_label_formatter(&|place| label(&plot.x, *place))
-        .y_label_formatter(&|place| label(&plot.y, *place))
+        .x_label_formatter(&|place| axis_label(&plot.x, *place))
+        .y_label_formatter(&|place| axis_label(&plot.y, *place))
         .x_desc(&plot.x.label)
         .y_desc(&plot.y.label)
         .draw()?;

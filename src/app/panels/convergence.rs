@@ -71,7 +71,7 @@ fn percent_short(share: f64) -> String {
 }
 
 /// A time in words, two digits.
-fn duration(seconds: f64) -> String {
+pub(super) fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 0.0995 => format!("{:.0} ms", 1e3 * s),
         s if s < 9.95 => format!("{s:.1} s"),
@@ -134,7 +134,7 @@ fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
 }
 
 /// A line for each power of ten, fainter ones for its 2 and 5.
-fn decades(input: GridInput) -> Vec<GridMark> {
+pub(super) fn decades(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let (first, last) = (low.floor() as i32, high.ceil() as i32);
     let marks = (first..=last).flat_map(|decade| {

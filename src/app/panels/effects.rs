@@ -32,6 +32,8 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     for (effect, decision) in plan.table() {
         row(ui, desk, effect, decision);
     }
+    ui.add_space(theme::GAP);
+    super::ledger::show(ui, desk);
 }
 
 fn row(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect, decision: &Decision) {

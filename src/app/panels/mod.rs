@@ -7,6 +7,7 @@ pub(super) mod convergence;
 pub(super) mod curve;
 pub(super) mod effects;
 mod hard_cases;
+pub(super) mod ledger;
 pub(super) mod lighting;
 pub(super) mod lobe;
 mod lobe_match;
@@ -14,8 +15,10 @@ mod lobe_plot;
 pub(super) mod log;
 pub(super) mod material;
 pub(super) mod presets;
+pub(super) mod race;
 pub(super) mod samples;
 pub(super) mod snapshots;
+mod study;
 
 use super::actions::{Action, Command};
 use super::compare::Compare;
@@ -59,6 +62,10 @@ pub(super) struct PanelState {
     pub(super) lobe: lobe::LobeState,
     /// The checks'.
     pub(super) check: check::CheckState,
+    /// The race's.
+    pub(super) race: race::RaceState,
+    /// The ledger's.
+    pub(super) ledger: ledger::LedgerState,
     /// The next click in the viewport says what is sharp.
     pub(super) picks_focus: bool,
     /// Rendering was stopped by hand.

@@ -70,6 +70,11 @@ macro_rules! lobes {
             match shape.lobe { $(Lobe::$variant => $module::sample(shape, frame, wo, xi),)* }
         }
 
+        /// [`raw_sample`] of a lobe, without the choice at each call.
+        pub fn raw_sampler<T: Real>(lobe: Lobe) -> RawSampler<T> {
+            match lobe { $(Lobe::$variant => $module::sample,)* }
+        }
+
         /// The density of [`raw_sample`], per steradian, not negative.
         pub fn raw_density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
             match shape.lobe { $(Lobe::$variant => $module::density(shape, frame, wo, wi),)* }
@@ -98,6 +103,9 @@ lobes! {
     lambert Lambert = 6, "lambert", "Lambert",
         "Perfectly diffuse: equally bright from everywhere, whatever the roughness.";
 }
+
+/// Draws a direction from one lobe.
+pub type RawSampler<T> = for<'a> fn(&LobeShape<'a, T>, &Frame<T>, Vec3<T>, [T; 3]) -> Vec3<T>;
 
 /// What happens to a sample that points below the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -1,0 +1,151 @@
+//! How far pictures are apart, their noise taken out.
+//!
+//! A film has two halves of samples that are independent of each other (see [`super::noise`]). With d₁ and d₂ the
+//! differences of two pictures in either half, d₁d₂ estimates the squared difference of what they converge to without
+//! bias: their noise has no mean in common. That holds even where both pictures draw the same random numbers, which
+//! makes small differences visible long before either picture is smooth.
+
+use super::film::{Film, luminance};
+
+/// Standard deviations of a normal distribution that hold 95 %.
+const BAND: f64 = 1.959_964;
+
+/// Mean luminance of each pixel in either half of its samples; NaN where a half has none.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Halves {
+    /// Of the even samples.
+    pub even: Vec<f64>,
+    /// Of the odd ones.
+    pub odd: Vec<f64>,
+}
+
+/// A root mean square difference over the mean luminance, with the range in which it lies with a probability of 95 %.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Distance {
+    /// 0.01 is 1 %; 0 where the noise hides whatever there is.
+    pub value: f64,
+    /// The lower end.
+    pub low: f64,
+    /// The upper end.
+    pub high: f64,
+}
+
+impl Distance {
+    /// Whether chance alone would hardly give it.
+    pub fn is_resolved(&self) -> bool {
+        self.low > 0.0
+    }
+}
+
+impl Halves {
+    /// The halves of a film.
+    pub fn of(film: &Film) -> Self {
+        let pixels = || film.color.iter().zip(&film.statistics).zip(&film.odd);
+        Self {
+            even: pixels()
+                .map(|((sum, [_, n]), [odd, _, odd_n])| (luminance(*sum) - odd) / (n - odd_n))
+                .collect(),
+            odd: film.odd.iter().map(|[sum, _, n]| sum / n).collect(),
+        }
+    }
+
+    /// Mean luminance of the picture.
+    pub fn mean_luminance(&self) -> f64 {
+        let both = std::iter::zip(&self.even, &self.odd).map(|(even, odd)| 0.5 * (even + odd));
+        mean(both.filter(|y| y.is_finite()))[0]
+    }
+
+    /// How far the picture that this one converges to is from that of `other`, over the mean luminance of `other`.
+    pub fn distance(&self, other: &Halves) -> Distance {
+        let even = std::iter::zip(&self.even, &other.even).map(|(a, b)| a - b);
+        let odd = std::iter::zip(&self.odd, &other.odd).map(|(a, b)| a - b);
+        distance(even.zip(odd), other.mean_luminance())
+    }
+
+    /// How far a picture, given by its luminances, is from the one that this one converges to: its error, where both
+    /// are of the same scene and independent.
+    pub fn error_of(&self, luminances: &[f64]) -> Distance {
+        let even = std::iter::zip(luminances, &self.even).map(|(x, y)| x - y);
+        let odd = std::iter::zip(luminances, &self.odd).map(|(x, y)| x - y);
+        distance(even.zip(odd), self.mean_luminance())
+    }
+}
+
+/// Mean, and the standard error of the mean.
+fn mean(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let (mut count, mut sum, mut squares) = (0.0_f64, 0.0, 0.0);
+    for value in values {
+        count += 1.0;
+        sum += value;
+        squares += value * value;
+    }
+    let mean = sum / count.max(1.0);
+    let variance = (squares / count.max(1.0) - mean * mean).max(0.0);
+    [mean, (variance / (count - 1.0).max(1.0)).sqrt()]
+}
+
+fn distance(pairs: impl Iterator<Item = (f64, f64)>, mean_luminance: f64) -> Distance {
+    let products = pairs.map(|(even, odd)| even * odd).filter(|x| x.is_finite());
+    let [square, error] = mean(products);
+    let relative = |square: f64| {
+        if square > 0.0 {
+            square.sqrt() / mean_luminance.max(f64::MIN_POSITIVE)
+        } else {
+            0.0
+        }
+    };
+    Distance {
+        value: relative(square),
+        low: relative(square - BAND * error),
+        high: relative(square + BAND * error),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::random::{Sequence, random_pair, random_state};
+
+    const PIXELS: u32 = 10_000;
+
+    /// A grey picture of this luminance with noise of this size in either half.
+    fn halves(luminance: f64, noise: f64, seed: u32) -> Halves {
+        let number = |pixel: u32| -> [f64; 2] {
+            random_pair(
+                random_state(pixel % 100, pixel / 100, seed, 0, Sequence::Independent),
+                0,
+            )
+        };
+        let half = |i: usize| {
+            let value = |pixel| luminance + noise * (12.0_f64.sqrt() * (number(pixel)[i] - 0.5));
+            (0..PIXELS).map(value).collect()
+        };
+        Halves {
+            even: half(0),
+            odd: half(1),
+        }
+    }
+
+    #[test]
+    fn a_difference_far_below_the_noise_is_measured() {
+        // 3 % apart, with 20 % noise: in the sum of squares of a plain difference the noise would rule.
+        let found = halves(1.03, 0.2, 1).distance(&halves(1.0, 0.2, 2));
+        assert!((found.value - 0.03).abs() < 0.02, "{found:?}");
+        let none = halves(1.0, 0.2, 1).distance(&halves(1.0, 0.2, 2));
+        assert!(!none.is_resolved() && none.high < 0.04, "{none:?}");
+    }
+
+    #[test]
+    fn noise_in_common_does_not_count() {
+        let found = halves(1.01, 0.2, 1).distance(&halves(1.0, 0.2, 1));
+        assert!((found.value - 0.01).abs() < 1e-9 && found.is_resolved(), "{found:?}");
+    }
+
+    #[test]
+    fn the_error_of_a_picture_is_its_own_noise_alone() {
+        let picture = halves(1.0, 0.1, 3).even;
+        let found = halves(1.0, 0.3, 4).error_of(&picture);
+        assert!((found.value - 0.1).abs() < 0.02, "{found:?}");
+        assert!(found.low < 0.1 && found.high > 0.1, "{found:?}");
+    }
+}

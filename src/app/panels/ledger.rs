@@ -1,0 +1,66 @@
+//! The ledger: what each effect and each setting in force costs, in plain words.
+
+use std::time::Duration;
+
+use egui::{RichText, Ui};
+
+use super::Desk;
+use super::study::{StudyWorker, engine};
+use crate::app::widgets;
+use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
+
+/// Longest side of the picture that is measured on, pixels: what is true of the parts is true of the whole.
+const SIDE_MAX: u32 = 256;
+
+/// What the section remembers.
+#[derive(Default)]
+pub(in crate::app) struct LedgerState {
+    worker: StudyWorker<Ledger>,
+    /// How long a turn lasts, where it is not the usual time.
+    pub(in crate::app) slice: Option<Duration>,
+}
+
+pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let mut state = std::mem::take(&mut desk.state.ledger);
+    widgets::group(ui, "Ledger", |ui| {
+        let help = "Renders this scene with and without each of them, in turns, and says what it costs.";
+        let slice = state.slice;
+        state.worker.controls(ui, desk, "Measure what it costs", help, |desk| {
+            let document = super::race::small_document(desk, SIDE_MAX);
+            let mut options = LedgerOptions::new(engine(desk));
+            options.slice = slice.unwrap_or(options.slice);
+            Box::new(move |watch| ledger(&document, &options, watch))
+        });
+        match state.worker.found() {
+            None => widgets::note(
+                ui,
+                "What each effect and setting costs in time, and does to noise and picture.",
+            ),
+            Some(found) => {
+                ui.label(format!("{:.2} ms for one sample of every pixel", found.ms_per_sample));
+                found.entries.iter().for_each(|entry| line(ui, entry));
+                let size = format!("Measured at {} × {} pixels.", found.width, found.height);
+                widgets::note(ui, size);
+            }
+        }
+    });
+    desk.state.ledger = state;
+}
+
+fn line(ui: &mut Ui, entry: &Entry) {
+    let help = format!(
+        "{:.3} ms of {:.3} ms a sample of every pixel ({:.1} % of the frame); half of the turns lie between {:.3} and \
+         {:.3} ms.\nNoise: {:+.0} %. Picture: {:.3} % ({:.3} to {:.3}).",
+        entry.ms,
+        entry.ms_with,
+        100.0 * entry.share_of_frame,
+        entry.ms_quartiles[0],
+        entry.ms_quartiles[1],
+        100.0 * entry.noise_share,
+        100.0 * entry.picture_change.value,
+        100.0 * entry.picture_change.low,
+        100.0 * entry.picture_change.high,
+    );
+    ui.add(egui::Label::new(RichText::new(&entry.words)).wrap())
+        .on_hover_text(help);
+}

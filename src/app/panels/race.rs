@@ -1,0 +1,333 @@
+//! The race: techniques against each other on this view, and the one that is worth its time.
+
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use egui::{ColorImage, TextureHandle, TextureOptions, Ui};
+use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, PlotResponse, Points, Text};
+
+use super::Desk;
+use super::convergence::{decades, duration};
+use super::study::{StudyWorker, engine};
+use crate::app::status::percent;
+use crate::app::widgets::{self, Name, NumberStyle};
+use crate::app::{theme, widgets::RowResponse};
+use crate::document::plan::Plan;
+use crate::document::technique::{GROUPS, Technique};
+use crate::document::{Document, ViewSettings};
+use crate::render::display::display;
+use crate::render::study::race::{Race, RaceOptions, Runner, race};
+use crate::render::study::references::ReferenceCache;
+
+/// Longest side of the raced picture, pixels.
+const SIDE_MAX: u32 = 160;
+/// Width of a small picture, points.
+const THUMBNAIL: f32 = 112.0;
+/// How near to a point a click must be, points.
+const REACH: f32 = 14.0;
+/// Kinds that are chosen at first.
+const CHOSEN: [&str; 3] = ["strategy", "bounces", "fresnel"];
+/// References are rendered up to so many times as long as each one races.
+const REFERENCE_TIMES: f64 = 4.0;
+
+/// What the panel remembers.
+pub(in crate::app) struct RaceState {
+    worker: StudyWorker<Race>,
+    chosen: Vec<&'static str>,
+    seconds: f64,
+    cache: ReferenceCache,
+    shows_equal_error: bool,
+    pictured: Option<Pictured>,
+}
+
+/// The small pictures of a race.
+struct Pictured {
+    race: Arc<Race>,
+    equal_time: Vec<TextureHandle>,
+    equal_error: Vec<TextureHandle>,
+}
+
+impl Default for RaceState {
+    fn default() -> Self {
+        Self::new(None)
+    }
+}
+
+impl RaceState {
+    /// `cache` is the folder that converged pictures are kept in.
+    pub(in crate::app) fn new(cache: Option<PathBuf>) -> Self {
+        Self {
+            worker: StudyWorker::default(),
+            chosen: CHOSEN.to_vec(),
+            seconds: 2.0,
+            cache: cache.map_or_else(ReferenceCache::none, ReferenceCache::at),
+            shows_equal_error: false,
+            pictured: None,
+        }
+    }
+}
+
+pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let mut state = std::mem::take(&mut desk.state.race);
+    choices(ui, &mut state);
+    let help = "Renders this view with each of them by turns, and measures what is left of noise and bias.";
+    let (chosen, seconds, cache) = (state.chosen.clone(), state.seconds, state.cache.clone());
+    state.worker.controls(ui, desk, "Run the race", help, |desk| {
+        let document = small_document(desk, SIDE_MAX);
+        let plan = desk
+            .snapshot
+            .scene
+            .as_ref()
+            .map_or_else(Plan::general, |scene| scene.job.plan.clone());
+        let groups = GROUPS.iter().filter(|group| chosen.contains(&group.name));
+        let options = RaceOptions {
+            seconds,
+            slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
+            reference_seconds: REFERENCE_TIMES * seconds,
+            cache,
+            ..RaceOptions::new(engine(desk), groups.flat_map(|group| group.members(&plan)).collect())
+        };
+        Box::new(move |watch| race(&document, &options, watch))
+    });
+    match state.worker.found() {
+        None => widgets::note(
+            ui,
+            "Which settings are worth their time on this view: how soon each reaches a noise of 2 %, and how far it \
+             stays from the most accurate picture.",
+        ),
+        Some(found) => outcome(ui, desk, &mut state, &found),
+    }
+    desk.state.race = state;
+}
+
+/// The document as it is rendered, so small that a race is short.
+pub(super) fn small_document(desk: &Desk<'_>, side_max: u32) -> Document {
+    let mut document = desk.document.clone();
+    let size = desk.snapshot.scene.as_ref().map(|scene| scene.job.settings.image_size);
+    let [width, height] = size.unwrap_or([document.render.width, document.render.height]);
+    let scale = f64::from(side_max) / f64::from(width.max(height).max(side_max));
+    let side = |length: u32| ((f64::from(length) * scale).round() as u32).max(1);
+    (document.render.width, document.render.height) = (side(width), side(height));
+    document
+}
+
+fn choices(ui: &mut Ui, state: &mut RaceState) {
+    for group in GROUPS {
+        let mut is_chosen = state.chosen.contains(&group.name);
+        if ui
+            .checkbox(&mut is_chosen, group.label)
+            .on_hover_text(group.help)
+            .changed()
+        {
+            state.chosen.retain(|name| *name != group.name);
+            if is_chosen {
+                state.chosen.push(group.name);
+            }
+        }
+    }
+    let style = NumberStyle {
+        range: 0.01..=600.0,
+        bar: None,
+        unit: " s",
+        speed: 0.1,
+        decimals: 2,
+    };
+    let name = Name::new("Time of each", "Time of each", "How long each of them renders.");
+    let RowResponse { reset, .. } = widgets::row(ui, name, |ui| widgets::number(ui, &mut state.seconds, &style));
+    if reset {
+        state.seconds = RaceState::default().seconds;
+    }
+}
+
+fn outcome(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut RaceState, race: &Arc<Race>) {
+    let mut taken = chart(ui, race);
+    widgets::note(
+        ui,
+        format!(
+            "Left: soon at a noise of {}. Low: near the most accurate picture; lowest, no bias that could be told. \
+             Click a point to take its settings.",
+            percent(race.noise)
+        ),
+    );
+    taken = table(ui, race).or(taken);
+    if let Some(index) = taken {
+        take(desk, &race.runners[index].technique, &race.runners[index].label);
+    }
+    pictures(ui, desk, state, race);
+}
+
+/// Gives the document a technique's settings; undo takes them back.
+fn take(desk: &mut Desk<'_>, technique: &Technique, label: &str) {
+    *desk.document = technique.apply(desk.document);
+    desk.edits.note(format!("Use the race's {}", label.to_lowercase()), "");
+}
+
+/// The runners by time to the noise against bias; the one that was clicked.
+fn chart(ui: &mut Ui, race: &Race) -> Option<usize> {
+    let least = race.least_bias();
+    let place = |runner: &Runner| {
+        [
+            runner.time_to_noise.max(1e-6).log10(),
+            runner.charted_bias(least).log10(),
+        ]
+    };
+    let places: Vec<[f64; 2]> = race.runners.iter().map(place).collect();
+    let mut best: Vec<[f64; 2]> = std::iter::zip(&race.runners, &places)
+        .filter(|(runner, _)| runner.is_on_front)
+        .map(|(_, place)| *place)
+        .collect();
+    best.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let accent = theme::accent(ui.visuals().dark_mode);
+    let weak = ui.visuals().weak_text_color();
+    let shown: PlotResponse<()> = Plot::new("race")
+        .height((0.8 * ui.available_width()).clamp(180.0, 420.0))
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_zoom(false)
+        .allow_boxed_zoom(false)
+        .show_background(false)
+        .x_grid_spacer(decades)
+        .y_grid_spacer(decades)
+        .x_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| duration(10.0_f64.powf(mark.value)))
+        .y_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| percent(10.0_f64.powf(mark.value)))
+        .set_margin_fraction(egui::vec2(0.2, 0.12))
+        .show(ui, |plot_ui| {
+            plot_ui.line(Line::new("best", PlotPoints::from(best)).color(accent.gamma_multiply(0.6)));
+            for (runner, place) in std::iter::zip(&race.runners, &places) {
+                let color = if runner.is_on_front { accent } else { weak };
+                let name = runner.label.clone();
+                plot_ui.points(
+                    Points::new(name.clone(), PlotPoints::from(vec![*place]))
+                        .color(color)
+                        .radius(4.0),
+                );
+                if runner.is_on_front {
+                    let at = PlotPoint::new(place[0], place[1]);
+                    let text = Text::new(name.clone(), at, format!(" {name}")).color(color);
+                    plot_ui.text(text.anchor(egui::Align2::LEFT_BOTTOM));
+                }
+            }
+        });
+    shown.response.clone().accessible_name("Time against bias");
+    let at = shown
+        .response
+        .interact_pointer_pos()
+        .filter(|_| shown.response.clicked())?;
+    let distance = |place: &[f64; 2]| {
+        let point = PlotPoint::new(place[0], place[1]);
+        shown.transform.position_from_point(&point).distance(at)
+    };
+    let nearest = places
+        .iter()
+        .map(distance)
+        .enumerate()
+        .min_by(|(_, a), (_, b)| a.total_cmp(b));
+    nearest
+        .filter(|(_, distance)| *distance < REACH)
+        .map(|(index, _)| index)
+}
+
+/// The same as a table, the soonest first; the one that was chosen.
+fn table(ui: &mut Ui, race: &Race) -> Option<usize> {
+    let mut order: Vec<usize> = (0..race.runners.len()).collect();
+    order.sort_by(|a, b| {
+        race.runners[*a]
+            .time_to_noise
+            .total_cmp(&race.runners[*b].time_to_noise)
+    });
+    let mut taken = None;
+    egui::Grid::new("runners").num_columns(4).striped(true).show(ui, |ui| {
+        let to_noise = format!("To {}", percent(race.noise));
+        for heading in ["", to_noise.as_str(), "Bias", ""] {
+            ui.weak(heading);
+        }
+        ui.end_row();
+        for index in order {
+            let runner = &race.runners[index];
+            let text = egui::RichText::new(&runner.label);
+            ui.label(if runner.is_on_front { text.strong() } else { text });
+            let time = ui.label(duration(runner.time_to_noise));
+            time.on_hover_text(format!(
+                "After {}: error {} ({} to {}), told {}; {:.1} samples a pixel",
+                duration(runner.seconds),
+                percent(runner.error.value),
+                percent(runner.error.low),
+                percent(runner.error.high),
+                percent(runner.told_noise),
+                runner.samples_per_pixel
+            ));
+            ui.label(bias(runner));
+            // What is no setting of a document can't become one.
+            let is_setting = !runner.technique.is_double() && runner.technique != Technique::as_is();
+            let button = ui.add_enabled(is_setting, egui::Button::new("Use").small());
+            let button = button.on_hover_text("Gives the document these settings. Undo takes it back.");
+            button.clone().accessible_name(format!("Use {}", runner.label));
+            if button.clicked() {
+                taken = Some(index);
+            }
+            ui.end_row();
+        }
+    });
+    taken
+}
+
+fn bias(runner: &Runner) -> String {
+    if runner.is_unbiased {
+        "none".to_owned()
+    } else if runner.bias.is_resolved() {
+        percent(runner.bias.value)
+    } else {
+        format!("< {}", percent(runner.bias.high))
+    }
+}
+
+/// The small pictures of equal time or of equal error.
+fn pictures(ui: &mut Ui, desk: &Desk<'_>, state: &mut RaceState, race: &Arc<Race>) {
+    ui.horizontal(|ui| {
+        ui.selectable_value(&mut state.shows_equal_error, false, "Equal time");
+        ui.selectable_value(&mut state.shows_equal_error, true, "Equal error");
+    });
+    if state
+        .pictured
+        .as_ref()
+        .is_none_or(|pictured| !Arc::ptr_eq(&pictured.race, race))
+    {
+        state.pictured = Some(pictured(ui, race, &desk.document.view));
+    }
+    let Some(pictured) = &state.pictured else { return };
+    let textures = if state.shows_equal_error {
+        &pictured.equal_error
+    } else {
+        &pictured.equal_time
+    };
+    ui.horizontal_wrapped(|ui| {
+        for (runner, texture) in std::iter::zip(&race.runners, textures) {
+            ui.vertical(|ui| {
+                ui.set_width(THUMBNAIL);
+                ui.add(egui::Image::new(texture).max_width(THUMBNAIL).alt_text(&runner.label));
+                let (error, seconds) = if state.shows_equal_error {
+                    (race.equal_error, runner.equal_error_seconds)
+                } else {
+                    (runner.error.value, runner.seconds)
+                };
+                let text = format!("{}: {} in {}", runner.label, percent(error), duration(seconds));
+                ui.add(egui::Label::new(egui::RichText::new(text).small()).wrap());
+            });
+        }
+    });
+}
+
+fn pictured(ui: &Ui, race: &Arc<Race>, view: &ViewSettings) -> Pictured {
+    let load = |image: &crate::analysis::film::Image| {
+        let size = [image.width as usize, image.height as usize];
+        let pixels = ColorImage::from_rgba_unmultiplied(size, &display(image, view));
+        ui.ctx().load_texture("race", pixels, TextureOptions::LINEAR)
+    };
+    Pictured {
+        race: race.clone(),
+        equal_time: race.runners.iter().map(|runner| load(&runner.equal_time)).collect(),
+        equal_error: race.runners.iter().map(|runner| load(&runner.equal_error)).collect(),
+    }
+}

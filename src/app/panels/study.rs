@@ -1,0 +1,129 @@
+//! What the panels that measure share: a study beside the window, which can be stopped and shows how far it has come.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use egui::Ui;
+
+use super::Desk;
+use crate::app::actions::Command;
+use crate::app::widgets;
+use crate::render::EngineChoice;
+use crate::render::background::Background;
+use crate::render::study::{StudyError, StudyProgress, Watch};
+
+/// What is to be done.
+type Work<R> = Box<dyn FnOnce(&mut Watch<'_>) -> Result<R, StudyError> + Send>;
+
+/// How a study stands.
+#[derive(Clone)]
+enum Standing<R> {
+    Running(StudyProgress),
+    Done(Arc<R>),
+    Stopped,
+    Failed(String),
+}
+
+/// A study and its thread.
+pub(super) struct StudyWorker<R> {
+    worker: Option<Background<Work<R>, Standing<R>>>,
+    stop: Arc<AtomicBool>,
+    /// The viewport's renderer was stopped for it.
+    holds_renderer: bool,
+}
+
+impl<R> Default for StudyWorker<R> {
+    fn default() -> Self {
+        Self {
+            worker: None,
+            stop: Arc::default(),
+            holds_renderer: false,
+        }
+    }
+}
+
+impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
+    /// A button that starts the study, and while it runs what it does and a button that stops it. The viewport's
+    /// renderer rests meanwhile: it would take part of the time that is measured. `begin` makes the work.
+    pub(super) fn controls(
+        &mut self,
+        ui: &mut Ui,
+        desk: &mut Desk<'_>,
+        label: &str,
+        help: &str,
+        begin: impl FnOnce(&Desk<'_>) -> Work<R>,
+    ) {
+        let is_busy = self.worker.as_ref().is_some_and(Background::is_busy);
+        if !is_busy && std::mem::take(&mut self.holds_renderer) && desk.state.is_paused {
+            desk.act(Command::Pause);
+        }
+        ui.horizontal(|ui| {
+            if is_busy {
+                if ui.button("Stop").clicked() {
+                    self.stop.store(true, Ordering::Relaxed);
+                }
+                ui.add(egui::Spinner::new().size(12.0));
+            } else if ui.button(label).on_hover_text(help).clicked() {
+                let work = begin(desk);
+                self.begin(ui, work);
+                if !desk.state.is_paused {
+                    self.holds_renderer = true;
+                    desk.act(Command::Pause);
+                }
+            }
+        });
+        match self.worker.as_ref().and_then(Background::latest) {
+            Some(Standing::Running(progress)) if is_busy => {
+                ui.add(egui::ProgressBar::new(progress.share as f32).desired_height(6.0));
+                widgets::note(ui, progress.what);
+            }
+            Some(Standing::Failed(why)) => {
+                ui.colored_label(ui.visuals().error_fg_color, why);
+            }
+            Some(Standing::Stopped) => widgets::note(ui, "Stopped."),
+            _ => {}
+        }
+    }
+
+    fn begin(&mut self, ui: &Ui, work: Work<R>) {
+        self.stop.store(false, Ordering::Relaxed);
+        if self.worker.is_none() {
+            let (ctx, stop) = (ui.ctx().clone(), self.stop.clone());
+            let body = move |work: Work<R>, desk: &crate::render::background::Desk<'_, Work<R>, Standing<R>>| {
+                let mut watch = |progress| {
+                    desk.publish(Standing::Running(progress));
+                    !stop.load(Ordering::Relaxed) && !desk.is_superseded()
+                };
+                desk.publish(match work(&mut watch) {
+                    Ok(result) => Standing::Done(Arc::new(result)),
+                    Err(StudyError::Stopped) => Standing::Stopped,
+                    Err(error) => Standing::Failed(error.to_string()),
+                });
+            };
+            // Without a thread the button does nothing; the log says why.
+            match Background::spawn("study", move || ctx.request_repaint(), body) {
+                Ok(worker) => self.worker = Some(worker),
+                Err(error) => log::error!("the system gives no thread to measure on: {error}"),
+            }
+        }
+        if let Some(worker) = &self.worker {
+            worker.ask(work);
+        }
+    }
+
+    /// What was found last.
+    pub(super) fn found(&self) -> Option<Arc<R>> {
+        match self.worker.as_ref()?.latest()? {
+            Standing::Done(found) => Some(found),
+            _ => None,
+        }
+    }
+}
+
+/// The engine that the viewport renders with.
+pub(super) fn engine(desk: &Desk<'_>) -> EngineChoice {
+    match desk.snapshot.engine.as_ref().map(|engine| engine.kind) {
+        Some("gpu") => EngineChoice::Gpu,
+        _ => EngineChoice::Cpu,
+    }
+}

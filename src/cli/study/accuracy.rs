@@ -1,0 +1,234 @@
+//! `glossmith study accuracy`: the race.
+
+use std::path::Path;
+use std::time::Duration;
+
+use clap::Args;
+use image::RgbImage;
+
+use super::folder::Folder;
+use super::{Bar, CacheArguments, CommonArguments, digits, make_folder};
+use crate::analysis::film::Image;
+use crate::analysis::lobe_view::Axis;
+use crate::analysis::plot::{NamedPoint, PictureSheet, PointPlot, picture_sheet_file, point_plot_file};
+use crate::document::technique::{Technique, TechniqueError, check_techniques, techniques};
+use crate::document::{Document, ViewSettings};
+use crate::render::display::display;
+use crate::render::study::race::{Race, RaceOptions, Runner, race};
+use crate::render::{EngineChoice, Session};
+
+/// Those that take part where none are named.
+const DEFAULT: [&str; 6] = ["strategy", "sequence", "adaptive", "bounces", "fresnel", "lobe"];
+/// Engine time of each and noise to reach where none are given; the same quickly.
+const SECONDS: f64 = 10.0;
+const NOISE: f64 = 0.02;
+const QUICK_SECONDS: f64 = 0.05;
+/// Longest time for a reference, as a multiple of each one's time.
+const REFERENCE_TIMES: f64 = 6.0;
+/// Pictures of a sheet are no wider than this.
+const SHEET_SIDE: u32 = 256;
+
+/// Arguments of `glossmith study accuracy`.
+#[derive(Debug, Args)]
+pub(super) struct AccuracyArguments {
+    /// Who takes part, besides the scene as it is: settings such as strategy=lobe,bounces=4, or all of a kind: strategy,
+    /// sequence, adaptive, bounces, fresnel, lobe, curve, effect, numbers. May be repeated [default: strategy, sequence,
+    /// adaptive, bounces, fresnel and lobe].
+    #[arg(long = "technique", value_name = "SETTINGS|KIND", value_parser = parse_techniques)]
+    techniques: Vec<String>,
+    #[command(flatten)]
+    cache: CacheArguments,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+fn parse_techniques(text: &str) -> Result<String, TechniqueError> {
+    check_techniques(text)?;
+    Ok(text.to_owned())
+}
+
+pub(super) fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
+    let common = &arguments.common;
+    make_folder(&common.output)?;
+    let mut document = common.document()?;
+    // They say how long is raced, not how the scene is rendered.
+    let (time_s, noise) = (document.render.time_s.take(), document.render.noise.take());
+    let mut session = Session::open(EngineChoice::Cpu)?;
+    session.submit(&document)?;
+    let named: Vec<&str> = arguments.techniques.iter().map(String::as_str).collect();
+    let named = if named.is_empty() { &DEFAULT[..] } else { &named };
+    let mut runners: Vec<Technique> = Vec::new();
+    if let Some(job) = session.job() {
+        for text in named {
+            runners.extend(techniques(text, &job.plan)?);
+        }
+    }
+    let seconds = time_s.unwrap_or(if common.quick { QUICK_SECONDS } else { SECONDS });
+    let options = RaceOptions {
+        seconds,
+        noise: noise.unwrap_or(NOISE),
+        slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
+        reference_seconds: arguments.cache.reference_time.unwrap_or(REFERENCE_TIMES * seconds),
+        cache: arguments.cache.cache(),
+        ..RaceOptions::new(common.scene.engine, runners)
+    };
+    let found = {
+        let bar = Bar::new()?;
+        race(&document, &options, &mut |progress| bar.show(progress))?
+    };
+    write(&common.output, &document, &found)?;
+    print(&found);
+    Ok(())
+}
+
+fn print(race: &Race) {
+    println!(
+        "{} on {}, {} x {}, {} s each",
+        race.machine.engine, race.machine.adapter, race.width, race.height, race.seconds
+    );
+    println!(
+        "  time to {} %   bias      error     technique (* none is both faster and less biased)",
+        100.0 * race.noise
+    );
+    let mut runners: Vec<&Runner> = race.runners.iter().collect();
+    runners.sort_by(|a, b| a.time_to_noise.total_cmp(&b.time_to_noise));
+    for runner in runners {
+        let mark = if runner.is_on_front { '*' } else { ' ' };
+        let bias = if runner.is_unbiased {
+            "none".to_owned()
+        } else if runner.bias.is_resolved() {
+            format!("{:.2} %", 100.0 * runner.bias.value)
+        } else {
+            format!("<{:.2} %", 100.0 * runner.bias.high)
+        };
+        println!(
+            "{mark} {:>11.3} s   {bias:8}  {:6.2} %  {}",
+            runner.time_to_noise,
+            100.0 * runner.error.value,
+            runner.label
+        );
+    }
+}
+
+fn write(path: &Path, document: &Document, race: &Race) -> anyhow::Result<()> {
+    let folder = Folder { path, name: "accuracy" };
+    folder.json(race)?;
+    let head = [
+        "technique",
+        "label",
+        "seconds",
+        "samples_per_pixel",
+        "error",
+        "error_low",
+        "error_high",
+        "told_noise",
+        "time_to_noise",
+        "is_extrapolated",
+        "bias",
+        "bias_low",
+        "bias_high",
+        "is_unbiased",
+        "reference_noise",
+        "equal_error_seconds",
+        "is_on_front",
+    ];
+    let row = |runner: &Runner| {
+        vec![
+            runner.technique.to_string(),
+            runner.label.clone(),
+            digits(runner.seconds),
+            digits(runner.samples_per_pixel),
+            digits(runner.error.value),
+            digits(runner.error.low),
+            digits(runner.error.high),
+            digits(runner.told_noise),
+            digits(runner.time_to_noise),
+            runner.is_extrapolated.to_string(),
+            digits(runner.bias.value),
+            digits(runner.bias.low),
+            digits(runner.bias.high),
+            runner.is_unbiased.to_string(),
+            digits(runner.reference_noise),
+            digits(runner.equal_error_seconds),
+            runner.is_on_front.to_string(),
+        ]
+    };
+    folder.csv(&head, race.runners.iter().map(row))?;
+    folder.plots(&pareto_plot(race), point_plot_file)?;
+    let sheet = |name: &str, title: String, picture: fn(&Runner) -> &Image, caption: &dyn Fn(&Runner) -> String| {
+        let of_runner = |runner: &Runner| {
+            let picture = shown(picture(runner), &document.view)?;
+            Some((caption(runner), picture))
+        };
+        let pictures = race.runners.iter().filter_map(of_runner).collect();
+        let path = path.join(format!("{name}.png"));
+        picture_sheet_file(&path, &PictureSheet { title, pictures })?;
+        eprintln!("wrote {}", path.display());
+        anyhow::Ok(())
+    };
+    let title = format!("After {} s each", race.seconds);
+    sheet("equal-time", title, |runner| &runner.equal_time, &|runner| {
+        format!("{}: {:.1} %", runner.label, 100.0 * runner.error.value)
+    })?;
+    let title = format!("At an error of {:.1} %", 100.0 * race.equal_error);
+    sheet("equal-error", title, |runner| &runner.equal_error, &|runner| {
+        format!("{}: {:.2} s", runner.label, runner.equal_error_seconds)
+    })
+}
+
+/// A picture as a screen shows it, no larger than fits a sheet.
+fn shown(image: &Image, view: &ViewSettings) -> Option<RgbImage> {
+    let rgba = image::RgbaImage::from_raw(image.width, image.height, display(image, view))?;
+    let picture = image::DynamicImage::from(rgba).to_rgb8();
+    let largest = picture.width().max(picture.height());
+    if largest <= SHEET_SIDE {
+        return Some(picture);
+    }
+    let side = |length: u32| (length * SHEET_SIDE / largest).max(1);
+    let [width, height] = [side(picture.width()), side(picture.height())];
+    Some(image::imageops::thumbnail(&picture, width, height))
+}
+
+/// Time to the race's noise against bias.
+fn pareto_plot(race: &Race) -> PointPlot {
+    let least = 100.0 * race.least_bias();
+    let point = |runner: &Runner| NamedPoint {
+        name: runner.label.clone(),
+        place: [
+            runner.time_to_noise.max(1e-6),
+            (100.0 * runner.charted_bias(0.0)).max(least),
+        ],
+        y_range: [runner.bias.low, runner.bias.high].map(|end| (100.0 * end).max(least)),
+        is_best: runner.is_on_front,
+    };
+    let points: Vec<NamedPoint> = race.runners.iter().map(point).collect();
+    let range = |values: &dyn Fn(&NamedPoint) -> f64| {
+        let ends = points
+            .iter()
+            .map(values)
+            .fold([f64::INFINITY, 0.0_f64], |[low, high], x| [low.min(x), high.max(x)]);
+        [0.7 * ends[0], 1.5 * ends[1]]
+    };
+    PointPlot {
+        title: format!("What accuracy costs: {}", race.machine.adapter),
+        x: Axis {
+            label: format!("Time to a noise of {} % (s)", 100.0 * race.noise),
+            range: range(&|point| point.place[0]),
+            is_logarithmic: true,
+        },
+        y: Axis {
+            label: format!(
+                "Bias (%), at {} and below: none that could be told",
+                small_number(least)
+            ),
+            range: range(&|point| point.y_range[1].max(point.place[1])).map(|end| end.max(0.7 * least)),
+            is_logarithmic: true,
+        },
+        points,
+    }
+}
+
+/// A small number for a label.
+fn small_number(value: f64) -> String {
+    format!("{value:.2e}").replace("e0", "")
+}

@@ -1,0 +1,62 @@
+//! The files of a study.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context as _;
+use serde::Serialize;
+
+use crate::analysis::plot::PlotError;
+
+/// The folder that a study writes into, and the name that its files begin with.
+pub(super) struct Folder<'a> {
+    pub(super) path: &'a Path,
+    pub(super) name: &'a str,
+}
+
+impl Folder<'_> {
+    /// The numbers, whole.
+    pub(super) fn json(&self, value: &impl Serialize) -> anyhow::Result<()> {
+        self.write("json", serde_json::to_string_pretty(value)? + "\n")
+    }
+
+    /// The numbers as a table.
+    pub(super) fn csv(&self, head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> anyhow::Result<()> {
+        let mut text = head.join(",") + "\n";
+        for row in rows {
+            let cells: Vec<String> = row.iter().map(|cell| quoted(cell)).collect();
+            text += &(cells.join(",") + "\n");
+        }
+        self.write("csv", text)
+    }
+
+    /// A plot, as .svg and as .png.
+    pub(super) fn plots<P>(&self, plot: &P, write: fn(&Path, &P) -> Result<(), PlotError>) -> anyhow::Result<()> {
+        for ending in ["svg", "png"] {
+            let path = self.file(ending);
+            write(&path, plot)?;
+            eprintln!("wrote {}", path.display());
+        }
+        Ok(())
+    }
+
+    fn file(&self, ending: &str) -> PathBuf {
+        self.path.join(format!("{}.{ending}", self.name))
+    }
+
+    fn write(&self, ending: &str, text: String) -> anyhow::Result<()> {
+        let path = self.file(ending);
+        std::fs::write(&path, text)
+            .with_context(|| format!("{}: could not be written; is there room?", path.display()))?;
+        eprintln!("wrote {}", path.display());
+        Ok(())
+    }
+}
+
+/// A cell of a table, in quotes where it needs them.
+fn quoted(cell: &str) -> String {
+    if cell.contains([',', '"', '\n']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
+    }
+}

@@ -1,0 +1,145 @@
+//! `glossmith study`: what accuracy costs in time, as numbers and plots for papers and for regression.
+
+mod accuracy;
+mod convergence;
+mod folder;
+mod ledger;
+mod sampling;
+mod scaling;
+
+use std::path::PathBuf;
+
+use anyhow::Context as _;
+use clap::{Args, Subcommand};
+use indicatif::ProgressBar;
+
+use super::render::{SceneArguments, bar};
+use crate::document::Document;
+use crate::render::study::StudyProgress;
+use crate::render::study::references::ReferenceCache;
+use crate::render::{EngineChoice, Session};
+
+/// Largest side of a picture of `--quick`.
+const QUICK_SIDE: u32 = 48;
+
+/// Arguments of `glossmith study`.
+#[derive(Debug, Args)]
+pub struct StudyArguments {
+    /// What is measured.
+    #[command(subcommand)]
+    study: Study,
+}
+
+/// The studies.
+#[derive(Debug, Subcommand)]
+enum Study {
+    /// Race techniques against each other: time to a noise against bias, pictures of equal time and of equal error.
+    Accuracy(Box<accuracy::AccuracyArguments>),
+    /// Measure what drawing directions costs, for all lobes: the paper's Fig. 8 on this machine.
+    Sampling(sampling::SamplingArguments),
+    /// Show the error of one picture against time.
+    Convergence(Box<convergence::ConvergenceArguments>),
+    /// Show how time grows with triangles, pixels, bounces and the size of the environment.
+    Scaling(Box<scaling::ScalingArguments>),
+    /// Tell what each effect and setting costs in time and does to noise and picture.
+    Ledger(Box<ledger::LedgerArguments>),
+}
+
+/// Runs the study.
+///
+/// # Errors
+/// One line that names the file, what is wrong and what to do.
+pub fn run(arguments: &StudyArguments) -> anyhow::Result<()> {
+    match &arguments.study {
+        Study::Accuracy(arguments) => accuracy::run(arguments),
+        Study::Sampling(arguments) => sampling::run(arguments),
+        Study::Convergence(arguments) => convergence::run(arguments),
+        Study::Scaling(arguments) => scaling::run(arguments),
+        Study::Ledger(arguments) => ledger::run(arguments),
+    }
+}
+
+/// What studies of a scene have in common.
+#[derive(Debug, Args)]
+struct CommonArguments {
+    /// The folder for numbers (.json, .csv) and plots (.svg, .png); made where it is not there.
+    #[arg(long, default_value = "study", value_name = "FOLDER")]
+    output: PathBuf,
+    /// Measure little and small, at most 48 pixels a side: to see that it works.
+    #[arg(long)]
+    quick: bool,
+    #[command(flatten)]
+    scene: SceneArguments,
+}
+
+impl CommonArguments {
+    /// What the arguments describe, no larger than is quick where that is asked for.
+    fn document(&self) -> anyhow::Result<Document> {
+        let mut session = Session::open(EngineChoice::Cpu)?;
+        let mut document = self.scene.document(&mut session)?;
+        if self.quick {
+            let render = &mut document.render;
+            (render.width, render.height) = (render.width.min(QUICK_SIDE), render.height.min(QUICK_SIDE));
+        }
+        Ok(document)
+    }
+}
+
+/// Where converged pictures are kept.
+#[derive(Debug, Args)]
+struct CacheArguments {
+    /// The folder that keeps converged pictures from one study to the next [default: the user's cache, or below the
+    /// folder in the variable GLOSSMITH_CACHE].
+    #[arg(long, value_name = "FOLDER")]
+    cache: Option<PathBuf>,
+    /// Longest time for one converged picture.
+    #[arg(long, value_name = "SECONDS", value_parser = super::parse::number_in(0.001..=1e6), allow_negative_numbers = true)]
+    reference_time: Option<f64>,
+}
+
+impl CacheArguments {
+    fn cache(&self) -> ReferenceCache {
+        self.cache
+            .clone()
+            .map_or_else(ReferenceCache::of_user, ReferenceCache::at)
+    }
+}
+
+/// A bar that shows how far a study has come, on a terminal.
+struct Bar(ProgressBar);
+
+/// Steps of the bar.
+const BAR_STEPS: f64 = 1000.0;
+
+impl Bar {
+    fn new() -> anyhow::Result<Self> {
+        bar("{bar:40} {msg}", BAR_STEPS as u64).map(Self)
+    }
+
+    fn show(&self, progress: StudyProgress) -> bool {
+        self.0.set_position((BAR_STEPS * progress.share) as u64);
+        self.0.set_message(progress.what);
+        true
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// The value as text for a table: enough digits to calculate with.
+fn digits(value: f64) -> String {
+    format!("{value:.6e}")
+}
+
+/// Makes the folder before the work that fills it.
+fn make_folder(path: &std::path::Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(path).with_context(|| {
+        format!(
+            "{}: the folder could not be made; check its name and permissions",
+            path.display()
+        )
+    })
+}

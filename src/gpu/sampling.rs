@@ -1,0 +1,133 @@
+//! What drawing directions costs on the GPU, with nothing around it (`shaders/pass/sampling.wgsl`).
+
+use std::collections::HashMap;
+use std::time::Instant;
+
+use bytemuck::{Pod, Zeroable};
+use wgpu::util::DeviceExt;
+
+use super::device::{GpuDevice, GpuError};
+use super::scatter::{bind_group, lobe_pipeline};
+use super::timer::Timer;
+use crate::analysis::sampling::{QUAD_NORMAL, SamplingRequest, SamplingRun};
+use crate::optics::vector::Vec3;
+
+/// Pixels along a side of a workgroup.
+const GROUP_SIDE: u32 = 8;
+
+/// The uniforms, as in the shader.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct Sampling {
+    /// The quad's normal.
+    pub normal: Vec3<f32>,
+    /// Roughness in (0, 1].
+    pub roughness: f32,
+    /// Columns of pixels.
+    pub width: u32,
+    /// Rows of pixels that are drawn.
+    pub rows: u32,
+    /// Rows of the whole picture.
+    pub height: u32,
+    /// Directions a pixel.
+    pub samples: u32,
+    /// Changes all random numbers.
+    pub seed: u32,
+    /// Nothing.
+    pub reserved: [u32; 3],
+}
+
+/// Kernels of lobes, curves and stages, each compiled at its first use.
+#[derive(Debug)]
+pub struct SamplingMeter {
+    gpu: GpuDevice,
+    timer: Option<Timer>,
+    kernels: HashMap<[u32; 3], wgpu::ComputePipeline>,
+}
+
+impl SamplingMeter {
+    /// On an open device.
+    pub fn new(gpu: GpuDevice) -> Self {
+        Self {
+            timer: Timer::new(&gpu),
+            gpu,
+            kernels: HashMap::new(),
+        }
+    }
+
+    /// Draws, and says how long it took by the GPU's clock where it has one.
+    ///
+    /// # Errors
+    /// If the device fails, or what [`GpuDevice::empty_storage`] refuses.
+    pub fn run(&mut self, request: &SamplingRequest) -> Result<SamplingRun, GpuError> {
+        let kernel = [request.lobe as u32, request.curve as u32, request.stage as u32];
+        if !self.kernels.contains_key(&kernel) {
+            let names = ["SAMPLED_LOBE", "SAMPLED_CURVE", "SAMPLED_STAGE"];
+            let constants: Vec<_> = std::iter::zip(names, kernel.map(f64::from)).collect();
+            let pipeline = lobe_pipeline(&self.gpu, "sampling", "measure", &constants)?;
+            self.kernels.insert(kernel, pipeline);
+            // Some drivers compile at the first dispatch.
+            self.run(&SamplingRequest {
+                rows: request.rows.min(GROUP_SIDE),
+                samples: 1,
+                ..*request
+            })?;
+        }
+        let pixels = request.width as usize * request.rows as usize;
+        let gpu = &self.gpu;
+        let pipeline = &self.kernels[&kernel];
+        let tables = gpu.storage("the curve", bytemuck::bytes_of(&0.0_f32))?;
+        let out = gpu.empty_storage("the sums", 4 * pixels as u64)?;
+        let uniforms = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("sampling"),
+            contents: bytemuck::bytes_of(&uniforms(request)),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let groups = [
+            bind_group(gpu, pipeline, 0, &[(6, &tables)]),
+            bind_group(gpu, pipeline, 1, &[(0, &uniforms), (1, &out)]),
+        ];
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+                label: Some("sampling"),
+                timestamp_writes: self.timer.as_ref().map(Timer::writes),
+            });
+            pass.set_pipeline(pipeline);
+            for (index, group) in (0..).zip(&groups) {
+                pass.set_bind_group(index, group, &[]);
+            }
+            let [across, down] = [request.width, request.rows].map(|side| side.div_ceil(GROUP_SIDE));
+            pass.dispatch_workgroups(across, down, 1);
+        }
+        if let Some(timer) = &self.timer {
+            timer.resolve(&mut encoder);
+        }
+        let begun = Instant::now();
+        gpu.queue.submit([encoder.finish()]);
+        if let Some(timer) = &self.timer {
+            timer.request();
+        }
+        gpu.wait()?;
+        let seconds = begun.elapsed().as_secs_f64();
+        let by_timer = self.timer.as_ref().map(Timer::seconds).transpose()?;
+        let sums: Vec<f32> = gpu.read(&out, pixels)?;
+        Ok(SamplingRun {
+            seconds: by_timer.unwrap_or(seconds),
+            sum: sums.into_iter().map(f64::from).sum(),
+        })
+    }
+}
+
+fn uniforms(request: &SamplingRequest) -> Sampling {
+    Sampling {
+        normal: Vec3::from_f64(QUAD_NORMAL),
+        roughness: request.roughness,
+        width: request.width,
+        rows: request.rows,
+        height: request.height,
+        samples: request.samples,
+        seed: request.seed,
+        reserved: [0; 3],
+    }
+}

@@ -1,0 +1,136 @@
+//! Error against time of one document.
+
+use std::time::Duration;
+
+use serde::Serialize;
+
+use super::references::{Effort, ReferenceCache};
+use super::{Machine, Steps, StudyError, Watch, settled, warmed};
+use crate::analysis::halves::Distance;
+use crate::document::Document;
+use crate::render::{EngineChoice, Precision, Session, StopReason};
+
+/// The reference is this many times as exact as the picture, where the time suffices.
+const REFERENCE_GAIN: f64 = 4.0;
+/// How long to render before looking whether to go on.
+const STEP: Duration = Duration::from_millis(100);
+
+/// The error at some time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct ConvergencePoint {
+    /// The engine's own time, seconds.
+    pub seconds: f64,
+    /// Samples a pixel until then, in the mean.
+    pub samples_per_pixel: f64,
+    /// Relative error as told.
+    pub noise: f64,
+    /// The lower end of its 95 % band.
+    pub noise_low: f64,
+    /// The upper end.
+    pub noise_high: f64,
+    /// What the samples' own spread tells.
+    pub noise_from_spread: f64,
+}
+
+/// Error against time.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConvergenceReport {
+    /// Where it was measured.
+    pub machine: Machine,
+    /// Columns of pixels.
+    pub width: u32,
+    /// Rows of pixels.
+    pub height: u32,
+    /// What ended it.
+    pub stopped_by: Option<StopReason>,
+    /// The errors seen, oldest first.
+    pub points: Vec<ConvergencePoint>,
+    /// Slope of the error over the time, both as logarithms: −0.5 for independent samples. `None` with fewer than two
+    /// points.
+    pub slope: Option<f64>,
+    /// The error at the end against a reference.
+    pub true_error: Distance,
+}
+
+/// Renders a document until its own aim is reached, and watches its error.
+///
+/// # Errors
+/// What can't be rendered; [`StudyError::Stopped`].
+pub fn convergence(
+    document: &Document,
+    engine: EngineChoice,
+    cache: &ReferenceCache,
+    reference_seconds: f64,
+    watch: &mut Watch<'_>,
+) -> Result<ConvergenceReport, StudyError> {
+    let mut steps = Steps::new(watch, 2.0);
+    let mut session = Session::open(engine)?;
+    warmed(&mut session, document)?;
+    let progress = loop {
+        let progress = session.step(STEP)?;
+        steps.tell("Rendering", progress.share_done(document.render.time_s))?;
+        if progress.is_done {
+            break progress;
+        }
+    };
+    steps.finish(1.0);
+    let point = |seen: &crate::render::Measurement| ConvergencePoint {
+        seconds: seen.engine_seconds,
+        samples_per_pixel: seen.samples_per_pixel,
+        noise: seen.noise.relative,
+        noise_low: seen.noise.low,
+        noise_high: seen.noise.high,
+        noise_from_spread: seen.noise.from_spread,
+    };
+    let points: Vec<ConvergencePoint> = session.history().iter().map(point).collect();
+    let luminances = session.film()?.luminance();
+    let noise = progress.noise.map_or(1.0, |noise| noise.relative);
+    let effort = Effort {
+        noise: noise / REFERENCE_GAIN,
+        seconds: reference_seconds,
+    };
+    let mut other = Session::open_with(settled(session.engine()), session.assets().clone())?;
+    let mut go_on = |share: f64| steps.tell("Reference", share);
+    let reference = cache.reference(&mut other, document, Precision::Single, effort, &mut go_on)?;
+    Ok(ConvergenceReport {
+        machine: Machine::of(session.engine()),
+        width: document.render.width,
+        height: document.render.height,
+        stopped_by: progress.stopped_by,
+        slope: slope(&points),
+        points,
+        true_error: reference.halves.error_of(&luminances),
+    })
+}
+
+/// Least squares over the logarithms.
+fn slope(points: &[ConvergencePoint]) -> Option<f64> {
+    let seen = points.iter().filter(|point| point.noise > 0.0 && point.seconds > 0.0);
+    let places: Vec<[f64; 2]> = seen.map(|point| [point.seconds.ln(), point.noise.ln()]).collect();
+    let count = places.len() as f64;
+    let mean = |axis: usize| places.iter().map(|place| place[axis]).sum::<f64>() / count;
+    let (x, y) = (mean(0), mean(1));
+    let covariance: f64 = places.iter().map(|place| (place[0] - x) * (place[1] - y)).sum();
+    let variance: f64 = places.iter().map(|place| (place[0] - x).powi(2)).sum();
+    (variance > 0.0).then(|| covariance / variance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_slope_of_a_power_is_its_exponent() {
+        let point = |seconds: f64| ConvergencePoint {
+            seconds,
+            samples_per_pixel: 1.0,
+            noise: 3.0 * seconds.powf(-0.5),
+            noise_low: 0.0,
+            noise_high: 0.0,
+            noise_from_spread: 0.0,
+        };
+        let found = slope(&[1.0, 2.0, 7.0, 30.0].map(point)).expect("four points");
+        assert!((found + 0.5).abs() < 1e-9, "{found}");
+        assert_eq!(slope(&[point(1.0)]), None);
+    }
+}

@@ -1,0 +1,446 @@
+//! The ledger: what each effect and each setting in force costs in time, does to the noise and does to the picture, on
+//! this scene and this machine.
+//!
+//! The document is rendered with and without, in turns, with the same random numbers; times are medians over the turns.
+
+use std::time::Duration;
+
+use serde::Serialize;
+
+use super::{Machine, Steps, StudyError, Watch, median, quantile, settled, warmed, without_aim};
+use crate::analysis::halves::{Distance, Halves};
+use crate::analysis::noise::noise;
+use crate::document::effect::{EFFECTS, Switch};
+use crate::document::plan::Plan;
+use crate::document::technique::{Setting, Technique, converged};
+use crate::document::{Document, PixelFilter, Strategy};
+use crate::optics::fresnel::Fresnel;
+use crate::optics::lobe::Lobe;
+use crate::optics::random::Sequence;
+use crate::render::{EngineChoice, Session};
+
+/// Samples a pixel that either side has at least: two in either half.
+const SAMPLES_MIN: f64 = 4.0;
+/// Turns are added up to this many times as many until there are so many samples.
+const TURNS_FACTOR: usize = 50;
+/// Changes of the noise below this share are not told in words: the estimate itself is no more exact.
+const NOISE_WORTH_TELLING: f64 = 0.05;
+/// Changes of the time below this share are not told as a number.
+const TIME_WORTH_TELLING: f64 = 0.005;
+
+/// How a ledger is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LedgerOptions {
+    /// The engine.
+    pub engine: EngineChoice,
+    /// Turns of each pair.
+    pub turns: usize,
+    /// How long a turn of either side lasts.
+    pub slice: Duration,
+}
+
+impl LedgerOptions {
+    /// Two seconds for each entry.
+    pub fn new(engine: EngineChoice) -> Self {
+        Self {
+            engine,
+            turns: 9,
+            slice: Duration::from_millis(110),
+        }
+    }
+}
+
+/// What an entry is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EntryKind {
+    /// An effect, against the scene without it.
+    Effect,
+    /// A setting, against another value of it.
+    Setting,
+}
+
+/// A line of the ledger.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Entry {
+    /// Name of the effect or setting.
+    pub name: &'static str,
+    /// What is in force.
+    pub label: String,
+    /// What it is held against.
+    pub instead: String,
+    /// What it is about.
+    pub kind: EntryKind,
+    /// Milliseconds of one sample of every pixel, as it is.
+    pub ms_with: f64,
+    /// The same with the other.
+    pub ms_without: f64,
+    /// Milliseconds that it adds to a sample of every pixel; negative where it saves time.
+    pub ms: f64,
+    /// The quartiles of that over the turns.
+    pub ms_quartiles: [f64; 2],
+    /// Its share of the time of a frame, as it is.
+    pub share_of_frame: f64,
+    /// What it adds to the noise at equal samples, as a share of the variance without it; negative where it removes.
+    pub noise_share: f64,
+    /// How far it changes the picture, relative.
+    pub picture_change: Distance,
+    /// It changes nothing in the picture by its nature, and that is not measured.
+    pub is_picture_kept: bool,
+    /// All of it in words.
+    pub words: String,
+}
+
+/// The whole.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Ledger {
+    /// Where it was measured.
+    pub machine: Machine,
+    /// Columns of pixels.
+    pub width: u32,
+    /// Rows of pixels.
+    pub height: u32,
+    /// Milliseconds of one sample of every pixel of the document.
+    pub ms_per_sample: f64,
+    /// Its lines: effects in the order of the plan, then settings.
+    pub entries: Vec<Entry>,
+}
+
+/// Something to be held against the document.
+struct Rival {
+    name: &'static str,
+    label: String,
+    instead: String,
+    kind: EntryKind,
+    document: Document,
+}
+
+/// Measures a ledger. `watch` is told how far it has come, and may stop it.
+///
+/// # Errors
+/// What can't be rendered; [`StudyError::Stopped`].
+pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_>) -> Result<Ledger, StudyError> {
+    let mut with = Session::open(options.engine)?;
+    let mut without = Session::open_with(settled(with.engine()), with.assets().clone())?;
+    let document = without_aim(document);
+    warmed(&mut with, &document)?;
+    let plan = with.job().map_or_else(Plan::general, |job| job.plan.clone());
+    let rivals = rivals(&document, &plan);
+    let mut steps = Steps::new(watch, rivals.len() as f64);
+    let mut entries = Vec::new();
+    for rival in rivals {
+        steps.tell(rival.label.clone(), 0.0)?;
+        entries.push(entry(&document, rival, [&mut with, &mut without], options, &mut steps)?);
+        steps.finish(1.0);
+    }
+    let times: Vec<f64> = entries.iter().map(|entry| entry.ms_with).collect();
+    Ok(Ledger {
+        machine: Machine::of(with.engine()),
+        width: document.render.width,
+        height: document.render.height,
+        ms_per_sample: median(&times),
+        entries,
+    })
+}
+
+fn rivals(document: &Document, plan: &Plan) -> Vec<Rival> {
+    let mut rivals = Vec::new();
+    for (effect, decision) in plan.table() {
+        if !decision.is_on || effect.remove.is_none() {
+            continue;
+        }
+        let mut changed = document.clone();
+        changed.render.effects.set(effect.name, Switch::Off);
+        rivals.push(Rival {
+            name: effect.name,
+            label: effect.label.to_owned(),
+            instead: "without".to_owned(),
+            kind: EntryKind::Effect,
+            document: changed,
+        });
+    }
+    rivals.extend(setting_rivals(document));
+    rivals
+}
+
+/// For each setting in force the value that it is usually held against.
+fn setting_rivals(document: &Document) -> Vec<Rival> {
+    let render = &document.render;
+    let rival = |name, label: String, instead: String, document| Rival {
+        name,
+        label,
+        instead,
+        kind: EntryKind::Setting,
+        document,
+    };
+    let try_out = |name, label: &str, instead: &str, setting: Setting| {
+        let changed = Technique::of(setting).apply(document);
+        rival(name, label.to_owned(), instead.to_owned(), changed)
+    };
+    let changed = |change: &dyn Fn(&mut Document)| {
+        let mut changed = document.clone();
+        change(&mut changed);
+        changed
+    };
+    let mut rivals = Vec::new();
+    let is_exact = |fresnel| matches!(fresnel, Fresnel::Dielectric | Fresnel::Conductor);
+    let has_exact = document.materials.iter().any(|material| is_exact(material.fresnel));
+    rivals.push(if has_exact {
+        try_out("fresnel", "Exact Fresnel", "Schlick's", Setting::ExactFresnel(false))
+    } else {
+        try_out("fresnel", "Schlick's Fresnel", "exact", Setting::ExactFresnel(true))
+    });
+    let lobe = document
+        .materials
+        .first()
+        .map_or(Lobe::Geometric, |material| material.lobe);
+    let other = if lobe == Lobe::Ggx { Lobe::Geometric } else { Lobe::Ggx };
+    let label = format!("{} lobe", lobe.label());
+    rivals.push(try_out(
+        "lobe",
+        &label,
+        &format!("{} of the same look", other.label()),
+        Setting::Lobe(other),
+    ));
+    let other = if render.strategy == Strategy::Lobe {
+        Strategy::Mis
+    } else {
+        Strategy::Lobe
+    };
+    let label = format!("Light by {}", render.strategy.label().to_lowercase());
+    rivals.push(try_out(
+        "strategy",
+        &label,
+        &other.label().to_lowercase(),
+        Setting::Strategy(other),
+    ));
+    let (label, other) = match render.sequence {
+        Sequence::Sobol => ("Sobol's points", Sequence::Independent),
+        Sequence::Independent => ("Independent numbers", Sequence::Sobol),
+    };
+    rivals.push(try_out("sequence", label, other.name(), Setting::Sequence(other)));
+    if render.is_adaptive() {
+        rivals.push(try_out(
+            "adaptive",
+            "Adaptive sampling",
+            "even",
+            Setting::Adaptive(false),
+        ));
+    }
+    let fewer = if render.bounces > 4 { 4 } else { 1 };
+    if render.bounces > fewer {
+        let label = format!("{} bounces", render.bounces);
+        rivals.push(try_out("bounces", &label, &fewer.to_string(), Setting::Bounces(fewer)));
+    }
+    if render.filter == PixelFilter::Gaussian {
+        let boxed = changed(&|document| document.render.filter = PixelFilter::Box);
+        rivals.push(rival(
+            "filter",
+            "Gaussian pixel filter".to_owned(),
+            "box".to_owned(),
+            boxed,
+        ));
+    }
+    let general = changed(&|document| {
+        let switches = &mut document.render.effects;
+        for effect in EFFECTS {
+            if switches.get(effect.name) == Switch::Auto {
+                switches.set(effect.name, Switch::On);
+            }
+        }
+    });
+    let label = "Kernel made for the scene".to_owned();
+    rivals.push(rival("kernel", label, "the general one".to_owned(), general));
+    // What makes no difference to this scene has no line.
+    rivals.retain(|rival| rival.document != *document);
+    rivals
+}
+
+fn entry(
+    document: &Document,
+    rival: Rival,
+    [with, without]: [&mut Session; 2],
+    options: &LedgerOptions,
+    steps: &mut Steps<'_, '_>,
+) -> Result<Entry, StudyError> {
+    warmed(with, document)?;
+    warmed(without, &rival.document)?;
+    let mut times = [const { Vec::new() }; 2];
+    for turn in 0..options.turns * TURNS_FACTOR {
+        let samples = [&*with, &*without].map(|session| session.progress().mean_samples);
+        if turn >= options.turns && samples.iter().all(|samples| *samples >= SAMPLES_MIN) {
+            break;
+        }
+        // Each side is first every other time.
+        for side in [turn % 2, 1 - turn % 2] {
+            let session = if side == 0 { &mut *with } else { &mut *without };
+            times[side].push(1e3 * seconds_per_sample(session, options.slice)?);
+        }
+        steps.tell(rival.label.clone(), turn as f64 / options.turns as f64)?;
+    }
+    let differences: Vec<f64> = std::iter::zip(&times[0], &times[1]).map(|(a, b)| a - b).collect();
+    let [ms_with, ms_without] = [median(&times[0]), median(&times[1])];
+    let ms = median(&differences);
+    let variances = [variance_of_a_sample(with)?, variance_of_a_sample(without)?];
+    let halves = [Halves::of(with.film()?), Halves::of(without.film()?)];
+    let is_picture_kept = converged(document) == converged(&rival.document);
+    let picture_change = if is_picture_kept {
+        Distance::default()
+    } else {
+        halves[1].distance(&halves[0])
+    };
+    let mut entry = Entry {
+        name: rival.name,
+        label: rival.label,
+        instead: rival.instead,
+        kind: rival.kind,
+        ms_with,
+        ms_without,
+        ms,
+        ms_quartiles: [quantile(&differences, 0.25), quantile(&differences, 0.75)],
+        share_of_frame: ms / ms_with,
+        noise_share: share_of_noise(variances),
+        picture_change,
+        is_picture_kept,
+        words: String::new(),
+    };
+    entry.words = words(&entry);
+    Ok(entry)
+}
+
+/// Engine time of one sample of every pixel, over a slice.
+fn seconds_per_sample(session: &mut Session, slice: Duration) -> Result<f64, StudyError> {
+    let before = session.progress();
+    let after = session.step(slice)?;
+    let samples = after.mean_samples - before.mean_samples;
+    Ok((after.engine_seconds - before.engine_seconds) / samples.max(1e-12))
+}
+
+/// Mean over the pixels of the variance of one sample's luminance, as the sequence gains.
+fn variance_of_a_sample(session: &mut Session) -> Result<f64, StudyError> {
+    let samples = session.progress().mean_samples;
+    let found = noise(session.film()?);
+    Ok(found.map_or(0.0, |noise| samples * (noise.relative * noise.mean_luminance).powi(2)))
+}
+
+/// What the first adds to the second, as a share of it; 0 where there is nothing to share.
+fn share_of_noise([with, without]: [f64; 2]) -> f64 {
+    if without > 0.0 { with / without - 1.0 } else { 0.0 }
+}
+
+/// An entry in words: "Exact Fresnel: +2 % time, changes the picture by 0.3 %".
+fn words(entry: &Entry) -> String {
+    let mut parts = vec![words_of_time(entry)];
+    if entry.noise_share.abs() >= NOISE_WORTH_TELLING {
+        let share = entry.noise_share;
+        parts.push(if share > 1.0 {
+            format!("{} × the noise", digits(share + 1.0))
+        } else if share > 0.0 {
+            format!("adds {} % to the noise", digits(100.0 * share))
+        } else {
+            format!("removes {} % of the noise", digits(-100.0 * share))
+        });
+    }
+    let change = &entry.picture_change;
+    parts.push(if entry.is_picture_kept {
+        "leaves the picture as it is".to_owned()
+    } else if change.is_resolved() {
+        format!("changes the picture by {} %", digits(100.0 * change.value))
+    } else {
+        format!("changes the picture by less than {} %", digits(100.0 * change.high))
+    });
+    let against = match entry.kind {
+        EntryKind::Effect => String::new(),
+        EntryKind::Setting => format!(" (instead of {})", entry.instead),
+    };
+    format!("{}{against}: {}", entry.label, parts.join(", "))
+}
+
+fn words_of_time(entry: &Entry) -> String {
+    let share = entry.ms / entry.ms_without;
+    let [low, high] = entry.ms_quartiles;
+    // Half of the turns agree on its sign, or it is not told.
+    if share.abs() < TIME_WORTH_TELLING || low.signum() != high.signum() {
+        return "no time that could be measured".to_owned();
+    }
+    let sign = if share > 0.0 { "+" } else { "−" };
+    format!("{sign}{} % time", digits(100.0 * share.abs()))
+}
+
+/// A number with two digits.
+fn digits(value: f64) -> String {
+    if value <= 0.0 || !value.is_finite() {
+        return "0".to_owned();
+    }
+    let decimals = (1.0 - value.log10().floor()).clamp(0.0, 6.0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn measured() -> Entry {
+        Entry {
+            name: "fresnel",
+            label: "Exact Fresnel".to_owned(),
+            instead: "Schlick's".to_owned(),
+            kind: EntryKind::Setting,
+            ms_with: 10.2,
+            ms_without: 10.0,
+            ms: 0.2,
+            ms_quartiles: [0.1, 0.3],
+            share_of_frame: 0.0196,
+            noise_share: 0.0,
+            picture_change: Distance {
+                value: 0.003,
+                low: 0.002,
+                high: 0.004,
+            },
+            is_picture_kept: false,
+            words: String::new(),
+        }
+    }
+
+    #[test]
+    fn an_entry_is_told_in_plain_words() {
+        let text = words(&measured());
+        assert_eq!(
+            text,
+            "Exact Fresnel (instead of Schlick's): +2 % time, changes the picture by 0.3 %"
+        );
+        let entry = Entry {
+            kind: EntryKind::Effect,
+            label: "Ground".to_owned(),
+            ms: -2.5,
+            ms_quartiles: [-2.6, -2.4],
+            noise_share: -0.8,
+            is_picture_kept: true,
+            ..measured()
+        };
+        assert_eq!(
+            words(&entry),
+            "Ground: −25 % time, removes 80 % of the noise, leaves the picture as it is"
+        );
+        let entry = Entry {
+            ms_quartiles: [-0.1, 0.3],
+            noise_share: 4.1,
+            picture_change: Distance {
+                value: 0.001,
+                low: 0.0,
+                high: 0.0021,
+            },
+            ..measured()
+        };
+        assert_eq!(
+            words(&entry),
+            "Exact Fresnel (instead of Schlick's): no time that could be measured, 5.1 × the noise, changes the \
+             picture by less than 0.21 %"
+        );
+    }
+}

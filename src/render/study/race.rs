@@ -1,0 +1,420 @@
+//! The race: techniques on the same view, in turn, fair in time.
+//!
+//! Each has a session of its own, of the same engine, and renders in slices by turns, so that whatever else the machine
+//! does meets all of them; the engine's own clock counts. Two errors are told apart. The *noise* is how far a picture
+//! is from the one that the technique itself converges to; it falls with time. The *bias* is how far that one is from
+//! the picture of the most accurate setting; it stays.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use serde::Serialize;
+
+use super::references::{Effort, Reference, ReferenceCache};
+use super::{Machine, Steps, StudyError, Watch, settled, warmed, without_aim};
+use crate::analysis::film::Image;
+use crate::analysis::halves::Distance;
+use crate::document::Document;
+use crate::document::technique::{Technique, converged, most_accurate};
+use crate::render::assets::Assets;
+use crate::render::{EngineChoice, Precision, Session};
+
+/// References are this many times as exact as the noise to reach, where the time suffices.
+const REFERENCE_GAIN: f64 = 8.0;
+/// Samples of the shortest picture of equal error: one in either half.
+const SAMPLES_MIN: f64 = 2.0;
+
+/// How a race is run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RaceOptions {
+    /// The engine, the same for all.
+    pub engine: EngineChoice,
+    /// Who takes part. The document as it is always does.
+    pub techniques: Vec<Technique>,
+    /// Engine time that each has, seconds.
+    pub seconds: f64,
+    /// The noise to which times are told: 0.02 is 2 %.
+    pub noise: f64,
+    /// How long one renders before it is the next one's turn.
+    pub slice: Duration,
+    /// Longest time for one reference, seconds.
+    pub reference_seconds: f64,
+    /// Where references are kept.
+    pub cache: ReferenceCache,
+}
+
+impl RaceOptions {
+    /// Ten seconds for each, to 2 %.
+    pub fn new(engine: EngineChoice, techniques: Vec<Technique>) -> Self {
+        Self {
+            engine,
+            techniques,
+            seconds: 10.0,
+            noise: 0.02,
+            slice: Duration::from_millis(250),
+            reference_seconds: 60.0,
+            cache: ReferenceCache::of_user(),
+        }
+    }
+}
+
+/// How a race ended.
+#[derive(Clone, Debug, Serialize)]
+pub struct Race {
+    /// Where it was run.
+    pub machine: Machine,
+    /// Columns of pixels.
+    pub width: u32,
+    /// Rows of pixels.
+    pub height: u32,
+    /// Engine time that each had, seconds.
+    pub seconds: f64,
+    /// The noise to which times are told.
+    pub noise: f64,
+    /// The noise of the pictures of equal error: the largest after equal time.
+    pub equal_error: f64,
+    /// Those who took part, in the order in which they were given, the document as it is first.
+    pub runners: Vec<Runner>,
+}
+
+/// A technique in a race.
+#[derive(Clone, Debug, Serialize)]
+pub struct Runner {
+    /// The technique, as it is written.
+    pub technique: Technique,
+    /// What it is called.
+    pub label: String,
+    /// Engine time that it had in fact, seconds.
+    pub seconds: f64,
+    /// Samples a pixel after it, in the mean.
+    pub samples_per_pixel: f64,
+    /// The relative error that it told of itself, without any reference.
+    pub told_noise: f64,
+    /// Its relative error against its own reference.
+    pub error: Distance,
+    /// Engine time to the race's noise, seconds: the error falls with the root of the time.
+    pub time_to_noise: f64,
+    /// The noise was not reached in the race: the time is extrapolated.
+    pub is_extrapolated: bool,
+    /// Relative distance of what it converges to from the most accurate setting's picture.
+    pub bias: Distance,
+    /// It converges to the most accurate setting's picture by its nature: the bias is 0 and not measured.
+    pub is_unbiased: bool,
+    /// The relative error of its own reference, as told.
+    pub reference_noise: f64,
+    /// No other one is both less biased and faster.
+    pub is_on_front: bool,
+    /// The picture after equal time.
+    #[serde(skip)]
+    pub equal_time: Image,
+    /// The picture when its error was that of the slowest after equal time.
+    #[serde(skip)]
+    pub equal_error: Image,
+    /// The time that this took, seconds.
+    pub equal_error_seconds: f64,
+}
+
+impl Runner {
+    /// The bias as far as it is known: 0 where it cannot be told from nothing.
+    pub fn resolved_bias(&self) -> f64 {
+        if self.is_unbiased || !self.bias.is_resolved() {
+            0.0
+        } else {
+            self.bias.value
+        }
+    }
+
+    /// Where it stands in a chart whose axis has no 0: at least what could have been told from nothing.
+    pub fn charted_bias(&self, least: f64) -> f64 {
+        let value = if self.bias.is_resolved() || self.is_unbiased {
+            self.bias.value
+        } else {
+            self.bias.high
+        };
+        value.max(least)
+    }
+}
+
+impl Race {
+    /// The least bias of the chart's axis: half of what could just be told from nothing.
+    pub fn least_bias(&self) -> f64 {
+        let resolved = self.runners.iter().filter(|runner| !runner.is_unbiased);
+        let least = resolved
+            .map(|runner| runner.charted_bias(0.0))
+            .filter(|bias| *bias > 0.0);
+        (0.5 * least.fold(f64::INFINITY, f64::min)).clamp(1e-5, 1e-2)
+    }
+}
+
+/// Someone on the way.
+struct Lane {
+    technique: Technique,
+    document: Document,
+    session: Session,
+}
+
+/// Runs a race. `watch` is told how far it has come, and may stop it.
+///
+/// # Errors
+/// What can't be rendered; [`StudyError::Stopped`]; [`StudyError::Black`].
+pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -> Result<Race, StudyError> {
+    let assets = Assets::default();
+    let mut lanes = lanes(document, options, &assets)?;
+    let references = 2.0 * (lanes.len() + 1) as f64;
+    let mut steps = Steps::new(watch, references + 2.0 * lanes.len() as f64);
+    let exact = references_of(document, &mut lanes, options, &mut steps)?;
+    run(&mut lanes, options, &mut steps)?;
+    let mut runners = Vec::new();
+    for (lane, own) in lanes.iter_mut().zip(&exact.own) {
+        runners.push(runner(lane, own, &exact.best, options)?);
+    }
+    let equal_error = runners.iter().map(|runner| runner.error.value).fold(0.0, f64::max);
+    for (lane, runner) in lanes.iter_mut().zip(&mut runners) {
+        steps.tell(format!("Equal error: {}", runner.label), 0.0)?;
+        let share = (runner.error.value / equal_error.max(f64::MIN_POSITIVE)).powi(2);
+        rerun(lane, (runner.samples_per_pixel * share).max(SAMPLES_MIN))?;
+        runner.equal_error = lane.session.image()?;
+        runner.equal_error_seconds = lane.session.progress().engine_seconds;
+        steps.finish(1.0);
+    }
+    mark_front(&mut runners);
+    let machine = lanes.first().map(|lane| Machine::of(lane.session.engine()));
+    Ok(Race {
+        machine: machine.ok_or(StudyError::Stopped)?,
+        width: document.render.width,
+        height: document.render.height,
+        seconds: options.seconds,
+        noise: options.noise,
+        equal_error,
+        runners,
+    })
+}
+
+/// The document as it is, and each technique that makes a difference to it or to another one.
+fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<Vec<Lane>, StudyError> {
+    let mut engine = options.engine;
+    let mut lanes: Vec<Lane> = Vec::new();
+    for technique in std::iter::once(&Technique::as_is()).chain(&options.techniques) {
+        let changed = without_aim(&technique.apply(document));
+        let is_there = |lane: &Lane| lane.document == changed && lane.technique.is_double() == technique.is_double();
+        if lanes.iter().any(is_there) {
+            continue;
+        }
+        let mut session = Session::open_with(engine, assets.clone())?;
+        // Not one on the GPU and another on the processor.
+        engine = settled(session.engine());
+        if technique.is_double() && session.engine().kind == "gpu" {
+            log::warn!("{technique}: the GPU shades in f32 only; left out");
+            continue;
+        }
+        session.set_precision(precision(technique));
+        lanes.push(Lane {
+            technique: technique.clone(),
+            document: changed,
+            session,
+        });
+    }
+    Ok(lanes)
+}
+
+fn precision(technique: &Technique) -> Precision {
+    if technique.is_double() {
+        Precision::Double
+    } else {
+        Precision::Single
+    }
+}
+
+/// What some documents converge to.
+struct Converged {
+    reference: Reference,
+    document: Document,
+    precision: Precision,
+}
+
+/// What everyone converges to, and what the most accurate setting does.
+struct Exact {
+    best: Arc<Converged>,
+    own: Vec<Arc<Converged>>,
+}
+
+fn references_of(
+    document: &Document,
+    lanes: &mut [Lane],
+    options: &RaceOptions,
+    steps: &mut Steps<'_, '_>,
+) -> Result<Exact, StudyError> {
+    let effort = Effort {
+        noise: options.noise / REFERENCE_GAIN,
+        seconds: options.reference_seconds,
+    };
+    let mut made: Vec<Arc<Converged>> = Vec::new();
+    let mut make = |session: &mut Session, document: &Document, precision: Precision, what: &str| {
+        let key = converged(document);
+        let known = made
+            .iter()
+            .find(|known| known.document == key && known.precision == precision);
+        if let Some(known) = known {
+            steps.finish(2.0);
+            return Ok::<_, StudyError>(known.clone());
+        }
+        let what = format!("Reference: {what}");
+        let mut go_on = |share: f64| steps.tell(what.clone(), 2.0 * share);
+        go_on(0.0)?;
+        let reference = options
+            .cache
+            .reference(session, document, precision, effort, &mut go_on)?;
+        steps.finish(2.0);
+        let converged = Arc::new(Converged {
+            reference,
+            document: key,
+            precision,
+        });
+        made.push(converged.clone());
+        Ok(converged)
+    };
+    // As exact as anyone of them calculates.
+    let is_double = lanes.iter().any(|lane| lane.technique.is_double());
+    let best_precision = if is_double {
+        Precision::Double
+    } else {
+        Precision::Single
+    };
+    let Some(first) = lanes.first_mut() else {
+        return Err(StudyError::Stopped);
+    };
+    let best = make(
+        &mut first.session,
+        &most_accurate(document),
+        best_precision,
+        "most accurate",
+    )?;
+    let mut own = Vec::new();
+    for lane in lanes {
+        let (precision, label) = (precision(&lane.technique), lane.technique.label());
+        own.push(make(&mut lane.session, &lane.document, precision, &label)?);
+    }
+    Ok(Exact { best, own })
+}
+
+/// Lets all of them render by turns until each has had its time.
+fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> Result<(), StudyError> {
+    for lane in lanes.iter_mut() {
+        steps.tell(format!("Preparing: {}", lane.technique.label()), 0.0)?;
+        lane.session.set_precision(precision(&lane.technique));
+        warmed(&mut lane.session, &lane.document)?;
+    }
+    let count = lanes.len();
+    for round in 0.. {
+        let mut is_done = true;
+        for place in 0..count {
+            // Everyone is first at some time.
+            let lane = &mut lanes[(place + round) % count];
+            let left = options.seconds - lane.session.progress().engine_seconds;
+            if left <= 0.0 && lane.session.progress().mean_samples >= SAMPLES_MIN {
+                continue;
+            }
+            is_done = false;
+            let slice = options.slice.min(Duration::from_secs_f64(left.max(1e-3)));
+            lane.session.step(slice)?;
+        }
+        let shares = lanes
+            .iter()
+            .map(|lane| lane.session.progress().engine_seconds / options.seconds);
+        let done: f64 = shares.map(|share| share.min(1.0)).sum();
+        steps.tell(format!("Round {}", round + 1), done)?;
+        if is_done {
+            break;
+        }
+    }
+    steps.finish(count as f64);
+    Ok(())
+}
+
+fn runner(
+    lane: &mut Lane,
+    own: &Arc<Converged>,
+    best: &Arc<Converged>,
+    options: &RaceOptions,
+) -> Result<Runner, StudyError> {
+    let progress = lane.session.progress();
+    let film = lane.session.film()?;
+    let (equal_time, luminances) = (film.image(), film.luminance());
+    let told = crate::analysis::noise::noise(film);
+    let error = own.reference.halves.error_of(&luminances);
+    let is_unbiased = Arc::ptr_eq(own, best);
+    let bias = if is_unbiased {
+        Default::default()
+    } else {
+        own.reference.halves.distance(&best.reference.halves)
+    };
+    Ok(Runner {
+        label: lane.technique.label(),
+        technique: lane.technique.clone(),
+        seconds: progress.engine_seconds,
+        samples_per_pixel: progress.mean_samples,
+        told_noise: told.map_or(0.0, |noise| noise.relative),
+        error,
+        time_to_noise: progress.engine_seconds * (error.value / options.noise).powi(2),
+        is_extrapolated: error.value > options.noise,
+        bias,
+        is_unbiased,
+        reference_noise: own.reference.noise,
+        is_on_front: false,
+        equal_time,
+        equal_error: Image::default(),
+        equal_error_seconds: 0.0,
+    })
+}
+
+/// Renders anew up to so many samples a pixel in the mean.
+fn rerun(lane: &mut Lane, samples: f64) -> Result<(), StudyError> {
+    let mut document = lane.document.clone();
+    if !document.render.is_adaptive() {
+        document.render.samples = samples.round() as u32;
+    }
+    lane.session.forget();
+    lane.session.submit(&document)?;
+    let mut step = Duration::from_millis(1);
+    loop {
+        let progress = lane.session.step(step)?;
+        if progress.is_done || progress.mean_samples >= samples {
+            return Ok(());
+        }
+        // So short that the last step goes little too far.
+        let left = progress.engine_seconds * (samples / progress.mean_samples.max(1e-9) - 1.0);
+        step = Duration::from_secs_f64(left.clamp(1e-3, 0.2));
+    }
+}
+
+fn mark_front(runners: &mut [Runner]) {
+    let places: Vec<[f64; 2]> = runners
+        .iter()
+        .map(|runner| [runner.time_to_noise, runner.resolved_bias()])
+        .collect();
+    for (runner, on_front) in runners.iter_mut().zip(front(&places)) {
+        runner.is_on_front = on_front;
+    }
+}
+
+/// Which places have no other one that is nowhere larger and somewhere smaller.
+fn front(places: &[[f64; 2]]) -> Vec<bool> {
+    let is_better = |a: &[f64; 2], b: &[f64; 2]| a[0] <= b[0] && a[1] <= b[1] && a != b;
+    places
+        .iter()
+        .map(|place| !places.iter().any(|other| is_better(other, place)))
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::front;
+
+    #[test]
+    fn only_what_nothing_else_betters_is_on_the_front() {
+        let places = [[1.0, 0.0], [0.5, 0.1], [2.0, 0.0], [0.6, 0.1], [0.1, 0.5]];
+        assert_eq!(front(&places), [true, true, false, false, true]);
+        // Equals do not better each other.
+        assert_eq!(front(&[[1.0, 1.0], [1.0, 1.0]]), [true, true]);
+    }
+}

@@ -1,0 +1,459 @@
+//! Studies: the race, the ledger, what sampling costs, how time grows; in numbers small enough for a test.
+
+use std::path::Path;
+use std::time::Duration;
+
+use glossmith::analysis::sampling::{SamplingRequest, SamplingStage};
+use glossmith::document::technique::{Setting, Technique, techniques};
+use glossmith::document::{Document, MaterialSettings, Strategy};
+use glossmith::gpu::sampling::SamplingMeter;
+use glossmith::gpu::{AdapterKind, GpuDevice};
+use glossmith::optics::curve::Curve;
+use glossmith::optics::fresnel::Fresnel;
+use glossmith::optics::lobe::Lobe;
+use glossmith::render::study::StudyError;
+use glossmith::render::study::ledger::{LedgerOptions, ledger};
+use glossmith::render::study::race::{Race, RaceOptions, Runner, race};
+use glossmith::render::study::references::ReferenceCache;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::cli_support::Workplace;
+
+fn sphere(side: u32) -> Document {
+    let mut document = Document {
+        model: ModelSource::Sphere,
+        ..Document::default()
+    };
+    (document.render.width, document.render.height) = (side, side);
+    document
+}
+
+fn quick(names: &[&str], cache: ReferenceCache) -> RaceOptions {
+    let techniques = names.iter().map(|name| name.parse().unwrap()).collect();
+    RaceOptions {
+        seconds: 0.3,
+        noise: 0.05,
+        slice: Duration::from_millis(10),
+        reference_seconds: 1.0,
+        cache,
+        ..RaceOptions::new(EngineChoice::Cpu, techniques)
+    }
+}
+
+fn run(document: &Document, options: &RaceOptions) -> Race {
+    race(document, options, &mut |_| true).unwrap()
+}
+
+fn runner<'a>(race: &'a Race, name: &str) -> &'a Runner {
+    let found = race.runners.iter().find(|runner| runner.technique.to_string() == name);
+    found.unwrap_or_else(|| panic!("{name} takes part"))
+}
+
+#[test]
+fn a_race_tells_noise_from_bias() {
+    let mut document = sphere(24);
+    document.ground = true;
+    let options = quick(
+        &["strategy=light", "bounces=1", "fresnel=exact", "strategy=mis"],
+        ReferenceCache::none(),
+    );
+    let race = run(&document, &options);
+    // What changes nothing does not take part twice.
+    assert_eq!(
+        race.runners.len(),
+        4,
+        "{:?}",
+        race.runners.iter().map(|r| &r.label).collect::<Vec<_>>()
+    );
+    for runner in &race.runners {
+        assert!(
+            runner.seconds >= 0.29 && runner.seconds < 1.5,
+            "{}: {}",
+            runner.label,
+            runner.seconds
+        );
+        assert!(
+            runner.error.value > 0.0 && runner.error.low <= runner.error.value,
+            "{}",
+            runner.label
+        );
+        assert!(
+            runner.time_to_noise > 0.0 && runner.time_to_noise.is_finite(),
+            "{}",
+            runner.label
+        );
+        // The error against a reference is about the one that a picture tells of itself.
+        let ratio = runner.error.value / runner.told_noise;
+        assert!((0.5..2.0).contains(&ratio), "{}: {ratio}", runner.label);
+        assert_eq!(runner.equal_time.pixels.len(), 24 * 24);
+        assert_eq!(runner.equal_error.pixels.len(), 24 * 24);
+    }
+    // The document uses Schlick's approximation; the most accurate setting does not.
+    let [as_is, one] = ["as-is", "bounces=1"].map(|name| runner(&race, name));
+    assert!(runner(&race, "fresnel=exact").is_unbiased);
+    assert!(!as_is.is_unbiased && as_is.bias.is_resolved(), "{:?}", as_is.bias);
+    // Light between ground and sphere is more than what Fresnel changes.
+    assert!(one.bias.low > as_is.bias.high, "{:?} {:?}", one.bias, as_is.bias);
+    // Strategies converge to the same picture.
+    assert_eq!(runner(&race, "strategy=light").bias, as_is.bias);
+    assert!(race.runners.iter().any(|runner| runner.is_on_front));
+    let slowest = race.runners.iter().map(|r| r.error.value).fold(0.0, f64::max);
+    assert_eq!(race.equal_error, slowest);
+    for runner in race.runners.iter().filter(|runner| runner.error.value < 0.3 * slowest) {
+        assert!(runner.equal_error_seconds < 0.5 * runner.seconds, "{}", runner.label);
+    }
+}
+
+#[test]
+fn a_race_is_stopped_when_it_is_no_longer_wanted() {
+    let mut told = 0;
+    let stopped = race(&sphere(16), &quick(&["bounces=1"], ReferenceCache::none()), &mut |_| {
+        told += 1;
+        told < 3
+    });
+    assert!(matches!(stopped, Err(StudyError::Stopped)));
+    assert_eq!(told, 3);
+}
+
+#[test]
+fn a_black_picture_has_no_relative_error() {
+    let mut document = sphere(16);
+    document.lighting.strength = 0.0;
+    let error = race(&document, &quick(&[], ReferenceCache::none()), &mut |_| true);
+    assert!(matches!(error, Err(StudyError::Black)));
+}
+
+fn references(folder: &Path) -> Vec<(std::path::PathBuf, u64)> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten();
+    entries
+        .map(|entry| (entry.as_ref().unwrap().path(), entry.unwrap().metadata().unwrap().len()))
+        .collect()
+}
+
+#[test]
+fn references_are_kept_by_what_they_are_of_and_within_their_space() {
+    let folder = TempDir::new().unwrap();
+    let cache = || ReferenceCache::at(folder.path().to_owned());
+    let document = sphere(16);
+    let options = RaceOptions {
+        seconds: 0.05,
+        noise: 0.5,
+        ..quick(&["strategy=lobe"], cache())
+    };
+    run(&document, &options);
+    // The exact one and the document's own, which its strategies share.
+    let first = references(folder.path());
+    assert_eq!(first.len(), 2, "{first:?}");
+    let contents: Vec<Vec<u8>> = first.iter().map(|(path, _)| std::fs::read(path).unwrap()).collect();
+    run(&document, &options);
+    let again: Vec<Vec<u8>> = first.iter().map(|(path, _)| std::fs::read(path).unwrap()).collect();
+    assert_eq!(contents, again, "they were read, not rendered anew");
+    let mut other = document.clone();
+    other.materials[0].roughness = 0.7;
+    run(&other, &options);
+    assert_eq!(references(folder.path()).len(), 4);
+    // Damaged files are rendered anew.
+    for (path, _) in references(folder.path()) {
+        std::fs::write(path, "nonsense").unwrap();
+    }
+    run(&document, &options);
+    let one = first[0].1;
+    let tight = RaceOptions {
+        cache: cache().with_limit(2 * one + one / 2),
+        ..options
+    };
+    other.materials[0].roughness = 0.9;
+    run(&other, &tight);
+    let total: u64 = references(folder.path()).iter().map(|(_, bytes)| bytes).sum();
+    assert!(total <= 2 * one + one / 2, "{total} bytes of {one} each");
+}
+
+#[test]
+fn the_ledger_tells_what_is_known_of_a_scene() {
+    let mut document = sphere(24);
+    document.ground = true;
+    document.materials = vec![MaterialSettings {
+        metalness: 0.0,
+        fresnel: Fresnel::Dielectric,
+        ..MaterialSettings::default()
+    }];
+    let options = LedgerOptions {
+        turns: 5,
+        slice: Duration::from_millis(20),
+        ..LedgerOptions::new(EngineChoice::Cpu)
+    };
+    let found = ledger(&document, &options, &mut |_| true).unwrap();
+    let entry = |name: &str| found.entries.iter().find(|entry| entry.name == name).unwrap();
+    for entry in &found.entries {
+        assert!(entry.ms_with > 0.0 && entry.ms_without > 0.0, "{}", entry.words);
+        assert!(
+            entry.share_of_frame.is_finite() && entry.noise_share.is_finite(),
+            "{}",
+            entry.words
+        );
+        assert!(entry.words.starts_with(&entry.label), "{}", entry.words);
+    }
+    // Half of the picture is ground.
+    assert!(entry("ground").picture_change.low > 0.1, "{}", entry("ground").words);
+    let fresnel = entry("fresnel");
+    assert!(
+        fresnel.words.starts_with("Exact Fresnel (instead of Schlick's): "),
+        "{}",
+        fresnel.words
+    );
+    // They differ by some percent of the reflection off the normal, which is a small part of a plastic's light.
+    assert!(fresnel.picture_change.high < 0.1, "{}", fresnel.words);
+    let strategy = entry("strategy");
+    assert!(
+        strategy.is_picture_kept && strategy.noise_share < -0.5,
+        "{}",
+        strategy.words
+    );
+    assert!(
+        strategy.words.contains("removes") && strategy.words.contains("leaves the picture"),
+        "{}",
+        strategy.words
+    );
+    assert!(entry("kernel").is_picture_kept && entry("sequence").is_picture_kept);
+    assert!(
+        found.entries.iter().all(|entry| entry.name != "coat"),
+        "what is not there has no line"
+    );
+}
+
+#[test]
+fn effects_to_take_out_are_those_of_the_scene() {
+    let mut document = sphere(16);
+    document.ground = true;
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(&document).unwrap();
+    let plan = session.job().unwrap().plan.clone();
+    let found: Vec<String> = techniques("effect", &plan)
+        .unwrap()
+        .iter()
+        .map(ToString::to_string)
+        .collect();
+    assert!(found.contains(&"effect=-ground".to_owned()), "{found:?}");
+    assert!(!found.contains(&"effect=-coat".to_owned()), "{found:?}");
+    let both = Technique::of(Setting::Strategy(Strategy::Light)).apply(&document);
+    assert_eq!(both.render.strategy, Strategy::Light);
+}
+
+#[test]
+fn both_engines_draw_the_same_directions_for_the_study() {
+    let mut meter = SamplingMeter::new(GpuDevice::open(AdapterKind::Any).unwrap());
+    for lobe in Lobe::ALL {
+        for stage in SamplingStage::ALL {
+            let request = SamplingRequest {
+                lobe: *lobe,
+                curve: Curve::Smooth,
+                roughness: 0.3,
+                stage,
+                width: 24,
+                rows: 16,
+                height: 20,
+                samples: 5,
+                seed: 3,
+            };
+            let (cpu, gpu) = (glossmith::cpu::sampling::run(&request), meter.run(&request).unwrap());
+            assert!(cpu.seconds > 0.0 && gpu.seconds >= 0.0);
+            // A direction at the triangle's edge may fall on either side.
+            let tolerance = if stage == SamplingStage::Rays { 3.0 } else { 0.05 };
+            assert!(
+                (cpu.sum - gpu.sum).abs() < tolerance,
+                "{lobe:?} {stage:?}: {} {}",
+                cpu.sum,
+                gpu.sum
+            );
+            assert!(cpu.sum.abs() > 1.0, "{lobe:?} {stage:?}: {}", cpu.sum);
+        }
+    }
+}
+
+fn json(workplace: &Workplace, name: &str) -> Value {
+    serde_json::from_str(&workplace.read(name)).unwrap()
+}
+
+fn number(value: &Value, key: &str) -> f64 {
+    let found = value[key].as_f64().unwrap_or_else(|| panic!("{key} in {value}"));
+    assert!(found.is_finite(), "{key}: {found}");
+    found
+}
+
+fn has_plots(workplace: &Workplace, folder: &str, names: &[&str]) {
+    for name in names {
+        let svg = workplace.read(&format!("{folder}/{name}.svg"));
+        assert!(svg.starts_with("<svg"), "{name}");
+        let picture = image::open(workplace.path(&format!("{folder}/{name}.png"))).unwrap();
+        assert!(picture.width() > 400 && picture.height() > 100, "{name}");
+    }
+}
+
+#[test]
+fn accuracy_writes_the_race() {
+    let workplace = Workplace::new();
+    workplace.done(
+        "study accuracy --quick --engine cpu --model sphere --size 24x24 --technique strategy --technique bounces=1 \
+         --cache kept --output found",
+    );
+    let race = json(&workplace, "found/accuracy.json");
+    assert_eq!(race["machine"]["engine"], "cpu");
+    let runners = race["runners"].as_array().unwrap();
+    assert_eq!(runners.len(), 4);
+    for runner in runners {
+        assert!(runner["technique"].is_string() && runner["is_on_front"].is_boolean());
+        for key in [
+            "seconds",
+            "samples_per_pixel",
+            "time_to_noise",
+            "equal_error_seconds",
+            "told_noise",
+        ] {
+            assert!(number(runner, key) > 0.0, "{key} of {runner}");
+        }
+        for distance in ["error", "bias"] {
+            let [low, value, high] = ["low", "value", "high"].map(|key| number(&runner[distance], key));
+            assert!(low <= value && value <= high, "{runner}");
+        }
+    }
+    // Nobody on the front is bettered by another one.
+    let place = |runner: &Value| [number(runner, "time_to_noise"), number(&runner["bias"], "low")];
+    for best in runners.iter().filter(|runner| runner["is_on_front"] == true) {
+        let betters =
+            |other: &Value| place(other)[0] < place(best)[0] && number(&other["bias"], "high") < place(best)[1];
+        assert!(!runners.iter().any(betters));
+    }
+    let csv = workplace.read("found/accuracy.csv");
+    assert_eq!(csv.lines().count(), 5);
+    assert!(csv.starts_with("technique,label,seconds,"));
+    has_plots(&workplace, "found", &["accuracy"]);
+    for sheet in ["equal-time", "equal-error"] {
+        assert!(
+            image::open(workplace.path(&format!("found/{sheet}.png")))
+                .unwrap()
+                .width()
+                >= 400,
+            "{sheet}"
+        );
+    }
+    assert!(workplace.path("kept").read_dir().unwrap().count() >= 2);
+    workplace.refused(2, "study accuracy --technique velvet", &["velvet", "strategy"]);
+    workplace.refused(2, "study accuracy --technique bounces=99", &["bounces", "64"]);
+}
+
+#[test]
+fn sampling_compares_all_lobes_with_the_paper() {
+    let workplace = Workplace::new();
+    let run = workplace.done("study sampling --quick --engine cpu --output found");
+    let report = json(&workplace, "found/sampling.json");
+    assert_eq!((number(&report, "width"), number(&report, "height")), (48.0, 32.0));
+    let rows = report["rows"].as_array().unwrap();
+    for samples in [1, 100] {
+        let of_samples: Vec<&Value> = rows.iter().filter(|row| row["samples"] == samples).collect();
+        for name in [
+            "geometric/sqrt",
+            "geometric/smooth",
+            "ggx",
+            "ggx-2018",
+            "ggx-ndf",
+            "phong",
+            "blinn-phong",
+        ] {
+            let row = of_samples
+                .iter()
+                .find(|row| row["name"] == name)
+                .unwrap_or_else(|| panic!("{name}"));
+            assert!(number(row, "frame_ms") > 0.0);
+        }
+    }
+    let hundred = rows.iter().filter(|row| row["samples"] == 100);
+    for row in hundred {
+        assert!(
+            number(row, "sampling_ms") > 0.0 && number(row, "against_geometric") > 0.0,
+            "{row}"
+        );
+    }
+    assert!(report["numbers_ms"][1].as_f64().unwrap() > 0.0);
+    assert_eq!(report["paper"].as_array().unwrap().len(), 4);
+    assert!(report["verdict"].as_array().unwrap().len() >= 5);
+    assert!(run.stdout.contains("(the paper: 4.84 ×)"), "{}", run.stdout);
+    has_plots(&workplace, "found", &["sampling"]);
+}
+
+#[test]
+fn convergence_writes_error_against_time() {
+    let workplace = Workplace::new();
+    workplace.done(
+        "study convergence --quick --engine cpu --model sphere --size 24x24 --samples 48 --cache kept --output found",
+    );
+    let report = json(&workplace, "found/convergence.json");
+    let points = report["points"].as_array().unwrap();
+    assert!(points.len() >= 5, "{}", points.len());
+    for pair in points.windows(2) {
+        assert!(number(&pair[0], "seconds") < number(&pair[1], "seconds"));
+    }
+    let last = points.last().unwrap();
+    assert_eq!(number(last, "samples_per_pixel"), 48.0);
+    assert!(number(last, "noise_low") < number(last, "noise"));
+    let ratio = number(&report["true_error"], "value") / number(last, "noise");
+    assert!((0.5..2.0).contains(&ratio), "{ratio}");
+    assert_eq!(report["stopped_by"], "samples");
+    assert_eq!(
+        workplace.read("found/convergence.csv").lines().count(),
+        points.len() + 1
+    );
+    has_plots(&workplace, "found", &["convergence"]);
+}
+
+#[test]
+fn scaling_grows_one_thing_at_a_time() {
+    let workplace = Workplace::new();
+    workplace.done("study scaling --quick --engine cpu --size 24x24 --output found");
+    let report = json(&workplace, "found/scaling.json");
+    for growing in ["triangles", "pixels", "bounces", "texels"] {
+        let points: Vec<&Value> = report["points"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter(|point| point["growing"] == growing)
+            .collect();
+        assert_eq!(points.len(), 2, "{growing}");
+        assert!(number(points[0], "size") < number(points[1], "size"));
+        for point in points {
+            assert!(number(point, "ns_per_sample") > 0.0 && number(point, "setup_seconds") > 0.0);
+        }
+        has_plots(&workplace, "found", &[&format!("scaling-{growing}")]);
+    }
+}
+
+#[test]
+fn the_ledger_is_written_in_plain_words() {
+    let workplace = Workplace::new();
+    let run = workplace.done("study ledger --quick --engine cpu --model sphere --size 24x24 --output found");
+    let report = json(&workplace, "found/ledger.json");
+    let entries = report["entries"].as_array().unwrap();
+    for name in [
+        "environment",
+        "specular",
+        "fresnel",
+        "lobe",
+        "strategy",
+        "sequence",
+        "bounces",
+        "filter",
+        "kernel",
+    ] {
+        let entry = entries
+            .iter()
+            .find(|entry| entry["name"] == name)
+            .unwrap_or_else(|| panic!("{name}"));
+        for key in ["ms_with", "ms_without", "ms", "share_of_frame", "noise_share"] {
+            number(entry, key);
+        }
+        assert!(run.stdout.contains(entry["words"].as_str().unwrap()), "{}", run.stdout);
+    }
+    has_plots(&workplace, "found", &["ledger"]);
+}
