@@ -196,7 +196,7 @@ proptest! {
     fn any_document_is_refused_or_sound_on_the_processor(seed in any::<u64>()) {
         let mut session = Session::open(EngineChoice::Cpu).unwrap();
         // Most documents have some number out of range: enough of them that are taken.
-        let taken = (0..40).filter(|i| try_document(&mut session, seed.wrapping_add(*i), EffectSwitches::default())).take(4).count();
+        let taken = (0..400).filter(|i| try_document(&mut session, seed.wrapping_add(*i), EffectSwitches::default())).take(4).count();
         prop_assert!(taken > 0);
     }
 }

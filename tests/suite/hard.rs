@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use glossmith::document::{Document, PRESETS};
-use glossmith::render::hard::{HardOptions, catalogue, markdown, run};
+use glossmith::render::hard::{HardOptions, OPEN, catalogue, markdown, run};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -28,7 +28,7 @@ fn assert_all_hold(engine: EngineChoice) {
     }
     let failed: Vec<_> = rows
         .iter()
-        .filter(|row| !row.check.passed)
+        .filter(|row| row.check.passed == OPEN.contains(&row.case.name))
         .map(|row| &row.check)
         .collect();
     assert!(failed.is_empty(), "{info}: {failed:#?}");
@@ -65,7 +65,8 @@ fn the_table_of_stability_is_the_programs_own() {
     let (head, rest) = text.split_once(BEGIN).expect("a table");
     let (table, tail) = rest.split_once(END).expect("an end");
     if std::env::var_os("UPDATE_DOCS").is_some() {
-        let engines = [EngineChoice::Gpu, EngineChoice::Cpu].map(|engine| run(&options(engine, true), |_| {}).unwrap());
+        let engines =
+            [EngineChoice::Gpu, EngineChoice::Cpu].map(|engine| run(&options(engine, false), |_| {}).unwrap());
         let table = markdown(&engines);
         std::fs::write(&path, format!("{head}{BEGIN}{table}{END}{tail}")).unwrap();
         return;

@@ -1,6 +1,7 @@
 //! Every shader module links and validates by itself, says where it is wrong, translates to the other graphics
 //! interfaces, and has the constants of its Rust twin.
 
+use glossmith::analysis::tiles::TILE_SIDE;
 use glossmith::cpu::integrator;
 use glossmith::document::Document;
 use glossmith::document::job::{BackgroundKind, Settings, Strategy};
@@ -272,6 +273,8 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("MIRROR_WIDTH", MIRROR_WIDTH),
         ("CUSTOM_INTERVALS", CUSTOM_INTERVALS as f64),
         ("LONG_TAIL_MAX", LONG_TAIL_MAX),
+        // A workgroup is 8 pixels wide.
+        ("TILE_WORKGROUPS", f64::from(TILE_SIDE / 8)),
         ("ALBEDO_NODES", ALBEDO_NODES as f64),
         ("TOTAL_NODES", TOTAL_NODES as f64),
         ("ROUGHNESS_NODES", ROUGHNESS_NODES as f64),
