@@ -34,7 +34,11 @@ pub struct Sampling {
     /// Changes all random numbers.
     pub seed: u32,
     /// Nothing.
-    pub reserved: [u32; 3],
+    pub reserved_a: u32,
+    /// Nothing.
+    pub reserved_b: u32,
+    /// Nothing.
+    pub reserved_c: u32,
 }
 
 /// Kernels of lobes, curves and stages, each compiled at its first use.
@@ -128,6 +132,8 @@ fn uniforms(request: &SamplingRequest) -> Sampling {
         height: request.height,
         samples: request.samples,
         seed: request.seed,
-        reserved: [0; 3],
+        reserved_a: 0,
+        reserved_b: 0,
+        reserved_c: 0,
     }
 }

@@ -3,6 +3,7 @@
 use std::mem::offset_of;
 
 use glossmith::gpu::layout::{Globals, PixelStatistics, Tile, Triangle};
+use glossmith::gpu::sampling::Sampling;
 use glossmith::gpu::scatter::Scatter;
 use glossmith::optics::material::Material;
 use glossmith::scene::Vertex;
@@ -67,6 +68,9 @@ fn rust_layouts() -> Vec<Layout> {
         }),
         layout!(Scatter: Scatter {
             wo, roughness, anisotropy, eta, lobe, curve, horizon, seed, first, count,
+        }),
+        layout!(Sampling: Sampling {
+            normal, roughness, width, rows, height, samples, seed, reserved_a, reserved_b, reserved_c,
         }),
         layout!(AliasCell: AliasCell { threshold, alias_index, density }),
         layout!(LightCell: LightCell { threshold, alias_index, triangle }),
