@@ -258,6 +258,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("ENVIRONMENT", BackgroundKind::Environment),
         ("TRANSPARENT", BackgroundKind::Transparent),
         ("COLOR", BackgroundKind::Color([0.0; 3])),
+        ("BLURRED", BackgroundKind::Blurred(0.5)),
     ] {
         number(upper("BACKGROUND", name), f64::from(background_number(kind)));
     }
@@ -273,6 +274,10 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("MIRROR_WIDTH", MIRROR_WIDTH),
         ("CUSTOM_INTERVALS", CUSTOM_INTERVALS as f64),
         ("LONG_TAIL_MAX", LONG_TAIL_MAX),
+        // Private to the traversal: the numbers themselves.
+        ("FAR_MARGIN", f64::from(1.000_000_5_f32)),
+        ("INVERSE_MAX", f64::from(1e18_f32)),
+        ("PLACE_ERROR", f64::from(6e-7_f32)),
         // A workgroup is 8 pixels wide.
         ("TILE_WORKGROUPS", f64::from(TILE_SIDE / 8)),
         ("ALBEDO_NODES", ALBEDO_NODES as f64),
@@ -327,6 +332,15 @@ const WITHOUT_TWIN: &[&str] = &[
     "LAYER_BASE",
     "LAYER_TRANSMISSION",
     "LAYER_COAT",
+    // Rows of questions to single functions.
+    "FRESNEL_WORDS",
+    "LOBE_WORDS",
+    "MATERIAL_WORDS",
+    "RANDOM_WORDS",
+    "RAY_WORDS",
+    // The quad of the sampling study.
+    "LIGHT_CORNER",
+    "LIGHT_SIDES",
 ];
 
 #[test]
