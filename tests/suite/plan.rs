@@ -184,6 +184,7 @@ fn needing(effect: &str) -> Document {
     let mut document = of_material(ModelSource::Shaderball, material);
     match effect {
         "depth-of-field" => document.camera.aperture = 0.5,
+        "firefly-clamp" => document.render.firefly_clamp = Some(0.01),
         "emitter-sampling" => document.lighting.area_lights.push(AreaLight::default()),
         _ => {}
     }

@@ -388,6 +388,7 @@ fn settings() -> Settings {
         environment_strength: 1.0,
         light_choice: SCENE.light_choice(),
         bounces: 8,
+        firefly_clamp: f64::INFINITY,
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
         seed: 0,
