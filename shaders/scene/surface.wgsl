@@ -18,10 +18,21 @@ const POSITION_ERROR: f32 = 1e-6;
 // Smallest cosine between shading normal and view: where interpolation leans further away, the normal is bent back.
 const VIEW_COSINE_MIN: f32 = 1e-3;
 
+// Smallest cosine between geometric normal and the mirror direction about a normal from a texture.
+const MIRROR_HEIGHT_MIN: f32 = 0.01;
+
 fn bent_normal(shading: vec3f, wo: vec3f) -> vec3f {
     let lean = dot(shading, wo);
     let bent = normalize_or(shading + wo * (VIEW_COSINE_MIN - lean), wo);
     return select(shading, bent, lean < VIEW_COSINE_MIN);
+}
+
+// The normal bent so far that the mirror direction about it is above the geometric surface.
+fn lifted_normal(shading: vec3f, geometric: vec3f, wo: vec3f) -> vec3f {
+    let mirrored = 2.0 * dot(shading, wo) * shading - wo;
+    let height = dot(mirrored, geometric);
+    let lifted = normalize_or(mirrored + geometric * (MIRROR_HEIGHT_MIN - height), geometric);
+    return select(shading, normalize_or(wo + lifted, geometric), height < MIRROR_HEIGHT_MIN);
 }
 
 // Where a ray met the geometry.
@@ -84,6 +95,7 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     var shading = coat_normal;
     if PLAN_NORMAL_MAPS == 1u && materials[slot].textures.z != NO_TEXTURE {
         shading = bent_normal(side * mapped_normal(materials[slot], uvs, smoothed, tangent), wo);
+        shading = lifted_normal(shading, normal, wo);
     }
     var frame = frame_from_normal(shading);
     if PLAN_ANISOTROPY == 1u && materials[slot].anisotropy != 0.0 {

@@ -85,6 +85,21 @@ impl Film {
         self.clamped += tile.clamped;
     }
 
+    /// The chosen pixels alone, in a row.
+    pub fn of_pixels(&self, is_chosen: impl Fn(usize) -> bool) -> Film {
+        let chosen: Vec<usize> = (0..self.color.len()).filter(|&pixel| is_chosen(pixel)).collect();
+        Film {
+            width: chosen.len() as u32,
+            height: 1,
+            color: chosen.iter().map(|&pixel| self.color[pixel]).collect(),
+            statistics: chosen.iter().map(|&pixel| self.statistics[pixel]).collect(),
+            odd: chosen.iter().map(|&pixel| self.odd[pixel]).collect(),
+            rays: chosen.iter().map(|&pixel| self.rays[pixel]).collect(),
+            dropped: self.dropped,
+            clamped: self.clamped,
+        }
+    }
+
     /// Rays traced for all pixels together.
     pub fn total_rays(&self) -> u64 {
         self.rays.iter().sum::<f64>() as u64

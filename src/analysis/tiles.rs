@@ -51,6 +51,16 @@ impl TileGrid {
         pixel / width / side * self.columns() + pixel % width / side
     }
 
+    /// Whether a tile has pixels in a part of the picture: left, top, right, bottom as shares of width and height.
+    pub fn is_within(self, tile: usize, region: [f64; 4]) -> bool {
+        let (origin, size) = (self.origin(tile), self.size(tile));
+        [self.width, self.height].into_iter().enumerate().all(|(axis, whole)| {
+            let low = f64::from(origin[axis]) / f64::from(whole);
+            let high = f64::from(origin[axis] + size[axis]) / f64::from(whole);
+            low < region[axis + 2] && high > region[axis]
+        })
+    }
+
     /// The tiles around a tile, itself among them.
     pub fn around(self, tile: usize) -> impl Iterator<Item = usize> {
         let (columns, rows) = (self.columns(), self.rows());

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 
 use crate::document::parameter::parse_color;
-use crate::document::{AreaLight, Background, MaterialSettings, ParameterError, assign, range};
+use crate::document::{AreaLight, AreaLightShape, Background, MaterialSettings, ParameterError, assign, range};
 use crate::render::output::{OutputError, format_of};
 
 /// Pixels that a picture may have: with 64 bytes each a render stays below 9 GB.
@@ -44,6 +44,15 @@ pub(super) fn place(text: &str) -> Result<[f64; 3], String> {
     numbers_in([range::COORDINATE, range::COORDINATE, range::COORDINATE])(text)
 }
 
+/// The part of a picture: left, top, right, bottom as shares of it.
+pub(super) fn region(text: &str) -> Result<[f64; 4], String> {
+    let sides = numbers_in([range::REGION, range::REGION, range::REGION, range::REGION])(text)?;
+    if sides[0] >= sides[2] || sides[1] >= sides[3] {
+        return Err("left must be less than right, and top less than bottom".to_owned());
+    }
+    Ok(sides)
+}
+
 /// Yaw and pitch in degrees.
 pub(super) fn orbit(text: &str) -> Result<[f64; 2], String> {
     numbers_in([range::YAW_DEG, range::PITCH_DEG])(text)
@@ -67,6 +76,10 @@ pub(super) fn area_light(text: &str) -> Result<AreaLight, String> {
         length,
         range::STRENGTH,
     ];
+    let (numbers, shape) = match numbers.strip_suffix(",triangle") {
+        Some(numbers) => (numbers, AreaLightShape::Triangle),
+        None => (numbers, AreaLightShape::Quad),
+    };
     let [yaw_deg, pitch_deg, distance, width, height, strength] = numbers_in(ranges)(numbers)?;
     Ok(AreaLight {
         yaw_deg,
@@ -74,6 +87,7 @@ pub(super) fn area_light(text: &str) -> Result<AreaLight, String> {
         distance,
         width,
         height,
+        shape,
         color,
         strength: strength as f32,
     })

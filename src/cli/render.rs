@@ -60,9 +60,9 @@ pub struct SceneArguments {
     /// Factor of the environment's radiance.
     #[arg(long, default_value = "1", value_name = "X", value_parser = parse::number_in(range::STRENGTH), allow_negative_numbers = true)]
     environment_strength: f64,
-    /// A rectangle that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
+    /// A rectangle (or triangle) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
     /// in bounding radii of the model) and radiance. May be repeated up to 8 times.
-    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,#rrggbb]", value_parser = parse::area_light, allow_hyphen_values = true)]
+    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle][,#rrggbb]", value_parser = parse::area_light, allow_hyphen_values = true)]
     area_lights: Vec<AreaLight>,
     /// What the camera sees where it meets nothing.
     #[arg(long, default_value = "environment", value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
@@ -106,6 +106,9 @@ pub struct SceneArguments {
     /// Width and height in pixels.
     #[arg(long, default_value = "512x512", value_name = "WxH", value_parser = parse::size)]
     size: [u32; 2],
+    /// Render this part of the picture only, the rest staying transparent: shares of width and height.
+    #[arg(long, value_name = "LEFT,TOP,RIGHT,BOTTOM", value_parser = parse::region)]
+    region: Option<[f64; 4]>,
     /// Samples a pixel; with --adaptive on the most of a pixel [default: 256, or no limit with --time or --noise].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
@@ -155,6 +158,9 @@ pub struct SceneArguments {
     /// Exposure of .png pictures, in stops.
     #[arg(long, default_value = "0", value_name = "EV", value_parser = parse::number_in(range::EXPOSURE_EV), allow_negative_numbers = true)]
     exposure: f64,
+    /// Expose .png pictures so that their mean brightness is middle grey; --exposure is added.
+    #[arg(long)]
+    auto_exposure: bool,
 }
 
 /// Renders as the arguments say.
@@ -415,6 +421,7 @@ impl SceneArguments {
         camera.focus_distance = self.focus_distance;
         document.view.tone_map = self.tone_map;
         document.view.exposure_ev = self.exposure as f32;
+        document.view.auto_exposure = self.auto_exposure;
         let render = &mut document.render;
         [render.width, render.height] = self.size;
         // With a time or noise to reach only, samples are not limited.
@@ -422,6 +429,7 @@ impl SceneArguments {
         render.samples = self
             .samples
             .unwrap_or(if is_limited { u32::MAX } else { render.samples });
+        render.region = self.region;
         render.time_s = self.time;
         render.noise = self.noise;
         render.min_samples = self.min_samples;

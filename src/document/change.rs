@@ -129,9 +129,10 @@ fn aim(render: &RenderSettings) -> impl PartialEq {
         time_s,
         noise,
         min_samples,
+        region,
         ..
     } = *render;
-    (samples, time_s, noise, min_samples, render.is_adaptive())
+    (samples, time_s, noise, min_samples, region, render.is_adaptive())
 }
 
 fn shine_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {

@@ -38,8 +38,8 @@ pub use preset::{PRESETS, load_material, material_by_name, save_material};
 pub use project::{load_document, save_document};
 pub use registry::PARAMETERS;
 pub use settings::{
-    AreaLight, Background, Bookmark, CameraSettings, Lighting, RenderSettings, SettingError, Strategy, ViewSettings,
-    range,
+    AreaLight, AreaLightShape, Background, Bookmark, CameraSettings, Lighting, RenderSettings, SettingError, Strategy,
+    ViewSettings, range,
 };
 
 pub use crate::scene::camera::PixelFilter;

@@ -22,6 +22,8 @@ pub mod range {
     pub const ROTATION_DEG: RangeInclusive<f64> = -3600.0..=3600.0;
     /// Blur of the environment as a background, degrees.
     pub const BACKGROUND_BLUR_DEG: RangeInclusive<f64> = 0.0..=90.0;
+    /// Sides of the rendered part, shares of the picture.
+    pub const REGION: RangeInclusive<f64> = 0.0..=1.0;
     /// Coordinates and distances of the camera, scene units.
     pub const COORDINATE: RangeInclusive<f64> = -1e9..=1e9;
     /// Distance of the camera from its target, scene units.
@@ -109,6 +111,8 @@ pub struct AreaLight {
     pub width: f64,
     /// Other side, bounding radii.
     pub height: f64,
+    /// Its shape.
+    pub shape: AreaLightShape,
     /// Linear RGB in [0, 1].
     pub color: [f32; 3],
     /// Radiance of white.
@@ -123,6 +127,7 @@ impl Default for AreaLight {
             distance: 3.0,
             width: 1.0,
             height: 1.0,
+            shape: AreaLightShape::Quad,
             color: [1.0; 3],
             strength: 10.0,
         }
@@ -138,6 +143,7 @@ impl AreaLight {
             distance: self.distance,
             width: self.width,
             height: self.height,
+            is_triangle: self.shape == AreaLightShape::Triangle,
         }
     }
 
@@ -220,6 +226,8 @@ pub struct ViewSettings {
     pub tone_map: ToneCurve,
     /// Stops by which radiance is multiplied before it: 2^exposure.
     pub exposure_ev: f32,
+    /// The exposure is added to one that brings the picture's mean brightness to middle grey.
+    pub auto_exposure: bool,
 }
 
 /// How, and for how long, the picture is rendered.
@@ -254,6 +262,8 @@ pub struct RenderSettings {
     pub seed: u32,
     /// How samples are spread over a pixel and its neighbours.
     pub filter: PixelFilter,
+    /// The part of the picture that is rendered: left, top, right, bottom as shares of width and height; `None`: all.
+    pub region: Option<[f64; 4]>,
     /// What the user decides about effects, against the plan.
     pub effects: EffectSwitches,
 }
@@ -274,6 +284,7 @@ impl Default for RenderSettings {
             strategy: Strategy::default(),
             seed: 0,
             filter: PixelFilter::default(),
+            region: None,
             effects: EffectSwitches::default(),
         }
     }
@@ -322,6 +333,15 @@ named! {
         Light = 1, "light", "Light", "Sample the light and see how the material reflects it.";
         #[default]
         Mis = 2, "mis", "Both (MIS)", "Sample both, each weighed by its density (Veach 1997).";
+    }
+}
+
+named! {
+    /// The shape of an area light.
+    AreaLightShape {
+        #[default]
+        Quad = 0, "quad", "Rectangle", "Two sides, width and height.";
+        Triangle = 1, "triangle", "Triangle", "Width is its base, height its height; the tip is up.";
     }
 }
 
@@ -401,10 +421,14 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
         ("camera.target", camera.target.unwrap_or_default(), r::COORDINATE),
         ("camera.position", camera.position.unwrap_or_default(), r::COORDINATE),
     ];
+    let region = render
+        .region
+        .unwrap_or([0.0, 0.0, 1.0, 1.0])
+        .map(|side| ("render.region", side, r::REGION));
     let components = triples
         .into_iter()
         .flat_map(|(name, values, range)| values.map(|value| (name, value, range.clone())));
-    for (name, value, range) in single.into_iter().chain(of_area_lights).chain(components) {
+    for (name, value, range) in single.into_iter().chain(of_area_lights).chain(components).chain(region) {
         if !range.contains(&value) {
             let (low, high) = range.into_inner();
             return Err(SettingError { name, value, low, high });

@@ -53,10 +53,15 @@ impl Convergence {
         schedule.pixel_samples() > self.measured_samples
     }
 
-    /// Looks at the error.
-    pub(super) fn measure(&mut self, film: &Film, schedule: &Schedule, engine_seconds: f64) {
+    /// Looks at the error, of the part that is rendered.
+    pub(super) fn measure(&mut self, film: &Film, schedule: &Schedule, settings: &RenderSettings, engine_seconds: f64) {
         self.measured_samples = schedule.pixel_samples();
-        if let Some(noise) = noise(film) {
+        let grid = schedule.grid();
+        let seen = match settings.region {
+            Some(region) => noise(&film.of_pixels(|pixel| grid.is_within(grid.of_pixel(pixel), region))),
+            None => noise(film),
+        };
+        if let Some(noise) = seen {
             self.history.push(Measurement {
                 engine_seconds,
                 samples_per_pixel: mean_samples(schedule),
@@ -65,8 +70,26 @@ impl Convergence {
         }
     }
 
-    /// Sets the goals of the next round: no pixel more than `settings.samples`. `film` is read where tiles may rest.
+    /// Sets the goals of the next round: no pixel more than `settings.samples`, and none outside the part that is
+    /// rendered. `film` is read where tiles may rest.
     pub(super) fn next_round(
+        &mut self,
+        film: Option<&Film>,
+        schedule: &Schedule,
+        settings: &RenderSettings,
+        engine_seconds: f64,
+    ) {
+        self.next_round_of_all(film, schedule, settings, engine_seconds);
+        let Some(region) = settings.region else { return };
+        let grid = schedule.grid();
+        for (tile, (goal, samples)) in self.goals.iter_mut().zip(schedule.samples()).enumerate() {
+            if !grid.is_within(tile, region) {
+                *goal = *samples;
+            }
+        }
+    }
+
+    fn next_round_of_all(
         &mut self,
         film: Option<&Film>,
         schedule: &Schedule,

@@ -9,10 +9,36 @@ use crate::document::ViewSettings;
 use crate::optics::tone::{srgb_from_linear, tone_map};
 use crate::optics::vector::vec3;
 
+/// Luminance of middle grey.
+const MIDDLE_GREY: f64 = 0.18;
+/// Luminances that count for the automatic exposure: what is darker is taken for this.
+const LUMINANCE_MIN: f64 = 1e-4;
+
+/// The factor on radiance. The automatic one brings the geometric mean of the luminance to middle grey (Reinhard et al.
+/// 2002), weighed by the pixels' opacity.
+pub fn exposure(image: &Image, view: &ViewSettings) -> f32 {
+    let chosen = view.exposure_ev.exp2();
+    if !view.auto_exposure {
+        return chosen;
+    }
+    let log_of = |pixel: &[f32; 4]| {
+        let [r, g, b, alpha] = pixel.map(f64::from);
+        let luminance = (0.2126 * r + 0.7152 * g + 0.0722 * b) / alpha.max(1e-9);
+        [alpha * luminance.max(LUMINANCE_MIN).ln(), alpha]
+    };
+    let add = |a: [f64; 2], b: [f64; 2]| [a[0] + b[0], a[1] + b[1]];
+    let [logs, weight] = image.pixels.par_iter().map(log_of).reduce(|| [0.0; 2], add);
+    if weight > 0.0 {
+        chosen * (MIDDLE_GREY / (logs / weight).exp()) as f32
+    } else {
+        chosen
+    }
+}
+
 /// Exposure, tone curve and sRGB encoding: red, green, blue and alpha of 8 bits, row by row from the top; alpha is not
 /// premultiplied.
 pub fn display(image: &Image, view: &ViewSettings) -> Vec<u8> {
-    let exposure = view.exposure_ev.exp2();
+    let exposure = exposure(image, view);
     let encode = |pixel: &[f32; 4]| -> [u8; 4] {
         let [r, g, b, alpha] = *pixel;
         let straight = if alpha > 0.0 { exposure / alpha } else { 0.0 };

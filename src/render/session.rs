@@ -296,7 +296,13 @@ impl Session {
         let begun = Instant::now();
         let seconds = self.engine_seconds();
         let schedule = self.engine.schedule().clone();
-        self.convergence.measure(self.engine.film()?, &schedule, seconds);
+        let settings = self
+            .document
+            .as_ref()
+            .map(|document| document.render)
+            .unwrap_or_default();
+        self.convergence
+            .measure(self.engine.film()?, &schedule, &settings, seconds);
         self.convergence.measure_seconds = begun.elapsed().as_secs_f64();
         self.convergence.total_seconds += self.convergence.measure_seconds;
         Ok(())

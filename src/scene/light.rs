@@ -37,14 +37,19 @@ pub struct AreaShape {
     pub width: f64,
     /// Its other side, above 0.
     pub height: f64,
+    /// A triangle with these as base and height, not a rectangle.
+    pub is_triangle: bool,
 }
 
 impl AreaShape {
-    /// Its two triangles in the geometry's units, facing the centre.
+    /// Its triangles in the geometry's units, facing the centre.
     pub(super) fn mesh(&self, slot: u32) -> Mesh {
         let outwards = orbit_direction(self.yaw_deg, self.pitch_deg);
         let [right, up] = right_and_up(-outwards);
         let (half_u, half_v) = (right * (-0.5 * self.width), up * (-0.5 * self.height));
+        if self.is_triangle {
+            return shapes::triangle(self.distance * outwards, half_u, half_v, slot);
+        }
         shapes::rectangle(self.distance * outwards, half_u, half_v, 1.0, slot)
     }
 }

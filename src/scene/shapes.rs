@@ -25,6 +25,20 @@ pub(super) fn square(center: DVec3, half_side: f64, uv_half_side: f32, slot: u32
     rectangle(center, half_side * DVec3::X, half_side * DVec3::Z, uv_half_side, slot)
 }
 
+/// A triangle in the rectangle around `center` with half its sides as vectors: its base is where `half_v` ends. It faces
+/// `half_v` × `half_u`.
+pub(super) fn triangle(center: DVec3, half_u: DVec3, half_v: DVec3, slot: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    let normal = half_v.cross(half_u).normalize_or(DVec3::Y).as_vec3();
+    let tangent = half_u.normalize_or(DVec3::X).as_vec3().extend(1.0);
+    let corners = [(0.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|(u, v)| {
+        let uv = (Vec2::new(u as f32, v as f32) + 1.0) * 0.5;
+        mesh.push_vertex(center + u * half_u + v * half_v, normal, uv, tangent)
+    });
+    mesh.push_triangle(corners, slot);
+    mesh
+}
+
 /// A rectangle around `center` of two triangles, with half its sides as vectors: u runs along `half_u`, v along
 /// `half_v`, both from −`uv_half_side` to `uv_half_side` about ½. It faces `half_v` × `half_u`.
 pub(super) fn rectangle(center: DVec3, half_u: DVec3, half_v: DVec3, uv_half_side: f32, slot: u32) -> Mesh {

@@ -14,6 +14,9 @@ pub const POSITION_ERROR: f64 = 1e-6;
 /// Smallest cosine between shading normal and view: where interpolation leans further away, the normal is bent back.
 pub const VIEW_COSINE_MIN: f64 = 1e-3;
 
+/// Smallest cosine between geometric normal and the mirror direction about a normal from a texture.
+pub const MIRROR_HEIGHT_MIN: f64 = 0.01;
+
 /// A point on a surface, ready to shade.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint<T> {
@@ -46,6 +49,18 @@ pub fn bent_normal<T: Real>(shading: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
     let least = T::from_f64(VIEW_COSINE_MIN);
     let bent = normalize_or(shading + wo * (least - lean), wo);
     Vec3::select(lean.less(least), bent, shading)
+}
+
+/// The normal bent so far that the mirror direction about it is above the geometric surface: a lobe that would lie below
+/// it were folded back whole, to angles of less reflection than the table of its albedo supposes, and the surface would be
+/// dark there. Source: Keller et al., "The Iray Light Transport Simulation and Rendering System" (2017), appendix A.3.
+#[inline(always)]
+pub fn lifted_normal<T: Real>(shading: Vec3<T>, geometric: Vec3<T>, wo: Vec3<T>) -> Vec3<T> {
+    let mirrored = wo.mirrored_about(shading);
+    let height = mirrored.dot(geometric);
+    let least = T::from_f64(MIRROR_HEIGHT_MIN);
+    let lifted = normalize_or(mirrored + geometric * (least - height), geometric);
+    Vec3::select(height.less(least), normalize_or(wo + lifted, geometric), shading)
 }
 
 /// Where a ray met the geometry.
@@ -134,6 +149,7 @@ pub fn surface_at<T: Real>(
         let side = |i: usize| T::from_f64(f64::from(corners[i].tangent[3]));
         let sign = side(0) * w + side(1) * u + side(2) * v;
         shading = facing(mapped_normal(textures, material, uvs, [smoothed, tangent()], sign));
+        shading = lifted_normal(shading, normal, wo);
     }
     let frame = if material.anisotropy.to_f64() != 0.0 {
         frame_from_tangent(shading, tangent(), material.rotation_rad)

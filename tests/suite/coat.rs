@@ -70,9 +70,11 @@ fn p_value(material: &Material<f64>, tables: &[f32], angle_deg: f64, seed: u32, 
             layer,
             below: [a, b, c],
         };
-        material_sample(material, tables, &surface, numbers, false).wi
+        let drawn = material_sample(material, tables, &surface, numbers, false);
+        // What GGX loses below the shading normal's horizon is no direction.
+        (drawn.throughput.max_component() > 0.0).then_some(drawn.wi)
     };
-    let samples: Vec<_> = (0..SAMPLES).map(|i| Some(draw(i))).collect();
+    let samples: Vec<_> = (0..SAMPLES).map(draw).collect();
     let middle = surface.wo.mirrored_about(surface.normal);
     let grid = PolarGrid::following(
         frame_from_normal(middle),
@@ -159,7 +161,10 @@ fn engines_and_strategies_agree_on_a_coat() {
         "coat.roughness=0.15",
         "coat.color=0.6,0.9,0.8",
     ];
-    let document = document(ModelSource::Sphere, EnvironmentSource::Studio, &assignments);
+    let mut document = document(ModelSource::Sphere, EnvironmentSource::Studio, &assignments);
+    // Sampling the lobe alone finds bright light rarely: many samples, until their means are normal.
+    document.render.samples = 512;
+    (document.render.width, document.render.height) = (32, 32);
     let cpu = render(EngineChoice::Cpu, &document);
     assert_eq!(cpu.dropped, 0);
     for (choice, strategy) in [

@@ -2,6 +2,7 @@
 
 use glossmith::document::custom_curve::CustomCurve;
 use glossmith::document::history::History;
+use glossmith::document::import::{geometric_from_ggx, ggx_from_geometric};
 use glossmith::document::parameter::{Kind, Parameter, Value, assign, parameter, parse_color};
 use glossmith::document::{
     AreaLight, Background, Change, Conductor, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter,
@@ -181,7 +182,7 @@ fn errors_say_what_would_be_right() {
     assert!(error("specular.rougness=1").ends_with("did you mean specular.roughness?"));
     assert!(error("roughness=1").ends_with("did you mean specular.roughness?"));
     assert!(error("metalnes=1").ends_with("did you mean base.metalness?"));
-    assert!(error("qqqqqqqq=1").contains("the parameters are base.color, "));
+    assert!(error("qqqqqqqq=1").contains("the parameters are base.weight, "));
     assert!(error("specular.roughness").contains("KEY=VALUE"));
     assert!(error(&format!("specular.lobe={}", "x".repeat(5000))).len() < 300);
     assert!(parameter("specular.roughness").is_ok() && parameter("specular.Roughness").is_err());
@@ -235,8 +236,26 @@ fn slots_of_a_model_become_materials_in_range() {
     );
     assert_eq!(
         (material.name.as_str(), material.roughness, material.lobe),
-        ("lamp", 0.4, Lobe::Geometric)
+        ("lamp", 0.4, Lobe::Ggx)
     );
+    let material = MaterialSettings::from_slot(&slot, ImportLobe::Geometric);
+    assert!(is_in_range(&material) && material.lobe == Lobe::Geometric);
+    assert_eq!(material.roughness, geometric_from_ggx(0.4));
+}
+
+/// The table of the mathematics, section 5, the other way round: nearest lobes for α of GGX.
+#[test]
+fn roughness_is_matched_to_the_look_of_ggx() {
+    for (alpha, expected) in [(0.02, 0.1), (0.072, 0.3), (0.145, 0.5), (0.245, 0.7), (0.378, 0.9)] {
+        let found = geometric_from_ggx(f32::sqrt(alpha));
+        println!("{alpha} {found} {expected}");
+        assert!(
+            (found - expected).abs() < 0.03,
+            "alpha {alpha}: {found}, expected {expected}"
+        );
+        assert!((ggx_from_geometric(found) - f32::sqrt(alpha)).abs() < 1e-5);
+    }
+    assert_eq!((geometric_from_ggx(0.0), ggx_from_geometric(0.0)), (0.0, 0.0));
 }
 
 proptest! {

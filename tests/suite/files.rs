@@ -262,21 +262,21 @@ fn documents_keep_what_is_unknown() {
         "glossmith-document": 2,
         "light tree": [1, 2],
         "camera": {"fov_deg": 40.0, "shutter": {"open_s": 0.5}},
-        "materials": [{"name": "a", "material": {"coat.weight": 1}, "by": "x"}],
+        "materials": [{"name": "a", "material": {"sheen.weight": 1}, "by": "x"}],
     });
     let loaded = project::parse_document("p.json".as_ref(), text.to_string().as_bytes()).expect("valid");
     assert_eq!(loaded.value.camera.fov_deg, 40.0);
     assert_eq!(loaded.value.materials.len(), 1);
     let warnings = &loaded.warnings;
     assert!(
-        warnings[0].contains("newer") && warnings[1].contains("coat.weight"),
+        warnings[0].contains("newer") && warnings[1].contains("sheen.weight"),
         "{warnings:?}"
     );
     let saved = project::document_text("p.json".as_ref(), &loaded.value).expect("saved");
     let saved: Json = serde_json::from_str(&saved).expect("JSON");
     assert_eq!(saved["light tree"], text["light tree"]);
     assert_eq!(saved["camera"]["shutter"], text["camera"]["shutter"]);
-    assert_eq!(saved["materials"][0]["material"]["coat.weight"], json!(1));
+    assert_eq!(saved["materials"][0]["material"]["sheen.weight"], json!(1));
     assert_eq!(saved["materials"][0]["by"], json!("x"));
     assert_eq!(saved["glossmith-document"], json!(1));
 }

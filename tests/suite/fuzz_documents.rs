@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use glossmith::analysis::film::Film;
 use glossmith::document::{
-    AreaLight, Background, Document, Kind, MaterialSettings, PARAMETERS, PixelFilter, Strategy, Value,
+    AreaLight, AreaLightShape, Background, Document, Kind, MaterialSettings, PARAMETERS, PixelFilter, Strategy, Value,
 };
 use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session};
@@ -111,6 +111,7 @@ fn any_document(seed: u64) -> Document {
             distance: f64::from(number(random, [1e-3, 1e3])),
             width: f64::from(number(random, [1e-3, 1e3])),
             height: f64::from(number(random, [1e-3, 1e3])),
+            shape: AreaLightShape::ALL[random.below(2)],
             color: color(random),
             strength: number(random, [0.0, 1e6]),
         }];

@@ -297,6 +297,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("GAUSSIAN_KEPT", kept),
         ("COSINE_MIN", light::COSINE_MIN),
         ("POSITION_ERROR", surface::POSITION_ERROR),
+        ("MIRROR_HEIGHT_MIN", surface::MIRROR_HEIGHT_MIN),
         ("VIEW_COSINE_MIN", surface::VIEW_COSINE_MIN),
         ("FIRST_DIMENSION", f64::from(integrator::FIRST_DIMENSION)),
         ("BOUNCE_DIMENSIONS", f64::from(integrator::BOUNCE_DIMENSIONS)),

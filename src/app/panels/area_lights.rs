@@ -1,4 +1,4 @@
-//! The rectangles that shine: adding, removing, and a row for each of their numbers.
+//! The rectangles and triangles that shine: adding, removing, and a row for each of their numbers.
 
 use std::ops::RangeInclusive;
 
@@ -7,7 +7,7 @@ use egui::{Align, Layout, Ui};
 use super::Desk;
 use crate::app::icons::{self, Icon};
 use crate::app::widgets::{self, Name, NumberStyle, RowResponse};
-use crate::document::{AreaLight, range};
+use crate::document::{AreaLight, AreaLightShape, range};
 
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let mut lights = desk.document.lighting.area_lights.clone();
@@ -115,6 +115,15 @@ fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
         });
         edited(desk, response, full, value, *(row.field)(&mut default));
     }
+    let full = format!("{title} shape");
+    let shapes: Vec<_> = AreaLightShape::ALL
+        .iter()
+        .map(|shape| (*shape, shape.label(), shape.help()))
+        .collect();
+    let response = widgets::row(ui, Name::new(&full, "Shape", "Rectangle or triangle."), |ui| {
+        widgets::choice(ui, &full, &mut light.shape, &shapes)
+    });
+    edited(desk, response, full, &mut light.shape, default.shape);
     let full = format!("{title} colour");
     let name = Name::new(&full, "Colour", "Colour of the light.");
     let response = widgets::row(ui, name, |ui| widgets::color(ui, &full, &mut light.color));

@@ -198,6 +198,16 @@ fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
     let name = Name::new("Exposure", "Exposure", "Brightness in stops: +1 doubles it.");
     let response = widgets::row(ui, name, |ui| widgets::number(ui, exposure_ev, &style));
     desk.edited(response, "Exposure", |document| &mut document.view.exposure_ev);
+    let auto = &mut desk.document.view.auto_exposure;
+    let name = Name::new(
+        "Automatic exposure",
+        "Automatic",
+        "Brings the picture's mean brightness to middle grey; the exposure is added to that.",
+    );
+    let response = widgets::row(ui, name, |ui| ui.checkbox(auto, ""));
+    desk.edited(response, "Automatic exposure", |document| {
+        &mut document.view.auto_exposure
+    });
 }
 
 pub(in crate::app) fn exposure_style() -> NumberStyle<'static> {

@@ -14,9 +14,9 @@ use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Horizon;
 use crate::optics::random::hash_bits;
 use crate::scene::environment::EnvironmentSource;
-use crate::scene::texture::Textures;
 use crate::scene::mesh::{Mesh, plane_normal};
 use crate::scene::surface::surface_at;
+use crate::scene::texture::Textures;
 use crate::scene::{Geometry, Hit, Model, ModelSource, shapes, teapot};
 
 /// The most that the mean of a picture may differ where only scale or place do: silhouettes by a rounding.

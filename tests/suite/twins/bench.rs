@@ -91,6 +91,8 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     // Linear pictures: the first with a normal texture, the second with one that shines.
     materials[0].textures = [NO_TEXTURE, NO_TEXTURE, 1, NO_TEXTURE];
     materials[1].textures = [NO_TEXTURE, NO_TEXTURE, NO_TEXTURE, 0];
+    // Never so steep that the tangent is along the normal.
+    materials[0].normal_strength = 0.5;
     for material in &mut materials[..2] {
         material.light_luminance = material.emission.luminance();
         (material.opacity_texture, material.alpha_cutoff) = (NO_TEXTURE, -1.0);
@@ -392,6 +394,7 @@ fn settings() -> Settings {
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
         seed: 0,
+        firefly_clamp: f64::INFINITY,
     }
 }
 

@@ -121,7 +121,8 @@ fn materials_agree() {
             [&start[..], &view.inputs(), &coat_and_side(rng, &view)].concat()
         });
         sample = sample.group_of(lobe.name(), 16_000, move |rng, _| {
-            let xi = [(); 7].map(|()| Value::Unit(rng.unit()));
+            // At the ends the density has a peak that is infinite: the lobes' own tests go there.
+            let xi = [(); 7].map(|()| Value::Unit(rng.range(1e-3, 0.999)));
             let start = [random_index(rng, lobe).into()];
             let view = View::random(rng);
             let sides = coat_and_side(rng, &view);

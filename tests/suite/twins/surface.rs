@@ -4,7 +4,7 @@ use glam::Vec3A;
 use glossmith::optics::material::Material;
 use glossmith::optics::real::Real;
 use glossmith::optics::vector::Vec3;
-use glossmith::scene::surface::{bent_normal, surface_at};
+use glossmith::scene::surface::{bent_normal, lifted_normal, surface_at};
 use glossmith::scene::{Hit, RayFrame, intersect_triangle};
 
 use super::bench::SCENE;
@@ -85,6 +85,19 @@ fn surfaces_agree() {
             )
             .output("bent_normal(shading, wo)", UNIT)
             .group("", |rng, _| inputs![rng.direction(), rng.direction()]),
+            Case::new(
+                "lifted_normal",
+                "shading geometric wo",
+                "",
+                twin!(|row| {
+                    let (shading, geometric, wo) = (row.vector(), row.vector(), row.vector());
+                    row.put_vector(lifted_normal(shading, geometric, wo));
+                }),
+            )
+            .output("lifted_normal(shading, geometric, wo)", UNIT)
+            .group_of("", 16_000, |rng, _| {
+                inputs![rng.direction(), rng.direction(), rng.direction()]
+            }),
         ],
     );
 }
