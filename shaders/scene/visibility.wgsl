@@ -1,6 +1,7 @@
 // What stops a ray, and what lets it pass. Twin of Integrator::stop and Integrator::transmittance in
 // src/cpu/integrator.rs.
 #import "optics/random"
+#import "scene/camera"
 #import "scene/plan"
 #import "scene/surface"
 
