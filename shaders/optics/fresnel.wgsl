@@ -41,7 +41,7 @@ fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
 }
 
 fn half_vector_cosine(wo: vec3f, wi: vec3f) -> f32 {
-    return sqrt(clamp(0.5 + 0.5 * dot(wo, wi), 0.0, 1.0));
+    return min(0.5 * length(wo + wi), 1.0);
 }
 
 fn fresnel_f0(ior: f32) -> f32 {
@@ -88,9 +88,10 @@ fn fresnel_dielectric(cosine: f32, ior: f32) -> f32 {
 fn fresnel_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
     let c = clamp(cosine, 0.0, 1.0);
     let cos2 = c * c;
-    let sin2 = 1.0 - cos2;
-    // (a + ib)^2 = t0 + iu, so written that nothing cancels; its size without the squares, which would overflow.
-    let t0 = refracted_square(c, eta) - k * k;
+    let sin2 = (1.0 - c) * (1.0 + c);
+    // (a + ib)^2 = t0 + iu, so written that nothing cancels, neither at grazing for eta near 1 nor head-on for eta near 0;
+    // its size without the squares, which would overflow.
+    let t0 = select(eta * eta - sin2, refracted_square(c, eta), cos2 < 0.5) - k * k;
     let u = 2.0 * eta * k;
     let largest = max(max(abs(t0), u), 1e-30);
     let scaled = vec2f(t0, u) / largest;
@@ -99,9 +100,9 @@ fn fresnel_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
     let a = select(leg, 0.5 * u / max(leg, 1e-30), t0 < 0.0);
     let t1 = a2_plus_b2 + cos2;
     let t2 = 2.0 * a * c;
-    let perpendicular = (t1 - t2) / max(t1 + t2, 1e-12);
+    let perpendicular = (t1 - t2) / max(t1 + t2, 1e-37);
     let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
     let t4 = t2 * sin2;
-    let parallel = perpendicular * (t3 - t4) / max(t3 + t4, 1e-12);
+    let parallel = perpendicular * (t3 - t4) / max(t3 + t4, 1e-37);
     return clamp(0.5 * (perpendicular + parallel), 0.0, 1.0);
 }

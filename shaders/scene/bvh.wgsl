@@ -34,6 +34,23 @@ fn ray_frame(origin: vec3f, direction: vec3f) -> RayFrame {
     return RayFrame(origin, d, vec3f(-d.y / d.x, 1.0, 0.0), vec3f(-d.z / d.x, 0.0, 1.0));
 }
 
+// A vector along a triangle's normal, by the right hand: the product of its two shorter edges over the square of the
+// longest. The product of two long edges of a needle would be rounding noise, and that of two tiny ones underflow where it
+// is squared.
+fn triangle_normal(p0: vec3f, p1: vec3f, p2: vec3f) -> vec3f {
+    let a = p1 - p0;
+    let b = p2 - p1;
+    let c = p0 - p2;
+    let aa = dot(a, a);
+    let bb = dot(b, b);
+    let cc = dot(c, c);
+    let a_is_longest = aa >= bb && aa >= cc;
+    let b_is_longest = !a_is_longest && bb >= cc;
+    let left = select(select(a, c, b_is_longest), b, a_is_longest);
+    let right = select(select(b, a, b_is_longest), c, a_is_longest);
+    return cross(left, right) / max(max(max(aa, bb), cc), 1e-37);
+}
+
 // (t, u, v) where the ray meets the triangle with 0 < t < t_max, from either side; t = -1 where it does not.
 fn intersect_triangle(ray: RayFrame, v0: vec3f, v1: vec3f, v2: vec3f, t_max: f32) -> vec3f {
     let a = v0 - ray.origin;
@@ -56,7 +73,7 @@ fn intersect_triangle(ray: RayFrame, v0: vec3f, v1: vec3f, v2: vec3f, t_max: f32
     if (any(areas < vec3f(0.0)) && any(areas > vec3f(0.0))) || area == 0.0 {
         return vec3f(-1.0);
     }
-    let normal = cross(v1 - v0, v2 - v0);
+    let normal = triangle_normal(v0, v1, v2);
     let t = dot(normal, a) / dot(normal, ray.direction);
     if t > 0.0 && t < t_max {
         return vec3f(t, areas.y / area, areas.z / area);

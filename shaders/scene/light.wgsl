@@ -33,7 +33,7 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let towards = place - origin;
     let distance = length(towards);
     let direction = normalize_or(towards, vec3f(0.0, 1.0, 0.0));
-    let normal = normalize_or(cross(p1 - p0, p2 - p0), direction);
+    let normal = normalize_or(triangle_normal(p0, p1, p2), direction);
     let material = materials[triangle_slots[index]];
     var radiance = material.emission;
     if PLAN_EMISSION_TEXTURES == 1u || PLAN_ALPHA == 1u {

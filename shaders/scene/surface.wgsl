@@ -52,7 +52,7 @@ fn hit_place(hit: Hit, direction: vec3f) -> HitPlace {
     let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
     let weights = vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
     let position = p0 * weights.x + p1 * weights.y + p2 * weights.z;
-    let out = normalize_or(cross(p1 - p0, p2 - p0), -direction);
+    let out = normalize_or(triangle_normal(p0, p1, p2), -direction);
     let is_back = dot(out, -direction) < 0.0;
     let normal = select(out, -out, is_back);
     return HitPlace(position, position_error(p0, p1, p2, weights, normal), normal, is_back);

@@ -107,7 +107,7 @@ impl Globals {
             light_cells_size: settings.light_choice.cells_size,
             environment_probability: settings.light_choice.environment_probability as f32,
             density_per_luminance: settings.light_choice.density_per_luminance as f32,
-            firefly_clamp: settings.firefly_clamp as f32,
+            firefly_clamp: settings.firefly_clamp.min(f64::from(f32::MAX)) as f32,
             reserved: 0,
             reserved_pair: [0; 2],
         }

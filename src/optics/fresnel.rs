@@ -92,12 +92,11 @@ pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
     share * terms.weight
 }
 
-/// The cosine at the half vector of two unit directions, by the half-angle formula: nothing to normalise.
+/// The cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose its digits
+/// where they are nearly opposite, and Fresnel's factor is steepest there.
 #[inline(always)]
 pub fn half_vector_cosine<T: Real>(wo: Vec3<T>, wi: Vec3<T>) -> T {
-    (T::from_f64(0.5) + T::from_f64(0.5) * wo.dot(wi))
-        .clamp(T::zero(), T::one())
-        .sqrt()
+    (T::from_f64(0.5) * (wo + wi).length()).min(T::one())
 }
 
 /// Reflectance at normal incidence of a dielectric.
@@ -165,9 +164,12 @@ pub fn fresnel_dielectric<T: Real>(cosine: T, ior: T) -> T {
 pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
     let c = cosine.clamp(T::zero(), T::one());
     let cos2 = c * c;
-    let sin2 = T::one() - cos2;
-    // (a + ib)² = t0 + iu, so written that nothing cancels; its size without the squares, which would overflow.
-    let t0 = refracted_square(c, eta) - k * k;
+    let sin2 = (T::one() - c) * (T::one() + c);
+    // (a + ib)² = t0 + iu, so written that nothing cancels, neither at grazing for η near 1 nor head-on for η near 0; its
+    // size without the squares, which would overflow.
+    let half = T::from_f64(0.5);
+    let real = T::select(cos2.less(half), refracted_square(c, eta), eta * eta - sin2);
+    let t0 = real - k * k;
     let u = T::from_f64(2.0) * eta * k;
     let largest = t0.abs().max(u).max(T::from_f64(1e-30));
     let (x, y) = (t0 / largest, u / largest);
@@ -180,12 +182,13 @@ pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
     );
     let t1 = a2_plus_b2 + cos2;
     let t2 = T::from_f64(2.0) * a * c;
-    let tiny = T::from_f64(1e-12);
+    // Only where both are 0 there is nothing to divide by.
+    let tiny = T::from_f64(1e-37);
     let perpendicular = (t1 - t2) / (t1 + t2).max(tiny);
     let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
     let t4 = t2 * sin2;
     let parallel = perpendicular * (t3 - t4) / (t3 + t4).max(tiny);
-    (T::from_f64(0.5) * (perpendicular + parallel)).clamp(T::zero(), T::one())
+    (half * (perpendicular + parallel)).clamp(T::zero(), T::one())
 }
 
 /// A metal of the preset list.

@@ -2,6 +2,9 @@
 
 use glam::{Vec3A, Vec3Swizzles};
 
+use crate::optics::real::Real;
+use crate::optics::vector::{Vec3, vec3};
+
 /// Where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
@@ -51,6 +54,20 @@ impl RayFrame {
     }
 }
 
+/// A vector along a triangle's normal, by the right hand: the product of its two shorter edges over the square of the
+/// longest. The product of two long edges of a needle would be rounding noise, and that of two tiny ones underflow where
+/// it is squared. 0 where the triangle has no area.
+#[inline(always)]
+pub fn triangle_normal<T: Real>([p0, p1, p2]: [Vec3<T>; 3]) -> Vec3<T> {
+    let (a, b, c) = (p1 - p0, p2 - p1, p0 - p2);
+    let (aa, bb, cc) = (a.dot(a), b.dot(b), c.dot(c));
+    let a_is_longest = !aa.less(bb) & !aa.less(cc);
+    let b_is_longest = !a_is_longest & !bb.less(cc);
+    let left = Vec3::select(a_is_longest, b, Vec3::select(b_is_longest, c, a));
+    let right = Vec3::select(a_is_longest, c, Vec3::select(b_is_longest, a, b));
+    left.cross(right) / aa.max(bb).max(cc).max(T::from_f64(1e-37))
+}
+
 /// The ray against one triangle, from either side: (t, u, v) as in [`Hit`] where 0 < t < `t_max`.
 ///
 /// Watertight: a corner is projected alike for every triangle it belongs to, and an edge's area is computed from its
@@ -82,7 +99,8 @@ pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max
         return None;
     }
     // The distance by the plane: exact in sign for planes along the axes, whatever the triangle's size.
-    let normal = (v1 - v0).cross(v2 - v0);
+    let normal = triangle_normal([v0, v1, v2].map(|v| vec3(v.x, v.y, v.z)));
+    let normal = Vec3A::new(normal.x, normal.y, normal.z);
     let t = normal.dot(a) / normal.dot(ray.direction);
     // False for NaN, too.
     (t > 0.0 && t < t_max).then_some((t, areas.y / area, areas.z / area))

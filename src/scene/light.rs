@@ -14,6 +14,7 @@ use super::alias::{AliasEntry, alias_table, grid_place};
 use super::camera::{orbit_direction, right_and_up};
 use super::environment::Environment;
 use super::geometry::Geometry;
+use super::intersect::triangle_normal;
 use super::mesh::Mesh;
 use super::shapes;
 use super::surface::{POSITION_ERROR, position_error};
@@ -219,7 +220,7 @@ pub fn light_sample<T: Real>(
     let towards = place - origin;
     let distance = towards.length();
     let direction = normalize_or(towards, vec3(T::zero(), T::one(), T::zero()));
-    let normal = normalize_or((p1 - p0).cross(p2 - p0), direction);
+    let normal = normalize_or(triangle_normal([p0, p1, p2]), direction);
     let material = &emitters.materials[geometry.slots[triangle] as usize];
     let mut radiance = material.emission;
     if material.is_textured() || material.has_holes() {

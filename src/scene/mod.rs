@@ -18,5 +18,5 @@ pub mod texture;
 mod traverse;
 
 pub use geometry::{Geometry, Vertex};
-pub use intersect::{Hit, RayFrame, intersect_triangle};
+pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
 pub use model::{AlphaMode, Filter, Model, ModelError, ModelSource, Slot, Texture, TextureRef, Wrap, load};

@@ -7,7 +7,7 @@ use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 
 use super::texture::{Textures, mapped_normal, opacity_at, uvs_at};
-use super::{Geometry, Hit};
+use super::{Geometry, Hit, triangle_normal};
 
 /// Rounding of the position's three products and sums, with what the box test and the transforms add.
 pub const POSITION_ERROR: f64 = 1e-6;
@@ -89,7 +89,7 @@ pub fn hit_place<T: Real>(geometry: &Geometry, hit: &Hit, direction: Vec3<T>) ->
     let corners = geometry.corners(hit.triangle as usize).map(Vec3::from_f32);
     let [p0, p1, p2] = corners;
     let weights: [T; 3] = hit_weights(hit);
-    let out = normalize_or((p1 - p0).cross(p2 - p0), -direction);
+    let out = normalize_or(triangle_normal(corners), -direction);
     let is_back = out.dot(-direction).less(T::zero());
     let normal = Vec3::select(is_back, -out, out);
     HitPlace {

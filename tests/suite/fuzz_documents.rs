@@ -46,6 +46,20 @@ fn color(random: &mut Random) -> [f32; 3] {
     [(); 3].map(|()| number(random, [0.0, 1.0]))
 }
 
+/// A number of a document: one out of range has the whole document refused, so that is rare.
+fn setting(random: &mut Random, range: [f32; 2]) -> f32 {
+    match random.below(100) {
+        0 => number(random, range),
+        1..6 => range[0],
+        6..11 => range[1],
+        _ => range[0] + (range[1] - range[0]) * random.unit(),
+    }
+}
+
+fn setting_color(random: &mut Random) -> [f32; 3] {
+    [(); 3].map(|()| setting(random, [0.0, 1.0]))
+}
+
 fn value(random: &mut Random, kind: &Kind) -> Value {
     match kind {
         Kind::Number { range, .. } => Value::Number(number(random, *range)),
@@ -97,35 +111,35 @@ fn any_document(seed: u64) -> Document {
     };
     let lighting = &mut document.lighting;
     lighting.environment = lights[random.below(lights.len())].clone();
-    lighting.strength = number(random, [0.0, 1e6]);
-    lighting.rotation_deg = number(random, [-3600.0, 3600.0]);
-    lighting.ground_color = color(random);
+    lighting.strength = setting(random, [0.0, 1e6]);
+    lighting.rotation_deg = setting(random, [-3600.0, 3600.0]);
+    lighting.ground_color = setting_color(random);
     lighting.background = match random.below(3) {
         0 => Background::Environment,
         1 => Background::Transparent,
-        _ => Background::Color(color(random)),
+        _ => Background::Color(setting_color(random)),
     };
     if random.below(3) == 0 {
         lighting.area_lights = vec![AreaLight {
-            yaw_deg: f64::from(number(random, [-180.0, 180.0])),
-            pitch_deg: f64::from(number(random, [-90.0, 90.0])),
-            distance: f64::from(number(random, [1e-3, 1e3])),
-            width: f64::from(number(random, [1e-3, 1e3])),
-            height: f64::from(number(random, [1e-3, 1e3])),
+            yaw_deg: f64::from(setting(random, [-180.0, 180.0])),
+            pitch_deg: f64::from(setting(random, [-90.0, 90.0])),
+            distance: f64::from(setting(random, [1e-3, 1e3])),
+            width: f64::from(setting(random, [1e-3, 1e3])),
+            height: f64::from(setting(random, [1e-3, 1e3])),
             shape: AreaLightShape::ALL[random.below(2)],
-            color: color(random),
-            strength: number(random, [0.0, 1e6]),
+            color: setting_color(random),
+            strength: setting(random, [0.0, 1e6]),
         }];
     }
     let camera = &mut document.camera;
-    camera.fov_deg = f64::from(number(random, [0.1, 170.0]));
-    camera.yaw_deg = f64::from(number(random, [-180.0, 180.0]));
-    camera.pitch_deg = f64::from(number(random, [-90.0, 90.0]));
+    camera.fov_deg = f64::from(setting(random, [0.1, 170.0]));
+    camera.yaw_deg = f64::from(setting(random, [-180.0, 180.0]));
+    camera.pitch_deg = f64::from(setting(random, [-90.0, 90.0]));
     if random.below(4) == 0 {
-        camera.distance = Some(f64::from(number(random, [1e-6, 1e9])));
+        camera.distance = Some(f64::from(setting(random, [1e-6, 1e9])));
     }
     if random.below(4) == 0 {
-        camera.position = Some([(); 3].map(|()| f64::from(number(random, [-1e9, 1e9]))));
+        camera.position = Some([(); 3].map(|()| f64::from(setting(random, [-1e9, 1e9]))));
     }
     let render = &mut document.render;
     (render.width, render.height, render.samples) = (8, 8, 4);
@@ -134,7 +148,7 @@ fn any_document(seed: u64) -> Document {
     render.sequence = Sequence::ALL[random.below(2)];
     render.filter = PixelFilter::ALL[random.below(2)];
     render.seed = random.bits() as u32;
-    render.firefly_clamp = (random.below(4) == 0).then(|| number(random, [1e-6, 1e9]));
+    render.firefly_clamp = (random.below(4) == 0).then(|| setting(random, [1e-6, 1e9]));
     document
 }
 
@@ -190,14 +204,12 @@ fn try_document(session: &mut Session, seed: u64, effects: EffectSwitches) -> bo
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn any_document_is_refused_or_sound_on_the_processor(seed in any::<u64>()) {
         let mut session = Session::open(EngineChoice::Cpu).unwrap();
-        // Most documents have some number out of range: enough of them that are taken.
-        let taken = (0..400).filter(|i| try_document(&mut session, seed.wrapping_add(*i), EffectSwitches::default())).take(4).count();
-        prop_assert!(taken > 0);
+        try_document(&mut session, seed, EffectSwitches::default());
     }
 }
 

@@ -38,7 +38,9 @@ fn geometric_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f3
     let value = chord_density(
         shape.curve, shape.table, shape.roughness, mirror_length, up, mirror / mirror_length, light / light_length,
     );
-    return value / (width.x * width.y * width.z * light_length * light_length * light_length);
+    let density = value / (width.x * width.y * width.z * light_length * light_length * light_length);
+    // A mirror has none: there the widths and the lengths measured in them are 0 and infinite.
+    return select(0.0, density, shape.roughness > 0.0);
 }
 
 fn geometric_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {

@@ -64,7 +64,9 @@ pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>,
     let up = vec3(T::zero(), T::zero(), T::one());
     let (mirror, light) = (mirror / mirror_length, light / light_length);
     let value = chord_density(shape.curve, shape.table, shape.roughness, mirror_length, up, mirror, light);
-    value / (width.x * width.y * width.z * light_length * light_length * light_length)
+    let density = value / (width.x * width.y * width.z * light_length * light_length * light_length);
+    // A mirror has none: there the widths and the lengths measured in them are 0 and infinite.
+    T::select(T::zero().less(shape.roughness), density, T::zero())
 }
 
 /// Always 1: the lobe is its density.

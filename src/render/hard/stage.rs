@@ -6,6 +6,7 @@ use std::time::Duration;
 use std::{fs, io};
 
 use crate::analysis::film::{Film, Image};
+use crate::document::effect::EffectSwitches;
 use crate::document::{Document, PixelFilter};
 use crate::gpu::GpuError;
 use crate::optics::random::Sequence;
@@ -96,8 +97,13 @@ impl Stage {
     /// # Errors
     /// A model or environment that can't be loaded, or an engine that fails.
     pub fn film(&mut self, document: &Document) -> Result<Film, HardError> {
+        let mut document = document.clone();
+        if self.choice == EngineChoice::Gpu {
+            // One kernel for all pictures: compiling one for each takes longer than they do.
+            document.render.effects = EffectSwitches::all_on();
+        }
         self.session.forget();
-        self.session.submit(document)?;
+        self.session.submit(&document)?;
         while !self.session.step(Duration::from_secs(1))?.is_done {}
         let film = self.session.film()?.clone();
         self.picture = Some(film.image());
