@@ -9,6 +9,7 @@ use glossmith::document::effect::{Decision, EFFECTS, EffectSwitches, Switch};
 use glossmith::document::job::Job;
 use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, PRESETS, Strategy, Value, assign};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
+use glossmith::optics::curve::Curve;
 use glossmith::render::{Assets, EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -132,6 +133,43 @@ fn a_convex_body_alone_sees_nothing_but_the_light() {
     assert!(sees(ModelSource::Sphere, |d| d.ground = true));
     assert!(sees(ModelSource::Sphere, |d| d.lighting.area_lights =
         vec![AreaLight::default()]));
+}
+
+#[test]
+fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
+    let document = |model: ModelSource, roughness: f32| {
+        let material = MaterialSettings {
+            roughness,
+            ..MaterialSettings::default()
+        };
+        let mut document = of_material(model, material);
+        document.camera.pitch_deg = 60.0;
+        document.render.samples = 64;
+        document
+    };
+    let plane = document(ModelSource::Plane, 0.4);
+    assert!(!job(&plane).plan.has("horizon"));
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    let [specialised, general] = [plane.clone(), generally(&plane)].map(|document| film(&mut session, &document));
+    assert_same_bits(&specialised, &general, "a steep view");
+    assert!(job(&document(ModelSource::Plane, 0.95)).plan.has("horizon"), "rough");
+    assert!(
+        job(&document(ModelSource::Sphere, 0.4)).plan.has("horizon"),
+        "a silhouette"
+    );
+    let edits: [(&str, fn(&mut Document)); 4] = [
+        ("a shallow view", |document| document.camera.pitch_deg = 10.0),
+        ("views from a lens", |document| document.camera.aperture = 0.1),
+        ("rays from the ground", |document| document.ground = true),
+        ("a curve beyond the lobe's ball", |document| {
+            document.materials[0].curve = Curve::LongTail;
+        }),
+    ];
+    for (what, edit) in edits {
+        let mut other = plane.clone();
+        edit(&mut other);
+        assert!(job(&other).plan.has("horizon"), "{what}");
+    }
 }
 
 #[test]
@@ -270,7 +308,15 @@ fn the_plan_is_printed_and_effects_are_chosen_on_the_command_line() {
     let has = |effects: &[String], name: &str| effects.iter().any(|effect| effect == name);
     assert!(has(&effects("--effects auto"), "ground"));
     assert!(!has(&effects("--effects -ground"), "ground"));
-    assert_eq!(effects("--effects all").len(), EFFECTS.len());
+    let all = effects("--effects all");
+    for effect in EFFECTS.iter().filter(|effect| effect.constant.is_some()) {
+        assert!(has(&all, effect.name), "{} is left out", effect.name);
+    }
+    assert!(has(&effects("--noise 0.5"), "adaptive-sampling"));
+    assert!(!has(
+        &effects("--noise 0.5 --effects -adaptive-sampling"),
+        "adaptive-sampling"
+    ));
     let chosen = effects("--effects environment,specular");
     assert!(has(&chosen, "specular") && !has(&chosen, "ground") && !has(&chosen, "base"));
     place.refused(2, "render --effects no-such-effect", &["no-such-effect"]);
