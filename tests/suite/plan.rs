@@ -252,6 +252,13 @@ fn needing(effect: &str) -> Document {
 fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
     let folder = Folder::new();
     let switched = |effect: &&glossmith::document::effect::Effect| effect.constant.is_some_and(|c| c.general == 1);
+    // One engine, which keeps the kernels that it has compiled.
+    let mut engine = GpuEngine::new(GpuDevice::open(AdapterKind::Any).unwrap()).unwrap();
+    let mut picture = |job: Job| {
+        engine.submit(Arc::new(job)).unwrap();
+        engine.step(Duration::from_secs(60), 4).unwrap();
+        engine.film().unwrap().color.clone()
+    };
     for effect in EFFECTS.iter().filter(switched) {
         let is_of_texture = effect.name.ends_with("texture") || ["normal-map", "rough-tables"].contains(&effect.name);
         let document = if is_of_texture {
@@ -264,12 +271,6 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
         let wrong = Job {
             plan: right.plan.clone().with(effect.name, Decision::off("broken on purpose")),
             ..right.clone()
-        };
-        let picture = |job: Job| {
-            let mut engine = GpuEngine::new(GpuDevice::open(AdapterKind::Any).unwrap()).unwrap();
-            engine.submit(Arc::new(job)).unwrap();
-            engine.step(Duration::from_secs(60), 4).unwrap();
-            engine.film().unwrap().color.clone()
         };
         assert!(
             picture(right) != picture(wrong),
