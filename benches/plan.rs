@@ -11,6 +11,7 @@ use glossmith::render::study::ledger::{LedgerOptions, ledger};
 use glossmith::render::{EngineChoice, Session};
 
 type Failure = Box<dyn std::error::Error>;
+type Edit = fn(&mut Document);
 
 /// Turns of each pair.
 const TURNS: usize = 5;
@@ -38,7 +39,7 @@ fn main() -> Result<(), Failure> {
 fn ledger_and_clock(engine: EngineChoice, sessions: &mut [Session; 2]) -> Result<(), Failure> {
     println!("| effect | by the ledger, ms a sample of every pixel | by the clock | apart, of the time with it |");
     println!("| --- | --- | --- | --- |");
-    let cases: [(&str, fn(&mut Document)); 5] = [
+    let cases: [(&str, Edit); 5] = [
         ("anisotropy", |document| document.materials[0].anisotropy = 0.5),
         ("coat", |document| document.materials[0].coat_weight = 1.0),
         ("ground", |document| document.ground = true),

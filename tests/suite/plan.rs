@@ -19,6 +19,8 @@ use crate::gltf_builder::Folder;
 use crate::textures::all_at_once;
 use crate::twins::harness::Rng;
 
+type Edit = fn(&mut Document);
+
 fn small(mut document: Document) -> Document {
     (document.render.width, document.render.height) = (24, 24);
     document.render.samples = 4;
@@ -157,7 +159,7 @@ fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
         job(&document(ModelSource::Sphere, 0.4)).plan.has("horizon"),
         "a silhouette"
     );
-    let edits: [(&str, fn(&mut Document)); 4] = [
+    let edits: [(&str, Edit); 4] = [
         ("a shallow view", |document| document.camera.pitch_deg = 10.0),
         ("views from a lens", |document| document.camera.aperture = 0.1),
         ("rays from the ground", |document| document.ground = true),
