@@ -3,7 +3,8 @@
 //! `cargo bench --bench noise [-- quick]`: how often the true error, against a long render, lies in the band that is told,
 //! over scenes, sequences and numbers of samples; the time to a noise of 2 % with adaptive sampling on and off, in turns,
 //! for the teapot under `studio` and every other scene of the list; the share of the time that the looks take. `quick`
-//! does the same small, to see that it works. The processor engine; `gpu` as a further argument takes the GPU.
+//! does the same small, to see that it works; `coverage` or `adaptive` one of the two parts. The processor engine; `gpu`
+//! as a further argument takes the GPU.
 
 use std::time::Duration;
 
@@ -55,8 +56,13 @@ fn main() -> Result<(), Failure> {
     })?;
     println!("{}", session.engine());
     let scenes = scenes()?;
-    coverage(&mut session, &scenes, &extent)?;
-    adaptive(&mut session, &scenes, &extent)
+    if !has("adaptive") {
+        coverage(&mut session, &scenes, &extent)?;
+    }
+    if !has("coverage") {
+        adaptive(&mut session, &scenes, &extent)?;
+    }
+    Ok(())
 }
 
 fn scenes() -> Result<Vec<(&'static str, Document)>, Failure> {
