@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::compare::Rival;
+use super::layout::Pane;
 use super::library::Change;
 use super::snapshots::PinChange;
 use crate::document::ImportLobe;
@@ -43,6 +44,10 @@ pub enum Action {
     UseEngine(EngineChoice),
     /// Shows the picture or a map of its error or samples.
     Show(Shown),
+    /// Brings a panel to the front.
+    Reveal(Pane),
+    /// Shows a parameter of the selected material and gives it the keys.
+    Edit(&'static str),
     /// Which lobe the materials of models get that are opened from now on.
     ImportAs(ImportLobe),
 }
@@ -157,7 +162,9 @@ commands! {
     ResetLayout, View, "Reset layout", "Puts all panels back to where they were at first.", None, 1;
     Pause, Render, "Pause or go on", "Stops rendering, or goes on.", key(Key::Space), 0;
     Restart, Render, "Start over", "Renders the picture anew.", None, 0;
-    Palette, Help, "Find a command…", "Lists every command; type to search.", keys(CTRL, Key::K), 0;
+    Region, Render, "Render region", "The next drag in the viewport says which part of the picture is rendered.", key(Key::B), 1;
+    ClearRegion, Render, "Clear the render region", "Renders the whole picture again. In the viewport: escape.", None, 1;
+    Palette, Help, "Find a command…", "Lists every command, panel and parameter; type to search.", keys(CTRL, Key::K), 0;
     Shortcuts, Help, "Keys and mouse", "Shows what keys and mouse buttons do.", key(Key::F1), 0;
     About, Help, "About Glossmith", "Version, licence and the paper.", None, 1;
 }

@@ -152,6 +152,7 @@ impl Dialogs {
             .unwrap_or_default();
         let mut text = folder.join("").display().to_string();
         text.push_str(suggestion);
+        log::debug!("no file dialog: a path is asked for");
         self.field = Some(PathField {
             purpose,
             text,

@@ -101,7 +101,7 @@ impl App {
                     has_failed |= saved.is_err();
                     if saved.is_ok() {
                         self.edits.mark_value_saved(&document);
-                        self.recent.add(&path);
+                        self.panels.recent.add(&path);
                         self.files.project = Some(path.clone());
                     }
                     self.say_saved(&path, saved.map_err(|error| error.to_string()));
@@ -133,7 +133,7 @@ impl App {
                 let is_saved = self.edits.is_saved(&self.document);
                 self.use_material(loaded.value);
                 self.say_all(loaded.warnings);
-                self.recent.add(&path);
+                self.panels.recent.add(&path);
                 self.count_as_start(is_at_start && is_saved);
             }
             Ok(Opened::Picture(loaded)) => {
@@ -158,7 +158,7 @@ impl App {
     /// Goes on with a project that has been read.
     pub(super) fn adopt_project(&mut self, loaded: Loaded<Document>, path: PathBuf) {
         self.say_all(loaded.warnings);
-        self.recent.add(&path);
+        self.panels.recent.add(&path);
         self.document = loaded.value;
         self.panels.slot = 0;
         self.files.project = Some(path);
@@ -170,7 +170,7 @@ impl App {
     /// Goes on with the document in a picture: an edit like others, so that saving does not replace the picture.
     fn adopt_picture(&mut self, loaded: Loaded<Document>, path: &Path) {
         self.say_all(loaded.warnings);
-        self.recent.add(path);
+        self.panels.recent.add(path);
         self.document = loaded.value;
         self.panels.slot = 0;
         let name = path.file_name().unwrap_or_default().to_string_lossy();

@@ -10,12 +10,14 @@ pub mod compare;
 mod dialogs;
 mod disk;
 mod edits;
+mod environments;
 mod files;
 mod icons;
 pub mod layout;
 pub mod library;
 mod menu;
 mod orbit;
+mod palette;
 mod panels;
 mod recent;
 mod recovery_sheet;
@@ -50,7 +52,7 @@ use turntable_sheet::TurntableSheet;
 use unsaved::Unsaved;
 use viewport::Viewport;
 
-use crate::document::{CameraSettings, Change, Document, MaterialSettings};
+use crate::document::{CameraSettings, Change, Document, MaterialSettings, PARAMETERS};
 use crate::render::EngineChoice;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 use crate::scene::camera::framing_distance;
@@ -123,7 +125,6 @@ pub struct App {
     sheet: Sheet,
     turntable: TurntableSheet,
     files: files::Files,
-    recent: Recent,
     autosave: Autosave,
     /// What crashes left and the user has not decided about.
     leftovers: Vec<Leftover>,
@@ -145,6 +146,9 @@ impl App {
         let ctx = creation.egui_ctx.clone();
         let worker = Worker::spawn(options.engine, move || ctx.request_repaint())?;
         let document = options.document.unwrap_or_default();
+        let materials = options.data.as_ref().map(|data| data.join("materials"));
+        let library = library::Library::new(materials, options.cache.clone());
+        let environments = environments::Environments::new(options.cache.clone(), library.holder());
         let mut app = Self {
             edits: Edits::new(document.clone()),
             document,
@@ -158,8 +162,10 @@ impl App {
                 race: panels::race::RaceState::new(options.cache.as_ref().map(|cache| cache.join("references"))),
                 resolution: options.resolution.unwrap_or(kept.resolution),
                 import_lobe: kept.import_lobe,
-                library: library::Library::new(options.data.as_ref().map(|data| data.join("materials")), options.cache),
+                library,
                 snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
+                recent: Recent::new(kept.recent),
+                environments,
                 ..PanelState::default()
             },
             layout: kept.layout.unwrap_or_else(layout::default_layout),
@@ -169,7 +175,6 @@ impl App {
             sheet: Sheet::None,
             turntable: TurntableSheet::default(),
             files: files::Files::new(creation.egui_ctx.clone())?,
-            recent: Recent::new(kept.recent),
             autosave: match options.data {
                 Some(data) => {
                     let interval = options.autosave_interval.unwrap_or(autosave::INTERVAL);
@@ -245,14 +250,16 @@ impl App {
                 }
                 Event::ModelOpened(source, model) => {
                     if let ModelSource::File(path) = &source {
-                        self.recent.add(path);
+                        self.say(Level::Info, format!("opened {}", path.display()));
+                        self.panels.recent.add(path);
                     }
                     self.adopt_model(source, &model);
                     self.count_as_start(is_start);
                 }
                 Event::EnvironmentOpened(source, _) => {
                     if let EnvironmentSource::File(path) = &source {
-                        self.recent.add(path);
+                        self.say(Level::Info, format!("opened {}", path.display()));
+                        self.panels.recent.add(path);
                     }
                     self.document.lighting.environment = source;
                     self.edits.note("Change the environment", "");
@@ -335,6 +342,8 @@ impl App {
                 (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
                 self.edits.note("Look from a side", "");
             }
+            Action::Reveal(pane) => self.reveal(pane),
+            Action::Edit(key) => self.edit_parameter(ctx, key),
             Action::UseEngine(choice) => self.worker.use_engine(choice),
             Action::Show(shown) => {
                 self.panels.shown = shown;
@@ -343,7 +352,16 @@ impl App {
         }
     }
 
+    /// Brings the parameter's row to the front and gives it the keys.
+    fn edit_parameter(&mut self, ctx: &egui::Context, key: &str) {
+        if let Some(parameter) = PARAMETERS.iter().find(|parameter| parameter.key == key) {
+            self.reveal(Pane::Material);
+            widgets::wish_focus(ctx, parameter.group, panels::material::full_name(parameter));
+        }
+    }
+
     fn command(&mut self, ctx: &egui::Context, command: Command) {
+        log::debug!("{}", command.label());
         match command {
             Command::Undo => {
                 if let Some(document) = self.edits.undo() {
@@ -383,6 +401,11 @@ impl App {
                 };
                 ctx.set_theme(self.theme);
             }
+            Command::Region => self.viewport.draw_region(),
+            Command::ClearRegion => {
+                self.document.render.region = None;
+                self.edits.note("Clear the render region", "");
+            }
             Command::ResetLayout => {
                 self.layout = layout::default_layout();
                 self.is_maximised = false;
@@ -408,6 +431,7 @@ impl App {
             }
             Command::Turntable => self.open_turntable(),
             Command::Palette => {
+                palette::focus(ctx);
                 self.sheet = Sheet::Palette {
                     search: String::new(),
                     selected: 0,
@@ -478,16 +502,18 @@ impl App {
         let bar = egui::Frame::new()
             .fill(ui.visuals().panel_fill)
             .inner_margin(egui::Margin::symmetric(8, 3));
-        let answer = egui::Panel::top("menu")
+        egui::Panel::top("menu")
             .frame(bar)
             .show_separator_line(false)
             .show(ui, |ui| {
-                menu::bar(ui, &self.edits, &mut self.recent, self.panels.import_lobe, actions)
-            })
-            .inner;
-        if let Some(pane) = answer.reveal {
-            layout::reveal(&mut self.layout, pane);
-        }
+                menu::bar(
+                    ui,
+                    &self.edits,
+                    &mut self.panels.recent,
+                    self.panels.import_lobe,
+                    actions,
+                );
+            });
         egui::Panel::bottom("status")
             .frame(bar)
             .show_separator_line(false)
@@ -510,7 +536,8 @@ impl App {
             };
             self.layout.ui(&mut panes, ui);
         });
-        menu::sheet(ui.ctx(), &mut self.sheet, actions);
+        let material = self.desk_material();
+        menu::sheet(ui.ctx(), &mut self.sheet, &material, actions);
         if let Some((purpose, path)) = self.dialogs.show(ui) {
             self.chosen(purpose, path);
         }
@@ -580,7 +607,7 @@ impl eframe::App for App {
             layout: Some(layout),
             resolution: self.panels.resolution,
             import_lobe: self.panels.import_lobe,
-            recent: self.recent.paths().to_vec(),
+            recent: self.panels.recent.paths().to_vec(),
         };
         kept.save(storage);
     }

@@ -84,6 +84,9 @@ impl State<'_> {
             self.open(choice);
             self.restart();
         }
+        if let Some(session) = self.session.as_ref().filter(|_| orders.lose_device) {
+            session.lose_device();
+        }
         if orders.reload || orders.restart {
             self.guarded(|state| {
                 let session = state.session()?;
