@@ -145,6 +145,7 @@ commands! {
     SavePicture, File, "Save picture…", "Saves what has been rendered so far (.png with the document inside, .exr, .hdr).", keys(CTRL, Key::E), 1;
     SaveLayers, File, "Save picture with layers…", "Saves albedo, normal, depth, samples and variance beside the colour (.exr).", None, 1;
     CopyPicture, File, "Copy picture", "Copies what has been rendered so far to the clipboard.", keys(CTRL_SHIFT, Key::C), 1;
+    SaveWindow, File, "Save picture of the window…", "Saves the window as it is shown, panels and all (.png).", None, 1;
     Turntable, File, "Turntable…", "Renders a turn of camera, model or light as numbered pictures.", None, 1;
     Quit, File, "Quit", "Closes the window.", keys(CTRL, Key::Q), 2;
     Undo, Edit, "Undo", "Takes the last change back.", keys(CTRL, Key::Z), 0;

@@ -58,11 +58,14 @@ pub(super) struct RowResponse {
 struct Wish {
     group: &'static str,
     row: String,
+    /// Its control, once it has been seen. It is given the keys before it is shown again: what is typed then replaces all
+    /// of a number.
+    control: Option<egui::Id>,
     frame: u64,
 }
 
 /// How many frames a wish stands: a panel that was brought to the front is there with the next.
-const WISH_FRAMES: u64 = 3;
+const WISH_FRAMES: u64 = 4;
 
 fn wish_id() -> egui::Id {
     egui::Id::unique("wished focus")
@@ -76,23 +79,42 @@ fn wish(ui: &Ui) -> Option<Wish> {
 
 /// Gives the row of this name (see [`Name::full`]) the keys, and opens its group.
 pub(super) fn wish_focus(ctx: &egui::Context, group: &'static str, row: String) {
-    let frame = ctx.cumulative_frame_nr();
-    ctx.data_mut(|data| data.insert_temp(wish_id(), Wish { group, row, frame }));
+    let wish = Wish {
+        group,
+        row,
+        control: None,
+        frame: ctx.cumulative_frame_nr(),
+    };
+    ctx.data_mut(|data| data.insert_temp(wish_id(), wish));
     ctx.request_repaint();
 }
 
-/// Whether the row was wished for; the wish is fulfilled by it.
-fn is_wished(ui: &Ui, row: &str) -> bool {
-    let is_wished = wish(ui).is_some_and(|wish| wish.row == row);
-    if is_wished {
+/// Gives the row's control the keys where that was wished for and it has been seen; true where it is still to be seen.
+fn fulfil_wish(ui: &Ui, row: &str) -> bool {
+    let Some(wish) = wish(ui).filter(|wish| wish.row == row) else {
+        return false;
+    };
+    if let Some(control) = wish.control {
         ui.data_mut(|data| data.remove::<Wish>(wish_id()));
+        ui.memory_mut(|memory| memory.request_focus(control));
+        log::debug!("the keys go to {row}");
     }
-    is_wished
+    wish.control.is_none()
+}
+
+fn note_wished(ui: &Ui, control: &Response) {
+    if let Some(mut wish) = wish(ui) {
+        wish.control = Some(control.id);
+        ui.data_mut(|data| data.insert_temp(wish_id(), wish));
+    }
+    control.scroll_to_me(Some(Align::Center));
+    ui.ctx().request_repaint();
 }
 
 /// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
 pub(super) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
     ui.horizontal(|ui| {
+        let is_wished = fulfil_wish(ui, name.full);
         let label_width = (ui.available_width() * LABEL_SHARE).max(LABEL_MIN);
         let label = row_label(ui, name, label_width);
         let width = ui.available_width().max(40.0);
@@ -102,10 +124,8 @@ pub(super) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> 
             .inner;
         let changed = control.changed();
         let control = control.accessible_name(name.full);
-        if is_wished(ui, name.full) {
-            control.request_focus();
-            control.scroll_to_me(Some(Align::Center));
-            log::debug!("the keys go to {}", name.full);
+        if is_wished {
+            note_wished(ui, &control);
         }
         if !name.help.is_empty() {
             control.on_hover_text(name.help);
@@ -255,6 +275,11 @@ pub(super) fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response 
             ui.color_edit_button_rgb(linear)
         })
         .inner;
+    // A colour like the panel's would not be seen as a field.
+    let line = ui.visuals().widgets.noninteractive.bg_stroke;
+    let radius = ui.visuals().widgets.inactive.corner_radius;
+    ui.painter()
+        .rect_stroke(swatch.rect, radius, line, egui::StrokeKind::Inside);
     let mut response = swatch.clone();
     if hex_field(ui, name, linear) {
         response.mark_changed();

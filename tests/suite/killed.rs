@@ -13,7 +13,7 @@ const FILE: &str = "GLOSSMITH_TEST_SAVES_TO";
 
 /// Two documents of different size, both large: most of a round is spent writing.
 fn documents() -> [Document; 2] {
-    [3000, 9000].map(|count| Document {
+    [200, 900].map(|count| Document {
         bookmarks: (0..count)
             .map(|number| Bookmark {
                 name: format!("View {number}"),

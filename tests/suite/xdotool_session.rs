@@ -1,7 +1,7 @@
 //! A person's session, from the files given at the start to what a crash left.
 
 use glossmith::document::picture::load_picture_document;
-use glossmith::document::{CameraSettings, load_document, load_material};
+use glossmith::document::{CameraSettings, MaterialSettings, load_document, load_material};
 use glossmith::optics::curve::Curve;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -32,12 +32,16 @@ fn a_session_is_played_killed_and_recovered() {
     window.keys("Return");
     window.choose("specular curve", "the keys go to Specular curve");
     window.keys("Down");
+    let place = Curve::ALL
+        .iter()
+        .position(|curve| *curve == MaterialSettings::default().curve);
+    let next = Curve::ALL[place.expect("one of them") + 1];
 
     let preset = desktop.path("preset.json");
     window.choose("save material", "a path is asked for");
     window.name_file(&preset);
     let material = load_material(&preset).expect("a material").value;
-    assert_eq!((material.roughness, material.curve), (0.62, Curve::ALL[1]));
+    assert_eq!((material.roughness, material.curve), (0.62, next));
 
     let picture = desktop.path("picture.png");
     window.until_said("a path is asked for", |window| window.keys("ctrl+e"));
