@@ -5,16 +5,20 @@
 
 use std::time::{Duration, Instant};
 
-use glossmith::document::effect::EffectSwitches;
+use glossmith::document::effect::{EffectSwitches, Switch};
 use glossmith::document::{Document, PRESETS};
-use glossmith::render::{EngineChoice, Session, SessionError};
+use glossmith::render::study::ledger::{LedgerOptions, ledger};
+use glossmith::render::{EngineChoice, Session};
+
+type Failure = Box<dyn std::error::Error>;
+type Edit = fn(&mut Document);
 
 /// Turns of each pair.
 const TURNS: usize = 5;
 /// How long each turn lasts.
 const TURN: Duration = Duration::from_millis(800);
 
-fn main() -> Result<(), SessionError> {
+fn main() -> Result<(), Failure> {
     for engine in [EngineChoice::Gpu, EngineChoice::Cpu] {
         let mut sessions = [Session::open(engine)?, Session::open(engine)?];
         println!("## {}\n", sessions[0].engine());
@@ -26,14 +30,71 @@ fn main() -> Result<(), SessionError> {
             row(&name, &mut sessions, &[document, general])?;
         }
         println!();
+        ledger_and_clock(engine, &mut sessions)?;
     }
     Ok(())
 }
 
-fn scenes() -> Vec<(String, Document)> {
+/// The cost of an effect by the ledger, and by rendering the scene with and without it for as many samples by the clock.
+fn ledger_and_clock(engine: EngineChoice, sessions: &mut [Session; 2]) -> Result<(), Failure> {
+    println!("| effect | by the ledger, ms a sample of every pixel | by the clock | apart, of the time with it |");
+    println!("| --- | --- | --- | --- |");
+    let cases: [(&str, Edit); 5] = [
+        ("anisotropy", |document| document.materials[0].anisotropy = 0.5),
+        ("coat", |document| document.materials[0].coat_weight = 1.0),
+        ("ground", |document| document.ground = true),
+        ("depth-of-field", |document| document.camera.aperture = 0.05),
+        ("light-sampling", |_| {}),
+    ];
+    for (name, add) in cases {
+        let mut with = plain();
+        add(&mut with);
+        let entries = ledger(&with, &LedgerOptions::new(engine), &mut |_| true)?.entries;
+        let Some(entry) = entries.into_iter().find(|entry| entry.name == name) else {
+            continue;
+        };
+        let mut without = with.clone();
+        without.render.effects.set(name, Switch::Off);
+        let mut milliseconds = [const { Vec::new() }; 2];
+        for turn in 0..=TURNS {
+            for (side, document) in [&with, &without].into_iter().enumerate() {
+                let mut document = document.clone();
+                (document.render.samples, document.render.seed) = (16, turn as u32);
+                sessions[side].submit(&document)?;
+                let begun = Instant::now();
+                while !sessions[side].step(TURN)?.is_done {}
+                // The first turn compiles.
+                if turn > 0 {
+                    milliseconds[side].push(1e3 * begun.elapsed().as_secs_f64() / 16.0);
+                }
+            }
+        }
+        let [with_ms, without_ms] = milliseconds.map(median);
+        println!(
+            "| {name} | {:.2} | {:.2} | {:.1} % |",
+            entry.ms,
+            with_ms - without_ms,
+            100.0 * (entry.ms - (with_ms - without_ms)).abs() / with_ms
+        );
+    }
+    println!();
+    Ok(())
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn plain() -> Document {
     let mut plain = Document::default();
     (plain.render.width, plain.render.height) = (256, 256);
     plain.render.samples = u32::MAX;
+    plain
+}
+
+fn scenes() -> Vec<(String, Document)> {
+    let plain = plain();
     let mut scenes = vec![("plain metal teapot".to_owned(), plain.clone())];
     scenes.extend(PRESETS.iter().map(|material| {
         let materials = vec![material.clone()];
@@ -48,7 +109,7 @@ fn scenes() -> Vec<(String, Document)> {
     scenes
 }
 
-fn row(name: &str, sessions: &mut [Session; 2], documents: &[Document; 2]) -> Result<(), SessionError> {
+fn row(name: &str, sessions: &mut [Session; 2], documents: &[Document; 2]) -> Result<(), Failure> {
     let mut compile_s = [0.0; 2];
     let mut speeds = [const { Vec::new() }; 2];
     for turn in 0..=TURNS {
@@ -71,10 +132,7 @@ fn row(name: &str, sessions: &mut [Session; 2], documents: &[Document; 2]) -> Re
         }
     }
     let left_out = sessions[0].job().map_or(0, |job| job.plan.left_out());
-    let [own, general] = speeds.map(|mut speeds| {
-        speeds.sort_by(f64::total_cmp);
-        speeds[speeds.len() / 2] * 1e-6
-    });
+    let [own, general] = speeds.map(|speeds| 1e-6 * median(speeds));
     println!(
         "| {name} | {left_out} | {:.2} | {:.2} | {own:.2} | {general:.2} | {:.2} |",
         compile_s[0],

@@ -24,7 +24,10 @@ impl Plan {
             let decision = (effect.decide)(facts);
             match switches.get(effect.name) {
                 Switch::Auto => decision,
-                Switch::On => Decision::which(effect.constant.map_or(1, |c| c.general), "switched on by you"),
+                Switch::On => match effect.constant {
+                    Some(constant) => Decision::which(constant.general, "switched on by you"),
+                    None => decision,
+                },
                 Switch::Off => Decision {
                     is_on: false,
                     reason: "switched off by you".to_owned(),

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
-use super::effect::EffectSwitches;
+use super::effect::{EffectSwitches, Switch};
 use super::{Document, MaterialSettings};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
@@ -293,7 +293,8 @@ impl Default for RenderSettings {
 impl RenderSettings {
     /// Whether samples go where the error is.
     pub fn is_adaptive(&self) -> bool {
-        self.adaptive.unwrap_or(self.noise.is_some())
+        let is_switched_off = self.effects.get("adaptive-sampling") == Switch::Off;
+        !is_switched_off && self.adaptive.unwrap_or(self.noise.is_some())
     }
 }
 

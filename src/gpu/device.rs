@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use pollster::block_on;
+use wgpu::util::DeviceExt;
 
 /// What can go wrong with a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -207,6 +208,15 @@ impl GpuDevice {
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         }))
+    }
+
+    /// A buffer of uniforms.
+    pub fn uniforms<U: bytemuck::Pod>(&self, uniforms: &U) -> wgpu::Buffer {
+        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some("uniforms"),
+            contents: bytemuck::bytes_of(uniforms),
+            usage: wgpu::BufferUsages::UNIFORM,
+        })
     }
 
     /// The contents of buffers, as one kind of plain value each; waits for the device.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::compute;
 use super::device::{GpuDevice, GpuError};
 use super::layout::{PixelStatistics, Tile};
 use super::pipeline::Pipelines;
@@ -303,22 +304,7 @@ fn dispatch(
     timer: Option<&Timer>,
 ) -> Result<(), GpuError> {
     gpu.queue.write_buffer(&resources.tiles, 0, bytemuck::cast_slice(tiles));
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    {
-        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-            label: Some("tiles"),
-            timestamp_writes: timer.map(Timer::writes),
-        });
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, &resources.bind_group, &[]);
-        pass.dispatch_workgroups(TILE_WORKGROUPS * tiles.len() as u32, 1, 1);
-    }
-    if let Some(timer) = timer {
-        timer.resolve(&mut encoder);
-    }
-    gpu.queue.submit([encoder.finish()]);
-    if let Some(timer) = timer {
-        timer.request();
-    }
+    let workgroups = [TILE_WORKGROUPS * tiles.len() as u32, 1];
+    compute::dispatch(gpu, pipeline, &[&resources.bind_group], workgroups, timer);
     gpu.wait()
 }

@@ -1,5 +1,6 @@
 //! The engine on the GPU: the only code that talks to wgpu's compute.
 
+mod compute;
 pub mod device;
 mod engine;
 mod kernel_cache;

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use super::compute::{self, READ, UNIFORMS, WRITE, buffer_entry};
 use super::device::{GpuDevice, GpuError};
 use super::kernel_cache::KernelCache;
 use super::shader;
@@ -43,7 +44,6 @@ impl Pipelines {
 
     fn of_pass(gpu: &GpuDevice, name: &'static str, bindings: wgpu::BindGroupLayout) -> Result<Self, GpuError> {
         let linked = shader::link(&format!("pass/{name}")).map_err(GpuError::Shader)?;
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let descriptor = wgpu::ShaderModuleDescriptor {
             label: Some(name),
             source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
@@ -51,18 +51,10 @@ impl Pipelines {
         // SAFETY: every index is made by our own code from sizes that it uploads itself: hierarchy and triangles from
         // the same geometry, slots below the number of materials, pixels inside the picture. The loops end: paths are
         // bounded by their bounces and the traversal by its stack.
-        let module = unsafe {
-            gpu.device
-                .create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
-        };
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            return Err(GpuError::Shader(error.to_string()));
-        }
-        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(name),
-            bind_group_layouts: &[Some(&bindings)],
-            immediate_size: 0,
-        });
+        let module = compute::validated(gpu, |device| unsafe {
+            device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
+        })?;
+        let layout = compute::pipeline_layout(gpu, name, &[Some(&bindings)]);
         Ok(Self {
             module,
             layout,
@@ -85,21 +77,14 @@ impl Pipelines {
     pub fn get(&mut self, gpu: &GpuDevice, plan: &Plan) -> Result<&wgpu::ComputePipeline, GpuError> {
         let specialisation = plan.specialisation();
         if !self.of_plan.contains_key(&specialisation) {
-            let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-            let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(self.name),
-                layout: Some(&self.layout),
-                module: &self.module,
-                entry_point: Some(self.name),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    constants: &plan.constants(),
-                    zero_initialize_workgroup_memory: false,
-                },
-                cache: self.cache.as_ref().map(KernelCache::cache),
-            });
-            if let Some(error) = pollster::block_on(scope.pop()) {
-                return Err(GpuError::Shader(error.to_string()));
-            }
+            let pipeline = compute::pipeline(
+                gpu,
+                &self.module,
+                &self.layout,
+                self.name,
+                &plan.constants(),
+                self.cache.as_ref().map(KernelCache::cache),
+            )?;
             self.of_plan.insert(specialisation.clone(), pipeline);
             if let Some(cache) = &self.cache {
                 cache.save();
@@ -111,28 +96,19 @@ impl Pipelines {
 
 /// Uniforms, eleven read-only buffers, the environment's map, two buffers of sums.
 fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
-    let buffer = |ty| wgpu::BindingType::Buffer {
-        ty,
-        has_dynamic_offset: false,
-        min_binding_size: None,
+    let environment_map = wgpu::BindGroupLayoutEntry {
+        ty: wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2,
+            multisampled: false,
+        },
+        ..buffer_entry(7, READ)
     };
-    let entry = |binding: u32| {
-        let ty = match binding {
-            0 => buffer(wgpu::BufferBindingType::Uniform),
-            7 => wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            9 | 10 => buffer(wgpu::BufferBindingType::Storage { read_only: false }),
-            _ => buffer(wgpu::BufferBindingType::Storage { read_only: true }),
-        };
-        wgpu::BindGroupLayoutEntry {
-            binding,
-            visibility: wgpu::ShaderStages::COMPUTE,
-            ty,
-            count: None,
-        }
+    let entry = |binding: u32| match binding {
+        0 => buffer_entry(binding, UNIFORMS),
+        7 => environment_map,
+        9 | 10 => buffer_entry(binding, WRITE),
+        _ => buffer_entry(binding, READ),
     };
     (0..=14).map(entry).collect()
 }

@@ -6,9 +6,9 @@ use std::sync::{Mutex, PoisonError};
 use bytemuck::{Pod, Zeroable};
 use wgpu::util::DeviceExt;
 
+use super::compute::{self, READ, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
 use super::layout::{self, Globals};
-use super::shader;
 use crate::analysis::probe::ProbeScene;
 
 /// Questions a dispatch: within the limit of 65 535 workgroups of 64.
@@ -33,35 +33,13 @@ impl Probe {
     /// # Errors
     /// [`GpuError::Shader`] where the driver refuses it.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
-        let linked = shader::link("pass/probe").map_err(GpuError::Shader)?;
-        let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some("probe"),
-            source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
-        });
-        if let Some(error) = pollster::block_on(scope.pop()) {
-            return Err(GpuError::Shader(error.to_string()));
-        }
-        let storage = |read_only| wgpu::BufferBindingType::Storage { read_only };
-        let scene = SCENE_BINDINGS.map(|binding| match binding {
-            0 => entry(binding, wgpu::BufferBindingType::Uniform),
-            _ => entry(binding, storage(true)),
-        });
-        let group = |entries: &[wgpu::BindGroupLayoutEntry]| {
-            gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                label: Some("probe"),
-                entries,
-            })
-        };
+        let module = compute::module(&gpu, "probe")?;
+        let scene = SCENE_BINDINGS.map(|binding| (binding, if binding == 0 { UNIFORMS } else { READ }));
         let groups = [
-            group(&scene),
-            group(&[entry(0, storage(true)), entry(1, storage(false))]),
+            compute::group_layout(&gpu, "probe", &scene),
+            compute::group_layout(&gpu, "probe", &[(0, READ), (1, WRITE)]),
         ];
-        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("probe"),
-            bind_group_layouts: &groups.each_ref().map(Some),
-            immediate_size: 0,
-        });
+        let layout = compute::pipeline_layout(&gpu, "probe", &groups.each_ref().map(Some));
         Ok(Self {
             gpu,
             module,
@@ -93,16 +71,9 @@ impl Probe {
                 usage: wgpu::BufferUsages::STORAGE,
             });
             let answered = gpu.empty_storage("the answers", (batch.len() * size_of::<A>()) as u64)?;
-            let own = self.bind(1, &[(0, &asked), (1, &answered)]);
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            {
-                let mut pass = encoder.begin_compute_pass(&Default::default());
-                pass.set_pipeline(&pipeline);
-                pass.set_bind_group(0, &scene, &[]);
-                pass.set_bind_group(1, &own, &[]);
-                pass.dispatch_workgroups((batch.len() as u32).div_ceil(64), 1, 1);
-            }
-            gpu.queue.submit([encoder.finish()]);
+            let own = compute::bind_group(gpu, &self.groups[1], &[(0, &asked), (1, &answered)]);
+            let workgroups = [(batch.len() as u32).div_ceil(64), 1];
+            compute::dispatch(gpu, &pipeline, &[&scene, &own], workgroups, None);
             answers.extend(gpu.read::<A>(&answered, batch.len())?);
         }
         Ok(answers)
@@ -114,23 +85,9 @@ impl Probe {
         if let Some(pipeline) = pipelines.get(entry_point) {
             return Ok(pipeline.clone());
         }
-        let scope = self.gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-        let descriptor = wgpu::ComputePipelineDescriptor {
-            label: Some(entry_point),
-            layout: Some(&self.layout),
-            module: &self.module,
-            entry_point: Some(entry_point),
-            compilation_options: Default::default(),
-            cache: None,
-        };
-        let pipeline = self.gpu.device.create_compute_pipeline(&descriptor);
-        match pollster::block_on(scope.pop()) {
-            Some(error) => Err(GpuError::Shader(error.to_string())),
-            None => {
-                pipelines.insert(entry_point, pipeline.clone());
-                Ok(pipeline)
-            }
-        }
+        let pipeline = compute::pipeline(&self.gpu, &self.module, &self.layout, entry_point, &[], None)?;
+        pipelines.insert(entry_point, pipeline.clone());
+        Ok(pipeline)
     }
 
     fn scene(&self, scene: &ProbeScene<'_>) -> Result<wgpu::BindGroup, GpuError> {
@@ -143,11 +100,7 @@ impl Probe {
             node_count: nodes.len() as u32,
             ..Globals::zeroed()
         };
-        let globals = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("globals"),
-            contents: bytemuck::bytes_of(&globals),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
+        let globals = gpu.uniforms(&globals);
         // A buffer is at least as large as one element of what the shader takes it for.
         let filler = [0u8; 256];
         let nodes = gpu.storage("the hierarchy of boxes", bytemuck::cast_slice(nodes))?;
@@ -158,8 +111,9 @@ impl Probe {
         };
         let materials = gpu.storage("the materials", materials)?;
         let tables = gpu.storage("the materials' tables", bytemuck::cast_slice(scene.tables))?;
-        Ok(self.bind(
-            0,
+        Ok(compute::bind_group(
+            gpu,
+            &self.groups[0],
             &[
                 (0, &globals),
                 (1, &nodes),
@@ -168,33 +122,5 @@ impl Probe {
                 (6, &tables),
             ],
         ))
-    }
-
-    fn bind(&self, group: usize, buffers: &[(u32, &wgpu::Buffer)]) -> wgpu::BindGroup {
-        let entries: Vec<_> = buffers
-            .iter()
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding: *binding,
-                resource: buffer.as_entire_binding(),
-            })
-            .collect();
-        self.gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("probe"),
-            layout: &self.groups[group],
-            entries: &entries,
-        })
-    }
-}
-
-fn entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
-    wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
     }
 }

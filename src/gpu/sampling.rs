@@ -4,10 +4,9 @@ use std::collections::HashMap;
 use std::time::Instant;
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::util::DeviceExt;
 
 use super::device::{GpuDevice, GpuError};
-use super::scatter::{bind_group, lobe_pipeline};
+use super::scatter::LobePass;
 use super::timer::Timer;
 use crate::analysis::sampling::{QUAD_NORMAL, SamplingRequest, SamplingRun};
 use crate::optics::vector::Vec3;
@@ -46,7 +45,7 @@ pub struct Sampling {
 pub struct SamplingMeter {
     gpu: GpuDevice,
     timer: Option<Timer>,
-    kernels: HashMap<[u32; 3], wgpu::ComputePipeline>,
+    kernels: HashMap<[u32; 3], LobePass>,
 }
 
 impl SamplingMeter {
@@ -68,8 +67,8 @@ impl SamplingMeter {
         if !self.kernels.contains_key(&kernel) {
             let names = ["SAMPLED_LOBE", "SAMPLED_CURVE", "SAMPLED_STAGE"];
             let constants: Vec<_> = std::iter::zip(names, kernel.map(f64::from)).collect();
-            let pipeline = lobe_pipeline(&self.gpu, "sampling", "measure", &constants)?;
-            self.kernels.insert(kernel, pipeline);
+            let pass = LobePass::new(&self.gpu, "sampling", "measure", &constants)?;
+            self.kernels.insert(kernel, pass);
             // Some drivers compile at the first dispatch.
             self.run(&SamplingRequest {
                 rows: request.rows.min(GROUP_SIDE),
@@ -79,39 +78,17 @@ impl SamplingMeter {
         }
         let pixels = request.width as usize * request.rows as usize;
         let gpu = &self.gpu;
-        let pipeline = &self.kernels[&kernel];
         let tables = gpu.storage("the curve", bytemuck::bytes_of(&0.0_f32))?;
         let out = gpu.empty_storage("the sums", 4 * pixels as u64)?;
-        let uniforms = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("sampling"),
-            contents: bytemuck::bytes_of(&uniforms(request)),
-            usage: wgpu::BufferUsages::UNIFORM,
-        });
-        let groups = [
-            bind_group(gpu, pipeline, 0, &[(6, &tables)]),
-            bind_group(gpu, pipeline, 1, &[(0, &uniforms), (1, &out)]),
-        ];
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
-                label: Some("sampling"),
-                timestamp_writes: self.timer.as_ref().map(Timer::writes),
-            });
-            pass.set_pipeline(pipeline);
-            for (index, group) in (0..).zip(&groups) {
-                pass.set_bind_group(index, group, &[]);
-            }
-            let [across, down] = [request.width, request.rows].map(|side| side.div_ceil(GROUP_SIDE));
-            pass.dispatch_workgroups(across, down, 1);
-        }
-        if let Some(timer) = &self.timer {
-            timer.resolve(&mut encoder);
-        }
+        let workgroups = [request.width, request.rows].map(|side| side.div_ceil(GROUP_SIDE));
         let begun = Instant::now();
-        gpu.queue.submit([encoder.finish()]);
-        if let Some(timer) = &self.timer {
-            timer.request();
-        }
+        self.kernels[&kernel].dispatch(
+            gpu,
+            [&tables, &out],
+            &uniforms(request),
+            workgroups,
+            self.timer.as_ref(),
+        );
         gpu.wait()?;
         let seconds = begun.elapsed().as_secs_f64();
         let by_timer = self.timer.as_ref().map(Timer::seconds).transpose()?;

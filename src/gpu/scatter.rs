@@ -1,10 +1,10 @@
 //! Samples of a lobe, drawn by the shader function that the path tracer runs (`shaders/pass/scatter.wgsl`).
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::util::DeviceExt;
 
+use super::compute::{self, READ, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
-use super::shader;
+use super::timer::Timer;
 use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::vector::Vec3;
 
@@ -41,7 +41,7 @@ pub struct Scatter {
 #[derive(Debug)]
 pub struct Scatterer {
     gpu: GpuDevice,
-    pipeline: wgpu::ComputePipeline,
+    pass: LobePass,
 }
 
 impl Scatterer {
@@ -50,8 +50,8 @@ impl Scatterer {
     /// # Errors
     /// [`GpuError::Shader`] where the driver refuses it.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
-        let pipeline = lobe_pipeline(&gpu, "scatter", "draw", &[])?;
-        Ok(Self { gpu, pipeline })
+        let pass = LobePass::new(&gpu, "scatter", "draw", &[])?;
+        Ok(Self { gpu, pass })
     }
 
     /// Draws the samples.
@@ -70,25 +70,9 @@ impl Scatterer {
         let mut samples = Vec::with_capacity(request.count as usize);
         for first in (0..request.count).step_by(BATCH as usize) {
             let count = (request.count - first).min(BATCH);
-            let uniforms = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("scatter"),
-                contents: bytemuck::bytes_of(&uniforms(request, first, count)),
-                usage: wgpu::BufferUsages::UNIFORM,
-            });
-            let groups = [
-                bind_group(gpu, &self.pipeline, 0, &[(6, &tables)]),
-                bind_group(gpu, &self.pipeline, 1, &[(0, &uniforms), (1, &out)]),
-            ];
-            let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            {
-                let mut pass = encoder.begin_compute_pass(&Default::default());
-                pass.set_pipeline(&self.pipeline);
-                for (index, group) in (0..).zip(&groups) {
-                    pass.set_bind_group(index, group, &[]);
-                }
-                pass.dispatch_workgroups(count.div_ceil(64), 1, 1);
-            }
-            gpu.queue.submit([encoder.finish()]);
+            let workgroups = [count.div_ceil(64), 1];
+            let uniforms = uniforms(request, first, count);
+            self.pass.dispatch(gpu, [&tables, &out], &uniforms, workgroups, None);
             samples.extend(gpu.read::<[f32; 4]>(&out, count as usize)?);
         }
         Ok(ScatterCloud::from_raw(samples))
@@ -112,75 +96,47 @@ fn uniforms(request: &ScatterRequest, first: u32, count: u32) -> Scatter {
 
 /// A pass of `shaders/pass/` that needs nothing of a scene but the lobes: the tables in group 0, in group 1 uniforms and
 /// what is written.
-pub(super) fn lobe_pipeline(
-    gpu: &GpuDevice,
-    name: &str,
-    entry_point: &str,
-    constants: &[(&str, f64)],
-) -> Result<wgpu::ComputePipeline, GpuError> {
-    let linked = shader::link(&format!("pass/{name}")).map_err(GpuError::Shader)?;
-    let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-        label: Some(name),
-        source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
-    });
-    let entry = |binding, ty| wgpu::BindGroupLayoutEntry {
-        binding,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty,
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let storage = |read_only| wgpu::BufferBindingType::Storage { read_only };
-    let layout = |entries: &[wgpu::BindGroupLayoutEntry]| {
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some(name),
-            entries,
-        })
-    };
-    let tables = layout(&[entry(6, storage(true))]);
-    let own = layout(&[entry(0, wgpu::BufferBindingType::Uniform), entry(1, storage(false))]);
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some(name),
-        bind_group_layouts: &[Some(&tables), Some(&own)],
-        immediate_size: 0,
-    });
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(name),
-        layout: Some(&pipeline_layout),
-        module: &module,
-        entry_point: Some(entry_point),
-        compilation_options: wgpu::PipelineCompilationOptions {
-            constants,
-            ..Default::default()
-        },
-        cache: None,
-    });
-    match pollster::block_on(scope.pop()) {
-        Some(error) => Err(GpuError::Shader(error.to_string())),
-        None => Ok(pipeline),
-    }
+#[derive(Debug)]
+pub(super) struct LobePass {
+    pipeline: wgpu::ComputePipeline,
+    groups: [wgpu::BindGroupLayout; 2],
 }
 
-pub(super) fn bind_group(
-    gpu: &GpuDevice,
-    pipeline: &wgpu::ComputePipeline,
-    group: u32,
-    buffers: &[(u32, &wgpu::Buffer)],
-) -> wgpu::BindGroup {
-    let entries: Vec<_> = buffers
-        .iter()
-        .map(|(binding, buffer)| wgpu::BindGroupEntry {
-            binding: *binding,
-            resource: buffer.as_entire_binding(),
-        })
-        .collect();
-    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("scatter"),
-        layout: &pipeline.get_bind_group_layout(group),
-        entries: &entries,
-    })
+impl LobePass {
+    /// Compiles an entry point of `shaders/pass/NAME.wgsl`.
+    ///
+    /// # Errors
+    /// [`GpuError::Shader`] where the driver refuses it.
+    pub(super) fn new(
+        gpu: &GpuDevice,
+        name: &str,
+        entry_point: &str,
+        constants: &[(&str, f64)],
+    ) -> Result<Self, GpuError> {
+        let module = compute::module(gpu, name)?;
+        let groups = [
+            compute::group_layout(gpu, name, &[(6, READ)]),
+            compute::group_layout(gpu, name, &[(0, UNIFORMS), (1, WRITE)]),
+        ];
+        let layout = compute::pipeline_layout(gpu, name, &groups.each_ref().map(Some));
+        let pipeline = compute::pipeline(gpu, &module, &layout, entry_point, constants, None)?;
+        Ok(Self { pipeline, groups })
+    }
+
+    /// Submits one dispatch.
+    pub(super) fn dispatch<U: Pod>(
+        &self,
+        gpu: &GpuDevice,
+        [tables, out]: [&wgpu::Buffer; 2],
+        uniforms: &U,
+        workgroups: [u32; 2],
+        timer: Option<&Timer>,
+    ) {
+        let uniforms = gpu.uniforms(uniforms);
+        let groups = [
+            compute::bind_group(gpu, &self.groups[0], &[(6, tables)]),
+            compute::bind_group(gpu, &self.groups[1], &[(0, &uniforms), (1, out)]),
+        ];
+        compute::dispatch(gpu, &self.pipeline, &groups.each_ref(), workgroups, timer);
+    }
 }

@@ -231,15 +231,13 @@ impl Session {
             Some(old) => Change::between(old, document),
             None => Change::everything(),
         };
-        if change.restarts() {
+        if change.restarts() || change.target {
             let job = Arc::new(self.compiler.compile(document, &self.assets)?);
-            if let Some(workshop) = &mut self.workshop {
-                let current = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default()));
-                self.engine = workshop.engine_for(&job, current);
+            if change.restarts() {
+                self.start(job.clone())?;
             }
-            self.engine.submit(job.clone())?;
+            // With another aim only, the engine goes on with what it has: its kernel is the same.
             self.job = Some(job);
-            self.start_clocks();
         }
         self.document = Some(document.clone());
         if change.target {
@@ -247,6 +245,17 @@ impl Session {
             self.convergence.goals.clear();
         }
         Ok(change)
+    }
+
+    /// Has the engine begin anew.
+    fn start(&mut self, job: Arc<Job>) -> Result<(), SessionError> {
+        if let Some(workshop) = &mut self.workshop {
+            let current = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default()));
+            self.engine = workshop.engine_for(&job, current);
+        }
+        self.engine.submit(job)?;
+        self.start_clocks();
+        Ok(())
     }
 
     fn start_clocks(&mut self) {

@@ -5,6 +5,7 @@ mod bvh;
 pub mod camera;
 mod convex;
 pub mod environment;
+pub mod facing;
 mod geometry;
 mod gltf;
 mod intersect;

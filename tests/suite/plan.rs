@@ -9,6 +9,7 @@ use glossmith::document::effect::{Decision, EFFECTS, EffectSwitches, Switch};
 use glossmith::document::job::Job;
 use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, PRESETS, Strategy, Value, assign};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
+use glossmith::optics::curve::Curve;
 use glossmith::render::{Assets, EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -17,6 +18,8 @@ use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
 use crate::textures::all_at_once;
 use crate::twins::harness::Rng;
+
+type Edit = fn(&mut Document);
 
 fn small(mut document: Document) -> Document {
     (document.render.width, document.render.height) = (24, 24);
@@ -135,6 +138,43 @@ fn a_convex_body_alone_sees_nothing_but_the_light() {
 }
 
 #[test]
+fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
+    let document = |model: ModelSource, roughness: f32| {
+        let material = MaterialSettings {
+            roughness,
+            ..MaterialSettings::default()
+        };
+        let mut document = of_material(model, material);
+        document.camera.pitch_deg = 60.0;
+        document.render.samples = 64;
+        document
+    };
+    let plane = document(ModelSource::Plane, 0.4);
+    assert!(!job(&plane).plan.has("horizon"));
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    let [specialised, general] = [plane.clone(), generally(&plane)].map(|document| film(&mut session, &document));
+    assert_same_bits(&specialised, &general, "a steep view");
+    assert!(job(&document(ModelSource::Plane, 0.95)).plan.has("horizon"), "rough");
+    assert!(
+        job(&document(ModelSource::Sphere, 0.4)).plan.has("horizon"),
+        "a silhouette"
+    );
+    let edits: [(&str, Edit); 4] = [
+        ("a shallow view", |document| document.camera.pitch_deg = 10.0),
+        ("views from a lens", |document| document.camera.aperture = 0.1),
+        ("rays from the ground", |document| document.ground = true),
+        ("a curve beyond the lobe's ball", |document| {
+            document.materials[0].curve = Curve::LongTail;
+        }),
+    ];
+    for (what, edit) in edits {
+        let mut other = plane.clone();
+        edit(&mut other);
+        assert!(job(&other).plan.has("horizon"), "{what}");
+    }
+}
+
+#[test]
 fn specialised_pictures_equal_general_ones_on_the_processor() {
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
     let mut rng = Rng::new(7);
@@ -214,6 +254,13 @@ fn needing(effect: &str) -> Document {
 fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
     let folder = Folder::new();
     let switched = |effect: &&glossmith::document::effect::Effect| effect.constant.is_some_and(|c| c.general == 1);
+    // One engine, which keeps the kernels that it has compiled.
+    let mut engine = GpuEngine::new(GpuDevice::open(AdapterKind::Any).unwrap()).unwrap();
+    let mut picture = |job: Job| {
+        engine.submit(Arc::new(job)).unwrap();
+        engine.step(Duration::from_secs(60), 4).unwrap();
+        engine.film().unwrap().color.clone()
+    };
     for effect in EFFECTS.iter().filter(switched) {
         let is_of_texture = effect.name.ends_with("texture") || ["normal-map", "rough-tables"].contains(&effect.name);
         let document = if is_of_texture {
@@ -226,12 +273,6 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
         let wrong = Job {
             plan: right.plan.clone().with(effect.name, Decision::off("broken on purpose")),
             ..right.clone()
-        };
-        let picture = |job: Job| {
-            let mut engine = GpuEngine::new(GpuDevice::open(AdapterKind::Any).unwrap()).unwrap();
-            engine.submit(Arc::new(job)).unwrap();
-            engine.step(Duration::from_secs(60), 4).unwrap();
-            engine.film().unwrap().color.clone()
         };
         assert!(
             picture(right) != picture(wrong),
@@ -270,7 +311,15 @@ fn the_plan_is_printed_and_effects_are_chosen_on_the_command_line() {
     let has = |effects: &[String], name: &str| effects.iter().any(|effect| effect == name);
     assert!(has(&effects("--effects auto"), "ground"));
     assert!(!has(&effects("--effects -ground"), "ground"));
-    assert_eq!(effects("--effects all").len(), EFFECTS.len());
+    let all = effects("--effects all");
+    for effect in EFFECTS.iter().filter(|effect| effect.constant.is_some()) {
+        assert!(has(&all, effect.name), "{} is left out", effect.name);
+    }
+    assert!(has(&effects("--noise 0.5"), "adaptive-sampling"));
+    assert!(!has(
+        &effects("--noise 0.5 --effects -adaptive-sampling"),
+        "adaptive-sampling"
+    ));
     let chosen = effects("--effects environment,specular");
     assert!(has(&chosen, "specular") && !has(&chosen, "ground") && !has(&chosen, "base"));
     place.refused(2, "render --effects no-such-effect", &["no-such-effect"]);

@@ -380,10 +380,10 @@ fn engines_and_strategies_agree_on_textures() {
         let other = render(choice, &with_strategy(&document, strategy, 9));
         assert_same_picture(&cpu, &other, &format!("{choice:?} {strategy:?}"));
     }
-    // Sees the test fail where a normal texture is left out.
-    document.materials[0].textures.normal = false;
+    // Sees the test fail where a texture is left out.
+    document.materials[0].textures.color = false;
     let plain = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Mis, 9));
-    assert!(std::panic::catch_unwind(|| assert_same_picture(&cpu, &plain, "without bumps")).is_err());
+    assert!(std::panic::catch_unwind(|| assert_same_picture(&cpu, &plain, "without colours")).is_err());
 }
 
 /// Half-transparent surfaces in the way of light: the expected share that light sampling takes is what paths find.

@@ -5,7 +5,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::figure::{Figure, Outcome, PALETTE, Style, TITLE, font, number, px, round_step, stroke, titled};
-use super::lines::{axis_label, place};
+use super::lines::{framed, place};
 use crate::analysis::lobe_view::Axis;
 
 /// Points with names, the best of them joined by a line.
@@ -66,28 +66,7 @@ impl Figure for PointPlot {
     where
         DB::ErrorType: 'static,
     {
-        let [x, y] = [&self.x, &self.y].map(|axis| place(axis, axis.range[0])..place(axis, axis.range[1]));
-        let mut chart = ChartBuilder::on(root)
-            .caption(&self.title, font(22.0, style))
-            .margin(px(16.0, style))
-            .margin_right(px(120.0, style))
-            .x_label_area_size(px(46.0, style))
-            .y_label_area_size(px(76.0, style))
-            .build_cartesian_2d(x, y)?;
-        chart
-            .configure_mesh()
-            .light_line_style(TRANSPARENT)
-            .bold_line_style(stroke(style.faint, 1.0, style))
-            .axis_style(stroke(style.ink, 1.0, style))
-            .label_style(font(14.0, style))
-            .axis_desc_style(font(15.0, style))
-            .x_labels(8)
-            .y_labels(8)
-            .x_label_formatter(&|place| axis_label(&self.x, *place))
-            .y_label_formatter(&|place| axis_label(&self.y, *place))
-            .x_desc(&self.x.label)
-            .y_desc(&self.y.label)
-            .draw()?;
+        let mut chart = framed(root, &self.title, [&self.x, &self.y], [76.0, 120.0], style)?;
         let at = |point: &NamedPoint, y: f64| (place(&self.x, point.place[0]), place(&self.y, y));
         let mut best: Vec<_> = self.points.iter().filter(|point| point.is_best).collect();
         best.sort_by(|a, b| a.place[0].total_cmp(&b.place[0]));

@@ -70,16 +70,24 @@ pub(super) fn axis_label(axis: &Axis, place: f64) -> String {
     })
 }
 
-fn draw_cartesian<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
+/// A chart with its title and axes; beside it there is room for the labels of the vertical axis, and at the right.
+pub(super) fn framed<'a, DB: DrawingBackend>(
+    root: &DrawingArea<DB, Shift>,
+    title: &str,
+    axes: [&'a Axis; 2],
+    [labels_width, margin_right]: [f64; 2],
+    style: Style,
+) -> Result<Chart<'a, DB>, DrawingAreaErrorKind<DB::ErrorType>>
 where
     DB::ErrorType: 'static,
 {
-    let [x, y] = [&plot.x, &plot.y].map(|axis| place(axis, axis.range[0])..place(axis, axis.range[1]));
+    let [x, y] = axes.map(|axis| place(axis, axis.range[0])..place(axis, axis.range[1]));
     let mut chart = ChartBuilder::on(root)
-        .caption(title(plot), font(22.0, style))
+        .caption(title, font(22.0, style))
         .margin(px(16.0, style))
+        .margin_right(px(margin_right, style))
         .x_label_area_size(px(46.0, style))
-        .y_label_area_size(px(66.0, style))
+        .y_label_area_size(px(labels_width, style))
         .build_cartesian_2d(x, y)?;
     chart
         .configure_mesh()
@@ -90,11 +98,19 @@ where
         .axis_desc_style(font(15.0, style))
         .x_labels(10)
         .y_labels(8)
-        .x_label_formatter(&|place| axis_label(&plot.x, *place))
-        .y_label_formatter(&|place| axis_label(&plot.y, *place))
-        .x_desc(&plot.x.label)
-        .y_desc(&plot.y.label)
+        .x_label_formatter(&|place| axis_label(axes[0], *place))
+        .y_label_formatter(&|place| axis_label(axes[1], *place))
+        .x_desc(&axes[0].label)
+        .y_desc(&axes[1].label)
         .draw()?;
+    Ok(chart)
+}
+
+fn draw_cartesian<DB: DrawingBackend>(plot: &LinePlot, root: &DrawingArea<DB, Shift>, style: Style) -> Outcome
+where
+    DB::ErrorType: 'static,
+{
+    let mut chart = framed(root, &title(plot), [&plot.x, &plot.y], [66.0, 16.0], style)?;
     for (series, rank) in ranked(&plot.series) {
         let points = series
             .points

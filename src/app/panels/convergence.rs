@@ -98,8 +98,34 @@ fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
         let error = last.noise.relative * (last.engine_seconds / seconds).sqrt();
         [seconds.log10(), error.log10()]
     });
-    let shown = Plot::new("convergence")
-        .height((0.7 * ui.available_width()).clamp(160.0, 420.0))
+    let height = (0.7 * ui.available_width()).clamp(160.0, 420.0);
+    let shown = log_log("convergence", height, [0.04, 0.08]).show(ui, |plot_ui| {
+        let dashed = |name: &str, points: Vec<[f64; 2]>, color: Color32| {
+            Line::new(name.to_owned(), PlotPoints::from(points))
+                .color(color)
+                .style(LineStyle::dashed_dense())
+        };
+        plot_ui.line(dashed("1/√t", law.to_vec(), weak));
+        for (name, end) in [
+            ("upper end", points(&|seen| seen.noise.high)),
+            ("lower end", points(&|seen| seen.noise.low)),
+        ] {
+            let color = accent.gamma_multiply(0.5);
+            plot_ui.line(Line::new(name, PlotPoints::from(end)).color(color).width(1.0));
+        }
+        let errors = points(&|seen| seen.noise.relative);
+        plot_ui.points(Points::new("error", PlotPoints::from(errors)).color(accent).radius(2.5));
+        if let Some(wanted) = wanted {
+            plot_ui.hline(HLine::new("to reach", wanted.log10()).color(weak).width(1.0));
+        }
+    });
+    shown.response.accessible_name("Error against time");
+}
+
+/// A plot that stands still, of logarithms to base 10: seconds to the right, shares upwards.
+pub(super) fn log_log(name: &str, height: f32, margin: [f32; 2]) -> Plot<'static> {
+    Plot::new(name)
+        .height(height)
         .allow_drag(false)
         .allow_scroll(false)
         .allow_zoom(false)
@@ -109,32 +135,11 @@ fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
         .y_grid_spacer(decades)
         .x_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| duration(10.0_f64.powf(mark.value)))
         .y_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| percent_short(10.0_f64.powf(mark.value)))
-        .set_margin_fraction(egui::vec2(0.04, 0.08))
-        .show(ui, |plot_ui| {
-            let dashed = |name: &str, points: Vec<[f64; 2]>, color: Color32| {
-                Line::new(name.to_owned(), PlotPoints::from(points))
-                    .color(color)
-                    .style(LineStyle::dashed_dense())
-            };
-            plot_ui.line(dashed("1/√t", law.to_vec(), weak));
-            for (name, end) in [
-                ("upper end", points(&|seen| seen.noise.high)),
-                ("lower end", points(&|seen| seen.noise.low)),
-            ] {
-                let color = accent.gamma_multiply(0.5);
-                plot_ui.line(Line::new(name, PlotPoints::from(end)).color(color).width(1.0));
-            }
-            let errors = points(&|seen| seen.noise.relative);
-            plot_ui.points(Points::new("error", PlotPoints::from(errors)).color(accent).radius(2.5));
-            if let Some(wanted) = wanted {
-                plot_ui.hline(HLine::new("to reach", wanted.log10()).color(weak).width(1.0));
-            }
-        });
-    shown.response.accessible_name("Error against time");
+        .set_margin_fraction(margin.into())
 }
 
 /// A line for each power of ten, fainter ones for its 2 and 5.
-pub(super) fn decades(input: GridInput) -> Vec<GridMark> {
+fn decades(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let (first, last) = (low.floor() as i32, high.ceil() as i32);
     let marks = (first..=last).flat_map(|decade| {

@@ -1,15 +1,14 @@
 //! The race: techniques against each other on this view, and the one that is worth its time.
 
-use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
 use egui::{ColorImage, TextureHandle, TextureOptions, Ui};
-use egui_plot::{GridMark, Line, Plot, PlotPoint, PlotPoints, PlotResponse, Points, Text};
+use egui_plot::{Line, PlotPoint, PlotPoints, PlotResponse, Points, Text};
 
 use super::Desk;
-use super::convergence::{decades, duration};
+use super::convergence::{duration, log_log};
 use super::study::{StudyWorker, engine};
 use crate::app::status::percent;
 use crate::app::widgets::{self, Name, NumberStyle};
@@ -181,35 +180,24 @@ fn chart(ui: &mut Ui, race: &Race) -> Option<usize> {
     best.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let accent = theme::accent(ui.visuals().dark_mode);
     let weak = ui.visuals().weak_text_color();
-    let shown: PlotResponse<()> = Plot::new("race")
-        .height((0.8 * ui.available_width()).clamp(180.0, 420.0))
-        .allow_drag(false)
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .show_background(false)
-        .x_grid_spacer(decades)
-        .y_grid_spacer(decades)
-        .x_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| duration(10.0_f64.powf(mark.value)))
-        .y_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| percent(10.0_f64.powf(mark.value)))
-        .set_margin_fraction(egui::vec2(0.2, 0.12))
-        .show(ui, |plot_ui| {
-            plot_ui.line(Line::new("best", PlotPoints::from(best)).color(accent.gamma_multiply(0.6)));
-            for (runner, place) in std::iter::zip(&race.runners, &places) {
-                let color = if runner.is_on_front { accent } else { weak };
-                let name = runner.label.clone();
-                plot_ui.points(
-                    Points::new(name.clone(), PlotPoints::from(vec![*place]))
-                        .color(color)
-                        .radius(4.0),
-                );
-                if runner.is_on_front {
-                    let at = PlotPoint::new(place[0], place[1]);
-                    let text = Text::new(name.clone(), at, format!(" {name}")).color(color);
-                    plot_ui.text(text.anchor(egui::Align2::LEFT_BOTTOM));
-                }
+    let height = (0.8 * ui.available_width()).clamp(180.0, 420.0);
+    let shown: PlotResponse<()> = log_log("race", height, [0.2, 0.12]).show(ui, |plot_ui| {
+        plot_ui.line(Line::new("best", PlotPoints::from(best)).color(accent.gamma_multiply(0.6)));
+        for (runner, place) in std::iter::zip(&race.runners, &places) {
+            let color = if runner.is_on_front { accent } else { weak };
+            let name = runner.label.clone();
+            plot_ui.points(
+                Points::new(name.clone(), PlotPoints::from(vec![*place]))
+                    .color(color)
+                    .radius(4.0),
+            );
+            if runner.is_on_front {
+                let at = PlotPoint::new(place[0], place[1]);
+                let text = Text::new(name.clone(), at, format!(" {name}")).color(color);
+                plot_ui.text(text.anchor(egui::Align2::LEFT_BOTTOM));
             }
-        });
+        }
+    });
     shown.response.clone().accessible_name("Time against bias");
     let at = shown
         .response

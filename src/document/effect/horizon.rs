@@ -1,7 +1,13 @@
 //! What happens to samples below the surface.
 
-use super::{Constant, Decision, Effect};
+use super::{Constant, Decision, Effect, Facts};
+use crate::optics::curve::Curve;
 use crate::optics::lobe::{Horizon, Lobe};
+use crate::optics::material::Material;
+use crate::scene::facing::least_view_cosine;
+
+/// How far below the view's cosine roughness must stay: the rounding of either.
+const MARGIN: f64 = 1e-3;
 
 pub(super) const EFFECT: Effect = Effect {
     name: "horizon",
@@ -17,15 +23,42 @@ pub(super) const EFFECT: Effect = Effect {
                 reason: "every lobe is a mirror: no sample points below the surface".to_owned(),
                 ..shared
             }
-        } else if facts.reflecting().any(|material| crosses(material.lobe)) {
-            shared
-        } else {
+        } else if !facts.reflecting().any(|material| crosses(material.lobe)) {
             Decision {
                 is_on: false,
                 reason: "no lobe draws samples below the surface".to_owned(),
                 ..shared
             }
+        } else if stays_above(facts) {
+            Decision {
+                value: Horizon::Absorb as u32,
+                ..Decision::off("roughness is below the cosine of every view: no sample is below the surface")
+            }
+        } else {
+            shared
         }
     },
     remove: None,
 };
+
+/// Whether every view is steep enough for every lobe: a sample's height above the surface is at least
+/// (1 − R)(n·r − R) (docs/MATHEMATICS.md, section 3). Only where no ray but the camera's meets anything are the views
+/// known.
+fn stays_above(facts: &Facts<'_>) -> bool {
+    let is_bounded = |material: &Material<f32>| {
+        material.lobe == Lobe::Geometric as u32
+            && material.curve <= Curve::Smooth as u32
+            && material.anisotropy == 0.0
+            && !material.is_textured()
+            && material.coat_weight == 0.0
+            && !material.has_holes()
+            && !material.transmits()
+    };
+    let camera = &facts.settings.camera;
+    if !facts.geometry.is_convex || camera.lens_radius > 0.0 || !facts.reflecting().all(|m| is_bounded(&m)) {
+        return false;
+    }
+    let roughest = facts.reflecting().map(|m| f64::from(m.roughness)).fold(0.0, f64::max);
+    let eye = [camera.origin.x, camera.origin.y, camera.origin.z];
+    roughest + MARGIN <= least_view_cosine(facts.geometry, eye)
+}

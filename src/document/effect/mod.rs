@@ -55,6 +55,9 @@ effects! {
     alpha
     depth_of_field
     firefly_clamp
+    adaptive_sampling
+    variance
+    picture_layers
 }
 
 /// Something that costs time and that not every scene needs.

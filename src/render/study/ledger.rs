@@ -219,14 +219,6 @@ fn setting_rivals(document: &Document) -> Vec<Rival> {
         Sequence::Independent => ("Independent numbers", Sequence::Sobol),
     };
     rivals.push(try_out("sequence", label, other.name(), Setting::Sequence(other)));
-    if render.is_adaptive() {
-        rivals.push(try_out(
-            "adaptive",
-            "Adaptive sampling",
-            "even",
-            Setting::Adaptive(false),
-        ));
-    }
     let fewer = if render.bounces > 4 { 4 } else { 1 };
     if render.bounces > fewer {
         let label = format!("{} bounces", render.bounces);

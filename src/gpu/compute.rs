@@ -1,0 +1,152 @@
+//! What every compute pass is made of: module, layouts, pipeline, bindings, dispatch.
+
+use super::device::{GpuDevice, GpuError};
+use super::shader;
+use super::timer::Timer;
+
+pub(super) const UNIFORMS: wgpu::BufferBindingType = wgpu::BufferBindingType::Uniform;
+pub(super) const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
+pub(super) const WRITE: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: false };
+
+/// What `make` makes, or what the driver has against it.
+pub(super) fn validated<T>(gpu: &GpuDevice, make: impl FnOnce(&wgpu::Device) -> T) -> Result<T, GpuError> {
+    let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
+    let made = make(&gpu.device);
+    match pollster::block_on(scope.pop()) {
+        Some(error) => Err(GpuError::Shader(error.to_string())),
+        None => Ok(made),
+    }
+}
+
+/// The module of `shaders/pass/NAME.wgsl`, every access checked.
+///
+/// # Errors
+/// [`GpuError::Shader`] with the module and line.
+pub(super) fn module(gpu: &GpuDevice, name: &str) -> Result<wgpu::ShaderModule, GpuError> {
+    let linked = shader::link(&format!("pass/{name}")).map_err(GpuError::Shader)?;
+    validated(gpu, |device| {
+        device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
+        })
+    })
+}
+
+/// A buffer's place in a group.
+pub(super) fn buffer_entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty,
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
+/// A group of buffers.
+pub(super) fn group_layout(
+    gpu: &GpuDevice,
+    name: &str,
+    buffers: &[(u32, wgpu::BufferBindingType)],
+) -> wgpu::BindGroupLayout {
+    let entries: Vec<_> = buffers
+        .iter()
+        .map(|(binding, ty)| buffer_entry(*binding, *ty))
+        .collect();
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(name),
+        entries: &entries,
+    })
+}
+
+pub(super) fn pipeline_layout(
+    gpu: &GpuDevice,
+    name: &str,
+    groups: &[Option<&wgpu::BindGroupLayout>],
+) -> wgpu::PipelineLayout {
+    gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some(name),
+        bind_group_layouts: groups,
+        immediate_size: 0,
+    })
+}
+
+/// An entry point compiled with constants.
+///
+/// # Errors
+/// [`GpuError::Shader`] where the driver refuses it.
+pub(super) fn pipeline(
+    gpu: &GpuDevice,
+    module: &wgpu::ShaderModule,
+    layout: &wgpu::PipelineLayout,
+    entry_point: &str,
+    constants: &[(&str, f64)],
+    cache: Option<&wgpu::PipelineCache>,
+) -> Result<wgpu::ComputePipeline, GpuError> {
+    validated(gpu, |device| {
+        device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(entry_point),
+            layout: Some(layout),
+            module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                // No pass has any.
+                zero_initialize_workgroup_memory: false,
+            },
+            cache,
+        })
+    })
+}
+
+/// Buffers bound to their places.
+pub(super) fn bind_group(
+    gpu: &GpuDevice,
+    layout: &wgpu::BindGroupLayout,
+    buffers: &[(u32, &wgpu::Buffer)],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = buffers
+        .iter()
+        .map(|(binding, buffer)| wgpu::BindGroupEntry {
+            binding: *binding,
+            resource: buffer.as_entire_binding(),
+        })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: None,
+        layout,
+        entries: &entries,
+    })
+}
+
+/// Submits one dispatch, its time taken where there is a timer.
+pub(super) fn dispatch(
+    gpu: &GpuDevice,
+    pipeline: &wgpu::ComputePipeline,
+    groups: &[&wgpu::BindGroup],
+    workgroups: [u32; 2],
+    timer: Option<&Timer>,
+) {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    {
+        let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor {
+            label: None,
+            timestamp_writes: timer.map(Timer::writes),
+        });
+        pass.set_pipeline(pipeline);
+        for (index, group) in (0..).zip(groups) {
+            pass.set_bind_group(index, *group, &[]);
+        }
+        pass.dispatch_workgroups(workgroups[0], workgroups[1], 1);
+    }
+    if let Some(timer) = timer {
+        timer.resolve(&mut encoder);
+    }
+    gpu.queue.submit([encoder.finish()]);
+    if let Some(timer) = timer {
+        timer.request();
+    }
+}
