@@ -19,6 +19,8 @@ mod coat;
 mod compare;
 #[path = "suite/density.rs"]
 mod density;
+#[path = "suite/desktop.rs"]
+mod desktop;
 #[path = "suite/docs.rs"]
 mod docs;
 #[path = "suite/document.rs"]
@@ -45,6 +47,8 @@ mod gltf;
 mod gltf_builder;
 #[path = "suite/gltf_damaged.rs"]
 mod gltf_damaged;
+#[path = "suite/killed.rs"]
+mod killed;
 #[path = "suite/library.rs"]
 mod library;
 #[path = "suite/lights.rs"]
@@ -77,12 +81,18 @@ mod tone_twin;
 mod transmission;
 #[path = "suite/ui.rs"]
 mod ui;
+#[path = "suite/ui_panels.rs"]
+mod ui_panels;
+#[path = "suite/ui_pictures.rs"]
+mod ui_pictures;
 #[path = "suite/ui_scene.rs"]
 mod ui_scene;
 #[path = "suite/ui_study.rs"]
 mod ui_study;
 #[path = "suite/worker.rs"]
 mod worker;
+#[path = "suite/xdotool_session.rs"]
+mod xdotool_session;
 
 #[path = "suite/firefly.rs"]
 mod firefly;

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use egui::{Key, KeyboardShortcut, Modifiers};
 
 use super::compare::Rival;
+use super::layout::Pane;
 use super::library::Change;
 use super::snapshots::PinChange;
 use crate::document::ImportLobe;
@@ -43,6 +44,10 @@ pub enum Action {
     UseEngine(EngineChoice),
     /// Shows the picture or a map of its error or samples.
     Show(Shown),
+    /// Brings a panel to the front.
+    Reveal(Pane),
+    /// Shows a parameter of the selected material and gives it the keys.
+    Edit(&'static str),
     /// Which lobe the materials of models get that are opened from now on.
     ImportAs(ImportLobe),
 }
@@ -140,6 +145,7 @@ commands! {
     SavePicture, File, "Save picture…", "Saves what has been rendered so far (.png with the document inside, .exr, .hdr).", keys(CTRL, Key::E), 1;
     SaveLayers, File, "Save picture with layers…", "Saves albedo, normal, depth, samples and variance beside the colour (.exr).", None, 1;
     CopyPicture, File, "Copy picture", "Copies what has been rendered so far to the clipboard.", keys(CTRL_SHIFT, Key::C), 1;
+    SaveWindow, File, "Save picture of the window…", "Saves the window as it is shown, panels and all (.png).", None, 1;
     Turntable, File, "Turntable…", "Renders a turn of camera, model or light as numbered pictures.", None, 1;
     Quit, File, "Quit", "Closes the window.", keys(CTRL, Key::Q), 2;
     Undo, Edit, "Undo", "Takes the last change back.", keys(CTRL, Key::Z), 0;
@@ -157,7 +163,9 @@ commands! {
     ResetLayout, View, "Reset layout", "Puts all panels back to where they were at first.", None, 1;
     Pause, Render, "Pause or go on", "Stops rendering, or goes on.", key(Key::Space), 0;
     Restart, Render, "Start over", "Renders the picture anew.", None, 0;
-    Palette, Help, "Find a command…", "Lists every command; type to search.", keys(CTRL, Key::K), 0;
+    Region, Render, "Render region", "The next drag in the viewport says which part of the picture is rendered.", key(Key::B), 1;
+    ClearRegion, Render, "Clear the render region", "Renders the whole picture again. In the viewport: escape.", None, 1;
+    Palette, Help, "Find a command…", "Lists every command, panel and parameter; type to search.", keys(CTRL, Key::K), 0;
     Shortcuts, Help, "Keys and mouse", "Shows what keys and mouse buttons do.", key(Key::F1), 0;
     About, Help, "About Glossmith", "Version, licence and the paper.", None, 1;
 }

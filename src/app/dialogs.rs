@@ -25,6 +25,7 @@ pub(super) enum Purpose {
     SaveMaterial,
     SavePicture,
     SaveLayers,
+    SaveWindow,
 }
 
 impl Purpose {
@@ -39,6 +40,7 @@ impl Purpose {
             Self::SaveMaterial => "Save the material",
             Self::SavePicture => "Save the picture",
             Self::SaveLayers => "Save the picture with layers",
+            Self::SaveWindow => "Save a picture of the window",
         }
     }
 
@@ -55,13 +57,14 @@ impl Purpose {
             Self::OpenMeasured => ("Measured materials (MERL)", &["binary"]),
             Self::SavePicture => ("Pictures", &["png", "exr", "hdr"]),
             Self::SaveLayers => ("OpenEXR pictures", &["exr"]),
+            Self::SaveWindow => ("PNG pictures", &["png"]),
         }
     }
 
     fn is_saving(self) -> bool {
         matches!(
             self,
-            Self::SaveProject | Self::SaveMaterial | Self::SavePicture | Self::SaveLayers
+            Self::SaveProject | Self::SaveMaterial | Self::SavePicture | Self::SaveLayers | Self::SaveWindow
         )
     }
 }
@@ -152,6 +155,7 @@ impl Dialogs {
             .unwrap_or_default();
         let mut text = folder.join("").display().to_string();
         text.push_str(suggestion);
+        log::debug!("no file dialog: a path is asked for");
         self.field = Some(PathField {
             purpose,
             text,

@@ -6,10 +6,10 @@ use super::App;
 use super::actions::Command;
 use super::dialogs::Purpose;
 use super::disk::{Disk, Done, words};
+use super::take_picture::Destination;
 use super::unsaved::Then;
 use crate::document::file::Opened;
 use crate::document::{Document, FileError, Loaded, file, preset, save_document, save_material};
-use crate::render::output::{self, Layers};
 use crate::render::worker::Level;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
@@ -18,6 +18,8 @@ use crate::scene::environment::EnvironmentSource;
 pub(super) struct Files {
     pub(super) disk: Disk,
     pub(super) project: Option<PathBuf>,
+    /// Where the next whole picture goes.
+    pub(super) wanted_pictures: Vec<Destination>,
 }
 
 impl Files {
@@ -25,6 +27,7 @@ impl Files {
         Ok(Self {
             disk: Disk::new(ctx)?,
             project: None,
+            wanted_pictures: Vec::new(),
         })
     }
 
@@ -36,7 +39,7 @@ impl Files {
 
     /// Whether something is still to be written.
     pub(super) fn is_saving(&self) -> bool {
-        self.disk.is_writing()
+        self.disk.is_writing() || !self.wanted_pictures.is_empty()
     }
 
     /// Whether a material or a project that was opened has not been read yet.
@@ -101,7 +104,7 @@ impl App {
                     has_failed |= saved.is_err();
                     if saved.is_ok() {
                         self.edits.mark_value_saved(&document);
-                        self.recent.add(&path);
+                        self.panels.recent.add(&path);
                         self.files.project = Some(path.clone());
                     }
                     self.say_saved(&path, saved.map_err(|error| error.to_string()));
@@ -133,7 +136,7 @@ impl App {
                 let is_saved = self.edits.is_saved(&self.document);
                 self.use_material(loaded.value);
                 self.say_all(loaded.warnings);
-                self.recent.add(&path);
+                self.panels.recent.add(&path);
                 self.count_as_start(is_at_start && is_saved);
             }
             Ok(Opened::Picture(loaded)) => {
@@ -158,7 +161,7 @@ impl App {
     /// Goes on with a project that has been read.
     pub(super) fn adopt_project(&mut self, loaded: Loaded<Document>, path: PathBuf) {
         self.say_all(loaded.warnings);
-        self.recent.add(&path);
+        self.panels.recent.add(&path);
         self.document = loaded.value;
         self.panels.slot = 0;
         self.files.project = Some(path);
@@ -170,7 +173,7 @@ impl App {
     /// Goes on with the document in a picture: an edit like others, so that saving does not replace the picture.
     fn adopt_picture(&mut self, loaded: Loaded<Document>, path: &Path) {
         self.say_all(loaded.warnings);
-        self.recent.add(path);
+        self.panels.recent.add(path);
         self.document = loaded.value;
         self.panels.slot = 0;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -202,7 +205,7 @@ impl App {
                 return;
             }
             Command::CopyPicture => {
-                self.copy_picture(ctx);
+                self.want_picture(Destination::Clipboard);
                 return;
             }
             Command::Save => match self.files.project.clone() {
@@ -220,6 +223,7 @@ impl App {
             Command::OpenMeasured => (Purpose::OpenMeasured, String::new()),
             Command::SaveMaterial => (Purpose::SaveMaterial, material_file()),
             Command::SaveLayers => (Purpose::SaveLayers, format!("{}.exr", self.files.project_name())),
+            Command::SaveWindow => (Purpose::SaveWindow, "glossmith-window.png".to_owned()),
             Command::SavePicture => (Purpose::SavePicture, format!("{}.png", self.files.project_name())),
             // The others are done where this is called.
             _ => return,
@@ -237,7 +241,8 @@ impl App {
             Purpose::SaveProject => self.save_project(with_ending(path, "json")),
             Purpose::SaveMaterial => self.save_material(with_ending(path, "json")),
             Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
-            Purpose::SavePicture => self.save_picture(with_ending(path, "png")),
+            Purpose::SaveWindow => self.window_picture = Some(path.with_extension("png")),
+            Purpose::SavePicture => self.want_picture(Destination::File(with_ending(path, "png"))),
         }
     }
 
@@ -262,43 +267,6 @@ impl App {
             Ok(()) => self.say(Level::Info, format!("saved {}", path.display())),
             Err(error) => self.say(Level::Error, error),
         }
-    }
-
-    fn save_picture(&mut self, path: PathBuf) {
-        let Some(picture) = self.worker.snapshot().picture.clone() else {
-            self.say(Level::Warning, "there is no picture to save yet");
-            return;
-        };
-        self.files.disk.write_beside(move || {
-            output::write(&path, &picture.image, &picture.document).map_err(|error| error.to_string())?;
-            let size = format!("{} × {}", picture.width, picture.height);
-            Ok(format!(
-                "saved {} ({size}, {} samples a pixel)",
-                path.display(),
-                picture.samples_per_pixel
-            ))
-        });
-    }
-
-    /// Writes the layers that the renderer made.
-    pub(super) fn write_layers(&mut self, path: PathBuf, layers: Box<Layers>) {
-        self.files.disk.write_beside(move || {
-            output::write_layers(&path, &layers).map_err(|error| error.to_string())?;
-            Ok(format!("saved {} with layers", path.display()))
-        });
-    }
-
-    fn copy_picture(&mut self, ctx: &egui::Context) {
-        let Some(picture) = self.worker.snapshot().picture.clone() else {
-            self.say(Level::Warning, "there is no picture to copy yet");
-            return;
-        };
-        let size = [picture.width as usize, picture.height as usize];
-        ctx.copy_image(egui::ColorImage::from_rgba_premultiplied(size, &picture.rgba));
-        self.say(
-            Level::Info,
-            format!("copied the picture ({} × {})", picture.width, picture.height),
-        );
     }
 }
 

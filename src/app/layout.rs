@@ -82,6 +82,11 @@ impl Pane {
             Self::Race => "Race",
         }
     }
+
+    /// What bringing it to the front is called.
+    pub(super) fn command(self) -> String {
+        format!("Show {}", self.title().to_lowercase())
+    }
 }
 
 /// Shares of the window's width.

@@ -73,6 +73,11 @@ impl Library {
         }
     }
 
+    /// Set while pictures have to wait.
+    pub(super) fn holder(&self) -> Arc<AtomicBool> {
+        self.hold.clone()
+    }
+
     /// Whether pictures have to wait.
     pub(super) fn hold(&self, is_held: bool) {
         self.hold.store(is_held, Ordering::Relaxed);

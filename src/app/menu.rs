@@ -1,13 +1,14 @@
-//! The menu bar, the command palette and the sheets of help: all read the table of commands.
+//! The menu bar and the sheets of help: both read the table of commands.
 
-use egui::{Key, RichText, Ui, vec2};
+use egui::{RichText, Ui, vec2};
 
 use super::actions::{Action, Command, Menu};
 use super::edits::Edits;
 use super::layout::Pane;
+use super::palette;
 use super::recent::Recent;
 use super::theme;
-use crate::document::ImportLobe;
+use crate::document::{ImportLobe, MaterialSettings};
 use crate::render::EngineChoice;
 
 /// What is open over the window.
@@ -23,19 +24,7 @@ pub(super) enum Sheet {
     About,
 }
 
-/// Panels to bring to the front, from the menu.
-pub(super) struct MenuAnswer {
-    pub(super) reveal: Option<Pane>,
-}
-
-pub(super) fn bar(
-    ui: &mut Ui,
-    edits: &Edits,
-    recent: &mut Recent,
-    import_lobe: ImportLobe,
-    actions: &mut Vec<Action>,
-) -> MenuAnswer {
-    let mut reveal = None;
+pub(super) fn bar(ui: &mut Ui, edits: &Edits, recent: &mut Recent, import_lobe: ImportLobe, actions: &mut Vec<Action>) {
     egui::MenuBar::new().ui(ui, |ui| {
         for menu in Menu::ALL {
             ui.menu_button(menu.label(), |ui| {
@@ -52,7 +41,7 @@ pub(super) fn bar(
                     entry(ui, *command, edits, actions);
                 }
                 match menu {
-                    Menu::View => panes(ui, &mut reveal),
+                    Menu::View => panes(ui, actions),
                     Menu::Render => engines(ui, actions),
                     Menu::File => import_lobes(ui, import_lobe, actions),
                     _ => {}
@@ -69,7 +58,6 @@ pub(super) fn bar(
             }
         });
     });
-    MenuAnswer { reveal }
 }
 
 fn entry(ui: &mut Ui, command: Command, edits: &Edits, actions: &mut Vec<Action>) {
@@ -98,11 +86,11 @@ fn with_step(verb: &str, step: Option<&str>) -> (String, bool) {
     }
 }
 
-fn panes(ui: &mut Ui, reveal: &mut Option<Pane>) {
+fn panes(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.separator();
     for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport) {
-        if ui.button(format!("Show {}", pane.title().to_lowercase())).clicked() {
-            *reveal = Some(pane);
+        if ui.button(pane.command()).clicked() {
+            actions.push(Action::Reveal(pane));
         }
     }
 }
@@ -147,12 +135,12 @@ fn import_lobes(ui: &mut Ui, chosen: ImportLobe, actions: &mut Vec<Action>) {
 }
 
 /// Shows the sheet that is open.
-pub(super) fn sheet(ctx: &egui::Context, sheet: &mut Sheet, actions: &mut Vec<Action>) {
+pub(super) fn sheet(ctx: &egui::Context, sheet: &mut Sheet, material: &MaterialSettings, actions: &mut Vec<Action>) {
     let mut is_done = false;
     let modal = match sheet {
         Sheet::None => return,
         Sheet::Palette { search, selected } => egui::Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
-            is_done = palette(ui, search, selected, actions);
+            is_done = palette::show(ui, search, selected, material, actions);
         }),
         Sheet::Shortcuts => egui::Modal::new(egui::Id::unique("shortcuts")).show(ctx, shortcuts),
         Sheet::About => egui::Modal::new(egui::Id::unique("about")).show(ctx, about),
@@ -160,64 +148,6 @@ pub(super) fn sheet(ctx: &egui::Context, sheet: &mut Sheet, actions: &mut Vec<Ac
     if is_done || modal.should_close() {
         *sheet = Sheet::None;
     }
-}
-
-fn palette(ui: &mut Ui, search: &mut String, selected: &mut usize, actions: &mut Vec<Action>) -> bool {
-    ui.set_width(420.0);
-    let step = |ui: &mut Ui, key| ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key));
-    let (up, down) = (step(ui, Key::ArrowUp), step(ui, Key::ArrowDown));
-    let field = egui::TextEdit::singleline(search)
-        .hint_text("Find a command")
-        .desired_width(f32::INFINITY);
-    let response = ui.add(field.margin(vec2(8.0, 5.0))).accessible_name("Find a command");
-    if response.changed() {
-        *selected = 0;
-    }
-    let is_entered = ui.input(|input| input.key_pressed(Key::Enter));
-    response.request_focus();
-    ui.add_space(theme::GAP);
-    let words: Vec<String> = search.to_lowercase().split_whitespace().map(str::to_owned).collect();
-    let matches = |command: &&Command| {
-        let text = format!("{} {} {}", command.menu().label(), command.label(), command.help()).to_lowercase();
-        words.iter().all(|word| text.contains(word))
-    };
-    let found: Vec<Command> = Command::ALL
-        .iter()
-        .filter(matches)
-        .filter(|c| **c != Command::Palette)
-        .copied()
-        .collect();
-    let last = found.len().saturating_sub(1);
-    *selected = (*selected + usize::from(down))
-        .min(last)
-        .saturating_sub(usize::from(up));
-    let mut chosen = None;
-    egui::ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
-        ui.set_min_width(ui.available_width());
-        for (index, command) in found.iter().enumerate() {
-            let keys = command
-                .shortcut()
-                .map(|shortcut| ui.ctx().format_shortcut(&shortcut))
-                .unwrap_or_default();
-            let button = egui::Button::selectable(index == *selected, command.label()).shortcut_text(keys);
-            let response = ui
-                .add_sized(vec2(ui.available_width(), theme::ROW_HEIGHT), button)
-                .on_hover_text(command.help());
-            if index == *selected && (up || down) {
-                response.scroll_to_me(None);
-            }
-            if response.clicked() || (is_entered && index == *selected) {
-                chosen = Some(*command);
-            }
-        }
-        if found.is_empty() {
-            super::widgets::note(ui, "No command like that.");
-        }
-    });
-    if let Some(command) = chosen {
-        actions.push(Action::Do(command));
-    }
-    chosen.is_some()
 }
 
 const MOUSE: [(&str, &str); 8] = [

@@ -6,27 +6,32 @@
 
 pub mod actions;
 mod autosave;
+mod commands;
 pub mod compare;
 mod dialogs;
 mod disk;
 mod edits;
+mod environments;
 mod files;
 mod icons;
 pub mod layout;
 pub mod library;
 mod menu;
 mod orbit;
+mod palette;
 mod panels;
 mod recent;
 mod recovery_sheet;
 mod settings;
 pub mod snapshots;
 pub mod status;
+mod take_picture;
 mod theme;
 mod turntable_sheet;
 mod unsaved;
 mod viewport;
 mod widgets;
+mod window_picture;
 
 use std::io;
 use std::path::PathBuf;
@@ -36,7 +41,7 @@ use std::time::{Duration, Instant};
 use egui::Ui;
 use egui_tiles::Tree;
 
-use actions::{Action, Command};
+use actions::Action;
 use autosave::{Autosave, Leftover};
 use dialogs::Dialogs;
 use edits::Edits;
@@ -50,10 +55,9 @@ use turntable_sheet::TurntableSheet;
 use unsaved::Unsaved;
 use viewport::Viewport;
 
-use crate::document::{CameraSettings, Change, Document, MaterialSettings};
+use crate::document::{Change, Document, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
-use crate::scene::camera::framing_distance;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelSource};
 
@@ -123,11 +127,12 @@ pub struct App {
     sheet: Sheet,
     turntable: TurntableSheet,
     files: files::Files,
-    recent: Recent,
     autosave: Autosave,
     /// What crashes left and the user has not decided about.
     leftovers: Vec<Leftover>,
     unsaved: Unsaved,
+    /// The file that a picture of the window is wanted for.
+    window_picture: Option<PathBuf>,
     meter: FrameMeter,
     title: String,
     theme: egui::ThemePreference,
@@ -145,6 +150,9 @@ impl App {
         let ctx = creation.egui_ctx.clone();
         let worker = Worker::spawn(options.engine, move || ctx.request_repaint())?;
         let document = options.document.unwrap_or_default();
+        let materials = options.data.as_ref().map(|data| data.join("materials"));
+        let library = library::Library::new(materials, options.cache.clone());
+        let environments = environments::Environments::new(options.cache.clone(), library.holder());
         let mut app = Self {
             edits: Edits::new(document.clone()),
             document,
@@ -158,8 +166,10 @@ impl App {
                 race: panels::race::RaceState::new(options.cache.as_ref().map(|cache| cache.join("references"))),
                 resolution: options.resolution.unwrap_or(kept.resolution),
                 import_lobe: kept.import_lobe,
-                library: library::Library::new(options.data.as_ref().map(|data| data.join("materials")), options.cache),
+                library,
                 snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
+                recent: Recent::new(kept.recent),
+                environments,
                 ..PanelState::default()
             },
             layout: kept.layout.unwrap_or_else(layout::default_layout),
@@ -169,7 +179,6 @@ impl App {
             sheet: Sheet::None,
             turntable: TurntableSheet::default(),
             files: files::Files::new(creation.egui_ctx.clone())?,
-            recent: Recent::new(kept.recent),
             autosave: match options.data {
                 Some(data) => {
                     let interval = options.autosave_interval.unwrap_or(autosave::INTERVAL);
@@ -179,6 +188,7 @@ impl App {
             },
             leftovers: Vec::new(),
             unsaved: Unsaved::default(),
+            window_picture: None,
             meter: FrameMeter::default(),
             title: String::new(),
             theme: kept.theme,
@@ -245,14 +255,16 @@ impl App {
                 }
                 Event::ModelOpened(source, model) => {
                     if let ModelSource::File(path) = &source {
-                        self.recent.add(path);
+                        self.say(Level::Info, format!("opened {}", path.display()));
+                        self.panels.recent.add(path);
                     }
                     self.adopt_model(source, &model);
                     self.count_as_start(is_start);
                 }
                 Event::EnvironmentOpened(source, _) => {
                     if let EnvironmentSource::File(path) = &source {
-                        self.recent.add(path);
+                        self.say(Level::Info, format!("opened {}", path.display()));
+                        self.panels.recent.add(path);
                     }
                     self.document.lighting.environment = source;
                     self.edits.note("Change the environment", "");
@@ -286,23 +298,6 @@ impl App {
         self.edits.note(format!("Change the model to {}", model.name), "");
     }
 
-    /// Looks at the surfaces of the selected slot from where the camera is.
-    fn frame_selected(&mut self) {
-        let snapshot = self.worker.snapshot();
-        let Some(scene) = &snapshot.scene else { return };
-        let geometry = &scene.job.geometry;
-        let Some((center, radius)) = geometry.sphere_around(self.panels.slot as u32) else {
-            return;
-        };
-        let size = scene.job.settings.image_size.map(f64::from);
-        let camera = &mut self.document.camera;
-        let distance = framing_distance(camera.fov_deg, size[0] / size[1].max(1.0)) * radius;
-        camera.target = Some(geometry.world_from_units(center).to_array());
-        camera.distance = Some(distance * geometry.world_units_per_unit);
-        camera.position = None;
-        self.edits.note("Frame selected", "");
-    }
-
     fn desk_material(&self) -> MaterialSettings {
         let materials = &self.document.materials;
         materials
@@ -310,127 +305,6 @@ impl App {
             .or(materials.last())
             .cloned()
             .unwrap_or_default()
-    }
-
-    fn apply(&mut self, ctx: &egui::Context, action: Action) {
-        match action {
-            Action::Do(command) => self.command(ctx, command),
-            Action::Open(path) => {
-                self.open(path);
-            }
-            Action::UseModel(source) => self.worker.open_model(source),
-            Action::UseEnvironment(source) => self.worker.open_environment(source),
-            Action::ImportAs(lobe) => self.panels.import_lobe = lobe,
-            Action::UseMaterial(material) => self.use_material(*material),
-            Action::SelectSlot(slot) => {
-                self.panels.slot = slot;
-                self.edits.seal();
-            }
-            Action::ChangeLibrary(change) => self.change_library(change),
-            Action::ChangeSnapshots(change) => self.change_snapshots(change),
-            Action::UseSnapshot(path) => self.use_snapshot(&path),
-            Action::CompareWith(rival) => self.compare_with(rival),
-            Action::LookFrom(yaw_deg, pitch_deg) => {
-                let camera = &mut self.document.camera;
-                (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
-                self.edits.note("Look from a side", "");
-            }
-            Action::UseEngine(choice) => self.worker.use_engine(choice),
-            Action::Show(shown) => {
-                self.panels.shown = shown;
-                self.worker.show(shown);
-            }
-        }
-    }
-
-    fn command(&mut self, ctx: &egui::Context, command: Command) {
-        match command {
-            Command::Undo => {
-                if let Some(document) = self.edits.undo() {
-                    self.document = document;
-                }
-            }
-            Command::Redo => {
-                if let Some(document) = self.edits.redo() {
-                    self.document = document;
-                }
-            }
-            Command::ResetMaterial => {
-                let name = self.desk_material().name;
-                let default = MaterialSettings::default();
-                self.use_material(MaterialSettings { name, ..default });
-            }
-            Command::ResetCamera => {
-                self.document.camera = CameraSettings::default();
-                self.edits.note("Reset the camera", "");
-            }
-            Command::FrameAll => {
-                let camera = &mut self.document.camera;
-                (camera.target, camera.distance, camera.position) = (None, None, None);
-                self.edits.note("Frame all", "");
-            }
-            Command::FrameSelected => self.frame_selected(),
-            Command::Maximise => {
-                self.is_maximised = !self.is_maximised;
-                layout::set_maximised(&mut self.layout, self.is_maximised);
-            }
-            Command::ToggleTheme => {
-                let is_dark = ctx.theme() == egui::Theme::Dark;
-                self.theme = if is_dark {
-                    egui::ThemePreference::Light
-                } else {
-                    egui::ThemePreference::Dark
-                };
-                ctx.set_theme(self.theme);
-            }
-            Command::ResetLayout => {
-                self.layout = layout::default_layout();
-                self.is_maximised = false;
-            }
-            Command::Pause => {
-                self.panels.is_paused = !self.panels.is_paused;
-                self.worker.pause(self.panels.is_paused);
-            }
-            Command::Reload => {
-                self.worker.reload();
-                self.restart_rival();
-            }
-            Command::Restart => {
-                self.worker.restart();
-                self.restart_rival();
-            }
-            Command::Compare => self.toggle_compare(),
-            Command::SwapCompared => self.swap_compared(),
-            Command::TakeCompared => self.take_compared(),
-            Command::Pin => {
-                self.change_snapshots(snapshots::PinChange::Add);
-                self.reveal(Pane::Snapshots);
-            }
-            Command::Turntable => self.open_turntable(),
-            Command::Palette => {
-                self.sheet = Sheet::Palette {
-                    search: String::new(),
-                    selected: 0,
-                };
-            }
-            Command::Shortcuts => self.sheet = Sheet::Shortcuts,
-            Command::About => self.sheet = Sheet::About,
-            Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
-            Command::SaveToMyPresets => self.change_library(library::Change::Add),
-            of_files => self.file_command(ctx, of_files),
-        }
-    }
-
-    fn use_material(&mut self, material: MaterialSettings) {
-        let label = format!("Use {}", material.name);
-        let slot = self.panels.slot;
-        let materials = &mut self.document.materials;
-        if materials.len() <= slot {
-            let last = materials.last().cloned().unwrap_or_default();
-            materials.resize(slot + 1, last);
-        }
-        materials[slot] = material;
-        self.edits.note(label, "");
     }
 
     /// Records the frame's edit and hands the renderer what differs from what it has.
@@ -478,16 +352,18 @@ impl App {
         let bar = egui::Frame::new()
             .fill(ui.visuals().panel_fill)
             .inner_margin(egui::Margin::symmetric(8, 3));
-        let answer = egui::Panel::top("menu")
+        egui::Panel::top("menu")
             .frame(bar)
             .show_separator_line(false)
             .show(ui, |ui| {
-                menu::bar(ui, &self.edits, &mut self.recent, self.panels.import_lobe, actions)
-            })
-            .inner;
-        if let Some(pane) = answer.reveal {
-            layout::reveal(&mut self.layout, pane);
-        }
+                menu::bar(
+                    ui,
+                    &self.edits,
+                    &mut self.panels.recent,
+                    self.panels.import_lobe,
+                    actions,
+                );
+            });
         egui::Panel::bottom("status")
             .frame(bar)
             .show_separator_line(false)
@@ -510,7 +386,8 @@ impl App {
             };
             self.layout.ui(&mut panes, ui);
         });
-        menu::sheet(ui.ctx(), &mut self.sheet, actions);
+        let material = self.desk_material();
+        menu::sheet(ui.ctx(), &mut self.sheet, &material, actions);
         if let Some((purpose, path)) = self.dialogs.show(ui) {
             self.chosen(purpose, path);
         }
@@ -550,6 +427,7 @@ impl eframe::App for App {
         let is_running = ctx.requested_repaint_last_pass();
         self.meter.begin(Instant::now(), is_running, frame.info().cpu_usage);
         self.take_events(&ctx);
+        self.picture_window(&ctx);
         let mut actions = std::mem::take(&mut self.queue);
         if !self.is_covered() {
             actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
@@ -561,6 +439,7 @@ impl eframe::App for App {
             self.apply(&ctx, action);
         }
         self.record_and_submit(&ctx);
+        self.hand_over_pictures(&ctx);
         self.hold_thumbnails(&ctx);
         self.put_aside(&ctx);
         self.guard_close(&ctx);
@@ -580,7 +459,7 @@ impl eframe::App for App {
             layout: Some(layout),
             resolution: self.panels.resolution,
             import_lobe: self.panels.import_lobe,
-            recent: self.recent.paths().to_vec(),
+            recent: self.panels.recent.paths().to_vec(),
         };
         kept.save(storage);
     }

@@ -9,6 +9,7 @@ use egui::Ui;
 
 use super::actions::Action;
 use crate::render::background::Background;
+use crate::scene::environment::EnvironmentSource;
 
 /// Most that are remembered.
 const COUNT: usize = 12;
@@ -38,6 +39,15 @@ impl Recent {
     /// What the next start is to have.
     pub(super) fn paths(&self) -> &[PathBuf] {
         &self.paths
+    }
+
+    /// Those that are environments.
+    pub(super) fn environments(&self) -> impl Iterator<Item = EnvironmentSource> {
+        let is_map = |path: &&PathBuf| {
+            let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+            ending.is_some_and(|ending| ending == "hdr" || ending == "exr")
+        };
+        self.paths.iter().filter(is_map).cloned().map(EnvironmentSource::File)
     }
 
     /// A file was opened or saved. Files not named in Unicode can't be remembered, as the settings are text.

@@ -21,7 +21,10 @@ impl App {
     pub(super) fn take_autosave_reports(&mut self) {
         for report in self.autosave.take_reports() {
             match report {
-                Report::Found(leftovers) => self.leftovers = leftovers,
+                Report::Found(leftovers) => {
+                    self.say(Level::Info, format!("unsaved documents found: {}", leftovers.len()));
+                    self.leftovers = leftovers;
+                }
                 Report::Failed(error) => {
                     self.say(
                         Level::Warning,

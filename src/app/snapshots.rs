@@ -17,6 +17,8 @@ use crate::render::worker::Level;
 pub enum PinChange {
     /// The document is pinned with the latest picture.
     Add,
+    /// A file gets another name.
+    Rename(PathBuf, String),
     /// A file is removed.
     Remove(PathBuf),
     /// What was removed last comes back.
@@ -40,6 +42,8 @@ pub(super) struct Snapshots {
     pub(super) pinned: Vec<Pinned>,
     /// What was removed last.
     pub(super) removed: Option<Removed>,
+    /// The file that is being given another name, and what was typed so far.
+    pub(super) renaming: Option<(PathBuf, String)>,
     textures: HashMap<PathBuf, TextureHandle>,
 }
 
@@ -101,6 +105,9 @@ impl App {
                         let rgba = crate::render::display::display(&picture.image, &picture.document.view);
                         let path = snapshots::add(&folder, &document, [picture.width, picture.height], &rgba)?;
                         format!("pinned {}", path.display())
+                    }
+                    (PinChange::Rename(path, name), _) => {
+                        format!("renamed to {name}: {}", snapshots::rename(path, name)?.display())
                     }
                     (PinChange::Remove(path), _) => {
                         removed = Some(library::remove(path)?);

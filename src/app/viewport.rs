@@ -7,6 +7,7 @@
 mod compare;
 mod header;
 mod legend;
+mod region;
 
 use egui::{
     Color32, ColorImage, Key, Modifiers, PointerButton, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui,
@@ -49,6 +50,7 @@ pub(super) struct Viewport {
     pixels_per_point: f32,
     is_software: bool,
     id: Option<egui::Id>,
+    region: region::RegionTool,
 }
 
 /// A texture, and what it shows.
@@ -97,6 +99,11 @@ impl Viewport {
     /// The widget that takes the focus; `None` before the first frame.
     pub(super) fn id(&self) -> Option<egui::Id> {
         self.id
+    }
+
+    /// The next drag says which part of the picture is rendered.
+    pub(super) fn draw_region(&mut self) {
+        self.region.arm();
     }
 
     /// The size that a picture that fills the viewport has; `None` before the viewport was laid out, or where the
@@ -153,7 +160,9 @@ impl Viewport {
             if let Some((shown, scale)) = picture.map {
                 legend::show(ui, area, shown, scale);
             }
-            if let Some(scene) = desk.snapshot.scene.clone() {
+            // Where two are compared, both are shown whole.
+            let is_drawing = !is_compared && self.region.show(ui, &response, place, desk);
+            if let Some(scene) = desk.snapshot.scene.clone().filter(|_| !is_drawing) {
                 self.navigate(ui, &response, place, &scene, desk);
             }
         } else {

@@ -4,7 +4,8 @@ use std::ops::RangeInclusive;
 
 use egui::text::LayoutJob;
 use egui::{
-    Align, Color32, DragValue, Layout, Rect, Response, RichText, Sense, Shape, TextFormat, TextStyle, Ui, Vec2,
+    Align, Color32, DragValue, Layout, Rect, Response, RichText, Sense, Shape, TextFormat, TextStyle, TextureHandle,
+    Ui, Vec2,
 };
 
 use super::theme::{self, ROW_HEIGHT};
@@ -52,9 +53,68 @@ pub(super) struct RowResponse {
     pub(super) reset: bool,
 }
 
+/// A row that is to have the keys as soon as it is shown.
+#[derive(Clone)]
+struct Wish {
+    group: &'static str,
+    row: String,
+    /// Its control, once it has been seen. It is given the keys before it is shown again: what is typed then replaces all
+    /// of a number.
+    control: Option<egui::Id>,
+    frame: u64,
+}
+
+/// How many frames a wish stands: a panel that was brought to the front is there with the next.
+const WISH_FRAMES: u64 = 4;
+
+fn wish_id() -> egui::Id {
+    egui::Id::unique("wished focus")
+}
+
+fn wish(ui: &Ui) -> Option<Wish> {
+    let frame = ui.ctx().cumulative_frame_nr();
+    let wish: Option<Wish> = ui.data(|data| data.get_temp(wish_id()));
+    wish.filter(|wish| frame <= wish.frame + WISH_FRAMES)
+}
+
+/// Gives the row of this name (see [`Name::full`]) the keys, and opens its group.
+pub(super) fn wish_focus(ctx: &egui::Context, group: &'static str, row: String) {
+    let wish = Wish {
+        group,
+        row,
+        control: None,
+        frame: ctx.cumulative_frame_nr(),
+    };
+    ctx.data_mut(|data| data.insert_temp(wish_id(), wish));
+    ctx.request_repaint();
+}
+
+/// Gives the row's control the keys where that was wished for and it has been seen; true where it is still to be seen.
+fn fulfil_wish(ui: &Ui, row: &str) -> bool {
+    let Some(wish) = wish(ui).filter(|wish| wish.row == row) else {
+        return false;
+    };
+    if let Some(control) = wish.control {
+        ui.data_mut(|data| data.remove::<Wish>(wish_id()));
+        ui.memory_mut(|memory| memory.request_focus(control));
+        log::debug!("the keys go to {row}");
+    }
+    wish.control.is_none()
+}
+
+fn note_wished(ui: &Ui, control: &Response) {
+    if let Some(mut wish) = wish(ui) {
+        wish.control = Some(control.id);
+        ui.data_mut(|data| data.insert_temp(wish_id(), wish));
+    }
+    control.scroll_to_me(Some(Align::Center));
+    ui.ctx().request_repaint();
+}
+
 /// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
 pub(super) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
     ui.horizontal(|ui| {
+        let is_wished = fulfil_wish(ui, name.full);
         let label_width = (ui.available_width() * LABEL_SHARE).max(LABEL_MIN);
         let label = row_label(ui, name, label_width);
         let width = ui.available_width().max(40.0);
@@ -64,6 +124,9 @@ pub(super) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> 
             .inner;
         let changed = control.changed();
         let control = control.accessible_name(name.full);
+        if is_wished {
+            note_wished(ui, &control);
+        }
         if !name.help.is_empty() {
             control.on_hover_text(name.help);
         }
@@ -212,6 +275,11 @@ pub(super) fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response 
             ui.color_edit_button_rgb(linear)
         })
         .inner;
+    // A colour like the panel's would not be seen as a field.
+    let line = ui.visuals().widgets.noninteractive.bg_stroke;
+    let radius = ui.visuals().widgets.inactive.corner_radius;
+    ui.painter()
+        .rect_stroke(swatch.rect, radius, line, egui::StrokeKind::Inside);
     let mut response = swatch.clone();
     if hex_field(ui, name, linear) {
         response.mark_changed();
@@ -312,10 +380,37 @@ pub(super) fn choice<T: PartialEq + Clone>(
             }
         });
     let mut response = shown.response;
+    changed |= step_by_keys(ui, &response, value, choices);
     if changed {
         response.mark_changed();
     }
     response
+}
+
+/// Up and down choose the neighbour, as in other programs.
+fn step_by_keys<T: PartialEq + Clone>(
+    ui: &Ui,
+    response: &Response,
+    value: &mut T,
+    choices: &[(T, &str, &str)],
+) -> bool {
+    if !response.has_focus() {
+        return false;
+    }
+    let filter = egui::EventFilter {
+        vertical_arrows: true,
+        ..Default::default()
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let pressed = |key| ui.input_mut(|input| input.count_and_consume_key(egui::Modifiers::NONE, key));
+    let (down, up) = (pressed(egui::Key::ArrowDown), pressed(egui::Key::ArrowUp));
+    let at = choices.iter().position(|(choice, ..)| choice == value).unwrap_or(0);
+    let wanted = (at + down).saturating_sub(up).min(choices.len().saturating_sub(1));
+    let Some((choice, ..)) = choices.get(wanted).filter(|_| wanted != at) else {
+        return false;
+    };
+    *value = choice.clone();
+    true
 }
 
 /// The heading of a group of rows, which opens and closes it.
@@ -324,11 +419,66 @@ pub(super) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
     egui::CollapsingHeader::new(header)
         .id_salt(title)
         .default_open(true)
+        .open(wish(ui).is_some_and(|wish| wish.group == title).then_some(true))
         .show_unindented(ui, |ui| {
             ui.add_space(2.0);
             body(ui);
             ui.add_space(theme::GAP);
         });
+}
+
+/// A picture with a name beside it, to choose.
+pub(super) struct PictureRow<'a> {
+    pub(super) name: &'a str,
+    /// `None` until it is there.
+    pub(super) picture: Option<&'a TextureHandle>,
+    /// Of the picture, points.
+    pub(super) size: Vec2,
+    /// Stands in for the picture.
+    pub(super) color: Color32,
+    pub(super) is_current: bool,
+}
+
+impl PictureRow<'_> {
+    pub(super) fn show(&self, ui: &mut Ui) -> Response {
+        let size = Vec2::new(ui.available_width(), self.size.y + 4.0);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, self.is_current, self.name));
+        let visuals = ui.style().interact_selectable(&response, self.is_current);
+        if self.is_current || response.hovered() || response.has_focus() {
+            ui.painter()
+                .rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
+        }
+        let place = Rect::from_min_size(rect.left_top() + Vec2::new(4.0, 2.0), self.size);
+        match self.picture {
+            Some(picture) => egui::Image::new(picture).corner_radius(3.0).paint_at(ui, place),
+            None => _ = ui.painter().rect_filled(place, 3.0, self.color),
+        }
+        let font = TextStyle::Body.resolve(ui.style());
+        let mut job = LayoutJob::simple_singleline(self.name.to_owned(), font, visuals.text_color());
+        let left = place.right() + 10.0;
+        job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left - 4.0).max(1.0));
+        let galley = ui.painter().layout_job(job);
+        let at = egui::pos2(left, rect.center().y - 0.5 * galley.size().y);
+        ui.painter().galley(at, galley, visuals.text_color());
+        response
+    }
+}
+
+/// A field for a new name, which has the keys. `Some(None)`: left as it was.
+pub(super) fn name_field(ui: &mut Ui, name: &mut String) -> Option<Option<String>> {
+    let field = ui
+        .add(egui::TextEdit::singleline(name).desired_width(f32::INFINITY))
+        .accessible_name("New name");
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        return Some(None);
+    }
+    if field.lost_focus() {
+        let name = name.trim().to_owned();
+        return Some((!name.is_empty()).then_some(name));
+    }
+    field.request_focus();
+    None
 }
 
 /// A note in weak text.

@@ -61,26 +61,14 @@ pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, Fil
     })
 }
 
-/// Reads one part after the other, so that the message can say which one is wrong.
+/// Reads one part after the other before the whole, so that the message can say which one is wrong.
 fn document_from_json(object: &Map<String, Json>) -> Result<Document, String> {
-    let mut document = Document::default();
     for (part, json) in object {
         let mut only = Map::new();
         only.insert(part.clone(), json.clone());
-        let read: Document =
-            serde_json::from_value(Json::Object(only)).map_err(|error| format!("\"{part}\": {error}"))?;
-        match part.as_str() {
-            "model" => document.model = read.model,
-            "ground" => document.ground = read.ground,
-            "materials" => document.materials = read.materials,
-            "lighting" => document.lighting = read.lighting,
-            "camera" => document.camera = read.camera,
-            "view" => document.view = read.view,
-            "render" => document.render = read.render,
-            _ => {}
-        }
+        serde_json::from_value::<Document>(Json::Object(only)).map_err(|error| format!("\"{part}\": {error}"))?;
     }
-    Ok(document)
+    serde_json::from_value(Json::Object(object.clone())).map_err(|error| error.to_string())
 }
 
 /// Saves a document, replacing the file at once.

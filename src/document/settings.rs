@@ -386,16 +386,6 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
             f64::from(lighting.background_blur_deg),
             r::BACKGROUND_BLUR_DEG,
         ),
-        ("camera.yaw_deg", camera.yaw_deg, r::YAW_DEG),
-        ("camera.pitch_deg", camera.pitch_deg, r::PITCH_DEG),
-        ("camera.fov_deg", camera.fov_deg, r::FOV_DEG),
-        ("camera.distance", camera.distance.unwrap_or(1.0), r::DISTANCE),
-        ("camera.aperture", camera.aperture, r::APERTURE),
-        (
-            "camera.focus_distance",
-            camera.focus_distance.unwrap_or(1.0),
-            r::DISTANCE,
-        ),
         ("view.exposure_ev", f64::from(view.exposure_ev), r::EXPOSURE_EV),
         ("render.width", f64::from(render.width), r::SIZE),
         ("render.height", f64::from(render.height), r::SIZE),
@@ -419,9 +409,12 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
     let triples = [
         ("lighting.background", colors[0].map(f64::from), r::COLOR),
         ("lighting.ground_color", colors[1].map(f64::from), r::COLOR),
-        ("camera.target", camera.target.unwrap_or_default(), r::COORDINATE),
-        ("camera.position", camera.position.unwrap_or_default(), r::COORDINATE),
     ];
+    let of_bookmarks = document
+        .bookmarks
+        .iter()
+        .flat_map(|bookmark| camera_numbers(&bookmark.camera))
+        .map(|(_, value, range)| ("a number of a bookmark's camera", value, range));
     let region = render
         .region
         .unwrap_or([0.0, 0.0, 1.0, 1.0])
@@ -429,13 +422,36 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
     let components = triples
         .into_iter()
         .flat_map(|(name, values, range)| values.map(|value| (name, value, range.clone())));
-    for (name, value, range) in single.into_iter().chain(of_area_lights).chain(components).chain(region) {
+    let numbers = single.into_iter().chain(of_area_lights).chain(components).chain(region);
+    for (name, value, range) in numbers.chain(camera_numbers(camera)).chain(of_bookmarks) {
         if !range.contains(&value) {
             let (low, high) = range.into_inner();
             return Err(SettingError { name, value, low, high });
         }
     }
     Ok(())
+}
+
+fn camera_numbers(camera: &CameraSettings) -> impl Iterator<Item = (&'static str, f64, RangeInclusive<f64>)> {
+    use range as r;
+    let single = [
+        ("camera.yaw_deg", camera.yaw_deg, r::YAW_DEG),
+        ("camera.pitch_deg", camera.pitch_deg, r::PITCH_DEG),
+        ("camera.fov_deg", camera.fov_deg, r::FOV_DEG),
+        ("camera.distance", camera.distance.unwrap_or(1.0), r::DISTANCE),
+        ("camera.aperture", camera.aperture, r::APERTURE),
+        (
+            "camera.focus_distance",
+            camera.focus_distance.unwrap_or(1.0),
+            r::DISTANCE,
+        ),
+    ];
+    let place = |name, place: Option<[f64; 3]>| place.unwrap_or_default().map(|value| (name, value, r::COORDINATE));
+    let places = [
+        place("camera.target", camera.target),
+        place("camera.position", camera.position),
+    ];
+    single.into_iter().chain(places.into_iter().flatten())
 }
 
 /// What an area light is checked for.

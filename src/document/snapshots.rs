@@ -93,20 +93,7 @@ pub fn add(folder: &Path, document: &Document, [width, height]: [u32; 2], rgba: 
         source,
     })?;
     let first = document.materials.first().map_or("", |material| material.name.as_str());
-    let allowed = |c: char| {
-        if c.is_alphanumeric() || " -_".contains(c) {
-            c
-        } else {
-            ' '
-        }
-    };
-    let name: String = first.chars().map(allowed).take(60).collect();
-    let name = if name.trim().is_empty() {
-        "Snapshot"
-    } else {
-        name.trim()
-    };
-    let path = free_path(folder, name, "png");
+    let path = free_path(folder, &file_stem(first), "png");
     let content = |reason: String| FileError::Content {
         path: path.clone(),
         reason,
@@ -124,6 +111,38 @@ pub fn add(folder: &Path, document: &Document, [width, height]: [u32; 2], rgba: 
     let bytes = png_bytes([picture.width(), picture.height()], picture.as_raw(), Some(&text)).map_err(content)?;
     save_atomically(&path, &bytes)?;
     Ok(path)
+}
+
+/// Gives a pinned state another name, beside one that has it already; what files can't be called is left out.
+///
+/// # Errors
+/// [`FileError::Write`]; it then has its old name.
+pub fn rename(path: &Path, name: &str) -> Result<PathBuf, FileError> {
+    let stem = file_stem(name);
+    if path.file_stem().is_some_and(|old| *old == *stem) {
+        return Ok(path.to_owned());
+    }
+    let renamed = free_path(path.parent().unwrap_or(Path::new(".")), &stem, "png");
+    fs::rename(path, &renamed).map_err(|source| FileError::Write {
+        path: path.to_owned(),
+        source,
+    })?;
+    Ok(renamed)
+}
+
+/// A name as that of a file, with what is allowed everywhere.
+fn file_stem(name: &str) -> String {
+    let allowed = |c: char| c.is_alphanumeric() || " -_.,()".contains(c);
+    let name: String = name
+        .chars()
+        .map(|c| if allowed(c) { c } else { ' ' })
+        .take(60)
+        .collect();
+    // Names that begin or end with a dot are hidden, or refused.
+    match name.trim_matches([' ', '.']) {
+        "" => "Snapshot".to_owned(),
+        name => name.to_owned(),
+    }
 }
 
 #[cfg(test)]
@@ -160,6 +179,22 @@ mod tests {
         assert_eq!(list(&folder).expect("listed").0.len(), 1);
         assert_eq!(restore(&removed).expect("restored"), paths[0]);
         assert_eq!(list(&folder).expect("listed").0.len(), 2);
+        let renamed = rename(&paths[0], "../Low, red").expect("renamed");
+        assert_eq!(renamed.file_name(), Some("Low, red.png".as_ref()));
+        let both = list(&folder).expect("listed").0;
+        let names: Vec<&str> = both.iter().map(|pinned| pinned.name.as_str()).collect();
+        assert!(
+            names.contains(&"Low, red") && names.contains(&"Odd name 2"),
+            "{names:?}"
+        );
+        assert_eq!(rename(&renamed, "Low, red").expect("the same"), renamed);
+        let beside = rename(&paths[1], "Low, red").expect("renamed");
+        assert_eq!(
+            beside.file_name(),
+            Some("Low, red 2.png".as_ref()),
+            "no file is replaced"
+        );
+        assert!(rename(&paths[0], "gone").is_err());
         assert!(add(&folder, &document, [600, 301], &pixels).is_err());
     }
 }

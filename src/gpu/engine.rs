@@ -72,6 +72,11 @@ impl GpuEngine {
         &self.gpu
     }
 
+    /// Takes the device away, as a driver's reset does; the next step fails with [`GpuError::Lost`].
+    pub fn lose_device(&self) {
+        self.gpu.device.destroy();
+    }
+
     /// Starts a job over.
     ///
     /// # Errors

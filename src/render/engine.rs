@@ -112,6 +112,13 @@ impl Engine {
         }
     }
 
+    /// See [`super::worker::Worker::lose_device`].
+    pub(super) fn lose_device(&self) {
+        if let Engine::Gpu(engine) = self {
+            engine.lose_device();
+        }
+    }
+
     pub(super) fn schedule(&self) -> &Schedule {
         match self {
             Engine::Cpu(engine) => engine.schedule(),

@@ -184,6 +184,11 @@ impl Session {
         Ok(())
     }
 
+    /// See [`super::worker::Worker::lose_device`].
+    pub(super) fn lose_device(&self) {
+        self.engine.lose_device();
+    }
+
     /// What renders.
     pub fn engine(&self) -> &EngineInfo {
         &self.info

@@ -2,18 +2,15 @@
 
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
-use std::io::{self, Cursor};
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use image::{ImageFormat, RgbaImage};
-
 use super::background::{Background, Desk};
 use super::display::display;
-use super::{EngineChoice, Session, SessionError};
-use crate::document::file::save_atomically;
+use super::{EngineChoice, Session, SessionError, picture_cache};
 use crate::document::preset::material_text;
 use crate::document::{Document, MaterialSettings, RenderSettings};
 use crate::scene::ModelSource;
@@ -66,11 +63,11 @@ pub fn spawn_thumbnails(
                 continue;
             }
             let path = folder.join(format!("{key:016x}.png"));
-            let kept = read(&path);
+            let kept = picture_cache::read(&path, [SIDE; 2]);
             let is_kept = kept.is_some();
             match kept.map_or_else(|| make(&mut session, &material, &hold, desk), |kept| Ok(Some(kept))) {
                 Ok(Some(pixels)) => {
-                    if !is_kept && let Err(error) = write(&path, &pixels) {
+                    if !is_kept && let Err(error) = picture_cache::write(&path, [SIDE; 2], &pixels) {
                         // A cache: where it can't be written, the next start renders again.
                         log::debug!("{error}");
                     }
@@ -129,25 +126,6 @@ fn make<A>(
     Ok(Some(display(&session.image()?, &document.view)))
 }
 
-fn read(path: &Path) -> Option<Vec<u8>> {
-    let bytes = std::fs::read(path).ok()?;
-    let picture = image::load_from_memory_with_format(&bytes, ImageFormat::Png).ok()?;
-    let picture = picture.into_rgba8();
-    (picture.dimensions() == (SIDE, SIDE)).then(|| picture.into_raw())
-}
-
-fn write(path: &Path, pixels: &[u8]) -> Result<(), String> {
-    let picture = RgbaImage::from_raw(SIDE, SIDE, pixels.to_vec()).ok_or("not the size of a thumbnail")?;
-    let mut bytes = Cursor::new(Vec::new());
-    picture
-        .write_to(&mut bytes, ImageFormat::Png)
-        .map_err(|error| error.to_string())?;
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    }
-    save_atomically(path, bytes.get_ref()).map_err(|error| error.to_string())
-}
-
 #[cfg(test)]
 mod tests {
     use std::time::Instant;
@@ -189,7 +167,7 @@ mod tests {
         // A marked file shows that the second start reads it.
         let marked = vec![77; 4 * (SIDE * SIDE) as usize];
         let path = cache.join(format!("{:016x}.png", key(&gold)));
-        write(&path, &marked).expect("written");
+        picture_cache::write(&path, [SIDE; 2], &marked).expect("written");
         let again = spawn_thumbnails(cache, Arc::default(), || {}).expect("a thread");
         again.ask(vec![gold.clone()]);
         assert_eq!(*wait(&again, 1)[&key(&gold)], marked);

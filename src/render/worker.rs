@@ -177,6 +177,7 @@ struct Orders {
     shown: Option<Shown>,
     reload: bool,
     restart: bool,
+    lose_device: bool,
     quit: bool,
 }
 
@@ -190,6 +191,7 @@ impl Orders {
             && self.shown.is_none()
             && !self.reload
             && !self.restart
+            && !self.lose_device
             && !self.quit
     }
 }
@@ -298,6 +300,11 @@ impl Worker {
     /// Renders the picture anew.
     pub fn restart(&self) {
         self.order(|orders| orders.restart = true);
+    }
+
+    /// Takes the GPU's device away, as a driver's reset does: for tests of what follows. Nothing on the processor.
+    pub fn lose_device(&self) {
+        self.order(|orders| orders.lose_device = true);
     }
 
     /// Goes on with another engine.

@@ -263,10 +263,19 @@ fn snapshots_are_pinned_kept_brought_back_compared_and_deleted() {
     settle_both(&mut harness, "B", |b| b.materials == pinned.materials);
     press(&mut harness, "Stop comparing");
     press(&mut harness, "More of Zebra");
+    press(&mut harness, "Rename");
+    harness
+        .get_by_role_and_label(Role::TextInput, "New name")
+        .set_text_value_accesskit("Quagga");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    see(&mut harness, "its new name", |harness| has_button(harness, "Quagga"));
+    assert!(!has_button(&harness, "Zebra") && folder.path().join("snapshots/Quagga.png").is_file());
+    press(&mut harness, "More of Quagga");
     press(&mut harness, "Delete");
-    see(&mut harness, "it to go", |harness| !has_button(harness, "Zebra"));
-    press(&mut harness, "Restore Zebra");
-    see(&mut harness, "it to come back", |harness| has_button(harness, "Zebra"));
+    see(&mut harness, "it to go", |harness| !has_button(harness, "Quagga"));
+    press(&mut harness, "Restore Quagga");
+    see(&mut harness, "it to come back", |harness| has_button(harness, "Quagga"));
 }
 
 /// Chooses a file in the path field, which takes the dialog's place here.

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use glossmith::document::file::{self, FileError, Opened};
 use glossmith::document::preset::{self, PRESETS, SHIPPED};
 use glossmith::document::{
-    AreaLight, Background, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy as LightStrategy, project,
+    AreaLight, Background, Bookmark, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy as LightStrategy,
+    project,
 };
 use glossmith::optics::tone::ToneCurve;
 use glossmith::scene::ModelSource;
@@ -206,6 +207,10 @@ fn unusual_document(folder: &Path) -> Document {
     ];
     document.camera.target = Some([0.1, -2.0, 1e-3]);
     document.camera.distance = Some(3.3);
+    document.bookmarks = vec![Bookmark {
+        name: "Side".to_owned(),
+        camera: document.camera,
+    }];
     document.view.tone_map = ToneCurve::PbrNeutral;
     document.view.exposure_ev = -0.7;
     document.render.strategy = LightStrategy::Light;
@@ -402,13 +407,13 @@ proptest! {
     }
 
     #[test]
-    fn any_value_in_a_document_is_an_error_or_in_range(part in 0..7_usize, key in 0..10_usize, value in any_json()) {
-        let part = ["model", "ground", "materials", "lighting", "camera", "view", "render"][part];
+    fn any_value_in_a_document_is_an_error_or_in_range(part in 0..8_usize, key in 0..10_usize, value in any_json()) {
+        let part = ["model", "ground", "materials", "lighting", "camera", "view", "render", "bookmarks"][part];
         let key = [
             "strength", "rotation_deg", "background", "fov_deg", "position", "exposure_ev", "width", "time_s", "seed",
             "area_lights",
         ][key];
-        for inner in [value.clone(), json!({ key: value })] {
+        for inner in [value.clone(), json!({ key: value }), json!([{ "camera": { key: value } }])] {
             let text = json!({"glossmith-document": 1, part: inner}).to_string();
             if let Ok(loaded) = project::parse_document("p.json".as_ref(), text.as_bytes()) {
                 prop_assert!(loaded.value.check().is_ok());

@@ -23,7 +23,7 @@ fn png(picture: &RgbaImage) -> Vec<u8> {
 }
 
 /// A square of this material whose textures show these pictures, each by one sampler.
-fn textured_square(material: &Value, pictures: &[RgbaImage], sampler: &Value) -> (Buffer, Value) {
+pub fn textured_square(material: &Value, pictures: &[RgbaImage], sampler: &Value) -> (Buffer, Value) {
     let (mut buffer, mut document) = square();
     let second = buffer.floats(&[[0.25, 0.75], [0.75, 0.75], [0.75, 0.25], [0.25, 0.25]]);
     document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_1"] = json!(second);
@@ -51,7 +51,7 @@ fn load(material: &Value, pictures: &[RgbaImage], sampler: &Value) -> Model {
 }
 
 /// Two by two: black, a dark red; a green, white; the alpha of each its own.
-fn four_texels() -> RgbaImage {
+pub fn four_texels() -> RgbaImage {
     let texels = [[0, 0, 0, 255], [100, 0, 0, 128], [0, 200, 0, 64], [255, 255, 255, 0]];
     RgbaImage::from_fn(2, 2, |x, y| Rgba(texels[(x + 2 * y) as usize]))
 }

@@ -31,7 +31,7 @@ pub(super) fn options() -> Options {
     }
 }
 
-fn editor_with(document: Document, files: Vec<PathBuf>) -> Harness<'static, App> {
+pub(super) fn editor_with(document: Document, files: Vec<PathBuf>) -> Harness<'static, App> {
     editor_of(Options {
         files,
         document: Some(document),
@@ -184,7 +184,7 @@ fn dragging_in_the_viewport_turns_the_camera_in_one_step() {
     assert_eq!(harness.state().document().camera, before);
 }
 
-fn drag(harness: &mut Harness<'static, App>, from: Pos2, by: Vec2) {
+pub(super) fn drag(harness: &mut Harness<'static, App>, from: Pos2, by: Vec2) {
     harness.hover_at(from);
     harness.step();
     harness.drag_at(from);

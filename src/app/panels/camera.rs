@@ -274,6 +274,7 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
         });
         desk.edited(response, "Picture height", |document| &mut document.render.height);
     }
+    super::region::show(ui, desk);
     let samples = &mut desk.document.render.samples;
     let name = Name::new(
         "Samples",

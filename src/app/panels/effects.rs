@@ -39,8 +39,14 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
 fn row(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect, decision: &Decision) {
     ui.horizontal(|ui| {
         mark(ui, decision.is_on);
-        ui.label(effect.label).on_hover_text(effect.help);
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| switch(ui, desk, effect));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            switch(ui, desk, effect);
+            let label = egui::Label::new(effect.label).truncate();
+            let rest = ui.available_size();
+            let layout = Layout::left_to_right(Align::Center);
+            let shown = ui.allocate_ui_with_layout(rest, layout, |ui| ui.add(label));
+            shown.inner.on_hover_text(effect.help);
+        });
     });
     ui.horizontal(|ui| {
         ui.add_space(4.0 * MARK_RADIUS);

@@ -1,50 +1,18 @@
 //! Environment, area lights, background and ground.
 
-use std::sync::Arc;
-
-use egui::{ColorImage, TextureHandle, TextureOptions, Ui, vec2};
+use egui::{Ui, vec2};
 
 use super::{Desk, area_lights};
 use crate::app::actions::{Action, Command};
 use crate::app::theme;
-use crate::app::widgets::{self, Name, NumberStyle};
+use crate::app::widgets::{self, Name, NumberStyle, PictureRow};
 use crate::document::{Background, range};
-use crate::scene::environment::{Environment, EnvironmentSource, thumbnail};
+use crate::scene::environment::EnvironmentSource;
 
-/// Size of the environment's small picture.
-const THUMBNAIL: [u32; 2] = [256, 128];
-
-/// The small picture of an environment.
-#[derive(Clone, Default)]
-pub(in crate::app) struct Thumbnail {
-    of: Option<Arc<Environment>>,
-    texture: Option<TextureHandle>,
-}
-
-impl std::fmt::Debug for Thumbnail {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(
-            f,
-            "Thumbnail({:?})",
-            self.of.as_ref().map(|environment| &environment.name)
-        )
-    }
-}
-
-impl Thumbnail {
-    fn texture(&mut self, ctx: &egui::Context, environment: &Arc<Environment>) -> TextureHandle {
-        let is_same = self.of.as_ref().is_some_and(|of| Arc::ptr_eq(of, environment));
-        if let Some(texture) = self.texture.as_ref().filter(|_| is_same) {
-            return texture.clone();
-        }
-        let [width, height] = THUMBNAIL;
-        let pixels = thumbnail(environment, width, height).concat();
-        let image = ColorImage::from_rgba_premultiplied(THUMBNAIL.map(|n| n as usize), &pixels);
-        let texture = ctx.load_texture("environment", image, TextureOptions::LINEAR);
-        (self.of, self.texture) = (Some(environment.clone()), Some(texture.clone()));
-        texture
-    }
-}
+/// Size of an environment's picture in the list, points.
+const PICTURE: egui::Vec2 = vec2(48.0, 24.0);
+/// Most files in the list.
+const FILES_MAX: usize = 6;
 
 /// The environments that come with the program.
 pub(in crate::app) const BUILT_IN: [(&str, &str, EnvironmentSource); 3] = [
@@ -72,17 +40,7 @@ pub(in crate::app) fn environment_label(source: &EnvironmentSource) -> String {
 
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     widgets::group(ui, "Environment", |ui| {
-        if let Some(scene) = desk.snapshot.scene.clone() {
-            let texture = desk.state.thumbnail.texture(ui.ctx(), &scene.job.environment);
-            let width = ui.available_width();
-            let image = egui::Image::new(&texture)
-                .fit_to_exact_size(vec2(width, 0.5 * width))
-                .corner_radius(3.0);
-            let name = &scene.job.environment.name;
-            let size = [scene.job.environment.width, scene.job.environment.height];
-            ui.add(image.alt_text("The environment"))
-                .on_hover_text(format!("{name}, {} × {}", size[0], size[1]));
-        }
+        current(ui, desk);
         sources(ui, desk);
         numbers(ui, desk);
     });
@@ -107,28 +65,68 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     });
 }
 
+/// The environment in use, as large as the panel lets it be.
+fn current(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let Some(scene) = desk.snapshot.scene.clone() else {
+        return;
+    };
+    let source = &scene.document.lighting.environment;
+    let width = ui.available_width();
+    let size = vec2(width, 0.5 * width);
+    let (place, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "The environment"));
+    match desk.state.environments.picture(source) {
+        Some(picture) => egui::Image::new(picture).corner_radius(3.0).paint_at(ui, place),
+        None => _ = ui.painter().rect_filled(place, 3.0, ui.visuals().extreme_bg_color),
+    }
+    let environment = &scene.job.environment;
+    let [width, height] = [environment.width, environment.height];
+    response.on_hover_text(format!("{}, {width} × {height}", environment.name));
+}
+
+/// All there are to choose from: those that come with the program, and files, the one in use and those opened last.
 fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
     let current = desk.document.lighting.environment.clone();
-    ui.horizontal_wrapped(|ui| {
-        for (label, help, source) in &BUILT_IN {
-            let item = ui.selectable_label(current == *source, *label).on_hover_text(*help);
-            if item.clicked() && current != *source {
-                desk.actions.push(Action::UseEnvironment(source.clone()));
+    let mut sources: Vec<EnvironmentSource> = BUILT_IN.iter().map(|(.., source)| source.clone()).collect();
+    for source in std::iter::once(current.clone()).chain(desk.state.recent.environments()) {
+        if !sources.contains(&source) && sources.len() < BUILT_IN.len() + FILES_MAX {
+            sources.push(source);
+        }
+    }
+    let scene = desk.snapshot.scene.clone();
+    let loaded = scene
+        .as_ref()
+        .map(|scene| (&scene.document.lighting.environment, &scene.job.environment));
+    desk.state.environments.make_pictures(ui.ctx(), &sources, loaded);
+    ui.add_space(2.0);
+    for source in &sources {
+        let is_current = *source == current;
+        let environments = &desk.state.environments;
+        let row = PictureRow {
+            name: &environment_label(source),
+            picture: environments.picture(source),
+            size: PICTURE,
+            color: ui.visuals().extreme_bg_color,
+            is_current,
+        };
+        let help = match (source, BUILT_IN.iter().find(|(.., of)| of == source)) {
+            (EnvironmentSource::File(path), _) if environments.is_missing(source) => {
+                format!("{}: not there any more, or not to be read", path.display())
             }
+            (EnvironmentSource::File(path), _) => path.display().to_string(),
+            (_, built_in) => built_in.map_or_else(String::new, |(_, help, _)| (*help).to_owned()),
+        };
+        if row.show(ui).on_hover_text(help).clicked() && !is_current {
+            desk.actions.push(Action::UseEnvironment(source.clone()));
         }
-        let is_file = matches!(current, EnvironmentSource::File(_));
-        if ui
-            .selectable_label(is_file, "File…")
-            .on_hover_text(Command::OpenEnvironment.help())
-            .clicked()
-        {
-            desk.act(Command::OpenEnvironment);
-        }
-    });
-    if let EnvironmentSource::File(path) = &current {
-        let name = environment_label(&current);
-        ui.add(egui::Label::new(name).truncate())
-            .on_hover_text(path.display().to_string());
+    }
+    ui.add_space(2.0);
+    if ui
+        .button("Open a file…")
+        .on_hover_text(Command::OpenEnvironment.help())
+        .clicked()
+    {
+        desk.act(Command::OpenEnvironment);
     }
     ui.add_space(0.5 * theme::GAP);
 }

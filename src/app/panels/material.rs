@@ -167,6 +167,11 @@ fn small_copy(picture: &Texture) -> egui::ColorImage {
     egui::ColorImage::new([width as usize, height as usize], pixels.collect())
 }
 
+/// What a parameter's row is called for screen readers, tests and the palette.
+pub(in crate::app) fn full_name(parameter: &Parameter) -> String {
+    format!("{} {}", parameter.group, parameter.label.to_lowercase())
+}
+
 fn show_parameter(
     ui: &mut Ui,
     desk: &mut Desk<'_>,
@@ -174,7 +179,7 @@ fn show_parameter(
     picture: Option<&SlotPicture>,
     material: &mut MaterialSettings,
 ) {
-    let full = format!("{} {}", parameter.group, parameter.label.to_lowercase());
+    let full = full_name(parameter);
     let name = Name {
         full: &full,
         label: parameter.label,
@@ -194,8 +199,8 @@ fn show_parameter(
     }
     // A control may leave the range behind for a moment, as a picker does: such a value is not taken.
     if (response.changed || response.reset) && parameter.set(material, value).is_ok() {
-        let label = format!("{} {}", parameter.group, parameter.label.to_lowercase());
-        desk.edits.note(label, format!("{}/{}", desk.state.slot, parameter.key));
+        desk.edits
+            .note(full.clone(), format!("{}/{}", desk.state.slot, parameter.key));
     }
 }
 

@@ -16,6 +16,7 @@ pub(super) mod log;
 pub(super) mod material;
 pub(super) mod presets;
 pub(super) mod race;
+mod region;
 pub(super) mod samples;
 pub(super) mod snapshots;
 mod study;
@@ -23,7 +24,9 @@ mod study;
 use super::actions::{Action, Command};
 use super::compare::Compare;
 use super::edits::Edits;
+use super::environments::Environments;
 use super::library::Library;
+use super::recent::Recent;
 use super::snapshots::Snapshots;
 use super::widgets::RowResponse;
 use crate::document::{Document, ImportLobe, MaterialSettings};
@@ -46,8 +49,10 @@ pub(super) struct PanelState {
     pub(super) slot: usize,
     /// What was said, oldest first.
     pub(super) log: Vec<log::Entry>,
-    /// The environment's small picture.
-    pub(super) thumbnail: lighting::Thumbnail,
+    /// Small pictures of environments.
+    pub(super) environments: Environments,
+    /// The files opened and saved last.
+    pub(super) recent: Recent,
     /// The lobe of the materials of models that are opened.
     pub(super) import_lobe: ImportLobe,
     /// How large the picture is.

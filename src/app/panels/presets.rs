@@ -1,13 +1,12 @@
 //! Materials to start from: the shipped ones, and the user's own.
 
-use std::path::Path;
-
-use egui::{Key, Response, Sense, TextureHandle, Ui, vec2};
+use egui::{Response, TextureHandle, Ui, Vec2, vec2};
 
 use super::Desk;
 use crate::app::actions::{Action, Command};
 use crate::app::library::{Change, Library, Shown};
-use crate::app::{theme, widgets};
+use crate::app::theme;
+use crate::app::widgets::{self, PictureRow};
 use crate::document::{MaterialSettings, PRESETS};
 
 /// Side of a material's picture, points.
@@ -68,8 +67,9 @@ fn own_entry(ui: &mut Ui, shown: &Shown, library: &mut Library, current: &Materi
     if let Some((renamed, name)) = &mut library.renaming
         && renamed == path
     {
-        if let Some(change) = name_field(ui, path, name) {
-            actions.extend(change.map(Action::ChangeLibrary));
+        if let Some(chosen) = widgets::name_field(ui, name) {
+            let rename = |name| Action::ChangeLibrary(Change::Rename(path.clone(), name));
+            actions.extend(chosen.map(rename));
             library.renaming = None;
         }
         return;
@@ -117,52 +117,15 @@ fn own_entry(ui: &mut Ui, shown: &Shown, library: &mut Library, current: &Materi
     }
 }
 
-/// `Some(None)`: left as it was.
-fn name_field(ui: &mut Ui, path: &Path, name: &mut String) -> Option<Option<Change>> {
-    let field = ui
-        .add(egui::TextEdit::singleline(name).desired_width(f32::INFINITY))
-        .accessible_name("New name");
-    if ui.input(|input| input.key_pressed(Key::Escape)) {
-        return Some(None);
-    }
-    if field.lost_focus() {
-        let name = name.trim().to_owned();
-        return Some((!name.is_empty()).then(|| Change::Rename(path.to_owned(), name)));
-    }
-    field.request_focus();
-    None
-}
-
 /// A preset: its picture, or one colour until it is there, and its name.
 fn entry(ui: &mut Ui, material: &MaterialSettings, picture: Option<&TextureHandle>, is_current: bool) -> Response {
-    let size = vec2(ui.available_width(), PICTURE + 4.0);
-    let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_current, &material.name));
-    let visuals = ui.style().interact_selectable(&response, is_current);
-    if is_current || response.hovered() || response.has_focus() {
-        ui.painter()
-            .rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
-    }
-    let center = rect.left_center() + vec2(0.5 * PICTURE + 4.0, 0.0);
-    match picture {
-        Some(picture) => {
-            let at = egui::Rect::from_center_size(center, vec2(PICTURE, PICTURE));
-            egui::Image::new(picture).corner_radius(3.0).paint_at(ui, at);
-        }
-        None => {
-            let [r, g, b] = widgets::srgb_of(material.base_color);
-            let color = egui::Color32::from_rgb(r, g, b);
-            ui.painter().circle_filled(center, 0.35 * PICTURE, color);
-        }
-    }
-    let font = egui::TextStyle::Body.resolve(ui.style());
-    let at = rect.left_center() + vec2(PICTURE + 14.0, 0.0);
-    ui.painter().text(
-        at,
-        egui::Align2::LEFT_CENTER,
-        &material.name,
-        font,
-        visuals.text_color(),
-    );
-    response
+    let [r, g, b] = widgets::srgb_of(material.base_color);
+    let row = PictureRow {
+        name: &material.name,
+        picture,
+        size: Vec2::splat(PICTURE),
+        color: egui::Color32::from_rgb(r, g, b),
+        is_current,
+    };
+    row.show(ui)
 }

@@ -26,6 +26,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
     });
     ui.add_space(theme::GAP);
+    renaming(ui, desk);
     if desk.state.snapshots.pinned.is_empty() {
         widgets::note(
             ui,
@@ -38,6 +39,20 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
             entry(ui, desk, index);
         }
     });
+}
+
+/// The field for the new name of the one that is being renamed.
+fn renaming(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let Some((path, name)) = &mut desk.state.snapshots.renaming else {
+        return;
+    };
+    let chosen = widgets::name_field(ui, name);
+    ui.add_space(theme::GAP);
+    if let Some(chosen) = chosen {
+        let rename = |name| Action::ChangeSnapshots(PinChange::Rename(path.clone(), name));
+        desk.actions.extend(chosen.map(rename));
+        desk.state.snapshots.renaming = None;
+    }
 }
 
 fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
@@ -73,6 +88,7 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
     let galley = ui.painter().layout_job(job);
     let below = egui::pos2(rect.center().x - 0.5 * galley.size().x, place.bottom() + 5.0);
     ui.painter().galley(below, galley, visuals.text_color());
+    let mut is_renaming = false;
     let mut more = |ui: &mut Ui| {
         if ui.button("Bring back").clicked() {
             desk.actions.push(Action::UseSnapshot(path.clone()));
@@ -81,6 +97,7 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
             let rival = Rival::Materials(name.clone(), materials.clone());
             desk.actions.push(Action::CompareWith(rival));
         }
+        is_renaming |= ui.button("Rename").clicked();
         if ui.button("Delete").clicked() {
             desk.actions
                 .push(Action::ChangeSnapshots(PinChange::Remove(path.clone())));
@@ -95,6 +112,9 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
     button.accessible_name(format!("More of {name}"));
     let help = "Click to bring it back; right-click for more";
     if response.on_hover_text(help).clicked() {
-        desk.actions.push(Action::UseSnapshot(path));
+        desk.actions.push(Action::UseSnapshot(path.clone()));
+    }
+    if is_renaming {
+        desk.state.snapshots.renaming = Some((path, name));
     }
 }

@@ -84,6 +84,9 @@ impl State<'_> {
             self.open(choice);
             self.restart();
         }
+        if let Some(session) = self.session.as_ref().filter(|_| orders.lose_device) {
+            session.lose_device();
+        }
         if orders.reload || orders.restart {
             self.guarded(|state| {
                 let session = state.session()?;
@@ -343,11 +346,13 @@ impl State<'_> {
                 ..Scene::clone(scene)
             }));
         }
+        // Where nothing is left to render, the picture is the new submission's, too.
+        let is_done = self.session()?.progress().is_done;
         if let Some(last) = self
             .snapshot
             .picture
             .clone()
-            .filter(|_| stage.is_shown && change.display)
+            .filter(|_| stage.is_shown && (change.display || is_done))
         {
             self.publish(last.image.clone(), last.samples_per_pixel)?;
         }

@@ -1,0 +1,165 @@
+//! What actions and commands do.
+
+use super::actions::{Action, Command};
+use super::layout::{self, Pane};
+use super::menu::Sheet;
+use super::{App, library, palette, panels, snapshots, widgets};
+use crate::document::{CameraSettings, MaterialSettings, PARAMETERS};
+use crate::scene::camera::framing_distance;
+
+impl App {
+    pub(super) fn apply(&mut self, ctx: &egui::Context, action: Action) {
+        match action {
+            Action::Do(command) => self.command(ctx, command),
+            Action::Open(path) => {
+                self.open(path);
+            }
+            Action::UseModel(source) => self.worker.open_model(source),
+            Action::UseEnvironment(source) => self.worker.open_environment(source),
+            Action::ImportAs(lobe) => self.panels.import_lobe = lobe,
+            Action::UseMaterial(material) => self.use_material(*material),
+            Action::SelectSlot(slot) => {
+                self.panels.slot = slot;
+                self.edits.seal();
+            }
+            Action::ChangeLibrary(change) => self.change_library(change),
+            Action::ChangeSnapshots(change) => self.change_snapshots(change),
+            Action::UseSnapshot(path) => self.use_snapshot(&path),
+            Action::CompareWith(rival) => self.compare_with(rival),
+            Action::LookFrom(yaw_deg, pitch_deg) => {
+                let camera = &mut self.document.camera;
+                (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
+                self.edits.note("Look from a side", "");
+            }
+            Action::Reveal(pane) => self.reveal(pane),
+            Action::Edit(key) => self.edit_parameter(ctx, key),
+            Action::UseEngine(choice) => self.worker.use_engine(choice),
+            Action::Show(shown) => {
+                self.panels.shown = shown;
+                self.worker.show(shown);
+            }
+        }
+    }
+
+    /// Brings the parameter's row to the front and gives it the keys.
+    fn edit_parameter(&mut self, ctx: &egui::Context, key: &str) {
+        if let Some(parameter) = PARAMETERS.iter().find(|parameter| parameter.key == key) {
+            self.reveal(Pane::Material);
+            widgets::wish_focus(ctx, parameter.group, panels::material::full_name(parameter));
+        }
+    }
+
+    fn command(&mut self, ctx: &egui::Context, command: Command) {
+        log::debug!("{}", command.label());
+        match command {
+            Command::Undo => {
+                if let Some(document) = self.edits.undo() {
+                    self.document = document;
+                }
+            }
+            Command::Redo => {
+                if let Some(document) = self.edits.redo() {
+                    self.document = document;
+                }
+            }
+            Command::ResetMaterial => {
+                let name = self.desk_material().name;
+                let default = MaterialSettings::default();
+                self.use_material(MaterialSettings { name, ..default });
+            }
+            Command::ResetCamera => {
+                self.document.camera = CameraSettings::default();
+                self.edits.note("Reset the camera", "");
+            }
+            Command::FrameAll => {
+                let camera = &mut self.document.camera;
+                (camera.target, camera.distance, camera.position) = (None, None, None);
+                self.edits.note("Frame all", "");
+            }
+            Command::FrameSelected => self.frame_selected(),
+            Command::Maximise => {
+                self.is_maximised = !self.is_maximised;
+                layout::set_maximised(&mut self.layout, self.is_maximised);
+            }
+            Command::ToggleTheme => {
+                let is_dark = ctx.theme() == egui::Theme::Dark;
+                self.theme = if is_dark {
+                    egui::ThemePreference::Light
+                } else {
+                    egui::ThemePreference::Dark
+                };
+                ctx.set_theme(self.theme);
+            }
+            Command::Region => self.viewport.draw_region(),
+            Command::ClearRegion => {
+                self.document.render.region = None;
+                self.edits.note("Clear the render region", "");
+            }
+            Command::ResetLayout => {
+                self.layout = layout::default_layout();
+                self.is_maximised = false;
+            }
+            Command::Pause => {
+                self.panels.is_paused = !self.panels.is_paused;
+                self.worker.pause(self.panels.is_paused);
+            }
+            Command::Reload => {
+                self.worker.reload();
+                self.restart_rival();
+            }
+            Command::Restart => {
+                self.worker.restart();
+                self.restart_rival();
+            }
+            Command::Compare => self.toggle_compare(),
+            Command::SwapCompared => self.swap_compared(),
+            Command::TakeCompared => self.take_compared(),
+            Command::Pin => {
+                self.change_snapshots(snapshots::PinChange::Add);
+                self.reveal(Pane::Snapshots);
+            }
+            Command::Turntable => self.open_turntable(),
+            Command::Palette => {
+                palette::focus(ctx);
+                self.sheet = Sheet::Palette {
+                    search: String::new(),
+                    selected: 0,
+                };
+            }
+            Command::Shortcuts => self.sheet = Sheet::Shortcuts,
+            Command::About => self.sheet = Sheet::About,
+            Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::SaveToMyPresets => self.change_library(library::Change::Add),
+            of_files => self.file_command(ctx, of_files),
+        }
+    }
+
+    pub(super) fn use_material(&mut self, material: MaterialSettings) {
+        let label = format!("Use {}", material.name);
+        let slot = self.panels.slot;
+        let materials = &mut self.document.materials;
+        if materials.len() <= slot {
+            let last = materials.last().cloned().unwrap_or_default();
+            materials.resize(slot + 1, last);
+        }
+        materials[slot] = material;
+        self.edits.note(label, "");
+    }
+
+    /// Looks at the surfaces of the selected slot from where the camera is.
+    fn frame_selected(&mut self) {
+        let snapshot = self.worker.snapshot();
+        let Some(scene) = &snapshot.scene else { return };
+        let geometry = &scene.job.geometry;
+        let Some((center, radius)) = geometry.sphere_around(self.panels.slot as u32) else {
+            return;
+        };
+        let size = scene.job.settings.image_size.map(f64::from);
+        let camera = &mut self.document.camera;
+        let distance = framing_distance(camera.fov_deg, size[0] / size[1].max(1.0)) * radius;
+        camera.target = Some(geometry.world_from_units(center).to_array());
+        camera.distance = Some(distance * geometry.world_units_per_unit);
+        camera.position = None;
+        self.edits.note("Frame selected", "");
+    }
+}

@@ -1,0 +1,133 @@
+//! The part of the picture that is rendered: drawn with the mouse, outlined, taken away again.
+
+use egui::{
+    Align2, Color32, CursorIcon, Key, Modifiers, PointerButton, Pos2, Rect, Response, Stroke, StrokeKind, Ui, vec2,
+};
+
+use crate::app::actions::Command;
+use crate::app::icons::{self, Icon};
+use crate::app::panels::Desk;
+use crate::app::theme;
+
+/// A rectangle with a side shorter than this was a click, points.
+const SIDE_MIN: f32 = 6.0;
+
+/// Drawing a region.
+#[derive(Default)]
+pub(super) struct RegionTool {
+    /// The next drag is the region.
+    is_armed: bool,
+    /// Where the drag began, points.
+    from: Option<Pos2>,
+    /// What had the keys in the frame before: escape takes them from it before it is seen here.
+    focused: Option<egui::Id>,
+}
+
+impl RegionTool {
+    pub(super) fn arm(&mut self) {
+        (self.is_armed, self.from) = (true, None);
+    }
+
+    /// Shows the region over the picture at `place`; true while the viewport's drags are its own.
+    pub(super) fn show(&mut self, ui: &mut Ui, response: &Response, place: Rect, desk: &mut Desk<'_>) -> bool {
+        let is_wanted = self.is_armed || desk.document.render.region.is_some();
+        if is_wanted && self.takes_escape(ui, response) {
+            if !self.is_armed {
+                desk.act(Command::ClearRegion);
+            }
+            self.is_armed = false;
+        }
+        self.focused = ui.memory(|memory| memory.focused());
+        if self.is_armed {
+            self.draw(ui, response, place, desk);
+            return true;
+        }
+        if let Some(region) = desk.document.render.region {
+            outline(ui, place_of(region, place), desk);
+        }
+        false
+    }
+
+    /// Whether escape was pressed and nothing else wants it.
+    fn takes_escape(&self, ui: &Ui, response: &Response) -> bool {
+        let is_free = self.focused.is_none_or(|id| id == response.id)
+            && ui.memory(|memory| memory.top_modal_layer().is_none())
+            && !egui::Popup::is_any_open(ui.ctx());
+        is_free && ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape))
+    }
+
+    fn draw(&mut self, ui: &mut Ui, response: &Response, place: Rect, desk: &mut Desk<'_>) {
+        if response.hovered() || self.from.is_some() {
+            ui.ctx().set_cursor_icon(CursorIcon::Crosshair);
+        }
+        hint(ui, place);
+        if response.drag_started_by(PointerButton::Primary) {
+            self.from = ui.input(|input| input.pointer.press_origin());
+        }
+        let Some((from, to)) = self.from.zip(response.interact_pointer_pos()) else {
+            return;
+        };
+        let drawn = Rect::from_two_pos(from, to).intersect(place);
+        let is_large = drawn.width() >= SIDE_MIN && drawn.height() >= SIDE_MIN;
+        if is_large {
+            frame(ui, drawn);
+        }
+        if response.drag_stopped() {
+            self.from = None;
+            if is_large {
+                desk.document.render.region = Some(region_of(drawn, place));
+                desk.edits.note("Render region", "");
+                self.is_armed = false;
+            }
+        }
+    }
+}
+
+/// Left, top, right and bottom of a rectangle as shares of the picture.
+fn region_of(drawn: Rect, place: Rect) -> [f64; 4] {
+    let share = |value: f32, from: f32, length: f32| f64::from(((value - from) / length).clamp(0.0, 1.0));
+    let (x, y) = (
+        |x| share(x, place.left(), place.width()),
+        |y| share(y, place.top(), place.height()),
+    );
+    [x(drawn.left()), y(drawn.top()), x(drawn.right()), y(drawn.bottom())]
+}
+
+fn place_of([left, top, right, bottom]: [f64; 4], place: Rect) -> Rect {
+    let at = |x: f64, y: f64| place.min + vec2(x as f32, y as f32) * place.size();
+    Rect::from_min_max(at(left, top), at(right, bottom))
+}
+
+/// Light and dark, so that it is seen against everything.
+fn frame(ui: &Ui, at: Rect) {
+    let painter = ui.painter();
+    painter.rect_stroke(
+        at.expand(1.0),
+        0.0,
+        Stroke::new(1.0, Color32::from_black_alpha(160)),
+        StrokeKind::Inside,
+    );
+    let accent = theme::accent(ui.visuals().dark_mode);
+    painter.rect_stroke(at, 0.0, Stroke::new(1.0, accent), StrokeKind::Inside);
+}
+
+fn outline(ui: &mut Ui, at: Rect, desk: &mut Desk<'_>) {
+    frame(ui, at);
+    let corner = Rect::from_min_size(at.right_top() + vec2(-26.0, 4.0), egui::Vec2::splat(theme::ROW_HEIGHT));
+    let builder = egui::UiBuilder::new().max_rect(corner).id_salt("clear region");
+    let mut inside = ui.new_child(builder);
+    let help = "Render the whole picture again (escape)";
+    if icons::button(&mut inside, Icon::Close, Command::ClearRegion.label(), help).clicked() {
+        desk.act(Command::ClearRegion);
+    }
+}
+
+fn hint(ui: &Ui, place: Rect) {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let text = "Drag a rectangle: only that part is rendered. Escape leaves it.";
+    let color = ui.visuals().strong_text_color();
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, color);
+    let around = Align2::CENTER_TOP.anchor_size(place.center_top() + vec2(0.0, 10.0), galley.size() + vec2(16.0, 8.0));
+    ui.painter().rect_filled(around, 4.0, ui.visuals().panel_fill);
+    ui.painter().galley(around.min + vec2(8.0, 4.0), galley, color);
+}

@@ -1,0 +1,153 @@
+//! Small pictures of environments, made beside the window and kept on disk.
+
+use std::collections::HashMap;
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use super::background::Background;
+use super::picture_cache;
+use crate::scene::environment::{Environment, EnvironmentSource, load, thumbnail};
+
+/// Columns and rows of a thumbnail.
+pub const SIZE: [u32; 2] = [256, 128];
+/// How long to wait before looking whether there is time.
+const HOLD_STEP: Duration = Duration::from_millis(25);
+/// To be raised where thumbnails of the same environment come out otherwise than before.
+const VERSION: u32 = 1;
+
+/// An environment whose picture is wanted.
+#[derive(Clone)]
+pub struct Wanted {
+    /// Where it comes from.
+    pub source: EnvironmentSource,
+    /// The environment where it has been loaded already: a large file is then not read twice.
+    pub loaded: Option<Arc<Environment>>,
+}
+
+/// A picture: opaque red, green, blue and alpha of 8 bits, [`SIZE`] pixels from the top; `None` where the environment
+/// can't be had.
+pub type EnvironmentThumbnail = Option<Arc<Vec<u8>>>;
+/// Thumbnails by what they show.
+pub type EnvironmentThumbnails = Arc<HashMap<EnvironmentSource, EnvironmentThumbnail>>;
+/// Makes the thumbnails that it was asked for last, in their order; answers grow.
+pub type EnvironmentThumbnailWorker = Background<Vec<Wanted>, EnvironmentThumbnails>;
+
+/// Starts the worker; `folder` keeps the pictures from one start to the next. Nothing is made while `hold` is set: the
+/// viewport goes first.
+///
+/// # Errors
+/// If the system gives no thread.
+pub fn spawn_environment_thumbnails(
+    folder: Option<PathBuf>,
+    hold: Arc<AtomicBool>,
+    repaint: impl Fn() + Send + 'static,
+) -> io::Result<EnvironmentThumbnailWorker> {
+    let mut made: HashMap<EnvironmentSource, (u64, EnvironmentThumbnail)> = HashMap::new();
+    Background::spawn("environments", repaint, move |queue: Vec<Wanted>, desk| {
+        for wanted in queue {
+            while hold.load(Ordering::Relaxed) && !desk.is_superseded() {
+                std::thread::sleep(HOLD_STEP);
+            }
+            if desk.is_superseded() {
+                return;
+            }
+            let key = key(&wanted.source);
+            if made.get(&wanted.source).is_some_and(|(of, _)| *of == key) {
+                continue;
+            }
+            let path = folder.as_ref().map(|folder| folder.join(format!("{key:016x}.png")));
+            let kept = path.as_ref().and_then(|path| picture_cache::read(path, SIZE));
+            let is_kept = kept.is_some();
+            let picture = kept.or_else(|| make(&wanted)).map(Arc::new);
+            if let (Some(path), Some(pixels), false) = (&path, &picture, is_kept)
+                && let Err(error) = picture_cache::write(path, SIZE, pixels)
+            {
+                // A cache: where it can't be written, the next start makes it again.
+                log::debug!("{error}");
+            }
+            made.insert(wanted.source, (key, picture));
+            let pictures = made
+                .iter()
+                .map(|(source, (_, picture))| (source.clone(), picture.clone()));
+            desk.publish(Arc::new(pictures.collect()));
+        }
+    })
+}
+
+fn make(wanted: &Wanted) -> Option<Vec<u8>> {
+    let pixels = |environment: &Environment| thumbnail(environment, SIZE[0], SIZE[1]).concat();
+    match &wanted.loaded {
+        Some(environment) => Some(pixels(environment)),
+        None => match load(&wanted.source) {
+            Ok(environment) => Some(pixels(&environment)),
+            // It is said where it is chosen.
+            Err(error) => {
+                log::debug!("no small picture: {error}");
+                None
+            }
+        },
+    }
+}
+
+/// Changes with what a file holds, as far as its size and date tell.
+fn key(source: &EnvironmentSource) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    (VERSION, env!("CARGO_PKG_VERSION"), source).hash(&mut hasher);
+    if let EnvironmentSource::File(path) = source
+        && let Ok(metadata) = std::fs::metadata(path)
+    {
+        (metadata.len(), metadata.modified().ok()).hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+
+    fn wait(worker: &EnvironmentThumbnailWorker, count: usize) -> EnvironmentThumbnails {
+        let begun = Instant::now();
+        loop {
+            if let Some(made) = worker.latest().filter(|made| made.len() >= count) {
+                return made;
+            }
+            assert!(begun.elapsed() < Duration::from_secs(60), "no thumbnails came");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    fn wanted(source: EnvironmentSource) -> Wanted {
+        Wanted { source, loaded: None }
+    }
+
+    #[test]
+    fn thumbnails_are_made_kept_and_missing_where_a_file_is() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let cache = folder.path().join("new");
+        let missing = EnvironmentSource::File(folder.path().join("gone.hdr"));
+        let worker = spawn_environment_thumbnails(Some(cache.clone()), Arc::default(), || {}).expect("a thread");
+        worker.ask(vec![wanted(missing.clone()), wanted(EnvironmentSource::Furnace)]);
+        let made = wait(&worker, 2);
+        assert_eq!(made[&missing], None);
+        let white = made[&EnvironmentSource::Furnace].clone().expect("it is computed");
+        assert_eq!(white.len(), 4 * (SIZE[0] * SIZE[1]) as usize);
+        assert!(
+            white.chunks(4).all(|pixel| pixel == &white[..4]),
+            "the same from everywhere"
+        );
+        // A marked file shows that the second start reads it.
+        let marked = vec![77; white.len()];
+        let path = cache.join(format!("{:016x}.png", key(&EnvironmentSource::Furnace)));
+        picture_cache::write(&path, SIZE, &marked).expect("written");
+        let again = spawn_environment_thumbnails(Some(cache), Arc::default(), || {}).expect("a thread");
+        again.ask(vec![wanted(EnvironmentSource::Furnace)]);
+        let kept = wait(&again, 1)[&EnvironmentSource::Furnace].clone().expect("kept");
+        assert_eq!(*kept, marked);
+    }
+}

@@ -1,0 +1,264 @@
+//! Textures, the lobe of opened models, the render region, the list of environments and the palette's parameters, in the
+//! editor with the real renderer.
+
+use std::time::Instant;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, Rect, Vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::layout::Pane;
+use glossmith::app::{App, Options};
+use glossmith::document::Document;
+use glossmith::optics::lobe::Lobe;
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+use serde_json::json;
+
+use super::cli_support::write_hdr;
+use super::gltf_builder::{Folder, glb};
+use super::textures::{four_texels, textured_square};
+use super::ui::{PATIENCE, drag, editor, editor_of, editor_with, options, picture, request, settle, undo, wait};
+use super::worker::small_document;
+
+type Editor = Harness<'static, App>;
+
+fn see(harness: &mut Editor, what: &str, until: impl Fn(&Editor) -> bool) {
+    let begun = Instant::now();
+    while !until(harness) {
+        assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}");
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(3));
+    }
+}
+
+/// A file with a square whose colour and roughness are pictures.
+fn textured_file(folder: &Folder) -> std::path::PathBuf {
+    let material = json!({"pbrMetallicRoughness": {
+        "baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 1}
+    }});
+    let (buffer, document) = textured_square(&material, &[four_texels(), four_texels()], &json!({}));
+    let path = folder.path("square.glb");
+    std::fs::write(&path, glb(&document, &buffer.bytes)).expect("a temporary file");
+    path
+}
+
+#[test]
+fn textures_have_rows_that_switch_them() {
+    let folder = Folder::new();
+    let mut document = small_document();
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
+    let mut harness = editor_with(document, vec![textured_file(&folder)]);
+    settle(&mut harness);
+    assert!(
+        harness.query_by_label("Geometry normal texture").is_none(),
+        "it has no normals"
+    );
+    let textured = picture(&harness);
+    for label in ["Specular roughness texture", "Base colour texture"] {
+        let switch = |harness: &mut Editor| {
+            harness.get_by_role_and_label(Role::CheckBox, label).click_accesskit();
+            settle(harness);
+        };
+        let before = harness.state().document().clone();
+        switch(&mut harness);
+        let uses = harness.state().document().materials[0].textures;
+        assert_eq!(
+            (uses.color, uses.roughness),
+            (label != "Base colour texture", label == "Base colour texture")
+        );
+        assert_ne!(picture(&harness), textured, "{label}");
+        undo(&mut harness);
+        assert_eq!(*harness.state().document(), before);
+        assert_eq!(picture(&harness), textured);
+    }
+}
+
+#[test]
+fn opened_models_get_the_lobe_that_the_menu_says() {
+    let folder = Folder::new();
+    let path = textured_file(&folder);
+    let mut harness = editor();
+    for (label, lobe) in [("GGX", Lobe::Ggx), ("Geometric", Lobe::Geometric)] {
+        harness.get_by_role_and_label(Role::Button, "File").click();
+        harness.run_steps(3);
+        harness.get_by_label_contains("Lobe of opened models").click();
+        harness.run_steps(3);
+        harness.get_by_role_and_label(Role::RadioButton, label).click();
+        harness.run_steps(3);
+        harness.key_press(Key::Escape);
+        harness.run_steps(2);
+        request(&mut harness, Action::UseModel(ModelSource::Sphere));
+        wait(&mut harness, "the sphere", |app| {
+            app.document().model == ModelSource::Sphere
+        });
+        request(&mut harness, Action::Open(path.clone()));
+        wait(&mut harness, "the model", |app| {
+            app.document().model == ModelSource::File(path.clone())
+        });
+        assert_eq!(harness.state().document().materials[0].lobe, lobe);
+    }
+}
+
+#[test]
+fn a_region_is_drawn_in_one_step_and_cleared() {
+    let mut harness = editor();
+    let (before, whole) = (harness.state().document().clone(), picture(&harness));
+    harness.key_press(Key::B);
+    harness.run_steps(2);
+    let viewport = harness.get_by_label("Viewport").rect();
+    let place = fitted(viewport, &before);
+    let from = place.min + place.size() * Vec2::new(0.25, 0.5);
+    drag(
+        &mut harness,
+        from,
+        place.size() * Vec2::new(0.5, 0.5) - Vec2::splat(1.0),
+    );
+    settle(&mut harness);
+    let after = harness.state().document().clone();
+    let region = after.render.region.expect("it was drawn");
+    for (side, expected) in region.into_iter().zip([0.25, 0.5, 0.75, 1.0]) {
+        assert!((side - expected).abs() < 0.01, "{region:?}");
+    }
+    assert_eq!(after.camera, before.camera, "the drag was the region's");
+    assert_eq!(picture(&harness), whole, "what has been rendered stays");
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .set_value_accesskit(0.8);
+    settle(&mut harness);
+    let part = picture(&harness);
+    // Tiles of 16 × 16 pixels are rendered or not: the last of the 40 columns lies in one of its own.
+    assert_eq!(
+        (part[39], whole[39][3]),
+        ([0.0; 4], 1.0),
+        "nothing is rendered beside it"
+    );
+    assert!(part.iter().any(|pixel| pixel[3] > 0.0));
+    undo(&mut harness);
+    assert_eq!(*harness.state().document(), after);
+    undo(&mut harness);
+    assert_eq!(*harness.state().document(), before);
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    harness.run_steps(2);
+    assert_eq!(harness.state().document().render.region, Some(region));
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert_eq!(harness.state().document().render.region, None);
+    undo(&mut harness);
+    harness
+        .get_by_role_and_label(Role::Button, Command::ClearRegion.label())
+        .click();
+    settle(&mut harness);
+    assert_eq!(*harness.state().document(), before);
+    assert_eq!(picture(&harness), whole);
+    // Escape while nothing has been drawn leaves the drag to the camera.
+    harness.key_press(Key::B);
+    harness.run_steps(2);
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    drag(&mut harness, viewport.center(), Vec2::new(40.0, 0.0));
+    assert_ne!(harness.state().document().camera, before.camera);
+}
+
+/// Where a picture of the document's shape lies in the viewport, under its header.
+fn fitted(viewport: Rect, document: &Document) -> Rect {
+    let size = Vec2::new(document.render.width as f32, document.render.height as f32);
+    let scale = (viewport.width() / size.x).min(viewport.height() / size.y);
+    Rect::from_center_size(viewport.center(), size * scale)
+}
+
+#[test]
+fn a_region_is_set_by_numbers() {
+    let mut harness = editor();
+    harness.state_mut().reveal(Pane::Camera);
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::CheckBox, "Render region")
+        .click_accesskit();
+    harness.run_steps(3);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Region left")
+        .set_value_accesskit(40.0);
+    settle(&mut harness);
+    assert_eq!(harness.state().document().render.region, Some([0.4, 0.25, 0.75, 0.75]));
+}
+
+#[test]
+fn environments_are_listed_with_pictures_and_files_stay_in_the_list() {
+    let folder = Folder::new();
+    let light = folder.path("orange.hdr");
+    write_hdr(&light, 16, 8, |_, _| [1.0, 0.4, 0.1]);
+    let cache = folder.path("cache");
+    let mut harness = editor_of(Options {
+        cache: Some(cache.clone()),
+        ..options()
+    });
+    settle(&mut harness);
+    harness.state_mut().reveal(Pane::Lighting);
+    request(&mut harness, Action::Open(light.clone()));
+    let source = EnvironmentSource::File(light);
+    wait(&mut harness, "the light", |app| {
+        app.document().lighting.environment == source
+    });
+    settle(&mut harness);
+    harness.get_by_role_and_label(Role::Button, "Sky").click_accesskit();
+    wait(&mut harness, "the sky", |app| {
+        app.document().lighting.environment == EnvironmentSource::Sky
+    });
+    harness
+        .get_by_role_and_label(Role::Button, "orange.hdr")
+        .click_accesskit();
+    wait(&mut harness, "the light again", |app| {
+        app.document().lighting.environment == source
+    });
+    // Studio, sky, furnace and the file.
+    see(&mut harness, "the pictures", |_| {
+        std::fs::read_dir(cache.join("environments")).is_ok_and(|entries| entries.count() == 4)
+    });
+    harness.run_steps(2);
+    harness.check_accessibility();
+    undo(&mut harness);
+    assert_eq!(harness.state().document().lighting.environment, EnvironmentSource::Sky);
+}
+
+#[test]
+fn the_palette_leads_to_parameters_and_panels() {
+    let mut harness = editor();
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::K);
+    harness.run_steps(2);
+    // Typed at once: the field has the keys.
+    harness.event(egui::Event::Text("spec rough".to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(4);
+    let node = harness.get_by_label("Specular roughness");
+    assert!(node.accesskit_node().is_focused(), "the row has the keys");
+    harness.event(egui::Event::Text("0.9".to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    settle(&mut harness);
+    assert_eq!(harness.state().document().materials[0].roughness, 0.9);
+    for (words, key, value) in [
+        ("specular lobe", Key::ArrowDown, Lobe::ALL[1]),
+        ("specular lobe", Key::ArrowUp, Lobe::ALL[0]),
+    ] {
+        request(&mut harness, Action::Do(Command::Palette));
+        harness.event(egui::Event::Text(words.to_owned()));
+        harness.run_steps(2);
+        harness.key_press(Key::Enter);
+        harness.run_steps(4);
+        harness.key_press(key);
+        harness.run_steps(2);
+        assert_eq!(harness.state().document().materials[0].lobe, value);
+    }
+    request(&mut harness, Action::Do(Command::Palette));
+    harness.event(egui::Event::Text("show samples".to_owned()));
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert!(
+        harness.query_by_label("Samples view angle").is_some(),
+        "the panel is in front"
+    );
+}
