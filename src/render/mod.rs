@@ -12,6 +12,7 @@ pub mod display;
 mod engine;
 pub mod hard;
 pub mod output;
+pub mod precision;
 pub mod priority;
 pub mod probe;
 pub mod samples;

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use glossmith::document::{Document, PRESETS};
-use glossmith::render::hard::{HardOptions, OPEN, catalogue, markdown, run};
+use glossmith::render::hard::{HardOptions, catalogue, markdown, run};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -28,7 +28,7 @@ fn assert_all_hold(engine: EngineChoice) {
     }
     let failed: Vec<_> = rows
         .iter()
-        .filter(|row| row.check.passed == OPEN.contains(&row.case.name))
+        .filter(|row| !row.check.passed)
         .map(|row| &row.check)
         .collect();
     assert!(failed.is_empty(), "{info}: {failed:#?}");
@@ -82,7 +82,7 @@ fn the_table_of_stability_is_the_programs_own() {
             case.group, case.name, case.danger, case.made, case.must
         );
         assert!(line.starts_with(&fixed), "{line}: run UPDATE_DOCS=1 cargo test hard");
-        assert_eq!(line.contains("**fails**"), OPEN.contains(&case.name), "{line}");
+        assert!(!line.contains("**fails**"), "{line}");
     }
 }
 

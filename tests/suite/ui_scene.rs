@@ -124,3 +124,28 @@ fn a_click_in_the_viewport_gives_its_angle_to_the_plots() {
         "head-on in the middle of a sphere"
     );
 }
+
+#[test]
+fn the_precision_view_tells_that_nothing_is_wrong() {
+    let mut harness = editor();
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Viewport shows")
+        .click_accesskit();
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::Button, "Precision")
+        .click_accesskit();
+    harness.run_steps(2);
+    let begun = std::time::Instant::now();
+    while harness.query_by_label("0 dropped").is_none() {
+        assert!(begun.elapsed() < super::ui::PATIENCE, "no map is made");
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    for told in ["0 f32 off f64", "0 start inside", "of 960 pixels"] {
+        assert!(harness.query_by_label(told).is_some(), "{told}");
+    }
+    // The picture comes back with the first entry.
+    choose(&mut harness, "Viewport shows", "Picture");
+    assert!(harness.query_by_label("0 dropped").is_none());
+}
