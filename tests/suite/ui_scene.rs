@@ -5,11 +5,13 @@ use egui::{Modifiers, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::App;
+use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
 use glossmith::document::effect::Switch;
+use glossmith::render::display::Shown;
 use glossmith::scene::ModelSource;
 
-use super::ui::{editor, editor_of, options, picture, settle, undo};
+use super::ui::{editor, editor_of, options, picture, request, settle, undo};
 use super::worker::small_document;
 
 fn choose(harness: &mut Harness<'static, App>, menu: &str, item: &str) {
@@ -145,7 +147,6 @@ fn the_precision_view_tells_that_nothing_is_wrong() {
     for told in ["0 f32 off f64", "0 start inside", "of 960 pixels"] {
         assert!(harness.query_by_label(told).is_some(), "{told}");
     }
-    // The picture comes back with the first entry.
-    choose(&mut harness, "Viewport shows", "Picture");
+    request(&mut harness, Action::Show(Shown::Picture));
     assert!(harness.query_by_label("0 dropped").is_none());
 }

@@ -154,9 +154,17 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
         .zip(&answers)
         .map(|(question, answer)| error(&scene, question, answer))
         .collect();
-    let regular = errors.iter().flatten().count();
-    log::debug!("{}: {} of {pairs} pairs are singular", lobe.name(), pairs - regular);
-    Ok(errors.into_iter().flatten().fold(0.0, f64::max))
+    let singular = errors.iter().filter(|error| error.is_none()).count();
+    log::debug!("{}: {singular} of {pairs} pairs are singular", lobe.name());
+    let regular = (0..pairs).filter_map(|pair| Some((pair, errors[pair]?)));
+    let Some((worst, error)) = regular.max_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return Ok(0.0);
+    };
+    let question = &questions[worst];
+    let right = probe_material::<f64>(&scene, question, [0.0; 2]);
+    let (material, answer) = (&materials[question.material as usize], answers[worst]);
+    log::debug!("{error:.1e} at {question:?} of {material:?}: {answer:?}, right is {right:?}");
+    Ok(error)
 }
 
 /// The relative error of an answer; nothing at a singularity.
