@@ -63,6 +63,8 @@ mod noise;
 mod nothing_lost;
 #[path = "suite/plan.rs"]
 mod plan;
+#[path = "suite/precision.rs"]
+mod precision;
 #[path = "suite/renders.rs"]
 mod renders;
 #[path = "suite/statistics.rs"]

@@ -5,7 +5,13 @@ const PEAK_RADIUS: f32 = 1e-7;
 const TINY: f32 = 1e-18;
 const RANGE_MAX: vec2f = vec2f(20.0, 1000.0);
 const SHORT_RULE_ROUGHNESS: f32 = 0.5;
+const SHORT_RANGE: f32 = 0.5;
 
+const GAUSS_6: array<vec2f, 3> = array<vec2f, 3>(
+    vec2f(0.238619186, 0.467913935),
+    vec2f(0.661209386, 0.360761573),
+    vec2f(0.932469514, 0.171324492),
+);
 const GAUSS_12: array<vec2f, 6> = array<vec2f, 6>(
     vec2f(0.125233409, 0.249147046),
     vec2f(0.367831499, 0.233492537),
@@ -51,9 +57,15 @@ fn chord_density(
     switch curve {
         case CURVE_LINEAR: { integral = chord_reciprocal_integral(chord); }
         case CURVE_SQRT, CURVE_CBRT, CURVE_SMOOTH: {
-            integral = chord_polynomial_integral(chord, chord_polynomial(curve));
+            if curve == CURVE_SMOOTH && chord_range(chord) < SHORT_RANGE {
+                integral = chord_quadrature(curve, 3u, chord);
+            } else {
+                integral = chord_polynomial_integral(chord, chord_polynomial(curve));
+            }
         }
-        case CURVE_LONG_TAIL: { integral = chord_quadrature(curve, kappa, chord); }
+        case CURVE_LONG_TAIL: {
+            integral = chord_quadrature(curve, select(10u, 6u, kappa <= SHORT_RULE_ROUGHNESS), chord);
+        }
         default: { integral = chord_table_integral(table, chord); }
     }
     return max(0.25 * INV_PI * integral / chord.a_root, 0.0);
@@ -161,21 +173,19 @@ fn chord_polynomial(curve: u32) -> vec3f {
     }
 }
 
-fn chord_quadrature(curve: u32, kappa: f32, chord: Chord) -> f32 {
+// `pairs` of nodes: 3, 6 or 10.
+fn chord_quadrature(curve: u32, pairs: u32, chord: Chord) -> f32 {
     let mu = 0.5 * chord.odd.x / chord.a_root;
     let range_max = RANGE_MAX.x + RANGE_MAX.y * max(mu, 0.0);
     let half_range = 0.5 * min(chord_range(chord), range_max);
     let middle = (1.0 + chord_growth(chord, chord.last)) * exp(-half_range);
     // The nodes' exponentials come in pairs, e^(m + d) and e^(m - d).
     var sum = 0.0;
-    if kappa <= SHORT_RULE_ROUGHNESS {
-        for (var i = 0u; i < 6u; i++) {
-            sum += chord_pair(curve, chord, mu, middle, half_range, GAUSS_12[i]);
-        }
-    } else {
-        for (var i = 0u; i < 10u; i++) {
-            sum += chord_pair(curve, chord, mu, middle, half_range, GAUSS_20[i]);
-        }
+    for (var i = 0u; i < pairs; i++) {
+        var node = GAUSS_20[i];
+        if pairs == 6u { node = GAUSS_12[i]; }
+        if pairs == 3u { node = GAUSS_6[i]; }
+        sum += chord_pair(curve, chord, mu, middle, half_range, node);
     }
     return sum * half_range;
 }

@@ -85,6 +85,39 @@ fn fresnel_dielectric(cosine: f32, ior: f32) -> f32 {
     return select(value, 1.0, square < 0.0);
 }
 
+fn fresnel_left(terms: FresnelTerms, cosine: f32, behind: f32) -> vec3f {
+    let white = vec3f(1.0);
+    var left = white;
+    if terms.model == FRESNEL_SCHLICK || terms.model == FRESNEL_DIELECTRIC {
+        var dielectric = white;
+        if terms.model == FRESNEL_SCHLICK {
+            let c = clamp(cosine, 0.0, 1.0);
+            // 1 - (1 - c)^5.
+            let beside_grazing = c * (5.0 - c * (10.0 - c * (10.0 - c * (5.0 - c))));
+            dielectric = (white - terms.tint * fresnel_f0(terms.ior)) * beside_grazing;
+        } else {
+            dielectric = white - terms.tint + terms.tint * fresnel_transmitted(cosine, behind, terms.ior);
+        }
+        let metal = white - fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.tint;
+        left = mix(dielectric, metal, terms.metalness);
+    } else {
+        var full = terms;
+        full.weight = 1.0;
+        left = white - fresnel(full, cosine);
+    }
+    return max(white * (1.0 - terms.weight) + left * terms.weight, vec3f(0.0));
+}
+
+fn fresnel_transmitted(cosine: f32, behind: f32, ior: f32) -> f32 {
+    return 0.5 * (fresnel_passed(cosine, ior * behind) + fresnel_passed(ior * cosine, behind));
+}
+
+// 1 - ((a - b)/(a + b))^2.
+fn fresnel_passed(a: f32, b: f32) -> f32 {
+    let sum = max(a + b, 1e-12);
+    return 4.0 * (a / sum) * (b / sum);
+}
+
 fn fresnel_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
     let c = clamp(cosine, 0.0, 1.0);
     let cos2 = c * c;
@@ -103,6 +136,8 @@ fn fresnel_conductor(cosine: f32, eta: f32, k: f32) -> f32 {
     let perpendicular = (t1 - t2) / max(t1 + t2, 1e-37);
     let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
     let t4 = t2 * sin2;
-    let parallel = perpendicular * (t3 - t4) / max(t3 + t4, 1e-37);
+    // Head-on both may be 0; there both polarisations are alike.
+    let ratio = select((t3 - t4) / max(t3 + t4, 1e-37), 1.0, t3 + t4 < 1e-37);
+    let parallel = perpendicular * ratio;
     return clamp(0.5 * (perpendicular + parallel), 0.0, 1.0);
 }

@@ -266,9 +266,8 @@ fn transmission_color(material: Material, layers: Layers, shape: LobeShape, surf
     if !refracts_at_facets(shape) {
         return layers.transmission;
     }
-    let cosine = refracting_cosine(surface.wo, wi, shape.eta);
-    let reflected = fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
-    let left = max(vec3f(1.0) - reflected, vec3f(0.0));
+    let cosines = refracting_cosines(surface.wo, wi, shape.eta);
+    let left = fresnel_left(material_fresnel_terms(material, surface.is_inside), cosines.x, cosines.y);
     return material.transmission_tint * left * (material.transmission_weight * (1.0 - material.metalness));
 }
 

@@ -5,6 +5,8 @@ struct Facet {
     wo: vec3f,
     wi: vec3f,
     h: vec3f,
+    // Between h and either direction.
+    cosine: f32,
 }
 
 fn microfacet_alpha(shape: LobeShape) -> vec2f {
@@ -18,9 +20,14 @@ fn isotropic_alpha(shape: LobeShape) -> vec2f {
 }
 
 fn facet(frame: Frame, wo_world: vec3f, wi_world: vec3f) -> Facet {
-    let wo = local_from_world(frame, wo_world);
-    let wi = local_from_world(frame, wi_world);
-    return Facet(wo, wi, normalize_or(wo + wi, vec3f(0.0, 0.0, 1.0)));
+    let sum = wo_world + wi_world;
+    let h = normalize_or(sum, frame.normal);
+    return Facet(
+        local_from_world(frame, wo_world),
+        local_from_world(frame, wi_world),
+        local_from_world(frame, h),
+        min(0.5 * length(sum), 1.0),
+    );
 }
 
 fn ggx_distribution(alpha: vec2f, h: vec3f) -> f32 {
@@ -58,6 +65,5 @@ fn visible_weight(shape: LobeShape, frame: Frame, wo_world: vec3f, wi_world: vec
 }
 
 fn distribution_weight(alpha: vec2f, f: Facet) -> f32 {
-    let ratio = dot(f.wo, f.h) / max(f.h.z, 1e-6);
-    return smith_g2_over_cosine(alpha, f.wo, f.wi) * max(ratio, 0.0);
+    return smith_g2_over_cosine(alpha, f.wo, f.wi) * f.cosine / max(f.h.z, 1e-6);
 }

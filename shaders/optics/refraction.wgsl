@@ -26,9 +26,9 @@ fn refracting_normal(wo: vec3f, wi: vec3f, eta: f32) -> vec3f {
     return select(-sum, sum, eta < 1.0);
 }
 
-fn refracting_cosine(wo: vec3f, wi: vec3f, eta: f32) -> f32 {
+fn refracting_cosines(wo: vec3f, wi: vec3f, eta: f32) -> vec2f {
     let h = normalize_or(refracting_normal(wo, wi, eta), wo);
-    return clamp(dot(wo, h), 0.0, 1.0);
+    return clamp(vec2f(dot(wo, h), -dot(wi, h)), vec2f(0.0), vec2f(1.0));
 }
 
 // What turns the density of the direction that the facet mirrors `wo` to into the density of `wi`; 0 where no facet

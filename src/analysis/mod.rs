@@ -16,6 +16,7 @@ pub mod lobe_model;
 pub mod lobe_view;
 pub mod noise;
 pub mod plot;
+pub mod precision;
 pub mod probe;
 pub mod quadrature;
 pub mod sampling;

@@ -7,6 +7,7 @@
 mod compare;
 mod header;
 mod legend;
+mod precision;
 mod region;
 
 use egui::{
@@ -20,6 +21,7 @@ use super::orbit::Orbit;
 use super::panels::{Desk, Resolution};
 use super::theme;
 use crate::optics::material::Material;
+use crate::render::display;
 use crate::render::worker::{Level, Picture, Scene};
 use crate::scene::camera::camera_ray;
 use crate::scene::surface::surface_at;
@@ -45,6 +47,8 @@ pub(super) struct Viewport {
     rival: Shown,
     /// How B differs from A.
     difference: Shown,
+    /// What of the numbers is not to be trusted.
+    precision: precision::Precision,
     /// Where the picture may be, points.
     area: Option<Rect>,
     pixels_per_point: f32,
@@ -152,6 +156,11 @@ impl Viewport {
             } else {
                 let place = placed(area, picture, desk.state.resolution);
                 self.picture.paint(ui, place, place, picture, 0);
+                if let Some(scene) = &desk.snapshot.scene
+                    && desk.state.shown == display::Shown::Precision
+                {
+                    self.precision.show(ui, area, place, &scene.job);
+                }
                 place
             };
             if is_compared && desk.state.compare.view == View::Wipe {

@@ -2,6 +2,7 @@
 
 pub mod features;
 pub mod integrator;
+pub mod precision;
 pub mod probe;
 pub mod sampling;
 pub mod scatter;

@@ -65,8 +65,18 @@ pub fn probe_random(questions: &[RandomQuestion]) -> Vec<[u32; 2]> {
     questions.par_iter().map(answer).collect()
 }
 
-/// A material's evaluate for light from a direction that was drawn with some density, in the precision `T`; `moved` is
-/// added to the direction, in units of f32's last bit along two tangents.
+/// A direction moved by so many roundings of f32 along two tangents.
+pub fn moved_direction<T: Real>(wi: Vec3<T>, moved: [f64; 2]) -> Vec3<T> {
+    if moved == [0.0; 2] {
+        return wi;
+    }
+    let around = frame_from_normal(wi);
+    let [along, across] = moved.map(|by| T::from_f64(by * f64::from(f32::EPSILON)));
+    wi + around.tangent * along + around.bitangent * across
+}
+
+/// A material's evaluate for light from a direction that was drawn with some density, in the precision `T`; the direction
+/// is moved as by [`moved_direction`].
 pub fn probe_material<T: Real>(scene: &ProbeScene<'_>, question: &MaterialQuestion, moved: [f64; 2]) -> Vec3<T> {
     let q = question;
     let vector = |v: Vec3<f32>| Vec3::<T>::from_f64(v.to_f64());
@@ -78,12 +88,7 @@ pub fn probe_material<T: Real>(scene: &ProbeScene<'_>, question: &MaterialQuesti
         wo: vector(q.wo),
         is_inside: q.is_inside == 1,
     };
-    let mut wi = vector(q.wi);
-    if moved != [0.0; 2] {
-        let around = frame_from_normal(wi);
-        let [along, across] = moved.map(|by| T::from_f64(by * f64::from(f32::EPSILON)));
-        wi += around.tangent * along + around.bitangent * across;
-    }
+    let wi = moved_direction(vector(q.wi), moved);
     let density = T::from_f64(f64::from(q.light_density));
     material_evaluate(&material, scene.tables, &surface, wi, density, T::one())
 }

@@ -23,7 +23,16 @@ pub const TINY: f64 = 1e-18;
 pub const RANGE_MAX: [f64; 2] = [20.0, 1000.0];
 /// Roughness up to which the shorter rule integrates the long tail to better than 1e-3.
 pub const SHORT_RULE_ROUGHNESS: f64 = 0.5;
+/// Range of v up to which the smooth curve, whose h vanishes at the silhouette, is integrated node by node: the closed
+/// form takes it as a difference of moments there, each much larger.
+pub const SHORT_RANGE: f64 = 0.5;
 
+/// Positive nodes and weights of the 6-point Gauss–Legendre rule on [−1, 1].
+const GAUSS_6: [[f64; 2]; 3] = [
+    [0.2386191860831969, 0.46791393457269104],
+    [0.6612093864662645, 0.36076157304813855],
+    [0.932469514203152, 0.17132449237917025],
+];
 /// Positive nodes and weights of the 12-point Gauss–Legendre rule on [−1, 1].
 const GAUSS_12: [[f64; 2]; 6] = [
     [0.1252334085114689, 0.2491470458134027],
@@ -85,8 +94,12 @@ pub fn chord_density<T: Real>(
     let chord = chord_through(curve_distance_max(curve, table), kappa, stretch, normal, mirror, light);
     let integral = match curve {
         Curve::Linear => chord_reciprocal_integral(&chord),
+        Curve::Smooth if chord_range(&chord).less(T::from_f64(SHORT_RANGE)).any() => {
+            chord_quadrature(curve, &GAUSS_6, &chord)
+        }
         Curve::Sqrt | Curve::Cbrt | Curve::Smooth => chord_polynomial_integral(&chord, chord_polynomial(curve)),
-        Curve::LongTail => chord_quadrature(curve, kappa, chord),
+        Curve::LongTail if kappa.to_f64() <= SHORT_RULE_ROUGHNESS => chord_quadrature(curve, &GAUSS_12, &chord),
+        Curve::LongTail => chord_quadrature(curve, &GAUSS_20, &chord),
         Curve::Custom => chord_table_integral(table, chord),
     };
     let value = T::from_f64(0.25 * std::f64::consts::FRAC_1_PI) * integral / chord.a_root;
@@ -222,27 +235,21 @@ fn chord_polynomial<T: Real>(curve: Curve) -> [T; 3] {
     coefficients.map(T::from_f64)
 }
 
-/// ∫ t² h dv by Gauss–Legendre in v, for the curves without a closed form.
-fn chord_quadrature<T: Real>(curve: Curve, kappa: T, chord: Chord<T>) -> T {
-    let chord = &chord;
+/// ∫ t² h dv by Gauss–Legendre in v, for curves without a closed form, or where it cancels.
+fn chord_quadrature<T: Real>(curve: Curve, rule: &[[f64; 2]], chord: &Chord<T>) -> T {
     let half = T::from_f64(0.5);
     let mu = half * chord.odd[0] / chord.a_root;
     let range_max = T::from_f64(RANGE_MAX[0]) + T::from_f64(RANGE_MAX[1]) * mu.max(T::zero());
     let half_range = half * chord_range(chord).min(range_max);
     let middle = (T::one() + chord_growth(chord, chord.last)) * (-half_range).exp();
     // The nodes' exponentials come in pairs, e^(m + d) and e^(m − d).
-    let pair = |sum: T, [node, weight]: [f64; 2]| {
+    let pair = |sum: T, &[node, weight]: &[f64; 2]| {
         let factor = (half_range * T::from_f64(node)).exp();
         let values =
             chord_integrand(curve, chord, mu, middle * factor) + chord_integrand(curve, chord, mu, middle / factor);
         sum + values * T::from_f64(weight)
     };
-    let sum = if kappa.to_f64() <= SHORT_RULE_ROUGHNESS {
-        GAUSS_12.into_iter().fold(T::zero(), pair)
-    } else {
-        GAUSS_20.into_iter().fold(T::zero(), pair)
-    };
-    sum * half_range
+    rule.iter().fold(T::zero(), pair) * half_range
 }
 
 /// t² h at e^v.

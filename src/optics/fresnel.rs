@@ -182,13 +182,60 @@ pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
     );
     let t1 = a2_plus_b2 + cos2;
     let t2 = T::from_f64(2.0) * a * c;
-    // Only where both are 0 there is nothing to divide by.
+    // Where both are 0 there is nothing to divide by: no wave at all behind, or head-on, where there is no plane of
+    // incidence and both polarisations are alike.
     let tiny = T::from_f64(1e-37);
     let perpendicular = (t1 - t2) / (t1 + t2).max(tiny);
     let t3 = cos2 * a2_plus_b2 + sin2 * sin2;
     let t4 = t2 * sin2;
-    let parallel = perpendicular * (t3 - t4) / (t3 + t4).max(tiny);
+    let sum = t3 + t4;
+    let ratio = T::select(sum.less(tiny), T::one(), (t3 - t4) / sum.max(tiny));
+    let parallel = perpendicular * ratio;
     (half * (perpendicular + parallel)).clamp(T::zero(), T::one())
+}
+
+/// What the facet leaves over of the light that it refracts, linear RGB in [0, 1]: 1 − [`fresnel`], so written that it
+/// keeps its digits where nearly everything is reflected. `cosine` between the facet's normal and the view, `behind` between
+/// it and the refracted direction, both in [0, 1].
+#[inline(always)]
+pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> Vec3<T> {
+    let white = Vec3::splat(T::one());
+    let metal = || white - fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.tint;
+    let left = match terms.model {
+        Fresnel::None | Fresnel::Conductor => {
+            let weight = T::one();
+            white - fresnel(&FresnelTerms { weight, ..*terms }, cosine)
+        }
+        Fresnel::Schlick => {
+            let c = cosine.clamp(T::zero(), T::one());
+            // 1 − (1 − c)⁵.
+            let five = T::from_f64(5.0);
+            let ten = T::from_f64(10.0);
+            let beside_grazing = c * (five - c * (ten - c * (ten - c * (five - c))));
+            let dielectric = (white - terms.tint * fresnel_f0(terms.ior)) * beside_grazing;
+            dielectric.mix(metal(), terms.metalness)
+        }
+        Fresnel::Dielectric => {
+            let through = fresnel_transmitted(cosine, behind, terms.ior);
+            let dielectric = white - terms.tint + terms.tint * through;
+            dielectric.mix(metal(), terms.metalness)
+        }
+    };
+    (white * (T::one() - terms.weight) + left * terms.weight).map(|x| x.max(T::zero()))
+}
+
+/// The share that a boundary of two dielectrics lets through, by the cosines on both sides; `ior` as in
+/// [`fresnel_dielectric`]. The refracted cosine is given and not computed from the other: at the critical angle that would
+/// lose half of its digits.
+#[inline(always)]
+pub fn fresnel_transmitted<T: Real>(cosine: T, behind: T, ior: T) -> T {
+    let tiny = T::from_f64(1e-12);
+    // 1 − ((a − b)/(a + b))².
+    let passed = |a: T, b: T| {
+        let sum = (a + b).max(tiny);
+        T::from_f64(4.0) * (a / sum) * (b / sum)
+    };
+    T::from_f64(0.5) * (passed(cosine, ior * behind) + passed(ior * cosine, behind))
 }
 
 /// A metal of the preset list.

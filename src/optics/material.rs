@@ -10,10 +10,10 @@ use super::albedo::{albedo_lookup, albedo_place, rough_albedo, rough_albedo_look
 use super::coat::{coat_evaluate, coat_probability, coat_sample, coat_share, coat_transmittance};
 use super::curve::Curve;
 use super::frame::Frame;
-use super::fresnel::{Fresnel, FresnelTerms, fresnel, half_vector_cosine};
+use super::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_left, half_vector_cosine};
 use super::lobe::{Horizon, Lobe, LobeSample, LobeShape, is_mirror, lobe_evaluate, lobe_sample, refracts_at_facets};
 use super::real::{Mask, Real};
-use super::refraction::refracting_cosine;
+use super::refraction::refracting_cosines;
 use super::vector::Vec3;
 
 /// The number of a texture that is not there.
@@ -510,9 +510,8 @@ fn transmission_color<T: Real>(
     if !refracts_at_facets(shape) {
         return layers.transmission;
     }
-    let cosine = refracting_cosine(surface.wo, wi, shape.eta);
-    let reflected = fresnel(&material.fresnel_terms(surface.is_inside), cosine);
-    let left = (Vec3::splat(T::one()) - reflected).map(|x| x.max(T::zero()));
+    let [cosine, behind] = refracting_cosines(surface.wo, wi, shape.eta);
+    let left = fresnel_left(&material.fresnel_terms(surface.is_inside), cosine, behind);
     material.transmission_tint * left * (material.transmission_weight * (T::one() - material.metalness))
 }
 

@@ -2,10 +2,11 @@
 //! All vectors in the local frame, n = +z. Source: Walter et al. 2007; Heitz 2014 and 2018.
 
 use super::frame::{Frame, local_from_world};
+use super::fresnel::half_vector_cosine;
 use super::lobe::{LobeShape, alpha_from_roughness, stretch_from_anisotropy};
 use super::numeric::normalize_or;
 use super::real::Real;
-use super::vector::{Vec3, vec3};
+use super::vector::Vec3;
 
 /// The widths along tangent and bitangent.
 #[derive(Clone, Copy, Debug)]
@@ -43,16 +44,20 @@ pub struct Facet<T> {
     pub wi: Vec3<T>,
     /// The facet's normal.
     pub h: Vec3<T>,
+    /// The cosine between the facet's normal and either direction, in [0, 1].
+    pub cosine: T,
 }
 
-/// The facet that reflects `wi` to `wo`.
+/// The facet that reflects `wi` to `wo`. Where they are nearly opposite their sum is short: it is taken before the
+/// rounding of the frame, which would turn it.
 #[inline(always)]
 pub fn facet<T: Real>(frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> Facet<T> {
-    let (wo, wi) = (local_from_world(frame, wo), local_from_world(frame, wi));
+    let h = normalize_or(wo + wi, frame.normal);
     Facet {
-        wo,
-        wi,
-        h: normalize_or(wo + wi, vec3(T::zero(), T::zero(), T::one())),
+        wo: local_from_world(frame, wo),
+        wi: local_from_world(frame, wi),
+        h: local_from_world(frame, h),
+        cosine: half_vector_cosine(wo, wi),
     }
 }
 
@@ -106,6 +111,6 @@ pub fn visible_weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: V
 /// The weight of a direction whose facet was drawn in proportion to D cosθ: G2 (wo·h)/(cosθo h.z).
 #[inline(always)]
 pub fn distribution_weight<T: Real>(alpha: Alpha<T>, facet: Facet<T>) -> T {
-    let ratio = facet.wo.dot(facet.h) / facet.h.z.max(T::from_f64(1e-6));
-    smith_g2_over_cosine(alpha, facet.wo, facet.wi) * ratio.max(T::zero())
+    let ratio = facet.cosine / facet.h.z.max(T::from_f64(1e-6));
+    smith_g2_over_cosine(alpha, facet.wo, facet.wi) * ratio
 }

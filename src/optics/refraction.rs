@@ -55,11 +55,11 @@ pub fn refracting_normal<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> Vec3<T> {
     Vec3::select(eta.less(T::one()), sum, -sum)
 }
 
-/// The cosine between the view and the normal of the facet that refracts it to `wi`, in [0, 1].
+/// The cosines between the normal of the facet that refracts the view to `wi` and either, before and behind it, in [0, 1].
 #[inline(always)]
-pub fn refracting_cosine<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> T {
+pub fn refracting_cosines<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> [T; 2] {
     let h = normalize_or(refracting_normal(wo, wi, eta), wo);
-    wo.dot(h).clamp(T::zero(), T::one())
+    [wo.dot(h), -wi.dot(h)].map(|cosine| cosine.clamp(T::zero(), T::one()))
 }
 
 /// What turns the density of the direction that a facet mirrors `wo` to into the density of the refracted `wi`, per

@@ -59,11 +59,13 @@ pub enum Shown {
     Error,
     /// The samples of each pixel.
     Samples,
+    /// Where numbers are not to be trusted: made beside the picture, see [`super::precision`].
+    Precision,
 }
 
 impl Shown {
     /// All of them, with their labels and what they are.
-    pub const ALL: [(Self, &str, &str); 3] = [
+    pub const ALL: [(Self, &str, &str); 4] = [
         (Self::Picture, "Picture", "The picture itself."),
         (
             Self::Error,
@@ -74,6 +76,11 @@ impl Shown {
             Self::Samples,
             "Samples",
             "How many samples each pixel has had: with adaptive sampling they go where the error is.",
+        ),
+        (
+            Self::Precision,
+            "Precision",
+            "Where samples are dropped, f32 differs from f64, or rays start inside geometry.",
         ),
     ];
 }
@@ -106,10 +113,10 @@ const ERRORS_ABOVE: f64 = 0.005;
 const ERRORS_SPAN: f64 = 300.0;
 
 /// A film's errors or samples in colours: opaque bytes as [`display`] gives them, and what they mean; `None` for the
-/// picture itself.
+/// picture itself, and for what is no map of a film.
 pub fn map(film: &Film, shown: Shown) -> Option<(Vec<u8>, Scale)> {
     let (values, scale) = match shown {
-        Shown::Picture => return None,
+        Shown::Picture | Shown::Precision => return None,
         Shown::Error => {
             let errors = relative_errors(film);
             let mut sorted = errors.clone();

@@ -14,6 +14,7 @@ pub mod environment_thumbnails;
 pub mod hard;
 pub mod output;
 mod picture_cache;
+pub mod precision;
 pub mod priority;
 pub mod probe;
 pub mod samples;

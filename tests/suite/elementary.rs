@@ -4,7 +4,10 @@ use std::collections::HashSet;
 
 use glossmith::document::AreaLight;
 use glossmith::optics::curve::Curve;
-use glossmith::optics::fresnel::{METALS, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_schlick};
+use glossmith::optics::fresnel::{
+    Fresnel, FresnelTerms, METALS, fresnel, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_left,
+    fresnel_schlick, fresnel_transmitted,
+};
 use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, MIRROR_WIDTH, is_mirror, lobe_sample};
 use glossmith::optics::random::{Sequence, random_pair, random_pair_bits, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
@@ -43,6 +46,59 @@ fn dielectrics_follow_the_sine_and_the_tangent_law() {
         assert!((fresnel_dielectric(1.0, ior) - fresnel_f0(ior)).abs() < 1e-15);
     }
     assert!((fresnel_f0(1.5_f64) - 0.04).abs() < 1e-15);
+}
+
+/// What is let through is what is not reflected, and keeps its digits where that is next to nothing.
+#[test]
+fn what_is_let_through_keeps_its_digits() {
+    for ior in INDICES {
+        for angle_deg in [0.0_f64, 10.0, 30.0, 60.0, 85.0, 89.99] {
+            let sine_behind = angle_deg.to_radians().sin() / ior;
+            if sine_behind >= 1.0 {
+                continue;
+            }
+            let (cosine, behind) = (angle_deg.to_radians().cos(), sine_behind.asin().cos());
+            let through = fresnel_transmitted(cosine, behind, ior);
+            let reflected = fresnel_dielectric(cosine, ior);
+            assert!(
+                (through + reflected - 1.0).abs() < 1e-10,
+                "index {ior} at {angle_deg} degrees"
+            );
+        }
+        // A hair from grazing: 4 cosθ (1 + ior²)/(2 ior cosθt) in the limit.
+        let (cosine, ior) = (1e-9, ior.max(1.1));
+        let behind = (1.0 - 1.0 / (ior * ior)).sqrt();
+        let expected = 2.0 * cosine * (1.0 + ior * ior) / (ior * behind);
+        let single = f64::from(fresnel_transmitted(cosine as f32, behind as f32, ior as f32));
+        assert!(
+            (single / expected - 1.0).abs() < 1e-6,
+            "index {ior}: {single}, expected {expected}"
+        );
+    }
+}
+
+/// What a facet leaves over is one minus what it reflects, whatever the model.
+#[test]
+fn what_a_facet_leaves_over_is_what_it_does_not_reflect() {
+    for &model in Fresnel::ALL {
+        let terms = FresnelTerms {
+            model,
+            metal_f0: vec3(0.9, 0.6, 0.2),
+            metalness: 0.3,
+            tint: vec3(1.0, 0.8, 0.1),
+            edge_tint: vec3(0.5, 1.0, 0.9),
+            weight: 0.7,
+            ior: 1.5,
+            eta: vec3(0.2, 0.9, 1.1),
+            k: vec3(3.9, 2.4, 2.1),
+        };
+        for cosine in [0.02_f64, 0.3, 0.8, 1.0] {
+            let behind = (1.0 - (1.0 - cosine * cosine) / 2.25).sqrt();
+            let sum = fresnel(&terms, cosine) + fresnel_left(&terms, cosine, behind);
+            let off = (sum - vec3(1.0, 1.0, 1.0)).map(f64::abs).max_component();
+            assert!(off < 1e-12, "{model:?} at {cosine}: {sum:?}");
+        }
+    }
 }
 
 /// At Brewster's angle all that is reflected is polarised across: half of ((n^2 - 1)/(n^2 + 1))^2.

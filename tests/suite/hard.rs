@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{Document, PRESETS};
-use glossmith::render::hard::{HardOptions, OPEN, catalogue, markdown, run};
+use glossmith::render::hard::{HardOptions, catalogue, markdown, run};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -29,7 +29,7 @@ fn assert_all_hold(engine: EngineChoice) {
     }
     let failed: Vec<_> = rows
         .iter()
-        .filter(|row| row.check.passed == OPEN.contains(&row.case.name))
+        .filter(|row| !row.check.passed)
         .map(|row| &row.check)
         .collect();
     assert!(failed.is_empty(), "{info}: {failed:#?}");
@@ -83,7 +83,7 @@ fn the_table_of_stability_is_the_programs_own() {
             case.group, case.name, case.danger, case.made, case.must
         );
         assert!(line.starts_with(&fixed), "{line}: run UPDATE_DOCS=1 cargo test hard");
-        assert_eq!(line.contains("**fails**"), OPEN.contains(&case.name), "{line}");
+        assert!(!line.contains("**fails**"), "{line}");
     }
 }
 

@@ -295,6 +295,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("FACETS_VISIBLE", f64::from(Facets::Visible as u32)),
         ("FACETS_ALL", f64::from(Facets::All as u32)),
         ("SHORT_RULE_ROUGHNESS", chord::SHORT_RULE_ROUGHNESS),
+        ("SHORT_RANGE", chord::SHORT_RANGE),
         ("PEAK_RADIUS", chord::PEAK_RADIUS),
         ("TINY", chord::TINY),
         ("SCENE_MAX", tone::SCENE_MAX),
@@ -318,6 +319,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         number(name.into(), value);
     }
     twins.push(("RANGE_MAX".into(), chord::RANGE_MAX.into()));
+    twins.push(("GAUSS_6".into(), gauss_legendre(6)));
     twins.push(("GAUSS_12".into(), gauss_legendre(12)));
     twins.push(("GAUSS_20".into(), gauss_legendre(20)));
     twins

@@ -3,10 +3,10 @@
 use glossmith::analysis::chi_square::{ChiSquare, PolarGrid, sidak_level, test_counts, test_samples};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::fresnel::{fresnel_dielectric, half_vector_cosine};
+use glossmith::optics::fresnel::{fresnel_dielectric, fresnel_transmitted, half_vector_cosine};
 use glossmith::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample, raw_weight};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::refraction::refracting_cosine;
+use glossmith::optics::refraction::refracting_cosines;
 use glossmith::optics::vector::{Vec3, vec3};
 use rayon::prelude::*;
 
@@ -239,7 +239,8 @@ fn facets_reflect_and_refract_no_more_than_there_is() {
             .map(|i| {
                 let (mirrored, refracted) = (draw(&reflecting, i), draw(&refracting, i));
                 let reflected = fresnel_dielectric(half_vector_cosine(wo, mirrored.wi), eta);
-                let left = 1.0 - fresnel_dielectric(refracting_cosine(wo, refracted.wi, eta), eta);
+                let [cosine, behind] = refracting_cosines(wo, refracted.wi, eta);
+                let left = fresnel_transmitted(cosine, behind, eta);
                 mirrored.weight * reflected + refracted.weight * left
             })
             .sum();

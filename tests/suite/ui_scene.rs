@@ -5,11 +5,13 @@ use egui::{Modifiers, Pos2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::App;
+use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
 use glossmith::document::effect::Switch;
+use glossmith::render::display::Shown;
 use glossmith::scene::ModelSource;
 
-use super::ui::{editor, editor_of, options, picture, settle, undo};
+use super::ui::{editor, editor_of, options, picture, request, settle, undo};
 use super::worker::small_document;
 
 fn choose(harness: &mut Harness<'static, App>, menu: &str, item: &str) {
@@ -123,4 +125,28 @@ fn a_click_in_the_viewport_gives_its_angle_to_the_plots() {
         number(&harness, "Samples view angle") < 4.0,
         "head-on in the middle of a sphere"
     );
+}
+
+#[test]
+fn the_precision_view_tells_that_nothing_is_wrong() {
+    let mut harness = editor();
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Viewport shows")
+        .click_accesskit();
+    harness.run_steps(2);
+    harness
+        .get_by_role_and_label(Role::Button, "Precision")
+        .click_accesskit();
+    harness.run_steps(2);
+    let begun = std::time::Instant::now();
+    while harness.query_by_label("0 dropped").is_none() {
+        assert!(begun.elapsed() < super::ui::PATIENCE, "no map is made");
+        harness.step();
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    for told in ["0 f32 off f64", "0 start inside", "of 960 pixels"] {
+        assert!(harness.query_by_label(told).is_some(), "{told}");
+    }
+    request(&mut harness, Action::Show(Shown::Picture));
+    assert!(harness.query_by_label("0 dropped").is_none());
 }

@@ -20,10 +20,11 @@ fn blinn_phong_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> v
 fn blinn_phong_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
     let f = facet(frame, wo, wi);
     let n = blinn_phong_exponent(shape.roughness);
-    // cos^2 = 1 - sin^2 from the tangential components: exact where the lobe is narrow.
-    let sine2 = min(dot(f.h.xy, f.h.xy), 0.9999999);
-    let power = exp(0.5 * (n + 1.0) * log1p(-sine2));
-    let value = (n + 2.0) * (0.125 * INV_PI) * power / max(dot(f.wo, f.h), 1e-12);
+    // The cosine's logarithm, where the lobe is narrow from sin^2 by the tangential components.
+    let sine2 = dot(f.h.xy, f.h.xy);
+    let near = 0.5 * log1p(-min(sine2, 0.5));
+    let power = exp((n + 1.0) * select(log(max(f.h.z, 1e-30)), near, sine2 < 0.5));
+    let value = (n + 2.0) * (0.125 * INV_PI) * power / max(f.cosine, 1e-12);
     return select(0.0, value, f.h.z > 0.0);
 }
 

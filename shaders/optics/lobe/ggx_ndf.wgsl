@@ -14,7 +14,7 @@ fn ggx_ndf_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f
 
 fn ggx_ndf_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
     let f = facet(frame, wo, wi);
-    let value = 0.25 * ggx_distribution(microfacet_alpha(shape), f.h) * f.h.z / max(dot(f.wo, f.h), 1e-12);
+    let value = 0.25 * ggx_distribution(microfacet_alpha(shape), f.h) * f.h.z / max(f.cosine, 1e-12);
     return max(value, 0.0);
 }
 

@@ -109,7 +109,7 @@ fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
         response
             .accessible_name("Viewport shows")
-            .on_hover_text("Picture, error or samples");
+            .on_hover_text("Picture, error, samples or precision");
     });
     let compares = ui.selectable_label(desk.state.compare.is_on, "A | B");
     let compares = compares.on_hover_text("Compare with another material or lobe (C)");

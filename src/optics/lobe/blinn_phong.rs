@@ -39,11 +39,15 @@ pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, 
 pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
     let facet = facet(frame, wo, wi);
     let n = exponent(shape.roughness);
-    // cos²θh = 1 − sin²θh from the tangential components: exact where the lobe is narrow.
-    let sine2 = (facet.h.x * facet.h.x + facet.h.y * facet.h.y).min(T::from_f64(1.0 - 1e-7));
-    let power = (T::from_f64(0.5) * (n + T::one()) * log1p(-sine2)).exp();
+    // ln cosθh: where the lobe is narrow from sin²θh by the tangential components, else from the cosine itself; each loses
+    // its digits where the other is taken.
+    let half = T::from_f64(0.5);
+    let sine2 = facet.h.x * facet.h.x + facet.h.y * facet.h.y;
+    let near = half * log1p(-sine2.min(half));
+    let log_cosine = T::select(sine2.less(half), near, facet.h.z.max(T::from_f64(1e-30)).ln());
+    let power = ((n + T::one()) * log_cosine).exp();
     let scale = (n + T::from_f64(2.0)) * T::from_f64(0.125 * std::f64::consts::FRAC_1_PI);
-    let value = scale * power / facet.wo.dot(facet.h).max(T::from_f64(1e-12));
+    let value = scale * power / facet.cosine.max(T::from_f64(1e-12));
     T::select(T::zero().less(facet.h.z), value, T::zero())
 }
 

@@ -31,7 +31,7 @@ pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, 
 pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
     let facet = facet(frame, wo, wi);
     let value = T::from_f64(0.25) * ggx_distribution(microfacet_alpha(shape), facet.h) * facet.h.z
-        / facet.wo.dot(facet.h).max(T::from_f64(1e-12));
+        / facet.cosine.max(T::from_f64(1e-12));
     value.max(T::zero())
 }
 

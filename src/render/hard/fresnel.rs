@@ -202,8 +202,12 @@ fn exact(cosine: f32, eta: f32, k: f32) -> f64 {
         if below > 0.0 { (above / below).powi(2) } else { 0.0 }
     };
     let perpendicular = share([c, 0.0], root);
-    // m² cos against the root; where both vanish (no index at all) everything is reflected but nothing head-on differs.
-    let parallel = share([(eta * eta - k * k) * c, 2.0 * eta * k * c], root);
+    // m² cos against the root. Head-on there is no plane of incidence, so that both are alike, whatever vanishes.
+    let parallel = if cosine < 1.0 {
+        share([(eta * eta - k * k) * c, 2.0 * eta * k * c], root)
+    } else {
+        perpendicular
+    };
     0.5 * (perpendicular + parallel)
 }
 

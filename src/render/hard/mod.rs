@@ -6,7 +6,9 @@ mod geometry;
 mod glb;
 mod light;
 mod lobe;
+mod meshes;
 mod precision;
+mod rays;
 mod stage;
 mod sums;
 
@@ -40,23 +42,6 @@ pub struct HardCase {
     /// Measures.
     pub find: fn(&mut Stage) -> Result<f64, HardError>,
 }
-
-/// Cases that do not hold yet, on any engine: what is known to be open, shown like every other failure. The tests expect
-/// all others to hold, and these to fail until they are taken off the list.
-pub const OPEN: &[&str] = &[
-    "roughness-at-its-ends",
-    "anisotropy-at-its-ends",
-    "mirror-direction-at-the-horizon",
-    "view-below-the-shading-normal",
-    "density-at-its-singular-places",
-    "f32-against-f64-ggx-ndf",
-    "f32-against-f64-blinn-phong",
-    "f32-against-f64-lambert",
-    "fresnel-no-absorption",
-    "needles",
-    "rays-leave-their-surface",
-    "ten-glasses-in-each-other",
-];
 
 /// Every case, group by group.
 pub fn catalogue() -> impl Iterator<Item = &'static HardCase> {

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::{HardCase, HardError, Stage};
+use crate::analysis::precision::{ERROR_BOUND, relative_error};
 use crate::analysis::probe::{MaterialQuestion, ProbeScene};
 use crate::cpu::probe::probe_material;
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Value, compile};
@@ -17,10 +18,6 @@ use crate::scene::surface::bent_normal;
 const PAIRS: [usize; 2] = [1_000_000, 10_000];
 /// Documents that the pairs are spread over.
 const DOCUMENTS: [usize; 2] = [250, 10];
-/// Values below this part of a white Lambertian's count as if they were that large.
-const SMALL: f64 = 1e-3 / std::f64::consts::PI;
-/// A singularity is where one rounding of the direction changes the value, in f64, by more than this part.
-const SINGULAR: f64 = 2e-5;
 /// Densities of the light's sample, per steradian: the weights of the competing strategies are tried, too.
 const LIGHT_DENSITIES: [f32; 3] = [0.08, 10.0, 1e6];
 
@@ -36,7 +33,7 @@ macro_rules! cases {
             must: "largest error of the material's value, relative to it (or to 1e-3 of white), against f64",
             naive: || "–".to_owned(),
             measure: "error",
-            limit: 1e-3,
+            limit: ERROR_BOUND,
             find: |stage| largest_error(stage, Lobe::$lobe),
         },)*];
     };
@@ -157,19 +154,20 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
         .zip(&answers)
         .map(|(question, answer)| error(&scene, question, answer))
         .collect();
-    let regular = errors.iter().flatten().count();
-    log::debug!("{}: {} of {pairs} pairs are singular", lobe.name(), pairs - regular);
-    Ok(errors.into_iter().flatten().fold(0.0, f64::max))
+    let singular = errors.iter().filter(|error| error.is_none()).count();
+    log::debug!("{}: {singular} of {pairs} pairs are singular", lobe.name());
+    let regular = (0..pairs).filter_map(|pair| Some((pair, errors[pair]?)));
+    let Some((worst, error)) = regular.max_by(|a, b| a.1.total_cmp(&b.1)) else {
+        return Ok(0.0);
+    };
+    let question = &questions[worst];
+    let right = probe_material::<f64>(&scene, question, [0.0; 2]);
+    let (material, answer) = (&materials[question.material as usize], answers[worst]);
+    log::debug!("{error:.1e} at {question:?} of {material:?}: {answer:?}, right is {right:?}");
+    Ok(error)
 }
 
 /// The relative error of an answer; nothing at a singularity.
 fn error(scene: &ProbeScene<'_>, question: &MaterialQuestion, answer: &Vec3<f32>) -> Option<f64> {
-    let oracle = |moved: [f64; 2]| probe_material::<f64>(scene, question, moved);
-    let right = oracle([0.0; 2]);
-    let size = right.max_component().max(SMALL);
-    let off = |other: Vec3<f64>| (other - right).map(f64::abs).max_component() / size;
-    let moves = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
-    let is_regular = moves.into_iter().all(|moved| off(oracle(moved)) < SINGULAR);
-    let error = off(Vec3::from_f64(answer.to_f64()));
-    is_regular.then_some(if error.is_nan() { f64::INFINITY } else { error })
+    relative_error(*answer, |moved| probe_material::<f64>(scene, question, moved))
 }

@@ -6,8 +6,8 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde_json::json;
 
-use super::geometry::cube;
 use super::glb::Glb;
+use super::meshes::cube;
 use super::stage::document;
 use super::{HardCase, HardError, Stage};
 use crate::analysis::probe::RandomQuestion;

@@ -2,7 +2,7 @@
 
 use glossmith::optics::curve::{Curve, curve_distance, curve_distance_max, curve_h};
 use glossmith::optics::fresnel::{
-    Fresnel, FresnelTerms, fresnel, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_schlick,
+    Fresnel, FresnelTerms, fresnel, fresnel_conductor, fresnel_dielectric, fresnel_f0, fresnel_left, fresnel_schlick,
     half_vector_cosine,
 };
 
@@ -74,7 +74,7 @@ fn fresnel_factors_agree() {
     let (share, shares) = (Output::Number(0.01), Output::Vector(0.01));
     let mut all = Case::new(
         "fresnel",
-        "model metal_f0 metalness edge_tint tint weight ior eta k cosine",
+        "model metal_f0 metalness edge_tint tint weight ior eta k cosine behind",
         "let terms = FresnelTerms(model, metal_f0, metalness, edge_tint, tint, weight, ior, eta, k);",
         twin!(|row| {
             let terms = FresnelTerms {
@@ -88,11 +88,13 @@ fn fresnel_factors_agree() {
                 eta: row.vector(),
                 k: row.vector(),
             };
-            let cosine = row.number();
+            let (cosine, behind) = (row.number(), row.number());
             row.put_vector(fresnel(&terms, cosine));
+            row.put_vector(fresnel_left(&terms, cosine, behind));
         }),
     )
-    .output("fresnel(terms, cosine)", shares);
+    .output("fresnel(terms, cosine)", shares)
+    .output("fresnel_left(terms, cosine, behind)", shares);
     for &model in Fresnel::ALL {
         all = all.group(model.name(), move |rng, _| {
             let mut color = |high: f32| Value::Vector([(); 3].map(|()| high * rng.unit()));
@@ -109,6 +111,7 @@ fn fresnel_factors_agree() {
                 ior(rng),
                 eta,
                 k,
+                Value::Unit(rng.unit()),
                 Value::Unit(rng.unit())
             ]
         });

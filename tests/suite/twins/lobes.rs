@@ -2,6 +2,7 @@
 
 use glossmith::optics::curve::Curve;
 use glossmith::optics::frame::{Frame, frame_from_tangent};
+use glossmith::optics::fresnel::half_vector_cosine;
 use glossmith::optics::lobe::{
     Horizon, Lobe, LobeShape, alpha_from_roughness, is_mirror, lobe_evaluate, lobe_sample, raw_density, raw_sample,
     raw_weight, stretch_from_anisotropy,
@@ -413,11 +414,13 @@ fn microfacets_agree() {
                     for v in [facet.wo, facet.wi, facet.h] {
                         row.put_vector(v);
                     }
+                    row.put(facet.cosine);
                 }),
             )
             .output("f.wo", UNIT)
             .output("f.wi", UNIT)
-            .output("f.h", UNIT),
+            .output("f.h", UNIT)
+            .output("f.cosine", Output::Number(1.0)),
             of_widths(
                 "ggx_distribution",
                 "ggx_distribution(vec2f(x, y), h)",
@@ -463,7 +466,7 @@ fn microfacets_agree() {
             ),
             of_widths(
                 "distribution_weight",
-                "distribution_weight(vec2f(x, y), Facet(w, h, normalize(w + h)))",
+                "distribution_weight(vec2f(x, y), Facet(w, h, normalize(w + h), 0.5 * length(w + h)))",
                 WEIGHT,
                 twin!(|row| {
                     let a = read_alpha(row);
@@ -474,6 +477,7 @@ fn microfacets_agree() {
                             wo,
                             wi,
                             h: (wo + wi).normalize(),
+                            cosine: half_vector_cosine(wo, wi),
                         },
                     ));
                 }),

@@ -4,7 +4,7 @@ use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::{Lobe, lobe_sample, lobe_view};
 use glossmith::optics::real::Mask;
 use glossmith::optics::refraction::{
-    facet_density_factor, facet_refracted, facet_weight, refracted, refracted_square, refracting_cosine,
+    facet_density_factor, facet_refracted, facet_weight, refracted, refracted_square, refracting_cosines,
     refracting_normal,
 };
 use glossmith::optics::vector::Vec3;
@@ -83,17 +83,20 @@ fn refraction_agrees() {
             .output("facet_refracted(wo, mirrored, eta).wi", UNIT)
             .group_of("", 16_000, |rng, _| mirrored_directions(rng)),
             Case::new(
-                "refracting_normal, refracting_cosine",
+                "refracting_normal, refracting_cosines",
                 "wo wi eta",
                 "",
                 twin!(|row| {
                     let (wo, wi, eta) = (row.vector(), row.vector(), row.number());
                     row.put_vector(refracting_normal(wo, wi, eta));
-                    row.put(refracting_cosine(wo, wi, eta));
+                    for cosine in refracting_cosines(wo, wi, eta) {
+                        row.put(cosine);
+                    }
                 }),
             )
             .output("refracting_normal(wo, wi, eta)", UNIT)
-            .output("refracting_cosine(wo, wi, eta)", Output::Number(1.0))
+            .output("refracting_cosines(wo, wi, eta).x", Output::Number(1.0))
+            .output("refracting_cosines(wo, wi, eta).y", Output::Number(1.0))
             .group("", |rng, _| inputs![rng.direction(), rng.direction(), random_eta(rng)]),
             of_facets(
                 "facet_density_factor, facet_weight",

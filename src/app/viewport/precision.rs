@@ -1,0 +1,78 @@
+//! The map of what in the picture's numbers is not to be trusted, with what its colours mean.
+
+use std::sync::Arc;
+
+use egui::{Align, Color32, ColorImage, Layout, Rect, Sense, Ui, UiBuilder, pos2, vec2};
+
+use super::Shown;
+use crate::analysis::precision::{Fault, PrecisionMap};
+use crate::document::job::Job;
+use crate::render::precision::{self, PrecisionMaps};
+
+/// Height of the legend, and its distance from the viewport's edges, points.
+const HEIGHT: f32 = 26.0;
+const MARGIN: f32 = 14.0;
+/// Widest that the legend is.
+const WIDTH: f32 = 480.0;
+/// Side of a colour's square.
+const SQUARE: f32 = 10.0;
+
+/// The map as far as it has come.
+#[derive(Default)]
+pub(super) struct Precision {
+    maps: Option<PrecisionMaps>,
+    /// What the latest map was asked of.
+    asked: Option<Arc<Job>>,
+    /// What the texture shows; kept so that no other map has its address.
+    map: Option<Arc<PrecisionMap>>,
+    shown: Shown,
+}
+
+impl Precision {
+    /// Paints the map of a job over `place` once it is there, and the legend into a corner of `area`.
+    pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Arc<Job>) {
+        if self.maps.is_none() {
+            let ctx = ui.ctx().clone();
+            self.maps = precision::spawn(move || ctx.request_repaint()).ok();
+        }
+        let Some(maps) = &self.maps else { return };
+        if !self.asked.as_ref().is_some_and(|asked| Arc::ptr_eq(asked, job)) {
+            maps.ask(job.clone());
+            self.asked = Some(job.clone());
+        }
+        self.map = maps.latest();
+        if let Some(map) = &self.map {
+            let key = [u64::MAX, Arc::as_ptr(map) as u64];
+            self.shown.upload(ui, key, || {
+                let size = [map.width as usize, map.height as usize];
+                ColorImage::from_rgba_premultiplied(size, &map.colors())
+            });
+            self.shown.show(ui, place, place);
+        }
+        legend(ui, area, self.map.as_deref(), maps.is_busy());
+    }
+}
+
+fn legend(ui: &mut Ui, area: Rect, map: Option<&PrecisionMap>, is_busy: bool) {
+    let corner = pos2(area.left() + MARGIN, area.bottom() - MARGIN - HEIGHT);
+    let rect = Rect::from_min_size(corner, vec2(WIDTH.min(area.width() - 2.0 * MARGIN), HEIGHT));
+    ui.painter().rect_filled(rect, 4.0, Color32::from_black_alpha(170));
+    let layout = Layout::left_to_right(Align::Center);
+    let inside = UiBuilder::new().max_rect(rect.shrink2(vec2(8.0, 4.0))).layout(layout);
+    let mut ui = ui.new_child(inside);
+    ui.set_clip_rect(rect.intersect(ui.clip_rect()));
+    if let Some(map) = map {
+        for (fault, label, help) in Fault::ALL {
+            let (square, _) = ui.allocate_exact_size(vec2(SQUARE, SQUARE), Sense::hover());
+            let [red, green, blue] = fault.color();
+            ui.painter()
+                .rect_filled(square, 2.0, Color32::from_rgb(red, green, blue));
+            let text = format!("{} {label}", map.count(fault));
+            ui.colored_label(Color32::WHITE, text).on_hover_text(help);
+        }
+        ui.colored_label(Color32::LIGHT_GRAY, format!("of {} pixels", map.findings.len()));
+    }
+    if is_busy {
+        ui.add(egui::Spinner::new().size(12.0));
+    }
+}

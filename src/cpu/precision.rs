@@ -1,0 +1,139 @@
+//! What of a job's numbers is not to be trusted, pixel by pixel: f32 against f64 on the same surface, samples that are
+//! dropped, and rays that start on the wrong side.
+
+use rayon::prelude::*;
+
+use super::integrator::{Integrator, is_sound};
+use super::probe::moved_direction;
+use crate::analysis::precision::{ERROR_BOUND, Finding, PrecisionMap, relative_error};
+use crate::document::job::Job;
+use crate::optics::frame::Frame;
+use crate::optics::material::{Material, MaterialNumbers, Surface, material_evaluate, material_sample};
+use crate::optics::random::{RandomState, path_state, random_pair};
+use crate::optics::vector::Vec3;
+use crate::optics::warp::uniform_sphere;
+use crate::scene::camera::camera_ray;
+use crate::scene::surface::{SurfacePoint, surface_at};
+use crate::scene::texture::textured_material;
+
+/// Paths a pixel that are looked at for samples to drop.
+const PATHS: u32 = 4;
+/// Directions of the light a pixel, by turns drawn from the material and from everywhere.
+const LIGHTS: u32 = 6;
+/// Density of the light's directions, per steradian: one that lets lobe and light compete.
+const LIGHT_DENSITY: f64 = 1.0;
+/// The first of the pairs of numbers that directions are drawn with.
+const DIMENSION: u32 = 64;
+/// Straight back from a ray's origin its surface is met at so many times the bound on its place's error.
+const DISTANCE: [f32; 2] = [0.5, 2.0];
+/// Rows between two looks whether anybody still waits.
+const ROWS: u32 = 8;
+
+/// The map of a job in `size` pixels; `None` where it is not wanted any more.
+pub fn precision(job: &Job, [width, height]: [u32; 2], is_superseded: impl Fn() -> bool) -> Option<PrecisionMap> {
+    let integrator = Integrator::<f32>::new(job);
+    let mut findings = Vec::with_capacity(width as usize * height as usize);
+    for first in (0..height).step_by(ROWS as usize) {
+        if is_superseded() {
+            return None;
+        }
+        let pixels = first * width..(first + ROWS).min(height) * width;
+        let find = |index: u32| find(job, &integrator, [index % width, index / width], [width, height]);
+        findings.par_extend(pixels.into_par_iter().map(find));
+    }
+    Some(PrecisionMap {
+        width,
+        height,
+        bound: ERROR_BOUND,
+        findings,
+    })
+}
+
+/// What there is at the middle of a pixel of the map.
+fn find(job: &Job, integrator: &Integrator<'_, f32>, pixel: [u32; 2], size: [u32; 2]) -> Finding {
+    let settings = &job.settings;
+    let place = [0, 1].map(|i| {
+        let share = (f64::from(pixel[i]) + 0.5) / f64::from(size[i]);
+        share * f64::from(settings.image_size[i])
+    });
+    let of_picture = place.map(|x| x as u32);
+    let is_dropped = |sample: &u32| !is_sound(integrator.trace_path(of_picture, *sample).radiance);
+    let dropped = (0..PATHS).filter(is_dropped).count() as u32;
+    let nothing = Finding {
+        dropped,
+        ..Finding::default()
+    };
+    let [origin, direction] = camera_ray(
+        &settings.camera.cast(),
+        place.map(|x| x as f32),
+        settings.image_size,
+        [0.5; 2],
+    );
+    let Some(hit) = job.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX) else {
+        return nothing;
+    };
+    let point = surface_at(&job.geometry, &job.materials, &job.textures, &hit, direction);
+    let plain = &job.materials[point.slot as usize];
+    let material = textured_material(&job.textures, &job.tables, plain, point.uvs);
+    let state = path_state(of_picture[0], of_picture[1], settings.seed, 0, settings.sequence);
+    Finding {
+        cosine: point.surface.normal.dot(point.surface.wo).clamp(0.0, 1.0),
+        error: largest_error(job, &material, &point.surface, state),
+        starts_astray: starts_astray(job, &point, material.transmits()),
+        ..nothing
+    }
+}
+
+/// The largest error of the material's value in f32, over some directions of the light where it is not singular.
+fn largest_error(job: &Job, material: &Material<f32>, surface: &Surface<f32>, state: RandomState) -> f64 {
+    let (exact, exact_surface) = (material.cast::<f64>(), widened(surface));
+    let error = |light: u32| {
+        let [a, b] = random_pair(state, DIMENSION + 2 * light);
+        let [c, layer] = random_pair(state, DIMENSION + 2 * light + 1);
+        let lobe = [a, b, c];
+        let numbers = MaterialNumbers {
+            lobe,
+            layer,
+            below: lobe,
+        };
+        let wi = match light % 2 {
+            0 => material_sample(material, &job.tables, surface, numbers, false).wi,
+            _ => uniform_sphere([a, b]),
+        };
+        let answer = material_evaluate(material, &job.tables, surface, wi, LIGHT_DENSITY as f32, 1.0);
+        relative_error(answer, |moved| {
+            let wi = moved_direction(Vec3::from_f64(wi.to_f64()), moved);
+            material_evaluate(&exact, &job.tables, &exact_surface, wi, LIGHT_DENSITY, 1.0)
+        })
+    };
+    (0..LIGHTS).filter_map(error).fold(0.0, f64::max)
+}
+
+/// Whether rays that leave the surface, or enter it where it transmits, start where they must not: straight back its own
+/// surface must be next, as far off as the ray was moved.
+fn starts_astray(job: &Job, point: &SurfacePoint<f32>, transmits: bool) -> bool {
+    let is_astray = |out: Vec3<f32>| {
+        let origin = point.ray_origin(out, true);
+        let reach = DISTANCE[1] * point.error;
+        let back = job.geometry.intersect(origin.to_f32(), (-out).to_f32(), reach);
+        back.is_none_or(|hit| hit.t < DISTANCE[0] * point.error)
+    };
+    let normal = point.surface.normal;
+    is_astray(normal) || (transmits && is_astray(-normal))
+}
+
+/// The very same surface in f64.
+fn widened(surface: &Surface<f32>) -> Surface<f64> {
+    let wide = |v: Vec3<f32>| Vec3::from_f64(v.to_f64());
+    Surface {
+        frame: Frame {
+            tangent: wide(surface.frame.tangent),
+            bitangent: wide(surface.frame.bitangent),
+            normal: wide(surface.frame.normal),
+        },
+        normal: wide(surface.normal),
+        wo: wide(surface.wo),
+        coat_normal: wide(surface.coat_normal),
+        is_inside: surface.is_inside,
+    }
+}

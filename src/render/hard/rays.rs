@@ -1,0 +1,196 @@
+//! Rays at what they might miss or leak through, and how many do.
+
+use glam::{DVec3, Vec3};
+
+use super::meshes::{add_square, cube, model};
+use super::{HardError, Stage};
+use crate::analysis::probe::{NO_HIT, ProbeScene, RayAnswer, RayQuestion};
+use crate::optics::random::hash_bits;
+use crate::scene::mesh::Mesh;
+use crate::scene::surface::surface_at;
+use crate::scene::texture::Textures;
+use crate::scene::{Geometry, Hit, shapes};
+
+impl Stage {
+    /// Rays to aim at what might leak.
+    pub(super) fn rays(&self) -> u32 {
+        if self.thorough { 1_000_000 } else { 100_000 }
+    }
+}
+
+/// A number in [0, 1) from bits.
+pub(super) fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 / 16_777_216.0
+}
+
+/// The i-th of many directions.
+pub(super) fn direction(i: u32) -> Vec3 {
+    let (a, b) = (hash_bits(i), hash_bits(i ^ 0x9e37_79b9));
+    Vec3::from_array(crate::optics::warp::uniform_sphere([unit(a), unit(b)]).to_f32()).normalize()
+}
+
+pub(super) fn ray(origin: Vec3, direction: Vec3) -> RayQuestion {
+    RayQuestion {
+        origin: origin.to_array(),
+        direction: direction.to_array(),
+        t_max: 1e30,
+    }
+}
+
+/// A vertex, or a place on an edge, of a triangle.
+pub(super) fn edge_aim(geometry: &Geometry, i: u32) -> Vec3 {
+    let triangle = hash_bits(i ^ 0x1234) as usize % geometry.triangles.len();
+    let corners = geometry.corners(triangle).map(Vec3::from_array);
+    aim_at(corners, i)
+}
+
+fn aim_at(corners: [Vec3; 3], i: u32) -> Vec3 {
+    match i % 3 {
+        0 => corners[0],
+        1 => corners[0].lerp(corners[1], unit(hash_bits(i ^ 0x777))),
+        _ => corners[1].midpoint(corners[2]),
+    }
+}
+
+/// How many rays meet nothing, or nothing before `t_max`.
+pub(super) fn leaks(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion], t_max: f32) -> Result<f64, HardError> {
+    let answers = trace(stage, geometry, rays)?;
+    let is_lost = |answer: &&RayAnswer| answer.triangle == NO_HIT || answer.t.is_nan() || answer.t > t_max;
+    Ok(answers.iter().filter(is_lost).count() as f64)
+}
+
+fn trace(stage: &Stage, geometry: &Geometry, rays: &[RayQuestion]) -> Result<Vec<RayAnswer>, HardError> {
+    let scene = ProbeScene {
+        geometry: Some(geometry),
+        ..ProbeScene::default()
+    };
+    Ok(stage.prober.rays(&scene, rays)?)
+}
+
+/// Rays from places of a cube's grid along axes and in planes: how many do not leave it where they must.
+pub(super) fn axis_rays(stage: &Stage) -> Result<f64, HardError> {
+    let geometry = Geometry::build(&model(cube(DVec3::ONE, 8)), false);
+    let wall = (1.0 / geometry.world_units_per_unit) as f32;
+    let mut rays = Vec::new();
+    let steps = [-0.75_f32, -0.5, 0.0, 0.25, 0.5];
+    for x in steps {
+        for y in steps {
+            for z in steps {
+                let origin = Vec3::new(x, y, z) * wall;
+                for axis in 0..3 {
+                    for (size, zero) in [(1.0, 0.0), (-1.0, 0.0), (1.0, -0.0), (-1.0, -0.0)] {
+                        let mut along = [zero; 3];
+                        along[axis] = size;
+                        rays.push(ray(origin, Vec3::from_array(along)));
+                        // In the planes of the walls' own squares, along their diagonals.
+                        along[(axis + 1) % 3] = size;
+                        rays.push(ray(origin, Vec3::from_array(along)));
+                    }
+                }
+                rays.push(ray(origin, Vec3::ONE));
+                rays.push(ray(origin, -Vec3::ONE));
+            }
+        }
+    }
+    let answers = trace(stage, &geometry, &rays)?;
+    let is_wrong = |(ray, answer): &(&RayQuestion, &RayAnswer)| {
+        let exits = (0..3).filter(|&i| ray.direction[i] != 0.0);
+        let exits = exits.map(|i| (wall * ray.direction[i].signum() - ray.origin[i]) / ray.direction[i]);
+        let exit = exits.fold(f32::INFINITY, f32::min);
+        answer.triangle == NO_HIT || answer.t.is_nan() || (answer.t - exit).abs() > 1e-6
+    };
+    Ok(rays.iter().zip(&answers).filter(is_wrong).count() as f64)
+}
+
+/// Rays that leave a convex mesh outwards and inwards: how many meet something, and nothing.
+pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
+    let mut wrong = 0.0;
+    for radius in [1.0, 1e-3] {
+        let mut mesh = shapes::sphere(48, 24);
+        for place in &mut mesh.positions {
+            *place = *place * radius + DVec3::new(0.6, 0.5, 0.3) * f64::from(u8::from(radius < 1.0));
+        }
+        if radius < 1.0 {
+            // Far off: what is met there does not count.
+            add_square(
+                &mut mesh,
+                [[-1.0, -1.0], [-0.9, -1.0], [-0.9, -0.9], [-1.0, -0.9]].map(|[x, z]| DVec3::new(x, -1.0, z)),
+                false,
+            );
+        }
+        let geometry = Geometry::build(&model(mesh), false);
+        let materials = [Default::default(), Default::default()];
+        let (materials, _) = crate::document::compile(&materials);
+        let textures = Textures::default();
+        let mut rays = Vec::new();
+        let mut is_outward = Vec::new();
+        for i in 0..stage.rays() / 4 {
+            let triangle = hash_bits(i ^ 0x4321) % geometry.triangles.len() as u32;
+            let corners = geometry.corners(triangle as usize).map(Vec3::from_array);
+            if radius < 1.0 && corners[0].distance(corners[1]) > 0.05 {
+                continue;
+            }
+            let normal = (corners[1] - corners[0])
+                .cross(corners[2] - corners[0])
+                .normalize_or(Vec3::Y);
+            // Half of the directions graze; in the plane itself, by rounding, no side is the right one.
+            let flat = if i % 2 == 0 { 1.0 } else { 1e-3 };
+            let along = direction(i);
+            let height = normal.dot(along);
+            let out = (along - normal * height + normal * (height.abs() * flat).max(1e-5)).normalize_or(normal);
+            let (u, v) = (unit(hash_bits(i ^ 1)), unit(hash_bits(i ^ 2)));
+            let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+            let hit = Hit { t: 1.0, triangle, u, v };
+            let eye = crate::optics::vector::Vec3::from_f32((-normal).to_array());
+            let point = surface_at::<f32>(&geometry, &materials, &textures, &hit, eye);
+            for direction in [out, -out] {
+                let wi = crate::optics::vector::Vec3::from_f32(direction.to_array());
+                rays.push(ray(Vec3::from_array(point.ray_origin(wi, true).to_f32()), direction));
+                is_outward.push(direction == out);
+            }
+        }
+        let answers = trace(stage, &geometry, &rays)?;
+        let is_met = |answer: &RayAnswer| answer.triangle != NO_HIT && (radius == 1.0 || answer.t < 0.1);
+        let bad = |(answer, outward): &(&RayAnswer, &bool)| is_met(answer) == **outward;
+        wrong += answers.iter().zip(&is_outward).filter(bad).count() as f64;
+    }
+    Ok(wrong)
+}
+
+/// Places on the edges of a mesh.
+pub(super) fn edge_aims(mesh: &Mesh, count: u32) -> Vec<Vec3> {
+    let aim = |i: u32| {
+        let triangle = hash_bits(i ^ 0x1234) as usize % mesh.triangles.len();
+        aim_at(mesh.corners(triangle).map(|corner| corner.as_vec3()), i)
+    };
+    (0..count).map(aim).collect()
+}
+
+/// How many rays from a place in a closed mesh leak under the textbook test of Möller and Trumbore in f32.
+pub(super) fn naive_leaks(mesh: &Mesh, origin: DVec3, count: u32) -> usize {
+    let aims: Vec<Vec3> = (0..count).map(|i| origin.as_vec3() + direction(i)).collect();
+    naive_misses(mesh, origin, &aims)
+}
+
+pub(super) fn naive_misses(mesh: &Mesh, origin: DVec3, aims: &[Vec3]) -> usize {
+    let origin = origin.as_vec3();
+    let triangles: Vec<_> = (0..mesh.triangles.len())
+        .map(|triangle| mesh.corners(triangle).map(|corner| corner.as_vec3()))
+        .collect();
+    let is_met = |direction: Vec3, [a, b, c]: [Vec3; 3]| {
+        let (to_b, to_c) = (b - a, c - a);
+        let across = direction.cross(to_c);
+        let determinant = to_b.dot(across);
+        // The guard against parallel planes as it is usually copied.
+        if determinant.abs() < 1e-7 {
+            return false;
+        }
+        let from_a = origin - a;
+        let u = from_a.dot(across) / determinant;
+        let other = from_a.cross(to_b);
+        let v = direction.dot(other) / determinant;
+        u >= 0.0 && v >= 0.0 && u + v <= 1.0 && to_c.dot(other) / determinant > 0.0
+    };
+    let misses = |aim: &&Vec3| !triangles.iter().any(|corners| is_met(**aim - origin, *corners));
+    aims.iter().filter(misses).count()
+}

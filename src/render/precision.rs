@@ -1,0 +1,34 @@
+//! The map of what in a picture's numbers is not to be trusted, made beside the window.
+
+use std::io;
+use std::sync::Arc;
+
+use super::background::Background;
+use crate::analysis::precision::PrecisionMap;
+use crate::cpu::precision::precision;
+use crate::document::job::Job;
+
+/// Longest side of the map in pixels.
+const SIDE_MAX_PX: u32 = 320;
+
+/// Makes maps of jobs; the latest job wins.
+pub type PrecisionMaps = Background<Arc<Job>, Arc<PrecisionMap>>;
+
+/// Starts the thread that makes maps; `repaint` is called when one is finished.
+///
+/// # Errors
+/// If the system gives no thread.
+pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<PrecisionMaps> {
+    Background::spawn("precision", repaint, |job: Arc<Job>, desk| {
+        if let Some(map) = precision(&job, map_size(job.settings.image_size), || desk.is_superseded()) {
+            desk.publish(Arc::new(map));
+        }
+    })
+}
+
+/// The picture's shape in no more than [`SIDE_MAX_PX`].
+fn map_size([width, height]: [u32; 2]) -> [u32; 2] {
+    let longest = width.max(height).max(1);
+    let kept = SIDE_MAX_PX.min(longest);
+    [width, height].map(|side| (side * kept).div_ceil(longest).max(1))
+}
