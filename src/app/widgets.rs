@@ -452,7 +452,11 @@ impl PictureRow<'_> {
         let place = Rect::from_min_size(rect.left_top() + Vec2::new(4.0, 2.0), self.size);
         match self.picture {
             Some(picture) => egui::Image::new(picture).corner_radius(3.0).paint_at(ui, place),
-            None => _ = ui.painter().rect_filled(place, 3.0, self.color),
+            None => {
+                let line = ui.visuals().widgets.noninteractive.bg_stroke;
+                ui.painter()
+                    .rect(place, 3.0, self.color, line, egui::StrokeKind::Inside);
+            }
         }
         let font = TextStyle::Body.resolve(ui.style());
         let mut job = LayoutJob::simple_singleline(self.name.to_owned(), font, visuals.text_color());

@@ -19,7 +19,7 @@ pub struct Change {
     pub materials: bool,
     /// The model, whether there is a ground, or the place of an area light.
     pub geometry: bool,
-    /// Bounces, sequence, strategy, seed, pixel filter, effects switched on or off.
+    /// Bounces, sequence, strategy, seed, pixel filter, effects switched on or off, the part that is rendered.
     pub sampling: bool,
     /// What is to be reached: samples, seconds, noise, and how samples are shared out on the way.
     pub target: bool,
@@ -59,6 +59,7 @@ impl Change {
                 render.seed,
                 render.filter,
                 render.effects,
+                render.region,
             ) != (
                 other.bounces,
                 other.firefly_clamp,
@@ -67,6 +68,7 @@ impl Change {
                 other.seed,
                 other.filter,
                 other.effects,
+                other.region,
             ),
             target: aim(render) != aim(other),
         }
@@ -129,10 +131,9 @@ fn aim(render: &RenderSettings) -> impl PartialEq {
         time_s,
         noise,
         min_samples,
-        region,
         ..
     } = *render;
-    (samples, time_s, noise, min_samples, region, render.is_adaptive())
+    (samples, time_s, noise, min_samples, render.is_adaptive())
 }
 
 fn shine_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {

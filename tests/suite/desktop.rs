@@ -57,6 +57,11 @@ impl Desktop {
         paths
             .filter(|path| path.extension().is_some_and(|ending| ending == "json"))
             .filter_map(|path| Some(load_document(&path).ok()?.value))
+            .map(|document| Document {
+                // What the copy knows about itself.
+                extra: serde_json::Map::new(),
+                ..document
+            })
             .collect()
     }
 

@@ -68,10 +68,10 @@ fn textures_have_rows_that_switch_them() {
             (uses.color, uses.roughness),
             (label != "Base colour texture", label == "Base colour texture")
         );
-        assert_ne!(picture(&harness), textured, "{label}");
+        assert!(picture(&harness) != textured, "{label}");
         undo(&mut harness);
         assert_eq!(*harness.state().document(), before);
-        assert_eq!(picture(&harness), textured);
+        assert!(picture(&harness) == textured, "{label}: undo");
     }
 }
 
@@ -122,11 +122,6 @@ fn a_region_is_drawn_in_one_step_and_cleared() {
         assert!((side - expected).abs() < 0.01, "{region:?}");
     }
     assert_eq!(after.camera, before.camera, "the drag was the region's");
-    assert_eq!(picture(&harness), whole, "what has been rendered stays");
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
-        .set_value_accesskit(0.8);
-    settle(&mut harness);
     let part = picture(&harness);
     // Tiles of 16 × 16 pixels are rendered or not: the last of the 40 columns lies in one of its own.
     assert_eq!(
@@ -136,9 +131,8 @@ fn a_region_is_drawn_in_one_step_and_cleared() {
     );
     assert!(part.iter().any(|pixel| pixel[3] > 0.0));
     undo(&mut harness);
-    assert_eq!(*harness.state().document(), after);
-    undo(&mut harness);
     assert_eq!(*harness.state().document(), before);
+    assert!(picture(&harness) == whole, "all is rendered again");
     harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
     harness.run_steps(2);
     assert_eq!(harness.state().document().render.region, Some(region));
@@ -151,7 +145,7 @@ fn a_region_is_drawn_in_one_step_and_cleared() {
         .click();
     settle(&mut harness);
     assert_eq!(*harness.state().document(), before);
-    assert_eq!(picture(&harness), whole);
+    assert!(picture(&harness) == whole, "all is rendered again");
     // Escape while nothing has been drawn leaves the drag to the camera.
     harness.key_press(Key::B);
     harness.run_steps(2);

@@ -1,6 +1,8 @@
 //! Pictures of the window's main states in both themes, compared with those in tests/snapshots; UPDATE_SNAPSHOTS=1 makes
 //! them anew.
 
+use std::time::{Duration, Instant};
+
 use egui::{Rect, Vec2};
 use egui_kittest::kittest::Queryable as _;
 use egui_kittest::{Harness, SnapshotOptions, image_snapshot_options};
@@ -8,7 +10,7 @@ use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options};
 
-use super::ui::{options, request, settle};
+use super::ui::{PATIENCE, options, request, settle};
 
 /// Drivers rasterise edges and blend text a little differently.
 const COLOR_TOLERANCE: f32 = 2.0;
@@ -69,5 +71,11 @@ fn two_compared_beside_effects() {
     harness.state_mut().reveal(Pane::Snapshots);
     request(&mut harness, Action::Do(Command::Compare));
     settle(&mut harness);
+    let begun = Instant::now();
+    while harness.query_by_label_contains("RMS").is_none() {
+        assert!(begun.elapsed() < PATIENCE, "they are not compared");
+        harness.step();
+        std::thread::sleep(Duration::from_millis(5));
+    }
     compare(&mut harness, "compared-and-effects");
 }
