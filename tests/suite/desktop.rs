@@ -23,9 +23,20 @@ pub struct Desktop {
 
 impl Desktop {
     pub fn new() -> Self {
+        // Without -noreset the server starts over, and turns connections away, when the last of its programs ends: xdotool
+        // that looks for a window which is still to come.
         let mut server = started(
             Command::new("Xvfb")
-                .args(["-displayfd", "1", "-screen", "0", "1440x900x24", "-nolisten", "tcp"])
+                .args([
+                    "-displayfd",
+                    "1",
+                    "-screen",
+                    "0",
+                    "1440x900x24",
+                    "-nolisten",
+                    "tcp",
+                    "-noreset",
+                ])
                 .stdout(Stdio::piped())
                 .stderr(Stdio::null()),
             "xvfb",
