@@ -50,7 +50,8 @@ fn chord_density(
     curve: u32, table: u32, kappa: f32, stretch: f32, normal: vec3f, mirror: vec3f, light: vec3f,
 ) -> f32 {
     let chord = chord_through(curve_distance_max(curve, table), kappa, stretch, normal, mirror, light);
-    if chord.nearest >= chord.last.x {
+    // Nothing is met, or nothing ahead.
+    if chord.nearest >= chord.last.x || chord.first.y <= -chord.last.y {
         return 0.0;
     }
     var integral = 0.0;

@@ -1,6 +1,7 @@
 // A clear dielectric coat over everything else. Twin of src/optics/coat.rs.
 #import "optics/albedo"
 #import "optics/material"
+#import "optics/numeric"
 
 fn material_has_coat(material: Material, surface: Surface) -> bool {
     return PLAN_COAT == 1u && material.coat_weight > 0.0 && !(surface.is_inside && material_transmits(material));
@@ -26,7 +27,7 @@ fn coat_transmittance(material: Material, surface: Surface, share: f32) -> vec3f
 
 fn coat_probability(share: f32, below: f32) -> f32 {
     let rest = (1.0 - share) * below;
-    let probability = clamp(share / max(share + rest, 1e-9), 0.05, 0.95);
+    let probability = sampled_share(share / max(share + rest, 1e-9));
     return select(0.0, select(1.0, probability, rest > 0.0), share > 0.0);
 }
 

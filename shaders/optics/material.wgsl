@@ -3,6 +3,7 @@
 #import "optics/coat"
 #import "optics/fresnel"
 #import "optics/lobe/registry"
+#import "optics/numeric"
 #import "scene/layout"
 #import "scene/plan"
 
@@ -102,8 +103,7 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
     let specular = luminance(taken);
     let through = luminance(transmission);
     let rest = luminance(base) + through;
-    var share = clamp(specular / max(specular + rest, 1e-9), 0.05, 0.95);
-    share = select(0.0, share, specular > 0.0);
+    var share = sampled_share(specular / max(specular + rest, 1e-9));
     share = select(1.0, share, rest > 0.0);
     // What is passed on is what was not reflected, no estimate.
     share = select(share, min(specular, 1.0), passes_on(material));

@@ -8,6 +8,12 @@ fn expm1(x: f32) -> f32 {
     return select(exp(x) - 1.0, series, abs(x) < 0.01);
 }
 
+fn sampled_share(share: f32) -> f32 {
+    let small = min(share, 1.0 - share);
+    let raised = max(small, min(20.0 * small, 0.05));
+    return select(1.0 - raised, raised, share < 0.5);
+}
+
 fn log1p(x: f32) -> f32 {
     let series = x * (1.0 - x * (0.5 - x * (0.33333334 - x * (0.25 - x * 0.2))));
     return select(log(1.0 + x), series, abs(x) < 0.01);

@@ -103,7 +103,9 @@ pub fn chord_density<T: Real>(
         Curve::Custom => chord_table_integral(table, chord),
     };
     let value = T::from_f64(0.25 * std::f64::consts::FRAC_1_PI) * integral / chord.a_root;
-    T::select(chord.nearest.less(chord.last[0]), value.max(T::zero()), T::zero())
+    // Nothing is met, or nothing ahead: without the test the second would be the rounding of two ends that cancel.
+    let is_met = chord.nearest.less(chord.last[0]) & (-chord.last[1]).less(chord.first[1]);
+    T::select(is_met, value.max(T::zero()), T::zero())
 }
 
 /// The chord's geometry, written with the part of a that is perpendicular to ω, so that nothing cancels where the lobe is

@@ -11,6 +11,7 @@ use super::frame::frame_from_normal;
 use super::fresnel::{fresnel_dielectric, half_vector_cosine};
 use super::lobe::{Horizon, Lobe, LobeShape, is_mirror, lobe_evaluate, lobe_sample};
 use super::material::{Material, MaterialSample, Surface};
+use super::numeric::sampled_share;
 use super::real::{Mask, Real};
 use super::vector::Vec3;
 
@@ -54,12 +55,12 @@ pub fn coat_transmittance<T: Real>(material: &Material<T>, surface: &Surface<T>,
     white.mix(material.coat_color, material.coat_weight) * (T::one() - share).max(T::zero())
 }
 
-/// How often the coat is sampled where it reflects `share` and what is below would reflect `below`: in proportion, at
-/// least one time in twenty and at most nineteen; always where there is nothing below.
+/// How often the coat is sampled where it reflects `share` and what is below would reflect `below`: as [`sampled_share`]
+/// says; always where there is nothing below.
 pub fn coat_probability<T: Real>(share: T, below: T) -> T {
     let (zero, one) = (T::zero(), T::one());
     let rest = (one - share) * below;
-    let probability = (share / (share + rest).max(T::from_f64(1e-9))).clamp(T::from_f64(0.05), T::from_f64(0.95));
+    let probability = sampled_share(share / (share + rest).max(T::from_f64(1e-9)));
     let probability = T::select(zero.less(rest), probability, one);
     T::select(zero.less(share), probability, zero)
 }

@@ -12,6 +12,7 @@ use super::curve::Curve;
 use super::frame::Frame;
 use super::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_left, half_vector_cosine};
 use super::lobe::{Horizon, Lobe, LobeSample, LobeShape, is_mirror, lobe_evaluate, lobe_sample, refracts_at_facets};
+use super::numeric::sampled_share;
 use super::real::{Mask, Real};
 use super::refraction::refracting_cosines;
 use super::vector::Vec3;
@@ -324,7 +325,7 @@ impl<T: Real> Layers<T> {
 }
 
 /// What the base is left with, and how often each layer is sampled: in proportion to the luminance it reflects or
-/// transmits, the specular lobe at least one time in twenty and at most nineteen, unless it is alone or has nothing.
+/// transmits, the specular lobe as [`sampled_share`] says.
 pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Layers<T> {
     let (zero, one) = (T::zero(), T::one());
     let coat = coat_share(material, tables, surface);
@@ -350,8 +351,7 @@ pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface:
     let (specular, below, through) = (taken.luminance(), base.luminance(), transmission.luminance());
     let rest = below + through;
     let tiny = T::from_f64(1e-9);
-    let share = (specular / (specular + rest).max(tiny)).clamp(T::from_f64(0.05), T::from_f64(0.95));
-    let share = T::select(zero.less(specular), share, zero);
+    let share = sampled_share(specular / (specular + rest).max(tiny));
     let share = T::select(zero.less(rest), share, one);
     // What is passed on is what was not reflected, no estimate.
     let share = if passes_on(material) { specular.min(one) } else { share };

@@ -19,6 +19,15 @@ pub fn log1p<T: Real>(x: T) -> T {
     T::select(x.abs().less(c(0.01)), series, (T::one() + x).ln())
 }
 
+/// How often a layer with this share in [0, 1] of the light is sampled: as often, but one time in twenty at least, whichever
+/// of the two is small. Continuous where a share vanishes, so that it does not matter how 0 was rounded.
+#[inline(always)]
+pub fn sampled_share<T: Real>(share: T) -> T {
+    let c = T::from_f64;
+    let raised = |small: T| small.max((c(20.0) * small).min(c(0.05)));
+    T::select(share.less(c(0.5)), raised(share), T::one() - raised(T::one() - share))
+}
+
 /// `v` scaled to length 1, or `fallback` where `v` is so short that its direction is rounding noise.
 #[inline(always)]
 pub fn normalize_or<T: Real>(v: Vec3<T>, fallback: Vec3<T>) -> Vec3<T> {

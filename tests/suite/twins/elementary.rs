@@ -1,7 +1,7 @@
 //! Elementary functions, random numbers, warps and frames.
 
 use glossmith::optics::frame::{Frame, frame_from_normal, frame_from_tangent, local_from_world, world_from_local};
-use glossmith::optics::numeric::{expm1, log1p, normalize_or};
+use glossmith::optics::numeric::{expm1, log1p, normalize_or, sampled_share};
 use glossmith::optics::random::{
     RandomState, Sequence, hash_bits, path_state, random_bits, random_pair, random_pair_bits, random_state,
     scramble_from_low, sobol_second_reversed, unit_from_bits,
@@ -48,6 +48,18 @@ fn elementary_functions_agree() {
             .group("small", |rng, _| inputs![signed(rng, 1e-9, 0.02)])
             .group("large", |rng, _| inputs![rng.log_range(0.01, 1e9)])
             .group("negative", |rng, _| inputs![-rng.range(0.005, 0.995)]),
+            Case::new(
+                "sampled_share",
+                "share",
+                "",
+                twin!(|row| {
+                    let share = row.number();
+                    row.put(sampled_share(share));
+                }),
+            )
+            .output("sampled_share(share)", relative)
+            .group("any", |rng, _| inputs![rng.unit()])
+            .group("small", |rng, _| inputs![rng.log_range(1e-9, 0.1)]),
             Case::new(
                 "arctan2",
                 "y x",
