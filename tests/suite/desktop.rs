@@ -109,7 +109,9 @@ impl Desktop {
             window.id = found.lines().next().unwrap_or_default().to_owned();
             !window.id.is_empty()
         });
-        // There is no window manager that would give it the keys.
+        // There is no window manager that would give it the keys; it does not notice being given them before its first
+        // frames.
+        window.wait("its first frames", |window| window.said().contains("rendering with"));
         window.xdotool(&["windowfocus", "--sync", &window.id]);
         window
     }
