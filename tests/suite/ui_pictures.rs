@@ -13,8 +13,8 @@ use super::ui::{options, request, settle, wait};
 
 /// Drivers rasterise edges and blend text a little differently.
 const COLOR_TOLERANCE: f32 = 2.0;
-/// A changed word is more.
-const PIXELS_TOLERATED: usize = 40;
+/// A changed row is more.
+const PIXELS_TOLERATED: usize = 300;
 
 fn editor(options: Options) -> Harness<'static, App> {
     let mut harness = Harness::builder()
