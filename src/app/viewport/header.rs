@@ -10,6 +10,11 @@ use crate::optics::tone::ToneCurve;
 use crate::render::display::Shown;
 use crate::scene::ModelSource;
 
+/// From this width on there is room for more than model and environment, points.
+const WIDE: f32 = 650.0;
+/// Width of the tone map's menu, points.
+const TONE_MAP: f32 = 116.0;
+
 /// The models that come with the program.
 const MODELS: [(&str, ModelSource); 4] = [
     ("Teapot", ModelSource::Teapot),
@@ -39,11 +44,12 @@ pub(super) fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
     let mut ui = ui.new_child(builder);
     ui.set_clip_rect(bar.intersect(ui.clip_rect()));
     // Narrow viewports keep what is looked at and give up the rest.
-    let is_wide = bar.width() > 650.0;
+    let is_wide = bar.width() > WIDE;
+    let has_tone_map = bar.width() > WIDE + TONE_MAP;
     models(&mut ui, desk);
     environments(&mut ui, desk);
     if is_wide {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| shown(ui, desk));
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| shown(ui, desk, has_tone_map));
     }
 }
 
@@ -92,7 +98,7 @@ fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
 }
 
 /// Added from the right.
-fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
+fn shown(ui: &mut Ui, desk: &mut Desk<'_>, has_tone_map: bool) {
     let is_paused = desk.state.is_paused;
     let (icon, help) = if is_paused {
         (Icon::Play, "Go on (space)")
@@ -135,7 +141,10 @@ fn shown(ui: &mut Ui, desk: &mut Desk<'_>) {
             .accessible_name("Viewport exposure")
             .on_hover_text("Exposure in stops");
     });
-    sized(ui, 116.0, |ui| {
+    if !has_tone_map {
+        return;
+    }
+    sized(ui, TONE_MAP, |ui| {
         let choices: Vec<_> = ToneCurve::ALL
             .iter()
             .map(|curve| (*curve, curve.label(), curve.help()))
