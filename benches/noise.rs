@@ -1,10 +1,10 @@
 //! What the error that is told is worth, what adaptive sampling gains and what looking at the error costs.
 //!
 //! `cargo bench --bench noise [-- quick]`: how often the true error, against a long render, lies in the band that is told,
-//! over scenes, sequences and numbers of samples; the time to a noise of 2 % with adaptive sampling on and off, in turns,
-//! for the teapot under `studio` and every other scene of the list; the share of the time that the looks take. `quick`
-//! does the same small, to see that it works; `coverage` or `adaptive` one of the two parts. The processor engine; `gpu`
-//! as a further argument takes the GPU.
+//! over scenes, sequences and numbers of samples; the time to a noise with adaptive sampling on and off, in turns, for
+//! every scene of the list: the noise is what so many samples of every pixel come to; the share of the time that the looks
+//! take. `quick` does the same small, to see that it works; `coverage` or `adaptive` one of the two parts. The processor
+//! engine; `gpu` as a further argument takes the GPU.
 
 use std::time::Duration;
 
@@ -24,7 +24,7 @@ struct Extent {
     renders: u32,
     reference_samples: u32,
     samples: &'static [u32],
-    noise: f64,
+    samples_even: u32,
     rounds: u32,
 }
 
@@ -33,7 +33,7 @@ const FULL: Extent = Extent {
     renders: 64,
     reference_samples: 65_536,
     samples: &[16, 64, 256],
-    noise: 0.02,
+    samples_even: 512,
     rounds: 3,
 };
 const QUICK: Extent = Extent {
@@ -41,7 +41,7 @@ const QUICK: Extent = Extent {
     renders: 8,
     reference_samples: 1024,
     samples: &[16],
-    noise: 0.05,
+    samples_even: 64,
     rounds: 1,
 };
 
@@ -165,38 +165,42 @@ fn coverage(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
 fn adaptive(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent) -> Result<(), Failure> {
     let side = 4 * extent.side;
     println!(
-        "## Time to {} % at {side} x {side}, medians of {}",
-        100.0 * extent.noise,
-        extent.rounds
+        "## Time to the noise of {} samples of every pixel, {side} x {side}, medians of {}",
+        extent.samples_even, extent.rounds
     );
-    println!("| scene | even | adaptive | sooner by | samples even | samples adaptive | looks' share |");
+    println!("| scene | noise | even | adaptive | sooner by | samples adaptive | looks' share |");
     println!("| --- | --- | --- | --- | --- | --- | --- |");
     for (name, document) in scenes {
         let mut document = document.clone();
         (document.render.width, document.render.height) = (side, side);
-        document.render.samples = u32::MAX;
-        document.render.noise = Some(extent.noise);
-        let mut seconds = [Vec::new(), Vec::new()];
-        let mut last = [Progress::default(); 2];
+        let (mut ratios, mut seconds) = (Vec::new(), [Vec::new(), Vec::new()]);
+        let (mut wanted, mut last) = (0.0, Progress::default());
         for round in 0..extent.rounds {
             document.render.seed = round;
-            for (index, adaptive) in [false, true].into_iter().enumerate() {
-                document.render.adaptive = Some(adaptive);
-                last[index] = finish(session, &document)?.1;
-                seconds[index].push(last[index].render_seconds);
-            }
+            (document.render.adaptive, document.render.noise) = (Some(false), None);
+            document.render.samples = extent.samples_even;
+            let (film, even) = finish(session, &document)?;
+            wanted = noise(&film).ok_or("no error is told")?.relative;
+            (document.render.adaptive, document.render.noise) = (Some(true), Some(wanted));
+            document.render.samples = u32::MAX;
+            last = finish(session, &document)?.1;
+            let times = [even.render_seconds, last.render_seconds];
+            std::iter::zip(&mut seconds, times).for_each(|(all, time)| all.push(time));
+            ratios.push(times[0] / times[1]);
         }
-        let [even, adaptive] = seconds.map(|mut times| {
-            times.sort_by(f64::total_cmp);
-            times[times.len() / 2]
-        });
+        let [even, adaptive] = seconds.map(median);
         println!(
-            "| {name} | {even:.2} s | {adaptive:.2} s | {:.2} × | {:.1} | {:.1} | {:.1} % |",
-            even / adaptive,
-            last[0].mean_samples,
-            last[1].mean_samples,
-            100.0 * last[1].measure_seconds / last[1].render_seconds
+            "| {name} | {:.2} % | {even:.2} s | {adaptive:.2} s | {:.2} × | {:.1} | {:.1} % |",
+            100.0 * wanted,
+            median(ratios),
+            last.mean_samples,
+            100.0 * last.measure_seconds / last.render_seconds
         );
     }
     Ok(())
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }

@@ -1,7 +1,8 @@
 //! What the plan saves: specialised against general kernels, in time and in compiling; quoted in docs/PERFORMANCE.md.
 //!
-//! `cargo bench --bench plan`. Every shipped material on the teapot under `studio`, 256 × 256, specialised and general in
-//! turn; the ratio is of medians of one run. Software Vulkan compiles at the first dispatch, which is timed.
+//! `cargo bench --bench plan [-- kernels|ledger] [cpu|gpu]`. `kernels`: every shipped material on the teapot under
+//! `studio`, 256 × 256, specialised and general in turn; the ratio is the median over the turns of one run. Software Vulkan
+//! compiles at the first dispatch, which is timed. `ledger`: what the ledger says of an effect, against the clock.
 
 use std::time::{Duration, Instant};
 
@@ -14,14 +15,25 @@ type Failure = Box<dyn std::error::Error>;
 type Edit = fn(&mut Document);
 
 /// Turns of each pair.
-const TURNS: usize = 5;
+const TURNS: usize = 9;
 /// How long each turn lasts.
-const TURN: Duration = Duration::from_millis(800);
+const TURN: Duration = Duration::from_millis(500);
+/// Samples of a pixel in each turn by the clock.
+const SAMPLES: u32 = 24;
 
 fn main() -> Result<(), Failure> {
-    for engine in [EngineChoice::Gpu, EngineChoice::Cpu] {
+    let arguments: Vec<String> = std::env::args().collect();
+    let has = |name: &str| arguments.iter().any(|argument| argument == name);
+    let engines = [(EngineChoice::Gpu, "cpu"), (EngineChoice::Cpu, "gpu")];
+    for (engine, _) in engines.into_iter().filter(|(_, other)| !has(other)) {
         let mut sessions = [Session::open(engine)?, Session::open(engine)?];
         println!("## {}\n", sessions[0].engine());
+        if !has("kernels") {
+            ledger_and_clock(engine, &mut sessions)?;
+        }
+        if has("ledger") {
+            continue;
+        }
         println!("| scene | left out | kernel s | general s | M samples/s | general | ratio |");
         println!("| --- | --- | --- | --- | --- | --- | --- |");
         for (name, document) in scenes() {
@@ -30,7 +42,6 @@ fn main() -> Result<(), Failure> {
             row(&name, &mut sessions, &[document, general])?;
         }
         println!();
-        ledger_and_clock(engine, &mut sessions)?;
     }
     Ok(())
 }
@@ -59,13 +70,13 @@ fn ledger_and_clock(engine: EngineChoice, sessions: &mut [Session; 2]) -> Result
         for turn in 0..=TURNS {
             for (side, document) in [&with, &without].into_iter().enumerate() {
                 let mut document = document.clone();
-                (document.render.samples, document.render.seed) = (16, turn as u32);
+                (document.render.samples, document.render.seed) = (SAMPLES, turn as u32);
                 sessions[side].submit(&document)?;
                 let begun = Instant::now();
                 while !sessions[side].step(TURN)?.is_done {}
                 // The first turn compiles.
                 if turn > 0 {
-                    milliseconds[side].push(1e3 * begun.elapsed().as_secs_f64() / 16.0);
+                    milliseconds[side].push(1e3 * begun.elapsed().as_secs_f64() / f64::from(SAMPLES));
                 }
             }
         }
@@ -132,12 +143,15 @@ fn row(name: &str, sessions: &mut [Session; 2], documents: &[Document; 2]) -> Re
         }
     }
     let left_out = sessions[0].job().map_or(0, |job| job.plan.left_out());
+    let ratio = median(
+        std::iter::zip(&speeds[0], &speeds[1])
+            .map(|(own, general)| own / general)
+            .collect(),
+    );
     let [own, general] = speeds.map(|speeds| 1e-6 * median(speeds));
     println!(
-        "| {name} | {left_out} | {:.2} | {:.2} | {own:.2} | {general:.2} | {:.2} |",
-        compile_s[0],
-        compile_s[1],
-        own / general
+        "| {name} | {left_out} | {:.2} | {:.2} | {own:.2} | {general:.2} | {ratio:.2} |",
+        compile_s[0], compile_s[1]
     );
     Ok(())
 }

@@ -30,10 +30,10 @@ fn trace_features(pixel: vec2u, sample: u32) -> FeatureSample {
 }
 
 // The path tracer's sums are empty meanwhile and lend their place.
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(TILE_SIDE, TILE_SIDE)
 fn features(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) place: vec3u) {
-    let tile = tiles[workgroup.x / (TILE_WORKGROUPS * TILE_WORKGROUPS)];
-    let pixel = tile_pixel(tile, workgroup.x, place.xy);
+    let tile = tiles[workgroup.x];
+    let pixel = tile.origin + place.xy;
     if any(pixel >= globals.image_size) {
         return;
     }

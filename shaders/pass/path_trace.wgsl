@@ -239,10 +239,10 @@ fn is_sound(color: vec3f) -> bool {
 }
 
 
-@compute @workgroup_size(8, 8)
+@compute @workgroup_size(TILE_SIDE, TILE_SIDE)
 fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) place: vec3u) {
-    let tile = tiles[workgroup.x / (TILE_WORKGROUPS * TILE_WORKGROUPS)];
-    let pixel = tile_pixel(tile, workgroup.x, place.xy);
+    let tile = tiles[workgroup.x];
+    let pixel = tile.origin + place.xy;
     if any(pixel >= globals.image_size) {
         return;
     }

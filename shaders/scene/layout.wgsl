@@ -161,11 +161,5 @@ struct LightCell {
 // The linear values of the 256 sRGB codes as bits, then texels of 4 x 8 bits.
 @group(0) @binding(14) var<storage, read> texture_words: array<u32>;
 
-// Workgroups along a tile's side.
-const TILE_WORKGROUPS: u32 = 2u;
-
-// The pixel of an invocation: a tile is 2 × 2 workgroups of 8 × 8 pixels.
-fn tile_pixel(tile: Tile, workgroup: u32, place: vec2u) -> vec2u {
-    let quarter = vec2u(workgroup % TILE_WORKGROUPS, workgroup / TILE_WORKGROUPS % TILE_WORKGROUPS);
-    return tile.origin + 8u * quarter + place;
-}
+// Pixels along the side of a tile, which is a workgroup.
+const TILE_SIDE: u32 = 8u;

@@ -123,7 +123,7 @@ mod tests {
     use super::*;
     use crate::optics::random::{Sequence, random_pair, random_state};
 
-    const SIDE: u32 = 96;
+    const SIDE: u32 = 48;
 
     /// A film of 16 samples a pixel, each at the cost of `rays`, whose standard deviation a sample is `sigma` of its tile.
     fn film(sigma: &dyn Fn(usize) -> f64, rays: &dyn Fn(usize) -> f64) -> Film {

@@ -208,7 +208,8 @@ mod tests {
     use super::*;
     use crate::optics::random::{Sequence, random_pair, random_state};
 
-    const SIDE: u32 = 48;
+    /// Five tiles.
+    const SIDE: u32 = 40;
 
     /// A film of independent samples, `deviation(pixel, ξ)` of mean 0 away from 1; and the true squared error of its
     /// pixels' means, summed.
@@ -313,11 +314,11 @@ mod tests {
         assert!(errors.iter().step_by(SIDE as usize).all(|error| *error < 1e-6));
         let tiles = tile_errors(&film);
         // The tiles in the middle column are half noisy.
-        for row in tiles.chunks(3) {
-            let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.2;
+        for row in tiles.chunks(5) {
+            let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 0.25;
             assert!(row[0].sample_variance < 1e-9 && row[0].rays == 1.0, "{row:?}");
             assert!(
-                near(row[1].sample_variance, 0.045) && near(row[2].sample_variance, 0.09),
+                near(row[2].sample_variance, 0.045) && near(row[3].sample_variance, 0.09),
                 "{row:?}"
             );
         }

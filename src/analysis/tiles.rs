@@ -1,7 +1,7 @@
 //! The picture in tiles, and how many samples each has had and is to have: what both engines work through.
 
-/// Side of a tile, pixels.
-pub const TILE_SIDE: u32 = 16;
+/// Side of a tile, pixels: a workgroup's, as the shaders say.
+pub const TILE_SIDE: u32 = 8;
 
 /// A picture cut into tiles, row by row from the top; those at the right and the bottom may be smaller.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -45,6 +45,12 @@ impl TileGrid {
         u64::from(width) * u64::from(height)
     }
 
+    /// Samples of all pixels together in some work.
+    pub fn pixel_samples(self, works: &[Work]) -> u64 {
+        let of_work = |work: &Work| self.pixels(work.tile) * u64::from(work.count);
+        works.iter().map(of_work).sum()
+    }
+
     /// The tile of a pixel, by the pixel's number row by row.
     pub fn of_pixel(self, pixel: usize) -> usize {
         let (width, side) = (self.width as usize, TILE_SIDE as usize);
@@ -79,6 +85,15 @@ pub struct Work {
     pub first_sample: u32,
     /// Samples a pixel.
     pub count: u32,
+}
+
+/// What a slice may be.
+#[derive(Clone, Copy, Debug)]
+pub struct SliceLimits {
+    /// The most samples that a tile gets in a pass, at least 1.
+    pub pass_samples_max: u32,
+    /// The least tiles of a slice, where there are so many, and the most.
+    pub tiles: [usize; 2],
 }
 
 /// Which samples have been rendered and which come next. A *pass* goes once over all tiles that lack samples.
@@ -118,23 +133,24 @@ impl Schedule {
         self.goals.resize(self.samples.len(), 0);
     }
 
-    /// Begins a pass where none is in progress. `samples_of` says how many samples the tiles get in it, at least 1 and at
-    /// most what they lack, from the number of pixels in the pass. False where no tile lacks any.
-    pub fn begin(&mut self, samples_of: impl FnOnce(u64) -> u32) -> bool {
-        if self.next < self.pass.len() {
-            return true;
+    /// What comes next, of about `affordable` samples: some tiles of a pass, or a pass of several samples of each tile.
+    /// Empty where no tile lacks any.
+    pub fn slice(&mut self, affordable: f64, limits: SliceLimits) -> Vec<Work> {
+        if self.next >= self.pass.len() {
+            self.begin(affordable, limits.pass_samples_max);
         }
+        let tile_samples = f64::from(TILE_SIDE * TILE_SIDE * self.pass_samples.max(1));
+        let [least, most] = limits.tiles;
+        self.next(((affordable / tile_samples) as usize).clamp(least, most))
+    }
+
+    /// Begins a pass over the tiles that lack samples.
+    fn begin(&mut self, affordable: f64, samples_max: u32) {
         let lacks = |tile: &usize| self.samples[*tile] < self.goals[*tile];
         self.pass = (0..self.samples.len()).filter(lacks).collect();
         self.next = 0;
-        if !self.pass.is_empty() {
-            self.pass_samples = samples_of(self.pass_pixels()).max(1);
-        }
-        !self.pass.is_empty()
-    }
-
-    fn pass_pixels(&self) -> u64 {
-        self.pass.iter().map(|tile| self.grid.pixels(*tile)).sum()
+        let pixels: u64 = self.pass.iter().map(|tile| self.grid.pixels(*tile)).sum();
+        self.pass_samples = ((affordable / pixels.max(1) as f64) as u32).clamp(1, samples_max);
     }
 
     /// The most samples that a tile gets in the pass.
@@ -143,7 +159,7 @@ impl Schedule {
     }
 
     /// The next tiles of the pass, at most `most`.
-    pub fn next(&self, most: usize) -> Vec<Work> {
+    fn next(&self, most: usize) -> Vec<Work> {
         let work = |tile: &usize| {
             let first_sample = self.samples[*tile];
             let lacking = self.goals[*tile].saturating_sub(first_sample);
@@ -197,28 +213,35 @@ mod tests {
 
     #[test]
     fn tiles_cover_the_picture_once() {
-        let grid = TileGrid { width: 37, height: 16 };
+        let grid = TileGrid { width: 21, height: 8 };
         assert_eq!((grid.columns(), grid.rows()), (3, 1));
         let mut pixels = vec![0; grid.tiles()];
-        (0..37 * 16).for_each(|pixel| pixels[grid.of_pixel(pixel)] += 1);
-        assert_eq!(pixels, [256, 256, 80]);
-        assert_eq!((0..3).map(|tile| grid.pixels(tile)).collect::<Vec<_>>(), [256, 256, 80]);
-        assert_eq!((grid.origin(2), grid.size(2)), ([32, 0], [5, 16]));
+        (0..21 * 8).for_each(|pixel| pixels[grid.of_pixel(pixel)] += 1);
+        assert_eq!(pixels, [64, 64, 40]);
+        assert_eq!((0..3).map(|tile| grid.pixels(tile)).collect::<Vec<_>>(), [64, 64, 40]);
+        assert_eq!((grid.origin(2), grid.size(2)), ([16, 0], [5, 8]));
         assert_eq!(grid.around(0).collect::<Vec<_>>(), [0, 1]);
-        let middle = TileGrid { width: 48, height: 48 }.around(4);
+        let middle = TileGrid { width: 24, height: 24 }.around(4);
         assert_eq!(middle.collect::<Vec<_>>(), (0..9).collect::<Vec<_>>());
     }
 
     #[test]
     fn every_tile_gets_what_it_lacks_and_nothing_twice() {
-        let mut schedule = Schedule::new(40, 20);
+        let mut schedule = Schedule::new(20, 10);
         let goals = [5, 0, 3, 5, 5, 1];
         schedule.aim(&goals);
         let mut had = [0_u32; 6];
         let mut completed = 0;
-        while schedule.begin(|_| 2) {
-            // No more than two tiles at a time, so that passes are cut.
-            let works = schedule.next(2);
+        // No more than two tiles at a time, so that passes are cut.
+        let two = SliceLimits {
+            pass_samples_max: 2,
+            tiles: [1, 2],
+        };
+        loop {
+            let works = schedule.slice(1e9, two);
+            if works.is_empty() {
+                break;
+            }
             for work in &works {
                 assert_eq!(work.first_sample, had[work.tile]);
                 had[work.tile] += work.count;
@@ -229,17 +252,21 @@ mod tests {
         }
         assert_eq!((had, completed), (goals, 5));
         assert!(schedule.is_at_goal());
-        assert_eq!(schedule.pixel_samples(), 256 * 5 + 128 * 3 + 64 * (5 + 5) + 32);
+        assert_eq!(schedule.pixel_samples(), 64 * 5 + 32 * 3 + 16 * (5 + 5) + 8);
         // A tile that was left behind catches up.
         schedule.aim(&[5; 6]);
-        assert!(!schedule.is_at_goal() && schedule.begin(|_| 8));
-        let works = schedule.next(9);
+        assert!(!schedule.is_at_goal());
+        let all = SliceLimits {
+            pass_samples_max: 8,
+            tiles: [1, 9],
+        };
+        let works = schedule.slice(1e9, all);
         let counts: Vec<_> = works
             .iter()
             .map(|work| (work.tile, work.first_sample, work.count))
             .collect();
         assert_eq!(counts, [(1, 0, 5), (2, 3, 2), (5, 1, 4)]);
         schedule.finish(&works);
-        assert_eq!(schedule.pixel_samples(), 40 * 20 * 5);
+        assert_eq!(schedule.pixel_samples(), 20 * 10 * 5);
     }
 }

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::analysis::features::Features;
 use crate::analysis::film::Film;
-use crate::analysis::tiles::{Schedule, Work};
+use crate::analysis::tiles::{Schedule, SliceLimits, Work};
 use crate::document::job::Job;
 use crate::optics::real::Real;
 use integrator::{Integrator, is_sound};
@@ -29,9 +29,14 @@ pub struct CpuEngine {
     /// All of them in one, made when asked for.
     film: Film,
     is_film_made: bool,
-    /// Tiles a second, to cut work to a budget.
-    tiles_per_second: f64,
+    /// Pixel samples a second, to cut work to a budget; 0 before the first slice.
+    samples_per_second: f64,
 }
+
+/// Longest time between looks at the clock.
+const SLICE: Duration = Duration::from_millis(30);
+/// Tiles of a slice for each core, at least: one waits for the other no longer than for a tile.
+const CORE_TILES: usize = 4;
 
 impl CpuEngine {
     /// Starts a job over.
@@ -66,13 +71,21 @@ impl CpuEngine {
         let integrator = Integrator::<T>::new(&job);
         self.schedule.aim(goals);
         let start = Instant::now();
-        while self.schedule.begin(|_| 1) {
-            let left = budget.saturating_sub(start.elapsed()).as_secs_f64();
-            let count = (self.tiles_per_second * left) as usize;
-            let works = self.schedule.next(count.max(rayon::current_num_threads()));
+        let limits = SliceLimits {
+            pass_samples_max: u32::MAX,
+            tiles: [CORE_TILES * rayon::current_num_threads(), usize::MAX],
+        };
+        loop {
+            let left = budget.saturating_sub(start.elapsed()).min(SLICE).as_secs_f64();
+            let works = self.schedule.slice(self.samples_per_second * left, limits);
+            if works.is_empty() {
+                break;
+            }
             let slice_start = Instant::now();
             self.render(&integrator, &works);
-            self.tiles_per_second = works.len() as f64 / slice_start.elapsed().as_secs_f64().max(1e-9);
+            let grid = self.schedule.grid();
+            let seconds = slice_start.elapsed().as_secs_f64().max(1e-9);
+            self.samples_per_second = grid.pixel_samples(&works) as f64 / seconds;
             self.schedule.finish(&works);
             if start.elapsed() >= budget {
                 break;

@@ -11,7 +11,7 @@ use super::resources::{DISPATCH_TILES, Resources};
 use super::timer::Timer;
 use crate::analysis::features::{FeatureSums, Features};
 use crate::analysis::film::Film;
-use crate::analysis::tiles::{Schedule, TILE_SIDE, Work};
+use crate::analysis::tiles::{Schedule, SliceLimits, Work};
 use crate::document::job::Job;
 use crate::document::plan::Specialisation;
 
@@ -19,10 +19,8 @@ use crate::document::plan::Specialisation;
 const SLICE: Duration = Duration::from_millis(30);
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
-/// Workgroups of a tile: 8 × 8 pixels each, as the shaders say.
-const TILE_WORKGROUPS: u32 = 4;
 /// Tiles of a dispatch that looks for features: one ray a pixel.
-const FEATURE_TILES: usize = 512;
+const FEATURE_TILES: usize = 2048;
 
 /// Renders on a GPU.
 #[derive(Debug)]
@@ -141,12 +139,16 @@ impl GpuEngine {
         while self.resources.is_some() {
             let left = budget.saturating_sub(start.elapsed());
             let affordable = self.samples_per_second * left.min(SLICE).as_secs_f64();
-            let most = FLUSH_SAMPLES - self.unflushed;
-            let samples_of = |pixels: u64| ((affordable / pixels.max(1) as f64) as u32).clamp(1, most);
-            if !self.schedule.begin(samples_of) {
+            let limits = SliceLimits {
+                pass_samples_max: FLUSH_SAMPLES - self.unflushed,
+                // At least a row's: fewer leave a GPU idle.
+                tiles: [self.schedule.grid().columns(), DISPATCH_TILES],
+            };
+            let works = self.schedule.slice(affordable, limits);
+            if works.is_empty() {
                 break;
             }
-            self.slice(affordable)?;
+            self.render(&works)?;
             if start.elapsed() >= budget {
                 break;
             }
@@ -154,13 +156,9 @@ impl GpuEngine {
         Ok(())
     }
 
-    /// One dispatch of about so many samples: some tiles of a pass, or a pass of several samples where the GPU is fast.
-    fn slice(&mut self, affordable: f64) -> Result<(), GpuError> {
+    /// Renders a slice in one dispatch.
+    fn render(&mut self, works: &[Work]) -> Result<(), GpuError> {
         let grid = self.schedule.grid();
-        let tile_samples = f64::from(TILE_SIDE * TILE_SIDE * self.schedule.pass_samples());
-        // At least a row's: fewer leave a GPU idle.
-        let count = ((affordable / tile_samples) as usize).clamp(grid.columns(), DISPATCH_TILES);
-        let works = self.schedule.next(count);
         let tile = |work: &Work| Tile {
             origin: grid.origin(work.tile),
             first_sample: work.first_sample,
@@ -170,9 +168,8 @@ impl GpuEngine {
         let begun = Instant::now();
         self.dispatch(&tiles)?;
         let seconds = begun.elapsed().as_secs_f64().max(1e-6);
-        let samples_of = |work: &Work| grid.pixels(work.tile) * u64::from(work.count);
-        self.samples_per_second = works.iter().map(samples_of).sum::<u64>() as f64 / seconds;
-        if self.schedule.finish(&works) {
+        self.samples_per_second = grid.pixel_samples(works) as f64 / seconds;
+        if self.schedule.finish(works) {
             self.unflushed += self.schedule.pass_samples();
             if self.unflushed >= FLUSH_SAMPLES {
                 self.flush()?;
@@ -304,7 +301,7 @@ fn dispatch(
     timer: Option<&Timer>,
 ) -> Result<(), GpuError> {
     gpu.queue.write_buffer(&resources.tiles, 0, bytemuck::cast_slice(tiles));
-    let workgroups = [TILE_WORKGROUPS * tiles.len() as u32, 1];
+    let workgroups = [tiles.len() as u32, 1];
     compute::dispatch(gpu, pipeline, &[&resources.bind_group], workgroups, timer);
     gpu.wait()
 }

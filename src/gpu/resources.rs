@@ -8,8 +8,8 @@ use crate::document::job::Job;
 use crate::scene::Geometry;
 use crate::scene::environment::Environment;
 
-/// Most tiles of a dispatch: four workgroups each, of which WebGPU lets 65 535 stand in a row.
-pub const DISPATCH_TILES: usize = 16_383;
+/// Most tiles of a dispatch: a workgroup each, of which WebGPU lets 65 535 stand in a row.
+pub const DISPATCH_TILES: usize = 65_535;
 
 /// Buffers and textures of a job; what a new job shares with the old one is kept.
 #[derive(Debug)]

@@ -48,6 +48,13 @@ impl Convergence {
         self.history.last().map(|measurement| measurement.noise)
     }
 
+    /// By how much the error may be less than what was seen, at least 1. Who aims at what was seen goes too far half of
+    /// the time, and far too far where few pixels or samples tell little.
+    fn doubt(&self) -> f64 {
+        let ratio = self.noise().map_or(1.0, |noise| noise.relative / noise.low);
+        if ratio.is_finite() { ratio.max(1.0) } else { 1.0 }
+    }
+
     /// Whether something was rendered since the last look.
     pub(super) fn is_stale(&self, schedule: &Schedule) -> bool {
         schedule.pixel_samples() > self.measured_samples
@@ -110,7 +117,7 @@ impl Convergence {
         if let Some(film) = film.filter(|_| settings.is_adaptive() && most > 1) {
             let round = Round {
                 growth: paced.max(GROWTH_ADAPTIVE),
-                noise: settings.noise,
+                noise: settings.noise.map(|wanted| wanted * self.doubt()),
                 samples_max: settings.samples,
             };
             self.goals = next_goals(film, samples, round);
@@ -118,7 +125,10 @@ impl Convergence {
         }
         let growth = match (settings.noise, self.noise()) {
             // As the error falls with 1/√n, and a little short of it if need be.
-            (Some(wanted), Some(noise)) => (noise.relative / wanted).powi(2).min(paced.max(GROWTH_AIMED)),
+            (Some(wanted), Some(noise)) => {
+                let aim = wanted * self.doubt();
+                (noise.relative / aim).powi(2).min(paced.max(GROWTH_AIMED))
+            }
             _ => paced.max(GROWTH_WATCHED),
         };
         let growth = growth.max(GROWTH_MIN);

@@ -278,8 +278,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("FAR_MARGIN", f64::from(1.000_000_5_f32)),
         ("INVERSE_MAX", f64::from(1e18_f32)),
         ("PLACE_ERROR", f64::from(6e-7_f32)),
-        // A workgroup is 8 pixels wide.
-        ("TILE_WORKGROUPS", f64::from(TILE_SIDE / 8)),
+        ("TILE_SIDE", f64::from(TILE_SIDE)),
         ("ALBEDO_NODES", ALBEDO_NODES as f64),
         ("TOTAL_NODES", TOTAL_NODES as f64),
         ("ROUGHNESS_NODES", ROUGHNESS_NODES as f64),

@@ -123,7 +123,7 @@ fn a_region_is_drawn_in_one_step_and_cleared() {
     }
     assert_eq!(after.camera, before.camera, "the drag was the region's");
     let part = picture(&harness);
-    // Tiles of 16 × 16 pixels are rendered or not: the last of the 40 columns lies in one of its own.
+    // Tiles of 8 × 8 pixels are rendered or not: the last of the 40 columns lies in one without a part of the region.
     assert_eq!(
         (part[39], whole[39][3]),
         ([0.0; 4], 1.0),
