@@ -4,6 +4,7 @@ mod charts;
 mod figure;
 mod lines;
 mod maps;
+mod scale;
 mod solids;
 
 pub use charts::{BarPlot, NamedPoint, PictureSheet, PointPlot};

@@ -5,7 +5,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::figure::{Figure, Outcome, PALETTE, Style, TITLE, font, number, px, round_step, stroke, titled};
-use super::lines::{framed, place};
+use super::lines::{LETTER, framed};
 use crate::analysis::lobe_view::Axis;
 
 /// Points with names, the best of them joined by a line.
@@ -49,6 +49,9 @@ pub struct BarPlot {
 
 /// Width and height of a chart of points.
 const POINTS_SIZE: (u32, u32) = (900, 580);
+/// Height of a point's name, and what it needs besides its letters.
+const NAME_HEIGHT: f64 = 18.0;
+const NAME_MARGIN: f64 = 40.0;
 /// Width of bars and of their names, height of a bar, and of what lies between names.
 const BARS_WIDTH: u32 = 900;
 const NAMES_WIDTH: f64 = 230.0;
@@ -66,24 +69,82 @@ impl Figure for PointPlot {
     where
         DB::ErrorType: 'static,
     {
-        let mut chart = framed(root, &self.title, [&self.x, &self.y], [76.0, 120.0], style)?;
-        let at = |point: &NamedPoint, y: f64| (place(&self.x, point.place[0]), place(&self.y, y));
+        let longest = self.points.iter().map(|point| point.name.chars().count()).max();
+        let names_width = NAME_MARGIN + LETTER * longest.unwrap_or(0) as f64;
+        let mut chart = framed(root, &self.title, [&self.x, &self.y], [76.0, names_width], style)?;
+        let at = |point: &NamedPoint, y: f64| (point.place[0], y);
         let mut best: Vec<_> = self.points.iter().filter(|point| point.is_best).collect();
         best.sort_by(|a, b| a.place[0].total_cmp(&b.place[0]));
         let front = best.iter().map(|point| at(point, point.place[1]));
         chart.draw_series(LineSeries::new(front, stroke(PALETTE[0], 1.5, style)))?;
         for point in &self.points {
-            let color = if point.is_best { PALETTE[0] } else { PALETTE[6] };
+            let color = point.color();
             let ends = point.y_range.map(|y| at(point, y));
             chart.draw_series([PathElement::new(ends.to_vec(), stroke(color, 1.0, style))])?;
-            let label = font(13.0, style).pos(Pos::new(HPos::Left, VPos::Center));
-            let marked = EmptyElement::at(at(point, point.place[1]))
-                + Circle::new((0, 0), px(4.0, style), color.filled())
-                + Text::new(point.name.clone(), (px(8.0, style), px(-7.0, style)), label);
-            chart.draw_series([marked])?;
+            let center = at(point, point.place[1]);
+            chart.draw_series([Circle::new(center, px(4.0, style), color.filled())])?;
+        }
+        let place_px = |point: &NamedPoint| chart.backend_coord(&at(point, point.place[1]));
+        let places: Vec<_> = self.points.iter().map(place_px).collect();
+        let (across, down) = chart.plotting_area().get_pixel_range();
+        self.draw_names(root, &places, [across.end, down.end], style)
+    }
+}
+
+impl NamedPoint {
+    fn color(&self) -> RGBColor {
+        if self.is_best { PALETTE[0] } else { PALETTE[6] }
+    }
+}
+
+impl PointPlot {
+    /// The names in a column beside the plot, each joined to its point: points may lie on top of each other.
+    fn draw_names<DB: DrawingBackend>(
+        &self,
+        root: &DrawingArea<DB, Shift>,
+        places: &[(i32, i32)],
+        [right, bottom]: [i32; 2],
+        style: Style,
+    ) -> Outcome
+    where
+        DB::ErrorType: 'static,
+    {
+        let mut order: Vec<usize> = (0..places.len()).collect();
+        // Of points at the same height the leftmost has its name on top, so that no two lines cross.
+        order.sort_by_key(|&index| (places[index].1, places[index].0));
+        let heights: Vec<i32> = order.iter().map(|&index| places[index].1).collect();
+        let heights = spread(&heights, px(NAME_HEIGHT, style), bottom);
+        let label = font(13.0, style).pos(Pos::new(HPos::Left, VPos::Center));
+        for (index, height) in order.into_iter().zip(heights) {
+            let point = &self.points[index];
+            let ends = [places[index], (right + px(14.0, style), height)];
+            root.draw(&PathElement::new(
+                ends,
+                point.color().mix(0.35).stroke_width(px(1.0, style).max(1) as u32),
+            ))?;
+            let color = &point.color();
+            root.draw(&Text::new(
+                point.name.clone(),
+                (right + px(18.0, style), height),
+                label.color(color),
+            ))?;
         }
         Ok(())
     }
+}
+
+/// Heights in ascending order moved so that each is `gap` below the one before, none below `bottom`.
+fn spread(heights: &[i32], gap: i32, bottom: i32) -> Vec<i32> {
+    let mut spread = heights.to_vec();
+    for index in 1..spread.len() {
+        spread[index] = spread[index].max(spread[index - 1] + gap);
+    }
+    let mut lowest = bottom;
+    for height in spread.iter_mut().rev() {
+        *height = (*height).min(lowest);
+        lowest = *height - gap;
+    }
+    spread
 }
 
 impl BarPlot {

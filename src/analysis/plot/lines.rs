@@ -1,21 +1,21 @@
 //! Line plots, over an axis or around a point.
 
 use plotters::coord::Shift;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::figure::{Figure, Outcome, PALETTE, Style, font, number, px, round_step, stroke};
+use super::scale::Scale;
 use crate::analysis::lobe_view::{Axis, LinePlot, Series};
 
-/// A chart in plain coordinates.
-type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+/// A chart over two axes.
+type Chart<'a, DB> = ChartContext<'a, DB, Cartesian2d<Scale, Scale>>;
 
 /// Width and height of the plot itself, and of a legend's entry.
 const SIZE: (u32, u32) = (860, 560);
 const ENTRY_HEIGHT: f64 = 24.0;
 /// Width of a letter on average, and of what a legend needs besides letters.
-const LETTER: f64 = 7.4;
+pub(super) const LETTER: f64 = 7.4;
 const LEGEND_MARGIN: f64 = 62.0;
 
 impl Figure for LinePlot {
@@ -52,24 +52,6 @@ fn title(plot: &LinePlot) -> String {
         .map_or_else(|| plot.title.clone(), |angle| format!("{}, view {angle}°", plot.title))
 }
 
-/// A value where it is drawn on its axis.
-pub(super) fn place(axis: &Axis, value: f64) -> f64 {
-    if axis.is_logarithmic {
-        value.max(axis.range[0]).log10()
-    } else {
-        value
-    }
-}
-
-/// What stands at a place of an axis.
-pub(super) fn axis_label(axis: &Axis, place: f64) -> String {
-    number(if axis.is_logarithmic {
-        10.0_f64.powf(place)
-    } else {
-        place
-    })
-}
-
 /// A chart with its title and axes; beside it there is room for the labels of the vertical axis, and at the right.
 pub(super) fn framed<'a, DB: DrawingBackend>(
     root: &DrawingArea<DB, Shift>,
@@ -81,25 +63,21 @@ pub(super) fn framed<'a, DB: DrawingBackend>(
 where
     DB::ErrorType: 'static,
 {
-    let [x, y] = axes.map(|axis| place(axis, axis.range[0])..place(axis, axis.range[1]));
     let mut chart = ChartBuilder::on(root)
         .caption(title, font(22.0, style))
         .margin(px(16.0, style))
         .margin_right(px(margin_right, style))
         .x_label_area_size(px(46.0, style))
         .y_label_area_size(px(labels_width, style))
-        .build_cartesian_2d(x, y)?;
+        .build_cartesian_2d(Scale::new(axes[0], 10.0), Scale::new(axes[1], 8.0))?;
     chart
         .configure_mesh()
-        .light_line_style(TRANSPARENT)
         .bold_line_style(stroke(style.faint, 1.0, style))
         .axis_style(stroke(style.ink, 1.0, style))
         .label_style(font(14.0, style))
         .axis_desc_style(font(15.0, style))
-        .x_labels(10)
-        .y_labels(8)
-        .x_label_formatter(&|place| axis_label(axes[0], *place))
-        .y_label_formatter(&|place| axis_label(axes[1], *place))
+        .x_label_formatter(&|value| number(*value))
+        .y_label_formatter(&|value| number(*value))
         .x_desc(&axes[0].label)
         .y_desc(&axes[1].label)
         .draw()?;
@@ -112,10 +90,7 @@ where
 {
     let mut chart = framed(root, &title(plot), [&plot.x, &plot.y], [66.0, 16.0], style)?;
     for (series, rank) in ranked(&plot.series) {
-        let points = series
-            .points
-            .iter()
-            .map(|[x, y]| (place(&plot.x, *x), place(&plot.y, *y)));
+        let points = series.points.iter().map(|[x, y]| (*x, *y));
         draw_series(&mut chart, series, rank, points, style)?;
     }
     Ok(())
@@ -187,7 +162,7 @@ where
         .caption(title(plot), font(22.0, style))
         .margin(px(16.0, style))
         .x_label_area_size(px(34.0, style))
-        .build_cartesian_2d(-outer..outer, 0.0..outer)?;
+        .build_cartesian_2d(Scale::bare([-outer, outer]), Scale::bare([0.0, outer]))?;
     draw_polar_net(&mut chart, reach, style)?;
     for (series, rank) in ranked(&plot.series) {
         let points: Vec<(f64, f64)> = series.polar_points().map(|[x, y]| (x, y)).collect();
