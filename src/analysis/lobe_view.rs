@@ -6,6 +6,7 @@ use std::fmt::Write as _;
 
 pub use compute::{lobe_view, slice_angles_deg};
 
+use crate::optics::lobe::Lobe;
 use crate::optics::vector::Vec3;
 
 macro_rules! views {
@@ -43,12 +44,23 @@ views! {
     Albedo "albedo", "Albedo", "The share of the light that is reflected at all, against the angle of the view.";
     Reciprocity "reciprocity", "Reciprocity error", "How far the reflectance changes when light and view change places, against the angle of the view.";
     Horizon "horizon", "Below the horizon", "The share of the samples below the surface before the policy deals with them, against the angle of the view.";
+    Distance "distance", "Density of the distance", "How the geometric lobe's samples lie around the mirror direction: the density of D, which its curve D(ξ) is the quantile function of.";
 }
 
 impl ViewKind {
     /// True where the angle of the view is the horizontal axis.
     pub fn is_against_angle(self) -> bool {
         matches!(self, ViewKind::Albedo | ViewKind::Reciprocity | ViewKind::Horizon)
+    }
+
+    /// True where it depends on the view at all.
+    pub fn is_of_view(self) -> bool {
+        self != ViewKind::Distance
+    }
+
+    /// Whether there is anything of a lobe to be seen.
+    pub fn shows(self, lobe: Lobe) -> bool {
+        self != ViewKind::Distance || lobe == Lobe::Geometric
     }
 
     /// View angles in degrees where none are given.

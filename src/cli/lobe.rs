@@ -18,8 +18,8 @@ use crate::optics::lobe::Horizon;
 #[derive(Debug, Args)]
 pub struct LobeArguments {
     /// What is shown: a slice in the plane of incidence, the lobe in space, the density over the hemisphere, the albedo,
-    /// the reciprocity error, the share of the samples below the horizon.
-    #[arg(long, value_name = "polar|3d|hemisphere|albedo|reciprocity|horizon", value_parser = names::view_kind)]
+    /// the reciprocity error, the share of the samples below the horizon, the density of the geometric lobe's distance D.
+    #[arg(long, value_name = "polar|3d|hemisphere|albedo|reciprocity|horizon|distance", value_parser = names::view_kind)]
     plot: ViewKind,
     /// A lobe, its roughness in [0, 1] (for the microfacet lobes the square root of α, or alpha=A itself; 0.3 without
     /// one) and the geometric lobe's curve, such as geometric:0.3/sqrt. May be repeated to compare.
@@ -105,6 +105,12 @@ fn lobes(arguments: &LobeArguments) -> anyhow::Result<Vec<LobeModel>> {
     }
     if lobes.is_empty() {
         bail!("there is no lobe to show; give --lobe NAME or --material NAME");
+    }
+    if let Some(lobe) = lobes.iter().find(|lobe| !arguments.plot.shows(lobe.lobe)) {
+        bail!(
+            "{}: only the geometric lobe has a distance D; leave it out, or choose another --plot",
+            lobe.name
+        );
     }
     Ok(lobes)
 }

@@ -142,6 +142,7 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
         (ViewKind::Albedo, "lobe,view_angle_deg,albedo"),
         (ViewKind::Reciprocity, "lobe,view_angle_deg,rms,max"),
         (ViewKind::Horizon, "lobe,view_angle_deg,fraction_below"),
+        (ViewKind::Distance, "lobe,distance,density"),
     ];
     assert_eq!(columns.map(|(kind, _)| kind), ViewKind::ALL);
     let folder = tempfile::tempdir().unwrap();
@@ -170,8 +171,9 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
         };
         let colored = picture.pixels().filter(|pixel| spread(pixel) > 40);
         assert!(colored.count() > 200, "{}", kind.name());
-        assert!(
+        assert_eq!(
             std::fs::read_to_string(&svg).unwrap().contains("GGX 0.4"),
+            kind.shows(Lobe::Ggx),
             "{}",
             kind.name()
         );
@@ -181,6 +183,26 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
         &lobe_view(ViewKind::Polar, &lobes, &[0.0]),
     );
     assert!(error.unwrap_err().to_string().contains("/no such folder/x.png"));
+}
+
+#[test]
+fn densities_of_the_distance_add_to_one_whatever_the_roughness() {
+    for curve in [Curve::Linear, Curve::Sqrt, Curve::Cbrt, Curve::Smooth, Curve::LongTail] {
+        let sum = [0.2, 0.8].map(|roughness| {
+            let lobe = LobeModel::new(Lobe::Geometric, roughness, curve);
+            let plot = lines(ViewKind::Distance, &lobe, &[0.0]);
+            let trapezia = plot.series[0].points.windows(2);
+            trapezia
+                .map(|ends| 0.5 * (ends[0][1] + ends[1][1]) * (ends[1][0] - ends[0][0]))
+                .sum::<f64>()
+        });
+        assert_eq!(sum[0], sum[1], "{curve:?}");
+        // The long tail is shown to D = 5: (1 - e^-5)^2 of it.
+        assert!(
+            (sum[0] - 1.0).abs() < if curve == Curve::LongTail { 0.014 } else { 1e-4 },
+            "{curve:?}: {sum:?}"
+        );
+    }
 }
 
 #[test]

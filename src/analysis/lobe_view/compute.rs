@@ -5,6 +5,7 @@ use rayon::prelude::*;
 use super::{Axis, DiscMap, LinePlot, LobeView, MapPlot, Series, Solid, SolidPlot, ViewKind};
 use crate::analysis::lobe_model::{LobeModel, view_direction};
 use crate::analysis::sphere_grid::{Side, SphereGrid, rings};
+use crate::optics::curve::{curve_density, curve_distance_max};
 use crate::optics::vector::{Vec3, vec3};
 
 /// Pixels along a side of a map.
@@ -18,8 +19,12 @@ const RECIPROCITY_FLOOR: f64 = 0.01;
 /// Closest that a slice comes to the mirror direction, degrees.
 const SLICE_GAP_DEG: f64 = 0.02;
 
+/// Points of a line over the distance, and how much of a long tail it shows.
+const DISTANCE_POINTS: usize = 200;
+const DISTANCE_SHOWN_MAX: f64 = 5.0;
+
 /// The view of lobes under each of the angles, in degrees from 0 to below 90; the lobes must have a density
-/// ([`LobeModel::has_density`]).
+/// ([`LobeModel::has_density`]). Those of which there is nothing to see ([`ViewKind::shows`]) are left out.
 pub fn lobe_view(kind: ViewKind, lobes: &[LobeModel], view_angles_deg: &[f64]) -> LobeView {
     let title = kind.label().to_owned();
     let each = || {
@@ -52,6 +57,10 @@ pub fn lobe_view(kind: ViewKind, lobes: &[LobeModel], view_angles_deg: &[f64]) -
                 view_angles_deg,
                 fraction_below,
             ))
+        }
+        ViewKind::Distance => {
+            let shown = lobes.iter().filter(|lobe| kind.shows(lobe.lobe));
+            LobeView::Lines(distances(title, shown))
         }
         ViewKind::Reciprocity => {
             let (label, columns) = ("Relative difference of f(a, b) and f(b, a)", ["rms", "max"]);
@@ -170,6 +179,40 @@ fn reciprocity_error(lobe: &LobeModel, view_angle_rad: f64) -> [f64; 2] {
         (grid.integral(&squares) / grid.integral(&energies).max(f64::MIN_POSITIVE)).sqrt(),
         counting.map(|[_, error]| *error).fold(0.0, f64::max),
     ]
+}
+
+/// Density of D (paper, Fig. 2).
+fn distances<'a>(title: String, lobes: impl Iterator<Item = &'a LobeModel>) -> LinePlot {
+    let line = |(group, lobe): (usize, &LobeModel)| {
+        let reach = curve_distance_max::<f64>(lobe.curve, &lobe.table).min(DISTANCE_SHOWN_MAX);
+        let point = |index: usize| {
+            let distance = reach * index as f64 / DISTANCE_POINTS as f64;
+            // The limit at 0, where the formula is 0/0.
+            [distance, curve_density(lobe.curve, &lobe.table, distance.max(1e-9))]
+        };
+        Series {
+            lobe: lobe.name.clone(),
+            view_angle_deg: None,
+            quantity: "density",
+            group,
+            points: (0..=DISTANCE_POINTS).map(point).collect(),
+        }
+    };
+    let series: Vec<Series> = lobes.enumerate().map(line).collect();
+    let reach = series.iter().flat_map(|series| &series.points);
+    let reach = reach.map(|[x, _]| *x).fold(0.0, f64::max);
+    let top = largest(&series);
+    LinePlot {
+        title,
+        x: axis(
+            "Distance D from the mirror direction, in units of R",
+            [0.0, reach.max(1.0)],
+        ),
+        y: axis("Density", [0.0, if top > 0.0 { 1.05 * top } else { 1.0 }]),
+        is_polar: false,
+        x_column: "distance",
+        series,
+    }
 }
 
 /// Evaluate in the plane of incidence.

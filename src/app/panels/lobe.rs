@@ -67,6 +67,13 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         widgets::note(ui, "A mirror has no lobe: give the material some roughness.");
         return;
     }
+    if !kind.shows(material.lobe) {
+        widgets::note(
+            ui,
+            "Only the geometric lobe has a distance D: choose it as the material's lobe, or another view.",
+        );
+        return;
+    }
     let other = other_lobe(desk);
     let view_angle_deg = f64::from(desk.state.samples.view_angle_deg());
     let query = Query {
@@ -104,7 +111,7 @@ fn controls(ui: &mut Ui, desk: &mut Desk<'_>, mut kind: ViewKind) {
     if widgets::row(ui, name, |ui| widgets::choice(ui, "lobe view", &mut kind, &kinds)).changed {
         desk.state.lobe.kind = Some(kind);
     }
-    if !kind.is_against_angle() {
+    if kind.is_of_view() && !kind.is_against_angle() {
         super::samples::view_angle_row(ui, &mut desk.state.samples);
     }
     let mut others = vec![(Other::Nothing, "Nothing", "")];
