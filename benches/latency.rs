@@ -54,7 +54,10 @@ fn main() -> std::io::Result<()> {
             let milliseconds = first_picture(&worker, &document);
             let begun = Instant::now();
             await_kernel(&worker);
-            eprintln!("  kernel after {:.1} s", begun.elapsed().as_secs_f64());
+            eprintln!(
+                "  {milliseconds:.0} ms, kernel after {:.1} s",
+                begun.elapsed().as_secs_f64()
+            );
             milliseconds
         });
         report(&name, "plan changed", crossed.collect());

@@ -39,6 +39,9 @@ pub struct GpuEngine {
     /// Pixel samples a second, to cut work to a budget; 0 before the first slice.
     samples_per_second: f64,
     timer: Option<Timer>,
+    /// Threads of software Vulkan, each of which gets as many neighbouring workgroups: what is dealt to them costs each as
+    /// much. 1 on a GPU, which gives each of its units the next one.
+    hands: usize,
     /// What the dispatches of the job took by the timer.
     gpu_seconds: f64,
 }
@@ -52,6 +55,11 @@ impl GpuEngine {
         let pipelines = Pipelines::new(&gpu)?;
         Ok(Self {
             timer: Timer::new(&gpu),
+            hands: if gpu.is_software() {
+                std::thread::available_parallelism().map_or(1, usize::from)
+            } else {
+                1
+            },
             gpu,
             pipelines,
             feature_pipelines: None,
@@ -164,7 +172,7 @@ impl GpuEngine {
             first_sample: work.first_sample,
             sample_count: work.count,
         };
-        let tiles: Vec<Tile> = works.iter().map(tile).collect();
+        let tiles: Vec<Tile> = dealt(works, self.hands).map(tile).collect();
         let begun = Instant::now();
         self.dispatch(&tiles)?;
         let seconds = begun.elapsed().as_secs_f64().max(1e-6);
@@ -292,6 +300,11 @@ impl GpuEngine {
     }
 }
 
+/// All of them in the order in which so many players lay down their cards, one after the other, once they were dealt.
+fn dealt<T>(cards: &[T], hands: usize) -> impl Iterator<Item = &T> {
+    (0..hands).flat_map(move |hand| cards.iter().skip(hand).step_by(hands))
+}
+
 /// Runs a pass over tiles, and waits for its end.
 fn dispatch(
     gpu: &GpuDevice,
@@ -304,4 +317,17 @@ fn dispatch(
     let workgroups = [tiles.len() as u32, 1];
     compute::dispatch(gpu, pipeline, &[&resources.bind_group], workgroups, timer);
     gpu.wait()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::dealt;
+
+    #[test]
+    fn every_tile_is_dealt_and_neighbours_go_to_different_hands() {
+        let of = |hands| dealt(&[0, 1, 2, 3, 4, 5, 6], hands).copied().collect::<Vec<_>>();
+        assert_eq!(of(1), [0, 1, 2, 3, 4, 5, 6]);
+        assert_eq!(of(2), [0, 2, 4, 6, 1, 3, 5]);
+        assert_eq!(of(9), [0, 1, 2, 3, 4, 5, 6]);
+    }
 }
