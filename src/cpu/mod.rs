@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::analysis::features::Features;
 use crate::analysis::film::Film;
-use crate::analysis::tiles::{Schedule, SliceLimits, Work};
+use crate::analysis::tiles::{Schedule, SliceLimits, TileGrid, Work};
 use crate::document::job::Job;
 use crate::optics::real::Real;
 use integrator::{Integrator, is_sound};
@@ -24,7 +24,7 @@ use integrator::{Integrator, is_sound};
 pub struct CpuEngine {
     job: Option<Arc<Job>>,
     schedule: Schedule,
-    /// The sums of each tile, so that no two cores write to the same memory.
+    /// The sums of each tile, so that no two cores write to the same memory; of no size before its first sample.
     tiles: Vec<Film>,
     /// All of them in one, made when asked for.
     film: Film,
@@ -43,12 +43,7 @@ impl CpuEngine {
     pub fn submit(&mut self, job: Arc<Job>) {
         let [width, height] = job.settings.image_size;
         self.schedule = Schedule::new(width, height);
-        let grid = self.schedule.grid();
-        let tile = |tile| {
-            let [width, height] = grid.size(tile);
-            Film::new(width, height)
-        };
-        self.tiles = (0..grid.tiles()).map(tile).collect();
+        self.tiles = vec![Film::default(); self.schedule.grid().tiles()];
         self.film = Film::new(width, height);
         self.is_film_made = true;
         self.job = Some(job);
@@ -71,11 +66,12 @@ impl CpuEngine {
         let integrator = Integrator::<T>::new(&job);
         self.schedule.aim(goals);
         let start = Instant::now();
-        let limits = SliceLimits {
-            pass_samples_max: u32::MAX,
-            tiles: [CORE_TILES * rayon::current_num_threads(), usize::MAX],
-        };
         loop {
+            let limits = SliceLimits {
+                // The first picture is there as soon as can be.
+                pass_samples_max: if self.samples_per_pixel() == 0 { 1 } else { u32::MAX },
+                tiles: [CORE_TILES * rayon::current_num_threads(), usize::MAX],
+            };
             let left = budget.saturating_sub(start.elapsed()).min(SLICE).as_secs_f64();
             let works = self.schedule.slice(self.samples_per_second * left, limits);
             if works.is_empty() {
@@ -100,7 +96,7 @@ impl CpuEngine {
         let with_sums = |(tile, sums)| works.next_if(|work| work.tile == tile).map(|work| (work, sums));
         let jobs: Vec<_> = self.tiles.iter_mut().enumerate().filter_map(with_sums).collect();
         jobs.into_par_iter()
-            .for_each(|(work, sums)| render_tile(integrator, grid.origin(work.tile), work, sums));
+            .for_each(|(work, sums)| render_tile(integrator, grid, work, sums));
         self.is_film_made = false;
     }
 
@@ -139,7 +135,12 @@ impl CpuEngine {
     }
 }
 
-fn render_tile<T: Real>(integrator: &Integrator<'_, T>, origin: [u32; 2], work: &Work, sums: &mut Film) {
+fn render_tile<T: Real>(integrator: &Integrator<'_, T>, grid: TileGrid, work: &Work, sums: &mut Film) {
+    let origin = grid.origin(work.tile);
+    if sums.color.is_empty() {
+        let [width, height] = grid.size(work.tile);
+        *sums = Film::new(width, height);
+    }
     for pixel in 0..sums.color.len() {
         let place = [pixel as u32 % sums.width, pixel as u32 / sums.width];
         let place = [origin[0] + place[0], origin[1] + place[1]];

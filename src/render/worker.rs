@@ -25,8 +25,10 @@ use crate::document::job::Job;
 use crate::scene::environment::{Environment, EnvironmentSource};
 use crate::scene::{Model, ModelSource};
 
-/// Longest that the worker does not look at its orders while rendering.
-const STEP: Duration = Duration::from_millis(30);
+/// Longest that the worker does not look at its orders while rendering; and before the first picture, which is not to
+/// wait for the samples that come after it.
+const STEP: Duration = Duration::from_millis(20);
+const FIRST_STEP: Duration = Duration::from_millis(6);
 /// How long dropping a worker waits for its thread to end.
 const FAREWELL: Duration = Duration::from_secs(2);
 

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::stage::Stage;
-use super::{Activity, Event, Level, Orders, Picture, STEP, Scene, Shared, Snapshot, Submission, lock};
+use super::{Activity, Event, FIRST_STEP, Level, Orders, Picture, STEP, Scene, Shared, Snapshot, Submission, lock};
 use crate::analysis::film::Image;
 use crate::document::{Change, Document, ViewSettings};
 use crate::render::assets::Assets;
@@ -429,7 +429,8 @@ impl State<'_> {
 
     /// Renders a little, and publishes when that is due.
     fn step(&mut self) -> Result<(), SessionError> {
-        let progress = self.session()?.step(STEP)?;
+        let is_shown = self.stage.as_ref().is_none_or(|stage| stage.is_shown);
+        let progress = self.session()?.step(if is_shown { STEP } else { FIRST_STEP })?;
         let Some(stage) = &self.stage else { return Ok(()) };
         self.snapshot.progress = progress;
         let history = self.session.as_ref().map(Session::history).unwrap_or_default();
