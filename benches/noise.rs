@@ -4,7 +4,7 @@
 //! over scenes, sequences and numbers of samples; the time to a noise with adaptive sampling on and off, in turns, for
 //! every scene of the list: the noise is what so many samples of every pixel come to; the share of the time that the looks
 //! take. `quick` does the same small, to see that it works; `coverage` or `adaptive` one of the two parts. The processor
-//! engine; `gpu` as a further argument takes the GPU.
+//! engine; `gpu` as a further argument takes the GPU, and the beginning of a scene's name that scene alone.
 
 use std::time::Duration;
 
@@ -55,7 +55,13 @@ fn main() -> Result<(), Failure> {
         EngineChoice::Cpu
     })?;
     println!("{}", session.engine());
-    let scenes = scenes()?;
+    let mut scenes = scenes()?;
+    if let Some(only) = arguments
+        .iter()
+        .find(|argument| scenes.iter().any(|(name, _)| name.starts_with(*argument)))
+    {
+        scenes.retain(|(name, _)| name.starts_with(only));
+    }
     if !has("adaptive") {
         coverage(&mut session, &scenes, &extent)?;
     }
@@ -92,8 +98,8 @@ fn scenes() -> Result<Vec<(&'static str, Document)>, Failure> {
             scene(ModelSource::Teapot, EnvironmentSource::Sky, "gold")?,
         ),
         (
-            "sphere, sky, glass",
-            scene(ModelSource::Sphere, EnvironmentSource::Sky, "glass")?,
+            "sphere, studio, glass",
+            scene(ModelSource::Sphere, EnvironmentSource::Studio, "glass")?,
         ),
         (
             "plane, studio, gold",

@@ -16,6 +16,9 @@ use super::tiles::TileGrid;
 const BAND: f64 = 1.959_964;
 /// Share of the pixels that must have samples in both halves.
 const MEASURED_SHARE: f64 = 0.99;
+/// Fourth moment of a pixel's half difference over its squared variance, where it is skewed: between a normal
+/// distribution's 3 and the 6 of the difference of two exponential ones.
+const KURTOSIS: f64 = 4.5;
 /// Pixels to each side over which the gain of the sequence is averaged for a map.
 const MAP_RADIUS: usize = 3;
 
@@ -78,11 +81,11 @@ pub fn noise(film: &Film) -> Option<Noise> {
     })
 }
 
-/// Σ V² over the pixels. The square of a pixel's half difference would be three times too large, and far more where
-/// samples are skewed. The product of the two halves' own spreads is not, as the halves are independent; the gain of the
-/// sequence around the pixel makes variances of means of them. But where most pixels have not yet met what their
-/// variance comes from, that product is nearly always far below its expectation: the sum is then taken from the means
-/// around each pixel, to which its neighbours' hits count, too.
+/// Σ V² over the pixels. The product of the two halves' own spreads is right in the mean, as the halves are independent;
+/// the gain of the sequence around the pixel makes variances of means of them. But where most pixels have not yet met
+/// what their variance comes from, that product is nearly always far below its expectation. So the sum is no less than
+/// that from the means around each pixel, to which its neighbours' hits count, too; and no less than that from the half
+/// differences over their kurtosis: where a few pixels' rare hits make up the error, this sees them.
 fn sum_of_squared_variances(film: &Film, variances: &[f64]) -> f64 {
     let width = film.width as usize;
     let gains = gains(film, variances, width);
@@ -107,7 +110,12 @@ fn sum_of_squared_variances(film: &Film, variances: &[f64]) -> f64 {
         .par_iter()
         .map(|[sum, count]| (sum / count.max(1.0)).powi(2))
         .sum();
-    of_pixels.max(of_neighbours).max(f64::MIN_POSITIVE)
+    let of_differences = variances
+        .iter()
+        .filter(|v| v.is_finite())
+        .map(|v| v * v / KURTOSIS)
+        .sum();
+    of_pixels.max(of_neighbours).max(of_differences).max(f64::MIN_POSITIVE)
 }
 
 /// Around each pixel the variance of means by the halves' difference over that by the samples' spread: 1 for independent
