@@ -16,16 +16,14 @@ const LEAST_SHARE: f64 = 1.0 / 32.0;
 const CHEAPNESS: f64 = 0.8;
 /// A tile's samples grow at most by this factor before its error is looked at again.
 const GROWTH_MAX: f64 = 2.0;
-/// The samples of all tiles grow at least by this factor, so that the last rounds are not many.
-const GROWTH_MIN: f64 = 1.02;
 /// Bisections of a factor: more than the bits of its mantissa.
 const BISECTIONS: usize = 64;
 
 /// How far the next round goes.
 #[derive(Clone, Copy, Debug)]
 pub struct Round {
-    /// The samples of all pixels grow at most by this factor, above 1.
-    pub growth: f64,
+    /// The samples of all pixels grow at least and at most by these factors, above 1.
+    pub growth: [f64; 2],
     /// The relative error to reach, above 0; no more samples are asked for than it should need.
     pub noise: Option<f64>,
     /// The most samples that a pixel gets.
@@ -51,11 +49,12 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
     let tiles = with_least_weight(tiles);
     let ratios = || tiles.iter().map(|tile| tile.samples / tile.weight);
     let (least, most) = (ratios().fold(f64::MAX, f64::min), ratios().fold(0.0, f64::max));
-    let bracket = [least, round.growth * most];
+    let [growth_min, growth_max] = round.growth;
+    let bracket = [least, growth_max * most];
     let all = |value: &dyn Fn(&Tile) -> f64| tiles.iter().map(|tile| tile.pixels * value(tile)).sum::<f64>();
     let total = all(&|tile| tile.samples);
     let growing = |growth: f64| bisect(bracket, |factor| all(&|tile| tile.goal(factor)) >= growth * total);
-    let mut factor = growing(round.growth);
+    let mut factor = growing(growth_max);
     if let Some(noise) = round.noise {
         let pixels = all(&|_| 1.0);
         let luminance = film.luminance().iter().filter(|y| y.is_finite()).sum::<f64>() / pixels;
@@ -66,7 +65,7 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
         let enough = bisect(bracket, |factor| {
             all(&|tile| tile.variance / tile.goal(factor)) <= allowed
         });
-        factor = factor.min(enough).max(growing(GROWTH_MIN));
+        factor = factor.min(enough).max(growing(growth_min));
     }
     let goal = |(tile, n): (&Tile, &u32)| {
         let goal = tile.goal(factor).min(GROWTH_MAX * tile.samples).ceil() as u32;
@@ -150,7 +149,7 @@ mod tests {
     }
 
     const ROUND: Round = Round {
-        growth: 1.25,
+        growth: [1.02, 1.25],
         noise: None,
         samples_max: u32::MAX,
     };
@@ -172,7 +171,7 @@ mod tests {
         let far = goals(
             &film,
             Round {
-                growth: 1e3,
+                growth: [1.02, 1e3],
                 noise: Some(1e-4),
                 ..ROUND
             },
@@ -182,7 +181,7 @@ mod tests {
         let near = goals(
             &film,
             Round {
-                growth: 1e3,
+                growth: [1.02, 1e3],
                 noise: Some(0.98 * told),
                 ..ROUND
             },

@@ -6,12 +6,12 @@ use crate::analysis::noise::{Noise, noise};
 use crate::analysis::tiles::Schedule;
 use crate::document::RenderSettings;
 
-/// Looking at the error takes at most this share of the time.
-const COST_SHARE: f64 = 0.02;
+/// Looking at the error takes at most this share of the time; near its end twice as much, not to go too far.
+const COST_SHARE: f64 = 0.015;
 /// By how much samples grow from one look to the next: while only watched; on the way to a noise; where tiles rest; and
-/// in any case, so that the last rounds are not many.
+/// at least, by what looks cost.
 const GROWTH_WATCHED: f64 = 1.1;
-const GROWTH_MIN: f64 = 1.02;
+const GROWTH_MIN: [f64; 2] = [1.02, 1.1];
 const GROWTH_AIMED: f64 = 1.5;
 const GROWTH_ADAPTIVE: f64 = 1.25;
 
@@ -114,9 +114,10 @@ impl Convergence {
         // So long that the look at its end takes no more than its share.
         let seconds = (self.measure_seconds + self.plan_seconds) / COST_SHARE;
         let paced = 1.0 + seconds / engine_seconds.max(1e-9);
+        let growth_min = (0.5 * (1.0 + paced)).clamp(GROWTH_MIN[0], GROWTH_MIN[1]);
         if let Some(film) = film.filter(|_| settings.is_adaptive() && most > 1) {
             let round = Round {
-                growth: paced.max(GROWTH_ADAPTIVE),
+                growth: [growth_min, paced.max(GROWTH_ADAPTIVE)],
                 noise: settings.noise.map(|wanted| wanted * self.doubt()),
                 samples_max: settings.samples,
             };
@@ -131,7 +132,7 @@ impl Convergence {
             }
             _ => paced.max(GROWTH_WATCHED),
         };
-        let growth = growth.max(GROWTH_MIN);
+        let growth = growth.max(growth_min);
         let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0);
         self.goals = vec![(goal as u32).min(settings.samples); samples.len()];
     }
