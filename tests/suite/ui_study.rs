@@ -115,4 +115,6 @@ fn the_ledger_is_measured_on_demand() {
             .query_by_label_contains("ms for one sample of every pixel")
             .is_some()
     );
+    // What was measured of an effect stands beside the reason for it, too.
+    assert!(harness.query_all_by_label_contains(" · ").count() > 2);
 }

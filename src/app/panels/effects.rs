@@ -6,6 +6,7 @@ use super::Desk;
 use crate::app::theme;
 use crate::app::widgets;
 use crate::document::effect::{Decision, Effect, EffectSwitches, Switch};
+use crate::render::study::ledger::Entry;
 
 /// Radius of the mark before an effect, points.
 const MARK_RADIUS: f32 = 3.5;
@@ -17,8 +18,11 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     };
     let plan = &job.plan;
     let count = plan.table().count();
+    let ledger = desk.state.ledger.found();
+    let gain = ledger.as_ref().and_then(|ledger| ledger.kernel_gain());
+    let gain = gain.map_or_else(String::new, |gain| format!(", {gain:.1} × as fast as the general one"));
     ui.label(format!(
-        "{} of {count} effects are simulated; the kernel leaves out {}.",
+        "{} of {count} effects are simulated; the kernel leaves out {}{gain}.",
         plan.effects().len(),
         plan.left_out()
     ))
@@ -30,13 +34,15 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
     ui.add_space(theme::GAP);
     for (effect, decision) in plan.table() {
-        row(ui, desk, effect, decision);
+        let entry = ledger.as_ref().and_then(|ledger| ledger.effect(effect.name));
+        row(ui, desk, effect, decision, entry.filter(|_| decision.is_on));
     }
     ui.add_space(theme::GAP);
     super::ledger::show(ui, desk);
 }
 
-fn row(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect, decision: &Decision) {
+/// An effect with what the ledger says of it.
+fn row(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect, decision: &Decision, entry: Option<&Entry>) {
     ui.horizontal(|ui| {
         mark(ui, decision.is_on);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -50,7 +56,9 @@ fn row(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect, decision: &Decision) {
     });
     ui.horizontal(|ui| {
         ui.add_space(4.0 * MARK_RADIUS);
-        ui.add(egui::Label::new(RichText::new(&decision.reason).weak().small()).wrap());
+        let cost = entry.map_or_else(String::new, |entry| format!(" · {}", entry.time_words()));
+        let text = RichText::new(format!("{}{cost}", decision.reason)).weak().small();
+        ui.add(egui::Label::new(text).wrap());
     });
 }
 

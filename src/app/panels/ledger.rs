@@ -1,5 +1,6 @@
 //! The ledger: what each effect and each setting in force costs, in plain words.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use egui::{RichText, Ui};
@@ -18,6 +19,13 @@ pub(in crate::app) struct LedgerState {
     worker: StudyWorker<Ledger>,
     /// How long a turn lasts, where it is not the usual time.
     pub(in crate::app) slice: Option<Duration>,
+}
+
+impl LedgerState {
+    /// What was measured last.
+    pub(super) fn found(&self) -> Option<Arc<Ledger>> {
+        self.worker.found()
+    }
 }
 
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {

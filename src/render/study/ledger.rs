@@ -28,6 +28,9 @@ const NOISE_WORTH_TELLING: f64 = 0.05;
 /// Changes of the time below this share are not told as a number.
 const TIME_WORTH_TELLING: f64 = 0.005;
 
+/// Name of the line that holds the scene's kernel against the general one.
+const KERNEL: &str = "kernel";
+
 /// How a ledger is made.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LedgerOptions {
@@ -91,6 +94,24 @@ pub struct Entry {
     pub words: String,
 }
 
+impl Entry {
+    /// What it costs in time, in words.
+    pub fn time_words(&self) -> String {
+        let share = self.ms / self.ms_without;
+        if share.abs() < TIME_WORTH_TELLING || !self.is_time_resolved() {
+            return "no time that could be measured".to_owned();
+        }
+        let sign = if share > 0.0 { "+" } else { "−" };
+        format!("{sign}{} % time", digits(100.0 * share.abs()))
+    }
+
+    /// Half of the turns agree on whether it costs or saves time.
+    fn is_time_resolved(&self) -> bool {
+        let [low, high] = self.ms_quartiles;
+        low.signum() == high.signum()
+    }
+}
+
 /// The whole.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ledger {
@@ -104,6 +125,20 @@ pub struct Ledger {
     pub ms_per_sample: f64,
     /// Its lines: effects in the order of the plan, then settings.
     pub entries: Vec<Entry>,
+}
+
+impl Ledger {
+    /// The line of an effect.
+    pub fn effect(&self, name: &str) -> Option<&Entry> {
+        let is_it = |entry: &&Entry| entry.kind == EntryKind::Effect && entry.name == name;
+        self.entries.iter().find(is_it)
+    }
+
+    /// How many times as fast the kernel made for the scene is as the general one; `None` where that could not be told.
+    pub fn kernel_gain(&self) -> Option<f64> {
+        let kernel = self.entries.iter().find(|entry| entry.name == KERNEL)?;
+        kernel.is_time_resolved().then(|| kernel.ms_without / kernel.ms_with)
+    }
 }
 
 /// Something to be held against the document.
@@ -242,7 +277,7 @@ fn setting_rivals(document: &Document) -> Vec<Rival> {
         }
     });
     let label = "Kernel made for the scene".to_owned();
-    rivals.push(rival("kernel", label, "the general one".to_owned(), general));
+    rivals.push(rival(KERNEL, label, "the general one".to_owned(), general));
     // What makes no difference to this scene has no line.
     rivals.retain(|rival| rival.document != *document);
     rivals
@@ -322,7 +357,7 @@ fn share_of_noise([with, without]: [f64; 2]) -> f64 {
 
 /// An entry in words: "Exact Fresnel: +2 % time, changes the picture by 0.3 %".
 fn words(entry: &Entry) -> String {
-    let mut parts = vec![words_of_time(entry)];
+    let mut parts = vec![entry.time_words()];
     if entry.noise_share.abs() >= NOISE_WORTH_TELLING {
         let share = entry.noise_share;
         parts.push(if share > 1.0 {
@@ -346,17 +381,6 @@ fn words(entry: &Entry) -> String {
         EntryKind::Setting => format!(" (instead of {})", entry.instead),
     };
     format!("{}{against}: {}", entry.label, parts.join(", "))
-}
-
-fn words_of_time(entry: &Entry) -> String {
-    let share = entry.ms / entry.ms_without;
-    let [low, high] = entry.ms_quartiles;
-    // Half of the turns agree on its sign, or it is not told.
-    if share.abs() < TIME_WORTH_TELLING || low.signum() != high.signum() {
-        return "no time that could be measured".to_owned();
-    }
-    let sign = if share > 0.0 { "+" } else { "−" };
-    format!("{sign}{} % time", digits(100.0 * share.abs()))
 }
 
 /// A number with two digits.
@@ -397,6 +421,43 @@ mod tests {
             is_picture_kept: false,
             words: String::new(),
         }
+    }
+
+    #[test]
+    fn lines_are_found_and_what_cannot_be_told_is_not() {
+        let kernel = Entry {
+            name: KERNEL,
+            ms_with: 10.0,
+            ms_without: 18.0,
+            ms: -8.0,
+            ms_quartiles: [-8.5, -7.5],
+            ..measured()
+        };
+        let ground = Entry {
+            name: "ground",
+            kind: EntryKind::Effect,
+            ..measured()
+        };
+        let mut ledger = Ledger {
+            machine: Machine {
+                version: "",
+                engine: "cpu",
+                adapter: String::new(),
+                driver: String::new(),
+            },
+            width: 1,
+            height: 1,
+            ms_per_sample: 10.0,
+            entries: vec![ground, measured(), kernel],
+        };
+        assert_eq!(ledger.kernel_gain(), Some(1.8));
+        assert_eq!(
+            ledger.effect("ground").map(Entry::time_words).as_deref(),
+            Some("+2 % time")
+        );
+        assert_eq!(ledger.effect("fresnel"), None, "a setting of that name");
+        ledger.entries[2].ms_quartiles = [-1.0, 1.0];
+        assert_eq!(ledger.kernel_gain(), None);
     }
 
     #[test]
