@@ -81,7 +81,7 @@ fn scenes() -> Result<Vec<(&'static str, Document)>, Failure> {
         document.lighting.environment = environment;
         Ok(document)
     };
-    let mut lit = scene(ModelSource::Shaderball, EnvironmentSource::Studio, "gold")?;
+    let mut lit = scene(ModelSource::Sphere, EnvironmentSource::Studio, "gold")?;
     lit.ground = true;
     lit.lighting.strength = 0.1;
     lit.lighting.area_lights = vec![AreaLight {
@@ -105,7 +105,7 @@ fn scenes() -> Result<Vec<(&'static str, Document)>, Failure> {
             "plane, studio, gold",
             scene(ModelSource::Plane, EnvironmentSource::Studio, "gold")?,
         ),
-        ("shader ball, ground, small light", lit),
+        ("gold ball, ground, small light", lit),
     ])
 }
 
