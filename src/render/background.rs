@@ -1,7 +1,12 @@
 //! Work beside the window whose latest request wins: plots, fits, checks.
 
 use std::io;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+/// How long to wait before looking whether work that is held may go on.
+const HOLD_STEP: Duration = Duration::from_millis(25);
 
 /// Answers queries on a thread of its own. A query that has not been begun when the next one comes is forgotten.
 pub struct Background<Q, A> {
@@ -35,6 +40,14 @@ impl<Q, A> Desk<'_, Q, A> {
     pub fn publish(&self, answer: A) {
         *lock(&self.shared.answer) = Some(answer);
         (self.repaint)();
+    }
+
+    /// Waits while `hold` is set; false where nobody waits for the answer any more.
+    pub fn may_go_on(&self, hold: &AtomicBool) -> bool {
+        while hold.load(Ordering::Relaxed) && !self.is_superseded() {
+            std::thread::sleep(HOLD_STEP);
+        }
+        !self.is_superseded()
     }
 
     /// Whether nobody waits for the answer any more.
@@ -87,6 +100,19 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
     /// The latest answer.
     pub fn latest(&self) -> Option<A> {
         lock(&self.shared.answer).clone()
+    }
+
+    /// The first answer that is good enough, for a test to wait for.
+    #[cfg(test)]
+    pub fn wait_for(&self, is_enough: impl Fn(&A) -> bool) -> A {
+        let begun = std::time::Instant::now();
+        loop {
+            if let Some(answer) = self.latest().filter(&is_enough) {
+                return answer;
+            }
+            assert!(begun.elapsed() < Duration::from_secs(60), "no answer came");
+            std::thread::sleep(Duration::from_millis(5));
+        }
     }
 
     /// Whether something asked for is still to come.

@@ -5,17 +5,14 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::sync::atomic::AtomicBool;
 
 use super::background::Background;
 use super::picture_cache;
-use crate::scene::environment::{Environment, EnvironmentSource, load, thumbnail};
+use crate::scene::environment::{Environment, EnvironmentError, EnvironmentSource, load, thumbnail};
 
 /// Columns and rows of a thumbnail.
 pub const SIZE: [u32; 2] = [256, 128];
-/// How long to wait before looking whether there is time.
-const HOLD_STEP: Duration = Duration::from_millis(25);
 /// To be raised where thumbnails of the same environment come out otherwise than before.
 const VERSION: u32 = 1;
 
@@ -49,27 +46,26 @@ pub fn spawn_environment_thumbnails(
     let mut made: HashMap<EnvironmentSource, (u64, EnvironmentThumbnail)> = HashMap::new();
     Background::spawn("environments", repaint, move |queue: Vec<Wanted>, desk| {
         for wanted in queue {
-            while hold.load(Ordering::Relaxed) && !desk.is_superseded() {
-                std::thread::sleep(HOLD_STEP);
-            }
-            if desk.is_superseded() {
+            if !desk.may_go_on(&hold) {
                 return;
             }
             let key = key(&wanted.source);
             if made.get(&wanted.source).is_some_and(|(of, _)| *of == key) {
                 continue;
             }
-            let path = folder.as_ref().map(|folder| folder.join(format!("{key:016x}.png")));
-            let kept = path.as_ref().and_then(|path| picture_cache::read(path, SIZE));
-            let is_kept = kept.is_some();
-            let picture = kept.or_else(|| make(&wanted)).map(Arc::new);
-            if let (Some(path), Some(pixels), false) = (&path, &picture, is_kept)
-                && let Err(error) = picture_cache::write(path, SIZE, pixels)
-            {
-                // A cache: where it can't be written, the next start makes it again.
-                log::debug!("{error}");
-            }
-            made.insert(wanted.source, (key, picture));
+            let picture = match &folder {
+                Some(folder) => {
+                    let path = folder.join(format!("{key:016x}.png"));
+                    picture_cache::kept_or_made(&path, SIZE, || make(&wanted))
+                }
+                None => make(&wanted),
+            };
+            // It is said where it is chosen.
+            let picture = picture.unwrap_or_else(|error| {
+                log::debug!("no small picture: {error}");
+                None
+            });
+            made.insert(wanted.source, (key, picture.map(Arc::new)));
             let pictures = made
                 .iter()
                 .map(|(source, (_, picture))| (source.clone(), picture.clone()));
@@ -78,19 +74,12 @@ pub fn spawn_environment_thumbnails(
     })
 }
 
-fn make(wanted: &Wanted) -> Option<Vec<u8>> {
-    let pixels = |environment: &Environment| thumbnail(environment, SIZE[0], SIZE[1]).concat();
-    match &wanted.loaded {
-        Some(environment) => Some(pixels(environment)),
-        None => match load(&wanted.source) {
-            Ok(environment) => Some(pixels(&environment)),
-            // It is said where it is chosen.
-            Err(error) => {
-                log::debug!("no small picture: {error}");
-                None
-            }
-        },
-    }
+fn make(wanted: &Wanted) -> Result<Option<Vec<u8>>, EnvironmentError> {
+    let pixels = |environment: &Environment| Some(thumbnail(environment, SIZE[0], SIZE[1]).concat());
+    Ok(match &wanted.loaded {
+        Some(environment) => pixels(environment),
+        None => pixels(&load(&wanted.source)?),
+    })
 }
 
 /// Changes with what a file holds, as far as its size and date tell.
@@ -107,20 +96,7 @@ fn key(source: &EnvironmentSource) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use std::time::Instant;
-
     use super::*;
-
-    fn wait(worker: &EnvironmentThumbnailWorker, count: usize) -> EnvironmentThumbnails {
-        let begun = Instant::now();
-        loop {
-            if let Some(made) = worker.latest().filter(|made| made.len() >= count) {
-                return made;
-            }
-            assert!(begun.elapsed() < Duration::from_secs(60), "no thumbnails came");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-    }
 
     fn wanted(source: EnvironmentSource) -> Wanted {
         Wanted { source, loaded: None }
@@ -133,7 +109,7 @@ mod tests {
         let missing = EnvironmentSource::File(folder.path().join("gone.hdr"));
         let worker = spawn_environment_thumbnails(Some(cache.clone()), Arc::default(), || {}).expect("a thread");
         worker.ask(vec![wanted(missing.clone()), wanted(EnvironmentSource::Furnace)]);
-        let made = wait(&worker, 2);
+        let made = worker.wait_for(|made| made.len() >= 2);
         assert_eq!(made[&missing], None);
         let white = made[&EnvironmentSource::Furnace].clone().expect("it is computed");
         assert_eq!(white.len(), 4 * (SIZE[0] * SIZE[1]) as usize);
@@ -147,7 +123,9 @@ mod tests {
         picture_cache::write(&path, SIZE, &marked).expect("written");
         let again = spawn_environment_thumbnails(Some(cache), Arc::default(), || {}).expect("a thread");
         again.ask(vec![wanted(EnvironmentSource::Furnace)]);
-        let kept = wait(&again, 1)[&EnvironmentSource::Furnace].clone().expect("kept");
+        let kept = again.wait_for(|made| !made.is_empty())[&EnvironmentSource::Furnace]
+            .clone()
+            .expect("kept");
         assert_eq!(*kept, marked);
     }
 }

@@ -5,7 +5,7 @@ use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use super::background::{Background, Desk};
@@ -19,8 +19,6 @@ use crate::scene::ModelSource;
 pub const SIDE: u32 = 64;
 /// Samples a pixel: noise is below what is seen at this size.
 const SAMPLES: u32 = 24;
-/// How long to wait before looking whether rendering may go on.
-const HOLD_STEP: Duration = Duration::from_millis(25);
 /// How long to render before looking whether something else is wanted.
 const STEP: Duration = Duration::from_millis(30);
 /// To be raised where thumbnails of the same material come out otherwise than before.
@@ -63,14 +61,9 @@ pub fn spawn_thumbnails(
                 continue;
             }
             let path = folder.join(format!("{key:016x}.png"));
-            let kept = picture_cache::read(&path, [SIDE; 2]);
-            let is_kept = kept.is_some();
-            match kept.map_or_else(|| make(&mut session, &material, &hold, desk), |kept| Ok(Some(kept))) {
+            let picture = picture_cache::kept_or_made(&path, [SIDE; 2], || make(&mut session, &material, &hold, desk));
+            match picture {
                 Ok(Some(pixels)) => {
-                    if !is_kept && let Err(error) = picture_cache::write(&path, [SIDE; 2], &pixels) {
-                        // A cache: where it can't be written, the next start renders again.
-                        log::debug!("{error}");
-                    }
                     made.insert(key, Arc::new(pixels));
                     desk.publish(Arc::new(made.clone()));
                 }
@@ -103,13 +96,7 @@ fn make<A>(
     hold: &AtomicBool,
     desk: &Desk<'_, Vec<MaterialSettings>, A>,
 ) -> Result<Option<Vec<u8>>, SessionError> {
-    let may_go_on = || {
-        while hold.load(Ordering::Relaxed) && !desk.is_superseded() {
-            std::thread::sleep(HOLD_STEP);
-        }
-        !desk.is_superseded()
-    };
-    if !may_go_on() {
+    if !desk.may_go_on(hold) {
         return Ok(None);
     }
     let session = match session {
@@ -119,7 +106,7 @@ fn make<A>(
     let document = document(material);
     session.submit(&document)?;
     while !session.step(STEP)?.is_done {
-        if !may_go_on() {
+        if !desk.may_go_on(hold) {
             return Ok(None);
         }
     }
@@ -128,21 +115,10 @@ fn make<A>(
 
 #[cfg(test)]
 mod tests {
-    use std::time::Instant;
+    use std::sync::atomic::Ordering;
 
     use super::*;
     use crate::document::material_by_name;
-
-    fn wait(worker: &ThumbnailWorker, count: usize) -> Thumbnails {
-        let begun = Instant::now();
-        loop {
-            if let Some(made) = worker.latest().filter(|made| made.len() >= count) {
-                return made;
-            }
-            assert!(begun.elapsed() < Duration::from_secs(60), "no thumbnails came");
-            std::thread::sleep(Duration::from_millis(5));
-        }
-    }
 
     fn mean(pixels: &[u8]) -> [f64; 3] {
         [0, 1, 2].map(|channel| {
@@ -159,7 +135,7 @@ mod tests {
         let [gold, rubber] = ["gold", "rubber"].map(|name| material_by_name(name).expect("shipped").clone());
         let worker = spawn_thumbnails(cache.clone(), Arc::default(), || {}).expect("a thread");
         worker.ask(vec![gold.clone(), rubber.clone()]);
-        let made = wait(&worker, 2);
+        let made = worker.wait_for(|made| made.len() >= 2);
         let (yellow, dark) = (mean(&made[&key(&gold)]), mean(&made[&key(&rubber)]));
         assert!(yellow[0] > 1.2 * yellow[2], "gold is yellow: {yellow:?}");
         assert!(dark[0] < 0.6 * yellow[0], "rubber is dark: {dark:?}");
@@ -170,7 +146,7 @@ mod tests {
         picture_cache::write(&path, [SIDE; 2], &marked).expect("written");
         let again = spawn_thumbnails(cache, Arc::default(), || {}).expect("a thread");
         again.ask(vec![gold.clone()]);
-        assert_eq!(*wait(&again, 1)[&key(&gold)], marked);
+        assert_eq!(*again.wait_for(|made| !made.is_empty())[&key(&gold)], marked);
     }
 
     #[test]
@@ -182,7 +158,7 @@ mod tests {
         std::thread::sleep(Duration::from_millis(300));
         assert!(worker.latest().is_none(), "held");
         hold.store(false, Ordering::Relaxed);
-        wait(&worker, 1);
+        worker.wait_for(|made| !made.is_empty());
     }
 
     #[test]
