@@ -35,9 +35,9 @@ pub(super) struct Convergence {
     pub(super) history: Vec<Measurement>,
     /// Samples of all pixels when the error was last looked at.
     measured_samples: u64,
-    /// What a look and a plan took last, seconds.
-    pub(super) measure_seconds: f64,
-    pub(super) plan_seconds: f64,
+    /// What a look and a plan take, seconds: the least seen, as the machine may do something else in between.
+    look_seconds: Option<f64>,
+    plan_seconds: Option<f64>,
     /// What all looks and plans took, seconds.
     pub(super) total_seconds: f64,
 }
@@ -58,6 +58,18 @@ impl Convergence {
     /// Whether something was rendered since the last look.
     pub(super) fn is_stale(&self, schedule: &Schedule) -> bool {
         schedule.pixel_samples() > self.measured_samples
+    }
+
+    /// Takes note of how long a look took.
+    pub(super) fn looked(&mut self, seconds: f64) {
+        self.total_seconds += seconds;
+        self.look_seconds = Some(self.look_seconds.map_or(seconds, |least| least.min(seconds)));
+    }
+
+    /// Takes note of how long it took to set goals.
+    pub(super) fn planned(&mut self, seconds: f64) {
+        self.total_seconds += seconds;
+        self.plan_seconds = Some(self.plan_seconds.map_or(seconds, |least| least.min(seconds)));
     }
 
     /// Looks at the error, of the part that is rendered.
@@ -112,7 +124,7 @@ impl Convergence {
             return;
         }
         // So long that the look at its end takes no more than its share.
-        let seconds = (self.measure_seconds + self.plan_seconds) / COST_SHARE;
+        let seconds = (self.look_seconds.unwrap_or(0.0) + self.plan_seconds.unwrap_or(0.0)) / COST_SHARE;
         let paced = 1.0 + seconds / engine_seconds.max(1e-9);
         let growth_min = (0.5 * (1.0 + paced)).clamp(GROWTH_MIN[0], GROWTH_MIN[1]);
         if let Some(film) = film.filter(|_| settings.is_adaptive() && most > 1) {

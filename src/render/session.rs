@@ -305,8 +305,7 @@ impl Session {
         let schedule = self.engine.schedule().clone();
         let film = document.render.is_adaptive().then(|| self.engine.film()).transpose()?;
         self.convergence.next_round(film, &schedule, &document.render, seconds);
-        self.convergence.plan_seconds = begun.elapsed().as_secs_f64();
-        self.convergence.total_seconds += self.convergence.plan_seconds;
+        self.convergence.planned(begun.elapsed().as_secs_f64());
         Ok(())
     }
 
@@ -325,8 +324,7 @@ impl Session {
             .unwrap_or_default();
         self.convergence
             .measure(self.engine.film()?, &schedule, &settings, seconds);
-        self.convergence.measure_seconds = begun.elapsed().as_secs_f64();
-        self.convergence.total_seconds += self.convergence.measure_seconds;
+        self.convergence.looked(begun.elapsed().as_secs_f64());
         Ok(())
     }
 

@@ -38,7 +38,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         row(ui, desk, effect, decision, entry.filter(|_| decision.is_on));
     }
     ui.add_space(theme::GAP);
-    super::ledger::show(ui, desk);
+    super::ledger::show(ui, desk, ledger.as_deref());
 }
 
 /// An effect with what the ledger says of it.

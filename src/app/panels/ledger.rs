@@ -28,7 +28,8 @@ impl LedgerState {
     }
 }
 
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+/// `found` is what the rows of the effects show in the same frame.
+pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, found: Option<&Ledger>) {
     let mut state = std::mem::take(&mut desk.state.ledger);
     widgets::group(ui, "Ledger", |ui| {
         let help = "Renders this scene with and without each of them, in turns, and says what it costs.";
@@ -39,7 +40,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
             options.slice = slice.unwrap_or(options.slice);
             Box::new(move |watch| ledger(&document, &options, watch))
         });
-        match state.worker.found() {
+        match found {
             None => widgets::note(
                 ui,
                 "What each effect and setting costs in time, and does to noise and picture.",
