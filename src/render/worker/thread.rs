@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use super::stage::Stage;
 use super::{Activity, Event, FIRST_STEP, Level, Orders, Picture, STEP, Scene, Shared, Snapshot, Submission, lock};
 use crate::analysis::film::Image;
+use crate::document::plan::Specialisation;
 use crate::document::{Change, Document, ViewSettings};
 use crate::render::assets::Assets;
 use crate::render::display::{Shown, display, map};
@@ -332,7 +333,20 @@ impl State<'_> {
         }
         self.taken_at = Instant::now();
         self.snapshot.first_picture = None;
-        self.begin(Stage::first(submission, self.samples_per_second));
+        let kernel = self.kernel();
+        let stage = Stage::first(submission, self.samples_per_second);
+        self.begin(stage.clone());
+        if kernel.is_some() && self.kernel() != kernel {
+            let cautious = Stage::cautious(stage.submission, self.samples_per_second);
+            if cautious.reduction > stage.reduction {
+                self.begin(cautious);
+            }
+        }
+    }
+
+    /// What the kernel is made for that renders, or is being compiled.
+    fn kernel(&self) -> Option<Specialisation> {
+        Some(self.session.as_ref()?.job()?.plan.specialisation())
     }
 
     /// What has been rendered counts, but is shown in another way or has another aim.
