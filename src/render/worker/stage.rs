@@ -93,3 +93,30 @@ impl Stage {
         self.is_shown || self.submission.pace == Pace::Still || taken_at.elapsed() >= STALE
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn reductions(samples_per_second: f64) -> [u32; 2] {
+        let mut document = Document::default();
+        (document.render.width, document.render.height) = (512, 512);
+        let submission = Submission {
+            document,
+            revision: 1,
+            pace: Pace::Still,
+            at: Instant::now(),
+        };
+        let known = Stage::first(submission.clone(), samples_per_second);
+        [known, Stage::cautious(submission, samples_per_second)].map(|stage| stage.reduction)
+    }
+
+    #[test]
+    fn the_first_picture_is_as_large_as_the_speed_allows_and_smaller_with_another_kernel() {
+        assert_eq!(reductions(1e8), [1, 1]);
+        assert_eq!(reductions(1e7), [1, 2]);
+        assert_eq!(reductions(2.5e6), [2, 3]);
+        // Not smaller than that something can be told from it.
+        assert_eq!(reductions(1e5), [4, 4]);
+    }
+}
