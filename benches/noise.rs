@@ -3,7 +3,7 @@
 //! `cargo bench --bench noise [-- quick]`: how often the true error, against a long render, lies in the band that is told,
 //! over scenes, sequences and numbers of samples; the time to a noise with adaptive sampling on and off, in turns, for
 //! every scene of the list: the noise is what so many samples of every pixel come to; the share of the time that the looks
-//! take. `quick` does the same small, to see that it works; `coverage` or `adaptive` one of the two parts. The processor
+//! take; the true error of both, from how far renders with other seeds are from each other. `quick` does the same small, to see that it works; `coverage` or `adaptive` one of the two parts. The processor
 //! engine; `gpu` as a further argument takes the GPU, and the beginning of a scene's name that scene alone.
 
 use std::time::Duration;
@@ -42,7 +42,7 @@ const QUICK: Extent = Extent {
     reference_samples: 1024,
     samples: &[16],
     samples_even: 64,
-    rounds: 1,
+    rounds: 2,
 };
 
 fn main() -> Result<(), Failure> {
@@ -174,13 +174,16 @@ fn adaptive(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
         "## Time to the noise of {} samples of every pixel, {side} x {side}, medians of {}",
         extent.samples_even, extent.rounds
     );
-    println!("| scene | noise | even | adaptive | sooner by | samples adaptive | looks' share |");
-    println!("| --- | --- | --- | --- | --- | --- | --- |");
+    println!(
+        "| scene | noise | even | adaptive | sooner by | samples adaptive | looks' share | true, even | true, adaptive |"
+    );
+    println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     for (name, document) in scenes {
         let mut document = document.clone();
         (document.render.width, document.render.height) = (side, side);
         let (mut ratios, mut seconds) = (Vec::new(), [Vec::new(), Vec::new()]);
         let (mut wanted, mut last) = (0.0, Progress::default());
+        let mut films = [Vec::new(), Vec::new()];
         for round in 0..extent.rounds {
             document.render.seed = round;
             (document.render.adaptive, document.render.noise) = (Some(false), None);
@@ -189,14 +192,17 @@ fn adaptive(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
             wanted = noise(&film).ok_or("no error is told")?.relative;
             (document.render.adaptive, document.render.noise) = (Some(true), Some(wanted));
             document.render.samples = u32::MAX;
-            last = finish(session, &document)?.1;
+            let (film_adaptive, progress) = finish(session, &document)?;
+            last = progress;
+            std::iter::zip(&mut films, [film, film_adaptive]).for_each(|(all, film)| all.push(film));
             let times = [even.render_seconds, last.render_seconds];
             std::iter::zip(&mut seconds, times).for_each(|(all, time)| all.push(time));
             ratios.push(times[0] / times[1]);
         }
         let [even, adaptive] = seconds.map(median);
+        let [true_even, true_adaptive] = films.map(|films| format!("{:.2} %", 100.0 * spread(&films)));
         println!(
-            "| {name} | {:.2} % | {even:.2} s | {adaptive:.2} s | {:.2} × | {:.1} | {:.1} % |",
+            "| {name} | {:.2} % | {even:.2} s | {adaptive:.2} s | {:.2} × | {:.1} | {:.1} % | {true_even} | {true_adaptive} |",
             100.0 * wanted,
             median(ratios),
             last.mean_samples,
@@ -204,6 +210,13 @@ fn adaptive(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
         );
     }
     Ok(())
+}
+
+/// The true error of each of some independent pictures, root mean square, from how far they are from each other.
+fn spread(films: &[Film]) -> f64 {
+    let pairs = films.windows(2).map(|pair| true_error(&pair[0], &pair[1].luminance()));
+    let squares: Vec<f64> = pairs.map(|error| error.powi(2) / 2.0).collect();
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

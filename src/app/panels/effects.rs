@@ -27,6 +27,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         plan.left_out()
     ))
     .on_hover_text("An effect that the scene does not call for costs nothing: the kernel is compiled without it.");
+    super::ledger::controls(ui, desk, ledger.as_deref());
     let switches = desk.document.render.effects;
     if switches != EffectSwitches::default() && ui.button("All automatic").clicked() {
         desk.document.render.effects = EffectSwitches::default();
@@ -37,8 +38,10 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         let entry = ledger.as_ref().and_then(|ledger| ledger.effect(effect.name));
         row(ui, desk, effect, decision, entry.filter(|_| decision.is_on));
     }
-    ui.add_space(theme::GAP);
-    super::ledger::show(ui, desk, ledger.as_deref());
+    if let Some(ledger) = &ledger {
+        ui.add_space(theme::GAP);
+        super::ledger::show(ui, ledger);
+    }
 }
 
 /// An effect with what the ledger says of it.

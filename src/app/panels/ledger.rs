@@ -8,15 +8,18 @@ use egui::{RichText, Ui};
 use super::Desk;
 use super::study::{StudyWorker, engine};
 use crate::app::widgets;
+use crate::document::{Change, Document};
 use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
 
 /// Longest side of the picture that is measured on, pixels: what is true of the parts is true of the whole.
 const SIDE_MAX: u32 = 256;
 
-/// What the section remembers.
+/// What the panel remembers.
 #[derive(Default)]
 pub(in crate::app) struct LedgerState {
     worker: StudyWorker<Ledger>,
+    /// What it was asked about last.
+    asked: Option<Document>,
     /// How long a turn lasts, where it is not the usual time.
     pub(in crate::app) slice: Option<Duration>,
 }
@@ -28,32 +31,34 @@ impl LedgerState {
     }
 }
 
-/// `found` is what the rows of the effects show in the same frame.
-pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, found: Option<&Ledger>) {
+/// The button that measures, and how far it is.
+pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, found: Option<&Ledger>) {
     let mut state = std::mem::take(&mut desk.state.ledger);
-    widgets::group(ui, "Ledger", |ui| {
-        let help = "Renders this scene with and without each of them, in turns, and says what it costs.";
-        let slice = state.slice;
-        state.worker.controls(ui, desk, "Measure what it costs", help, |desk| {
-            let document = super::race::small_document(desk, SIDE_MAX);
-            let mut options = LedgerOptions::new(engine(desk));
-            options.slice = slice.unwrap_or(options.slice);
-            Box::new(move |watch| ledger(&document, &options, watch))
-        });
-        match found {
-            None => widgets::note(
-                ui,
-                "What each effect and setting costs in time, and does to noise and picture.",
-            ),
-            Some(found) => {
-                ui.label(format!("{:.2} ms for one sample of every pixel", found.ms_per_sample));
-                found.entries.iter().for_each(|entry| line(ui, entry));
-                let size = format!("Measured at {} × {} pixels.", found.width, found.height);
-                widgets::note(ui, size);
-            }
-        }
+    let help = "What each effect and setting costs in time, and does to noise and picture: renders this scene with and \
+                without each of them, in turns.";
+    let LedgerState { worker, asked, slice } = &mut state;
+    worker.controls(ui, desk, "Measure what it costs", help, |desk| {
+        *asked = Some(desk.document.clone());
+        let document = super::race::small_document(desk, SIDE_MAX);
+        let mut options = LedgerOptions::new(engine(desk));
+        options.slice = slice.unwrap_or(options.slice);
+        Box::new(move |watch| ledger(&document, &options, watch))
     });
+    let is_old = |asked: &Document| Change::between(asked, desk.document).restarts();
+    if found.is_some() && asked.as_ref().is_some_and(is_old) {
+        widgets::note(ui, "Measured before the last changes.");
+    }
     desk.state.ledger = state;
+}
+
+/// All lines of it.
+pub(super) fn show(ui: &mut Ui, found: &Ledger) {
+    widgets::group(ui, "Ledger", |ui| {
+        ui.label(format!("{:.2} ms for one sample of every pixel", found.ms_per_sample));
+        found.entries.iter().for_each(|entry| line(ui, entry));
+        let size = format!("Measured at {} × {} pixels.", found.width, found.height);
+        widgets::note(ui, size);
+    });
 }
 
 fn line(ui: &mut Ui, entry: &Entry) {

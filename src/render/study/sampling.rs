@@ -2,7 +2,8 @@
 //!
 //! A picture of a glossy quad, with 1 and with 100 directions a pixel. Drawn are the random numbers alone, the directions
 //! too, and rays against a triangle too; what one adds to the other is its cost. The whole frame is the path tracer's, of
-//! a quad under an area light. Lobes and stages take turns; times are medians.
+//! a quad under an area light. Lobes and stages take turns; times are medians, and ratios medians
+//! of those within a turn.
 
 use std::time::Duration;
 
@@ -56,8 +57,8 @@ impl SamplingOptions {
             engine,
             size: SIZE,
             roughness: 0.3,
-            turns: 7,
-            budget: Duration::from_millis(400),
+            turns: 21,
+            budget: Duration::from_millis(130),
         }
     }
 }
@@ -77,7 +78,7 @@ pub struct SamplingRow {
     pub with_rays_ms: f64,
     /// The path tracer's whole frame.
     pub frame_ms: f64,
-    /// Sampling against the geometric lobe's with the smooth curve: above 1 it is slower.
+    /// Sampling against the geometric lobe's with the smooth curve, median over the turns: above 1 it is slower.
     pub against_geometric: f64,
 }
 
@@ -155,14 +156,9 @@ pub fn sampling(options: &SamplingOptions, watch: &mut Watch<'_>) -> Result<Samp
         steps.finish(1.0);
         report.numbers_ms[index] = kernels.numbers_ms;
         report.measured_share[index] = kernels.measured_share;
-        let is_unit = |(lobe, curve, _): &(Lobe, Curve, String)| *lobe == Lobe::Geometric && *curve == Curve::Smooth;
-        let unit = shapes
-            .iter()
-            .position(is_unit)
-            .map_or(f64::NAN, |place| kernels.stages_ms[place][0]);
-        for (((lobe, _, name), [sampling_ms, with_rays_ms]), frame_ms) in
-            shapes.iter().zip(kernels.stages_ms).zip(frames)
-        {
+        let times = std::iter::zip(kernels.shapes, frames);
+        for ((lobe, _, name), (kernel, frame_ms)) in std::iter::zip(&shapes, times) {
+            let [sampling_ms, with_rays_ms] = kernel.stages_ms;
             report.rows.push(SamplingRow {
                 name: name.clone(),
                 lobe: *lobe,
@@ -170,7 +166,7 @@ pub fn sampling(options: &SamplingOptions, watch: &mut Watch<'_>) -> Result<Samp
                 sampling_ms,
                 with_rays_ms,
                 frame_ms,
-                against_geometric: sampling_ms / unit,
+                against_geometric: kernel.against_geometric,
             });
         }
     }
@@ -182,8 +178,15 @@ pub fn sampling(options: &SamplingOptions, watch: &mut Watch<'_>) -> Result<Samp
 struct Kernels {
     numbers_ms: f64,
     measured_share: f64,
-    /// For each shape what directions add to the random numbers, and directions with rays.
-    stages_ms: Vec<[f64; 2]>,
+    shapes: Vec<KernelTimes>,
+}
+
+/// Times of one lobe and curve.
+struct KernelTimes {
+    /// What directions add to the random numbers, and directions with rays, milliseconds.
+    stages_ms: [f64; 2],
+    /// Directions against those of the geometric lobe with the smooth curve.
+    against_geometric: f64,
 }
 
 fn kernels(
@@ -231,20 +234,32 @@ fn kernels(
         }
     }
     let numbers: Vec<f64> = times.iter().flat_map(|stages| stages[0].iter().copied()).collect();
-    let numbers = median(&numbers);
-    // Within a turn, so that what slows all stages down cancels.
-    let beyond = |stages: &[Vec<f64>; 3], stage: usize| {
-        let differences: Vec<f64> = std::iter::zip(&stages[stage], &stages[0]).map(|(a, b)| a - b).collect();
-        scale * median(&differences)
+    let unit = shapes
+        .iter()
+        .position(|(lobe, curve, _)| *lobe == Lobe::Geometric && *curve == Curve::Smooth)
+        .map(|place| beyond_numbers(&times[place], 1));
+    let of_shape = |stages: &[Vec<f64>; 3]| {
+        let directions = beyond_numbers(stages, 1);
+        let ratios: Vec<f64> = unit
+            .iter()
+            .flat_map(|unit| std::iter::zip(&directions, unit))
+            .map(|(time, unit)| time / unit)
+            .collect();
+        KernelTimes {
+            stages_ms: [median(&directions), median(&beyond_numbers(stages, 2))].map(|seconds| scale * seconds),
+            against_geometric: median(&ratios),
+        }
     };
     Ok(Kernels {
-        numbers_ms: scale * numbers,
+        numbers_ms: scale * median(&numbers),
         measured_share: f64::from(rows) / f64::from(height),
-        stages_ms: times
-            .iter()
-            .map(|stages| [1, 2].map(|stage| beyond(stages, stage)))
-            .collect(),
+        shapes: times.iter().map(of_shape).collect(),
     })
+}
+
+/// What a stage adds to the random numbers, seconds, turn by turn: what slows a whole turn down cancels.
+fn beyond_numbers(stages: &[Vec<f64>; 3], stage: usize) -> Vec<f64> {
+    std::iter::zip(&stages[stage], &stages[0]).map(|(a, b)| a - b).collect()
 }
 
 /// A glossy quad under an area light, seen from above.
