@@ -79,12 +79,13 @@ pub(super) enum Engine {
 }
 
 impl Engine {
-    /// Opens what was asked for.
-    pub(super) fn open(choice: EngineChoice) -> Result<(Self, EngineInfo), GpuError> {
+    /// Opens what was asked for. Where it is not known yet which engine is faster it is measured, for seconds, or else
+    /// (`may_wait` false) beside the processor's engine and for the next time.
+    pub(super) fn open(choice: EngineChoice, may_wait: bool) -> Result<(Self, EngineInfo), GpuError> {
         match choice {
             EngineChoice::Cpu => Ok(cpu("asked for".to_owned())),
             EngineChoice::Gpu => gpu(GpuDevice::open(AdapterKind::Any)?, "asked for".to_owned()),
-            EngineChoice::Auto => Ok(auto()),
+            EngineChoice::Auto => Ok(auto(may_wait)),
         }
     }
 
@@ -184,10 +185,10 @@ fn processor_name() -> String {
     )
 }
 
-fn auto() -> (Engine, EngineInfo) {
+fn auto(may_wait: bool) -> (Engine, EngineInfo) {
     match GpuDevice::open(AdapterKind::Hardware).and_then(|device| gpu(device, "a hardware GPU".to_owned())) {
         Ok(opened) => opened,
-        Err(_) => super::calibration::fastest_without_hardware(),
+        Err(_) => super::calibration::fastest_without_hardware(may_wait),
     }
 }
 

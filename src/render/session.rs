@@ -127,8 +127,11 @@ impl Session {
     /// # Errors
     /// As [`Session::open`].
     pub fn open_with(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
-        let (engine, info) = Engine::open(choice)?;
-        Ok(Self {
+        Ok(Self::around(Engine::open(choice, true)?, assets))
+    }
+
+    fn around((engine, info): (Engine, EngineInfo), assets: Assets) -> Self {
+        Self {
             engine,
             info,
             assets,
@@ -141,16 +144,16 @@ impl Session {
             stand_in_seconds: 0.0,
             workshop: None,
             precision: Precision::default(),
-        })
+        }
     }
 
-    /// The same, but never waits for a kernel to be compiled: until it is ready the processor draws, and what it has
-    /// drawn then counts.
+    /// The same, but never waits for engines to be measured or for a kernel to be compiled: until it is ready the
+    /// processor draws, and what it has drawn then counts.
     ///
     /// # Errors
     /// As [`Session::open`].
     pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
-        let mut session = Self::open_with(choice, assets)?;
+        let mut session = Self::around(Engine::open(choice, false)?, assets);
         let stand_in = Engine::Cpu(Box::default());
         match std::mem::replace(&mut session.engine, stand_in) {
             Engine::Gpu(engine) => session.workshop = Some(Workshop::new(*engine)),
