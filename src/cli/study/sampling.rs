@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &SamplingArguments) -> anyhow::Result<()> {
         ..SamplingOptions::new(arguments.engine)
     };
     if arguments.quick {
-        (options.size, options.turns, options.budget) = (QUICK_SIZE, 3, Duration::from_millis(4));
+        (options.size, options.turns, options.budget) = (QUICK_SIZE, 9, Duration::from_millis(4));
     }
     let report = {
         let bar = Bar::new()?;
