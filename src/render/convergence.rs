@@ -14,6 +14,9 @@ const GROWTH_WATCHED: f64 = 1.1;
 const GROWTH_MIN: [f64; 2] = [1.02, 1.1];
 const GROWTH_AIMED: f64 = 1.5;
 const GROWTH_ADAPTIVE: f64 = 1.25;
+/// And at most after the first look: what it took and what the first samples took, all of them cold, says little of what
+/// looks and samples cost.
+const GROWTH_COLD: f64 = 8.0;
 
 /// The error of a picture at some point of its render.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,13 +66,13 @@ impl Convergence {
     /// Takes note of how long a look took.
     pub(super) fn looked(&mut self, seconds: f64) {
         self.total_seconds += seconds;
-        self.look_seconds = Some(self.look_seconds.map_or(seconds, |least| least.min(seconds)));
+        self.look_seconds = lesser(self.look_seconds, seconds);
     }
 
     /// Takes note of how long it took to set goals.
     pub(super) fn planned(&mut self, seconds: f64) {
         self.total_seconds += seconds;
-        self.plan_seconds = Some(self.plan_seconds.map_or(seconds, |least| least.min(seconds)));
+        self.plan_seconds = lesser(self.plan_seconds, seconds);
     }
 
     /// Looks at the error, of the part that is rendered.
@@ -125,7 +128,12 @@ impl Convergence {
         }
         // So long that the look at its end takes no more than its share.
         let seconds = (self.look_seconds.unwrap_or(0.0) + self.plan_seconds.unwrap_or(0.0)) / COST_SHARE;
-        let paced = 1.0 + seconds / engine_seconds.max(1e-9);
+        let most_paced = if self.history.len() > 1 {
+            f64::INFINITY
+        } else {
+            GROWTH_COLD
+        };
+        let paced = (1.0 + seconds / engine_seconds.max(1e-9)).min(most_paced);
         let growth_min = (0.5 * (1.0 + paced)).clamp(GROWTH_MIN[0], GROWTH_MIN[1]);
         if let Some(film) = film.filter(|_| settings.is_adaptive() && most > 1) {
             let round = Round {
@@ -148,6 +156,10 @@ impl Convergence {
         let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0);
         self.goals = vec![(goal as u32).min(settings.samples); samples.len()];
     }
+}
+
+fn lesser(least: Option<f64>, seconds: f64) -> Option<f64> {
+    Some(least.map_or(seconds, |least| least.min(seconds)))
 }
 
 /// Samples a pixel, in the mean over the picture.
