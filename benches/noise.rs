@@ -3,8 +3,9 @@
 //! `cargo bench --bench noise [-- quick]`: how often the true error, against a long render, lies in the band that is told,
 //! over scenes, sequences and numbers of samples; the time to a noise with adaptive sampling on and off, in turns, for
 //! every scene of the list: the noise is what so many samples of every pixel come to; the share of the time that the looks
-//! take; the true error of both, from how far renders with other seeds are from each other. `quick` does the same small, to see that it works; `coverage` or `adaptive` one of the two parts. The processor
-//! engine; `gpu` as a further argument takes the GPU, and the beginning of a scene's name that scene alone.
+//! take; the true error of both, from how far renders with other seeds are from each other. `quick` does the same small,
+//! to see that it works; `coverage` or `adaptive` one of the two parts. The processor engine; `gpu` as a further argument
+//! takes the GPU, and the beginning of a scene's name that scene alone.
 
 use std::time::Duration;
 

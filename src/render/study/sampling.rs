@@ -2,8 +2,8 @@
 //!
 //! A picture of a glossy quad, with 1 and with 100 directions a pixel. Drawn are the random numbers alone, the directions
 //! too, and rays against a triangle too; what one adds to the other is its cost. The whole frame is the path tracer's, of
-//! a quad under an area light. Lobes and stages take turns; times are medians, and ratios medians
-//! of those within a turn.
+//! a quad under an area light. Lobes and stages take turns; times are medians, and ratios are medians of those within a
+//! turn.
 
 use std::time::Duration;
 
@@ -234,15 +234,12 @@ fn kernels(
         }
     }
     let numbers: Vec<f64> = times.iter().flat_map(|stages| stages[0].iter().copied()).collect();
-    let unit = shapes
-        .iter()
-        .position(|(lobe, curve, _)| *lobe == Lobe::Geometric && *curve == Curve::Smooth)
-        .map(|place| beyond_numbers(&times[place], 1));
+    let is_unit = |(lobe, curve, _): &(Lobe, Curve, String)| *lobe == Lobe::Geometric && *curve == Curve::Smooth;
+    let unit = shapes.iter().position(is_unit);
+    let unit = unit.map_or_else(Vec::new, |place| beyond_numbers(&times[place], 1));
     let of_shape = |stages: &[Vec<f64>; 3]| {
         let directions = beyond_numbers(stages, 1);
-        let ratios: Vec<f64> = unit
-            .iter()
-            .flat_map(|unit| std::iter::zip(&directions, unit))
+        let ratios: Vec<f64> = std::iter::zip(&directions, &unit)
             .map(|(time, unit)| time / unit)
             .collect();
         KernelTimes {

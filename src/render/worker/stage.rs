@@ -15,7 +15,7 @@ const STALE: Duration = Duration::from_millis(250);
 const REDUCTIONS: [u32; 6] = [1, 2, 3, 4, 6, 8];
 /// What an engine is assumed to do before it was measured, pixel samples a second.
 const FIRST_GUESS: f64 = 5e5;
-/// The least share of its speed that an engine is taken to keep in a kernel that it has not been measured with. Compiling it
+/// The share of its speed that an engine is taken to keep in a kernel that it has not been measured with. Compiling it
 /// takes its part of the processor, and light may have more ways to go.
 const UNKNOWN_KERNEL: f64 = 0.3;
 /// Pictures smaller than this are not reduced further: nothing could be told from them.
