@@ -388,19 +388,22 @@ fn messages(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
             .layout(egui::Layout::top_down(egui::Align::Center)),
     );
     for index in open.into_iter().rev().take(3) {
+        // Named, as others may come above it while it is being closed.
+        let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("message", index)));
         let entry = &mut desk.state.log[index];
         let color = match entry.level {
             Level::Error => inside.visuals().error_fg_color,
             _ => inside.visuals().warn_fg_color,
         };
         let frame = egui::Frame::popup(inside.style()).stroke(egui::Stroke::new(1.0, color.gamma_multiply(0.6)));
+        let message = |ui: &mut Ui| {
+            let text = egui::Label::new(egui::RichText::new(&entry.text).color(color)).wrap();
+            ui.allocate_ui(vec2(width - 60.0, 0.0), |ui| ui.add(text));
+            let close = icons::button(ui, Icon::Close, &format!("Close message {index}"), "Close");
+            entry.is_open &= !close.clicked();
+        };
         frame.show(&mut inside, |ui| {
-            ui.horizontal_top(|ui| {
-                let text = egui::Label::new(egui::RichText::new(&entry.text).color(color)).wrap();
-                ui.allocate_ui(vec2(width - 60.0, 0.0), |ui| ui.add(text));
-                let close = icons::button(ui, Icon::Close, &format!("Close message {index}"), "Close");
-                entry.is_open &= !close.clicked();
-            });
+            ui.scope_builder(builder, |ui| ui.horizontal_top(message));
         });
     }
 }

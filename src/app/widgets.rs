@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use egui::text::LayoutJob;
 use egui::{
     Align, Color32, DragValue, Layout, Rect, Response, RichText, Sense, Shape, TextFormat, TextStyle, TextureHandle,
-    Ui, Vec2,
+    Ui, UiBuilder, Vec2,
 };
 
 use super::theme::{self, ROW_HEIGHT};
@@ -425,6 +425,22 @@ pub(super) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
             body(ui);
             ui.add_space(theme::GAP);
         });
+}
+
+/// Content that comes, goes and changes by itself, as what other threads answer does, above controls that stay. egui
+/// tells controls apart by their order: without this those below would be others once it came, and a click, a drag or
+/// the keys that one of them had would be lost.
+pub(super) fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
+    let mut inside = ui.new_child(UiBuilder::new());
+    let result = content(&mut inside);
+    let taken = inside.min_rect();
+    if taken.height() > 0.0 {
+        ui.advance_cursor_after_rect(taken);
+    } else {
+        // Nothing takes no space, not even that between two widgets, but counts as one as well.
+        ui.skip_ahead_auto_ids(1);
+    }
+    result
 }
 
 /// A picture with a name beside it, to choose.

@@ -1,12 +1,13 @@
 //! The editor as a person uses it, with the real renderer behind it, in few pixels.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use egui::accesskit::Role;
+use egui::accesskit::{self, NodeId, Role};
 use egui::{Key, Modifiers, Pos2, Vec2};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options, Resolution};
@@ -52,13 +53,42 @@ pub(super) fn editor() -> Harness<'static, App> {
     harness
 }
 
+/// The controls whose role and name no other has, with what they are told apart by.
+fn controls(harness: &Harness<'static, App>) -> HashMap<(Role, String), Option<NodeId>> {
+    let mut found = HashMap::new();
+    for node in harness.root().children_recursive() {
+        let node = node.accesskit_node();
+        let Some(name) = node
+            .label()
+            .filter(|_| node.data().supports_action(accesskit::Action::Click))
+        else {
+            continue;
+        };
+        let id = node.locate().0;
+        let known = found.entry((node.role(), name));
+        known.and_modify(|known| *known = None).or_insert(Some(id));
+    }
+    found
+}
+
+/// Steps until something has come, while every control stays the one that it was: else a click under way would be lost.
 pub(super) fn wait(harness: &mut Harness<'static, App>, what: &str, until: impl Fn(&App) -> bool) {
     let begun = Instant::now();
+    let mut before = controls(harness);
     loop {
         harness.step();
+        let now = controls(harness);
+        for (control, id) in &now {
+            let was = before.get(control).unwrap_or(id);
+            assert!(
+                was == id || was.is_none() || id.is_none(),
+                "{control:?} became another during {what}"
+            );
+        }
         if until(harness.state()) {
             return;
         }
+        before = now;
         let app = harness.state();
         let state = (app.snapshot().activity.clone(), app.messages());
         assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}: {state:?}");

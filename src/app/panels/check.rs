@@ -66,7 +66,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         ui.checkbox(&mut state.thorough, "Thorough")
             .on_hover_text("Every lobe at every roughness and angle, with more samples: takes minutes.");
     });
-    match worker.latest() {
+    widgets::comes_and_goes(ui, |ui| match worker.latest() {
         None => {}
         Some(Standing::Checking(group)) => {
             ui.horizontal(|ui| {
@@ -78,7 +78,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
             ui.colored_label(ui.visuals().error_fg_color, why);
         }
         Some(Standing::Done(checks)) => table(ui, &checks),
-    }
+    });
     ui.separator();
     hard_cases::show(ui, &mut state.hard, engine);
 }

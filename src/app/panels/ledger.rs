@@ -45,9 +45,11 @@ pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, found: Option<&Ledger>)
         Box::new(move |watch| ledger(&document, &options, watch))
     });
     let is_old = |asked: &Document| Change::between(asked, desk.document).restarts();
-    if found.is_some() && asked.as_ref().is_some_and(is_old) {
-        widgets::note(ui, "Measured before the last changes.");
-    }
+    widgets::comes_and_goes(ui, |ui| {
+        if found.is_some() && asked.as_ref().is_some_and(is_old) {
+            widgets::note(ui, "Measured before the last changes.");
+        }
+    });
     desk.state.ledger = state;
 }
 

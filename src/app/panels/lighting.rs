@@ -40,7 +40,7 @@ pub(in crate::app) fn environment_label(source: &EnvironmentSource) -> String {
 
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     widgets::group(ui, "Environment", |ui| {
-        current(ui, desk);
+        widgets::comes_and_goes(ui, |ui| current(ui, desk));
         sources(ui, desk);
         numbers(ui, desk);
     });
@@ -88,7 +88,7 @@ fn current(ui: &mut Ui, desk: &mut Desk<'_>) {
 fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
     let current = desk.document.lighting.environment.clone();
     let mut sources: Vec<EnvironmentSource> = BUILT_IN.iter().map(|(.., source)| source.clone()).collect();
-    for source in std::iter::once(current.clone()).chain(desk.state.recent.environments()) {
+    for source in std::iter::once(current).chain(desk.state.recent.environments()) {
         if !sources.contains(&source) && sources.len() < BUILT_IN.len() + FILES_MAX {
             sources.push(source);
         }
@@ -99,7 +99,21 @@ fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
         .map(|scene| (&scene.document.lighting.environment, &scene.job.environment));
     desk.state.environments.make_pictures(ui.ctx(), &sources, loaded);
     ui.add_space(2.0);
-    for source in &sources {
+    widgets::comes_and_goes(ui, |ui| rows(ui, desk, &sources));
+    ui.add_space(2.0);
+    if ui
+        .button("Open a file…")
+        .on_hover_text(Command::OpenEnvironment.help())
+        .clicked()
+    {
+        desk.act(Command::OpenEnvironment);
+    }
+    ui.add_space(0.5 * theme::GAP);
+}
+
+fn rows(ui: &mut Ui, desk: &mut Desk<'_>, sources: &[EnvironmentSource]) {
+    let current = desk.document.lighting.environment.clone();
+    for source in sources {
         let is_current = *source == current;
         let environments = &desk.state.environments;
         let row = PictureRow {
@@ -120,15 +134,6 @@ fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
             desk.actions.push(Action::UseEnvironment(source.clone()));
         }
     }
-    ui.add_space(2.0);
-    if ui
-        .button("Open a file…")
-        .on_hover_text(Command::OpenEnvironment.help())
-        .clicked()
-    {
-        desk.act(Command::OpenEnvironment);
-    }
-    ui.add_space(0.5 * theme::GAP);
 }
 
 fn numbers(ui: &mut Ui, desk: &mut Desk<'_>) {

@@ -82,7 +82,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         view_angle_deg,
         is_dark: ui.visuals().dark_mode,
     };
-    view(ui, &mut desk.state.lobe, query);
+    widgets::comes_and_goes(ui, |ui| view(ui, &mut desk.state.lobe, query));
     if desk.state.lobe.other != Other::Nothing {
         ui.add_space(crate::app::theme::GAP);
         let target = match desk.state.lobe.other {

@@ -13,7 +13,7 @@ use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter, Value};
 use crate::scene::{AlphaMode, Model, Texture};
 
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    slots(ui, desk);
+    widgets::comes_and_goes(ui, |ui| slots(ui, desk));
     let before = desk.material();
     let mut material = before.clone();
     name(ui, desk, &mut material);
@@ -32,16 +32,14 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
     for group in groups {
         widgets::group(ui, group, |ui| {
-            let of_group = PARAMETERS.iter().filter(|parameter| parameter.group == group);
-            for parameter in of_group.filter(is_shown) {
-                let picture = textures.iter().find(|(key, _)| *key == parameter.key);
-                show_parameter(
-                    ui,
-                    desk,
-                    parameter,
-                    picture.map(|(_, picture)| picture.as_ref()),
-                    &mut material,
-                );
+            for parameter in PARAMETERS.iter().filter(|parameter| parameter.group == group) {
+                widgets::comes_and_goes(ui, |ui| {
+                    if is_shown(&parameter) {
+                        let picture = textures.iter().find(|(key, _)| *key == parameter.key);
+                        let picture = picture.map(|(_, picture)| picture.as_ref());
+                        show_parameter(ui, desk, parameter, picture, &mut material);
+                    }
+                });
             }
         });
     }

@@ -72,7 +72,8 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
                 }
             }
         });
-        match self.worker.as_ref().and_then(Background::latest) {
+        let standing = self.worker.as_ref().and_then(Background::latest);
+        widgets::comes_and_goes(ui, |ui| match standing {
             Some(Standing::Running(progress)) if is_busy => {
                 ui.add(egui::ProgressBar::new(progress.share as f32).desired_height(6.0));
                 widgets::note(ui, progress.what);
@@ -82,7 +83,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             }
             Some(Standing::Stopped) => widgets::note(ui, "Stopped."),
             _ => {}
-        }
+        });
     }
 
     fn begin(&mut self, ui: &Ui, work: Work<R>) {
