@@ -19,6 +19,12 @@ struct FresnelTerms {
     k: vec3f,
 }
 
+fn of_dielectric(terms: FresnelTerms) -> FresnelTerms {
+    var without = terms;
+    without.metalness = 0.0;
+    return without;
+}
+
 fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
     switch terms.model {
         case FRESNEL_NONE: { return terms.weight * terms.tint; }

@@ -25,6 +25,11 @@ struct Surface {
     is_inside: bool,
 }
 
+struct SpecularAlbedos {
+    taken: vec3f,
+    by_dielectric: vec3f,
+}
+
 struct Layers {
     base: vec3f,
     transmission: vec3f,
@@ -89,18 +94,19 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
         let below = select(0.0, 1.0, material_has_specular(material));
         return Layers(vec3f(0.0), vec3f(0.0), 1.0, 0.0, coat_probability(coat, below), below_coat);
     }
-    var taken = vec3f(0.0);
+    var albedos = SpecularAlbedos(vec3f(0.0), vec3f(0.0));
     if material_has_specular(material) {
-        taken = specular_albedo(material, surface);
+        albedos = specular_albedos(material, surface);
     }
-    let left = max(vec3f(1.0) - taken, vec3f(0.0)) * (1.0 - material.metalness);
+    // Under the metal's share there is nothing; the rest lies under the dielectric alone.
+    let left = max(vec3f(1.0) - albedos.by_dielectric, vec3f(0.0)) * (1.0 - material.metalness);
     var base = material.base_color * left;
     var transmission = vec3f(0.0);
     if transmits {
         base *= 1.0 - material.transmission_weight;
         transmission = material.transmission_tint * left * material.transmission_weight;
     }
-    let specular = luminance(taken);
+    let specular = luminance(albedos.taken);
     let through = luminance(transmission);
     let rest = luminance(base) + through;
     var share = sampled_share(specular / max(specular + rest, 1e-9));
@@ -113,7 +119,7 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
     );
 }
 
-fn specular_albedo(material: Material, surface: Surface) -> vec3f {
+fn specular_albedos(material: Material, surface: Surface) -> SpecularAlbedos {
     var place = dot(surface.frame.normal, surface.wo);
     var first = material.albedo_table;
     if surface.is_inside && material_transmits(material) {
@@ -122,16 +128,18 @@ fn specular_albedo(material: Material, surface: Surface) -> vec3f {
     }
     if PLAN_ROUGH_TABLES == 1u && material.has_rough_tables == 1u {
         let integrals = rough_albedo_lookup(first, place, material.roughness);
-        return rough_albedo(material_fresnel_terms(material, surface.is_inside), integrals);
+        let terms = material_fresnel_terms(material, surface.is_inside);
+        return SpecularAlbedos(rough_albedo(terms, integrals), rough_albedo(of_dielectric(terms), integrals));
     }
-    return albedo_lookup(first, place);
+    let taken = albedo_lookup(first, place);
+    return SpecularAlbedos(taken, taken);
 }
 
 fn material_albedo(material: Material, surface: Surface) -> vec3f {
     var specular = vec3f(0.0);
     if material_has_specular(material) {
         if material_has_base(material) || material_transmits(material) {
-            specular = specular_albedo(material, surface);
+            specular = specular_albedos(material, surface).taken;
         } else {
             let cosine = dot(surface.frame.normal, surface.wo);
             specular = fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
@@ -267,7 +275,8 @@ fn transmission_color(material: Material, layers: Layers, shape: LobeShape, surf
         return layers.transmission;
     }
     let cosines = refracting_cosines(surface.wo, wi, shape.eta);
-    let left = fresnel_left(material_fresnel_terms(material, surface.is_inside), cosines.x, cosines.y);
+    let terms = of_dielectric(material_fresnel_terms(material, surface.is_inside));
+    let left = fresnel_left(terms, cosines.x, cosines.y);
     return material.transmission_tint * left * (material.transmission_weight * (1.0 - material.metalness));
 }
 

@@ -4,13 +4,13 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::MaterialSettings;
 use super::import::{MATCHED, ggx_from_geometric};
-use crate::optics::albedo::{albedo_table, rough_albedo_table};
+use crate::optics::albedo::{albedo_table, rough_albedo_table, table_lookup};
 use crate::optics::coat::coat_shape;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
-use crate::optics::material::{Material, NO_TEXTURE};
-use crate::optics::vector::Vec3;
+use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
+use crate::optics::vector::{Vec3, vec3};
 use crate::scene::texture::SlotTextures;
 
 /// Samples of each node of an albedo table.
@@ -49,28 +49,37 @@ pub fn compile_textured(materials: &[MaterialSettings], textures: &[SlotTextures
 fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f32> {
     let looked_up = |is_on: bool, texture: u32| if is_on { texture } else { NO_TEXTURE };
     let uses = settings.textures;
-    let emission = Vec3::from_f32(settings.emission_color) * settings.emission_strength;
+    // Textures of one value are multiplied in here.
+    let [r, g, b, alpha] = slot.constant_base_color.unwrap_or([1.0; 4]);
+    let color = if uses.color { vec3(r, g, b) } else { Vec3::splat(1.0) };
+    let alpha = if uses.opacity { alpha } else { 1.0 };
+    let of_texture = slot.constant_roughness_metalness.filter(|_| uses.roughness);
+    let roughness = of_texture.map_or(settings.roughness, |[share, _]| textured_roughness(settings, share));
+    let metalness = settings.metalness * of_texture.map_or(1.0, |[_, share]| share);
+    let mut emission = Vec3::from_f32(settings.emission_color) * settings.emission_strength;
     let emission_texture = looked_up(uses.emission, slot.emission);
-    let mean_emission = if emission_texture == NO_TEXTURE {
-        emission
-    } else {
-        emission * Vec3::from_f32(slot.mean_emission)
-    };
+    let mut mean_emission = emission;
+    if uses.emission {
+        mean_emission = emission * Vec3::from_f32(slot.mean_emission);
+    }
+    if emission_texture == NO_TEXTURE {
+        emission = mean_emission;
+    }
     let mut material = Material {
-        base_color: Vec3::from_f32(settings.base_color) * settings.base_weight,
-        metalness: settings.metalness,
+        base_color: Vec3::from_f32(settings.base_color) * settings.base_weight * color,
+        metalness,
         specular_color: Vec3::from_f32(settings.specular_color),
         specular_weight: settings.specular_weight,
         eta: Vec3::from_f32(settings.eta),
         ior: settings.ior,
         k: Vec3::from_f32(settings.k),
-        roughness: settings.roughness,
+        roughness,
         emission,
         anisotropy: settings.anisotropy,
-        transmission_tint: Vec3::splat(1.0),
+        transmission_tint: color,
         transmission_weight: settings.transmission_weight,
         absorption: Vec3::zero(),
-        transmission_roughness: (settings.roughness + settings.transmission_roughness).clamp(0.0, 1.0),
+        transmission_roughness: (roughness + settings.transmission_roughness).clamp(0.0, 1.0),
         rotation_rad: settings.rotation_deg.to_radians(),
         lobe: settings.lobe as u32,
         curve: settings.curve as u32,
@@ -80,7 +89,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         albedo_table: 0,
         inner_albedo_table: 0,
         edge_tint: Vec3::from_f32(settings.edge_tint),
-        opacity: settings.opacity,
+        opacity: settings.opacity * alpha,
         coat_color: Vec3::from_f32(settings.coat_color),
         coat_weight: settings.coat_weight,
         coat_roughness: settings.coat_roughness,
@@ -101,8 +110,8 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         roughness_table: NO_TEXTURE,
         reserved: [0; 2],
     };
-    let is_colored_metal = material.textures[0] != NO_TEXTURE && material.metalness > 0.0;
-    material.has_rough_tables = u32::from(material.textures[1] != NO_TEXTURE || is_colored_metal);
+    let is_metal_in_part = material.metalness > 0.0 && material.metalness < 1.0;
+    material.has_rough_tables = u32::from(material.textures[1] != NO_TEXTURE || is_metal_in_part);
     if material.least_metallic().transmits() {
         // Only the exact equations know total reflection.
         material.fresnel = Fresnel::Dielectric as u32;
@@ -110,10 +119,19 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         if settings.transmission_depth > 0.0 {
             material.absorption = color.map(|c: f32| -c.max(TRANSMITTANCE_MIN).ln() / settings.transmission_depth);
         } else {
-            material.transmission_tint = color;
+            material.transmission_tint = material.transmission_tint * color;
         }
     }
     material
+}
+
+/// The roughness that a texture's value gives: such values are meant for GGX.
+fn textured_roughness(settings: &MaterialSettings, share: f32) -> f32 {
+    if settings.lobe == Lobe::Geometric {
+        let of_ggx = ggx_from_geometric(settings.roughness) * share;
+        return table_lookup(&*MATCHED, 0, MATCHED_NODES, of_ggx);
+    }
+    settings.roughness * share
 }
 
 fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut Vec<f32>) -> Material<f32> {
@@ -203,16 +221,14 @@ fn remembered_albedo(material: &Material<f32>, curve_table: &[f32], is_inside: b
 }
 
 fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) -> AlbedoKey {
-    // A table over the roughness serves every roughness, metalness and colour.
+    // A table over the roughness serves every roughness, metalness and colour; any other is a dielectric's.
     let is_rough = material.has_rough_tables == 1;
-    let is_metallic = material.metalness > 0.0 && !is_rough;
     let white = Vec3::splat(1.0);
-    let unless_rough = |x: f32| if is_rough { 0.0 } else { x };
     let transmits = material.least_metallic().transmits();
     let material = Material {
-        metalness: unless_rough(material.metalness),
-        roughness: unless_rough(material.roughness),
-        edge_tint: if is_metallic { material.edge_tint } else { white },
+        metalness: 0.0,
+        roughness: if is_rough { 0.0 } else { material.roughness },
+        edge_tint: white,
         opacity: 0.0,
         coat_color: white,
         coat_weight: 0.0,
@@ -226,7 +242,7 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         normal_strength: 0.0,
         texture_roughness: 0.0,
         roughness_table: NO_TEXTURE,
-        base_color: if is_metallic { material.base_color } else { Vec3::zero() },
+        base_color: Vec3::zero(),
         emission: Vec3::zero(),
         rotation_rad: 0.0,
         curve_table: 0,

@@ -1,7 +1,8 @@
 //! The share of light that a lobe reflects of each view, tabulated: what is left over reaches the layer below.
 //!
-//! Where a texture changes roughness, metalness or colour from point to point, the table goes over the roughness too and
-//! holds the four integrals of which every Fresnel factor's albedo is a sum ([`rough_albedo`]).
+//! Where a texture changes roughness, metalness or colour from point to point, or the surface is metal in part, the table
+//! goes over the roughness too and holds the four integrals of which every Fresnel factor's albedo is a sum
+//! ([`rough_albedo`]): that of the whole and that of the dielectric alone, which the base lies under.
 
 use super::frame::frame_from_normal;
 use super::fresnel::{

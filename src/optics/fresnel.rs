@@ -66,6 +66,15 @@ pub struct FresnelTerms<T> {
     pub k: Vec3<T>,
 }
 
+impl<T: Real> FresnelTerms<T> {
+    /// The same without metal.
+    #[inline(always)]
+    pub fn of_dielectric(&self) -> Self {
+        let metalness = T::zero();
+        Self { metalness, ..*self }
+    }
+}
+
 /// The share reflected, linear RGB in [0, 1]; `cosine` between the half vector and either direction, in [0, 1].
 #[inline(always)]
 pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {

@@ -94,7 +94,7 @@ pub struct Material<T> {
     pub alpha_cutoff: T,
     /// Scales the slopes of the normal texture.
     pub normal_strength: T,
-    /// 1 where the albedo tables go over the roughness too ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
+    /// 1 where the surface is metal in part or changes from point to point, and the albedo tables go over the roughness too ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
     pub has_rough_tables: u32,
     /// The roughness that the texture multiplies: that of GGX where `roughness_table` is there.
     pub texture_roughness: T,
@@ -340,12 +340,13 @@ pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface:
             below_coat: coat_transmittance(material, surface, coat),
         };
     }
-    let taken = if material.has_specular() {
-        specular_albedo(material, tables, surface)
+    let [taken, by_dielectric] = if material.has_specular() {
+        specular_albedos(material, tables, surface)
     } else {
-        Vec3::zero()
+        [Vec3::zero(); 2]
     };
-    let left = (Vec3::splat(one) - taken).map(|x| x.max(zero)) * (one - material.metalness);
+    // Under the metal's share there is nothing; the rest lies under the dielectric alone.
+    let left = (Vec3::splat(one) - by_dielectric).map(|x| x.max(zero)) * (one - material.metalness);
     let base = material.base_color * left * (one - material.transmission_weight);
     let transmission = material.transmission_tint * left * material.transmission_weight;
     let (specular, below, through) = (taken.luminance(), base.luminance(), transmission.luminance());
@@ -365,8 +366,8 @@ pub fn material_layers<T: Real>(material: &Material<T>, tables: &[f32], surface:
     }
 }
 
-/// What the specular lobe reflects of this view.
-fn specular_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Vec3<T> {
+/// What the specular lobe reflects of this view, and what it would if nothing of it were metal.
+fn specular_albedos<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> [Vec3<T>; 2] {
     let mut place = surface.frame.normal.dot(surface.wo);
     let mut first = material.albedo_table;
     if surface.is_inside && material.transmits() {
@@ -375,9 +376,11 @@ fn specular_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Su
     }
     if material.has_rough_tables == 1 {
         let integrals = rough_albedo_lookup(tables, first, place, material.roughness);
-        return rough_albedo(&material.fresnel_terms(surface.is_inside), integrals);
+        let terms = material.fresnel_terms(surface.is_inside);
+        return [terms, terms.of_dielectric()].map(|terms| rough_albedo(&terms, integrals));
     }
-    albedo_lookup(tables, first, place)
+    // What is metal in part has the other table.
+    [albedo_lookup(tables, first, place); 2]
 }
 
 /// The share of the light from everywhere that reaches the viewer by all layers, in [0, 1] for each colour: where there
@@ -386,7 +389,7 @@ pub fn material_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface:
     let specular = if !material.has_specular() {
         Vec3::zero()
     } else if material.has_base() || material.transmits() {
-        specular_albedo(material, tables, surface)
+        specular_albedos(material, tables, surface)[0]
     } else {
         let cosine = surface.frame.normal.dot(surface.wo);
         fresnel(&material.fresnel_terms(surface.is_inside), cosine)
@@ -511,7 +514,8 @@ fn transmission_color<T: Real>(
         return layers.transmission;
     }
     let [cosine, behind] = refracting_cosines(surface.wo, wi, shape.eta);
-    let left = fresnel_left(&material.fresnel_terms(surface.is_inside), cosine, behind);
+    let terms = material.fresnel_terms(surface.is_inside).of_dielectric();
+    let left = fresnel_left(&terms, cosine, behind);
     material.transmission_tint * left * (material.transmission_weight * (T::one() - material.metalness))
 }
 

@@ -4,6 +4,8 @@
 //! Texels are RGBA of 8 bits in words of 32. The array begins with the linear values of the 256 sRGB codes as the bits of
 //! f32: colours are decoded before they are filtered, by a look-up that has no rounding of its own.
 
+use std::ops::Range;
+
 use bytemuck::{Pod, Zeroable};
 
 use super::geometry::{Geometry, Vertex};
@@ -65,7 +67,8 @@ pub struct Textures {
     pub warnings: Vec<String>,
 }
 
-/// What a slot looks up, as numbers of [`Textures::records`] or [`NO_TEXTURE`].
+/// What a slot looks up, as numbers of [`Textures::records`] or [`NO_TEXTURE`]. A picture of one value is a number, not
+/// looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SlotTextures {
     /// Multiplies the base colour.
@@ -82,6 +85,10 @@ pub struct SlotTextures {
     pub alpha_cutoff: f32,
     /// The emission texture's mean, linear.
     pub mean_emission: [f32; 3],
+    /// Linear RGB and alpha of a base colour texture of one value.
+    pub constant_base_color: Option<[f32; 4]>,
+    /// What a texture of one value multiplies roughness and metalness by.
+    pub constant_roughness_metalness: Option<[f32; 2]>,
 }
 
 impl Default for SlotTextures {
@@ -94,6 +101,8 @@ impl Default for SlotTextures {
             opacity: NO_TEXTURE,
             alpha_cutoff: -1.0,
             mean_emission: [1.0; 3],
+            constant_base_color: None,
+            constant_roughness_metalness: None,
         }
     }
 }
@@ -126,22 +135,40 @@ impl Textures {
         let pictures = fitting(model, words_max.saturating_sub(DECODED), &mut textures.warnings);
         let mut first_texels = vec![None; pictures.len()];
         for slot in &model.slots {
-            let mut add = |reference: Option<&TextureRef>, is_srgb: bool| {
+            let constant = |reference: Option<TextureRef>, channels| {
+                reference.and_then(|reference| one_value(&pictures[reference.texture], channels))
+            };
+            let base_color = constant(slot.base_color_texture, 0..4);
+            let metallic_roughness = constant(slot.metallic_roughness_texture, 1..3);
+            let mut add = |reference: Option<TextureRef>, is_srgb: bool| {
                 reference.map_or(NO_TEXTURE, |reference| {
-                    textures.add(reference, &pictures[reference.texture], &mut first_texels, is_srgb)
+                    textures.add(&reference, &pictures[reference.texture], &mut first_texels, is_srgb)
                 })
             };
-            let base_color = add(slot.base_color_texture.as_ref(), true);
+            let looked_up = slot.base_color_texture.filter(|_| base_color.is_none());
+            let base_color_record = add(looked_up, true);
+            let looked_up = slot.metallic_roughness_texture.filter(|_| metallic_roughness.is_none());
             let packed = SlotTextures {
-                base_color,
-                metallic_roughness: add(slot.metallic_roughness_texture.as_ref(), false),
-                normal: add(slot.normal_texture.as_ref(), false),
-                emission: add(slot.emissive_texture.as_ref(), true),
+                base_color: base_color_record,
+                metallic_roughness: add(looked_up, false),
+                normal: add(slot.normal_texture, false),
+                // Its mean is that value.
+                emission: add(
+                    slot.emissive_texture.filter(|e| constant(Some(*e), 0..3).is_none()),
+                    true,
+                ),
                 opacity: if has_opacity(slot, &pictures) {
-                    base_color
+                    base_color_record
                 } else {
                     NO_TEXTURE
                 },
+                constant_base_color: base_color.map(|[r, g, b, a]| {
+                    let [r, g, b] = linear_from_srgb(vec3(r, g, b)).to_f64().map(|x| x as f32);
+                    let is_opaque = slot.alpha_mode == AlphaMode::Opaque;
+                    [r, g, b, if is_opaque { 1.0 } else { a as f32 }]
+                }),
+                constant_roughness_metalness: metallic_roughness
+                    .map(|[_, roughness, metalness, _]| [roughness as f32, metalness as f32]),
                 alpha_cutoff: if slot.alpha_mode == AlphaMode::Mask {
                     slot.alpha_cutoff.max(0.0)
                 } else {
@@ -196,6 +223,14 @@ impl Textures {
         });
         place as u32
     }
+}
+
+/// The value of a picture, each channel in [0, 1], where these channels are the same everywhere.
+fn one_value(picture: &Texture, channels: Range<usize>) -> Option<[f64; 4]> {
+    let mut texels = picture.rgba8.as_chunks::<4>().0.iter();
+    let first = texels.next()?;
+    let is_same = texels.all(|texel| texel[channels.clone()] == first[channels.clone()]);
+    is_same.then(|| first.map(|code| f64::from(code) / 255.0))
 }
 
 /// Whether the base colour's picture says where a slot's surface is.

@@ -8,7 +8,7 @@ use glossmith::document::{
     AreaLight, Background, Change, Conductor, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter,
     Strategy, compile, preset,
 };
-use glossmith::optics::albedo::{ALBEDO_LENGTH, albedo_table};
+use glossmith::optics::albedo::{ALBEDO_LENGTH, ROUGH_ALBEDO_LENGTH, albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};
 use glossmith::optics::lobe::Lobe;
 use glossmith::optics::random::Sequence;
@@ -338,46 +338,43 @@ fn compiled_materials_refer_to_their_tables() {
     let glazed = preset::material_by_name("porcelain").expect("shipped").clone();
     let (materials, tables) = compile(&[custom.clone(), MaterialSettings::default(), glazed]);
     assert_eq!(materials.len(), 3);
-    assert_eq!(tables.len(), CUSTOM_LENGTH + 2 * ALBEDO_LENGTH);
-    assert_eq!(materials[0].albedo_table as usize, CUSTOM_LENGTH);
-    assert_eq!(materials[2].albedo_table as usize, CUSTOM_LENGTH + ALBEDO_LENGTH);
-    assert_eq!(tables[..CUSTOM_LENGTH], custom.custom_curve.table());
-    for material in [&materials[0], &materials[2]] {
-        let expected = albedo_table(&material.cast::<f64>(), &tables, 1024, false);
-        let first = material.albedo_table as usize;
-        assert_eq!(
-            tables[first..first + ALBEDO_LENGTH],
-            expected,
-            "the remembered table is the right one"
-        );
-    }
+    let [in_part, after] = [CUSTOM_LENGTH, CUSTOM_LENGTH + ROUGH_ALBEDO_LENGTH];
+    assert_eq!(tables.len(), after + ALBEDO_LENGTH);
+    let places = [&materials[0], &materials[2]].map(|material| material.albedo_table as usize);
+    assert_eq!(places, [in_part, after]);
+    assert_eq!(tables[..in_part], custom.custom_curve.table());
+    let [custom, glazed] = [&materials[0], &materials[2]].map(|material| material.cast::<f64>());
+    let why = "the remembered table is the right one";
+    assert_eq!(
+        tables[in_part..after],
+        rough_albedo_table(&custom, &tables, 256, false),
+        "{why}"
+    );
+    assert_eq!(tables[after..], albedo_table(&glazed, &tables, 1024, false), "{why}");
 }
 
 #[test]
 fn albedo_tables_follow_what_they_depend_on() {
-    let material = MaterialSettings {
-        metalness: 0.25,
-        ..MaterialSettings::default()
-    };
-    let table = |edit: fn(&mut MaterialSettings)| {
-        let mut edited = material.clone();
-        edit(&mut edited);
-        compile(&[edited]).1
-    };
-    let plain = table(|_| {});
-    assert_eq!(plain.len(), ALBEDO_LENGTH);
-    assert_eq!(plain, table(|m| m.emission_strength = 1.0));
-    assert_eq!(plain, table(|m| m.rotation_deg = 30.0));
-    assert_ne!(plain, table(|m| m.roughness = 0.8));
-    assert_ne!(plain, table(|m| m.base_color = [0.9, 0.1, 0.1]));
-    assert_ne!(plain, table(|m| m.ior = 2.0));
-    assert_ne!(plain, table(|m| m.lobe = Lobe::Ggx));
-    let dielectric = |color| MaterialSettings {
-        metalness: 0.0,
-        base_color: color,
-        ..MaterialSettings::default()
-    };
-    assert_eq!(compile(&[dielectric([0.1; 3])]).1, compile(&[dielectric([0.9; 3])]).1);
+    for (metalness, length) in [(0.0, ALBEDO_LENGTH), (0.25, ROUGH_ALBEDO_LENGTH)] {
+        let material = MaterialSettings {
+            metalness,
+            ..MaterialSettings::default()
+        };
+        let table = |edit: fn(&mut MaterialSettings)| {
+            let mut edited = material.clone();
+            edit(&mut edited);
+            compile(&[edited]).1
+        };
+        let plain = table(|_| {});
+        assert_eq!(plain.len(), length);
+        assert_eq!(plain, table(|m| m.emission_strength = 1.0));
+        assert_eq!(plain, table(|m| m.rotation_deg = 30.0));
+        assert_eq!(plain, table(|m| m.base_color = [0.9, 0.1, 0.1]));
+        // What is metal in part has a table over all roughnesses, of which only values are taken.
+        assert_eq!(plain == table(|m| m.roughness = 0.8), metalness > 0.0);
+        assert_ne!(plain, table(|m| m.ior = 2.0));
+        assert_ne!(plain, table(|m| m.lobe = Lobe::Ggx));
+    }
 }
 
 #[test]

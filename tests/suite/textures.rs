@@ -183,7 +183,11 @@ fn a_material_may_look_up_two_sets_of_coordinates() {
 fn pictures_that_are_too_large_are_halved() {
     let material = json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}});
     let stripes = RgbaImage::from_fn(64, 64, |x, _| {
-        Rgba(if x % 2 == 0 { [255, 0, 0, 255] } else { [0, 0, 0, 255] })
+        Rgba(if x % 2 == 0 && x < 32 {
+            [255, 0, 0, 255]
+        } else {
+            [0, 0, 0, 255]
+        })
     });
     let model = load(&material, &[stripes], &json!({}));
     let whole = Textures::new(&model);
@@ -436,4 +440,39 @@ fn the_plan_has_what_the_model_calls_for() {
     coated.materials[0].edge_tint = [1.0, 0.5, 0.5];
     coated.materials[0].opacity = 0.5;
     assert_eq!(effects(&coated), [false, false, false, false, true, true, true]);
+}
+
+/// A picture that is the same everywhere is multiplied in once: no kernel looks it up, and the picture is that of one
+/// that is.
+#[test]
+fn a_texture_of_one_value_is_a_number() {
+    let first = json!({"index": 0, "extensions": {"KHR_texture_transform": {"scale": [0.4, 1]}}});
+    let material = |mode: &str| {
+        json!({"emissiveFactor": [0.5, 0.4, 0.3], "emissiveTexture": first, "alphaMode": mode,
+            "pbrMetallicRoughness": {"baseColorFactor": [0.9, 0.8, 0.7, 0.9], "baseColorTexture": first,
+                "metallicRoughnessTexture": first, "metallicFactor": 0.8, "roughnessFactor": 0.9}})
+    };
+    let values = Rgba([200, 150, 90, 160]);
+    let pictures = [values, Rgba([0, 0, 0, 0])].map(|right| {
+        let texels = [values, right];
+        RgbaImage::from_fn(2, 1, |x, _| texels[x as usize])
+    });
+    let kinds = ["color-texture", "roughness-texture", "emission-texture"];
+    for mode in ["OPAQUE", "MASK", "BLEND"] {
+        let [constant, looked_up] = [false, true].map(|is_looked_up| {
+            let picture = pictures[usize::from(is_looked_up)].clone();
+            let (buffer, json) = textured_square(&material(mode), &[picture], &json!({"magFilter": NEAREST}));
+            let folder = Folder::new();
+            let document = head_on(&folder, &buffer, &json, EnvironmentSource::Studio);
+            let mut session = Session::open(EngineChoice::Cpu).unwrap();
+            session.submit(&document).unwrap();
+            let plan = session.job().unwrap().plan.clone();
+            assert_eq!(kinds.map(|kind| plan.has(kind)), [is_looked_up; 3], "{mode}");
+            assert_eq!(plan.has("alpha"), mode == "BLEND" || (is_looked_up && mode == "MASK"));
+            render(EngineChoice::Cpu, &document).luminance()
+        });
+        let differences = std::iter::zip(&constant, &looked_up).map(|(a, b)| (a - b).abs());
+        let apart = differences.sum::<f64>() / looked_up.iter().sum::<f64>();
+        assert!(apart < 1e-4, "{mode}: {apart:.1e} apart");
+    }
 }

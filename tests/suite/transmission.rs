@@ -30,9 +30,9 @@ fn mean(film: &Film) -> [f64; 3] {
     [0, 1, 2].map(|i| film.color.iter().map(|color| color[i]).sum::<f64>() / alpha)
 }
 
-/// What goes in comes out: glass that absorbs nothing can't be seen where light is equally bright from everywhere.
+/// What goes in comes out: a surface that absorbs nothing can't be seen where light is equally bright from everywhere.
 #[test]
-fn clear_glass_is_white_in_the_furnace() {
+fn what_absorbs_nothing_is_white_in_the_furnace() {
     for choice in ENGINES {
         for assignments in [
             &["specular.ior=1.5"][..],
@@ -49,6 +49,21 @@ fn clear_glass_is_white_in_the_furnace() {
                 "specular.roughness=0.3",
                 "specular.color=0.3,0.3,0.3",
                 "specular.weight=0.5",
+            ],
+            // White metal beside glass, and beside white under a dielectric.
+            &["base.metalness=0.5", "base.color=1,1,1", "specular.roughness=0.3"],
+            &[
+                "base.metalness=0.5",
+                "base.color=1,1,1",
+                "transmission.weight=0",
+                "specular.roughness=0.45",
+            ],
+            &[
+                "base.metalness=0.2",
+                "base.color=1,1,1",
+                "transmission.weight=0",
+                "specular.fresnel=schlick",
+                "specular.roughness=0.8",
             ],
         ] {
             let film = render(choice, &glass(EnvironmentSource::Furnace, assignments));

@@ -5,8 +5,8 @@ use super::{Constant, Effect};
 pub(super) const EFFECT: Effect = Effect {
     name: "rough-tables",
     label: "Albedos over roughness",
-    help: "What the base is left with, looked up by the roughness where a texture changes it.",
+    help: "What the base is left with where a texture changes the roughness, or the surface is metal in part.",
     constant: Constant::flag("PLAN_ROUGH_TABLES"),
-    decide: |facts| facts.needed_by(|m| m.has_rough_tables == 1, "has a base under a lobe whose roughness changes"),
+    decide: |facts| facts.needed_by(|m| m.has_rough_tables == 1, "is metal in part, or its roughness changes over a base"),
     remove: None,
 };
