@@ -17,7 +17,7 @@ use crate::document::{
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 use crate::render::output::{self, Format};
-use crate::render::{EngineChoice, Progress, Session, SessionError};
+use crate::render::{EngineChoice, Progress, Session, SessionError, StopReason};
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelSource};
 
@@ -267,6 +267,7 @@ fn render(
     eprintln!("{} ({})", session.engine(), session.engine().reason);
     let setup_seconds = begun.elapsed().as_secs_f64();
     let progress = step_to_end(&mut session, engine, document)?;
+    eprintln!("{}", told(&progress));
     let image = session.image()?;
     for path in targets.outputs {
         if targets.has_layers && output::format_of(path)? == Format::Exr {
@@ -277,7 +278,13 @@ fn render(
         eprintln!("wrote {}", path.display());
     }
     if let Some(path) = targets.report {
-        let text = serde_json::to_string_pretty(&json_report(&mut session, document, setup_seconds, progress)?)?;
+        let mut report = json_report(&mut session, document, setup_seconds, progress)?;
+        if targets.has_layers
+            && let Some(effects) = report["effects"].as_array_mut()
+        {
+            effects.push("picture-layers".into());
+        }
+        let text = serde_json::to_string_pretty(&report)?;
         std::fs::write(path, text + "\n")
             .with_context(|| format!("{}: the report could not be written", path.display()))?;
     }
@@ -314,6 +321,23 @@ fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document)
             return Ok(progress);
         }
     }
+}
+
+/// What came of a render, in a line.
+fn told(progress: &Progress) -> String {
+    let samples = format!(
+        "{:.0} samples a pixel in {:.1} s",
+        progress.mean_samples, progress.render_seconds
+    );
+    let Some(noise) = progress.noise else { return samples };
+    let [error, low, high] = [noise.relative, noise.low, noise.high].map(|share| 100.0 * share);
+    let why = match (progress.stopped_by, progress.noise_wanted) {
+        (Some(StopReason::Noise), _) => ", as exact as was asked for",
+        (Some(StopReason::Time), Some(_)) => ", less exact than was asked for: the time was over",
+        (Some(StopReason::Samples), Some(_)) => ", less exact than was asked for: --samples allows no more",
+        _ => "",
+    };
+    format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){why}")
 }
 
 /// Goes on with the processor where the GPU fails, unless the GPU was asked for by name.

@@ -10,7 +10,7 @@ use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
 
-use super::effect::{EFFECTS, Effect, EffectSwitches, Switch, named};
+use super::effect::{EFFECTS, EffectSwitches, Switch, named};
 use super::match_look::{lobe_of_material, matched_lobe_and_curve};
 use super::plan::{Plan, without_what_is_off};
 use super::{Document, RenderSettings, Strategy, ViewSettings};
@@ -374,14 +374,19 @@ fn effect(text: &str) -> Option<Setting> {
         _ => return None,
     };
     let effect = named(&text[1..])?;
-    let is_possible = switch == Switch::On || effect.remove.is_some();
-    is_possible.then_some(Setting::Effect(effect.name, switch))
+    effect.can_be(switch).then_some(Setting::Effect(effect.name, switch))
 }
 
 fn effects_expected() -> String {
-    let removable = |effect: &&Effect| effect.remove.is_some();
-    let names: Vec<_> = EFFECTS.iter().filter(removable).map(|effect| effect.name).collect();
-    format!("+NAME of any effect, or -NAME of one of {}", names.join(", "))
+    let names = |switch: Switch| {
+        let possible = EFFECTS.iter().filter(|effect| effect.can_be(switch));
+        possible.map(|effect| effect.name).collect::<Vec<_>>().join(", ")
+    };
+    format!(
+        "+NAME of one of {}, or -NAME of one of {}",
+        names(Switch::On),
+        names(Switch::Off)
+    )
 }
 
 impl fmt::Display for Technique {

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::assets::Assets;
 use super::session::SessionError;
-use crate::document::effect::Facts;
+use crate::document::effect::{Facts, Switch};
 use crate::document::job::{BackgroundKind, Job, Settings};
 use crate::document::plan::{Plan, without_what_is_off};
 use crate::document::{
@@ -45,6 +45,8 @@ impl Compiler {
         let lights = self.lights(&geometry, &materials);
         let environment_strength = f64::from(document.lighting.strength);
         let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
+        let switches = document.render.effects;
+        let is_wanted = ["light-sampling", "emitter-sampling"].map(|name| switches.get(name) != Switch::Off);
         let settings = Settings {
             image_size: [document.render.width, document.render.height],
             camera: camera(&document.camera, &document.render, &geometry),
@@ -58,7 +60,7 @@ impl Compiler {
             },
             environment_rotation: [rotation_rad.cos(), rotation_rad.sin()],
             environment_strength,
-            light_choice: LightChoice::new(&environment, environment_strength, &lights),
+            light_choice: LightChoice::new(&environment, environment_strength, &lights, is_wanted),
             bounces: document.render.bounces,
             firefly_clamp: document.render.firefly_clamp.map_or(f64::INFINITY, f64::from),
             sequence: document.render.sequence,

@@ -45,6 +45,15 @@ pub(super) struct Convergence {
     pub(super) total_seconds: f64,
 }
 
+/// The samples of the tile that has the fewest, of the part that is rendered.
+pub(super) fn fewest_samples(schedule: &Schedule, settings: &RenderSettings) -> u32 {
+    let grid = schedule.grid();
+    let is_rendered = |tile: usize| settings.region.is_none_or(|region| grid.is_within(tile, region));
+    let samples = schedule.samples().iter().enumerate();
+    let rendered = samples.filter(|(tile, _)| is_rendered(*tile));
+    rendered.map(|(_, samples)| *samples).min().unwrap_or(0)
+}
+
 impl Convergence {
     /// The latest error seen.
     pub(super) fn noise(&self) -> Option<Noise> {
@@ -122,8 +131,8 @@ impl Convergence {
         let most = samples.iter().copied().max().unwrap_or(0);
         let least = settings.min_samples.min(settings.samples);
         let is_aimed = settings.noise.is_some() || settings.is_adaptive();
-        if is_aimed && most < least {
-            self.goals = vec![least; samples.len()];
+        if is_aimed && fewest_samples(schedule, settings) < least {
+            self.goals = samples.iter().map(|samples| least.max(*samples)).collect();
             return;
         }
         // So long that the look at its end takes no more than its share.

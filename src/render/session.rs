@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use super::assets::Assets;
 use super::compile::Compiler;
-use super::convergence::{Convergence, Measurement, mean_samples};
+use super::convergence::{Convergence, Measurement, fewest_samples, mean_samples};
 use super::engine::{Engine, EngineChoice, EngineInfo, Precision, cpu};
 use super::output::Layers;
 use super::workshop::Workshop;
@@ -70,6 +70,8 @@ pub struct Progress {
     pub noise_wanted: Option<f64>,
     /// The processor draws, because the GPU's kernel is being compiled.
     pub is_standing_in: bool,
+    /// How long the kernel took that was compiled last beside the picture, seconds.
+    pub kernel_seconds: Option<f64>,
     /// Why nothing more is rendered.
     pub stopped_by: Option<StopReason>,
     /// All that was asked for has been done.
@@ -350,11 +352,12 @@ impl Session {
             engine_seconds,
             measure_seconds: self.convergence.total_seconds,
             is_standing_in: self.is_standing_in(),
+            kernel_seconds: self.workshop.as_ref().and_then(Workshop::compile_seconds),
             noise: self.convergence.noise(),
             noise_wanted: settings.and_then(|render| render.noise),
             ..Progress::default()
         };
-        let has_least = settings.is_some_and(|render| progress.samples_per_pixel >= render.min_samples);
+        let has_least = settings.is_some_and(|render| fewest_samples(schedule, &render) >= render.min_samples);
         progress.stopped_by = if progress.is_converged() && has_least {
             Some(StopReason::Noise)
         } else if progress.samples_per_pixel >= progress.samples_wanted {

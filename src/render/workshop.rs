@@ -31,7 +31,7 @@ pub(super) struct Workshop {
     ready: Vec<GpuEngine>,
     in_work: Option<Preparation>,
     /// How long the last kernel took.
-    pub(super) compile_time: Option<Duration>,
+    compile_time: Option<Duration>,
 }
 
 impl Workshop {
@@ -49,6 +49,11 @@ impl Workshop {
             in_work: None,
             compile_time: None,
         }
+    }
+
+    /// How long the kernel took that was compiled last.
+    pub(super) fn compile_seconds(&self) -> Option<f64> {
+        self.compile_time.as_ref().map(Duration::as_secs_f64)
     }
 
     /// The engine to begin a job with: the GPU's where a kernel is ready, else the processor's, until [`Self::finished`]

@@ -146,20 +146,22 @@ const SHARE_MIN: f64 = 0.1;
 impl LightChoice {
     /// Shares by power: what the environment sends into the model's bounding sphere, 4π² × mean luminance × strength,
     /// against what the triangles emit from both sides, 2π × Σ area × luminance. An environment that is equally bright
-    /// everywhere, or black, is not sampled.
-    pub fn new(environment: &Environment, environment_strength: f64, lights: &Lights) -> Self {
-        let is_sampled = !environment.is_constant && !environment.is_black && environment_strength > 0.0;
+    /// everywhere, or black, is not sampled; nor is what is not `wanted`: the environment, the triangles.
+    pub fn new(environment: &Environment, environment_strength: f64, lights: &Lights, wanted: [bool; 2]) -> Self {
+        let is_uneven = !environment.is_constant && !environment.is_black && environment_strength > 0.0;
+        let is_sampled = wanted[0] && is_uneven;
+        let has_emitters = wanted[1] && !lights.is_empty();
         let mean: Vec3<f64> = Vec3::from_f32(environment.mean_radiance);
         let far = 2.0 * PI * mean.luminance() * environment_strength;
-        let environment_probability = match (is_sampled, lights.is_empty()) {
+        let environment_probability = match (is_sampled, has_emitters) {
             (false, _) => 0.0,
-            (true, true) => 1.0,
-            (true, false) => (far / (far + lights.power)).clamp(SHARE_MIN, 1.0 - SHARE_MIN),
+            (true, false) => 1.0,
+            (true, true) => (far / (far + lights.power)).clamp(SHARE_MIN, 1.0 - SHARE_MIN),
         };
-        let density_per_luminance = if lights.is_empty() {
-            0.0
-        } else {
+        let density_per_luminance = if has_emitters {
             (1.0 - environment_probability) / lights.power
+        } else {
+            0.0
         };
         Self {
             environment_probability,

@@ -5,8 +5,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glossmith::analysis::film::Film;
-use glossmith::document::effect::{Decision, EFFECTS, EffectSwitches, Switch};
+use glossmith::document::effect::{ANY, Decision, EFFECTS, Effect, EffectSwitches, Switch};
 use glossmith::document::job::Job;
+use glossmith::document::plan::Plan;
 use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, PRESETS, Strategy, Value, assign};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
 use glossmith::optics::curve::Curve;
@@ -151,9 +152,10 @@ fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
     };
     let plane = document(ModelSource::Plane, 0.4);
     assert!(!job(&plane).plan.has("horizon"));
-    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    // The kernel leaves it out: the processor's engine takes each material's.
+    let mut session = Session::open(EngineChoice::Gpu).unwrap();
     let [specialised, general] = [plane.clone(), generally(&plane)].map(|document| film(&mut session, &document));
-    assert_same_bits(&specialised, &general, "a steep view");
+    assert_same_but_for_rounding(&specialised, &general, "a steep view");
     assert!(job(&document(ModelSource::Plane, 0.95)).plan.has("horizon"), "rough");
     assert!(
         job(&document(ModelSource::Sphere, 0.4)).plan.has("horizon"),
@@ -225,6 +227,7 @@ fn needing(effect: &str) -> Document {
         "coat" => &["coat.weight=1"],
         "edge-tint" => &["specular.fresnel=schlick", "specular.edge_tint=0.1,0.9,0.1"],
         "alpha" => &["geometry.opacity=0.4"],
+        "lobe" | "curve" | "horizon" => &["specular.roughness=0.8"],
         "anisotropy" => &["specular.anisotropy=0.8", "specular.roughness=0.5"],
         "emission" => &["emission.strength=2"],
         "transmission" => &["base.metalness=0", "transmission.weight=1"],
@@ -250,10 +253,21 @@ fn needing(effect: &str) -> Document {
     document
 }
 
+/// The wrong decision: what is called for is left out, or another is chosen.
+fn broken(effect: &Effect, plan: &Plan) -> Decision {
+    let is_choice = effect.constant.is_some_and(|constant| constant.general == ANY);
+    let (_, right) = plan.table().find(|(of, _)| of.name == effect.name).unwrap();
+    match right.value {
+        _ if !is_choice => Decision::off("broken on purpose"),
+        0 => Decision::which(1, "broken on purpose"),
+        _ => Decision::which(0, "broken on purpose"),
+    }
+}
+
 #[test]
 fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
     let folder = Folder::new();
-    let switched = |effect: &&glossmith::document::effect::Effect| effect.constant.is_some_and(|c| c.general == 1);
+    let switched = |effect: &&Effect| effect.constant.is_some();
     // One engine, which keeps the kernels that it has compiled.
     let mut engine = GpuEngine::new(GpuDevice::open(AdapterKind::Any).unwrap()).unwrap();
     let mut picture = |job: Job| {
@@ -271,7 +285,7 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
         let right = job(&document);
         assert!(right.plan.has(effect.name), "{} is not called for", effect.name);
         let wrong = Job {
-            plan: right.plan.clone().with(effect.name, Decision::off("broken on purpose")),
+            plan: right.plan.clone().with(effect.name, broken(effect, &right.plan)),
             ..right.clone()
         };
         assert!(
@@ -293,6 +307,30 @@ fn switching_an_effect_off_takes_it_out_of_the_scene_on_both_engines() {
     assert!(!plan.has("transmission") && !plan.has("absorption"));
     let (_, decision) = plan.table().find(|(effect, _)| effect.name == "transmission").unwrap();
     assert!(decision.reason.contains("you"), "{}", decision.reason);
+}
+
+#[test]
+fn either_kind_of_light_sampling_is_taken_out_alone() {
+    let mut document = of_material(ModelSource::Sphere, MaterialSettings::default());
+    document.lighting.area_lights.push(AreaLight::default());
+    let has = |document: &Document| {
+        let plan = job(document).plan;
+        ["light-sampling", "emitter-sampling"].map(|name| plan.has(name))
+    };
+    assert_eq!(has(&document), [true, true]);
+    let mut reference = document.clone();
+    reference.render.samples = 256;
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    let both = film(&mut session, &reference);
+    for (name, left) in [("light-sampling", [false, true]), ("emitter-sampling", [true, false])] {
+        document.render.effects = EffectSwitches::default();
+        document.render.effects.set(name, Switch::Off);
+        assert_eq!(has(&document), left, "without {name}");
+        // The light that is not sampled is still met.
+        reference.render.effects = document.render.effects;
+        let without = film(&mut session, &reference);
+        super::renders::assert_same_picture(&both, &without, name);
+    }
 }
 
 #[test]
@@ -324,6 +362,8 @@ fn the_plan_is_printed_and_effects_are_chosen_on_the_command_line() {
     assert!(has(&chosen, "specular") && !has(&chosen, "ground") && !has(&chosen, "base"));
     place.refused(2, "render --effects no-such-effect", &["no-such-effect"]);
     place.refused(2, "render --effects -lobe", &["lobe"]);
+    place.refused(2, "render --effects +ground", &["ground"]);
+    assert!(has(&effects("--aovs --output layers.exr"), "picture-layers"));
 }
 
 #[test]

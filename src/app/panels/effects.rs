@@ -3,6 +3,7 @@
 use egui::{Align, Color32, Layout, RichText, Sense, Ui, vec2};
 
 use super::Desk;
+use super::convergence::duration;
 use crate::app::theme;
 use crate::app::widgets;
 use crate::document::effect::{Decision, Effect, EffectSwitches, Switch};
@@ -21,12 +22,20 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let ledger = desk.state.ledger.found();
     let gain = ledger.as_ref().and_then(|ledger| ledger.kernel_gain());
     let gain = gain.map_or_else(String::new, |gain| format!(", {gain:.1} × as fast as the general one"));
+    let mut help =
+        "An effect that the scene does not call for costs nothing: the kernel is compiled without it.".to_owned();
+    if let Some(seconds) = desk.snapshot.progress.kernel_seconds {
+        help += &format!(
+            "\nThe last one took {} to compile, while the processor drew.",
+            duration(seconds)
+        );
+    }
     ui.label(format!(
         "{} of {count} effects are simulated; the kernel leaves out {}{gain}.",
         plan.effects().len(),
         plan.left_out()
     ))
-    .on_hover_text("An effect that the scene does not call for costs nothing: the kernel is compiled without it.");
+    .on_hover_text(help);
     super::ledger::controls(ui, desk, ledger.as_deref());
     let switches = desk.document.render.effects;
     if switches != EffectSwitches::default() && ui.button("All automatic").clicked() {
@@ -50,7 +59,7 @@ fn row(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect, decision: &Decision, e
         mark(ui, decision.is_on);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             switch(ui, desk, effect);
-            let label = egui::Label::new(effect.label).truncate();
+            let label = egui::Label::new(effect.label).wrap();
             let rest = ui.available_size();
             let layout = Layout::left_to_right(Align::Center);
             let shown = ui.allocate_ui_with_layout(rest, layout, |ui| ui.add(label));
@@ -92,11 +101,13 @@ fn switch(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect) {
                 Switch::On => "Its code runs whether it is needed or not: to see what it costs.",
                 Switch::Off => "Taken out of the scene: to see what it does to the picture.",
             };
-            let is_possible = switch != Switch::Off || effect.remove.is_some();
-            ui.add_enabled_ui(is_possible, |ui| {
+            let why_not = match switch {
+                Switch::On => "It has no code that could run where it is not called for.",
+                _ => "Nothing can be rendered without it.",
+            };
+            ui.add_enabled_ui(effect.can_be(switch), |ui| {
                 let item = ui.selectable_value(&mut chosen, switch, switch.label());
-                item.on_hover_text(help)
-                    .on_disabled_hover_text("Nothing can be rendered without it.");
+                item.on_hover_text(help).on_disabled_hover_text(why_not);
             });
         }
     });

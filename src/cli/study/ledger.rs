@@ -70,7 +70,15 @@ pub(super) fn run(arguments: &LedgerArguments) -> anyhow::Result<()> {
         "{} on {}, {} x {}: {:.2} ms for one sample of every pixel",
         found.machine.engine, found.machine.adapter, found.width, found.height, found.ms_per_sample
     );
-    found.entries.iter().for_each(|entry| println!("{}", entry.words));
+    println!("{:>9} {:>7}", "ms", "share");
+    for entry in &found.entries {
+        println!(
+            "{:>9.3} {:>5.1} %  {}",
+            entry.ms,
+            100.0 * entry.share_of_frame,
+            entry.words
+        );
+    }
     Ok(())
 }
 

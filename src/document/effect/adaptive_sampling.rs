@@ -11,7 +11,7 @@ pub(super) const EFFECT: Effect = Effect {
         let render = &facts.document.render;
         match (render.is_adaptive(), render.noise) {
             (false, _) => Decision::off("every pixel gets as many samples"),
-            (true, Some(noise)) => Decision::on(format!("tiles rest once a noise of {noise} is reached")),
+            (true, Some(noise)) => Decision::on(format!("samples go where the error is, until the noise is {noise}")),
             (true, None) => Decision::on("samples go where the error is"),
         }
     },

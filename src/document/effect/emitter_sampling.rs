@@ -1,6 +1,6 @@
 //! Directions drawn from the triangles that emit.
 
-use super::{Constant, Decision, Effect};
+use super::{Constant, Decision, Effect, Switch};
 use crate::document::Strategy;
 use crate::optics::material::Material;
 
@@ -20,5 +20,5 @@ pub(super) const EFFECT: Effect = Effect {
             Decision::on("some triangles emit light")
         }
     },
-    remove: Some(|document| document.render.strategy = Strategy::Lobe),
+    remove: Some(|document| document.render.effects.set("emitter-sampling", Switch::Off)),
 };

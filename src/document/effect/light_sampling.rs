@@ -1,6 +1,6 @@
 //! Directions drawn from the environment.
 
-use super::{Constant, Decision, Effect};
+use super::{Constant, Decision, Effect, Switch};
 use crate::document::Strategy;
 use crate::optics::material::Material;
 
@@ -17,11 +17,13 @@ pub(super) const EFFECT: Effect = Effect {
             Decision::off("the environment is equally bright everywhere")
         } else if facts.settings.strategy == Strategy::Lobe {
             Decision::off("light is found by the lobes alone")
+        } else if facts.settings.light_choice.environment_probability == 0.0 {
+            Decision::off("it is not wanted")
         } else if facts.materials.iter().all(Material::is_mirror) {
             Decision::off("every surface is a mirror, which meets light in one direction only")
         } else {
             Decision::on("the environment is brighter here than there")
         }
     },
-    remove: Some(|document| document.render.strategy = Strategy::Lobe),
+    remove: Some(|document| document.render.effects.set("light-sampling", Switch::Off)),
 };

@@ -76,6 +76,18 @@ pub struct Effect {
     pub remove: Option<fn(&mut Document)>,
 }
 
+impl Effect {
+    /// Whether a switch makes a difference: what has no code of its own cannot run needlessly, and nothing could be rendered
+    /// without some.
+    pub fn can_be(&self, switch: Switch) -> bool {
+        match switch {
+            Switch::Auto => true,
+            Switch::On => self.constant.is_some(),
+            Switch::Off => self.remove.is_some(),
+        }
+    }
+}
+
 /// An override constant of the pipelines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Constant {

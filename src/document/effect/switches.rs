@@ -44,7 +44,7 @@ pub struct EffectSwitches {
 }
 
 impl EffectSwitches {
-    /// Everything on: the general pipeline.
+    /// Everything on that has code of its own: the general pipeline.
     pub fn all_on() -> Self {
         Self::of(|_| Switch::On)
     }
@@ -68,17 +68,16 @@ impl EffectSwitches {
         }
     }
 
-    /// Sets the switch of an effect. What nothing can be rendered without is not switched off.
+    /// Sets the switch of an effect; to automatic where it can't be set so ([`Effect::can_be`]).
     pub fn set(&mut self, name: &str, switch: Switch) {
         let bit = bit(name);
-        let is_removable = super::named(name).is_some_and(|effect| effect.remove.is_some());
+        let is_possible = super::named(name).is_some_and(|effect| effect.can_be(switch));
         self.on &= !bit;
         self.off &= !bit;
         match switch {
-            Switch::Auto => {}
-            Switch::On => self.on |= bit,
-            Switch::Off if is_removable => self.off |= bit,
-            Switch::Off => {}
+            Switch::On if is_possible => self.on |= bit,
+            Switch::Off if is_possible => self.off |= bit,
+            _ => {}
         }
     }
 }
@@ -90,8 +89,11 @@ pub enum SwitchError {
     #[error("no effect is called {0}; there are {names}", names = names(|_| true))]
     Unknown(String),
     /// It is always there.
-    #[error("nothing can be rendered without {0}; what can be taken out: {names}", names = names(|e| e.remove.is_some()))]
+    #[error("nothing can be rendered without {0}; what can be taken out: {names}", names = names(|e| e.can_be(Switch::Off)))]
     Needed(String),
+    /// It is simulated where it is called for, and has no code that could run besides.
+    #[error("{0} has no code that could run where it is not called for; what has: {names}", names = names(|e| e.can_be(Switch::On)))]
+    NoCode(String),
     /// Names to keep and changes to what the scene calls for.
     #[error("give either the names of the effects to keep, or changes such as +anisotropy,-ground")]
     Mixed,
@@ -129,10 +131,18 @@ impl FromStr for EffectSwitches {
             let effect = super::named(name).ok_or_else(|| SwitchError::Unknown(name.to_owned()))?;
             let switch = match item.chars().next() {
                 Some('+') => Switch::On,
-                Some('-') if effect.remove.is_none() => return Err(SwitchError::Needed(name.to_owned())),
                 Some('-') => Switch::Off,
                 _ => Switch::Auto,
             };
+            if !effect.can_be(switch) {
+                let is_on = switch == Switch::On;
+                let why = if is_on {
+                    SwitchError::NoCode
+                } else {
+                    SwitchError::Needed
+                };
+                return Err(why(name.to_owned()));
+            }
             switches.set(name, switch);
         }
         Ok(switches)

@@ -115,13 +115,14 @@ impl Machine {
     }
 }
 
-/// The same document without an aim: it is rendered until something else ends it.
+/// The same document without an aim: it is rendered until something else ends it, and whole.
 fn without_aim(document: &Document) -> Document {
     let mut document = document.clone();
     let render = &mut document.render;
     // What is adaptive because of a noise to reach stays so.
     render.adaptive = Some(render.is_adaptive());
     (render.samples, render.time_s, render.noise) = (UNLIMITED, None, None);
+    render.region = None;
     document
 }
 

@@ -169,7 +169,7 @@ fn pictures(rng: &mut Rng) -> Model {
 impl Scene {
     /// How light samples are shared out.
     pub fn light_choice(&self) -> LightChoice {
-        LightChoice::new(&self.environment, 1.0, &self.lights)
+        LightChoice::new(&self.environment, 1.0, &self.lights, [true; 2])
     }
 
     /// A material in the precision of a twin.
