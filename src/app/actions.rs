@@ -165,6 +165,8 @@ commands! {
     Restart, Render, "Start over", "Renders the picture anew.", None, 0;
     Region, Render, "Render region", "The next drag in the viewport says which part of the picture is rendered.", key(Key::B), 1;
     ClearRegion, Render, "Clear the render region", "Renders the whole picture again. In the viewport: escape.", None, 1;
+    Measure, Render, "Measure what it costs", "Renders this scene with and without each effect and setting, and tells what each costs.", None, 2;
+    Race, Render, "Run the race", "Holds techniques against each other on this view: time to a given noise, and bias.", None, 2;
     Palette, Help, "Find a command…", "Lists every command, panel and parameter; type to search.", keys(CTRL, Key::K), 0;
     Shortcuts, Help, "Keys and mouse", "Shows what keys and mouse buttons do.", key(Key::F1), 0;
     About, Help, "About Glossmith", "Version, licence and the paper.", None, 1;

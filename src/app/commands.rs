@@ -116,7 +116,16 @@ impl App {
             Command::TakeCompared => self.take_compared(),
             Command::Pin => {
                 self.change_snapshots(snapshots::PinChange::Add);
-                self.reveal(Pane::Snapshots);
+                // The panels stay hidden where they are.
+                layout::reveal(&mut self.layout, Pane::Snapshots);
+            }
+            Command::Measure => {
+                self.panels.ledger.wish();
+                self.reveal(Pane::Effects);
+            }
+            Command::Race => {
+                self.panels.race.wish();
+                self.reveal(Pane::Race);
             }
             Command::Turntable => self.open_turntable(),
             Command::Palette => {

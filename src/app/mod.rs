@@ -227,6 +227,10 @@ impl App {
 
     /// Brings a panel to the front.
     pub fn reveal(&mut self, pane: Pane) {
+        if self.is_maximised {
+            self.is_maximised = false;
+            layout::set_maximised(&mut self.layout, false);
+        }
         layout::reveal(&mut self.layout, pane);
     }
 

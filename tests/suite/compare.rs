@@ -1,25 +1,21 @@
 //! Comparing, pinning, pictures that bring their document back, turntables: in the editor with the real renderer.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::compare::Rival;
 use glossmith::app::layout::Pane;
-use glossmith::app::{App, Options};
 use glossmith::document::match_look::{Target, lobe_of_material, match_look};
 use glossmith::document::{Document, PRESETS};
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::worker::{Activity, Picture};
 
-use super::ui::{PATIENCE, editor, editor_of, options, request, settle, wait};
+use super::ui::{Editor, editor, editor_of, options, request, see, settle, wait};
 use super::worker::small_document;
-
-type Editor = Harness<'static, App>;
 
 /// Waits until B, too, is finished and both have been compared.
 fn settle_both(harness: &mut Editor, what: &str, is_b: impl Fn(&Document) -> bool) {
@@ -83,13 +79,7 @@ fn a_and_b_have_the_same_random_numbers() {
         Action::CompareWith(Rival::Material(Box::new(same.clone()))),
     );
     settle_both(&mut harness, "B", |_| true);
-    let begun = Instant::now();
-    while harness.state().rms_difference() != Some(0.0) {
-        let found = harness.state().rms_difference();
-        assert!(begun.elapsed() < PATIENCE, "the same material differs by {found:?}");
-        harness.step();
-        std::thread::sleep(Duration::from_millis(3));
-    }
+    wait(&mut harness, "no difference", |app| app.rms_difference() == Some(0.0));
     let mut other = same;
     other.roughness = 0.9;
     request(&mut harness, Action::CompareWith(Rival::Material(Box::new(other))));
@@ -210,16 +200,6 @@ fn swapping_and_taking_b_are_one_step_each() {
 fn press(harness: &mut Editor, label: &str) {
     harness.get_by_role_and_label(Role::Button, label).click();
     harness.run_steps(3);
-}
-
-fn see(harness: &mut Editor, what: &str, until: impl Fn(&Editor) -> bool) {
-    let begun = Instant::now();
-    while !until(harness) {
-        let messages = harness.state().messages();
-        assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}: {messages:?}");
-        harness.step();
-        std::thread::sleep(Duration::from_millis(3));
-    }
 }
 
 fn has_button(harness: &Editor, label: &str) -> bool {

@@ -1,30 +1,16 @@
 //! The presets panel: the user's own materials, and pictures of all of them.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use egui::Key;
 use egui::accesskit::Role;
-use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
+use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
-use glossmith::app::{App, Options};
 use glossmith::document::{MaterialSettings, PRESETS, load_material};
 use glossmith::render::thumbnails::key;
 
-use super::ui::{PATIENCE, editor_of, options, request, wait};
-
-type Editor = Harness<'static, App>;
-
-fn see(harness: &mut Editor, what: &str, until: impl Fn(&Editor) -> bool) {
-    let begun = Instant::now();
-    while !until(harness) {
-        let messages = harness.state().messages();
-        assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}: {messages:?}");
-        harness.step();
-        std::thread::sleep(Duration::from_millis(3));
-    }
-}
+use super::ui::{Editor, editor_of, options, request, see, wait};
 
 /// An editor with the user's folder, its panel showing only what has this in its name.
 fn editor_showing(data: &Path, name: &str) -> Editor {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
@@ -13,9 +13,7 @@ use glossmith::app::{App, Options};
 use glossmith::document::{Document, PRESETS, load_document, save_document};
 use glossmith::scene::ModelSource;
 
-use super::ui::{PATIENCE, editor_of, options, request, wait};
-
-type Editor = Harness<'static, App>;
+use super::ui::{Editor, editor_of, options, request, see, wait};
 
 /// An editor that keeps unsaved edits in a folder.
 fn keeping_editor(data: &Path) -> Editor {
@@ -33,16 +31,6 @@ fn edit(harness: &mut Editor, roughness: f32) {
         .set_value_accesskit(f64::from(roughness));
     harness.run_steps(3);
     assert_eq!(harness.state().document().materials[0].roughness, roughness);
-}
-
-/// Frames until something is seen.
-fn see(harness: &mut Editor, what: &str, until: impl Fn(&Editor) -> bool) {
-    let begun = Instant::now();
-    while !until(harness) {
-        assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}");
-        harness.step();
-        std::thread::sleep(Duration::from_millis(3));
-    }
 }
 
 /// Documents put aside in a data folder.

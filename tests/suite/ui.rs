@@ -20,7 +20,10 @@ use glossmith::scene::environment::EnvironmentSource;
 
 use super::worker::small_document;
 
-pub(super) const PATIENCE: Duration = Duration::from_secs(120);
+/// The window without a screen.
+pub(super) type Editor = Harness<'static, App>;
+
+const PATIENCE: Duration = Duration::from_secs(120);
 
 /// The options of an editor that is tested: nothing of the user's is read or written.
 pub(super) fn options() -> Options {
@@ -32,7 +35,7 @@ pub(super) fn options() -> Options {
     }
 }
 
-pub(super) fn editor_with(document: Document, files: Vec<PathBuf>) -> Harness<'static, App> {
+pub(super) fn editor_with(document: Document, files: Vec<PathBuf>) -> Editor {
     editor_of(Options {
         files,
         document: Some(document),
@@ -40,21 +43,21 @@ pub(super) fn editor_with(document: Document, files: Vec<PathBuf>) -> Harness<'s
     })
 }
 
-pub(super) fn editor_of(options: Options) -> Harness<'static, App> {
+pub(super) fn editor_of(options: Options) -> Editor {
     Harness::builder()
         .with_size(Vec2::new(1400.0, 1000.0))
         .build_eframe(move |creation| App::new(creation, options).expect("a thread to render on"))
 }
 
 /// An editor whose first picture is finished.
-pub(super) fn editor() -> Harness<'static, App> {
+pub(super) fn editor() -> Editor {
     let mut harness = editor_with(small_document(), Vec::new());
     settle(&mut harness);
     harness
 }
 
 /// The controls whose role and name no other has, with what they are told apart by.
-fn controls(harness: &Harness<'static, App>) -> HashMap<(Role, String), Option<NodeId>> {
+fn controls(harness: &Editor) -> HashMap<(Role, String), Option<NodeId>> {
     let mut found = HashMap::new();
     for node in harness.root().children_recursive() {
         let node = node.accesskit_node();
@@ -71,24 +74,19 @@ fn controls(harness: &Harness<'static, App>) -> HashMap<(Role, String), Option<N
     found
 }
 
-/// Steps until something has come, while every control stays the one that it was: else a click under way would be lost.
-pub(super) fn wait(harness: &mut Harness<'static, App>, what: &str, until: impl Fn(&App) -> bool) {
+/// Steps until something is seen, while every control stays the one that it was: else a click under way would be lost.
+pub(super) fn see(harness: &mut Editor, what: &str, until: impl Fn(&Editor) -> bool) {
     let begun = Instant::now();
-    let mut before = controls(harness);
-    loop {
+    while !until(harness) {
+        let before = controls(harness);
         harness.step();
-        let now = controls(harness);
-        for (control, id) in &now {
+        for (control, id) in &controls(harness) {
             let was = before.get(control).unwrap_or(id);
             assert!(
                 was == id || was.is_none() || id.is_none(),
                 "{control:?} became another during {what}"
             );
         }
-        if until(harness.state()) {
-            return;
-        }
-        before = now;
         let app = harness.state();
         let state = (app.snapshot().activity.clone(), app.messages());
         assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}: {state:?}");
@@ -96,7 +94,18 @@ pub(super) fn wait(harness: &mut Harness<'static, App>, what: &str, until: impl 
     }
 }
 
-pub(super) fn settle(harness: &mut Harness<'static, App>) {
+/// Steps until a control or text is there.
+pub(super) fn see_label(harness: &mut Editor, label: &str) {
+    see(harness, label, |harness| harness.query_by_label(label).is_some());
+}
+
+pub(super) fn wait(harness: &mut Editor, what: &str, until: impl Fn(&App) -> bool) {
+    // What was just done is taken note of.
+    harness.step();
+    see(harness, what, |harness| until(harness.state()));
+}
+
+pub(super) fn settle(harness: &mut Editor) {
     // What was just done reaches the renderer with the next frame.
     harness.run_steps(3);
     wait(harness, "a finished picture", App::is_settled);
@@ -105,7 +114,7 @@ pub(super) fn settle(harness: &mut Harness<'static, App>) {
     harness.check_accessibility();
 }
 
-pub(super) fn picture(harness: &Harness<'static, App>) -> Vec<[f32; 4]> {
+pub(super) fn picture(harness: &Editor) -> Vec<[f32; 4]> {
     let snapshot = harness.state().snapshot();
     snapshot
         .picture
@@ -116,12 +125,12 @@ pub(super) fn picture(harness: &Harness<'static, App>) -> Vec<[f32; 4]> {
         .clone()
 }
 
-pub(super) fn undo(harness: &mut Harness<'static, App>) {
+pub(super) fn undo(harness: &mut Editor) {
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     settle(harness);
 }
 
-pub(super) fn request(harness: &mut Harness<'static, App>, action: Action) {
+pub(super) fn request(harness: &mut Editor, action: Action) {
     harness.state_mut().request(action);
     harness.run_steps(2);
 }
@@ -214,7 +223,7 @@ fn dragging_in_the_viewport_turns_the_camera_in_one_step() {
     assert_eq!(harness.state().document().camera, before);
 }
 
-pub(super) fn drag(harness: &mut Harness<'static, App>, from: Pos2, by: Vec2) {
+pub(super) fn drag(harness: &mut Editor, from: Pos2, by: Vec2) {
     harness.hover_at(from);
     harness.step();
     harness.drag_at(from);
@@ -431,12 +440,9 @@ fn the_picture_is_saved_as_it_is_shown() {
     let mut harness = editor();
     // There is no file dialog here: the path field takes its place.
     request(&mut harness, Action::Do(Command::SavePicture));
-    let begun = Instant::now();
-    while harness.query_by_role_and_label(Role::TextInput, "Path").is_none() {
-        assert!(begun.elapsed() < PATIENCE, "no path field came");
-        harness.step();
-        std::thread::sleep(Duration::from_millis(5));
-    }
+    see(&mut harness, "the path field", |harness| {
+        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
+    });
     harness.check_accessibility();
     let path = folder.path().join("shown.png");
     let field = harness.get_by_role_and_label(Role::TextInput, "Path");
@@ -486,12 +492,7 @@ fn a_look_is_matched_used_and_undone() {
     harness.run_steps(2);
     // The panel may have to be scrolled to reach the buttons, which accessibility does by itself.
     harness.get_by_label("Match look").click_accesskit();
-    let begun = Instant::now();
-    while harness.query_by_label("Use it").is_none() {
-        assert!(begun.elapsed() < PATIENCE, "waited in vain for the match");
-        harness.step();
-        std::thread::sleep(Duration::from_millis(10));
-    }
+    see_label(&mut harness, "Use it");
     let before = harness.state().document().clone();
     harness.get_by_label("Use it").click_accesskit();
     settle(&mut harness);

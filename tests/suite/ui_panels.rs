@@ -1,15 +1,12 @@
 //! Textures, the lobe of opened models, the render region, the list of environments and the palette's parameters, in the
 //! editor with the real renderer.
 
-use std::time::Instant;
-
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Rect, Vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::app::{App, Options};
 use glossmith::document::Document;
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
@@ -19,19 +16,8 @@ use serde_json::json;
 use super::cli_support::write_hdr;
 use super::gltf_builder::{Folder, glb};
 use super::textures::{four_texels, textured_square};
-use super::ui::{PATIENCE, drag, editor, editor_of, editor_with, options, picture, request, settle, undo, wait};
+use super::ui::{Editor, drag, editor, editor_of, editor_with, options, picture, request, see, settle, undo, wait};
 use super::worker::small_document;
-
-type Editor = Harness<'static, App>;
-
-fn see(harness: &mut Editor, what: &str, until: impl Fn(&Editor) -> bool) {
-    let begun = Instant::now();
-    while !until(harness) {
-        assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}");
-        harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(3));
-    }
-}
 
 /// A file with a square whose colour and roughness are pictures.
 fn textured_file(folder: &Folder) -> std::path::PathBuf {

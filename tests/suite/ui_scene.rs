@@ -2,26 +2,24 @@
 
 use egui::accesskit::Role;
 use egui::{Modifiers, Pos2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
-use glossmith::app::App;
 use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
 use glossmith::document::effect::Switch;
 use glossmith::render::display::Shown;
 use glossmith::scene::ModelSource;
 
-use super::ui::{editor, editor_of, options, picture, request, settle, undo};
+use super::ui::{Editor, editor, editor_of, options, picture, request, see_label, settle, undo};
 use super::worker::small_document;
 
-fn choose(harness: &mut Harness<'static, App>, menu: &str, item: &str) {
+fn choose(harness: &mut Editor, menu: &str, item: &str) {
     harness.get_by_role_and_label(Role::ComboBox, menu).click_accesskit();
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::Button, item).click_accesskit();
     settle(harness);
 }
 
-fn click_at(harness: &mut Harness<'static, App>, at: Pos2) {
+fn click_at(harness: &mut Editor, at: Pos2) {
     harness.hover_at(at);
     harness.step();
     harness.drag_at(at);
@@ -30,7 +28,7 @@ fn click_at(harness: &mut Harness<'static, App>, at: Pos2) {
     harness.run_steps(2);
 }
 
-fn number(harness: &Harness<'static, App>, label: &str) -> f64 {
+fn number(harness: &Editor, label: &str) -> f64 {
     let node = harness.get_by_role_and_label(Role::SpinButton, label);
     node.accesskit_node().numeric_value().expect("a number")
 }
@@ -138,12 +136,7 @@ fn the_precision_view_tells_that_nothing_is_wrong() {
         .get_by_role_and_label(Role::Button, "Precision")
         .click_accesskit();
     harness.run_steps(2);
-    let begun = std::time::Instant::now();
-    while harness.query_by_label("0 dropped").is_none() {
-        assert!(begun.elapsed() < super::ui::PATIENCE, "no map is made");
-        harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
+    see_label(&mut harness, "0 dropped");
     for told in ["0 f32 off f64", "0 start inside", "of 960 pixels"] {
         assert!(harness.query_by_label(told).is_some(), "{told}");
     }

@@ -2,11 +2,12 @@
 
 use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
+use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::document::{Document, Strategy};
 use glossmith::scene::ModelSource;
 
-use super::ui::{editor_of, options, settle, undo, wait};
+use super::ui::{editor_of, options, request, see, see_label, settle, undo, wait};
 use super::worker::small_document;
 
 fn sphere() -> Document {
@@ -36,16 +37,7 @@ fn a_race_is_run_and_its_winner_taken() {
     harness.run_steps(2);
     harness.get_by_label("Run the race").click_accesskit();
     harness.run_steps(2);
-    let begun = std::time::Instant::now();
-    while harness.query_by_label("Use Light by: light").is_none() {
-        assert!(
-            begun.elapsed() < super::ui::PATIENCE,
-            "no race was run: {:?}",
-            harness.state().messages()
-        );
-        harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
+    see_label(&mut harness, "Use Light by: light");
     assert!(
         harness.query_by_label("Time against bias").is_some(),
         "the chart is shown"
@@ -76,12 +68,7 @@ fn a_race_can_be_stopped() {
     harness.get_by_label("Run the race").click_accesskit();
     harness.run_steps(3);
     harness.get_by_label("Stop").click_accesskit();
-    let begun = std::time::Instant::now();
-    while harness.query_by_label("Run the race").is_none() {
-        assert!(begun.elapsed() < super::ui::PATIENCE, "it goes on");
-        harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(5));
-    }
+    see_label(&mut harness, "Run the race");
     // The viewport renders again.
     wait(&mut harness, "a finished picture", glossmith::app::App::is_settled);
 }
@@ -93,23 +80,12 @@ fn the_ledger_is_measured_on_demand() {
         ..options()
     });
     settle(&mut harness);
-    harness.state_mut().reveal(Pane::Effects);
-    harness.run_steps(2);
-    harness.get_by_label("Measure what it costs").click_accesskit();
-    harness.run_steps(2);
-    let begun = std::time::Instant::now();
-    while harness
-        .query_by_label_contains("Schlick's Fresnel (instead of exact): ")
-        .is_none()
-    {
-        assert!(
-            begun.elapsed() < super::ui::PATIENCE,
-            "no ledger: {:?}",
-            harness.state().messages()
-        );
-        harness.step();
-        std::thread::sleep(std::time::Duration::from_millis(10));
-    }
+    // The command shows the panel as well.
+    request(&mut harness, Action::Do(Command::Measure));
+    see(&mut harness, "the ledger", |harness| {
+        let line = "Schlick's Fresnel (instead of exact): ";
+        harness.query_by_label_contains(line).is_some()
+    });
     assert!(
         harness
             .query_by_label_contains("ms for one sample of every pixel")

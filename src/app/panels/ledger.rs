@@ -25,6 +25,11 @@ pub(in crate::app) struct LedgerState {
 }
 
 impl LedgerState {
+    /// Measures when the panel is shown next.
+    pub(in crate::app) fn wish(&mut self) {
+        self.worker.wish();
+    }
+
     /// What was measured last.
     pub(super) fn found(&self) -> Option<Arc<Ledger>> {
         self.worker.found()

@@ -20,6 +20,27 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.add(search).accessible_name("Search presets");
     ui.add_space(0.5 * theme::GAP);
     desk.state.library.make_pictures(ui.ctx());
+    widgets::comes_and_goes(ui, |ui| entries(ui, desk));
+    ui.add_space(theme::GAP);
+    widgets::comes_and_goes(ui, |ui| restoring(ui, desk));
+    let save = ui.button(Command::SaveToMyPresets.label());
+    if save.on_hover_text(Command::SaveToMyPresets.help()).clicked() {
+        desk.act(Command::SaveToMyPresets);
+    }
+}
+
+/// The button that brings back what was deleted last.
+fn restoring(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let removed = desk.state.library.removed.as_ref();
+    if let Some(name) = removed.and_then(|removed| removed.path().file_stem())
+        && ui.button(format!("Restore {}", name.to_string_lossy())).clicked()
+    {
+        desk.actions.push(Action::ChangeLibrary(Change::Restore));
+    }
+}
+
+/// The materials whose names have what is searched for.
+fn entries(ui: &mut Ui, desk: &mut Desk<'_>) {
     let wanted = desk.state.preset_search.to_lowercase();
     let current = desk.material();
     let mut found = false;
@@ -47,17 +68,6 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     library.own = own;
     if !found {
         widgets::note(ui, "No preset of that name.");
-    }
-    ui.add_space(theme::GAP);
-    let removed = desk.state.library.removed.as_ref();
-    if let Some(name) = removed.and_then(|removed| removed.path().file_stem())
-        && ui.button(format!("Restore {}", name.to_string_lossy())).clicked()
-    {
-        desk.actions.push(Action::ChangeLibrary(Change::Restore));
-    }
-    let save = ui.button(Command::SaveToMyPresets.label());
-    if save.on_hover_text(Command::SaveToMyPresets.help()).clicked() {
-        desk.act(Command::SaveToMyPresets);
     }
 }
 

@@ -66,6 +66,11 @@ impl RaceState {
             pictured: None,
         }
     }
+
+    /// Races when the panel is shown next.
+    pub(in crate::app) fn wish(&mut self) {
+        self.worker.wish();
+    }
 }
 
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -213,8 +218,13 @@ fn chart(ui: &mut Ui, race: &Race) -> Option<usize> {
         .enumerate()
         .min_by(|(_, a), (_, b)| a.total_cmp(b));
     nearest
-        .filter(|(_, distance)| *distance < REACH)
+        .filter(|(index, distance)| *distance < REACH && is_setting(&race.runners[*index]))
         .map(|(index, _)| index)
+}
+
+/// Whether it can become a document's: what is no setting of one can't.
+fn is_setting(runner: &Runner) -> bool {
+    !runner.technique.is_double() && runner.technique != Technique::as_is()
 }
 
 /// The same as a table, the soonest first; the one that was chosen.
@@ -247,9 +257,7 @@ fn table(ui: &mut Ui, race: &Race) -> Option<usize> {
                 runner.samples_per_pixel
             ));
             ui.label(bias(runner));
-            // What is no setting of a document can't become one.
-            let is_setting = !runner.technique.is_double() && runner.technique != Technique::as_is();
-            let button = ui.add_enabled(is_setting, egui::Button::new("Use").small());
+            let button = ui.add_enabled(is_setting(runner), egui::Button::new("Use").small());
             let button = button.on_hover_text("Gives the document these settings. Undo takes it back.");
             button.clone().accessible_name(format!("Use {}", runner.label));
             if button.clicked() {

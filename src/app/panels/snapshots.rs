@@ -63,7 +63,10 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
     let is_current = pinned.document.materials == desk.document.materials
         && pinned.document.camera == desk.document.camera
         && pinned.document.lighting == desk.document.lighting;
-    let (rect, response) = ui.allocate_exact_size(PLACE + vec2(0.0, theme::ROW_HEIGHT), Sense::click());
+    let (_, rect) = ui.allocate_space(PLACE + vec2(0.0, theme::ROW_HEIGHT));
+    // By its file, as others may come before it.
+    let id = egui::Id::unique(("snapshot", &path));
+    let response = ui.interact(rect, id, Sense::click());
     response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, is_current, &name));
     let visuals = ui.style().interact_selectable(&response, is_current);
     if is_current || response.hovered() || response.has_focus() {
@@ -105,7 +108,7 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
     };
     response.context_menu(&mut more);
     let corner = Rect::from_min_size(rect.right_top() + vec2(-28.0, 6.0), vec2(22.0, 18.0));
-    let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(corner).id_salt(("more", index)));
+    let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(corner).scope_id(id.with("more")));
     inside.spacing_mut().interact_size = corner.size();
     inside.spacing_mut().button_padding = vec2(5.0, 0.0);
     let button = inside.menu_button("…", &mut more).response;

@@ -30,6 +30,8 @@ pub(super) struct StudyWorker<R> {
     stop: Arc<AtomicBool>,
     /// The viewport's renderer was stopped for it.
     holds_renderer: bool,
+    /// It is to be started as soon as it is shown.
+    is_wished: bool,
 }
 
 impl<R> Default for StudyWorker<R> {
@@ -38,11 +40,17 @@ impl<R> Default for StudyWorker<R> {
             worker: None,
             stop: Arc::default(),
             holds_renderer: false,
+            is_wished: false,
         }
     }
 }
 
 impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
+    /// Starts the study when its controls are shown next, unless it runs.
+    pub(super) fn wish(&mut self) {
+        self.is_wished = true;
+    }
+
     /// A button that starts the study, and while it runs what it does and a button that stops it. The viewport's
     /// renderer rests meanwhile: it would take part of the time that is measured. `begin` makes the work.
     pub(super) fn controls(
@@ -57,13 +65,14 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         if !is_busy && std::mem::take(&mut self.holds_renderer) && desk.state.is_paused {
             desk.act(Command::Pause);
         }
+        let is_wished = std::mem::take(&mut self.is_wished);
         ui.horizontal(|ui| {
             if is_busy {
                 if ui.button("Stop").clicked() {
                     self.stop.store(true, Ordering::Relaxed);
                 }
                 ui.add(egui::Spinner::new().size(12.0));
-            } else if ui.button(label).on_hover_text(help).clicked() {
+            } else if ui.button(label).on_hover_text(help).clicked() || is_wished {
                 let work = begin(desk);
                 self.begin(ui, work);
                 if !desk.state.is_paused {
