@@ -3,8 +3,9 @@
 //! `cargo bench --bench noise [-- quick]`: how often the true error, against a long render, lies in the band that is told,
 //! over scenes, sequences and numbers of samples; the time to a noise with adaptive sampling on and off, in turns, for
 //! every scene of the list: the noise is what so many samples of every pixel come to; the share of the time that the looks
-//! take; the true error of both, from how far renders with other seeds are from each other. `quick` does the same small,
-//! to see that it works; `coverage` or `adaptive` one of the two parts. The processor engine; `gpu` as a further argument
+//! take; the true error of both, from how far renders with other seeds are from each other. Then the true error of
+//! renders that stop at 2 %. `quick` does the same small, to see that it works; `coverage`, `adaptive` or `stopping` one of
+//! the parts. The processor engine; `gpu` as a further argument
 //! takes the GPU, and the beginning of a scene's name that scene alone.
 
 use std::time::Duration;
@@ -18,6 +19,8 @@ use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 
 type Failure = Box<dyn std::error::Error>;
+
+type Part = fn(&mut Session, &[(&str, Document)], &Extent) -> Result<(), Failure>;
 
 /// How much is done.
 struct Extent {
@@ -46,6 +49,10 @@ const QUICK: Extent = Extent {
     rounds: 2,
 };
 
+/// The error at which renders are to stop, and how many.
+const STOP_NOISE: f64 = 0.02;
+const STOP_RENDERS: u32 = 8;
+
 fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().collect();
     let has = |name: &str| arguments.iter().any(|argument| argument == name);
@@ -63,11 +70,14 @@ fn main() -> Result<(), Failure> {
     {
         scenes.retain(|(name, _)| name.starts_with(only));
     }
-    if !has("adaptive") {
-        coverage(&mut session, &scenes, &extent)?;
-    }
-    if !has("coverage") {
-        adaptive(&mut session, &scenes, &extent)?;
+    let parts = [
+        ("coverage", coverage as Part),
+        ("adaptive", adaptive as Part),
+        ("stopping", stopping as Part),
+    ];
+    let is_named = parts.iter().any(|(name, _)| has(name));
+    for (_, part) in parts.iter().filter(|(name, _)| has(name) || !is_named) {
+        part(&mut session, &scenes, &extent)?;
     }
     Ok(())
 }
@@ -211,6 +221,49 @@ fn adaptive(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
         );
     }
     Ok(())
+}
+
+fn stopping(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent) -> Result<(), Failure> {
+    println!(
+        "## True error of renders that stop at {STOP_NOISE}, {0} x {0}",
+        extent.side
+    );
+    println!("| scene | renders | samples a pixel | seconds each | least true error | most |");
+    println!("| --- | --- | --- | --- | --- | --- |");
+    for (name, document) in scenes {
+        let mut document = document.clone();
+        (document.render.width, document.render.height) = (extent.side, extent.side);
+        (document.render.samples, document.render.noise) = (u32::MAX, Some(STOP_NOISE));
+        let (mut pictures, mut last) = (Vec::new(), Progress::default());
+        for seed in 0..STOP_RENDERS {
+            document.render.seed = seed;
+            let (film, progress) = finish(session, &document)?;
+            pictures.push(film);
+            last = progress;
+        }
+        let errors = true_errors(&pictures);
+        let [least, most] = [errors[0], errors[errors.len() - 1]].map(|error| 100.0 * error);
+        println!(
+            "| {name} | {STOP_RENDERS} | {:.0} | {:.1} | {least:.2} % | {most:.2} % |",
+            last.mean_samples, last.render_seconds
+        );
+    }
+    Ok(())
+}
+
+/// The true errors of some independent pictures, the least first: of each against the mean of the others, whose own error
+/// is taken out.
+fn true_errors(films: &[Film]) -> Vec<f64> {
+    let pictures: Vec<Vec<f64>> = films.iter().map(Film::luminance).collect();
+    let others = films.len() as f64 - 1.0;
+    let mean_of_others = |own: usize| -> Vec<f64> {
+        let pixel = |i: usize| (pictures.iter().map(|picture| picture[i]).sum::<f64>() - pictures[own][i]) / others;
+        (0..pictures[own].len()).map(pixel).collect()
+    };
+    let error = |own: usize| true_error(&films[own], &mean_of_others(own)) * (others / (others + 1.0)).sqrt();
+    let mut errors: Vec<f64> = (0..films.len()).map(error).collect();
+    errors.sort_by(f64::total_cmp);
+    errors
 }
 
 /// The true error of each of some independent pictures, root mean square, from how far they are from each other.

@@ -1,8 +1,9 @@
 //! What the plan saves: specialised against general kernels, in time and in compiling; quoted in docs/PERFORMANCE.md.
 //!
-//! `cargo bench --bench plan [-- kernels|ledger] [cpu|gpu]`. `kernels`: every shipped material on the teapot under
+//! `cargo bench --bench plan [-- kernels|ledger|random] [cpu|gpu]`. `kernels`: every shipped material on the teapot under
 //! `studio`, 256 × 256, specialised and general in turn; the ratio is the median over the turns of one run. Software Vulkan
 //! compiles at the first dispatch, which is timed. `ledger`: what the ledger says of an effect, against the clock.
+//! `random`: how far pictures of 200 random documents by both kernels are apart, with the same random numbers.
 
 use std::time::{Duration, Instant};
 
@@ -10,6 +11,11 @@ use glossmith::document::effect::{EffectSwitches, Switch};
 use glossmith::document::{Document, PRESETS};
 use glossmith::render::study::ledger::{LedgerOptions, ledger};
 use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+
+#[path = "../tests/suite/random_documents.rs"]
+mod random_documents;
 
 type Failure = Box<dyn std::error::Error>;
 type Edit = fn(&mut Document);
@@ -18,6 +24,8 @@ type Edit = fn(&mut Document);
 const TURNS: usize = 9;
 /// How long each turn lasts.
 const TURN: Duration = Duration::from_millis(500);
+/// Random documents that are rendered by both kernels.
+const DOCUMENTS: usize = 200;
 /// Samples of a pixel in each turn by the clock.
 const SAMPLES: u32 = 24;
 
@@ -28,10 +36,14 @@ fn main() -> Result<(), Failure> {
     for (engine, _) in engines.into_iter().filter(|(_, other)| !has(other)) {
         let mut sessions = [Session::open(engine)?, Session::open(engine)?];
         println!("## {}\n", sessions[0].engine());
-        if !has("kernels") {
+        let chosen = |name: &str| has(name) || !["kernels", "ledger", "random"].iter().any(|name| has(name));
+        if chosen("ledger") {
             ledger_and_clock(engine, &mut sessions)?;
         }
-        if has("ledger") {
+        if chosen("random") {
+            random(&mut sessions)?;
+        }
+        if !chosen("kernels") {
             continue;
         }
         println!("| scene | left out | kernel s | general s | M samples/s | general | ratio |");
@@ -92,6 +104,49 @@ fn ledger_and_clock(engine: EngineChoice, sessions: &mut [Session; 2]) -> Result
     Ok(())
 }
 
+/// Pictures of random documents by the kernel made for each and by the general one.
+fn random(sessions: &mut [Session; 2]) -> Result<(), Failure> {
+    // SplitMix64 (Steele, Lea and Flood 2014).
+    let mut state = 23_u64;
+    let mut documents = random_documents::Documents(|| {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    });
+    let mut kernels = std::collections::HashSet::new();
+    let (mut same, mut pixels_off, mut wholes_off) = (0, Vec::new(), Vec::new());
+    for _ in 0..DOCUMENTS {
+        let document = documents.draw();
+        let mut general = document.clone();
+        general.render.effects = EffectSwitches::all_on();
+        let mut pictures = [const { Vec::new() }; 2];
+        for ((session, document), picture) in sessions.iter_mut().zip([document, general]).zip(&mut pictures) {
+            session.submit(&document)?;
+            while !session.step(TURN)?.is_done {}
+            *picture = session.film()?.luminance();
+        }
+        kernels.extend(sessions[0].job().map(|job| job.plan.specialisation()));
+        let [own, general] = pictures;
+        let mean = general.iter().sum::<f64>() / general.len() as f64;
+        let is_off = |(a, b): &(&f64, &f64)| (*a - *b).abs() > 1e-3 * b.max(mean);
+        let off = std::iter::zip(&own, &general).filter(is_off).count();
+        same += usize::from(own == general);
+        pixels_off.push(off as f64 / general.len() as f64);
+        wholes_off.push((own.iter().sum::<f64>() / general.len() as f64 - mean).abs() / mean.max(1e-12));
+    }
+    let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    println!(
+        "{DOCUMENTS} random documents, {} kernels: {same} pictures are the same to the last bit; pixels off by more than \
+         1e-3: at most {:.2} %, {:.3} % in the mean; whole pictures off by at most {:.1e}\n",
+        kernels.len(),
+        100.0 * most(&pixels_off),
+        100.0 * pixels_off.iter().sum::<f64>() / DOCUMENTS as f64,
+        most(&wholes_off)
+    );
+    Ok(())
+}
+
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
@@ -117,6 +172,17 @@ fn scenes() -> Vec<(String, Document)> {
             },
         )
     }));
+    let others = [
+        ("shaderball, sky", ModelSource::Shaderball, EnvironmentSource::Sky),
+        ("sphere, studio", ModelSource::Sphere, EnvironmentSource::Studio),
+        ("plane, sky", ModelSource::Plane, EnvironmentSource::Sky),
+        ("teapot, furnace", ModelSource::Teapot, EnvironmentSource::Furnace),
+    ];
+    scenes.extend(others.map(|(name, model, environment)| {
+        let mut document = Document { model, ..plain.clone() };
+        document.lighting.environment = environment;
+        (name.to_owned(), document)
+    }));
     scenes
 }
 
@@ -124,7 +190,8 @@ fn row(name: &str, sessions: &mut [Session; 2], documents: &[Document; 2]) -> Re
     let mut compile_s = [0.0; 2];
     let mut speeds = [const { Vec::new() }; 2];
     for turn in 0..=TURNS {
-        for side in 0..2 {
+        // By turns first, as the second finds a warmer cache.
+        for side in [turn % 2, (turn + 1) % 2] {
             let mut document = documents[side].clone();
             document.render.seed = turn as u32;
             sessions[side].submit(&document)?;

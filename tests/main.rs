@@ -65,6 +65,8 @@ mod nothing_lost;
 mod plan;
 #[path = "suite/precision.rs"]
 mod precision;
+#[path = "suite/random_documents.rs"]
+mod random_documents;
 #[path = "suite/renders.rs"]
 mod renders;
 #[path = "suite/statistics.rs"]

@@ -94,18 +94,13 @@ fn fresnel_dielectric(cosine: f32, ior: f32) -> f32 {
 fn fresnel_left(terms: FresnelTerms, cosine: f32, behind: f32) -> vec3f {
     let white = vec3f(1.0);
     var left = white;
-    if terms.model == FRESNEL_SCHLICK || terms.model == FRESNEL_DIELECTRIC {
-        var dielectric = white;
-        if terms.model == FRESNEL_SCHLICK {
-            let c = clamp(cosine, 0.0, 1.0);
-            // 1 - (1 - c)^5.
-            let beside_grazing = c * (5.0 - c * (10.0 - c * (10.0 - c * (5.0 - c))));
-            dielectric = (white - terms.tint * fresnel_f0(terms.ior)) * beside_grazing;
-        } else {
-            dielectric = white - terms.tint + terms.tint * fresnel_transmitted(cosine, behind, terms.ior);
-        }
-        let metal = white - fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.tint;
-        left = mix(dielectric, metal, terms.metalness);
+    if terms.model == FRESNEL_SCHLICK {
+        let c = clamp(cosine, 0.0, 1.0);
+        // 1 - (1 - c)^5.
+        let beside_grazing = c * (5.0 - c * (10.0 - c * (10.0 - c * (5.0 - c))));
+        left = (white - terms.tint * fresnel_f0(terms.ior)) * beside_grazing;
+    } else if terms.model == FRESNEL_DIELECTRIC {
+        left = white - terms.tint + terms.tint * fresnel_transmitted(cosine, behind, terms.ior);
     } else {
         var full = terms;
         full.weight = 1.0;

@@ -275,8 +275,7 @@ fn transmission_color(material: Material, layers: Layers, shape: LobeShape, surf
         return layers.transmission;
     }
     let cosines = refracting_cosines(surface.wo, wi, shape.eta);
-    let terms = of_dielectric(material_fresnel_terms(material, surface.is_inside));
-    let left = fresnel_left(terms, cosines.x, cosines.y);
+    let left = fresnel_left(material_fresnel_terms(material, surface.is_inside), cosines.x, cosines.y);
     return material.transmission_tint * left * (material.transmission_weight * (1.0 - material.metalness));
 }
 

@@ -28,6 +28,8 @@ pub struct Round {
     pub noise: Option<f64>,
     /// The most samples that a pixel gets.
     pub samples_max: u32,
+    /// The part of the picture that is rendered, as [`TileGrid::is_within`] takes it; the rest keeps what it has.
+    pub region: Option<[f64; 4]>,
 }
 
 /// The samples a pixel that each tile is to have next, from what it has: never less, and somewhere more unless that tile
@@ -38,16 +40,27 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
         height: film.height,
     };
     let errors = tile_errors(film);
+    let is_rendered = |tile: usize| round.region.is_none_or(|region| grid.is_within(tile, region));
     let tiles: Vec<Tile> = (0..grid.tiles())
         .map(|tile| Tile {
-            pixels: grid.pixels(tile) as f64,
+            // What is not rendered takes no part.
+            pixels: if is_rendered(tile) {
+                grid.pixels(tile) as f64
+            } else {
+                0.0
+            },
             samples: f64::from(samples[tile]).max(1.0),
             variance: errors[tile].sample_variance,
             weight: weight(&errors, grid, tile),
         })
         .collect();
     let tiles = with_least_weight(tiles);
-    let ratios = || tiles.iter().map(|tile| tile.samples / tile.weight);
+    let ratios = || {
+        tiles
+            .iter()
+            .filter(|tile| tile.pixels > 0.0)
+            .map(|tile| tile.samples / tile.weight)
+    };
     let (least, most) = (ratios().fold(f64::MAX, f64::min), ratios().fold(0.0, f64::max));
     let [growth_min, growth_max] = round.growth;
     let bracket = [least, growth_max * most];
@@ -57,9 +70,10 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
     let mut factor = growing(growth_max);
     if let Some(noise) = round.noise {
         let pixels = all(&|_| 1.0);
-        let luminance = film.luminance().iter().filter(|y| y.is_finite()).sum::<f64>() / pixels;
+        let part = film.of_pixels(|pixel| is_rendered(grid.of_pixel(pixel)));
+        let luminance = part.luminance().iter().filter(|y| y.is_finite()).sum::<f64>() / pixels;
         // The tiles' variances, averaged as they are, need not add up to what decides about the end.
-        let seen: f64 = half_difference_variances(film).iter().filter(|v| v.is_finite()).sum();
+        let seen: f64 = half_difference_variances(&part).iter().filter(|v| v.is_finite()).sum();
         let told = all(&|tile| tile.variance / tile.samples);
         let allowed = pixels * (noise * luminance).powi(2) * if seen > 0.0 { told / seen } else { 1.0 };
         let enough = bisect(bracket, |factor| {
@@ -68,6 +82,9 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
         factor = factor.min(enough).max(growing(growth_min));
     }
     let goal = |(tile, n): (&Tile, &u32)| {
+        if tile.pixels == 0.0 {
+            return *n;
+        }
         let goal = tile.goal(factor).min(GROWTH_MAX * tile.samples).ceil() as u32;
         goal.min(round.samples_max).max(*n)
     };
@@ -152,6 +169,7 @@ mod tests {
         growth: [1.02, 1.25],
         noise: None,
         samples_max: u32::MAX,
+        region: None,
     };
 
     #[test]

@@ -389,7 +389,7 @@ fn messages(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     );
     for index in open.into_iter().rev().take(3) {
         // Named, as others may come above it while it is being closed.
-        let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("message", index)));
+        let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("message", desk.state.log[index].at)));
         let entry = &mut desk.state.log[index];
         let color = match entry.level {
             Level::Error => inside.visuals().error_fg_color,

@@ -278,12 +278,7 @@ fn render(
         eprintln!("wrote {}", path.display());
     }
     if let Some(path) = targets.report {
-        let mut report = json_report(&mut session, document, setup_seconds, progress)?;
-        if targets.has_layers
-            && let Some(effects) = report["effects"].as_array_mut()
-        {
-            effects.push("picture-layers".into());
-        }
+        let report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
         let text = serde_json::to_string_pretty(&report)?;
         std::fs::write(path, text + "\n")
             .with_context(|| format!("{}: the report could not be written", path.display()))?;
@@ -331,11 +326,11 @@ fn told(progress: &Progress) -> String {
     );
     let Some(noise) = progress.noise else { return samples };
     let [error, low, high] = [noise.relative, noise.low, noise.high].map(|share| 100.0 * share);
-    let why = match (progress.stopped_by, progress.noise_wanted) {
-        (Some(StopReason::Noise), _) => ", as exact as was asked for",
-        (Some(StopReason::Time), Some(_)) => ", less exact than was asked for: the time was over",
-        (Some(StopReason::Samples), Some(_)) => ", less exact than was asked for: --samples allows no more",
-        _ => "",
+    let why = match (progress.is_converged(), progress.noise_wanted, progress.stopped_by) {
+        (_, None, _) => "",
+        (true, ..) => ", as exact as was asked for",
+        (false, _, Some(StopReason::Time)) => ", less exact than was asked for: the time was over",
+        (false, ..) => ", less exact than was asked for: no more samples are allowed",
     };
     format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){why}")
 }
@@ -363,9 +358,13 @@ fn json_report(
     document: &Document,
     setup_seconds: f64,
     progress: Progress,
+    has_layers: bool,
 ) -> anyhow::Result<serde_json::Value> {
     let engine = session.engine().clone();
-    let effects = session.job().map(|job| job.plan.effects()).unwrap_or_default();
+    let mut effects = session.job().map(|job| job.plan.effects()).unwrap_or_default();
+    if has_layers {
+        effects.push("picture-layers");
+    }
     let film = session.film()?;
     let seconds = progress.render_seconds.max(1e-9);
     let samples = film.samples() + film.dropped;

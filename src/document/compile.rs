@@ -79,7 +79,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         transmission_tint: color,
         transmission_weight: settings.transmission_weight,
         absorption: Vec3::zero(),
-        transmission_roughness: (roughness + settings.transmission_roughness).clamp(0.0, 1.0),
+        transmission_roughness: roughness + settings.transmission_roughness,
         rotation_rad: settings.rotation_deg.to_radians(),
         lobe: settings.lobe as u32,
         curve: settings.curve as u32,
@@ -110,7 +110,11 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         roughness_table: NO_TEXTURE,
         reserved: [0; 2],
     };
-    let is_metal_in_part = material.metalness > 0.0 && material.metalness < 1.0;
+    if material.textures[1] == NO_TEXTURE {
+        // Else it is brought into range where the texture has been looked up.
+        material.transmission_roughness = material.transmission_roughness.clamp(0.0, 1.0);
+    }
+    let is_metal_in_part = material.metalness > 0.0 && (material.has_base() || material.transmits());
     material.has_rough_tables = u32::from(material.textures[1] != NO_TEXTURE || is_metal_in_part);
     if material.least_metallic().transmits() {
         // Only the exact equations know total reflection.

@@ -20,20 +20,10 @@ impl Plan {
     /// scene before, see [`without_what_is_off`].
     pub fn new(facts: &Facts<'_>) -> Self {
         let switches = facts.document.render.effects;
-        let decide = |effect: &Effect| {
-            let decision = (effect.decide)(facts);
-            match switches.get(effect.name) {
-                Switch::Auto => decision,
-                Switch::On => match effect.constant {
-                    Some(constant) => Decision::which(constant.general, "switched on by you"),
-                    None => decision,
-                },
-                Switch::Off => Decision {
-                    is_on: false,
-                    reason: "switched off by you".to_owned(),
-                    ..decision
-                },
-            }
+        let decide = |effect: &Effect| match (switches.get(effect.name), effect.constant) {
+            (Switch::Off, _) => Decision::off("switched off by you"),
+            (Switch::On, Some(constant)) => Decision::which(constant.general, "switched on by you"),
+            _ => (effect.decide)(facts),
         };
         Self {
             decisions: EFFECTS.iter().map(decide).collect(),

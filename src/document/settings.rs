@@ -292,6 +292,12 @@ impl Default for RenderSettings {
 
 impl RenderSettings {
     /// Whether samples go where the error is.
+    /// The samples that every pixel gets where samples go where the error is or end with it.
+    pub fn least_samples(&self) -> u32 {
+        self.min_samples.min(self.samples)
+    }
+
+    /// Whether samples go where the error is.
     pub fn is_adaptive(&self) -> bool {
         let is_switched_off = self.effects.get("adaptive-sampling") == Switch::Off;
         !is_switched_off && self.adaptive.unwrap_or(self.noise.is_some())
@@ -423,7 +429,11 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
         .into_iter()
         .flat_map(|(name, values, range)| values.map(|value| (name, value, range.clone())));
     let numbers = single.into_iter().chain(of_area_lights).chain(components).chain(region);
-    for (name, value, range) in numbers.chain(camera_numbers(camera)).chain(of_bookmarks) {
+    // Within the picture, and not empty.
+    let [left, top, right, bottom] = render.region.unwrap_or([0.0, 0.0, 1.0, 1.0]);
+    let sides = [(right, left), (bottom, top)].map(|(far, near)| ("render.region", far, near.next_up()..=1.0));
+    let numbers = numbers.chain(camera_numbers(camera)).chain(of_bookmarks).chain(sides);
+    for (name, value, range) in numbers {
         if !range.contains(&value) {
             let (low, high) = range.into_inner();
             return Err(SettingError { name, value, low, high });

@@ -131,8 +131,8 @@ pub static GROUPS: &[Group] = &[
         help: "The scene without one of the effects that it calls for.",
         members: |plan| {
             let removable = plan.table().filter(|(effect, decision)| {
-                // What those two do is told by the strategies.
-                decision.is_on && effect.remove.is_some() && !effect.name.ends_with("-sampling")
+                // Adaptive sampling is a kind of its own.
+                decision.is_on && effect.remove.is_some() && effect.name != "adaptive-sampling"
             });
             removable
                 .map(|(effect, _)| Setting::Effect(effect.name, Switch::Off))

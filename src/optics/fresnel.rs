@@ -203,13 +203,12 @@ pub fn fresnel_conductor<T: Real>(cosine: T, eta: T, k: T) -> T {
     (half * (perpendicular + parallel)).clamp(T::zero(), T::one())
 }
 
-/// What the facet leaves over of the light that it refracts, linear RGB in [0, 1]: 1 − [`fresnel`], so written that it
-/// keeps its digits where nearly everything is reflected. `cosine` between the facet's normal and the view, `behind` between
+/// What the facet leaves over of the light that it refracts, linear RGB in [0, 1]: 1 − [`fresnel`] without metal, which
+/// refracts nothing, so written that it keeps its digits where nearly everything is reflected. `cosine` between the facet's normal and the view, `behind` between
 /// it and the refracted direction, both in [0, 1].
 #[inline(always)]
 pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> Vec3<T> {
     let white = Vec3::splat(T::one());
-    let metal = || white - fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.tint;
     let left = match terms.model {
         Fresnel::None | Fresnel::Conductor => {
             let weight = T::one();
@@ -221,13 +220,11 @@ pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> V
             let five = T::from_f64(5.0);
             let ten = T::from_f64(10.0);
             let beside_grazing = c * (five - c * (ten - c * (ten - c * (five - c))));
-            let dielectric = (white - terms.tint * fresnel_f0(terms.ior)) * beside_grazing;
-            dielectric.mix(metal(), terms.metalness)
+            (white - terms.tint * fresnel_f0(terms.ior)) * beside_grazing
         }
         Fresnel::Dielectric => {
             let through = fresnel_transmitted(cosine, behind, terms.ior);
-            let dielectric = white - terms.tint + terms.tint * through;
-            dielectric.mix(metal(), terms.metalness)
+            white - terms.tint + terms.tint * through
         }
     };
     (white * (T::one() - terms.weight) + left * terms.weight).map(|x| x.max(T::zero()))

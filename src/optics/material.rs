@@ -94,7 +94,8 @@ pub struct Material<T> {
     pub alpha_cutoff: T,
     /// Scales the slopes of the normal texture.
     pub normal_strength: T,
-    /// 1 where the surface is metal in part or changes from point to point, and the albedo tables go over the roughness too ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
+    /// 1 where the surface is metal in part or changes from point to point: the albedo tables go over the roughness too
+    /// ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
     pub has_rough_tables: u32,
     /// The roughness that the texture multiplies: that of GGX where `roughness_table` is there.
     pub texture_roughness: T,
@@ -514,8 +515,7 @@ fn transmission_color<T: Real>(
         return layers.transmission;
     }
     let [cosine, behind] = refracting_cosines(surface.wo, wi, shape.eta);
-    let terms = material.fresnel_terms(surface.is_inside).of_dielectric();
-    let left = fresnel_left(&terms, cosine, behind);
+    let left = fresnel_left(&material.fresnel_terms(surface.is_inside), cosine, behind);
     material.transmission_tint * left * (material.transmission_weight * (T::one() - material.metalness))
 }
 

@@ -13,7 +13,7 @@ use crate::document::{
 use crate::optics::material::Material;
 use crate::scene::Geometry;
 use crate::scene::camera::{Camera, framing_distance, orbit_direction};
-use crate::scene::light::{LightChoice, Lights};
+use crate::scene::light::{LightChoice, Lights, Sampled};
 use crate::scene::texture::Textures;
 
 /// Materials and their tables.
@@ -46,7 +46,10 @@ impl Compiler {
         let environment_strength = f64::from(document.lighting.strength);
         let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
         let switches = document.render.effects;
-        let is_wanted = ["light-sampling", "emitter-sampling"].map(|name| switches.get(name) != Switch::Off);
+        let sampled = Sampled {
+            environment: switches.get("light-sampling") != Switch::Off,
+            emitters: switches.get("emitter-sampling") != Switch::Off,
+        };
         let settings = Settings {
             image_size: [document.render.width, document.render.height],
             camera: camera(&document.camera, &document.render, &geometry),
@@ -60,7 +63,7 @@ impl Compiler {
             },
             environment_rotation: [rotation_rad.cos(), rotation_rad.sin()],
             environment_strength,
-            light_choice: LightChoice::new(&environment, environment_strength, &lights, is_wanted),
+            light_choice: LightChoice::new(&environment, environment_strength, &lights, sampled),
             bounces: document.render.bounces,
             firefly_clamp: document.render.firefly_clamp.map_or(f64::INFINITY, f64::from),
             sequence: document.render.sequence,

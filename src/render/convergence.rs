@@ -129,7 +129,7 @@ impl Convergence {
     ) {
         let samples = schedule.samples();
         let most = samples.iter().copied().max().unwrap_or(0);
-        let least = settings.min_samples.min(settings.samples);
+        let least = settings.least_samples();
         let is_aimed = settings.noise.is_some() || settings.is_adaptive();
         if is_aimed && fewest_samples(schedule, settings) < least {
             self.goals = samples.iter().map(|samples| least.max(*samples)).collect();
@@ -149,6 +149,7 @@ impl Convergence {
                 growth: [growth_min, paced.max(GROWTH_ADAPTIVE)],
                 noise: settings.noise.map(|wanted| wanted * self.doubt()),
                 samples_max: settings.samples,
+                region: settings.region,
             };
             self.goals = next_goals(film, samples, round);
             return;

@@ -357,10 +357,11 @@ impl Session {
             noise_wanted: settings.and_then(|render| render.noise),
             ..Progress::default()
         };
-        let has_least = settings.is_some_and(|render| fewest_samples(schedule, &render) >= render.min_samples);
-        progress.stopped_by = if progress.is_converged() && has_least {
+        let has_all = progress.samples_per_pixel >= progress.samples_wanted;
+        let has_least = || settings.is_some_and(|render| fewest_samples(schedule, &render) >= render.least_samples());
+        progress.stopped_by = if progress.is_converged() && has_least() {
             Some(StopReason::Noise)
-        } else if progress.samples_per_pixel >= progress.samples_wanted {
+        } else if has_all && has_least() {
             Some(StopReason::Samples)
         } else if self.time_limit().is_some_and(|limit| self.render_time >= limit) {
             Some(StopReason::Time)

@@ -134,10 +134,19 @@ fn area(geometry: &Geometry, triangle: u32) -> f64 {
 pub struct LightChoice {
     /// The probability that the environment is sampled, not a triangle: 0 where it is not sampled at all.
     pub environment_probability: f64,
-    /// The density per area of the emitting triangles over the luminance of their emission; 0 where nothing emits.
+    /// The density per area of the emitting triangles over the luminance of their emission; 0 where none is sampled.
     pub density_per_luminance: f64,
     /// Columns and rows of the table of triangles.
     pub cells_size: [u32; 2],
+}
+
+/// Which light directions are drawn from, where it is there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Sampled {
+    /// The environment.
+    pub environment: bool,
+    /// The triangles that emit.
+    pub emitters: bool,
 }
 
 /// Neither kind of light gets less than this share of the samples: power says nothing about what is near or in shadow.
@@ -146,11 +155,11 @@ const SHARE_MIN: f64 = 0.1;
 impl LightChoice {
     /// Shares by power: what the environment sends into the model's bounding sphere, 4π² × mean luminance × strength,
     /// against what the triangles emit from both sides, 2π × Σ area × luminance. An environment that is equally bright
-    /// everywhere, or black, is not sampled; nor is what is not `wanted`: the environment, the triangles.
-    pub fn new(environment: &Environment, environment_strength: f64, lights: &Lights, wanted: [bool; 2]) -> Self {
+    /// everywhere, or black, is not sampled; nor is what is not `wanted`.
+    pub fn new(environment: &Environment, environment_strength: f64, lights: &Lights, wanted: Sampled) -> Self {
         let is_uneven = !environment.is_constant && !environment.is_black && environment_strength > 0.0;
-        let is_sampled = wanted[0] && is_uneven;
-        let has_emitters = wanted[1] && !lights.is_empty();
+        let is_sampled = wanted.environment && is_uneven;
+        let has_emitters = wanted.emitters && !lights.is_empty();
         let mean: Vec3<f64> = Vec3::from_f32(environment.mean_radiance);
         let far = 2.0 * PI * mean.luminance() * environment_strength;
         let environment_probability = match (is_sampled, has_emitters) {

@@ -255,20 +255,23 @@ fn fitting(model: &Model, words_max: usize, warnings: &mut Vec<String>) -> Vec<T
         let mut references = model.slots.iter().flat_map(colors).flatten();
         references.any(|reference| reference.texture == index)
     };
+    // One texel does where all are the same.
     let used = |(index, picture): (usize, &Texture)| {
-        if uses(index) {
-            return picture.clone();
-        }
-        let name = picture.name.clone();
+        let side = match one_value(picture, 0..4) {
+            _ if !uses(index) => 0,
+            Some(_) => 1,
+            None => return picture.clone(),
+        };
         Texture {
-            name,
-            width: 0,
-            height: 0,
-            rgba8: Vec::new(),
+            name: picture.name.clone(),
+            width: side,
+            height: side,
+            rgba8: picture.rgba8[..4 * side as usize].to_vec(),
         }
     };
     let mut pictures: Vec<Texture> = model.textures.iter().enumerate().map(used).collect();
     let texels = |picture: &Texture| picture.rgba8.len() / 4;
+    let whole: Vec<usize> = pictures.iter().map(texels).collect();
     while pictures.iter().map(texels).sum::<usize>() > words_max {
         let largest = (0..pictures.len()).max_by_key(|&index| texels(&pictures[index]));
         let Some(index) = largest.filter(|&index| texels(&pictures[index]) > 1) else {
@@ -276,8 +279,8 @@ fn fitting(model: &Model, words_max: usize, warnings: &mut Vec<String>) -> Vec<T
         };
         pictures[index] = halved(&pictures[index], is_color(index));
     }
-    for (picture, original) in pictures.iter().zip(&model.textures) {
-        if texels(picture) > 0 && (picture.width, picture.height) != (original.width, original.height) {
+    for ((picture, original), whole) in pictures.iter().zip(&model.textures).zip(whole) {
+        if texels(picture) < whole {
             warnings.push(format!(
                 "{}: the picture {} is used at {} × {} instead of {} × {}: together the pictures are more than {} \
                  MiB; export smaller ones to choose which",

@@ -378,6 +378,20 @@ fn albedo_tables_follow_what_they_depend_on() {
 }
 
 #[test]
+fn a_render_region_has_an_inside() {
+    let mut document = Document::default();
+    for (region, is_right) in [
+        ([0.2, 0.1, 0.3, 0.9], true),
+        ([0.3, 0.1, 0.3, 0.9], false),
+        ([0.2, 0.9, 0.3, 0.1], false),
+        ([0.2, 0.1, 1.5, 0.9], false),
+    ] {
+        document.render.region = Some(region);
+        assert_eq!(document.check().is_ok(), is_right, "{region:?}");
+    }
+}
+
+#[test]
 fn every_edit_is_the_change_that_it_is() {
     let old = Document::default();
     let change = |edit: fn(&mut Document)| {

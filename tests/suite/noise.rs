@@ -183,6 +183,65 @@ fn a_render_stops_at_the_error_asked_for() {
     }
 }
 
+/// Steps until the render ends; none goes on for ever.
+fn samples_at_the_end(session: &mut Session, document: &Document) -> (Vec<f64>, Option<StopReason>) {
+    session.submit(document).unwrap();
+    let begun = std::time::Instant::now();
+    while !session.step(Duration::from_millis(50)).unwrap().is_done {
+        assert!(
+            begun.elapsed() < Duration::from_secs(60),
+            "it does not end: {:?}",
+            session.progress()
+        );
+    }
+    let samples = session.film().unwrap().statistics.iter().map(|[_, n]| *n).collect();
+    (samples, session.progress().stopped_by)
+}
+
+/// Of a part of the picture the error of that part counts, and nothing else is rendered.
+#[test]
+fn a_part_of_the_picture_is_rendered_to_an_error() {
+    let matt = ["base.metalness=0", "specular.weight=0"];
+    let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, &matt);
+    (document.render.width, document.render.height) = (64, 64);
+    document.render.region = Some([0.25, 0.25, 0.75, 0.75]);
+    document.render.samples = 20_000;
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    for (adaptive, noise) in [(false, Some(0.05)), (true, Some(0.05)), (true, None)] {
+        (document.render.adaptive, document.render.noise) = (Some(adaptive), noise);
+        document.render.samples = if noise.is_some() { 20_000 } else { 64 };
+        let (samples, stopped_by) = samples_at_the_end(&mut session, &document);
+        let reason = if noise.is_some() {
+            StopReason::Noise
+        } else {
+            StopReason::Samples
+        };
+        assert_eq!(stopped_by, Some(reason), "adaptive {adaptive}, {noise:?}");
+        for (pixel, samples) in samples.into_iter().enumerate() {
+            let is_inside = [pixel % 64, pixel / 64].iter().all(|side| (16..48).contains(side));
+            assert_eq!(samples >= 16.0, is_inside, "pixel {pixel}: {samples} samples");
+            assert!(is_inside || samples == 0.0, "pixel {pixel}: {samples} samples");
+        }
+    }
+}
+
+/// Every pixel has the least samples, even where tiles rest and they are raised when the picture is finished.
+#[test]
+fn the_least_samples_may_be_raised() {
+    let matt = ["base.metalness=0", "specular.weight=0"];
+    let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, &matt);
+    (document.render.width, document.render.height) = (48, 48);
+    (document.render.samples, document.render.noise) = (4096, Some(0.1));
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    let fewest = |samples: &[f64]| samples.iter().copied().fold(f64::INFINITY, f64::min);
+    let (samples, _) = samples_at_the_end(&mut session, &document);
+    assert!(fewest(&samples) < 200.0);
+    document.render.min_samples = 200;
+    let (samples, stopped_by) = samples_at_the_end(&mut session, &document);
+    assert_eq!(stopped_by, Some(StopReason::Noise));
+    assert!(fewest(&samples) >= 200.0, "{}", fewest(&samples));
+}
+
 /// Means of the luminances of several films, each film counting alike, with the variances of these means.
 fn mean_and_variance(films: &[Film]) -> (Vec<f64>, Vec<f64>) {
     let count = films.len() as f64;

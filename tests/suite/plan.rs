@@ -8,38 +8,29 @@ use glossmith::analysis::film::Film;
 use glossmith::document::effect::{ANY, Decision, EFFECTS, Effect, EffectSwitches, Switch};
 use glossmith::document::job::Job;
 use glossmith::document::plan::Plan;
-use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, PRESETS, Strategy, Value, assign};
+use glossmith::document::{AreaLight, Document, MaterialSettings, PRESETS, assign};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
 use glossmith::optics::curve::Curve;
 use glossmith::render::{Assets, EngineChoice, Session};
 use glossmith::scene::ModelSource;
-use glossmith::scene::environment::EnvironmentSource;
 
 use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
+use crate::random_documents::{Documents, of_material, small};
+use crate::support::Random;
 use crate::textures::all_at_once;
-use crate::twins::harness::Rng;
 
 type Edit = fn(&mut Document);
-
-fn small(mut document: Document) -> Document {
-    (document.render.width, document.render.height) = (24, 24);
-    document.render.samples = 4;
-    document
-}
-
-fn of_material(model: ModelSource, material: MaterialSettings) -> Document {
-    small(Document {
-        model,
-        materials: vec![material],
-        ..Document::default()
-    })
-}
 
 fn film(session: &mut Session, document: &Document) -> Film {
     session.submit(document).unwrap();
     while !session.step(Duration::from_secs(1)).unwrap().is_done {}
     session.film().unwrap().clone()
+}
+
+fn random_documents(seed: u64) -> Documents<impl FnMut() -> u64> {
+    let mut random = Random::new(seed);
+    Documents(move || random.bits())
 }
 
 fn generally(document: &Document) -> Document {
@@ -59,52 +50,6 @@ fn assert_same_bits(specialised: &Film, general: &Film, what: &str) {
     let differing = std::iter::zip(&specialised.color, &general.color).filter(|(a, b)| a != b);
     assert_eq!(differing.count(), 0, "{what}: pixels differ");
     assert_eq!(specialised.dropped, general.dropped, "{what}");
-}
-
-fn random_value(kind: &Kind, present: &Value, rng: &mut Rng) -> Value {
-    let mut triple = |low: f32, high: f32| [0; 3].map(|_| rng.range(low, high));
-    match kind {
-        Kind::Number {
-            soft_range: [low, high],
-            ..
-        } => Value::Number(rng.range(*low, *high)),
-        Kind::Color => Value::Color(triple(0.0, 1.0)),
-        Kind::Triple { range: [low, high] } => Value::Triple(triple(*low, high.min(5.0))),
-        Kind::Choice(choices) => Value::Choice(choices[rng.below(choices.len())].name),
-        Kind::Toggle => Value::Toggle(rng.below(2) == 0),
-        Kind::Curve => present.clone(),
-    }
-}
-
-/// A document with some of everything, in range.
-fn random_document(rng: &mut Rng) -> Document {
-    let models = [ModelSource::Sphere, ModelSource::Plane, ModelSource::Shaderball];
-    let lights = [
-        EnvironmentSource::Studio,
-        EnvironmentSource::Sky,
-        EnvironmentSource::Furnace,
-    ];
-    let mut material = PRESETS[rng.below(PRESETS.len())].clone();
-    for parameter in PARAMETERS.iter() {
-        if rng.below(4) == 0 {
-            let value = random_value(&parameter.kind, &parameter.get(&material), rng);
-            parameter.set(&mut material, value).unwrap();
-        }
-    }
-    let mut document = of_material(models[rng.below(3)].clone(), material);
-    document.ground = rng.below(2) == 0;
-    document.lighting.environment = lights[rng.below(3)].clone();
-    document.lighting.strength = [0.0, 1.0, 1.0, 3.0][rng.below(4)];
-    document.render.strategy = Strategy::ALL[rng.below(3)];
-    document.render.seed = rng.below(1000) as u32;
-    document.render.bounces = 1 + rng.below(6) as u32;
-    if rng.below(3) == 0 {
-        document.camera.aperture = 0.1;
-    }
-    if rng.below(3) == 0 {
-        document.lighting.area_lights.push(AreaLight::default());
-    }
-    document
 }
 
 #[test]
@@ -179,10 +124,10 @@ fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
 #[test]
 fn specialised_pictures_equal_general_ones_on_the_processor() {
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
-    let mut rng = Rng::new(7);
+    let mut documents = random_documents(7);
     let mut plans = HashSet::new();
     for number in 0..200 {
-        let document = random_document(&mut rng);
+        let document = documents.draw();
         let specialised = film(&mut session, &document);
         plans.insert(session.job().unwrap().plan.specialisation());
         let general = film(&mut session, &generally(&document));
@@ -194,12 +139,12 @@ fn specialised_pictures_equal_general_ones_on_the_processor() {
 #[test]
 fn specialised_pictures_equal_general_ones_on_the_gpu() {
     let mut session = Session::open(EngineChoice::Gpu).unwrap();
-    let mut rng = Rng::new(11);
+    let mut documents = random_documents(11);
     let shipped = PRESETS
         .iter()
         .map(|material| of_material(ModelSource::Sphere, material.clone()));
-    let documents = shipped.chain((0..6).map(|_| random_document(&mut rng)));
-    for document in documents {
+    let all = shipped.chain((0..6).map(|_| documents.draw()));
+    for document in all {
         let specialised = film(&mut session, &document);
         let general = film(&mut session, &generally(&document));
         assert_same_but_for_rounding(&specialised, &general, &format!("{document:?}"));

@@ -56,6 +56,12 @@ fn what_absorbs_nothing_is_white_in_the_furnace() {
                 "base.metalness=0.5",
                 "base.color=1,1,1",
                 "transmission.weight=0",
+                "specular.roughness=0.03",
+            ],
+            &[
+                "base.metalness=0.5",
+                "base.color=1,1,1",
+                "transmission.weight=0",
                 "specular.roughness=0.45",
             ],
             &[

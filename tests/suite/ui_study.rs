@@ -1,7 +1,7 @@
 //! The race and the ledger in the editor, with the real renderer.
 
 use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::document::{Document, Strategy};
@@ -82,6 +82,11 @@ fn the_ledger_is_measured_on_demand() {
     settle(&mut harness);
     // The command shows the panel as well.
     request(&mut harness, Action::Do(Command::Measure));
+    // Nothing else is measured meanwhile.
+    harness.state_mut().reveal(Pane::Race);
+    harness.run_steps(2);
+    assert!(harness.get_by_label("Run the race").accesskit_node().is_disabled());
+    harness.state_mut().reveal(Pane::Effects);
     see(&mut harness, "the ledger", |harness| {
         let line = "Schlick's Fresnel (instead of exact): ";
         harness.query_by_label_contains(line).is_some()

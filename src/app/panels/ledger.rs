@@ -30,6 +30,11 @@ impl LedgerState {
         self.worker.wish();
     }
 
+    /// Whether it is being measured.
+    pub(super) fn is_running(&self) -> bool {
+        self.worker.is_running()
+    }
+
     /// What was measured last.
     pub(super) fn found(&self) -> Option<Arc<Ledger>> {
         self.worker.found()

@@ -85,6 +85,13 @@ pub(super) struct PanelState {
     pub(super) compare: Compare,
 }
 
+impl PanelState {
+    /// Whether a panel measures, for which the viewport's renderer rests.
+    fn is_studying(&self) -> bool {
+        self.race.is_running() || self.ledger.is_running()
+    }
+}
+
 /// How large the picture is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Resolution {

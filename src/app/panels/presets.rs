@@ -63,7 +63,9 @@ fn entries(ui: &mut Ui, desk: &mut Desk<'_>) {
             ui.add_space(0.5 * theme::GAP);
             widgets::note(ui, "Mine");
         }
-        own_entry(ui, shown, library, &current, desk.actions);
+        // By its file, as others may come before it.
+        let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("preset", &shown.entry.path)));
+        ui.scope_builder(builder, |ui| own_entry(ui, shown, library, &current, desk.actions));
     }
     library.own = own;
     if !found {

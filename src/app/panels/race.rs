@@ -67,6 +67,11 @@ impl RaceState {
         }
     }
 
+    /// Whether a race is being run.
+    pub(super) fn is_running(&self) -> bool {
+        self.worker.is_running()
+    }
+
     /// Races when the panel is shown next.
     pub(in crate::app) fn wish(&mut self) {
         self.worker.wish();

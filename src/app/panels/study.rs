@@ -46,6 +46,11 @@ impl<R> Default for StudyWorker<R> {
 }
 
 impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
+    /// Whether it runs.
+    pub(super) fn is_running(&self) -> bool {
+        self.worker.as_ref().is_some_and(Background::is_busy)
+    }
+
     /// Starts the study when its controls are shown next, unless it runs.
     pub(super) fn wish(&mut self) {
         self.is_wished = true;
@@ -61,18 +66,24 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         help: &str,
         begin: impl FnOnce(&Desk<'_>) -> Work<R>,
     ) {
-        let is_busy = self.worker.as_ref().is_some_and(Background::is_busy);
+        let is_busy = self.is_running();
         if !is_busy && std::mem::take(&mut self.holds_renderer) && desk.state.is_paused {
             desk.act(Command::Pause);
         }
-        let is_wished = std::mem::take(&mut self.is_wished);
+        // Two at once would take each other's time; this one's state is not on the desk.
+        let is_free = !desk.state.is_studying();
+        let is_wished = is_free && std::mem::take(&mut self.is_wished);
         ui.horizontal(|ui| {
             if is_busy {
                 if ui.button("Stop").clicked() {
                     self.stop.store(true, Ordering::Relaxed);
                 }
                 ui.add(egui::Spinner::new().size(12.0));
-            } else if ui.button(label).on_hover_text(help).clicked() || is_wished {
+                return;
+            }
+            let button = ui.add_enabled(is_free, egui::Button::new(label)).on_hover_text(help);
+            let button = button.on_disabled_hover_text("Something else is being measured.");
+            if button.clicked() || is_wished {
                 let work = begin(desk);
                 self.begin(ui, work);
                 if !desk.state.is_paused {

@@ -5,7 +5,7 @@ use super::{Decision, Effect};
 pub(super) const EFFECT: Effect = Effect {
     name: "adaptive-sampling",
     label: "Adaptive sampling",
-    help: "Tiles that have converged rest, so that time goes where the error is.",
+    help: "Tiles rest while others need samples more, so that time goes where the error is.",
     constant: None,
     decide: |facts| {
         let render = &facts.document.render;

@@ -17,8 +17,6 @@ pub(super) const EFFECT: Effect = Effect {
             Decision::off("the environment is equally bright everywhere")
         } else if facts.settings.strategy == Strategy::Lobe {
             Decision::off("light is found by the lobes alone")
-        } else if facts.settings.light_choice.environment_probability == 0.0 {
-            Decision::off("it is not wanted")
         } else if facts.materials.iter().all(Material::is_mirror) {
             Decision::off("every surface is a mirror, which meets light in one direction only")
         } else {

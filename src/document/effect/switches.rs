@@ -134,14 +134,10 @@ impl FromStr for EffectSwitches {
                 Some('-') => Switch::Off,
                 _ => Switch::Auto,
             };
-            if !effect.can_be(switch) {
-                let is_on = switch == Switch::On;
-                let why = if is_on {
-                    SwitchError::NoCode
-                } else {
-                    SwitchError::Needed
-                };
-                return Err(why(name.to_owned()));
+            match switch {
+                _ if effect.can_be(switch) => {}
+                Switch::On => return Err(SwitchError::NoCode(name.to_owned())),
+                _ => return Err(SwitchError::Needed(name.to_owned())),
             }
             switches.set(name, switch);
         }

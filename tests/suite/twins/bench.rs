@@ -16,7 +16,7 @@ use glossmith::optics::real::Real;
 use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
-use glossmith::scene::light::{LightChoice, Lights};
+use glossmith::scene::light::{LightChoice, Lights, Sampled};
 use glossmith::scene::texture::Textures;
 use glossmith::scene::{self, Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 
@@ -169,7 +169,11 @@ fn pictures(rng: &mut Rng) -> Model {
 impl Scene {
     /// How light samples are shared out.
     pub fn light_choice(&self) -> LightChoice {
-        LightChoice::new(&self.environment, 1.0, &self.lights, [true; 2])
+        let sampled = Sampled {
+            environment: true,
+            emitters: true,
+        };
+        LightChoice::new(&self.environment, 1.0, &self.lights, sampled)
     }
 
     /// A material in the precision of a twin.
