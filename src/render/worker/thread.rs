@@ -18,7 +18,8 @@ use crate::render::session::{Session, SessionError};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 
-/// Shortest and longest time between two pictures of the same render.
+/// Shortest and longest time between two pictures of the same render, and between two words about its progress: without
+/// a GPU the window, which is drawn anew for either, takes its time from the renderer.
 const PUBLISH_INTERVAL: [Duration; 2] = [Duration::from_millis(100), Duration::from_millis(500)];
 /// The interval grows with this share of the render's age.
 const PUBLISH_SHARE: f64 = 0.1;
@@ -26,8 +27,6 @@ const PUBLISH_SHARE: f64 = 0.1;
 const PUBLISH_COST: u32 = 8;
 /// Weight of the latest measurement in the mean speed.
 const SPEED_WEIGHT: f64 = 0.1;
-/// How often progress without a picture is told.
-const PROGRESS_INTERVAL: Duration = Duration::from_millis(100);
 
 /// The thread's body.
 pub(super) fn run(shared: &Shared, choice: EngineChoice, assets: Assets, repaint: &dyn Fn()) {
@@ -471,7 +470,7 @@ impl State<'_> {
         if is_fresh && (is_first || progress.is_done || age >= interval) {
             self.publish_picture()?;
         }
-        if self.told_at.elapsed() >= PROGRESS_INTERVAL || self.snapshot.activity != Activity::Rendering {
+        if self.told_at.elapsed() >= interval || self.snapshot.activity != Activity::Rendering {
             self.tell(Activity::Rendering);
         }
         Ok(())
