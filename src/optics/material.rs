@@ -7,7 +7,7 @@
 //! views from within. Lobes made of facets refract at each facet what that facet does not reflect.
 
 use super::albedo::{albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
-use super::coat::{coat_evaluate, coat_probability, coat_sample, coat_share, coat_transmittance};
+use super::coat::{coat_evaluate, coat_probability, coat_sample, coat_shape, coat_share, coat_transmittance};
 use super::curve::Curve;
 use super::frame::Frame;
 use super::fresnel::{Fresnel, FresnelTerms, fresnel, fresnel_left, half_vector_cosine};
@@ -255,7 +255,8 @@ impl<T: Real> Material<T> {
     pub fn is_mirror(&self) -> bool {
         let through = self.transmission_shape(&[], false);
         let reflects_alike = !self.has_specular() || is_mirror(&self.shape(&[])).any();
-        !self.has_base() && reflects_alike && (!self.transmits() || is_mirror(&through).any())
+        let is_coat_alike = self.coat_weight.to_f64() <= 0.0 || is_mirror(&coat_shape(self)).any();
+        !self.has_base() && reflects_alike && is_coat_alike && (!self.transmits() || is_mirror(&through).any())
     }
 
     /// True where the specular lobe reflects anything: if not from without, then from within.

@@ -84,6 +84,23 @@ fn a_convex_body_alone_sees_nothing_but_the_light() {
 }
 
 #[test]
+fn a_mirror_calls_for_no_light_sampling_but_under_a_rough_coat() {
+    let samples_light = |edit: fn(&mut MaterialSettings)| {
+        let mut mirror = MaterialSettings {
+            roughness: 0.0,
+            ..MaterialSettings::default()
+        };
+        edit(&mut mirror);
+        job(&of_material(ModelSource::Sphere, mirror))
+            .plan
+            .has("light-sampling")
+    };
+    assert!(!samples_light(|_| {}));
+    assert!(samples_light(|m| (m.coat_weight, m.coat_roughness) = (0.5, 0.2)));
+    assert!(!samples_light(|m| (m.coat_weight, m.coat_roughness) = (0.5, 0.0)));
+}
+
+#[test]
 fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
     let document = |model: ModelSource, roughness: f32| {
         let material = MaterialSettings {
