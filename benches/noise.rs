@@ -4,8 +4,8 @@
 //! over scenes, sequences and numbers of samples; the time to a noise with adaptive sampling on and off, in turns, for
 //! every scene of the list: the noise is what so many samples of every pixel come to; the share of the time that the looks
 //! take; the true error of both, from how far renders with other seeds are from each other. Then the true error of
-//! renders that stop at 2 %. `quick` does the same small, to see that it works; `coverage`, `adaptive` or `stopping` one of
-//! the parts. The processor engine; `gpu` as a further argument
+//! renders that stop at 2 %. `quick` does the same small, to see that it works; `coverage`, `adaptive` or `stopping` one
+//! of the parts. The processor engine; `gpu` as a further argument
 //! takes the GPU, and the beginning of a scene's name that scene alone.
 
 use std::time::Duration;
@@ -251,17 +251,14 @@ fn stopping(session: &mut Session, scenes: &[(&str, Document)], extent: &Extent)
     Ok(())
 }
 
-/// The true errors of some independent pictures, the least first: of each against the mean of the others, whose own error
-/// is taken out.
+/// The true errors of some independent pictures, the least first: from their mean, whose own error is taken out.
 fn true_errors(films: &[Film]) -> Vec<f64> {
     let pictures: Vec<Vec<f64>> = films.iter().map(Film::luminance).collect();
-    let others = films.len() as f64 - 1.0;
-    let mean_of_others = |own: usize| -> Vec<f64> {
-        let pixel = |i: usize| (pictures.iter().map(|picture| picture[i]).sum::<f64>() - pictures[own][i]) / others;
-        (0..pictures[own].len()).map(pixel).collect()
-    };
-    let error = |own: usize| true_error(&films[own], &mean_of_others(own)) * (others / (others + 1.0)).sqrt();
-    let mut errors: Vec<f64> = (0..films.len()).map(error).collect();
+    let count = films.len() as f64;
+    let pixel = |i: usize| pictures.iter().map(|picture| picture[i]).sum::<f64>() / count;
+    let mean: Vec<f64> = (0..pictures[0].len()).map(pixel).collect();
+    let own = |film: &Film| true_error(film, &mean) / (1.0 - 1.0 / count).sqrt();
+    let mut errors: Vec<f64> = films.iter().map(own).collect();
     errors.sort_by(f64::total_cmp);
     errors
 }

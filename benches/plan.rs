@@ -16,6 +16,12 @@ use glossmith::scene::environment::EnvironmentSource;
 
 #[path = "../tests/suite/random_documents.rs"]
 mod random_documents;
+#[allow(dead_code, reason = "the tests need more of it")]
+#[path = "../tests/suite/support.rs"]
+mod support;
+
+use random_documents::{apart, random_document};
+use support::Random;
 
 type Failure = Box<dyn std::error::Error>;
 type Edit = fn(&mut Document);
@@ -106,18 +112,11 @@ fn ledger_and_clock(engine: EngineChoice, sessions: &mut [Session; 2]) -> Result
 
 /// Pictures of random documents by the kernel made for each and by the general one.
 fn random(sessions: &mut [Session; 2]) -> Result<(), Failure> {
-    // SplitMix64 (Steele, Lea and Flood 2014).
-    let mut state = 23_u64;
-    let mut documents = random_documents::Documents(|| {
-        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    });
+    let mut random = Random::new(23);
     let mut kernels = std::collections::HashSet::new();
     let (mut same, mut pixels_off, mut wholes_off) = (0, Vec::new(), Vec::new());
     for _ in 0..DOCUMENTS {
-        let document = documents.draw();
+        let document = random_document(&mut random);
         let mut general = document.clone();
         general.render.effects = EffectSwitches::all_on();
         let mut pictures = [const { Vec::new() }; 2];
@@ -128,12 +127,10 @@ fn random(sessions: &mut [Session; 2]) -> Result<(), Failure> {
         }
         kernels.extend(sessions[0].job().map(|job| job.plan.specialisation()));
         let [own, general] = pictures;
-        let mean = general.iter().sum::<f64>() / general.len() as f64;
-        let is_off = |(a, b): &(&f64, &f64)| (*a - *b).abs() > 1e-3 * b.max(mean);
-        let off = std::iter::zip(&own, &general).filter(is_off).count();
+        let [pixels, whole] = apart(&own, &general);
         same += usize::from(own == general);
-        pixels_off.push(off as f64 / general.len() as f64);
-        wholes_off.push((own.iter().sum::<f64>() / general.len() as f64 - mean).abs() / mean.max(1e-12));
+        pixels_off.push(pixels);
+        wholes_off.push(whole);
     }
     let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     println!(

@@ -28,7 +28,7 @@ pub struct Round {
     pub noise: Option<f64>,
     /// The most samples that a pixel gets.
     pub samples_max: u32,
-    /// The part of the picture that is rendered, as [`TileGrid::is_within`] takes it; the rest keeps what it has.
+    /// The part of the picture that is rendered, as [`TileGrid::is_rendered`] takes it; the rest keeps what it has.
     pub region: Option<[f64; 4]>,
 }
 
@@ -40,7 +40,7 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
         height: film.height,
     };
     let errors = tile_errors(film);
-    let is_rendered = |tile: usize| round.region.is_none_or(|region| grid.is_within(tile, region));
+    let is_rendered = |tile: usize| grid.is_rendered(tile, round.region);
     let tiles: Vec<Tile> = (0..grid.tiles())
         .map(|tile| Tile {
             // What is not rendered takes no part.

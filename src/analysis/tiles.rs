@@ -67,6 +67,11 @@ impl TileGrid {
         })
     }
 
+    /// Whether a tile is rendered: all are, unless only a region is.
+    pub fn is_rendered(self, tile: usize, region: Option<[f64; 4]>) -> bool {
+        region.is_none_or(|region| self.is_within(tile, region))
+    }
+
     /// The tiles around a tile, itself among them.
     pub fn around(self, tile: usize) -> impl Iterator<Item = usize> {
         let (columns, rows) = (self.columns(), self.rows());

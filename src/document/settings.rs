@@ -291,7 +291,6 @@ impl Default for RenderSettings {
 }
 
 impl RenderSettings {
-    /// Whether samples go where the error is.
     /// The samples that every pixel gets where samples go where the error is or end with it.
     pub fn least_samples(&self) -> u32 {
         self.min_samples.min(self.samples)

@@ -48,9 +48,8 @@ pub(super) struct Convergence {
 /// The samples of the tile that has the fewest, of the part that is rendered.
 pub(super) fn fewest_samples(schedule: &Schedule, settings: &RenderSettings) -> u32 {
     let grid = schedule.grid();
-    let is_rendered = |tile: usize| settings.region.is_none_or(|region| grid.is_within(tile, region));
     let samples = schedule.samples().iter().enumerate();
-    let rendered = samples.filter(|(tile, _)| is_rendered(*tile));
+    let rendered = samples.filter(|(tile, _)| grid.is_rendered(*tile, settings.region));
     rendered.map(|(_, samples)| *samples).min().unwrap_or(0)
 }
 

@@ -205,7 +205,6 @@ fn a_part_of_the_picture_is_rendered_to_an_error() {
     let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, &matt);
     (document.render.width, document.render.height) = (64, 64);
     document.render.region = Some([0.25, 0.25, 0.75, 0.75]);
-    document.render.samples = 20_000;
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
     for (adaptive, noise) in [(false, Some(0.05)), (true, Some(0.05)), (true, None)] {
         (document.render.adaptive, document.render.noise) = (Some(adaptive), noise);

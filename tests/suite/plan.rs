@@ -16,7 +16,7 @@ use glossmith::scene::ModelSource;
 
 use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
-use crate::random_documents::{Documents, of_material, small};
+use crate::random_documents::{apart, of_material, random_document, small};
 use crate::support::Random;
 use crate::textures::all_at_once;
 
@@ -26,11 +26,6 @@ fn film(session: &mut Session, document: &Document) -> Film {
     session.submit(document).unwrap();
     while !session.step(Duration::from_secs(1)).unwrap().is_done {}
     session.film().unwrap().clone()
-}
-
-fn random_documents(seed: u64) -> Documents<impl FnMut() -> u64> {
-    let mut random = Random::new(seed);
-    Documents(move || random.bits())
 }
 
 fn generally(document: &Document) -> Document {
@@ -141,10 +136,10 @@ fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
 #[test]
 fn specialised_pictures_equal_general_ones_on_the_processor() {
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
-    let mut documents = random_documents(7);
+    let mut random = Random::new(7);
     let mut plans = HashSet::new();
     for number in 0..200 {
-        let document = documents.draw();
+        let document = random_document(&mut random);
         let specialised = film(&mut session, &document);
         plans.insert(session.job().unwrap().plan.specialisation());
         let general = film(&mut session, &generally(&document));
@@ -156,11 +151,11 @@ fn specialised_pictures_equal_general_ones_on_the_processor() {
 #[test]
 fn specialised_pictures_equal_general_ones_on_the_gpu() {
     let mut session = Session::open(EngineChoice::Gpu).unwrap();
-    let mut documents = random_documents(11);
+    let mut random = Random::new(11);
     let shipped = PRESETS
         .iter()
         .map(|material| of_material(ModelSource::Sphere, material.clone()));
-    let all = shipped.chain((0..6).map(|_| documents.draw()));
+    let all = shipped.chain((0..6).map(|_| random_document(&mut random)));
     for document in all {
         let specialised = film(&mut session, &document);
         let general = film(&mut session, &generally(&document));
@@ -171,11 +166,7 @@ fn specialised_pictures_equal_general_ones_on_the_gpu() {
 /// A compiler orders and fuses the two kernels' arithmetic differently, so that last bits differ, and now and then a
 /// decision of a path with them: nearly all pixels agree to 1e-3, and the whole picture does.
 fn assert_same_but_for_rounding(specialised: &Film, general: &Film, what: &str) {
-    let (a, b) = (specialised.luminance(), general.luminance());
-    let mean = b.iter().sum::<f64>() / b.len() as f64;
-    let is_off = |(a, b): &(&f64, &f64)| (*a - *b).abs() > 1e-3 * b.max(mean);
-    let off = std::iter::zip(&a, &b).filter(is_off).count() as f64 / b.len() as f64;
-    let whole = (a.iter().sum::<f64>() / b.len() as f64 - mean).abs() / mean.max(1e-12);
+    let [off, whole] = apart(&specialised.luminance(), &general.luminance());
     println!("{:.2} % of pixels off, the whole by {whole:.1e}", 100.0 * off);
     assert!(off < 0.03, "{what}: {:.1} % of pixels are off", 100.0 * off);
     assert!(whole < 5e-3, "{what}: the whole is off by {whole:.1e}");

@@ -4,6 +4,8 @@ use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETER
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 
+use crate::support::Random;
+
 /// Small enough that many are rendered.
 pub fn small(mut document: Document) -> Document {
     (document.render.width, document.render.height) = (24, 24);
@@ -20,66 +22,68 @@ pub fn of_material(model: ModelSource, material: MaterialSettings) -> Document {
     })
 }
 
-/// Makes documents out of random bits.
-pub struct Documents<B>(pub B);
+/// How far pictures (luminances) of the same random numbers are apart: the share of pixels that are off by more than 1e-3,
+/// and the whole, relative.
+pub fn apart(specialised: &[f64], general: &[f64]) -> [f64; 2] {
+    let pixels = general.len() as f64;
+    let mean = general.iter().sum::<f64>() / pixels;
+    let is_off = |(a, b): &(&f64, &f64)| (*a - *b).abs() > 1e-3 * b.max(mean);
+    let off = std::iter::zip(specialised, general).filter(is_off).count() as f64 / pixels;
+    let whole = (specialised.iter().sum::<f64>() / pixels - mean).abs() / mean.max(1e-12);
+    [off, whole]
+}
 
-impl<B: FnMut() -> u64> Documents<B> {
-    fn below(&mut self, count: usize) -> usize {
-        ((self.0)() % count as u64) as usize
+fn range(random: &mut Random, low: f32, high: f32) -> f32 {
+    low + (high - low) * random.unit()
+}
+
+fn value(random: &mut Random, kind: &Kind, present: &Value) -> Value {
+    match kind {
+        Kind::Number {
+            soft_range: [low, high],
+            ..
+        } => Value::Number(range(random, *low, *high)),
+        Kind::Color => Value::Color([0; 3].map(|_| range(random, 0.0, 1.0))),
+        Kind::Triple { range: [low, high] } => Value::Triple([0; 3].map(|_| range(random, *low, high.min(5.0)))),
+        Kind::Choice(choices) => Value::Choice(choices[random.below(choices.len())].name),
+        Kind::Toggle => Value::Toggle(random.below(2) == 0),
+        Kind::Curve => present.clone(),
     }
+}
 
-    fn range(&mut self, low: f32, high: f32) -> f32 {
-        low + (high - low) * ((self.0)() >> 40) as f32 / (1u64 << 24) as f32
-    }
-
-    fn value(&mut self, kind: &Kind, present: &Value) -> Value {
-        match kind {
-            Kind::Number {
-                soft_range: [low, high],
-                ..
-            } => Value::Number(self.range(*low, *high)),
-            Kind::Color => Value::Color([0; 3].map(|_| self.range(0.0, 1.0))),
-            Kind::Triple { range: [low, high] } => Value::Triple([0; 3].map(|_| self.range(*low, high.min(5.0)))),
-            Kind::Choice(choices) => Value::Choice(choices[self.below(choices.len())].name),
-            Kind::Toggle => Value::Toggle(self.below(2) == 0),
-            Kind::Curve => present.clone(),
+/// A document of any values.
+pub fn random_document(random: &mut Random) -> Document {
+    let models = [
+        ModelSource::Sphere,
+        ModelSource::Plane,
+        ModelSource::Shaderball,
+        ModelSource::Teapot,
+    ];
+    let lights = [
+        EnvironmentSource::Studio,
+        EnvironmentSource::Sky,
+        EnvironmentSource::Furnace,
+    ];
+    let mut material = PRESETS[random.below(PRESETS.len())].clone();
+    for parameter in PARAMETERS.iter() {
+        if random.below(4) == 0 {
+            let value = value(random, &parameter.kind, &parameter.get(&material));
+            // Soft ranges lie within what is taken.
+            parameter.set(&mut material, value).expect("in range");
         }
     }
-
-    /// The next one.
-    pub fn draw(&mut self) -> Document {
-        let models = [
-            ModelSource::Sphere,
-            ModelSource::Plane,
-            ModelSource::Shaderball,
-            ModelSource::Teapot,
-        ];
-        let lights = [
-            EnvironmentSource::Studio,
-            EnvironmentSource::Sky,
-            EnvironmentSource::Furnace,
-        ];
-        let mut material = PRESETS[self.below(PRESETS.len())].clone();
-        for parameter in PARAMETERS.iter() {
-            if self.below(4) == 0 {
-                let value = self.value(&parameter.kind, &parameter.get(&material));
-                // Soft ranges lie within what is taken.
-                parameter.set(&mut material, value).expect("in range");
-            }
-        }
-        let mut document = of_material(models[self.below(models.len())].clone(), material);
-        document.ground = self.below(2) == 0;
-        document.lighting.environment = lights[self.below(lights.len())].clone();
-        document.lighting.strength = [0.0, 1.0, 1.0, 3.0][self.below(4)];
-        document.render.strategy = Strategy::ALL[self.below(3)];
-        document.render.seed = self.below(1000) as u32;
-        document.render.bounces = 1 + self.below(6) as u32;
-        if self.below(3) == 0 {
-            document.camera.aperture = 0.1;
-        }
-        if self.below(3) == 0 {
-            document.lighting.area_lights.push(AreaLight::default());
-        }
-        document
+    let mut document = of_material(models[random.below(models.len())].clone(), material);
+    document.ground = random.below(2) == 0;
+    document.lighting.environment = lights[random.below(lights.len())].clone();
+    document.lighting.strength = [0.0, 1.0, 1.0, 3.0][random.below(4)];
+    document.render.strategy = Strategy::ALL[random.below(3)];
+    document.render.seed = random.below(1000) as u32;
+    document.render.bounces = 1 + random.below(6) as u32;
+    if random.below(3) == 0 {
+        document.camera.aperture = 0.1;
     }
+    if random.below(3) == 0 {
+        document.lighting.area_lights.push(AreaLight::default());
+    }
+    document
 }
