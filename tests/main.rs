@@ -61,8 +61,14 @@ mod lobe_views;
 mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/picture_files.rs"]
+mod picture_files;
 #[path = "suite/plan.rs"]
 mod plan;
+#[path = "suite/plan_calls.rs"]
+mod plan_calls;
+#[path = "suite/plan_kernels.rs"]
+mod plan_kernels;
 #[path = "suite/precision.rs"]
 mod precision;
 #[path = "suite/random_documents.rs"]
