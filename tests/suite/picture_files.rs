@@ -56,11 +56,19 @@ fn luminance([r, g, b, _]: [f64; 4]) -> f64 {
     0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
+/// Fails at the first pixel of a channel that is not what it must be.
+#[track_caller]
+fn assert_channel(found: &[f32], expected: impl ExactSizeIterator<Item = f32>, name: &str) {
+    assert_eq!(found.len(), expected.len(), "{name}");
+    for (pixel, (found, expected)) in found.iter().zip(expected).enumerate() {
+        assert_eq!(*found, expected, "{name} of pixel {pixel}");
+    }
+}
+
 /// What the colour's channels of an .exr must hold.
 fn assert_color(found: &HashMap<String, Vec<f32>>, film: &Film) {
     for (i, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
-        let expected: Vec<f32> = means(film).iter().map(|mean| mean[i] as f32).collect();
-        assert_eq!(found[name], expected, "{name}");
+        assert_channel(&found[name], means(film).into_iter().map(|mean| mean[i] as f32), name);
     }
 }
 
@@ -69,13 +77,16 @@ fn assert_layers(found: &HashMap<String, Vec<f32>>, film: &Film, layers: &Layers
     assert_color(found, film);
     let features = &layers.features;
     for (i, (color, axis)) in [("R", "X"), ("G", "Y"), ("B", "Z")].into_iter().enumerate() {
-        let of = |vectors: &[[f32; 3]]| vectors.iter().map(|vector| vector[i]).collect::<Vec<_>>();
-        assert_eq!(found[&format!("albedo.{color}")], of(&features.albedo), "{color}");
-        assert_eq!(found[&format!("normal.{axis}")], of(&features.normal), "{axis}");
+        for (name, vectors) in [
+            (format!("albedo.{color}"), &features.albedo),
+            (format!("normal.{axis}"), &features.normal),
+        ] {
+            assert_channel(&found[&name], vectors.iter().map(|vector| vector[i]), &name);
+        }
     }
-    assert_eq!(found["depth.Z"], features.depth);
-    let counts: Vec<f32> = film.statistics.iter().map(|[_, n]| *n as f32).collect();
-    assert_eq!(found["samples.Y"], counts);
+    assert_channel(&found["depth.Z"], features.depth.iter().copied(), "depth.Z");
+    let counts = film.statistics.iter().map(|[_, n]| *n as f32);
+    assert_channel(&found["samples.Y"], counts, "samples.Y");
     // The spread of the samples over their number: the variance of the mean, with Bessel's correction.
     for (pixel, mean) in means(film).into_iter().enumerate() {
         let [squares, n] = film.statistics[pixel];

@@ -1,6 +1,6 @@
 //! What calls for an effect: for each of the registry the least that does, one channel and one place at a time.
 
-use glossmith::document::effect::{ANY, EFFECTS};
+use glossmith::document::effect::{ANY, EFFECTS, EffectSwitches, Switch};
 use glossmith::document::plan::Plan;
 use glossmith::document::{AreaLight, Background, Document, MaterialSettings, Strategy, TextureUse};
 use glossmith::optics::curve::Curve;
@@ -355,4 +355,26 @@ fn choices_are_those_of_the_materials() {
     assert_eq!(value(&document, "lobe"), Lobe::Geometric as u32);
     document.materials[1].transmission_weight = LEAST;
     assert_eq!(value(&document, "lobe"), ANY);
+}
+
+#[test]
+fn what_is_left_out_is_counted() {
+    let plan = job(&metal()).plan;
+    let kernels = EFFECTS.iter().filter(|effect| effect.constant.is_some());
+    let left_out = kernels.filter(|effect| !is_whole(&plan, effect.name)).count();
+    assert!(left_out > 10, "{left_out}");
+    assert_eq!(plan.left_out(), left_out);
+    assert_eq!(Plan::general().left_out(), 0);
+}
+
+#[test]
+fn a_switch_that_makes_no_difference_stays_automatic() {
+    for effect in EFFECTS {
+        for switch in Switch::ALL {
+            let mut switches = EffectSwitches::default();
+            switches.set(effect.name, switch);
+            let expected = if effect.can_be(switch) { switch } else { Switch::Auto };
+            assert_eq!(switches.get(effect.name), expected, "{} {switch:?}", effect.name);
+        }
+    }
 }

@@ -226,12 +226,10 @@ fn weak_effects_are_in_their_kernels() {
                 }
             }
         }
-        let specialised = on_gpu(&mut engine, job.clone());
-        assert_same_but_for_rounding(
-            &specialised,
-            &on_gpu(&mut engine, generally(&job)),
-            &format!("{document:?}"),
-        );
+        let what = format!("{document:?}");
+        let [specialised, of_gpu] = [job.clone(), generally(&job)].map(|job| on_gpu(&mut engine, job));
+        assert_same_but_for_rounding(&specialised, &of_gpu, &what);
+        assert_same_but_for_rounding(&general, &of_gpu, &what);
     }
     // Where emitters and clamp are, or nothing interreflects, other tests look.
     for effect in EFFECTS
