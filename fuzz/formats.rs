@@ -3,9 +3,9 @@
 
 use std::path::{Path, PathBuf};
 
-use glossmith::document::{file, load_document, load_material};
 use glossmith::scene::environment::{self, EnvironmentSource};
 use glossmith::scene::{Geometry, ModelSource, load};
+use glossmith::store::{file, load_document, load_material};
 
 /// Kinds of files.
 #[allow(dead_code)]

@@ -71,6 +71,8 @@ mod random_documents;
 mod renders;
 #[path = "suite/statistics.rs"]
 mod statistics;
+#[path = "suite/structure.rs"]
+mod structure;
 #[path = "suite/study.rs"]
 mod study;
 #[path = "suite/support.rs"]

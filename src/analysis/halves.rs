@@ -5,7 +5,7 @@
 //! bias: their noise has no mean in common. That holds even where both pictures draw the same random numbers, which
 //! makes small differences visible long before either picture is smooth.
 
-use super::film::{Film, luminance};
+use crate::job::film::{Film, luminance};
 
 /// Standard deviations of a normal distribution that hold 95 %.
 const BAND: f64 = 1.959_964;

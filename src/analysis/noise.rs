@@ -9,8 +9,8 @@
 
 use rayon::prelude::*;
 
-use super::film::{Film, luminance};
-use super::tiles::TileGrid;
+use crate::job::film::{Film, luminance};
+use crate::job::tiles::TileGrid;
 
 /// Standard deviations of a normal distribution that hold 95 %.
 const BAND: f64 = 1.959_964;

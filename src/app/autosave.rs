@@ -5,8 +5,9 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::document::recovery::{self, Recovered, Slot};
-use crate::document::{Document, FileError};
+use crate::document::Document;
+use crate::store::FileError;
+use crate::store::recovery::{self, Recovered, Slot};
 
 /// At least so long between two copies of a document that goes on changing.
 pub(super) const INTERVAL: Duration = Duration::from_secs(5);

@@ -5,9 +5,10 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::library::Listed;
 use super::snapshots::PinsListed;
-use crate::document::file::Opened;
-use crate::document::{Document, FileError};
+use crate::document::Document;
 use crate::render::worker::Level;
+use crate::store::FileError;
+use crate::store::file::Opened;
 
 /// What came of a job.
 pub(super) enum Done {

@@ -8,11 +8,12 @@ use super::dialogs::Purpose;
 use super::disk::{Disk, Done, words};
 use super::take_picture::Destination;
 use super::unsaved::Then;
-use crate::document::file::Opened;
-use crate::document::{Document, FileError, Loaded, file, preset, save_document, save_material};
+use crate::document::Document;
 use crate::render::worker::Level;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
+use crate::store::file::Opened;
+use crate::store::{FileError, Loaded, file, preset, save_document, save_material};
 
 /// The project's file, and the thread that reads and writes.
 pub(super) struct Files {

@@ -115,19 +115,12 @@ fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
 fn import_lobes(ui: &mut Ui, chosen: ImportLobe, actions: &mut Vec<Action>) {
     ui.separator();
     ui.menu_button("Lobe of opened models", |ui| {
-        for (lobe, label, help) in [
-            (
-                ImportLobe::Geometric,
-                "Geometric",
-                "Materials of a model's file get the geometric lobe, its roughness matched to the look of the file's.",
-            ),
-            (
-                ImportLobe::Ggx,
-                "GGX",
-                "Materials of a model's file keep GGX and its roughness.",
-            ),
-        ] {
-            if ui.radio(lobe == chosen, label).on_hover_text(help).clicked() {
+        for &lobe in ImportLobe::ALL {
+            if ui
+                .radio(lobe == chosen, lobe.label())
+                .on_hover_text(lobe.help())
+                .clicked()
+            {
                 actions.push(Action::ImportAs(lobe));
             }
         }

@@ -7,8 +7,8 @@ use egui::{RichText, Ui};
 use super::App;
 use super::autosave::{Leftover, Report};
 use super::{theme, widgets};
-use crate::document::recovery::Recovered;
 use crate::render::worker::Level;
+use crate::store::recovery::Recovered;
 
 /// What is to be done with a leftover.
 enum Choice {

@@ -10,9 +10,8 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
-use crate::document::file::{self, Opened};
 use crate::document::{
-    AreaLight, Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, assign, preset, range,
+    AreaLight, Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, assign, range,
 };
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
@@ -20,6 +19,8 @@ use crate::render::output::{self, Format};
 use crate::render::{EngineChoice, Progress, Session, SessionError, StopReason};
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelSource};
+use crate::store::file::{self, Opened};
+use crate::store::preset;
 
 /// Step of the session between two looks at the clock and the progress bar.
 const STEP: Duration = Duration::from_millis(200);
@@ -74,7 +75,7 @@ pub struct SceneArguments {
     #[arg(long, value_name = "FILE|NAME")]
     material: Option<String>,
     /// The lobe of a file's own materials: geometric, its roughness matched to the look of the file's, or ggx.
-    #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::import_lobe)]
+    #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::choice::<ImportLobe>)]
     import_lobe: ImportLobe,
     /// Set a parameter of every material, such as specular.roughness=0.2. May be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse::assignment)]
@@ -101,7 +102,7 @@ pub struct SceneArguments {
     #[arg(long, value_name = "X", value_parser = parse::number_in(range::DISTANCE), allow_negative_numbers = true)]
     focus_distance: Option<f64>,
     /// Pixel filter: box (to compare with other renderers) or gaussian (smoother edges).
-    #[arg(long, default_value = "gaussian", value_name = "box|gaussian", value_parser = names::filter)]
+    #[arg(long, default_value = "gaussian", value_name = "box|gaussian", value_parser = names::choice::<PixelFilter>)]
     filter: PixelFilter,
     /// Width and height in pixels.
     #[arg(long, default_value = "512x512", value_name = "WxH", value_parser = parse::size)]
@@ -132,10 +133,10 @@ pub struct SceneArguments {
     #[arg(long, value_name = "X", value_parser = parse::number_in(range::FIREFLY_CLAMP), allow_negative_numbers = true)]
     firefly_clamp: Option<f64>,
     /// Random numbers: sobol (Owen-scrambled, less noise) or independent.
-    #[arg(long, default_value = "sobol", value_name = "sobol|independent", value_parser = names::sequence)]
+    #[arg(long, default_value = "sobol", value_name = "sobol|independent", value_parser = names::choice::<Sequence>)]
     sequence: Sequence,
     /// How light is found: by sampling the lobe, the light, or both weighed against each other.
-    #[arg(long, default_value = "mis", value_name = "lobe|light|mis", value_parser = names::strategy)]
+    #[arg(long, default_value = "mis", value_name = "lobe|light|mis", value_parser = names::choice::<Strategy>)]
     strategy: Strategy,
     /// Which effects are simulated: those that the scene calls for; all, needed or not; or these alone (names of
     /// `glossmith plan`, with commas between; +NAME and -NAME change what the scene calls for).
@@ -153,7 +154,7 @@ pub struct SceneArguments {
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     pub(super) engine: EngineChoice,
     /// Tone curve of .png pictures.
-    #[arg(long, default_value = "agx", value_name = "agx|aces|pbr-neutral|none", value_parser = names::tone)]
+    #[arg(long, default_value = "agx", value_name = "agx|aces|pbr-neutral|none", value_parser = names::choice::<ToneCurve>)]
     tone_map: ToneCurve,
     /// Exposure of .png pictures, in stops.
     #[arg(long, default_value = "0", value_name = "EV", value_parser = parse::number_in(range::EXPOSURE_EV), allow_negative_numbers = true)]

@@ -3,8 +3,8 @@
 use rayon::prelude::*;
 
 use super::integrator::Integrator;
-use crate::analysis::features::{FeatureSums, Features};
-use crate::document::job::Job;
+use crate::job::Job;
+use crate::job::features::{FeatureSums, Features};
 
 /// The features of a job, over the first `samples` of each pixel.
 pub fn features(job: &Job, samples: u32) -> Features {

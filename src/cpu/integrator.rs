@@ -1,6 +1,7 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
 
-use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
+use crate::job::effect::EffectId;
+use crate::job::{BackgroundKind, Job, Settings, Strategy};
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::material::{Material, MaterialNumbers, material_albedo, material_evaluate, material_sample};
 use crate::optics::random::{RandomState, path_state, random_pair};
@@ -87,7 +88,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             environment: &job.environment,
             tables: &job.tables,
             textures: &job.textures,
-            has_holes: job.plan.has("alpha"),
+            has_holes: job.plan.has(EffectId::Alpha),
             settings: &job.settings,
             materials: job.materials.iter().map(Material::cast).collect(),
             camera: job.settings.camera.cast(),
@@ -95,14 +96,16 @@ impl<'a, T: Real> Integrator<'a, T> {
             lights: &job.lights,
             environment_probability: T::from_f64(choice.environment_probability),
             density_per_luminance: T::from_f64(choice.density_per_luminance),
-            samples_environment: job.plan.has("light-sampling")
+            samples_environment: job.plan.has(EffectId::LightSampling)
                 && samples_light
                 && choice.environment_probability > 0.0,
-            samples_emitters: job.plan.has("emitter-sampling") && samples_light && choice.density_per_luminance > 0.0,
-            is_interreflecting: job.plan.has("interreflection"),
+            samples_emitters: job.plan.has(EffectId::EmitterSampling)
+                && samples_light
+                && choice.density_per_luminance > 0.0,
+            is_interreflecting: job.plan.has(EffectId::Interreflection),
             firefly_clamp: job
                 .plan
-                .has("firefly-clamp")
+                .has(EffectId::FireflyClamp)
                 .then(|| T::from_f64(job.settings.firefly_clamp)),
         }
     }

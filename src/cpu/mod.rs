@@ -12,10 +12,10 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use crate::analysis::features::Features;
-use crate::analysis::film::Film;
-use crate::analysis::tiles::{Schedule, SliceLimits, TileGrid, Work};
-use crate::document::job::Job;
+use crate::job::Job;
+use crate::job::features::Features;
+use crate::job::film::Film;
+use crate::job::tiles::{Schedule, SliceLimits, TileGrid, Work};
 use crate::optics::real::Real;
 use integrator::{Integrator, is_sound};
 

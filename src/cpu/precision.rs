@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::integrator::{Integrator, is_sound};
 use super::probe::moved_direction;
-use crate::analysis::precision::{ERROR_BOUND, Finding, PrecisionMap, relative_error};
-use crate::document::job::Job;
+use crate::job::Job;
+use crate::job::precision::{ERROR_BOUND, Finding, PrecisionMap, relative_error};
 use crate::optics::frame::Frame;
 use crate::optics::material::{Material, MaterialNumbers, Surface, material_evaluate, material_sample};
 use crate::optics::random::{RandomState, path_state, random_pair};

@@ -5,23 +5,14 @@ pub mod change;
 mod compile;
 pub mod custom_curve;
 pub mod effect;
-pub mod file;
 pub mod history;
 pub mod import;
-pub mod job;
-pub mod library;
 pub mod match_look;
 mod material;
 pub mod measured_look;
 pub mod parameter;
-pub mod picture;
-pub mod plan;
-pub mod preset;
-pub mod project;
-pub mod recovery;
 mod registry;
 mod settings;
-pub mod snapshots;
 pub mod technique;
 pub mod turntable;
 
@@ -30,19 +21,17 @@ use serde::{Deserialize, Serialize};
 pub use change::Change;
 pub use compile::{compile, compile_textured};
 pub use custom_curve::CustomCurve;
-pub use file::{FileError, Loaded};
 pub use history::History;
 pub use import::ImportLobe;
 pub use material::{Conductor, MaterialSettings, TextureUse};
 pub use parameter::{Choice, Kind, Parameter, ParameterError, Value, assign, parameter};
-pub use preset::{PRESETS, load_material, material_by_name, save_material};
-pub use project::{load_document, save_document};
 pub use registry::PARAMETERS;
 pub use settings::{
-    AreaLight, AreaLightShape, Background, Bookmark, CameraSettings, Lighting, RenderSettings, SettingError, Strategy,
+    AreaLight, AreaLightShape, Background, Bookmark, CameraSettings, Lighting, RenderSettings, SettingError,
     ViewSettings, range,
 };
 
+pub use crate::job::Strategy;
 pub use crate::scene::camera::PixelFilter;
 
 use crate::scene::ModelSource;

@@ -392,7 +392,7 @@ fn shortened(text: String) -> String {
 }
 
 /// The key that was probably meant: nearest by edits, the group being left out or not.
-pub(super) fn nearest_key(key: &str) -> Option<&'static str> {
+pub(crate) fn nearest_key(key: &str) -> Option<&'static str> {
     let distance = |known: &str| {
         let short = known.rsplit_once('.').map_or(known, |(_, short)| short);
         edit_distance(key, known).min(edit_distance(key, short))

@@ -5,6 +5,7 @@ use std::sync::LazyLock;
 use super::custom_curve::CustomCurve;
 use super::parameter::{Choice, Kind, Parameter, Value};
 use super::{Conductor, MaterialSettings};
+use crate::named::Named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::{Horizon, Lobe};
@@ -37,35 +38,30 @@ macro_rules! texture {
     };
 }
 
-/// Reads and writes a field that is an entry of a registry with `ALL` and `name`.
+/// Reads and writes a field that is one of a closed list.
 macro_rules! choice_field {
-    ($type:ident $field:ident) => {
+    ($field:ident) => {
         (
             |material: &MaterialSettings| Value::Choice(material.$field.name()),
             |material: &mut MaterialSettings, value: Value| {
-                let all = $type::ALL.iter().copied();
-                if let Some(entry) = all.into_iter().find(|entry| value == Value::Choice(entry.name())) {
-                    material.$field = entry;
+                if let Value::Choice(name) = value
+                    && let Some(choice) = Named::by_name(name)
+                {
+                    material.$field = choice;
                 }
             },
         )
     };
 }
 
-/// The choices that a registry with `ALL`, `name`, `label` and `help` gives.
-macro_rules! choices {
-    ($type:ident) => {
-        Kind::Choice(
-            $type::ALL
-                .iter()
-                .map(|entry| Choice {
-                    name: entry.name(),
-                    label: entry.label(),
-                    help: entry.help(),
-                })
-                .collect(),
-        )
+/// The choices of a closed list.
+fn choices<T: Named>() -> Kind {
+    let choice = |&choice: &T| Choice {
+        name: choice.name(),
+        label: choice.label(),
+        help: choice.help(),
     };
+    Kind::Choice(T::ALL.iter().map(choice).collect())
 }
 
 type Get = fn(&MaterialSettings) -> Value;
@@ -119,7 +115,7 @@ fn specular_shape() -> Vec<Parameter> {
         Parameter {
             label: "Lobe",
             help: "The model of how reflected light is spread.",
-            ..of("specular.lobe", choices!(Lobe), choice_field!(Lobe lobe))
+            ..of("specular.lobe", choices::<Lobe>(), choice_field!(lobe))
         },
         Parameter {
             label: "Roughness",
@@ -138,7 +134,7 @@ fn specular_shape() -> Vec<Parameter> {
             symbol: "D(ξ)",
             help: "The profile of the geometric lobe's highlight, from its middle to its edge.",
             applies: is_geometric,
-            ..of("specular.curve", choices!(Curve), choice_field!(Curve curve))
+            ..of("specular.curve", choices::<Curve>(), choice_field!(curve))
         },
         Parameter {
             label: "Custom curve",
@@ -172,7 +168,7 @@ fn specular_shape() -> Vec<Parameter> {
             label: "Below the surface",
             help: "What happens to samples that point into the surface.",
             applies: |material| has_specular(material) && !material.lobe.is_hemispherical(),
-            ..of("specular.horizon", horizon_choices(), choice_field!(Horizon horizon))
+            ..of("specular.horizon", choices::<Horizon>(), choice_field!(horizon))
         },
     ]
 }
@@ -184,7 +180,7 @@ fn specular_fresnel() -> Vec<Parameter> {
             symbol: "F",
             help: "How the share of reflected light grows towards grazing angles. A material that transmits light follows the exact equations of a dielectric.",
             applies: |material| has_specular(material) && !transmits(material),
-            ..of("specular.fresnel", choices!(Fresnel), choice_field!(Fresnel fresnel))
+            ..of("specular.fresnel", choices::<Fresnel>(), choice_field!(fresnel))
         },
         Parameter {
             label: "Index of refraction",
@@ -414,23 +410,6 @@ fn is_geometric(material: &MaterialSettings) -> bool {
 
 fn is_conductor(material: &MaterialSettings) -> bool {
     has_specular(material) && material.fresnel == Fresnel::Conductor
-}
-
-fn horizon_choices() -> Kind {
-    let words = |horizon| match horizon {
-        Horizon::Mirror => ("Mirror", "They are reflected at the surface: no light is lost."),
-        Horizon::Absorb => ("Absorb", "They are lost: the surface darkens towards grazing angles."),
-        Horizon::None => ("None", "They go through the surface: for plots of the lobe itself."),
-    };
-    let choice = |horizon: &Horizon| {
-        let (label, help) = words(*horizon);
-        Choice {
-            name: horizon.name(),
-            label,
-            help,
-        }
-    };
-    Kind::Choice(Horizon::ALL.iter().map(choice).collect())
 }
 
 fn conductor_choices() -> Kind {

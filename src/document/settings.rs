@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::effect::{EffectSwitches, Switch};
 use super::{Document, MaterialSettings};
+use crate::job::Strategy;
+use crate::job::effect::EffectId;
+use crate::named::named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 use crate::scene::camera::PixelFilter;
@@ -298,52 +301,14 @@ impl RenderSettings {
 
     /// Whether samples go where the error is.
     pub fn is_adaptive(&self) -> bool {
-        let is_switched_off = self.effects.get("adaptive-sampling") == Switch::Off;
+        let is_switched_off = self.effects.get(EffectId::AdaptiveSampling) == Switch::Off;
         !is_switched_off && self.adaptive.unwrap_or(self.noise.is_some())
-    }
-}
-
-macro_rules! named {
-    ($(#[$doc:meta])* $type:ident { $($(#[$attribute:meta])* $variant:ident = $index:literal, $name:literal, $label:literal, $help:literal;)* }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-        #[repr(u32)]
-        pub enum $type {
-            $(#[doc = $help] #[serde(rename = $name)] $(#[$attribute])* $variant = $index,)*
-        }
-
-        impl $type {
-            /// Every one, in the order of the menus.
-            pub const ALL: &'static [$type] = &[$($type::$variant),*];
-
-            /// Name in files and on the command line.
-            pub fn name(self) -> &'static str {
-                match self { $($type::$variant => $name,)* }
-            }
-            /// Name in the menus.
-            pub fn label(self) -> &'static str {
-                match self { $($type::$variant => $label,)* }
-            }
-            /// What it means.
-            pub fn help(self) -> &'static str {
-                match self { $($type::$variant => $help,)* }
-            }
-        }
-    };
-}
-
-named! {
-    /// How light is found. All three converge to the same picture.
-    Strategy {
-        Lobe = 0, "lobe", "Lobe", "Sample the material's lobe and see what light it meets.";
-        Light = 1, "light", "Light", "Sample the light and see how the material reflects it.";
-        #[default]
-        Mis = 2, "mis", "Both (MIS)", "Sample both, each weighed by its density (Veach 1997).";
     }
 }
 
 named! {
     /// The shape of an area light.
+    #[derive(Default)]
     AreaLightShape {
         #[default]
         Quad = 0, "quad", "Rectangle", "Two sides, width and height.";

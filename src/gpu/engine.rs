@@ -9,11 +9,11 @@ use super::layout::{PixelStatistics, Tile};
 use super::pipeline::Pipelines;
 use super::resources::{DISPATCH_TILES, Resources};
 use super::timer::Timer;
-use crate::analysis::features::{FeatureSums, Features};
-use crate::analysis::film::Film;
-use crate::analysis::tiles::{Schedule, SliceLimits, Work};
-use crate::document::job::Job;
-use crate::document::plan::Specialisation;
+use crate::job::Job;
+use crate::job::features::{FeatureSums, Features};
+use crate::job::film::Film;
+use crate::job::plan::Specialisation;
+use crate::job::tiles::{Schedule, SliceLimits, Work};
 
 /// Longest dispatch: other users of the adapter, the window among them, wait for its end.
 const SLICE: Duration = Duration::from_millis(30);

@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::document::job::{BackgroundKind, Settings};
+use crate::job::{BackgroundKind, Settings};
 use crate::scene::Geometry;
 use crate::scene::camera::Camera;
 

@@ -6,7 +6,7 @@ use super::compute::{self, READ, UNIFORMS, WRITE, buffer_entry};
 use super::device::{GpuDevice, GpuError};
 use super::kernel_cache::KernelCache;
 use super::shader;
-use crate::document::plan::{Plan, Specialisation};
+use crate::job::plan::{Plan, Specialisation};
 
 /// A pass over the picture: its shader, its binding layout, and a pipeline for each plan met.
 #[derive(Debug)]

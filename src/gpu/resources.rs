@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::device::{GpuDevice, GpuError};
 use super::layout::{self, Globals, PixelStatistics, Tile};
-use crate::document::job::Job;
+use crate::job::Job;
 use crate::scene::Geometry;
 use crate::scene::environment::Environment;
 

@@ -2,12 +2,15 @@
 
 use include_dir::{Dir, include_dir};
 
+use crate::job::effect::{ANY, EffectId};
 use crate::optics::lobe::Lobe;
 
 static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 
 /// The module that is generated from the registry of lobes.
 const LOBE_REGISTRY: &str = "optics/lobe/registry";
+/// The module that is generated from the list of effects.
+const PLAN_CONSTANTS: &str = "scene/plan_constants";
 
 /// A shader with everything that it imports.
 #[derive(Clone, Debug, Default)]
@@ -94,13 +97,24 @@ pub fn module_names() -> Vec<String> {
 }
 
 fn module_source(module: &str) -> Result<String, String> {
-    if module == LOBE_REGISTRY {
-        return Ok(lobe_registry());
+    match module {
+        LOBE_REGISTRY => return Ok(lobe_registry()),
+        PLAN_CONSTANTS => return Ok(plan_constants()),
+        _ => {}
     }
     let file = SHADERS.get_file(format!("{module}.wgsl"));
     let text = file.and_then(|file| file.contents_utf8());
     text.map(str::to_owned)
         .ok_or_else(|| format!("no shader module {module}"))
+}
+
+/// The override constants of the plan, each with the value that leaves nothing out.
+fn plan_constants() -> String {
+    let mut text = format!("// Generated from src/job/effect.rs.\nconst ANY: u32 = {ANY}u;\n");
+    for constant in EffectId::ALL.iter().filter_map(|effect| effect.constant()) {
+        text += &format!("override {}: u32 = {}u;\n", constant.name, constant.general);
+    }
+    text
 }
 
 /// WGSL that finds a lobe's functions by its number: the twin of the `match`es in `src/optics/lobe/mod.rs`.

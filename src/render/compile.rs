@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use super::assets::Assets;
 use super::session::SessionError;
-use crate::document::effect::{Facts, Switch};
-use crate::document::job::{BackgroundKind, Job, Settings};
-use crate::document::plan::{Plan, without_what_is_off};
+use crate::document::effect::{Facts, Switch, plan, without_what_is_off};
 use crate::document::{
     AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile_textured,
 };
+use crate::job::effect::EffectId;
+use crate::job::{BackgroundKind, Job, Settings};
 use crate::optics::material::Material;
 use crate::scene::Geometry;
 use crate::scene::camera::{Camera, framing_distance, orbit_direction};
@@ -47,8 +47,8 @@ impl Compiler {
         let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
         let switches = document.render.effects;
         let sampled = Sampled {
-            environment: switches.get("light-sampling") != Switch::Off,
-            emitters: switches.get("emitter-sampling") != Switch::Off,
+            environment: switches.get(EffectId::LightSampling) != Switch::Off,
+            emitters: switches.get(EffectId::EmitterSampling) != Switch::Off,
         };
         let settings = Settings {
             image_size: [document.render.width, document.render.height],
@@ -70,7 +70,7 @@ impl Compiler {
             strategy: document.render.strategy,
             seed: document.render.seed,
         };
-        let plan = Plan::new(&Facts {
+        let plan = plan(&Facts {
             document,
             slots: &slots,
             materials: &materials,

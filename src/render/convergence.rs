@@ -1,10 +1,10 @@
 //! When a session looks at the error of its picture, what it saw, and what it renders next.
 
 use crate::analysis::adaptive::{Round, next_goals};
-use crate::analysis::film::Film;
 use crate::analysis::noise::{Noise, noise};
-use crate::analysis::tiles::Schedule;
 use crate::document::RenderSettings;
+use crate::job::film::Film;
+use crate::job::tiles::Schedule;
 
 /// Looking at the error takes at most this share of the time; near its end twice as much, not to go too far.
 const COST_SHARE: f64 = 0.015;

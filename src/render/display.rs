@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use crate::analysis::film::{Film, Image};
 use crate::analysis::noise::relative_errors;
-use crate::analysis::plot::scale_color;
 use crate::document::ViewSettings;
+use crate::job::film::{Film, Image};
 use crate::optics::tone::{srgb_from_linear, tone_map};
 use crate::optics::vector::vec3;
+use crate::plot::scale_color;
 
 /// Luminance of middle grey.
 const MIDDLE_GREY: f64 = 0.18;

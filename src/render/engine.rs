@@ -5,14 +5,14 @@ use std::str::FromStr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::analysis::features::Features;
-use crate::analysis::film::Film;
-use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
-use crate::analysis::tiles::Schedule;
 use crate::cpu::CpuEngine;
-use crate::document::job::Job;
 use crate::gpu::scatter::Scatterer;
 use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
+use crate::job::Job;
+use crate::job::features::Features;
+use crate::job::film::Film;
+use crate::job::scatter::{ScatterCloud, ScatterRequest};
+use crate::job::tiles::Schedule;
 
 /// The engine that a user asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]

@@ -8,11 +8,11 @@ use image::Rgb;
 use image::codecs::hdr::HdrEncoder;
 
 use super::display::display;
-use crate::analysis::features::Features;
-use crate::analysis::film::Image;
 use crate::document::Document;
-use crate::document::picture::png_bytes;
-use crate::document::project::document_text;
+use crate::job::features::Features;
+use crate::job::film::Image;
+use crate::store::picture::png_bytes;
+use crate::store::project::document_text;
 
 /// Why a picture can't be written.
 #[derive(Debug, thiserror::Error)]

@@ -9,12 +9,12 @@ use super::convergence::{Convergence, Measurement, fewest_samples, mean_samples}
 use super::engine::{Engine, EngineChoice, EngineInfo, Precision, cpu};
 use super::output::Layers;
 use super::workshop::Workshop;
-use crate::analysis::film::{Film, Image};
 use crate::analysis::noise::Noise;
 use crate::document::Document;
 use crate::document::change::Change;
-use crate::document::job::Job;
 use crate::gpu::GpuError;
+use crate::job::Job;
+use crate::job::film::{Film, Image};
 use crate::scene::ModelError;
 use crate::scene::environment::EnvironmentError;
 

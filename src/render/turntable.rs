@@ -5,8 +5,9 @@ use std::time::Duration;
 
 use super::output::{self, OutputError};
 use super::session::{Session, SessionError};
+use crate::document::Document;
 use crate::document::turntable::{Turn, turned};
-use crate::document::{Document, FileError};
+use crate::store::FileError;
 
 /// Step of the session between two looks at whether to go on.
 const STEP: Duration = Duration::from_millis(100);

@@ -1,49 +1,20 @@
 //! The camera: a thin lens, and the pixel filter that its rays are drawn from.
 
+use crate::named::named;
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 
 use crate::optics::random::{RandomState, random_pair};
 use crate::optics::real::Real;
 use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_disc;
 
-/// How a pixel weighs what is around its centre.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-#[repr(u32)]
-pub enum PixelFilter {
-    /// The pixel's square, evenly: what other renderers' pictures are compared with.
-    Box = 0,
-    /// A Gaussian of σ = 0.5 pixels, cut off at 1.5: smoother edges.
-    #[default]
-    Gaussian = 1,
-}
-
-impl PixelFilter {
-    /// Every one, in the order of the menus.
-    pub const ALL: &'static [PixelFilter] = &[PixelFilter::Box, PixelFilter::Gaussian];
-
-    /// Name in files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            PixelFilter::Box => "box",
-            PixelFilter::Gaussian => "gaussian",
-        }
-    }
-    /// Name in the menus.
-    pub fn label(self) -> &'static str {
-        match self {
-            PixelFilter::Box => "Box",
-            PixelFilter::Gaussian => "Gaussian",
-        }
-    }
-    /// What it does to the picture.
-    pub fn help(self) -> &'static str {
-        match self {
-            PixelFilter::Box => "Evenly over the pixel: what to compare renderers with.",
-            PixelFilter::Gaussian => "By a Gaussian of half a pixel's width, cut off at 1.5 pixels: smoother edges.",
-        }
+named! {
+    /// How the samples of a pixel are spread around its centre.
+    #[derive(Default)]
+    PixelFilter {
+        Box = 0, "box", "Box", "Evenly over the pixel's square: what to compare renderers with.";
+        #[default]
+        Gaussian = 1, "gaussian", "Gaussian", "By a Gaussian of half a pixel's width, cut off at 1.5 pixels: smoother edges.";
     }
 }
 

@@ -9,10 +9,11 @@ use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::compare::Rival;
 use glossmith::app::layout::Pane;
+use glossmith::document::Document;
 use glossmith::document::match_look::{Target, lobe_of_material, match_look};
-use glossmith::document::{Document, PRESETS};
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::worker::{Activity, Picture};
+use glossmith::store::PRESETS;
 
 use super::ui::{Editor, editor, editor_of, options, request, see, settle, wait};
 use super::worker::small_document;

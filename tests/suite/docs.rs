@@ -7,13 +7,14 @@ use std::path::Path;
 use clap::{Arg, ArgAction, Command, CommandFactory};
 use glossmith::cli::Arguments;
 use glossmith::document::effect::EFFECTS;
-use glossmith::document::preset::command_line_name;
-use glossmith::document::{Kind, PARAMETERS, PRESETS, Value, parameter};
+use glossmith::document::{Kind, PARAMETERS, Value, parameter};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear};
 use glossmith::optics::vector::Vec3;
+use glossmith::store::PRESETS;
+use glossmith::store::preset::command_line_name;
 
 const BEGIN: &str = "<!-- made from the program: ";
 const END: &str = "<!-- end -->";
@@ -78,10 +79,11 @@ fn horizons() -> String {
 fn effects() -> String {
     let row = |effect: &glossmith::document::effect::Effect| {
         vec![
-            format!("`{}`", effect.name),
+            format!("`{}`", effect.name()),
             effect.help.to_owned(),
             effect
-                .constant
+                .id
+                .constant()
                 .map_or_else(String::new, |constant| format!("`{}`", constant.name)),
             if effect.remove.is_some() { "yes" } else { "no" }.to_owned(),
         ]

@@ -6,7 +6,7 @@ use glossmith::document::import::{geometric_from_ggx, ggx_from_geometric};
 use glossmith::document::parameter::{Kind, Parameter, Value, assign, parameter, parse_color};
 use glossmith::document::{
     AreaLight, Background, Change, Conductor, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter,
-    Strategy, compile, preset,
+    Strategy, compile,
 };
 use glossmith::optics::albedo::{ALBEDO_LENGTH, ROUGH_ALBEDO_LENGTH, albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};
@@ -15,6 +15,7 @@ use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::ToneCurve;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{ModelSource, Slot};
+use glossmith::store::preset;
 use proptest::prelude::{Just, ProptestConfig, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
 
 /// Values that a parameter takes: both ends and something between, every choice.

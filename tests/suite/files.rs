@@ -3,15 +3,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use glossmith::document::file::{self, FileError, Opened};
-use glossmith::document::preset::{self, PRESETS, SHIPPED};
 use glossmith::document::{
     AreaLight, Background, Bookmark, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy as LightStrategy,
-    project,
 };
 use glossmith::optics::tone::ToneCurve;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::file::{self, FileError, Opened};
+use glossmith::store::preset::{self, PRESETS, SHIPPED};
+use glossmith::store::project;
 use proptest::prelude::*;
 use serde_json::{Map, Value as Json, json};
 

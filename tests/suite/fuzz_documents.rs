@@ -3,11 +3,11 @@
 
 use std::time::Duration;
 
-use glossmith::analysis::film::Film;
 use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{
     AreaLight, AreaLightShape, Background, Document, Kind, MaterialSettings, PARAMETERS, PixelFilter, Strategy, Value,
 };
+use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;

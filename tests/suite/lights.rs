@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use glam::{DVec3, Vec2, Vec4};
 use glossmith::analysis::chi_square::test_counts;
-use glossmith::analysis::film::Film;
 use glossmith::cpu::CpuEngine;
 use glossmith::document::{AreaLight, Background, Document, Strategy};
+use glossmith::job::film::Film;
 use glossmith::optics::material::Material;
 use glossmith::optics::real::Real;
 use glossmith::optics::vector::{Vec3, vec3};

@@ -10,8 +10,9 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::{App, Options};
-use glossmith::document::{Document, PRESETS, load_document, save_document};
+use glossmith::document::Document;
 use glossmith::scene::ModelSource;
+use glossmith::store::{PRESETS, load_document, save_document};
 
 use super::ui::{Editor, editor_of, options, request, see, wait};
 

@@ -1,8 +1,9 @@
 //! Documents with some of everything, in range: for the tests of plans, and for the benchmark that takes more of them.
 
-use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, PRESETS, Strategy, Value};
+use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, Strategy, Value};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::PRESETS;
 
 use crate::support::Random;
 

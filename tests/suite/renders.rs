@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glossmith::analysis::error::{Estimates, z_test};
-use glossmith::analysis::film::Film;
-use glossmith::document::job::Job;
 use glossmith::document::{Background, Document, MaterialSettings, PixelFilter, Strategy, assign};
+use glossmith::job::Job;
+use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;

@@ -1,13 +1,13 @@
 //! Every shader module links and validates by itself, says where it is wrong, translates to the other graphics
 //! interfaces, and has the constants of its Rust twin.
 
-use glossmith::analysis::tiles::TILE_SIDE;
 use glossmith::cpu::integrator;
 use glossmith::document::Document;
-use glossmith::document::job::{BackgroundKind, Settings, Strategy};
-use glossmith::document::plan::Plan;
 use glossmith::gpu::layout::Globals;
 use glossmith::gpu::shader::{EXTRA, Linked, link, link_with, module_names};
+use glossmith::job::plan::Plan;
+use glossmith::job::tiles::TILE_SIDE;
+use glossmith::job::{BackgroundKind, Settings, Strategy};
 use glossmith::optics::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, TOTAL_NODES};
 use glossmith::optics::chord;
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, LONG_TAIL_MAX};
@@ -68,7 +68,7 @@ fn numbers(module: &naga::Module, expression: naga::Handle<naga::Expression>) ->
 /// Every module with the generated one, each with naga's reading of it.
 pub fn modules() -> Vec<(String, naga::Module)> {
     let mut names = module_names();
-    names.push("optics/lobe/registry".into());
+    names.extend(["optics/lobe/registry".into(), "scene/plan_constants".into()]);
     let read = |name: String| {
         let module = validate(&link(&name).unwrap()).unwrap().0;
         (name, module)

@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::time::Duration;
 
-use glossmith::analysis::sampling::{SamplingRequest, SamplingStage};
 use glossmith::document::technique::{Setting, Technique, techniques};
 use glossmith::document::{Document, MaterialSettings, Strategy};
 use glossmith::gpu::sampling::SamplingMeter;
 use glossmith::gpu::{AdapterKind, GpuDevice};
+use glossmith::job::sampling::{SamplingRequest, SamplingStage};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;

@@ -1,6 +1,7 @@
 //! Textures against analytic look-ups, normal maps and opacity against energy, and both engines against each other.
 
 use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy};
+use glossmith::job::effect::EffectId;
 use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::linear_from_srgb;
 use glossmith::optics::vector::Vec3;
@@ -457,7 +458,11 @@ fn a_texture_of_one_value_is_a_number() {
         let texels = [values, right];
         RgbaImage::from_fn(2, 1, |x, _| texels[x as usize])
     });
-    let kinds = ["color-texture", "roughness-texture", "emission-texture"];
+    let kinds = [
+        EffectId::ColorTexture,
+        EffectId::RoughnessTexture,
+        EffectId::EmissionTexture,
+    ];
     for mode in ["OPAQUE", "MASK", "BLEND"] {
         let [constant, looked_up] = [false, true].map(|is_looked_up| {
             let picture = pictures[usize::from(is_looked_up)].clone();
@@ -468,7 +473,10 @@ fn a_texture_of_one_value_is_a_number() {
             session.submit(&document).unwrap();
             let plan = session.job().unwrap().plan.clone();
             assert_eq!(kinds.map(|kind| plan.has(kind)), [is_looked_up; 3], "{mode}");
-            assert_eq!(plan.has("alpha"), mode == "BLEND" || (is_looked_up && mode == "MASK"));
+            assert_eq!(
+                plan.has(EffectId::Alpha),
+                mode == "BLEND" || (is_looked_up && mode == "MASK")
+            );
             render(EngineChoice::Cpu, &document).luminance()
         });
         let differences = std::iter::zip(&constant, &looked_up).map(|(a, b)| (a - b).abs());

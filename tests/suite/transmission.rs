@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use glossmith::analysis::film::Film;
 use glossmith::cpu::CpuEngine;
-use glossmith::document::job::Job;
 use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, Strategy, compile};
+use glossmith::job::Job;
+use glossmith::job::film::Film;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;

@@ -11,12 +11,13 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options, Resolution};
-use glossmith::document::{AreaLight, Document, PRESETS, save_document, save_material};
+use glossmith::document::{AreaLight, Document};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::{PRESETS, save_document, save_material};
 
 use super::worker::small_document;
 

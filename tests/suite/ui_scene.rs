@@ -6,6 +6,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
 use glossmith::document::effect::Switch;
+use glossmith::job::effect::EffectId;
 use glossmith::render::display::Shown;
 use glossmith::scene::ModelSource;
 
@@ -46,7 +47,10 @@ fn an_effect_is_switched_off_and_back() {
     harness.state_mut().reveal(Pane::Effects);
     harness.run_steps(2);
     choose(&mut harness, "Ground: auto, on or off", "off");
-    assert_eq!(harness.state().document().render.effects.get("ground"), Switch::Off);
+    assert_eq!(
+        harness.state().document().render.effects.get(EffectId::Ground),
+        Switch::Off
+    );
     assert!(harness.state().document().ground, "the document keeps its ground");
     assert_ne!(picture(&harness), before);
     undo(&mut harness);

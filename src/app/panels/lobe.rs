@@ -10,12 +10,12 @@ use super::Desk;
 use super::lobe_match::{self, MatchState};
 use super::lobe_plot::line_plot;
 use crate::analysis::lobe_model::LobeModel;
-use crate::analysis::lobe_view::{LinePlot, LobeView, MapPlot, SolidPlot, ViewKind, lobe_view};
-use crate::analysis::plot::lobe_view_picture;
 use crate::app::widgets::{self, Name, NumberStyle};
 use crate::document::match_look::lobe_of_material;
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
+use crate::plot::lobe_view::{LinePlot, LobeView, MapPlot, SolidPlot, ViewKind, lobe_view};
+use crate::plot::lobe_view_picture;
 use crate::render::background::Background;
 
 /// Pictures are drawn this much larger than they are shown on a screen of one pixel a point.

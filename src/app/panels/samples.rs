@@ -6,10 +6,10 @@ use egui::{Color32, ColorImage, Pos2, Rect, Sense, Stroke, TextureHandle, Textur
 use egui_plot::{Bar, BarChart, Legend, Line, Plot, PlotPoints};
 
 use super::Desk;
-use crate::analysis::scatter::ScatterRequest;
 use crate::app::status::short_number;
 use crate::app::theme;
 use crate::app::widgets::{self, Name, NumberStyle};
+use crate::job::scatter::ScatterRequest;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::vector::Vec3;
 use crate::render::EngineChoice;

@@ -12,9 +12,9 @@ use crate::app::icons::{self, Icon};
 use crate::app::panels::Desk;
 use crate::app::theme;
 use crate::app::widgets::{self, NumberStyle};
-use crate::document::PRESETS;
 use crate::optics::lobe::Lobe;
 use crate::render::worker::Picture;
+use crate::store::PRESETS;
 
 /// Half the width in which the divider can be taken hold of, points.
 const GRIP: f32 = 5.0;

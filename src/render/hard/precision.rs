@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::{HardCase, HardError, Stage};
-use crate::analysis::precision::{ERROR_BOUND, relative_error};
-use crate::analysis::probe::{MaterialQuestion, ProbeScene};
 use crate::cpu::probe::probe_material;
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Value, compile};
+use crate::job::precision::{ERROR_BOUND, relative_error};
+use crate::job::probe::{MaterialQuestion, ProbeScene};
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_sample};
 use crate::optics::random::hash_bits;

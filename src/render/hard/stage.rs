@@ -5,10 +5,10 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 use std::{fs, io};
 
-use crate::analysis::film::{Film, Image};
 use crate::document::effect::EffectSwitches;
 use crate::document::{Document, PixelFilter};
 use crate::gpu::GpuError;
+use crate::job::film::{Film, Image};
 use crate::optics::random::Sequence;
 use crate::render::engine::{EngineChoice, EngineInfo};
 use crate::render::output::{self, OutputError};

@@ -14,7 +14,8 @@ use serde::Serialize;
 
 use super::engine::{EngineChoice, EngineInfo};
 use super::session::{Session, SessionError};
-use crate::document::{Document, FileError};
+use crate::document::Document;
+use crate::store::FileError;
 
 pub use convergence::{ConvergencePoint, ConvergenceReport, convergence};
 

@@ -12,10 +12,10 @@ use serde::Serialize;
 
 use super::references::{Effort, Reference, ReferenceCache};
 use super::{Machine, Steps, StudyError, Watch, settled, warmed, without_aim};
-use crate::analysis::film::Image;
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::document::technique::{Technique, converged, most_accurate};
+use crate::job::film::Image;
 use crate::render::assets::Assets;
 use crate::render::{EngineChoice, Precision, Session};
 

@@ -10,10 +10,10 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::{Machine, Steps, StudyError, Watch, median, settled};
-use crate::analysis::sampling::{SamplingRequest, SamplingRun, SamplingStage};
 use crate::document::{AreaLight, Document, Strategy};
 use crate::gpu::sampling::SamplingMeter;
 use crate::gpu::{AdapterKind, GpuDevice};
+use crate::job::sampling::{SamplingRequest, SamplingRun, SamplingStage};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
 use crate::render::{EngineChoice, Session};

@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use super::stage::Stage;
 use super::{Activity, Event, FIRST_STEP, Level, Orders, Picture, STEP, Scene, Shared, Snapshot, Submission, lock};
-use crate::analysis::film::Image;
-use crate::document::plan::Specialisation;
 use crate::document::{Change, Document, ViewSettings};
+use crate::job::film::Image;
+use crate::job::plan::Specialisation;
 use crate::render::assets::Assets;
 use crate::render::display::{Shown, display, map};
 use crate::render::engine::EngineChoice;

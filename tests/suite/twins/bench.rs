@@ -3,9 +3,9 @@
 use std::sync::{LazyLock, OnceLock};
 
 use bytemuck::{bytes_of, cast_slice};
-use glossmith::document::job::{BackgroundKind, Settings, Strategy};
 use glossmith::gpu::layout::{Globals, triangles};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
+use glossmith::job::{BackgroundKind, Settings, Strategy};
 use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
