@@ -14,6 +14,9 @@ pub trait Named: Copy + PartialEq + Sized + 'static {
     /// What it means, or when to choose it.
     fn help(self) -> &'static str;
 
+    /// The number that the shaders know it by.
+    fn number(self) -> u32;
+
     /// The choice of this name.
     fn by_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|choice| choice.name() == name)
@@ -66,6 +69,10 @@ macro_rules! named {
 
             fn help(self) -> &'static str {
                 self.help()
+            }
+
+            fn number(self) -> u32 {
+                self as u32
             }
         }
     };

@@ -81,8 +81,6 @@ mod support;
 mod textures;
 #[path = "suite/tone.rs"]
 mod tone;
-#[path = "suite/tone_twin.rs"]
-mod tone_twin;
 #[path = "suite/transmission.rs"]
 mod transmission;
 #[path = "suite/ui.rs"]

@@ -3,17 +3,12 @@
 #import "optics/random"
 #import "optics/warp"
 #import "scene/camera"
+#import "scene/choices"
 #import "scene/environment"
 #import "scene/light"
 #import "scene/surface"
 #import "scene/visibility"
 
-const STRATEGY_LOBE: u32 = 0u;
-const STRATEGY_LIGHT: u32 = 1u;
-const STRATEGY_MIS: u32 = 2u;
-const BACKGROUND_ENVIRONMENT: u32 = 0u;
-const BACKGROUND_TRANSPARENT: u32 = 1u;
-const BACKGROUND_BLURRED: u32 = 3u;
 // Pairs of numbers before the first bounce (pixel, lens) and a bounce (lobe twice, light twice).
 const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
@@ -237,7 +232,6 @@ fn is_sound(color: vec3f) -> bool {
     // Infinity fails the upper bound; NaN fails both.
     return all(color >= vec3f(0.0)) && all(color <= vec3f(RADIANCE_MAX));
 }
-
 
 @compute @workgroup_size(TILE_SIDE, TILE_SIDE)
 fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) place: vec3u) {

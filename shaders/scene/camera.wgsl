@@ -1,9 +1,9 @@
 // The camera's rays. Twin of src/scene/camera.rs.
 #import "optics/random"
 #import "optics/warp"
+#import "scene/choices"
 #import "scene/layout"
 
-const FILTER_BOX: u32 = 0u;
 const GAUSSIAN_SIGMA: f32 = 0.5;
 // 1 - exp(-(radius/sigma)^2/2): the Gaussian is cut off at 1.5 pixels.
 const GAUSSIAN_KEPT: f32 = 0.988891;

@@ -97,16 +97,9 @@ fn panes(ui: &mut Ui, actions: &mut Vec<Action>) {
 
 fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.separator();
-    for (label, help, choice) in [
-        (
-            "Engine: choose",
-            "A hardware GPU if there is one, else the faster one here.",
-            EngineChoice::Auto,
-        ),
-        ("Engine: GPU", "The GPU, or Vulkan on the processor.", EngineChoice::Gpu),
-        ("Engine: processor", "The processor's cores.", EngineChoice::Cpu),
-    ] {
-        if ui.button(label).on_hover_text(help).clicked() {
+    for &choice in EngineChoice::ALL {
+        let label = format!("Engine: {}", choice.label());
+        if ui.button(label).on_hover_text(choice.help()).clicked() {
             actions.push(Action::UseEngine(choice));
         }
     }

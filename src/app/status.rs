@@ -136,10 +136,10 @@ fn engine(ui: &mut Ui, snapshot: &Snapshot) {
         ui.weak("no engine yet");
         return;
     };
-    let label = ui.label(RichText::new(engine.kind.to_uppercase()).strong());
+    let label = ui.label(RichText::new(engine.kind.label()).strong());
     let name = ui.label(&engine.adapter);
     label.union(name).on_hover_ui(|ui| {
-        ui.label(format!("Engine: {}", engine.kind));
+        ui.label(format!("Engine: {}", engine.kind.name()));
         ui.label(&engine.adapter);
         if !engine.driver.is_empty() {
             ui.label(&engine.driver);

@@ -270,11 +270,7 @@ impl App {
         }
         if begins {
             let kind = self.worker.snapshot().engine.as_ref().map(|engine| engine.kind);
-            let engine = if kind == Some("gpu") {
-                EngineChoice::Gpu
-            } else {
-                EngineChoice::Cpu
-            };
+            let engine = kind.map_or(EngineChoice::Cpu, EngineChoice::from);
             let table = self.turntable.order(&self.document);
             match Running::begin(ctx, table, engine) {
                 Ok(running) => self.turntable.running = Some(running),

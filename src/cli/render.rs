@@ -372,7 +372,7 @@ fn json_report(
     let rays = film.total_rays();
     Ok(serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
-        "engine": engine.kind,
+        "engine": engine.kind.name(),
         "adapter": engine.adapter,
         "driver": engine.driver,
         "width": film.width,

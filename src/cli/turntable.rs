@@ -69,7 +69,7 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
     let engine = session.engine().clone();
     let report = serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
-        "engine": engine.kind,
+        "engine": engine.kind.name(),
         "adapter": engine.adapter,
         "driver": engine.driver,
         "width": render.width,

@@ -1,7 +1,6 @@
 //! Tone curves: from scene-referred to display-referred linear Rec. 709, and sRGB's encoding.
 //!
-//! To add a curve: a function here, one of the same name in `shaders/optics/tone.wgsl`, a line in the registry, here and
-//! in the shader's switch.
+//! To add a curve: a function here, a line in the list of curves, one in [`tone_map`].
 
 use super::real::Real;
 use super::vector::{Vec3, vec3};

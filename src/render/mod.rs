@@ -27,6 +27,6 @@ mod workshop;
 
 pub use assets::Assets;
 pub use convergence::Measurement;
-pub use engine::{EngineChoice, EngineInfo, Precision, Sampler};
+pub use engine::{EngineChoice, EngineInfo, EngineKind, Precision, Sampler};
 pub use output::Layers;
 pub use session::{Progress, Session, SessionError, StopReason};

@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glossmith::document::Document;
-use glossmith::render::EngineChoice;
 use glossmith::render::display::Shown;
 use glossmith::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
+use glossmith::render::{EngineChoice, EngineKind};
 use glossmith::scene::ModelSource;
 
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -281,7 +281,8 @@ fn a_lost_device_leaves_the_document_to_the_processor() {
     });
     let engine = snapshot.engine.as_ref().expect("it renders");
     assert_eq!(
-        engine.kind, "gpu",
+        engine.kind,
+        EngineKind::Gpu,
         "a Vulkan driver is needed: apt install mesa-vulkan-drivers"
     );
     assert_eq!(snapshot.activity, Activity::Rendering, "it is lost in the middle");
@@ -289,7 +290,11 @@ fn a_lost_device_leaves_the_document_to_the_processor() {
     let snapshot = wait(&worker, "the processor", |snapshot| {
         let picture = snapshot.picture.as_ref();
         let is_new = picture.is_some_and(|picture| picture.revision == revision);
-        snapshot.engine.as_ref().is_some_and(|engine| engine.kind == "cpu") && is_new
+        snapshot
+            .engine
+            .as_ref()
+            .is_some_and(|engine| engine.kind == EngineKind::Cpu)
+            && is_new
     });
     assert_eq!(*snapshot.picture.as_ref().expect("waited for").document, document);
     let errors = errors(&worker);

@@ -148,11 +148,7 @@ fn query(desk: &Desk<'_>) -> Option<SampleQuery> {
         seed: desk.document.render.seed,
     };
     Some(SampleQuery {
-        engine: if engine.kind == "gpu" {
-            EngineChoice::Gpu
-        } else {
-            EngineChoice::Cpu
-        },
+        engine: engine.kind.into(),
         request,
         compare: state.look == Look::Angle && state.compare,
     })

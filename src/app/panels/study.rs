@@ -143,8 +143,6 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
 
 /// The engine that the viewport renders with.
 pub(super) fn engine(desk: &Desk<'_>) -> EngineChoice {
-    match desk.snapshot.engine.as_ref().map(|engine| engine.kind) {
-        Some("gpu") => EngineChoice::Gpu,
-        _ => EngineChoice::Cpu,
-    }
+    let engine = desk.snapshot.engine.as_ref();
+    engine.map_or(EngineChoice::Cpu, |engine| engine.kind.into())
 }

@@ -63,10 +63,7 @@ impl Stage {
     /// Where a GPU was asked for and fails, or there is no temporary folder.
     pub fn open(choice: EngineChoice, thorough: bool) -> Result<Self, HardError> {
         let session = Session::open(choice)?;
-        let choice = match session.engine().kind {
-            "gpu" => EngineChoice::Gpu,
-            _ => EngineChoice::Cpu,
-        };
+        let choice = session.engine().kind.into();
         Ok(Self {
             thorough,
             prober: Prober::open(choice)?,

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::{Machine, Steps, StudyError, Watch, median, quantile, settled, warmed, without_aim};
+use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_aim};
 use crate::analysis::halves::{Distance, Halves};
 use crate::analysis::noise::noise;
 use crate::document::effect::{Effect, Switch};
@@ -157,7 +157,7 @@ struct Rival {
 /// What can't be rendered; [`StudyError::Stopped`].
 pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_>) -> Result<Ledger, StudyError> {
     let mut with = Session::open(options.engine)?;
-    let mut without = Session::open_with(settled(with.engine()), with.assets().clone())?;
+    let mut without = Session::open_with(with.engine().kind.into(), with.assets().clone())?;
     let document = without_aim(document);
     warmed(&mut with, &document)?;
     let plan = with.job().map_or_else(Plan::general, |job| job.plan.clone());

@@ -11,13 +11,13 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::references::{Effort, Reference, ReferenceCache};
-use super::{Machine, Steps, StudyError, Watch, settled, warmed, without_aim};
+use super::{Machine, Steps, StudyError, Watch, warmed, without_aim};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::document::technique::{Technique, converged, most_accurate};
 use crate::job::film::Image;
 use crate::render::assets::Assets;
-use crate::render::{EngineChoice, Precision, Session};
+use crate::render::{EngineChoice, EngineKind, Precision, Session};
 
 /// References are this many times as exact as the noise to reach, where the time suffices.
 const REFERENCE_GAIN: f64 = 8.0;
@@ -202,8 +202,8 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
         }
         let mut session = Session::open_with(engine, assets.clone())?;
         // Not one on the GPU and another on the processor.
-        engine = settled(session.engine());
-        if technique.is_double() && session.engine().kind == "gpu" {
+        engine = session.engine().kind.into();
+        if technique.is_double() && session.engine().kind == EngineKind::Gpu {
             log::warn!("{technique}: the GPU shades in f32 only; left out");
             continue;
         }

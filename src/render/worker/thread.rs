@@ -13,7 +13,7 @@ use crate::job::film::Image;
 use crate::job::plan::Specialisation;
 use crate::render::assets::Assets;
 use crate::render::display::{Shown, display, map};
-use crate::render::engine::EngineChoice;
+use crate::render::engine::{EngineChoice, EngineKind};
 use crate::render::session::{Session, SessionError};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
@@ -250,7 +250,11 @@ impl State<'_> {
             }
             Err(panic) => panic_text(&*panic),
         };
-        let was_cpu = self.snapshot.engine.as_ref().is_some_and(|engine| engine.kind == "cpu");
+        let was_cpu = self
+            .snapshot
+            .engine
+            .as_ref()
+            .is_some_and(|engine| engine.kind == EngineKind::Cpu);
         self.say(Level::Error, format!("the renderer failed: {why}"));
         self.session = None;
         if was_cpu {
