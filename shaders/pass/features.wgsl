@@ -29,7 +29,7 @@ fn trace_features(pixel: vec2u, sample: u32) -> FeatureSample {
     return FeatureSample(albedo, 1.0, point.surface.frame.normal, hit.t * dot(ray.direction, camera.forward));
 }
 
-// The path tracer's sums are empty meanwhile and lend their place.
+// Writes into the film's buffers, whose sums have been read back before.
 @compute @workgroup_size(TILE_SIDE, TILE_SIDE)
 fn features(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) place: vec3u) {
     let tile = tiles[workgroup.x];

@@ -12,6 +12,7 @@ mod parse;
 mod plan;
 mod render;
 mod scatter;
+mod shell;
 mod study;
 mod turntable;
 
@@ -59,6 +60,10 @@ pub enum Command {
     Lobe(lobe::LobeArguments),
     /// Measure what accuracy costs in time.
     Study(study::StudyArguments),
+    /// Print a script that completes these arguments in a shell.
+    Completions(shell::CompletionsArguments),
+    /// Print a manual page.
+    Manual(shell::ManualArguments),
 }
 
 impl Command {
@@ -76,6 +81,8 @@ impl Command {
             Command::Fit(arguments) => fit::run(&arguments),
             Command::Lobe(arguments) => lobe::run(&arguments),
             Command::Study(arguments) => study::run(&arguments),
+            Command::Completions(arguments) => shell::completions(&arguments),
+            Command::Manual(arguments) => shell::manual(&arguments),
         }
     }
 }

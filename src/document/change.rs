@@ -48,9 +48,9 @@ impl Change {
             ),
             materials: light.ground_color != other_light.ground_color
                 || !look_alike(old, new)
-                || !shine_alike(&light.area_lights, &other_light.area_lights),
+                || !emit_alike(&light.area_lights, &other_light.area_lights),
             geometry: (&old.model, old.ground) != (&new.model, new.ground)
-                || !stand_alike(&light.area_lights, &other_light.area_lights),
+                || !have_same_shapes(&light.area_lights, &other_light.area_lights),
             sampling: (
                 render.bounces,
                 render.firefly_clamp,
@@ -103,26 +103,6 @@ impl Change {
         };
         self != stays
     }
-
-    /// True where geometry must be loaded or built.
-    pub fn needs_geometry(self) -> bool {
-        self.geometry
-    }
-
-    /// True where an environment must be loaded.
-    pub fn needs_environment(self) -> bool {
-        self.environment
-    }
-
-    /// True where materials must be compiled; a model brings its own number of slots.
-    pub fn needs_materials(self) -> bool {
-        self.materials || self.geometry
-    }
-
-    /// True where the picture must be shown anew.
-    pub fn needs_display(self) -> bool {
-        self.display || self.restarts()
-    }
 }
 
 fn aim(render: &RenderSettings) -> impl PartialEq {
@@ -136,12 +116,12 @@ fn aim(render: &RenderSettings) -> impl PartialEq {
     (samples, time_s, noise, min_samples, render.is_adaptive())
 }
 
-fn shine_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
-    let shine = |light: &AreaLight| (light.color, light.strength);
-    old.iter().map(shine).eq(new.iter().map(shine))
+fn emit_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
+    let emission = |light: &AreaLight| (light.color, light.strength);
+    old.iter().map(emission).eq(new.iter().map(emission))
 }
 
-fn stand_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
+fn have_same_shapes(old: &[AreaLight], new: &[AreaLight]) -> bool {
     old.iter().map(AreaLight::shape).eq(new.iter().map(AreaLight::shape))
 }
 

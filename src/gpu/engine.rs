@@ -39,9 +39,9 @@ pub struct GpuEngine {
     /// Pixel samples a second, to cut work to a budget; 0 before the first slice.
     samples_per_second: f64,
     timer: Option<Timer>,
-    /// Threads of software Vulkan, each of which gets as many neighbouring workgroups: what is dealt to them costs each as
-    /// much. 1 on a GPU, which gives each of its units the next one.
-    hands: usize,
+    /// Groups that tiles are interleaved in: one for each thread of software Vulkan, which takes a run of workgroups and would
+    /// else render cheap background while another renders the model. 1 on a GPU, whose units take one workgroup at a time.
+    groups: usize,
     /// What the dispatches of the job took by the timer.
     gpu_seconds: f64,
 }
@@ -55,7 +55,7 @@ impl GpuEngine {
         let pipelines = Pipelines::new(&gpu)?;
         Ok(Self {
             timer: Timer::new(&gpu),
-            hands: if gpu.is_software() {
+            groups: if gpu.is_software() {
                 std::thread::available_parallelism().map_or(1, usize::from)
             } else {
                 1
@@ -172,7 +172,7 @@ impl GpuEngine {
             first_sample: work.first_sample,
             sample_count: work.count,
         };
-        let tiles: Vec<Tile> = dealt(works, self.hands).map(tile).collect();
+        let tiles: Vec<Tile> = interleaved(works, self.groups).map(tile).collect();
         let begun = Instant::now();
         self.dispatch(&tiles)?;
         let seconds = begun.elapsed().as_secs_f64().max(1e-6);
@@ -243,7 +243,7 @@ impl GpuEngine {
     /// # Errors
     /// If the device fails.
     pub fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
-        // The sums lend their place.
+        // The pass writes into the film's buffers: what they hold is read back first.
         self.flush()?;
         let Some(resources) = &self.resources else {
             return Ok(None);
@@ -300,9 +300,9 @@ impl GpuEngine {
     }
 }
 
-/// All of them in the order in which so many players lay down their cards, one after the other, once they were dealt.
-fn dealt<T>(cards: &[T], hands: usize) -> impl Iterator<Item = &T> {
-    (0..hands).flat_map(move |hand| cards.iter().skip(hand).step_by(hands))
+/// The items of `groups` interleaved groups, one group after the other: 0, n, 2n, …, then 1, n + 1, …
+fn interleaved<T>(items: &[T], groups: usize) -> impl Iterator<Item = &T> {
+    (0..groups).flat_map(move |group| items.iter().skip(group).step_by(groups))
 }
 
 /// Runs a pass over tiles, and waits for its end.
@@ -321,11 +321,11 @@ fn dispatch(
 
 #[cfg(test)]
 mod tests {
-    use super::dealt;
+    use super::interleaved;
 
     #[test]
-    fn every_tile_is_dealt_and_neighbours_go_to_different_hands() {
-        let of = |hands| dealt(&[0, 1, 2, 3, 4, 5, 6], hands).copied().collect::<Vec<_>>();
+    fn every_tile_is_in_a_group_and_neighbours_are_in_different_ones() {
+        let of = |groups| interleaved(&[0, 1, 2, 3, 4, 5, 6], groups).copied().collect::<Vec<_>>();
         assert_eq!(of(1), [0, 1, 2, 3, 4, 5, 6]);
         assert_eq!(of(2), [0, 2, 4, 6, 1, 3, 5]);
         assert_eq!(of(9), [0, 1, 2, 3, 4, 5, 6]);

@@ -20,6 +20,14 @@ named! {
 }
 
 impl Curve {
+    /// True where D(ξ) is at most 1 whatever ξ.
+    pub fn is_within_unit(self) -> bool {
+        match self {
+            Self::Linear | Self::Sqrt | Self::Cbrt | Self::Smooth => true,
+            Self::LongTail | Self::Custom => false,
+        }
+    }
+
     /// D(ξ) written out.
     pub fn formula(self) -> &'static str {
         match self {

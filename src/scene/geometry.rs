@@ -117,11 +117,6 @@ impl Geometry {
         self.sort_by_leaves();
     }
 
-    /// Levels of the hierarchy.
-    pub fn hierarchy_depth(&self) -> usize {
-        bvh::depth(&self.bvh)
-    }
-
     /// The material of the ground, for the slot after the model's.
     pub fn ground_slot() -> Slot {
         Slot::neutral("ground")

@@ -492,17 +492,17 @@ fn every_edit_is_the_change_that_it_is() {
 #[test]
 fn changes_say_what_follows() {
     let (none, all) = (Change::default(), Change::everything());
-    assert!(none.is_none() && !none.restarts() && !none.needs_display());
-    assert!(all.restarts() && all.needs_geometry() && all.needs_environment() && all.needs_materials());
+    assert!(none.is_none() && !none.restarts());
+    assert!(all.restarts() && all.geometry && all.environment && all.materials);
     let display = Change { display: true, ..none };
-    assert!(!display.restarts() && display.needs_display());
+    assert!(!display.restarts() && display.display);
     let target = Change { target: true, ..none };
-    assert!(!target.restarts() && !target.is_none() && !target.needs_display());
+    assert!(!target.restarts() && !target.is_none());
     let geometry = Change { geometry: true, ..none };
-    assert!(geometry.restarts() && geometry.needs_geometry() && geometry.needs_materials() && geometry.needs_display());
-    assert!(!geometry.needs_environment());
+    assert!(geometry.restarts() && geometry.geometry);
+    assert!(!geometry.environment);
     let camera = Change { camera: true, ..none };
-    assert!(camera.restarts() && !camera.needs_geometry() && !camera.needs_materials());
+    assert!(camera.restarts() && !camera.geometry && !camera.materials);
 }
 
 #[test]

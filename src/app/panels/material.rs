@@ -148,10 +148,10 @@ impl SlotPicture {
     }
 }
 
-/// At most so many texels each way of a picture are shown.
+/// Most texels to a side of the small copy that is shown.
 const SMALL_SIDE: u32 = 64;
 
-/// Every so manieth texel of a picture.
+/// A picture reduced to at most [`SMALL_SIDE`] texels a side, by the nearest texel.
 fn small_copy(picture: &Texture) -> egui::ColorImage {
     let [width, height] = [picture.width, picture.height].map(|side| side.clamp(1, SMALL_SIDE));
     let pixels = (0..width * height).map(|i| {

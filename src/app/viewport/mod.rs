@@ -1,4 +1,4 @@
-//! The picture, and the camera in the hand.
+//! The picture, and the camera that the pointer moves.
 //!
 //! As in Marmoset and Substance, with or without alt: left drag turns, middle drag (or ctrl and left) pans, right drag
 //! and the wheel zoom, shift and left turns the light. As in Blender: shift and middle pans. A click selects the

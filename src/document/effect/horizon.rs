@@ -41,7 +41,9 @@ pub(super) fn decide(facts: &Facts<'_>) -> Decision {
 fn stays_above(facts: &Facts<'_>) -> bool {
     let is_bounded = |material: &Material<f32>| {
         material.lobe == Lobe::Geometric as u32
-            && material.curve <= Curve::Smooth as u32
+            && Curve::ALL
+                .iter()
+                .any(|curve| *curve as u32 == material.curve && curve.is_within_unit())
             && material.anisotropy == 0.0
             && !material.is_textured()
             && material.coat_weight == 0.0
