@@ -8,6 +8,7 @@ use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::document::Document;
+use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -241,4 +242,72 @@ fn the_palette_leads_to_parameters_and_panels() {
         harness.query_by_label("Samples view angle").is_some(),
         "the panel is in front"
     );
+}
+
+/// Brings the curve's panel to the front and makes the curve a custom one, by the button or by the menu.
+fn make_custom(harness: &mut Editor, is_by_button: bool) {
+    harness.state_mut().reveal(Pane::Curve);
+    harness.run_steps(3);
+    if is_by_button {
+        harness.get_by_label("Edit as custom").click();
+    } else {
+        harness.get_by_role_and_label(Role::ComboBox, "Curve shape").click();
+        harness.run_steps(3);
+        harness
+            .get_by_role_and_label(Role::Button, Curve::Custom.label())
+            .click();
+    }
+    harness.run_steps(4);
+}
+
+#[test]
+fn a_named_curve_becomes_a_custom_one_in_its_panel() {
+    for is_by_button in [true, false] {
+        let mut harness = editor();
+        let before = harness.state().document().clone();
+        make_custom(&mut harness, is_by_button);
+        settle(&mut harness);
+        assert_eq!(harness.state().document().materials[0].curve, Curve::Custom);
+        assert!(harness.query_by_label("Edit as custom").is_none());
+        undo(&mut harness);
+        assert_eq!(*harness.state().document(), before);
+    }
+}
+
+#[test]
+fn a_point_that_undo_takes_away_while_it_is_dragged_is_let_go() {
+    let mut harness = editor();
+    make_custom(&mut harness, false);
+    let default = harness.state().document().clone();
+    // Eleven points instead of the default five, the last of which is taken hold of.
+    harness.get_by_role_and_label(Role::ComboBox, "Curve shape").click();
+    harness.run_steps(3);
+    harness
+        .get_by_role_and_label(Role::Button, Curve::Smooth.label())
+        .click();
+    harness.run_steps(3);
+    harness.get_by_label("Edit as custom").click();
+    harness.run_steps(4);
+    let plot = harness.get_by_label("The curve D over ξ").rect();
+    let last = plot.right_top() + plot.size() * Vec2::new(-0.03 / 1.06, 0.06 / 1.12);
+    harness.hover_at(last);
+    harness.step();
+    harness.drag_at(last);
+    harness.step();
+    harness.hover_at(last - Vec2::new(0.0, 20.0));
+    harness.step();
+    let dragged = harness.state().document().materials[0].custom_curve.clone();
+    assert!(
+        dragged.points()[dragged.points().len() - 1][1] > 1.0,
+        "the point follows"
+    );
+    while *harness.state().document() != default {
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.step();
+    }
+    harness.hover_at(last - Vec2::new(0.0, 40.0));
+    harness.step();
+    harness.drop_at(last);
+    harness.run_steps(2);
+    assert_eq!(*harness.state().document(), default);
 }
