@@ -22,13 +22,18 @@ use super::worker::small_document;
 
 /// A file with a square whose colour and roughness are pictures.
 fn textured_file(folder: &Folder) -> std::path::PathBuf {
+    let path = folder.path("square.glb");
+    write_textured_square(&path);
+    path
+}
+
+/// Writes a square whose colour and roughness are pictures.
+pub(super) fn write_textured_square(path: &std::path::Path) {
     let material = json!({"pbrMetallicRoughness": {
         "baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 1}
     }});
     let (buffer, document) = textured_square(&material, &[four_texels(), four_texels()], &json!({}));
-    let path = folder.path("square.glb");
-    std::fs::write(&path, glb(&document, &buffer.bytes)).expect("a temporary file");
-    path
+    std::fs::write(path, glb(&document, &buffer.bytes)).expect("a temporary file");
 }
 
 #[test]
@@ -60,6 +65,72 @@ fn textures_have_rows_that_switch_them() {
         assert_eq!(*harness.state().document(), before);
         assert!(picture(&harness) == textured, "{label}: undo");
     }
+}
+
+/// Files given at the start are where editing begins; undo does not go behind them.
+#[test]
+fn undo_stops_at_the_files_given_at_the_start() {
+    let folder = Folder::new();
+    let light = folder.path("orange.hdr");
+    write_hdr(&light, 16, 8, |_, _| [1.0, 0.4, 0.1]);
+    let mut harness = editor_with(small_document(), vec![textured_file(&folder), light]);
+    settle(&mut harness);
+    let start = harness.state().document().clone();
+    assert!(matches!(start.model, ModelSource::File(_)), "{:?}", start.model);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .set_value_accesskit(0.85);
+    settle(&mut harness);
+    assert_ne!(*harness.state().document(), start);
+    for _ in 0..3 {
+        undo(&mut harness);
+    }
+    assert_eq!(*harness.state().document(), start);
+}
+
+#[test]
+fn redo_comes_back_to_the_slot_that_was_selected_of_the_model() {
+    let mut harness = editor();
+    request(&mut harness, Action::UseModel(ModelSource::Shaderball));
+    wait(&mut harness, "the model", |app| {
+        app.document().model == ModelSource::Shaderball
+    });
+    settle(&mut harness);
+    request(&mut harness, Action::SelectSlot(1));
+    undo(&mut harness);
+    assert_eq!(harness.state().document().model, ModelSource::Sphere);
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    settle(&mut harness);
+    let before = harness.state().document().materials.clone();
+    request(
+        &mut harness,
+        Action::UseMaterial(Box::new(glossmith::store::PRESETS[5].clone())),
+    );
+    let after = harness.state().document().materials.clone();
+    assert_eq!(after[0], before[0]);
+    assert_eq!(after[1], glossmith::store::PRESETS[5]);
+}
+
+/// Tab goes from control to control, not to the labels before them.
+#[test]
+fn tab_stops_on_controls_only() {
+    let mut harness = editor();
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .focus();
+    harness.run_steps(2);
+    let mut seen = Vec::new();
+    for _ in 0..6 {
+        harness.key_press(Key::Tab);
+        harness.run_steps(2);
+        let nodes = harness.root().children_recursive();
+        let focused = nodes.map(|node| node.accesskit_node()).find(|node| node.is_focused());
+        seen.extend(focused.map(|node| (node.role(), node.label())));
+    }
+    assert!(
+        seen.len() > 3 && seen.iter().all(|(role, _)| *role != Role::Label),
+        "{seen:?}"
+    );
 }
 
 #[test]
