@@ -2,10 +2,10 @@
 # ARGS is handed on: make run ARGS="render --material gold --output gold.png"
 
 .DEFAULT_GOAL := help
-.PHONY: help run test bench pictures
+.PHONY: help run test test-thorough bench pictures
 
 help: ## Print this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 run: ## Open the editor (without a display: render the default scene to a picture)
 	@scripts/setup run
@@ -18,6 +18,9 @@ test: ## Check format and lints, then run every test
 	@if cargo clippy --version >/dev/null 2>&1; then set -x; cargo clippy --all-targets -- -D warnings; \
 	else echo "note: clippy is not installed, lints are not checked (rustup component add clippy)"; fi
 	cargo test $(ARGS)
+
+test-thorough: export GLOSSMITH_THOROUGH = 1
+test-thorough: test ## The same, and for an hour more: what is tried at random is tried more often
 
 bench: ## Measure what docs/PERFORMANCE.md quotes
 	cargo bench $(ARGS)

@@ -5,6 +5,7 @@
 //! [`render`] also [`analysis`] ← [`plot`] ← [`document`] ← [`store`].
 
 pub mod named;
+pub mod panics;
 
 pub mod optics;
 pub mod scene;

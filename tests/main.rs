@@ -17,6 +17,8 @@ mod cli_support;
 mod coat;
 #[path = "suite/compare.rs"]
 mod compare;
+#[path = "suite/crashed.rs"]
+mod crashed;
 #[path = "suite/density.rs"]
 mod density;
 #[path = "suite/desktop.rs"]
@@ -57,6 +59,10 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/monkey.rs"]
+mod monkey;
+#[path = "suite/monkey_deeds.rs"]
+mod monkey_deeds;
 #[path = "suite/noise.rs"]
 mod noise;
 #[path = "suite/nothing_lost.rs"]

@@ -4,11 +4,12 @@ use super::actions::{Action, Command};
 use super::layout::{self, Pane};
 use super::menu::Sheet;
 use super::{App, library, palette, panels, snapshots, widgets};
-use crate::document::{CameraSettings, MaterialSettings, PARAMETERS};
+use crate::document::{CameraSettings, Document, MaterialSettings, PARAMETERS};
 use crate::scene::camera::framing_distance;
 
 impl App {
     pub(super) fn apply(&mut self, ctx: &egui::Context, action: Action) {
+        self.autosave.witness.note(format!("{action:?}"));
         match action {
             Action::Do(command) => self.command(ctx, command),
             Action::Open(path) => {
@@ -53,14 +54,12 @@ impl App {
         log::debug!("{}", command.label());
         match command {
             Command::Undo => {
-                if let Some(document) = self.edits.undo() {
-                    self.document = document;
-                }
+                let document = self.edits.undo();
+                self.step_to(document);
             }
             Command::Redo => {
-                if let Some(document) = self.edits.redo() {
-                    self.document = document;
-                }
+                let document = self.edits.redo();
+                self.step_to(document);
             }
             Command::ResetMaterial => {
                 let name = self.desk_material().name;
@@ -110,6 +109,8 @@ impl App {
             Command::Restart => {
                 self.worker.restart();
                 self.restart_rival();
+                // With the viewport's size, where the picture had been kept at another.
+                self.submitted = None;
             }
             Command::Compare => self.toggle_compare(),
             Command::SwapCompared => self.swap_compared(),
@@ -141,6 +142,19 @@ impl App {
             Command::SaveToMyPresets => self.change_library(library::Change::Add),
             of_files => self.file_command(ctx, of_files),
         }
+    }
+
+    /// Goes to another step of the history. Where that has another model, the slot is the one that was selected of it last.
+    fn step_to(&mut self, document: Option<Document>) {
+        let Some(document) = document else { return };
+        if document.model != self.document.model {
+            let left = std::mem::replace(&mut self.document.model, document.model.clone());
+            self.panels.slots_of.retain(|(model, _)| *model != left);
+            self.panels.slots_of.push((left, self.panels.slot));
+            let known = self.panels.slots_of.iter().find(|(model, _)| *model == document.model);
+            self.panels.slot = known.map_or(0, |(_, slot)| *slot);
+        }
+        self.document = document;
     }
 
     pub(super) fn use_material(&mut self, material: MaterialSettings) {

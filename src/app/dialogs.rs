@@ -75,6 +75,8 @@ pub(super) struct Dialogs {
     pending: Option<Pending>,
     field: Option<PathField>,
     folder: Option<PathBuf>,
+    /// Paths are typed even where the system has dialogs.
+    is_typed: bool,
 }
 
 struct Pending {
@@ -91,6 +93,20 @@ struct PathField {
 }
 
 impl Dialogs {
+    /// Paths are typed, never chosen in the system's dialog; they begin in a folder.
+    pub(super) fn typed(folder: PathBuf) -> Self {
+        Self {
+            folder: Some(folder),
+            is_typed: true,
+            ..Self::default()
+        }
+    }
+
+    /// The folder of the file that was chosen last, if any.
+    pub(super) fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
     /// Whether the path field is open.
     pub(super) fn is_open(&self) -> bool {
         self.field.is_some()
@@ -104,6 +120,10 @@ impl Dialogs {
     /// Asks for a file, unless a dialog is open already. `suggestion` is a file's name to save under.
     pub(super) fn ask(&mut self, purpose: Purpose, suggestion: String, ctx: &egui::Context) {
         if self.pending.is_some() || self.field.is_some() {
+            return;
+        }
+        if self.is_typed {
+            self.open_field(purpose, &suggestion);
             return;
         }
         let (name, endings) = purpose.kind();

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use super::App;
 use super::actions::Command;
 use super::dialogs::Purpose;
-use super::disk::{Disk, Done, words};
+use super::disk::{Disk, Done, Task, words};
+use super::edits::Edits;
 use super::take_picture::Destination;
 use super::unsaved::Then;
 use crate::document::Document;
@@ -78,7 +79,7 @@ impl App {
         match kind_of(&path) {
             FileKind::Model => self.worker.open_model(ModelSource::File(path)),
             FileKind::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
-            FileKind::Document => self.files.disk.read(move || {
+            FileKind::Document => self.files.disk.open(move || {
                 let opened = file::open(&path);
                 Done::Read(path, opened)
             }),
@@ -125,6 +126,14 @@ impl App {
                     let (level, text) = words(result);
                     self.say(level, text);
                 }
+                Done::Broke(task, why) => {
+                    has_failed |= task == Task::Write;
+                    self.awaited = self.awaited.saturating_sub(usize::from(task == Task::Open));
+                    self.say(
+                        Level::Error,
+                        format!("reading or writing a file failed by an internal error: {why}"),
+                    );
+                }
             }
         }
         self.go_on_after_save(ctx, has_failed);
@@ -145,17 +154,24 @@ impl App {
                 self.adopt_picture(*loaded, &path);
                 self.count_as_start(is_at_start && is_saved);
             }
-            Ok(Opened::Document(loaded)) => self.unless_unsaved(ctx, Then::Adopt(loaded, path)),
+            Ok(Opened::Document(loaded)) => {
+                let is_saved = self.edits.is_saved(&self.document);
+                self.unless_unsaved(ctx, Then::Adopt(loaded, path));
+                if is_at_start && is_saved {
+                    self.edits = Edits::new(self.document.clone());
+                }
+            }
             Err(error) => self.say(Level::Error, error.to_string()),
         }
         self.awaited = self.awaited.saturating_sub(1);
     }
 
-    /// Files given at the start are where editing begins, not edits that could be lost; a project's changes are.
+    /// Files given at the start are where editing begins, not edits that could be lost or taken back; a project's changes
+    /// are.
     pub(super) fn count_as_start(&mut self, is_start: bool) {
         self.edits.record(&self.document, false);
         if is_start && self.files.project.is_none() {
-            self.edits.mark_saved();
+            self.edits = Edits::new(self.document.clone());
         }
     }
 
@@ -239,8 +255,10 @@ impl App {
                 self.open(path);
             }
             Purpose::OpenMeasured => self.panels.lobe.measured = Some(path),
-            Purpose::SaveProject => self.save_project(with_ending(path, "json")),
-            Purpose::SaveMaterial => self.save_material(with_ending(path, "json")),
+            // The ending says what is saved: a picture has the document inside, too.
+            Purpose::SaveProject if is_picture(&path) => self.want_picture(Destination::File(path)),
+            Purpose::SaveProject => self.save_project(as_json(path)),
+            Purpose::SaveMaterial => self.save_material(as_json(path)),
             Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
             Purpose::SaveWindow => self.window_picture = Some(path.with_extension("png")),
             Purpose::SavePicture => self.want_picture(Destination::File(with_ending(path, "png"))),
@@ -271,11 +289,49 @@ impl App {
     }
 }
 
+/// Whether a file of this name is a picture.
+fn is_picture(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    ["png", "exr", "hdr"].contains(&ending.to_ascii_lowercase().as_str())
+}
+
+/// The path with the ending of what is written as JSON, after any other that it has: that would say something else.
+fn as_json(path: PathBuf) -> PathBuf {
+    if path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+    {
+        return path;
+    }
+    let mut name = path.into_os_string();
+    name.push(".json");
+    name.into()
+}
+
 /// The path, with an ending where it has none.
 fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
     if path.extension().is_some() {
         path
     } else {
         path.with_extension(ending)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_saved_as_json_is_called_so() {
+        for (typed, named) in [
+            ("a.json", "a.json"),
+            ("a.JSON", "a.JSON"),
+            ("a", "a.json"),
+            ("a.2", "a.2.json"),
+            ("a.png", "a.png.json"),
+        ] {
+            assert_eq!(as_json(typed.into()), PathBuf::from(named));
+        }
+        assert!(is_picture(Path::new("001.PNG")) && !is_picture(Path::new("001")));
     }
 }

@@ -149,7 +149,7 @@ impl App {
     /// Lists the user's folder, beside the window.
     pub(super) fn list_library(&mut self) {
         if let Some(folder) = self.panels.library.folder.clone() {
-            self.files.disk.read(move || {
+            self.files.disk.list(move || {
                 Done::Listed(library::list(&folder).map(|entries| Listed {
                     words: String::new(),
                     entries,

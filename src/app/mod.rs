@@ -8,6 +8,7 @@ pub mod actions;
 mod autosave;
 mod commands;
 pub mod compare;
+mod crash;
 mod dialogs;
 mod disk;
 mod edits;
@@ -41,8 +42,9 @@ use std::time::{Duration, Instant};
 use egui::Ui;
 use egui_tiles::Tree;
 
-use actions::Action;
+use actions::{Action, Command};
 use autosave::{Autosave, Leftover};
+pub use crash::report_panics;
 use dialogs::Dialogs;
 use edits::Edits;
 use layout::Pane;
@@ -61,6 +63,8 @@ use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Wor
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelSource};
 
+/// A picture that has cost this much time keeps its size while nothing but the viewport's size changes.
+const KEPT_FROM: Duration = Duration::from_secs(10);
 /// Changes that follow each other within this are rendered as moving.
 const MOVING: Duration = Duration::from_millis(150);
 
@@ -77,6 +81,7 @@ pub fn run(files: Vec<PathBuf>, engine: EngineChoice) -> anyhow::Result<()> {
         ..Options::default()
     };
     crate::render::priority::let_rendering_give_way();
+    report_panics();
     let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, options)?)));
     eframe::run_native("Glossmith", settings::native_options(), create).map_err(|error| {
         anyhow::anyhow!(
@@ -104,6 +109,10 @@ pub struct Options {
     pub cache: Option<PathBuf>,
     /// At least so long between two copies of unsaved edits, instead of 5 s.
     pub autosave_interval: Option<Duration>,
+    /// The render time from which a picture keeps its size when the viewport gets another, instead of 10 s.
+    pub keep_pictures_from: Option<Duration>,
+    /// Files are chosen by typing a path that begins with this folder, even where the system has a dialog for it.
+    pub typed_paths: Option<PathBuf>,
 }
 
 /// The editor.
@@ -113,6 +122,9 @@ pub struct App {
     worker: Worker,
     /// The document as last submitted, with its size.
     submitted: Option<Document>,
+    /// What its size followed from.
+    submitted_resolution: Resolution,
+    keep_pictures_from: Duration,
     submitted_at: Instant,
     /// The submission's revision.
     revision: u64,
@@ -158,6 +170,8 @@ impl App {
             document,
             worker,
             submitted: None,
+            submitted_resolution: Resolution::default(),
+            keep_pictures_from: options.keep_pictures_from.unwrap_or(KEPT_FROM),
             submitted_at: Instant::now(),
             revision: 0,
             queue: Vec::new(),
@@ -175,7 +189,7 @@ impl App {
             layout: kept.layout.unwrap_or_else(layout::default_layout),
             is_maximised: false,
             viewport: Viewport::default(),
-            dialogs: Dialogs::default(),
+            dialogs: options.typed_paths.map(Dialogs::typed).unwrap_or_default(),
             sheet: Sheet::None,
             turntable: TurntableSheet::default(),
             files: files::Files::new(creation.egui_ctx.clone())?,
@@ -314,13 +328,16 @@ impl App {
     /// Records the frame's edit and hands the renderer what differs from what it has.
     fn record_and_submit(&mut self, ctx: &egui::Context) {
         let is_dragging = ctx.input(|input| input.pointer.any_down());
-        self.edits.record(&self.document, is_dragging);
+        if self.edits.record(&self.document, is_dragging) {
+            let label = self.edits.undo_label().unwrap_or("an edit taken back");
+            self.autosave.witness.note(label);
+        }
         if self.awaited > 0 {
             return;
         }
         let mut wanted = self.document.clone();
         match self.viewport.fill_size(self.panels.resolution) {
-            Some([width, height]) => (wanted.render.width, wanted.render.height) = (width, height),
+            Some(size) => self.set_size(&mut wanted, size),
             // The first frame has not been laid out: the size would be wrong.
             None if self.panels.resolution != Resolution::Document => return,
             None => {}
@@ -337,7 +354,27 @@ impl App {
         }
         self.revision = self.worker.submit(&wanted, pace);
         self.submitted = Some(wanted);
+        self.submitted_resolution = self.panels.resolution;
         self.submitted_at = Instant::now();
+    }
+
+    /// Gives a document that is to be rendered the viewport's size, unless nothing else would make the renderer start over
+    /// and the picture has cost too much for that.
+    fn set_size(&self, wanted: &mut Document, [width, height]: [u32; 2]) {
+        (wanted.render.width, wanted.render.height) = (width, height);
+        let Some(old) = &self.submitted else { return };
+        let old_size = (old.render.width, old.render.height);
+        if old_size == (width, height) || self.submitted_resolution != self.panels.resolution {
+            return;
+        }
+        let snapshot = self.worker.snapshot();
+        let is_its_picture = |picture: &Picture| picture.revision == self.revision && picture.reduction == 1;
+        let is_costly = snapshot.progress.render_seconds >= self.keep_pictures_from.as_secs_f64()
+            && snapshot.picture.as_deref().is_some_and(is_its_picture);
+        (wanted.render.width, wanted.render.height) = old_size;
+        if !is_costly || Change::between(old, wanted).restarts() {
+            (wanted.render.width, wanted.render.height) = (width, height);
+        }
     }
 
     /// Small pictures of materials wait until the picture is there, and while something is being changed.
@@ -408,6 +445,9 @@ impl App {
     }
 
     fn put_aside(&mut self, ctx: &egui::Context) {
+        if let Some(engine) = &self.worker.snapshot().engine {
+            self.autosave.witness.see_engine(&engine.to_string());
+        }
         let is_saved = self.edits.is_saved(&self.document);
         let project = self.files.project.as_deref();
         if let Some(wait) = self.autosave.watch(&self.document, project, is_saved) {
@@ -433,6 +473,9 @@ impl eframe::App for App {
         self.take_events(&ctx);
         self.picture_window(&ctx);
         let mut actions = std::mem::take(&mut self.queue);
+        if self.panels.study_ended() && self.panels.is_paused {
+            actions.push(Action::Do(Command::Pause));
+        }
         if !self.is_covered() {
             actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
         }

@@ -70,7 +70,7 @@ impl App {
     /// Lists the pinned states, beside the window.
     pub(super) fn list_snapshots(&mut self) {
         if let Some(folder) = self.panels.snapshots.folder.clone() {
-            self.files.disk.read(move || {
+            self.files.disk.list(move || {
                 Done::ListedPins(snapshots::list(&folder).map(|(pinned, errors)| PinsListed {
                     words: String::new(),
                     pinned,

@@ -197,9 +197,15 @@ fn samples(progress: &Progress) -> String {
     format!("{most} / {} samples{mean}", progress.samples_wanted)
 }
 
+/// Less than this is not told apart from nothing, percent.
+const PERCENT_MIN: f64 = 0.0001;
+
 /// A share as a percentage with three digits.
 pub(super) fn percent(share: f64) -> String {
     let value = 100.0 * share;
+    if value > 0.0 && value < PERCENT_MIN {
+        return format!("< {PERCENT_MIN} %");
+    }
     let decimals = match value {
         v if v >= 100.0 => 0,
         v if v >= 10.0 => 1,
@@ -237,8 +243,9 @@ mod tests {
         assert_eq!(short_number(1234.0), "1.23 k");
         assert_eq!(short_number(45_670_000.0), "45.7 M");
         assert_eq!(short_number(3.21e11), "321 G");
-        let percents = [0.0, 0.000_412, 0.0123, 0.5, 2.0].map(percent);
-        assert_eq!(percents, ["0.00 %", "0.0412 %", "1.23 %", "50.0 %", "200 %"]);
+        let percents = [0.0, 2e-9, 0.000_412, 0.0123, 0.5, 2.0].map(percent);
+        let expected = ["0.00 %", "< 0.0001 %", "0.0412 %", "1.23 %", "50.0 %", "200 %"];
+        assert_eq!(percents, expected);
     }
 
     #[test]

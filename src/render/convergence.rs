@@ -162,8 +162,10 @@ impl Convergence {
             _ => paced.max(GROWTH_WATCHED),
         };
         let growth = growth.max(growth_min);
-        let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0);
-        self.goals = vec![(goal as u32).min(settings.samples); samples.len()];
+        let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0) as u32;
+        // With two samples of every pixel the error can be told for the first time.
+        let goal = if most < 2 { goal.min(2) } else { goal };
+        self.goals = vec![goal.min(settings.samples); samples.len()];
     }
 }
 

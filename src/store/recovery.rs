@@ -2,7 +2,8 @@
 //!
 //! Every window has a file of its own in one folder, and holds a lock on another beside it for as long as it lives. The
 //! system lets go of the lock however the window ends: a file that is not locked was left by a crash. The files are
-//! project files with one more key, so that they can be opened by hand, too.
+//! project files with one more key, so that they can be opened by hand, too. A window that panicked has written a report
+//! beside its file; reports stay when what was put aside goes, the latest few of them.
 
 use std::fs::{self, File, OpenOptions};
 use std::io;
@@ -20,12 +21,26 @@ const KEY: &str = "glossmith-recovery";
 /// The file that is locked while others are made, looked for and removed.
 const GUARD: &str = "folder.lock";
 
+/// The name of the line of a report that says what the panic said.
+pub const MESSAGE: &str = "Message";
+/// Most reports that are kept.
+const REPORTS: usize = 8;
+
 /// A file for an unsaved document. While this lives nobody else takes the file.
 #[derive(Debug)]
 pub struct Slot {
     path: PathBuf,
     /// Locked.
     _lock: File,
+}
+
+/// What a panic wrote.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// The text file.
+    pub path: PathBuf,
+    /// What the latest panic in it said.
+    pub message: String,
 }
 
 /// What a crash left.
@@ -74,10 +89,23 @@ impl Slot {
     /// # Errors
     /// [`FileError`] where it can't be written; the last one is then still there.
     pub fn save(&self, document: &Document, project: Option<&Path>) -> Result<(), FileError> {
-        let mut document = document.clone();
-        let project = project.and_then(Path::to_str);
-        document.extra.insert(KEY.to_owned(), json!({ "project": project }));
-        project::save_document(&self.path, &document)
+        put_aside(&self.path, document, project)
+    }
+
+    /// Whether something was put aside.
+    pub fn has_document(&self) -> bool {
+        self.path.exists()
+    }
+
+    /// The report of a panic, where there was one.
+    pub fn report(&self) -> Option<Report> {
+        let path = report_path(&self.path);
+        let text = String::from_utf8_lossy(&fs::read(&path).ok()?).into_owned();
+        let messages = text
+            .lines()
+            .filter_map(|line| line.strip_prefix(MESSAGE)?.strip_prefix(": "));
+        let message = messages.last().unwrap_or_default().to_owned();
+        Some(Report { path, message })
     }
 
     /// What is in the file.
@@ -140,7 +168,8 @@ pub fn leftovers(folder: &Path) -> Result<Vec<Slot>, FileError> {
             continue;
         }
         let document = path.with_extension("json");
-        match fs::metadata(&document).and_then(|metadata| metadata.modified()) {
+        let modified = |path: &Path| fs::metadata(path).and_then(|metadata| metadata.modified());
+        match modified(&document).or_else(|_| modified(&report_path(&document))) {
             Ok(at) => found.push((
                 at,
                 Slot {
@@ -153,7 +182,40 @@ pub fn leftovers(folder: &Path) -> Result<Vec<Slot>, FileError> {
         }
     }
     found.sort_by_key(|(at, _)| std::cmp::Reverse(*at));
+    remove_old_reports(folder);
     Ok(found.into_iter().map(|(_, slot)| slot).collect())
+}
+
+/// Writes a document to the file of a [`Slot`]; `project` is the file that it belongs to.
+///
+/// # Errors
+/// [`FileError`] where it can't be written; what was there is then still there.
+pub fn put_aside(path: &Path, document: &Document, project: Option<&Path>) -> Result<(), FileError> {
+    let mut document = document.clone();
+    let project = project.and_then(Path::to_str);
+    document.extra.insert(KEY.to_owned(), json!({ "project": project }));
+    project::save_document(path, &document)
+}
+
+/// The report that belongs to the file of a [`Slot`].
+pub fn report_path(path: &Path) -> PathBuf {
+    path.with_extension("txt")
+}
+
+/// Leaves the latest reports, and those that belong to what was put aside.
+fn remove_old_reports(folder: &Path) {
+    let entries = fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path());
+    let is_old = |path: &PathBuf| path.extension() == Some("txt".as_ref()) && !lock_path(path).exists();
+    let mut reports: Vec<PathBuf> = entries.filter(is_old).collect();
+    reports.sort_by_key(|path| std::cmp::Reverse(fs::metadata(path).and_then(|metadata| metadata.modified()).ok()));
+    for path in reports.iter().skip(REPORTS) {
+        // Where it can't be removed it does no harm.
+        let _ = fs::remove_file(path);
+    }
 }
 
 fn lock_path(path: &Path) -> PathBuf {

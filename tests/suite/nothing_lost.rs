@@ -17,7 +17,7 @@ use glossmith::store::{PRESETS, load_document, save_document};
 use super::ui::{Editor, editor_of, options, request, see, wait};
 
 /// An editor that keeps unsaved edits in a folder.
-fn keeping_editor(data: &Path) -> Editor {
+pub(super) fn keeping_editor(data: &Path) -> Editor {
     editor_of(Options {
         data: Some(data.to_owned()),
         autosave_interval: Some(Duration::from_millis(20)),
@@ -25,7 +25,7 @@ fn keeping_editor(data: &Path) -> Editor {
     })
 }
 
-fn edit(harness: &mut Editor, roughness: f32) {
+pub(super) fn edit(harness: &mut Editor, roughness: f32) {
     harness.run_steps(3);
     harness
         .get_by_role_and_label(Role::SpinButton, "Specular roughness")

@@ -7,19 +7,20 @@ use std::path::{Path, PathBuf};
 /// Each folder of `src/` with all others that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("named", &[]),
+    ("panics", &[]),
     ("optics", &["named"]),
-    ("scene", &["named", "optics"]),
+    ("scene", &["named", "panics", "optics"]),
     ("job", &["named", "optics", "scene"]),
     ("cpu", &["named", "optics", "scene", "job"]),
     ("gpu", &["named", "optics", "scene", "job"]),
-    ("analysis", &["named", "optics", "scene", "job"]),
+    ("analysis", &["named", "panics", "optics", "scene", "job"]),
     ("plot", &["named", "optics", "job", "analysis"]),
     ("document", &["named", "optics", "scene", "job", "analysis", "plot"]),
     ("store", &["named", "optics", "scene", "document"]),
     (
         "render",
         &[
-            "named", "optics", "scene", "job", "cpu", "gpu", "analysis", "plot", "document", "store",
+            "named", "panics", "optics", "scene", "job", "cpu", "gpu", "analysis", "plot", "document", "store",
         ],
     ),
     (
@@ -31,7 +32,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "app",
         &[
-            "named", "optics", "scene", "job", "analysis", "plot", "document", "store", "render",
+            "named", "panics", "optics", "scene", "job", "analysis", "plot", "document", "store", "render",
         ],
     ),
 ];

@@ -73,6 +73,19 @@ fn a_document_becomes_its_picture() {
     assert_eq!(*picture.image, session.image().expect("no GPU to fail"));
 }
 
+/// The panel says so: once every pixel has two samples.
+#[test]
+fn the_error_is_known_from_the_second_sample_on() {
+    let mut document = small_document();
+    document.render.samples = 8;
+    let mut session = glossmith::render::Session::open(EngineChoice::Cpu).expect("the processor");
+    session.submit(&document).expect("a sphere");
+    while session.history().is_empty() {
+        session.step(Duration::from_millis(1)).expect("no GPU to fail");
+    }
+    assert_eq!(session.history()[0].samples_per_pixel, 2.0);
+}
+
 /// Maps of the error and of the samples show what has been rendered; it is not rendered again.
 #[test]
 fn maps_are_shown_without_rendering_again() {

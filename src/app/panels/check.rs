@@ -62,8 +62,10 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         ui.checkbox(&mut state.thorough, "Thorough")
             .on_hover_text("Every lobe at every roughness and angle, with more samples: takes minutes.");
     });
+    widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
     widgets::comes_and_goes(ui, |ui| match worker.latest() {
         None => {}
+        Some(Standing::Checking(_)) if !worker.is_busy() => {}
         Some(Standing::Checking(group)) => {
             ui.horizontal(|ui| {
                 ui.add(egui::Spinner::new().size(12.0));

@@ -176,8 +176,11 @@ fn view(ui: &mut Ui, state: &mut LobeState, query: Query) {
         worker.ask(query.clone());
         state.asked = Some(query);
     }
+    widgets::failure(ui, worker.failure());
     let Some(shown) = worker.latest() else {
-        ui.add(egui::Spinner::new());
+        if worker.is_busy() {
+            ui.add(egui::Spinner::new());
+        }
         return;
     };
     match &*shown {

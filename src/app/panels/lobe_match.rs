@@ -87,6 +87,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, sou
             ui.add(egui::Spinner::new().size(12.0));
         }
     });
+    widgets::failure(ui, worker.failure());
     match worker.latest() {
         None => {}
         Some(Err(why)) => {

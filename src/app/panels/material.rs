@@ -50,8 +50,11 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 /// The model's slots, where there is a choice.
 fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let count = desk.slots();
-    if desk.state.slot >= count {
+    // While a model is loaded nobody knows how many it has.
+    let Some(count) = desk.scene().map(|scene| scene.model.slots.len()) else {
+        return;
+    };
+    if desk.state.slot >= count.max(1) {
         desk.state.slot = 0;
     }
     if count < 2 {

@@ -72,6 +72,11 @@ impl RaceState {
         self.worker.is_running()
     }
 
+    /// See [`StudyWorker::lets_renderer_go`].
+    pub(super) fn lets_renderer_go(&mut self) -> bool {
+        self.worker.lets_renderer_go()
+    }
+
     /// Races when the panel is shown next.
     pub(in crate::app) fn wish(&mut self) {
         self.worker.wish();

@@ -96,10 +96,12 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         worker.ask(query.clone());
         state.asked = Some(query);
     }
+    widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
     match worker.latest() {
-        None => {
+        None if worker.is_busy() => {
             ui.add(egui::Spinner::new());
         }
+        None => {}
         Some(Err(why)) => {
             ui.colored_label(ui.visuals().error_fg_color, why);
         }

@@ -36,6 +36,8 @@ const KEY_POINTS: f64 = 14.0;
 const CHECKER: f32 = 12.0;
 /// How long a message stays, seconds.
 const MESSAGE_SECONDS: f32 = 12.0;
+/// By how much less a picture that fills the viewport may be stretched: what rounding to pixels makes of its shape.
+const STRETCH_MAX: f32 = 0.03;
 /// Largest side of a picture that fills the viewport.
 const SIDE_MAX_PX: u32 = 8192;
 
@@ -62,6 +64,8 @@ pub(super) struct Viewport {
 struct Shown {
     texture: Option<TextureHandle>,
     key: Option<[u64; 2]>,
+    /// Some of it lets through what is behind.
+    is_transparent: bool,
 }
 
 impl Shown {
@@ -70,9 +74,11 @@ impl Shown {
         if self.key == Some(key) {
             return;
         }
+        let image = image();
+        self.is_transparent = is_transparent(&image);
         match &mut self.texture {
-            Some(texture) => texture.set(image(), TextureOptions::LINEAR),
-            None => self.texture = Some(ui.ctx().load_texture("picture", image(), TextureOptions::LINEAR)),
+            Some(texture) => texture.set(image, TextureOptions::LINEAR),
+            None => self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR)),
         }
         self.key = Some(key);
     }
@@ -91,8 +97,7 @@ impl Shown {
             let size = [picture.width as usize, picture.height as usize];
             ColorImage::from_rgba_premultiplied(size, &picture.rgba)
         });
-        let is_opaque = picture.image.pixels.first().is_none_or(|pixel| pixel[3] >= 1.0);
-        if !is_opaque {
+        if self.is_transparent {
             checker(ui, clip.intersect(place));
         }
         self.show(ui, clip, place);
@@ -288,12 +293,22 @@ fn wrapped_deg(angle: f32) -> f32 {
     (angle + 180.0).rem_euclid(360.0) - 180.0
 }
 
-/// Where the picture is shown: over the whole area, or with its own shape in the middle of it, as large as fits.
+fn is_transparent(image: &ColorImage) -> bool {
+    image.pixels.iter().any(|pixel| pixel.a() < 255)
+}
+
+/// Where the picture is shown: over the whole area, or with its own shape in the middle of it, as large as fits. A
+/// picture that was kept while the area got another shape keeps its own, too.
 fn placed(area: Rect, picture: &Picture, resolution: Resolution) -> Rect {
-    if resolution != Resolution::Document {
+    placed_size(area, [picture.width, picture.height], resolution)
+}
+
+fn placed_size(area: Rect, size: [u32; 2], resolution: Resolution) -> Rect {
+    let size = Vec2::from(size.map(|side| side as f32));
+    let stretch = size.x / size.y.max(1.0) * area.height() / area.width().max(1.0);
+    if resolution != Resolution::Document && (stretch - 1.0).abs() < STRETCH_MAX {
         return area;
     }
-    let size = vec2(picture.width as f32, picture.height as f32);
     let scale = (area.width() / size.x).min(area.height() / size.y);
     Rect::from_center_size(area.center(), size * scale)
 }
@@ -425,4 +440,27 @@ fn drop_hint(ui: &Ui, area: Rect) {
         "Drop a model (.glb, .gltf), an environment (.hdr, .exr), a material or project (.json), a picture (.png)";
     ui.painter()
         .text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_transparent_wherever_it_lets_through() {
+        let mut image = ColorImage::filled([3, 2], Color32::GRAY);
+        assert!(!is_transparent(&image));
+        image.pixels[4] = Color32::from_black_alpha(254);
+        assert!(is_transparent(&image));
+    }
+
+    #[test]
+    fn a_picture_fills_the_viewport_unless_that_would_distort_it() {
+        let area = Rect::from_min_size(pos2(10.0, 20.0), vec2(300.0, 200.0));
+        let place = |size| placed_size(area, size, Resolution::Auto);
+        assert_eq!(place([300, 200]), area);
+        assert_eq!(place([151, 100]), area);
+        let kept = place([300, 150]);
+        assert_eq!((kept.size(), kept.center()), (vec2(300.0, 150.0), area.center()));
+    }
 }

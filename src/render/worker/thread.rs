@@ -1,7 +1,5 @@
 //! The worker's thread: takes orders, steps the session, publishes what comes of it.
 
-use std::any::Any;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -11,6 +9,7 @@ use super::{Activity, Event, FIRST_STEP, Level, Orders, Picture, STEP, Scene, Sh
 use crate::document::{Change, Document, ViewSettings};
 use crate::job::film::Image;
 use crate::job::plan::Specialisation;
+use crate::panics::caught;
 use crate::render::assets::Assets;
 use crate::render::display::{Shown, display, map};
 use crate::render::engine::{EngineChoice, EngineKind};
@@ -214,8 +213,7 @@ impl State<'_> {
         self.snapshot.engine = None;
         self.samples_per_second = 0.0;
         self.tell(Activity::Starting);
-        let opened = catch_unwind(AssertUnwindSafe(|| Session::open_fluid(choice, self.assets.clone())))
-            .map_err(|panic| panic_text(&*panic));
+        let opened = caught(|| Session::open_fluid(choice, self.assets.clone()));
         let why = match opened {
             Ok(Ok(session)) => {
                 self.session = Some(session);
@@ -241,14 +239,14 @@ impl State<'_> {
     /// Runs what may fail. Where the GPU does, or something panics, the processor takes over with the same document;
     /// anything else is said and leaves what was there.
     fn guarded(&mut self, work: impl FnOnce(&mut Self) -> Result<(), SessionError>) -> bool {
-        let why = match catch_unwind(AssertUnwindSafe(|| work(self))) {
+        let why = match caught(|| work(self)) {
             Ok(Ok(())) => return true,
             Ok(Err(SessionError::Gpu(error))) => error.to_string(),
             Ok(Err(error)) => {
                 self.say(Level::Error, error.to_string());
                 return false;
             }
-            Err(panic) => panic_text(&*panic),
+            Err(panic) => panic,
         };
         let was_cpu = self
             .snapshot
@@ -304,11 +302,11 @@ impl State<'_> {
 
     /// Tells how loading went; what is being rendered is not touched by a failure.
     fn loaded(&mut self, path: PathBuf, work: impl FnOnce(&mut Self) -> Result<Event, SessionError>) {
-        let event = match catch_unwind(AssertUnwindSafe(|| work(self))) {
+        let event = match caught(|| work(self)) {
             Ok(Ok(event)) => event,
             Ok(Err(error)) => Event::OpenFailed(path, error.to_string()),
             Err(panic) => {
-                let why = format!("{}: reading it failed: {}", path.display(), panic_text(&*panic));
+                let why = format!("{}: reading it failed: {panic}", path.display());
                 Event::OpenFailed(path, why)
             }
         };
@@ -378,21 +376,25 @@ impl State<'_> {
 
     /// From the small picture to the full one.
     fn settle(&mut self) {
-        if let Some(mut stage) = self.stage.clone() {
-            stage.reduction = 1;
-            self.begin(stage);
+        let Some(mut stage) = self.stage.clone() else { return };
+        stage.reduction = 1;
+        if !self.begin(stage)
+            && let Some(small) = &mut self.stage
+        {
+            // It would fail again: the small picture stays until something is changed.
+            small.is_final = true;
         }
     }
 
     /// Hands a stage to the session. Where that fails, what was being rendered goes on.
-    fn begin(&mut self, stage: Stage) {
+    fn begin(&mut self, stage: Stage) -> bool {
         let document = stage.document();
         let engine = self.snapshot.engine.clone();
         let is_taken = self.guarded(|state| state.hand_over(&document))
             // The GPU could not: the processor gets its chance.
             || (self.snapshot.engine != engine && self.guarded(|state| state.hand_over(&document)));
         if !is_taken {
-            return;
+            return false;
         }
         let is_first_look = !stage.is_shown;
         self.stage = Some(stage);
@@ -401,6 +403,7 @@ impl State<'_> {
         if is_first_look {
             self.guarded(Self::note_scene);
         }
+        true
     }
 
     fn hand_over(&mut self, document: &Document) -> Result<(), SessionError> {
@@ -549,8 +552,61 @@ fn shown(image: &Image, view: &ViewSettings) -> Vec<u8> {
     rgba
 }
 
-fn panic_text(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    text.or_else(|| panic.downcast_ref::<String>().cloned())
-        .unwrap_or_else(|| "for an unknown reason".to_owned())
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::worker::{OrderBook, Pace};
+
+    #[test]
+    fn a_full_resolution_that_cannot_be_had_is_tried_once() {
+        let shared = Shared::default();
+        let mut state = State {
+            shared: &shared,
+            repaint: &|| {},
+            assets: Assets::default(),
+            wanted_layers: Vec::new(),
+            session: Some(Session::open(EngineChoice::Cpu).expect("the processor")),
+            snapshot: Snapshot::default(),
+            stage: None,
+            taken_at: Instant::now(),
+            samples_per_second: 0.0,
+            published_at: Instant::now(),
+            published_samples: 0,
+            publish_cost: Duration::ZERO,
+            told_at: Instant::now(),
+            serial: 0,
+            shown: Shown::default(),
+        };
+        // A small picture is shown of a document whose model has gone since.
+        let document = Document {
+            model: ModelSource::File("gone.glb".into()),
+            ..Document::default()
+        };
+        let submission = Submission {
+            document,
+            pace: Pace::Still,
+            revision: 1,
+            at: Instant::now(),
+        };
+        state.stage = Some(Stage {
+            reduction: 4,
+            is_shown: true,
+            ..Stage::first(submission, 0.0)
+        });
+        for _ in 0..5 {
+            // Something to do, so that no turn waits.
+            *lock(&shared.orders) = OrderBook {
+                orders: Orders {
+                    environments: vec![EnvironmentSource::Furnace],
+                    ..Orders::default()
+                },
+                ..OrderBook::default()
+            };
+            state.turn().expect("nobody told it to go");
+        }
+        let events = lock(&shared.events);
+        let is_failure =
+            |event: &&Event| matches!(event, Event::Message(Level::Error, text) if text.contains("gone.glb"));
+        assert_eq!(events.iter().filter(is_failure).count(), 1, "{events:?}");
+    }
 }

@@ -19,6 +19,7 @@ use rayon::prelude::*;
 
 use super::EnvironmentError;
 use super::file::{Picture, check_size, io};
+use crate::panics::contained;
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The bit of the version field that says that some part is deep.
@@ -38,7 +39,7 @@ struct Layer {
 /// Reads the first layer that has colour or luminance, at its largest size, into its display window.
 pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
     // Some damaged files fail assertions inside the crate instead of giving errors.
-    std::panic::catch_unwind(|| read_guarded(path)).unwrap_or_else(|_| {
+    contained(|| read_guarded(path)).unwrap_or_else(|| {
         let detail = "its pixels contradict each other".to_owned();
         Err(EnvironmentError::Damaged {
             path: path.to_owned(),
