@@ -1,21 +1,26 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
 
-use crate::document::job::{BackgroundKind, Job, Settings, Strategy};
-use crate::optics::frame::{frame_from_normal, world_from_local};
-use crate::optics::material::{Material, MaterialNumbers, material_albedo, material_evaluate, material_sample};
-use crate::optics::random::{RandomState, path_state, random_pair};
-use crate::optics::real::{Mask, Real};
-use crate::optics::vector::{Vec3, vec3};
-use crate::optics::warp::uniform_disc;
-use crate::scene::camera::{Camera, pixel_ray};
-use crate::scene::environment::{
-    Environment, environment_density, environment_local_from_world, environment_radiance, environment_sample,
-    environment_world_from_local,
+mod light;
+mod path;
+mod rays;
+
+use std::borrow::Cow;
+
+use super::recorder::{End, Event, Purpose, Recorder, Source, Unrecorded, single};
+use crate::document::job::{Job, Settings, Strategy};
+use crate::optics::material::{
+    Material, MaterialNumbers, MaterialSample, material_albedo, material_layers, material_sample,
 };
-use crate::scene::light::{Emitters, LightSample, Lights, light_density, light_sample};
-use crate::scene::surface::{SurfacePoint, hit_opacity, passed_origin, surface_at};
+use crate::optics::random::path_state;
+use crate::optics::real::{Mask, Real};
+use crate::optics::vector::Vec3;
+use crate::scene::Geometry;
+use crate::scene::camera::Camera;
+use crate::scene::environment::Environment;
+use crate::scene::light::Lights;
+use crate::scene::surface::SurfacePoint;
 use crate::scene::texture::{Textures, textured_material};
-use crate::scene::{Geometry, Hit};
+use path::{Path, Ray};
 
 /// Pairs of numbers before the first bounce: pixel, lens.
 pub const FIRST_DIMENSION: u32 = 2;
@@ -107,171 +112,102 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
     }
 
-    /// Radiance of the environment in a world direction.
-    fn far_radiance(&self, direction: Vec3<T>) -> Vec3<T> {
-        let local = environment_local_from_world(direction, self.rotation);
-        environment_radiance(self.environment, local) * T::from_f64(self.settings.environment_strength)
+    /// One path through a pixel.
+    pub fn trace_path(&self, pixel: [u32; 2], sample: u32) -> PathResult<T> {
+        self.record_path(pixel, sample, &mut Unrecorded)
     }
 
-    /// What a path that left the scene sees, weighed against light sampling.
-    fn far_light(&self, direction: Vec3<T>, lobe_density: T, is_mirror: bool) -> Vec3<T> {
-        let radiance = self.far_radiance(direction);
-        if !self.samples_environment || is_mirror {
-            return radiance;
-        }
-        if self.settings.strategy == Strategy::Light {
-            return Vec3::zero();
-        }
-        let local = environment_local_from_world(direction, self.rotation);
-        let light_density = self.environment_probability * environment_density(self.environment, local);
-        radiance * lobe_share(lobe_density, light_density)
-    }
-
-    /// What a surface emits that a path met at `distance`, weighed against light sampling.
-    fn emitted_light(
-        &self,
-        point: &SurfacePoint<T>,
-        material: &Material<T>,
-        distance: T,
-        lobe_density: T,
-        is_mirror: bool,
-    ) -> Vec3<T> {
-        let emission = material.emission;
-        if !self.samples_emitters || is_mirror {
-            return emission;
-        }
-        if self.settings.strategy == Strategy::Light {
-            return Vec3::zero();
-        }
-        let cosine = point.surface.normal.dot(point.surface.wo);
-        let light_density = light_density(material.light_luminance, cosine, distance, self.density_per_luminance);
-        emission * lobe_share(lobe_density, light_density)
-    }
-
-    /// A direction drawn from the triangles that emit or from the environment; true for the latter, whose radiance is
-    /// looked up once it is known to arrive.
-    fn draw_light(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> (LightSample<T>, bool) {
-        let share = self.environment_probability;
-        if self.samples_emitters && !(self.samples_environment && xi.z.less(share).any()) {
-            let xi = vec3(xi.x, xi.y, (xi.z - share) / (T::one() - share));
-            let emitters = Emitters {
-                geometry: self.geometry,
-                materials: &self.materials,
-                textures: self.textures,
-                lights: self.lights,
-                density_per_luminance: self.density_per_luminance,
+    /// The same path, its events told to a recorder.
+    pub fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<T> {
+        let settings = self.settings;
+        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
+        let mut path = Path::new(state, recorder);
+        let mut ray = self.first_ray(pixel, &mut path);
+        for bounce in 0.. {
+            let mut met = None;
+            if !ray.leaves {
+                met = self.stop(&ray, bounce, &mut path);
+            }
+            let Some((point, distance)) = met else {
+                return self.left(&ray, bounce, path);
             };
-            return (light_sample(&emitters, point.position, point.error, xi), false);
-        }
-        let (local, density) = environment_sample(self.environment, vec3(xi.x, xi.y, xi.z / share));
-        let sample = LightSample {
-            direction: environment_world_from_local(local, self.rotation),
-            density: density * share,
-            distance: T::from_f64(f64::from(f32::MAX)),
-            radiance: Vec3::zero(),
-        };
-        (sample, true)
-    }
-
-    /// Light that arrives straight from the environment or from what emits, one direction drawn.
-    fn direct_light(
-        &self,
-        point: &SurfacePoint<T>,
-        material: &Material<T>,
-        state: RandomState,
-        dimension: u32,
-        rays: &mut u32,
-    ) -> Vec3<T> {
-        let [a, b] = random_pair(state, dimension);
-        let [c, _] = random_pair(state, dimension + 1);
-        let (light, is_far) = self.draw_light(point, vec3(a, b, c));
-        let (wi, density) = (light.direction, light.density);
-        let is_behind = point.surface.normal.dot(wi).to_f64() <= 0.0;
-        if density.to_f64() <= 0.0 || (is_behind && !material.transmits()) {
-            return Vec3::zero();
-        }
-        let competing = T::from_f64(if self.settings.strategy == Strategy::Mis {
-            1.0
-        } else {
-            0.0
-        });
-        let value = material_evaluate(material, self.tables, &point.surface, wi, density, competing);
-        if value.max_component().to_f64() <= 0.0 {
-            return Vec3::zero();
-        }
-        let mut transmittance = T::one();
-        if !self.meets_nothing(point, wi) {
-            let origin = point.ray_origin(wi, material.transmits());
-            transmittance = self.transmittance(origin, wi, light.distance, rays);
-        }
-        if transmittance.to_f64() <= 0.0 {
-            return Vec3::zero();
-        }
-        let radiance = if is_far { self.far_radiance(wi) } else { light.radiance };
-        value * radiance * (transmittance / density)
-    }
-
-    /// The share of light that reaches the origin of a ray from so far.
-    fn transmittance(&self, mut origin: Vec3<T>, direction: Vec3<T>, distance: T, rays: &mut u32) -> T {
-        if !self.has_holes {
-            *rays += 1;
-            let distance = distance.to_f64() as f32;
-            let is_occluded = self.geometry.occluded(origin.to_f32(), direction.to_f32(), distance);
-            return if is_occluded { T::zero() } else { T::one() };
-        }
-        let (mut share, mut left) = (T::one(), distance);
-        for _ in 0..PASSES_MAX {
-            *rays += 1;
-            let far = left.to_f64() as f32;
-            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), far) else {
-                return share;
-            };
-            share = share * (T::one() - hit_opacity(self.geometry, &self.materials, self.textures, &hit));
-            if share.to_f64() <= 0.0 {
+            let material = &*self.material(&point);
+            if point.surface.is_inside && material.transmits() {
+                self.absorb(material, distance, &mut path);
+            }
+            let found = path.throughput * self.emitted_light(&point, material, distance, &ray, &mut path);
+            self.add(Source::Surface, found, bounce, &mut path);
+            if bounce >= settings.bounces {
+                path.record(|| Event::Ended { why: End::Bounces });
                 break;
             }
-            left = left - T::from_f64(f64::from(hit.t));
-            origin = passed_origin(self.geometry, &hit, direction);
+            let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
+            if self.samples_light() {
+                let (light, source) = self.direct_light(&point, material, dimension + 2, &mut path);
+                self.add(source, path.throughput * light, bounce + 1, &mut path);
+            }
+            let Some(next) = self.scatter(&point, material, bounce, &mut path) else {
+                break;
+            };
+            ray = next;
         }
-        T::zero()
+        path.result(T::one())
     }
 
-    /// The surface that stops a ray, with its distance from the origin; the origin moves on with the ray through
-    /// surfaces that do not.
-    fn stop(
-        &self,
-        mut origin: Vec3<T>,
-        direction: Vec3<T>,
-        state: RandomState,
-        bounce: u32,
-        rays: &mut u32,
-    ) -> Option<(SurfacePoint<T>, T)> {
-        let mut xi = T::zero();
-        if self.has_holes {
-            [xi, _] = random_pair(state, OPACITY_DIMENSION + bounce);
-        }
-        let mut distance = T::zero();
-        for _ in 0..PASSES_MAX {
-            *rays += 1;
-            let hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX)?;
-            distance += T::from_f64(f64::from(hit.t));
-            if !self.has_holes {
-                return Some((self.surface(&hit, direction), distance));
-            }
-            let opacity = hit_opacity(self.geometry, &self.materials, self.textures, &hit);
-            if xi.less(opacity).any() {
-                return Some((self.surface(&hit, direction), distance));
-            }
-            // Uniform again, given that the surface did not stop the ray.
-            xi = (xi - opacity) / (T::one() - opacity).max(T::from_f64(1e-20));
-            origin = passed_origin(self.geometry, &hit, direction);
-        }
-        None
+    /// Whether directions to lights are drawn at all.
+    fn samples_light(&self) -> bool {
+        self.samples_environment || self.samples_emitters
     }
 
-    /// True where it is proven that nothing lies ahead: outside a convex body.
-    fn meets_nothing(&self, point: &SurfacePoint<T>, wi: Vec3<T>) -> bool {
-        !self.is_interreflecting && !point.surface.is_inside && point.surface.normal.dot(wi).to_f64() > 0.0
+    /// The material at a point, with what its textures say there.
+    #[inline(always)]
+    fn material(&self, point: &SurfacePoint<T>) -> Cow<'_, Material<T>> {
+        let plain = &self.materials[point.slot as usize];
+        if plain.is_textured() {
+            Cow::Owned(textured_material(self.textures, self.tables, plain, point.uvs))
+        } else {
+            Cow::Borrowed(plain)
+        }
+    }
+
+    /// What the interior leaves of light over this way through it.
+    fn absorb<R: Recorder>(&self, material: &Material<T>, distance: T, path: &mut Path<'_, T, R>) {
+        let kept = material.absorption.map(|absorption| (-absorption * distance).exp());
+        path.record(|| Event::Absorption {
+            distance: single(distance),
+            kept: kept.to_f32(),
+        });
+        path.throughput = path.throughput * kept;
+    }
+
+    /// The end of a path that met nothing.
+    fn left<R: Recorder>(&self, ray: &Ray<T>, bounce: u32, mut path: Path<'_, T, R>) -> PathResult<T> {
+        let mut alpha = T::one();
+        if bounce == 0 {
+            let (radiance, seen) = self.camera_background(ray.direction, &mut path);
+            self.add(Source::Background, radiance, 0, &mut path);
+            alpha = seen;
+        } else {
+            let found = path.throughput * self.far_light(ray, &mut path);
+            self.add(Source::Environment, found, bounce, &mut path);
+        }
+        path.record(|| Event::Ended { why: End::Left });
+        path.result(alpha)
+    }
+
+    /// Adds light that was reflected so many times, no more than firefly limiting allows.
+    #[inline(always)]
+    fn add<R: Recorder>(&self, source: Source, found: Vec3<T>, reflections: u32, path: &mut Path<'_, T, R>) {
+        let added = self.limited(found, reflections, &mut path.clamped);
+        path.radiance += added;
+        if found.to_f64() != [0.0; 3] {
+            path.record(|| Event::Contribution {
+                source,
+                reflections,
+                found: found.to_f32(),
+                added: added.to_f32(),
+            });
+        }
     }
 
     /// What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
@@ -289,113 +225,56 @@ impl<'a, T: Real> Integrator<'a, T> {
         contribution * kept
     }
 
-    fn camera_background(&self, direction: Vec3<T>, state: RandomState, rays: u32) -> PathResult<T> {
-        let (radiance, alpha) = match self.settings.background {
-            BackgroundKind::Environment => (self.far_radiance(direction), T::one()),
-            BackgroundKind::Blurred(sine) => {
-                // The numbers of the first bounce, which there is none of.
-                let disc: [T; 2] = uniform_disc(random_pair(state, FIRST_DIMENSION));
-                let disc = disc.map(|x| x * T::from_f64(sine));
-                let height = (T::one() - disc[0] * disc[0] - disc[1] * disc[1]).safe_sqrt();
-                let around = frame_from_normal(direction);
-                let blurred = world_from_local(&around, vec3(disc[0], disc[1], height));
-                (self.far_radiance(blurred), T::one())
-            }
-            BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
-            BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
-        };
-        PathResult {
-            radiance,
-            alpha,
-            rays,
-            clamped: T::zero(),
+    /// The ray on which the path goes on; `None` where it ends.
+    #[inline(always)]
+    fn scatter<R: Recorder>(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        bounce: u32,
+        path: &mut Path<'_, T, R>,
+    ) -> Option<Ray<T>> {
+        let numbers = material_numbers(material, bounce, path);
+        let wants_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
+        let drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
+        path.throughput = path.throughput * drawn.throughput;
+        let throughput = path.throughput;
+        path.record(|| self.scattered(point, material, &drawn, throughput));
+        if !survives(bounce, path) {
+            return None;
         }
+        Some(Ray {
+            origin: point.ray_origin(drawn.wi, material.transmits()),
+            direction: drawn.wi,
+            lobe_density: drawn.density,
+            is_mirror: drawn.is_mirror,
+            leaves: self.meets_nothing(point, drawn.wi),
+        })
     }
 
-    /// One path through a pixel.
-    pub fn trace_path(&self, pixel: [u32; 2], sample: u32) -> PathResult<T> {
-        let settings = self.settings;
-        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        let [mut origin, mut direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
-        let samples_light = self.samples_environment || self.samples_emitters;
-        let mut throughput = Vec3::splat(T::one());
-        let mut radiance = Vec3::zero();
-        let mut clamped = T::zero();
-        let mut lobe_density = T::zero();
-        let mut was_mirror = true;
-        let mut rays = 0;
-        let mut leaves = false;
-        for bounce in 0.. {
-            let mut met = None;
-            if !leaves {
-                met = self.stop(origin, direction, state, bounce, &mut rays);
-            }
-            let Some((point, distance)) = met else {
-                if bounce == 0 {
-                    return self.camera_background(direction, state, rays);
-                }
-                let found = throughput * self.far_light(direction, lobe_density, was_mirror);
-                radiance += self.limited(found, bounce, &mut clamped);
-                break;
-            };
-            let plain = &self.materials[point.slot as usize];
-            let textured;
-            let material = if plain.is_textured() {
-                textured = textured_material(self.textures, self.tables, plain, point.uvs);
-                &textured
-            } else {
-                plain
-            };
-            if point.surface.is_inside && material.transmits() {
-                throughput = throughput * material.absorption.map(|absorption| (-absorption * distance).exp());
-            }
-            let found = throughput * self.emitted_light(&point, material, distance, lobe_density, was_mirror);
-            radiance += self.limited(found, bounce, &mut clamped);
-            if bounce >= settings.bounces {
-                break;
-            }
-            let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
-            if samples_light {
-                let found = throughput * self.direct_light(&point, material, state, dimension + 2, &mut rays);
-                radiance += self.limited(found, bounce + 1, &mut clamped);
-            }
-            let [a, b] = random_pair(state, dimension);
-            let [c, layer] = random_pair(state, dimension + 1);
-            let mut numbers = MaterialNumbers {
-                lobe: [a, b, c],
-                layer,
-                below: [a, b, c],
-            };
-            if material.transmits() {
-                let [a, b] = random_pair(state, BELOW_DIMENSION + 2 * bounce);
-                let [c, _] = random_pair(state, BELOW_DIMENSION + 2 * bounce + 1);
-                numbers.below = [a, b, c];
-            }
-            let wants_density = samples_light && settings.strategy == Strategy::Mis;
-            let drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
-            throughput = throughput * drawn.throughput;
-            let strength = throughput.max_component();
-            // Also ends paths that are NaN.
-            if strength.to_f64().partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
-                break;
-            }
-            if bounce >= ROULETTE_START && strength.to_f64() < 1.0 {
-                let [_, survival]: [T; 2] = random_pair(state, dimension + 3);
-                if survival.to_f64() >= strength.to_f64() {
-                    break;
-                }
-                throughput = throughput / strength;
-            }
-            lobe_density = drawn.density;
-            was_mirror = drawn.is_mirror;
-            leaves = self.meets_nothing(&point, drawn.wi);
-            (origin, direction) = (point.ray_origin(drawn.wi, material.transmits()), drawn.wi);
-        }
-        PathResult {
-            radiance,
-            alpha: T::one(),
-            rays,
-            clamped,
+    fn scattered(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        drawn: &MaterialSample<T>,
+        throughput: Vec3<T>,
+    ) -> Event {
+        let layers = material_layers(material, self.tables, &point.surface);
+        let below = T::one() - layers.coat_probability;
+        let probabilities = [
+            layers.coat_probability,
+            below * layers.specular_probability,
+            below * layers.base_probability(),
+            below * layers.transmission_probability,
+        ];
+        Event::Scattered {
+            layer: drawn.layer,
+            probabilities: probabilities.map(single),
+            direction: drawn.wi.to_f32(),
+            factor: drawn.throughput.to_f32(),
+            density: single(drawn.density),
+            is_mirror: drawn.is_mirror,
+            throughput: throughput.to_f32(),
         }
     }
 
@@ -404,25 +283,63 @@ impl<'a, T: Real> Integrator<'a, T> {
     pub fn trace_features(&self, pixel: [u32; 2], sample: u32) -> Option<FeatureSample<T>> {
         let settings = self.settings;
         let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        let [origin, direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
-        let (point, distance) = self.stop(origin, direction, state, 0, &mut 0)?;
-        let plain = &self.materials[point.slot as usize];
-        let material = textured_material(self.textures, self.tables, plain, point.uvs);
+        let mut nobody = Unrecorded;
+        let mut path = Path::new(state, &mut nobody);
+        let ray = self.first_ray(pixel, &mut path);
+        let (point, distance) = self.stop(&ray, 0, &mut path)?;
         Some(FeatureSample {
-            albedo: material_albedo(&material, self.tables, &point.surface),
+            albedo: material_albedo(&self.material(&point), self.tables, &point.surface),
             normal: point.surface.frame.normal,
-            depth: distance * direction.dot(self.camera.forward),
+            depth: distance * ray.direction.dot(self.camera.forward),
         })
-    }
-
-    fn surface(&self, hit: &Hit, direction: Vec3<T>) -> SurfacePoint<T> {
-        surface_at(self.geometry, &self.materials, self.textures, hit, direction)
     }
 }
 
-/// The share of the lobe under the balance heuristic (Veach 1997) where it met light by itself.
-fn lobe_share<T: Real>(lobe_density: T, light_density: T) -> T {
-    lobe_density / (lobe_density + light_density).max(T::from_f64(1e-30))
+/// The numbers with which a material's direction is drawn.
+#[inline(always)]
+fn material_numbers<T: Real, R: Recorder>(
+    material: &Material<T>,
+    bounce: u32,
+    path: &mut Path<'_, T, R>,
+) -> MaterialNumbers<T> {
+    let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
+    let [a, b] = path.pair(dimension, [Purpose::Lobe; 2]);
+    let [c, layer] = path.pair(dimension + 1, [Purpose::Lobe, Purpose::Layer]);
+    let lobe = [a, b, c];
+    let mut below = lobe;
+    if material.transmits() {
+        let dimension = BELOW_DIMENSION + 2 * bounce;
+        let [a, b] = path.pair(dimension, [Purpose::Below; 2]);
+        let [c, _] = path.pair(dimension + 1, [Purpose::Below, Purpose::Unused]);
+        below = [a, b, c];
+    }
+    MaterialNumbers { lobe, layer, below }
+}
+
+/// Whether a path goes on: Russian roulette, its survivors made up for by their throughput.
+#[inline(always)]
+fn survives<T: Real, R: Recorder>(bounce: u32, path: &mut Path<'_, T, R>) -> bool {
+    let strength = path.throughput.max_component();
+    // Also ends paths that are NaN.
+    if strength.to_f64().partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
+        path.record(|| Event::Ended { why: End::Absorbed });
+        return false;
+    }
+    if bounce < ROULETTE_START || strength.to_f64() >= 1.0 {
+        return true;
+    }
+    let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 3;
+    let [_, number] = path.pair(dimension, [Purpose::Unused, Purpose::Roulette]);
+    path.record(|| Event::Roulette {
+        survival: single(strength),
+        number: single(number),
+    });
+    if number.to_f64() >= strength.to_f64() {
+        path.record(|| Event::Ended { why: End::Roulette });
+        return false;
+    }
+    path.throughput = path.throughput / strength;
+    true
 }
 
 /// Finite and not negative: what may be added to the picture.
