@@ -1,6 +1,10 @@
 //! The integration tests, in one binary: see docs/ARCHITECTURE.md.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+#[path = "suite/analytic.rs"]
+mod analytic;
+#[path = "suite/analytic_scenes.rs"]
+mod analytic_scenes;
 #[path = "suite/check.rs"]
 mod check;
 #[path = "suite/cli_errors.rs"]
@@ -61,6 +65,10 @@ mod lobe_views;
 mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/parting.rs"]
+mod parting;
+#[path = "suite/paths.rs"]
+mod paths;
 #[path = "suite/plan.rs"]
 mod plan;
 #[path = "suite/precision.rs"]
