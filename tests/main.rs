@@ -1,6 +1,10 @@
 //! The integration tests, in one binary: see docs/ARCHITECTURE.md.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+#[path = "suite/analytic.rs"]
+mod analytic;
+#[path = "suite/analytic_scenes.rs"]
+mod analytic_scenes;
 #[path = "suite/check.rs"]
 mod check;
 #[path = "suite/cli_errors.rs"]
@@ -67,6 +71,10 @@ mod monkey_deeds;
 mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/parting.rs"]
+mod parting;
+#[path = "suite/paths.rs"]
+mod paths;
 #[path = "suite/plan.rs"]
 mod plan;
 #[path = "suite/precision.rs"]

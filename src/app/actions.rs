@@ -30,6 +30,8 @@ pub enum Action {
     UseMaterial(Box<MaterialSettings>),
     /// Selects a material slot.
     SelectSlot(usize),
+    /// Shows everything that made a sample (from 0) of a pixel of the picture.
+    Explain([u32; 2], u32),
     /// Changes the user's folder of materials.
     ChangeLibrary(Change),
     /// Changes the pinned states.

@@ -5,6 +5,7 @@ use super::layout::{self, Pane};
 use super::menu::Sheet;
 use super::{App, library, palette, panels, snapshots, widgets};
 use crate::document::{CameraSettings, Document, MaterialSettings, PARAMETERS};
+use crate::render::explain::explain;
 use crate::scene::camera::framing_distance;
 
 impl App {
@@ -23,6 +24,7 @@ impl App {
                 self.panels.slot = slot;
                 self.edits.seal();
             }
+            Action::Explain(pixel, sample) => self.explain(pixel, sample),
             Action::ChangeLibrary(change) => self.change_library(change),
             Action::ChangeSnapshots(change) => self.change_snapshots(change),
             Action::UseSnapshot(path) => self.use_snapshot(&path),
@@ -39,6 +41,16 @@ impl App {
                 self.panels.shown = shown;
                 self.worker.show(shown);
             }
+        }
+    }
+
+    /// Lays the account of a path of the picture in progress over the window.
+    fn explain(&mut self, pixel: [u32; 2], sample: u32) {
+        if let Some(scene) = &self.worker.snapshot().scene {
+            let account = explain(&scene.document, &scene.model, &scene.job, pixel, sample);
+            self.sheet = Sheet::Path {
+                text: account.to_string(),
+            };
         }
     }
 

@@ -11,6 +11,9 @@ use super::theme;
 use crate::document::{ImportLobe, MaterialSettings};
 use crate::render::EngineChoice;
 
+/// Width of the account of a path where there is room, points.
+const PATH_WIDTH: f32 = 900.0;
+
 /// What is open over the window.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) enum Sheet {
@@ -22,6 +25,10 @@ pub(super) enum Sheet {
     },
     Shortcuts,
     About,
+    /// The account of a path.
+    Path {
+        text: String,
+    },
 }
 
 pub(super) fn bar(ui: &mut Ui, edits: &Edits, recent: &mut Recent, import_lobe: ImportLobe, actions: &mut Vec<Action>) {
@@ -130,18 +137,20 @@ pub(super) fn sheet(ctx: &egui::Context, sheet: &mut Sheet, material: &MaterialS
         }),
         Sheet::Shortcuts => egui::Modal::new(egui::Id::unique("shortcuts")).show(ctx, shortcuts),
         Sheet::About => egui::Modal::new(egui::Id::unique("about")).show(ctx, about),
+        Sheet::Path { text } => egui::Modal::new(egui::Id::unique("path")).show(ctx, |ui| path(ui, text)),
     };
     if is_done || modal.should_close() {
         *sheet = Sheet::None;
     }
 }
 
-const MOUSE: [(&str, &str); 8] = [
+const MOUSE: [(&str, &str); 9] = [
     ("Drag", "Turn the camera"),
     ("Middle drag, or ctrl and drag", "Pan"),
     ("Wheel, or right drag", "Zoom"),
     ("Shift and drag", "Turn the light"),
     ("Click", "Select the material there"),
+    ("Ctrl, shift and click", "Explain the last sample of the pixel"),
     ("Arrows, page up and down", "Turn and zoom, with the viewport focused"),
     ("Double-click on a label", "Reset the parameter"),
     ("Shift and drag a number", "Change it finely"),
@@ -185,4 +194,24 @@ fn about(ui: &mut Ui) {
     if ui.button("Close").clicked() {
         ui.close();
     }
+}
+
+/// Everything that made one sample of one pixel.
+fn path(ui: &mut Ui, text: &str) {
+    ui.set_width(PATH_WIDTH.min(0.9 * ui.ctx().content_rect().width()));
+    ui.heading("One path");
+    ui.add_space(theme::GAP);
+    let height = 0.7 * ui.ctx().content_rect().height();
+    egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        ui.add(egui::Label::new(RichText::new(text).monospace()).wrap());
+    });
+    ui.add_space(theme::GAP);
+    ui.horizontal(|ui| {
+        if ui.button("Copy").on_hover_text("Copies the account as text.").clicked() {
+            ui.ctx().copy_text(text.to_owned());
+        }
+        if ui.button("Close").clicked() {
+            ui.close();
+        }
+    });
 }

@@ -4,6 +4,7 @@
 //! do); 2 the arguments are wrong.
 
 mod check;
+mod explain;
 mod fit;
 mod lobe;
 mod lobe_spec;
@@ -48,6 +49,8 @@ pub enum Command {
     Render(Box<render::RenderArguments>),
     /// Show which effects a scene calls for, and why.
     Plan(Box<plan::PlanArguments>),
+    /// Show everything that made one sample of one pixel.
+    Explain(Box<explain::ExplainArguments>),
     /// Render a turn about the model as numbered pictures.
     Turntable(Box<turntable::TurntableArguments>),
     /// Prove on this machine that the renderer is right.
@@ -75,6 +78,7 @@ impl Command {
         match self {
             Command::Render(arguments) => render::run(&arguments),
             Command::Plan(arguments) => plan::run(&arguments),
+            Command::Explain(arguments) => explain::run(&arguments),
             Command::Turntable(arguments) => turntable::run(&arguments),
             Command::Check(arguments) => check::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),

@@ -112,6 +112,14 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
+/// Column and row of a pixel, as in 40,22.
+pub(super) fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let place: Option<[u32; 2]> = text
+        .split_once(',')
+        .and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    place.ok_or_else(|| "give a column and a row from 0,0 at the top left, such as 40,22".to_owned())
+}
+
 /// What the camera sees where it meets nothing.
 pub(super) fn background(text: &str) -> Result<Background, String> {
     match text {

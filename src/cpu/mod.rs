@@ -4,6 +4,7 @@ pub mod features;
 pub mod integrator;
 pub mod precision;
 pub mod probe;
+pub mod recorder;
 pub mod sampling;
 pub mod scatter;
 

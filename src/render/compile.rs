@@ -115,7 +115,7 @@ impl Compiler {
 
 /// One material a slot, the last one repeated where the document has too few, the ground's where there is one, and those
 /// of the area lights.
-fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
+pub(super) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
     let last = document.materials.last().cloned().unwrap_or_default();
     let mut materials = document.materials.clone();
     materials.resize(slots, last);

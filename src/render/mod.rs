@@ -11,6 +11,7 @@ mod convergence;
 pub mod display;
 mod engine;
 pub mod environment_thumbnails;
+pub mod explain;
 pub mod hard;
 pub mod output;
 mod picture_cache;

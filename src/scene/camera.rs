@@ -3,7 +3,6 @@
 use crate::named::named;
 use glam::DVec3;
 
-use crate::optics::random::{RandomState, random_pair};
 use crate::optics::real::Real;
 use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_disc;
@@ -18,6 +17,10 @@ named! {
     }
 }
 
+/// The path's pair of numbers for the place in the pixel.
+pub const PIXEL_DIMENSION: u32 = 0;
+/// The path's pair of numbers for the place on the lens.
+pub const LENS_DIMENSION: u32 = 1;
 /// Radius at which the Gaussian is cut off, in pixels.
 pub const GAUSSIAN_RADIUS: f64 = 1.5;
 /// Its standard deviation in pixels.
@@ -116,18 +119,19 @@ pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
     [radius * phi_rad.cos(), radius * phi_rad.sin()]
 }
 
-/// The ray of a sample through its pixel, drawn with the path's first two pairs of numbers: (origin, unit direction).
+/// The ray of a sample through its pixel, drawn with two pairs of numbers, for the place in the pixel and on the lens:
+/// (origin, unit direction).
 #[inline(always)]
 pub fn pixel_ray<T: Real>(
     camera: &Camera<T>,
     pixel: [u32; 2],
     image_size: [u32; 2],
-    state: RandomState,
+    [xi_pixel, xi_lens]: [[T; 2]; 2],
 ) -> [Vec3<T>; 2] {
-    let offset: [T; 2] = filter_offset(camera.filter_kind, random_pair(state, 0));
+    let offset: [T; 2] = filter_offset(camera.filter_kind, xi_pixel);
     let half = T::from_f64(0.5);
     let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
-    camera_ray(camera, place, image_size, random_pair(state, 1))
+    camera_ray(camera, place, image_size, xi_lens)
 }
 
 /// The ray through a point of the picture, in pixels from its top left: (origin, unit direction).

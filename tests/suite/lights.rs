@@ -189,7 +189,7 @@ fn lit_plane(light: AreaLight) -> Document {
 }
 
 /// The corners of an area light as docs/CONVENTIONS.md says, in bounding radii about the model's centre.
-fn corners(light: &AreaLight) -> [DVec3; 4] {
+pub fn corners(light: &AreaLight) -> [DVec3; 4] {
     let (yaw, pitch) = (light.yaw_deg.to_radians(), light.pitch_deg.to_radians());
     let outwards = DVec3::new(pitch.cos() * yaw.sin(), pitch.sin(), pitch.cos() * yaw.cos());
     let across = DVec3::new(yaw.cos(), 0.0, -yaw.sin());
@@ -204,7 +204,7 @@ fn corners(light: &AreaLight) -> [DVec3; 4] {
 }
 
 /// Irradiance at a place with this normal of a polygon of radiance 1 above its horizon (Lambert 1760).
-fn irradiance(place: DVec3, normal: DVec3, polygon: &[DVec3; 4]) -> f64 {
+pub fn irradiance(place: DVec3, normal: DVec3, polygon: &[DVec3; 4]) -> f64 {
     let seen = polygon.map(|corner| (corner - place).normalize());
     let edges = (0..4).map(|i| {
         let (a, b) = (seen[i], seen[(i + 1) % 4]);

@@ -147,3 +147,21 @@ fn the_precision_view_tells_that_nothing_is_wrong() {
     request(&mut harness, Action::Show(Shown::Picture));
     assert!(harness.query_by_label("0 dropped").is_none());
 }
+
+#[test]
+fn ctrl_shift_and_a_click_explain_the_pixel() {
+    let mut harness = editor();
+    let before = harness.state().document().clone();
+    let center = harness.get_by_label("Viewport").rect().center();
+    harness.event(egui::Event::ModifiersChanged(Modifiers::COMMAND | Modifiers::SHIFT));
+    click_at(&mut harness, center);
+    harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    harness.run_steps(2);
+    assert!(harness.query_by_label("One path").is_some());
+    let told = |text: &str| harness.query_by_label_contains(text).is_some();
+    assert!(told("camera") && told("bounce 0") && told("contributions"));
+    assert_eq!(harness.state().document(), &before, "nothing is edited");
+    harness.get_by_label("Close").click_accesskit();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("One path").is_none());
+}

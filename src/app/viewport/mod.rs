@@ -2,7 +2,7 @@
 //!
 //! As in Marmoset and Substance, with or without alt: left drag turns, middle drag (or ctrl and left) pans, right drag
 //! and the wheel zoom, shift and left turns the light. As in Blender: shift and middle pans. A click selects the
-//! material of what was clicked.
+//! material of what was clicked; with ctrl and shift it explains the pixel.
 
 mod compare;
 mod header;
@@ -232,11 +232,21 @@ impl Viewport {
         }
     }
 
-    /// A click says what is sharp, where that was asked for or ctrl is held; otherwise it selects a slot, and the plots
-    /// take the angle of the place.
+    /// A click says what is sharp, where that was asked for or ctrl is held, or has the pixel explained, where shift is
+    /// held, too; otherwise it selects a slot, and the plots take the angle of the place.
     fn clicked(&self, ui: &Ui, at: Pos2, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
-        let Some(hit) = hit_at(at, place, scene) else { return };
-        let picks_focus = desk.state.picks_focus || ui.input(|input| input.modifiers.command);
+        let Some(pixel) = pixel_at(at, place, scene) else {
+            return;
+        };
+        let modifiers = ui.input(|input| input.modifiers);
+        if modifiers.command && modifiers.shift {
+            let last = desk.snapshot.progress.samples_per_pixel.saturating_sub(1);
+            let pixel = pixel.map(|share| share as u32);
+            desk.actions.push(super::actions::Action::Explain(pixel, last));
+            return;
+        }
+        let Some(hit) = hit_at(pixel, scene) else { return };
+        let picks_focus = desk.state.picks_focus || modifiers.command;
         if picks_focus && desk.document.camera.aperture > 0.0 {
             desk.document.camera.focus_distance = Some(hit.depth);
             desk.state.picks_focus = false;
@@ -323,16 +333,16 @@ struct SeenSurface {
     view_angle_deg: f32,
 }
 
-fn hit_at(at: Pos2, place: Rect, scene: &Scene) -> Option<SeenSurface> {
-    if !place.contains(at) {
-        return None;
-    }
+/// The place in the picture, in pixels, below its size.
+fn pixel_at(at: Pos2, place: Rect, scene: &Scene) -> Option<[f64; 2]> {
     let share = (at - place.min) / place.size();
+    let is_inside = (0.0..1.0).contains(&share.x) && (0.0..1.0).contains(&share.y);
+    let [width, height] = scene.job.settings.image_size.map(f64::from);
+    is_inside.then(|| [f64::from(share.x) * width, f64::from(share.y) * height])
+}
+
+fn hit_at(pixel: [f64; 2], scene: &Scene) -> Option<SeenSurface> {
     let size = scene.job.settings.image_size;
-    let pixel = [
-        f64::from(share.x) * f64::from(size[0]),
-        f64::from(share.y) * f64::from(size[1]),
-    ];
     let (camera, geometry) = (&scene.job.settings.camera, &scene.job.geometry);
     let [origin, direction] = camera_ray(camera, pixel, size, [0.5; 2]);
     let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::INFINITY)?;
