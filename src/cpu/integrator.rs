@@ -1,6 +1,7 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
 
 use crate::job::effect::EffectId;
+use crate::job::features::{GUIDE_SAMPLES, GuideSums};
 use crate::job::{BackgroundKind, Job, Settings, Strategy};
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::material::{Material, MaterialNumbers, material_albedo, material_evaluate, material_sample};
@@ -44,17 +45,8 @@ pub struct PathResult<T> {
     pub rays: u32,
     /// Luminance that limiting fireflies took.
     pub clamped: T,
-}
-
-/// What one sample of the camera sees first.
-#[derive(Clone, Copy, Debug)]
-pub struct FeatureSample<T> {
-    /// See [`material_albedo`].
-    pub albedo: Vec3<T>,
-    /// Shading normal in the world.
-    pub normal: Vec3<T>,
-    /// Along the camera's axis, in the geometry's units.
-    pub depth: T,
+    /// What it saw first, where it is one of those that tell.
+    pub seen: GuideSums,
 }
 
 /// A job with its numbers in the precision of the shading.
@@ -312,6 +304,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             alpha,
             rays,
             clamped: T::zero(),
+            seen: GuideSums::default(),
         }
     }
 
@@ -328,6 +321,9 @@ impl<'a, T: Real> Integrator<'a, T> {
         let mut was_mirror = true;
         let mut rays = 0;
         let mut leaves = false;
+        let mut seen = GuideSums::default();
+        // Nothing but mirrors and clear glass so far.
+        let mut looks = sample < GUIDE_SAMPLES;
         for bounce in 0.. {
             let mut met = None;
             if !leaves {
@@ -351,6 +347,15 @@ impl<'a, T: Real> Integrator<'a, T> {
             };
             if point.surface.is_inside && material.transmits() {
                 throughput = throughput * material.absorption.map(|absorption| (-absorption * distance).exp());
+            }
+            if looks {
+                let albedo = throughput * material_albedo(material, self.tables, &point.surface);
+                seen.albedo = albedo.to_f32().map(|share| share.clamp(0.0, 1.0));
+                seen.normal = point.surface.frame.normal.to_f32();
+                if bounce == 0 {
+                    seen.hits = 1.0;
+                    seen.depth = (distance * direction.dot(self.camera.forward)).to_f64() as f32;
+                }
             }
             let found = throughput * self.emitted_light(&point, material, distance, lobe_density, was_mirror);
             radiance += self.limited(found, bounce, &mut clamped);
@@ -391,6 +396,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             }
             lobe_density = drawn.density;
             was_mirror = drawn.is_mirror;
+            looks &= was_mirror;
             leaves = self.meets_nothing(&point, drawn.wi);
             (origin, direction) = (point.ray_origin(drawn.wi, material.transmits()), drawn.wi);
         }
@@ -399,23 +405,8 @@ impl<'a, T: Real> Integrator<'a, T> {
             alpha: T::one(),
             rays,
             clamped,
+            seen,
         }
-    }
-
-    /// What the camera sees first through a pixel, with the same ray as [`Integrator::trace_path`]; `None` where it meets
-    /// nothing.
-    pub fn trace_features(&self, pixel: [u32; 2], sample: u32) -> Option<FeatureSample<T>> {
-        let settings = self.settings;
-        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        let [origin, direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
-        let (point, distance) = self.stop(origin, direction, state, 0, &mut 0)?;
-        let plain = &self.materials[point.slot as usize];
-        let material = textured_material(self.textures, self.tables, plain, point.uvs);
-        Some(FeatureSample {
-            albedo: material_albedo(&material, self.tables, &point.surface),
-            normal: point.surface.frame.normal,
-            depth: distance * direction.dot(self.camera.forward),
-        })
     }
 
     fn surface(&self, hit: &Hit, direction: Vec3<T>) -> SurfacePoint<T> {

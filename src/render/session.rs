@@ -14,12 +14,10 @@ use crate::document::Document;
 use crate::document::change::Change;
 use crate::gpu::GpuError;
 use crate::job::Job;
+use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::scene::ModelError;
 use crate::scene::environment::EnvironmentError;
-
-/// Samples of a pixel over which albedo, normal and depth are averaged.
-const FEATURE_SAMPLES: u32 = 32;
 
 /// What a session can't do.
 #[derive(Debug, thiserror::Error)]
@@ -403,11 +401,11 @@ impl Session {
     /// # Errors
     /// If the GPU fails.
     pub fn layers(&mut self) -> Result<Layers, SessionError> {
-        let features = self.engine.features(FEATURE_SAMPLES)?.unwrap_or_default();
+        let units = self.world_units_per_unit();
         let film = self.engine.film()?;
         Ok(Layers {
             image: film.image(),
-            features,
+            features: Features::of(film, units),
             samples: film.statistics.iter().map(|statistics| statistics[1] as f32).collect(),
             variance: film
                 .variance_of_mean()
@@ -415,6 +413,10 @@ impl Session {
                 .map(|variance| variance as f32)
                 .collect(),
         })
+    }
+
+    fn world_units_per_unit(&self) -> f64 {
+        self.job.as_ref().map_or(1.0, |job| job.geometry.world_units_per_unit)
     }
 
     /// Goes on with the processor after the GPU failed, with the same document from its start.
