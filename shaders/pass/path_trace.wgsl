@@ -16,8 +16,6 @@ const BOUNCE_DIMENSIONS: u32 = 4u;
 const BELOW_DIMENSION: u32 = 4096u;
 // Bounces before Russian roulette.
 const ROULETTE_START: u32 = 3u;
-// Samples of a pixel that tell what is seen first.
-const GUIDE_SAMPLES: u32 = 64u;
 // Beyond it the square would overflow: dropped and counted.
 const RADIANCE_MAX: f32 = 1e18;
 

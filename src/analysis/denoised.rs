@@ -13,7 +13,7 @@
 
 use rayon::prelude::*;
 
-use super::noise::BAND;
+use super::noise::{BAND, MAP_RADIUS, box_sums};
 use crate::job::film::luminance;
 use crate::job::tiles::{TILE_SIDE, TileGrid};
 
@@ -59,8 +59,9 @@ struct Moments {
     noisy: f64,
     /// Product of both errors.
     product: f64,
-    /// Variance of the first.
+    /// Variance of the first, from the halves' noise around each pixel, and the squares of its own noise.
     variance: f64,
+    squares: f64,
     /// Squared difference of the two pictures.
     difference: f64,
     /// Pixels.
@@ -74,6 +75,7 @@ impl std::ops::AddAssign for Moments {
         self.noisy += other.noisy;
         self.product += other.product;
         self.variance += other.variance;
+        self.squares += other.squares;
         self.difference += other.difference;
         self.pixels += other.pixels;
     }
@@ -85,9 +87,15 @@ impl Moments {
         self.denoised.max(self.known)
     }
 
+    /// Standard error of the first. Where most pixels have not yet met what their noise comes from, their own squares tell
+    /// far too little of it.
+    fn deviation(&self) -> f64 {
+        self.variance.max(self.squares).sqrt()
+    }
+
     /// The share of the samples' mean with which a mixture is nearest to the truth, as far as that is beyond doubt.
     fn share(&self) -> f64 {
-        let denoised = (self.denoised - DOUBT * self.variance.sqrt()).max(self.known);
+        let denoised = (self.denoised - DOUBT * self.deviation()).max(self.known);
         let share = (denoised - self.product) / self.difference;
         if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
     }
@@ -107,17 +115,25 @@ impl Errors {
         let [noisy, other_noisy] = halves.noisy;
         let [denoised, other_denoised] = halves.denoised;
         let bright = |color: [f32; 3]| luminance(color.map(f64::from));
+        let squares = |noisy: &[[f32; 3]], denoised: &[[f32; 3]]| -> Vec<f64> {
+            let pairs = noisy.par_iter().zip(denoised);
+            pairs.map(|(x, clean)| (bright(*x) - bright(*clean)).powi(2)).collect()
+        };
+        let noise = [(noisy, denoised), (other_noisy, other_denoised)]
+            .map(|(noisy, denoised)| box_sums(&squares(noisy, denoised), halves.width, MAP_RADIUS));
         let of_pixel = |i: usize| {
             let (a, b) = (bright(noisy[i]), bright(other_noisy[i]));
             let (d, e) = (bright(denoised[i]), bright(other_denoised[i]));
             let squared_bias = (d - a) * (e - b);
+            let [around, other_around] = noise.each_ref().map(|noise| noise[i][0] / noise[i][1]);
             let known = (d - e).powi(2) / 4.0;
             Moments {
                 denoised: squared_bias + known,
                 known,
                 noisy: (a - b).powi(2) / 4.0,
                 product: (d - e) * (a - b) / 4.0,
-                variance: squared_bias.powi(2),
+                variance: around * other_around,
+                squares: squared_bias.powi(2),
                 difference: (0.5 * (d + e - a - b)).powi(2),
                 pixels: 1.0,
             }
@@ -154,6 +170,7 @@ impl Errors {
                 denoised: denoised * denoised * moments.denoised + rest,
                 known: denoised * denoised * moments.known + rest,
                 variance: (denoised.powi(4) + samples.powi(4)) * moments.variance,
+                squares: (denoised.powi(4) + samples.powi(4)) * moments.squares,
                 ..*moments
             };
         }
@@ -161,7 +178,7 @@ impl Errors {
             let scale = self.mean_luminance.max(f64::MIN_POSITIVE);
             (squared.max(0.0) / sum.pixels.max(1.0)).sqrt() / scale
         };
-        let band = BAND * sum.variance.sqrt();
+        let band = BAND * sum.deviation();
         let least = sum.known.max(0.0);
         DenoisedError {
             relative: relative(sum.denoised().max(0.0)),

@@ -20,7 +20,7 @@ const MEASURED_SHARE: f64 = 0.99;
 /// distribution's 3 and the 6 of the difference of two exponential ones.
 const KURTOSIS: f64 = 4.5;
 /// Pixels to each side over which the gain of the sequence is averaged for a map.
-const MAP_RADIUS: usize = 3;
+pub(super) const MAP_RADIUS: usize = 3;
 
 /// The estimated error of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -85,7 +85,7 @@ pub fn noise(film: &Film) -> Option<Noise> {
 /// what their variance comes from, that product is nearly always far below its expectation. So the sum is no less than
 /// that from the means around each pixel, to which its neighbours' hits count, too; and no less than that from the half
 /// differences over their kurtosis: where a few pixels' rare hits make up the error, this sees them.
-pub(super) fn sum_of_squared_variances(film: &Film, variances: &[f64]) -> f64 {
+fn sum_of_squared_variances(film: &Film, variances: &[f64]) -> f64 {
     let width = film.width as usize;
     let gains = gains(film, variances, width);
     let product = |pixel: usize| -> f64 {
@@ -130,7 +130,7 @@ fn gains(film: &Film, variances: &[f64], width: usize) -> Vec<f64> {
 }
 
 /// For each pixel sum and number of the numbers in the square around it; NaN counts as missing.
-fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64; 2]> {
+pub(super) fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64; 2]> {
     let height = values.len() / width.max(1);
     let entry = |value: f64| if value.is_nan() { [0.0; 2] } else { [value, 1.0] };
     let add = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a + c, b + d];

@@ -3,6 +3,7 @@
 //! Both halves of the samples are denoised by themselves: the picture is their mean, and what they have in common and
 //! what not tells how far it is from the truth ([`crate::analysis::denoised`]).
 
+mod attendant;
 mod filter;
 mod library;
 mod picture;
@@ -10,6 +11,7 @@ mod picture;
 use std::sync::Arc;
 use std::time::Instant;
 
+pub use attendant::Attendant;
 use filter::{Device, Filter};
 pub use filter::{Guides, Quality};
 pub use library::{FOLDER_VARIABLE, Library, LibraryError, data_folder};
