@@ -5,6 +5,7 @@
 
 pub mod adaptive;
 pub mod chi_square;
+pub mod denoised;
 pub mod difference;
 pub mod error;
 pub mod fit;

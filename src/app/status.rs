@@ -114,6 +114,13 @@ pub(super) fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter) {
                         ui.label(format!("The true one lies between {low} and {high} (95 %)."));
                     });
             }
+            if let Some(told) = snapshot.denoised {
+                ui.label(format!("denoised {}", percent(told.relative))).on_hover_ui(|ui| {
+                    ui.label("Error of the denoised picture, its bias included: root mean square over the mean luminance");
+                    let (low, high) = (percent(told.low), percent(told.high));
+                    ui.label(format!("The true one lies between {low} and {high} (95 %)."));
+                });
+            }
             ui.label(format!("{:.1} s", progress.render_seconds))
                 .on_hover_text("Render time of this picture");
             ui.label(format!("{} samples/s", short_number(snapshot.samples_per_second)))

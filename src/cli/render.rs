@@ -2,6 +2,7 @@
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
@@ -11,11 +12,12 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
 use crate::document::{
-    AreaLight, Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, assign, range,
+    AreaLight, Background, Denoise, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, assign, range,
 };
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
-use crate::render::output::{self, Format};
+use crate::render::denoise::{Attendant, Denoised};
+use crate::render::output::{self, Format, Layers, Rendered};
 use crate::render::{EngineChoice, Progress, Session, SessionError, StopReason};
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelSource};
@@ -162,6 +164,10 @@ pub struct SceneArguments {
     /// Expose .png pictures so that their mean brightness is middle grey; --exposure is added.
     #[arg(long)]
     auto_exposure: bool,
+    /// Take the picture's noise out with Open Image Denoise: quickly, as well as can be, or (auto) the less the nearer the
+    /// samples alone are to the truth. With --noise and auto rendering stops at the error of the denoised picture.
+    #[arg(long, default_value = "off", value_name = "off|fast|high|auto", value_parser = names::choice::<Denoise>)]
+    denoise: Denoise,
 }
 
 /// Renders as the arguments say.
@@ -267,19 +273,29 @@ fn render(
     or_fall_back(submitted, &mut session, engine, document)?;
     eprintln!("{} ({})", session.engine(), session.engine().reason);
     let setup_seconds = begun.elapsed().as_secs_f64();
-    let progress = step_to_end(&mut session, engine, document)?;
+    let (progress, denoised) = step_to_end(&mut session, engine, document)?;
     eprintln!("{}", told(&progress));
     let image = session.image()?;
+    let shown = denoised.as_ref().map(|denoised| &denoised.image);
     for path in targets.outputs {
         if targets.has_layers && output::format_of(path)? == Format::Exr {
-            output::write_layers(path, &session.layers()?)?;
+            let layers = Layers {
+                denoised: shown.cloned(),
+                ..session.layers()?
+            };
+            output::write_layers(path, &layers)?;
         } else {
-            output::write(path, &image, document)?;
+            let rendered = Rendered {
+                image: &image,
+                denoised: shown.map(Arc::as_ref),
+            };
+            output::write(path, rendered, document)?;
         }
         eprintln!("wrote {}", path.display());
     }
     if let Some(path) = targets.report {
-        let report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
+        let mut report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
+        add_denoised(&mut report, document, denoised.as_ref());
         let text = serde_json::to_string_pretty(&report)?;
         std::fs::write(path, text + "\n")
             .with_context(|| format!("{}: the report could not be written", path.display()))?;
@@ -299,13 +315,29 @@ pub(super) fn bar(template: &str, steps: u64) -> anyhow::Result<ProgressBar> {
     Ok(ProgressBar::new(steps).with_style(ProgressStyle::with_template(template)?))
 }
 
-/// Steps until the session is done, with a progress bar on a terminal.
-fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document) -> anyhow::Result<Progress> {
+/// What became of the denoised picture, for the report: which quality, null without; seconds; error with its band.
+fn add_denoised(report: &mut serde_json::Value, document: &Document, denoised: Option<&Denoised>) {
+    let error = denoised.and_then(|denoised| denoised.error);
+    report["denoised"] = denoised.map(|_| document.view.denoise.name()).into();
+    report["denoise_seconds"] = denoised.map(|denoised| denoised.seconds).into();
+    report["denoised_error"] = error.map(|error| error.relative).into();
+    report["denoised_error_low"] = error.map(|error| error.low).into();
+    report["denoised_error_high"] = error.map(|error| error.high).into();
+}
+
+/// Steps until the session is done, with a progress bar on a terminal, and denoises the picture where that is asked for.
+fn step_to_end(
+    session: &mut Session,
+    engine: EngineChoice,
+    document: &Document,
+) -> anyhow::Result<(Progress, Option<Denoised>)> {
     const BAR_STEPS: f64 = 1000.0;
     let bar = bar("{bar:40} {msg}, {eta} left", BAR_STEPS as u64)?;
+    let mut attendant = Attendant::new(document);
     loop {
         let stepped = session.step(STEP).map(|_| ());
         or_fall_back(stepped, session, engine, document)?;
+        attendant.attend(session, &session.progress())?;
         let progress = session.progress();
         bar.set_position((BAR_STEPS * progress.share_done(document.render.time_s)) as u64);
         let error = progress.noise.map_or(String::new(), |noise| {
@@ -314,7 +346,8 @@ fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document)
         bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
         if progress.is_done {
             bar.finish_and_clear();
-            return Ok(progress);
+            let denoised = attendant.finish(session)?;
+            return Ok((session.progress(), denoised));
         }
     }
 }
@@ -327,13 +360,17 @@ fn told(progress: &Progress) -> String {
     );
     let Some(noise) = progress.noise else { return samples };
     let [error, low, high] = [noise.relative, noise.low, noise.high].map(|share| 100.0 * share);
+    let denoised = progress.denoised.map_or(String::new(), |told| {
+        let [error, low, high] = [told.relative, told.low, told.high].map(|share| 100.0 * share);
+        format!(", denoised {error:.2} % ({low:.2} to {high:.2} %)")
+    });
     let why = match (progress.is_converged(), progress.noise_wanted, progress.stopped_by) {
         (_, None, _) => "",
         (true, ..) => ", as exact as was asked for",
         (false, _, Some(StopReason::Time)) => ", less exact than was asked for: the time was over",
         (false, ..) => ", less exact than was asked for: no more samples are allowed",
     };
-    format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){why}")
+    format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){denoised}{why}")
 }
 
 /// Goes on with the processor where the GPU fails, unless the GPU was asked for by name.
@@ -446,6 +483,7 @@ impl SceneArguments {
         document.view.tone_map = self.tone_map;
         document.view.exposure_ev = self.exposure as f32;
         document.view.auto_exposure = self.auto_exposure;
+        document.view.denoise = self.denoise;
         let render = &mut document.render;
         [render.width, render.height] = self.size;
         // With a time or noise to reach only, samples are not limited.

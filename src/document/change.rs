@@ -21,7 +21,8 @@ pub struct Change {
     pub geometry: bool,
     /// Bounces, sequence, strategy, seed, pixel filter, effects switched on or off, the part that is rendered.
     pub sampling: bool,
-    /// What is to be reached: samples, seconds, noise, and how samples are shared out on the way.
+    /// What is to be reached: samples, seconds, noise, of the samples or of the denoised picture, and how samples are
+    /// shared out on the way.
     pub target: bool,
 }
 
@@ -70,7 +71,7 @@ impl Change {
                 other.effects,
                 other.region,
             ),
-            target: aim(render) != aim(other),
+            target: aim(render) != aim(other) || old.view.denoise != new.view.denoise,
         }
     }
 

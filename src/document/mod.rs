@@ -27,8 +27,8 @@ pub use material::{Conductor, MaterialSettings, TextureUse};
 pub use parameter::{Choice, Kind, Parameter, ParameterError, Value, assign, parameter};
 pub use registry::PARAMETERS;
 pub use settings::{
-    AreaLight, AreaLightShape, Background, Bookmark, CameraSettings, Lighting, RenderSettings, SettingError,
-    ViewSettings, range,
+    AreaLight, AreaLightShape, Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings,
+    SettingError, ViewSettings, range,
 };
 
 pub use crate::job::Strategy;

@@ -231,6 +231,32 @@ pub struct ViewSettings {
     pub exposure_ev: f32,
     /// The exposure is added to one that brings the picture's mean brightness to middle grey.
     pub auto_exposure: bool,
+    /// Whether the picture's noise is taken out, and how.
+    pub denoise: Denoise,
+    /// When that is done in the window.
+    pub denoise_when: DenoiseWhen,
+}
+
+named! {
+    /// How a picture's noise is taken out.
+    #[derive(Default)]
+    Denoise {
+        #[default]
+        Off = 0, "off", "Off", "The samples as they are.";
+        Fast = 1, "fast", "Fast", "Noise is taken out, in about half the time.";
+        High = 2, "high", "High quality", "Noise is taken out as well as can be.";
+        Auto = 3, "auto", "Until samples are better", "Noise is taken out as well as can be, and less where the samples alone are nearer to the truth: tile by tile, so that the picture converges to it.";
+    }
+}
+
+named! {
+    /// When the window takes a picture's noise out.
+    #[derive(Default)]
+    DenoiseWhen {
+        #[default]
+        Rendering = 0, "rendering", "While rendering", "From the first sample on.";
+        End = 1, "end", "At the end", "Once all has been rendered.";
+    }
 }
 
 /// How, and for how long, the picture is rendered.

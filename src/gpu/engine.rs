@@ -5,12 +5,12 @@ use std::time::{Duration, Instant};
 
 use super::compute;
 use super::device::{GpuDevice, GpuError};
-use super::layout::{PixelStatistics, Tile};
+use super::layout::{PixelColors, PixelStatistics, Tile};
 use super::pipeline::Pipelines;
 use super::resources::{DISPATCH_TILES, Resources};
 use super::timer::Timer;
 use crate::job::Job;
-use crate::job::features::{FeatureSums, Features};
+use crate::job::features::GuideSums;
 use crate::job::film::Film;
 use crate::job::plan::Specialisation;
 use crate::job::tiles::{Schedule, SliceLimits, Work};
@@ -19,16 +19,12 @@ use crate::job::tiles::{Schedule, SliceLimits, Work};
 const SLICE: Duration = Duration::from_millis(30);
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
-/// Tiles of a dispatch that looks for features: one ray a pixel.
-const FEATURE_TILES: usize = 2048;
 
 /// Renders on a GPU.
 #[derive(Debug)]
 pub struct GpuEngine {
     gpu: GpuDevice,
     pipelines: Pipelines,
-    /// Compiled at the first use.
-    feature_pipelines: Option<Pipelines>,
     resources: Option<Resources>,
     film: Film,
     schedule: Schedule,
@@ -62,7 +58,6 @@ impl GpuEngine {
             },
             gpu,
             pipelines,
-            feature_pipelines: None,
             resources: None,
             film: Film::default(),
             schedule: Schedule::default(),
@@ -206,23 +201,25 @@ impl GpuEngine {
             return Ok(());
         };
         let pixels = self.film.color.len();
-        let colors: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
+        let colors: Vec<PixelColors> = self.gpu.read(&resources.sums[0], pixels)?;
         let statistics: Vec<PixelStatistics> = self.gpu.read(&resources.sums[1], pixels)?;
-        for (sum, color) in self.film.color.iter_mut().zip(colors) {
-            for (sum, x) in sum.iter_mut().zip(color) {
-                *sum += f64::from(x);
-            }
+        let guides: Vec<GuideSums> = self.gpu.read(&resources.sums[2], pixels)?;
+        for (pixel, colors) in colors.iter().enumerate() {
+            add(&mut self.film.color[pixel], &colors.all);
+            add(&mut self.film.odd_color[pixel], &colors.odd);
+            self.film.odd_statistics[pixel][1] += f64::from(colors.odd_kept);
         }
         for (pixel, sums) in statistics.iter().enumerate() {
-            let (of_all, of_odd) = (&mut self.film.statistics[pixel], &mut self.film.odd[pixel]);
+            let of_all = &mut self.film.statistics[pixel];
             of_all[0] += f64::from(sums.luminance_squared);
             of_all[1] += f64::from(sums.kept);
-            of_odd[0] += f64::from(sums.odd_luminance);
-            of_odd[1] += f64::from(sums.odd_luminance_squared);
-            of_odd[2] += f64::from(sums.odd_kept);
+            self.film.odd_statistics[pixel][0] += f64::from(sums.odd_luminance_squared);
             self.film.rays[pixel] += f64::from(sums.rays);
             self.film.dropped += sums.dropped as u64;
             self.film.clamped += f64::from(sums.clamped);
+        }
+        for (sums, seen) in self.film.guides.iter_mut().zip(&guides) {
+            sums.add(seen);
         }
         resources.clear_sums(&self.gpu);
         (self.unflushed, self.is_flushed) = (0, true);
@@ -238,52 +235,6 @@ impl GpuEngine {
         Ok(&self.film)
     }
 
-    /// What the camera sees first, over the first `samples` of each pixel; `None` without a job.
-    ///
-    /// # Errors
-    /// If the device fails.
-    pub fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
-        // The pass writes into the film's buffers: what they hold is read back first.
-        self.flush()?;
-        let Some(resources) = &self.resources else {
-            return Ok(None);
-        };
-        let pipelines = match self.feature_pipelines.take() {
-            Some(pipelines) => pipelines,
-            None => self.pipelines.beside(&self.gpu, "features")?,
-        };
-        let pipelines = self.feature_pipelines.insert(pipelines);
-        let job = resources.job();
-        let pipeline = pipelines.get(&self.gpu, &job.plan)?;
-        let grid = self.schedule.grid();
-        let numbers: Vec<usize> = (0..grid.tiles()).collect();
-        for first_sample in 0..samples {
-            for some in numbers.chunks(FEATURE_TILES) {
-                let tile = |&number: &usize| Tile {
-                    origin: grid.origin(number),
-                    first_sample,
-                    sample_count: 1,
-                };
-                let tiles: Vec<Tile> = some.iter().map(tile).collect();
-                dispatch(&self.gpu, resources, pipeline, &tiles, None)?;
-            }
-        }
-        let pixels = self.film.color.len();
-        let albedo_hits: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
-        let normal_depth: Vec<PixelStatistics> = self.gpu.read(&resources.sums[1], pixels)?;
-        resources.clear_sums(&self.gpu);
-        let both = albedo_hits.into_iter().zip(normal_depth);
-        let sums: Vec<_> = both
-            .map(|(albedo_hits, lent)| FeatureSums {
-                albedo_hits,
-                normal_depth: [lent.luminance_squared, lent.kept, lent.odd_luminance, lent.odd_kept],
-            })
-            .collect();
-        let units = job.geometry.world_units_per_unit;
-        let size = [grid.width, grid.height];
-        Ok(Some(Features::from_sums(size, &sums, samples, units)))
-    }
-
     /// What has been rendered of each tile.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
@@ -297,6 +248,12 @@ impl GpuEngine {
     /// How long the GPU rendered the job by its own clock; `None` where it has none.
     pub fn gpu_seconds(&self) -> Option<f64> {
         self.timer.as_ref().map(|_| self.gpu_seconds)
+    }
+}
+
+fn add(sums: &mut [f64], values: &[f32]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += f64::from(*value);
     }
 }
 

@@ -3,6 +3,7 @@
 use super::layout::BACKGROUNDS;
 use crate::job::Strategy;
 use crate::job::effect::{ANY, EffectId};
+use crate::job::features::GUIDE_SAMPLES;
 use crate::named::Named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
@@ -42,7 +43,7 @@ fn optics_choices() -> String {
 fn scene_choices() -> String {
     let backgrounds = BACKGROUNDS.map(|(name, number)| format!("const BACKGROUND_{name}: u32 = {number}u;\n"));
     format!(
-        "// Generated from src/job, src/scene/camera.rs and src/gpu/layout.rs.\n{}{}{}",
+        "// Generated from src/job, src/scene/camera.rs and src/gpu/layout.rs.\n{}{}{}const GUIDE_SAMPLES: u32 = {GUIDE_SAMPLES}u;\n",
         choices::<Strategy>("STRATEGY"),
         choices::<PixelFilter>("FILTER"),
         backgrounds.concat(),

@@ -73,7 +73,19 @@ pub struct Tile {
     pub sample_count: u32,
 }
 
-/// Sums over the samples of a pixel since the host last took them.
+/// Sums of a pixel's colours since the host last took them.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct PixelColors {
+    /// Linear red, green, blue and the coverage.
+    pub all: [f32; 4],
+    /// Red, green and blue of the odd samples.
+    pub odd: [f32; 3],
+    /// Odd samples in the sums.
+    pub odd_kept: f32,
+}
+
+/// Other sums over the samples of a pixel since the host last took them.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct PixelStatistics {
@@ -81,12 +93,8 @@ pub struct PixelStatistics {
     pub luminance_squared: f32,
     /// Samples in the sums.
     pub kept: f32,
-    /// Sum of the odd samples' luminance.
-    pub odd_luminance: f32,
     /// Sum of the odd samples' squared luminance.
     pub odd_luminance_squared: f32,
-    /// Odd samples in the sums.
-    pub odd_kept: f32,
     /// Samples that were not sound.
     pub dropped: f32,
     /// Rays traced.

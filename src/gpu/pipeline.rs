@@ -34,14 +34,6 @@ impl Pipelines {
         Self::of_pass(gpu, "path_trace", bindings)
     }
 
-    /// Links and compiles another pass that reads the same bindings.
-    ///
-    /// # Errors
-    /// As [`Pipelines::new`].
-    pub fn beside(&self, gpu: &GpuDevice, name: &'static str) -> Result<Self, GpuError> {
-        Self::of_pass(gpu, name, self.bindings.clone())
-    }
-
     fn of_pass(gpu: &GpuDevice, name: &'static str, bindings: wgpu::BindGroupLayout) -> Result<Self, GpuError> {
         let linked = shader::link(&format!("pass/{name}")).map_err(GpuError::Shader)?;
         let descriptor = wgpu::ShaderModuleDescriptor {
@@ -94,7 +86,7 @@ impl Pipelines {
     }
 }
 
-/// Uniforms, eleven read-only buffers, the environment's map, two buffers of sums.
+/// Uniforms, eleven read-only buffers, the environment's map, three buffers of sums.
 fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let environment_map = wgpu::BindGroupLayoutEntry {
         ty: wgpu::BindingType::Texture {
@@ -107,8 +99,8 @@ fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let entry = |binding: u32| match binding {
         0 => buffer_entry(binding, UNIFORMS),
         7 => environment_map,
-        9 | 10 => buffer_entry(binding, WRITE),
+        9 | 10 | 15 => buffer_entry(binding, WRITE),
         _ => buffer_entry(binding, READ),
     };
-    (0..=14).map(entry).collect()
+    (0..=15).map(entry).collect()
 }

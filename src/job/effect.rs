@@ -88,6 +88,7 @@ effects! {
     AdaptiveSampling "adaptive-sampling";
     Variance "variance";
     PictureLayers "picture-layers";
+    Denoising "denoising";
 }
 
 impl fmt::Display for EffectId {

@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use super::features::{GUIDE_SAMPLES, GuideSums};
+
 /// Sums over the samples of each pixel, in f64: they do not stall after millions of samples.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Film {
@@ -13,9 +15,13 @@ pub struct Film {
     pub color: Vec<[f64; 4]>,
     /// Sum of the squared luminance, and the number of samples in the sums.
     pub statistics: Vec<[f64; 2]>,
-    /// Sums of the luminance and of its square, and the number, of the odd ones among these samples: one of two
-    /// independent halves, see [`crate::optics::random::path_state`].
-    pub odd: Vec<[f64; 3]>,
+    /// Sums of red, green and blue of the odd ones among these samples: one of two independent halves, see
+    /// [`crate::optics::random::path_state`].
+    pub odd_color: Vec<[f64; 3]>,
+    /// Sum of the squared luminance, and the number, of the odd samples.
+    pub odd_statistics: Vec<[f64; 2]>,
+    /// What the first [`GUIDE_SAMPLES`] samples saw first.
+    pub guides: Vec<GuideSums>,
     /// Rays traced for each pixel: what it cost.
     pub rays: Vec<f64>,
     /// Samples left out because they were not finite or negative.
@@ -25,8 +31,25 @@ pub struct Film {
 }
 
 /// Luminance of linear Rec. 709.
-pub fn luminance([red, green, blue, _]: [f64; 4]) -> f64 {
+pub fn luminance([red, green, blue]: [f64; 3]) -> f64 {
     0.2126 * red + 0.7152 * green + 0.0722 * blue
+}
+
+fn luminance_of([red, green, blue, _]: [f64; 4]) -> f64 {
+    luminance([red, green, blue])
+}
+
+/// Sums over one of the two independent halves of a pixel's samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HalfSums {
+    /// Linear red, green and blue.
+    pub color: [f64; 3],
+    /// The luminance.
+    pub luminance: f64,
+    /// Its square.
+    pub luminance_squared: f64,
+    /// How many samples there are.
+    pub samples: f64,
 }
 
 impl Film {
@@ -38,7 +61,9 @@ impl Film {
             height,
             color: vec![[0.0; 4]; pixels],
             statistics: vec![[0.0; 2]; pixels],
-            odd: vec![[0.0; 3]; pixels],
+            odd_color: vec![[0.0; 3]; pixels],
+            odd_statistics: vec![[0.0; 2]; pixels],
+            guides: vec![GuideSums::default(); pixels],
             rays: vec![0.0; pixels],
             dropped: 0,
             clamped: 0.0,
@@ -47,7 +72,7 @@ impl Film {
 
     /// The part of the picture's energy, in [0, 1], that limiting fireflies took.
     pub fn clamped_share(&self) -> f64 {
-        let kept: f64 = self.color.iter().map(|sum| luminance(*sum)).sum();
+        let kept: f64 = self.color.iter().map(|sum| luminance_of(*sum)).sum();
         if self.clamped > 0.0 {
             self.clamped / (self.clamped + kept)
         } else {
@@ -57,17 +82,42 @@ impl Film {
 
     /// Adds sample number `sample` of a pixel: linear colour with coverage.
     pub fn add(&mut self, pixel: usize, sample: u32, color: [f64; 4]) {
-        let luminance = luminance(color);
+        let luminance = luminance_of(color);
         for (sum, x) in self.color[pixel].iter_mut().zip(color) {
             *sum += x;
         }
         self.statistics[pixel][0] += luminance * luminance;
         self.statistics[pixel][1] += 1.0;
         if sample % 2 == 1 {
-            self.odd[pixel][0] += luminance;
-            self.odd[pixel][1] += luminance * luminance;
-            self.odd[pixel][2] += 1.0;
+            for (sum, x) in self.odd_color[pixel].iter_mut().zip(color) {
+                *sum += x;
+            }
+            self.odd_statistics[pixel][0] += luminance * luminance;
+            self.odd_statistics[pixel][1] += 1.0;
         }
+    }
+
+    /// The two halves of a pixel's samples: the even ones and the odd ones.
+    pub fn halves(&self, pixel: usize) -> [HalfSums; 2] {
+        let [red, green, blue, _] = self.color[pixel];
+        let ([all_squared, all_samples], odd) = (self.statistics[pixel], self.odd_color[pixel]);
+        let [odd_squared, odd_samples] = self.odd_statistics[pixel];
+        let half = |color: [f64; 3], luminance_squared: f64, samples: f64| HalfSums {
+            color,
+            luminance: luminance(color),
+            luminance_squared,
+            samples,
+        };
+        let even = [red - odd[0], green - odd[1], blue - odd[2]];
+        [
+            half(even, all_squared - odd_squared, all_samples - odd_samples),
+            half(odd, odd_squared, odd_samples),
+        ]
+    }
+
+    /// How many of a pixel's samples are in the sums of what they saw first.
+    pub fn guide_samples(&self, pixel: usize) -> f64 {
+        self.statistics[pixel][1].min(f64::from(GUIDE_SAMPLES))
     }
 
     /// Copies a smaller film into this one, its top left pixel to `origin`; what was dropped or taken adds up.
@@ -78,7 +128,9 @@ impl Film {
             let (to, from) = (to..to + width, row * width..(row + 1) * width);
             self.color[to.clone()].copy_from_slice(&tile.color[from.clone()]);
             self.statistics[to.clone()].copy_from_slice(&tile.statistics[from.clone()]);
-            self.odd[to.clone()].copy_from_slice(&tile.odd[from.clone()]);
+            self.odd_color[to.clone()].copy_from_slice(&tile.odd_color[from.clone()]);
+            self.odd_statistics[to.clone()].copy_from_slice(&tile.odd_statistics[from.clone()]);
+            self.guides[to.clone()].copy_from_slice(&tile.guides[from.clone()]);
             self.rays[to].copy_from_slice(&tile.rays[from]);
         }
         self.dropped += tile.dropped;
@@ -93,7 +145,9 @@ impl Film {
             height: 1,
             color: chosen.iter().map(|&pixel| self.color[pixel]).collect(),
             statistics: chosen.iter().map(|&pixel| self.statistics[pixel]).collect(),
-            odd: chosen.iter().map(|&pixel| self.odd[pixel]).collect(),
+            odd_color: chosen.iter().map(|&pixel| self.odd_color[pixel]).collect(),
+            odd_statistics: chosen.iter().map(|&pixel| self.odd_statistics[pixel]).collect(),
+            guides: chosen.iter().map(|&pixel| self.guides[pixel]).collect(),
             rays: chosen.iter().map(|&pixel| self.rays[pixel]).collect(),
             dropped: self.dropped,
             clamped: self.clamped,
@@ -123,7 +177,7 @@ impl Film {
 
     /// Mean luminance of each pixel; NaN where there is no sample.
     pub fn luminance(&self) -> Vec<f64> {
-        let mean = |(sum, s): (&[f64; 4], &[f64; 2])| luminance(*sum) / s[1];
+        let mean = |(sum, s): (&[f64; 4], &[f64; 2])| luminance_of(*sum) / s[1];
         self.color.par_iter().zip(&self.statistics).map(mean).collect()
     }
 
@@ -144,7 +198,7 @@ impl Film {
             if n < 2.0 {
                 return f64::INFINITY;
             }
-            let mean = luminance(*sum) / n;
+            let mean = luminance_of(*sum) / n;
             ((s[0] / n - mean * mean) / (n - 1.0)).max(0.0)
         };
         self.color.par_iter().zip(&self.statistics).map(of_pixel).collect()

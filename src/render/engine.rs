@@ -9,7 +9,6 @@ use crate::cpu::CpuEngine;
 use crate::gpu::scatter::Scatterer;
 use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
 use crate::job::Job;
-use crate::job::features::Features;
 use crate::job::film::Film;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::job::tiles::Schedule;
@@ -150,13 +149,6 @@ impl Engine {
         match self {
             Engine::Cpu(engine) => Ok(engine.film()),
             Engine::Gpu(engine) => engine.film(),
-        }
-    }
-
-    pub(super) fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
-        match self {
-            Engine::Cpu(engine) => Ok(engine.features(samples)),
-            Engine::Gpu(engine) => engine.features(samples),
         }
     }
 }

@@ -8,6 +8,7 @@ mod calibration;
 pub mod check;
 mod compile;
 mod convergence;
+pub mod denoise;
 pub mod display;
 mod engine;
 pub mod environment_thumbnails;

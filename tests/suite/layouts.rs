@@ -2,9 +2,10 @@
 
 use std::mem::offset_of;
 
-use glossmith::gpu::layout::{Globals, PixelStatistics, Tile, Triangle};
+use glossmith::gpu::layout::{Globals, PixelColors, PixelStatistics, Tile, Triangle};
 use glossmith::gpu::sampling::Sampling;
 use glossmith::gpu::scatter::Scatter;
+use glossmith::job::features::GuideSums;
 use glossmith::optics::material::Material;
 use glossmith::scene::Vertex;
 use glossmith::scene::camera::Camera;
@@ -49,8 +50,10 @@ fn rust_layouts() -> Vec<Layout> {
         }),
         layout!(Tile: Tile { origin, first_sample, sample_count }),
         layout!(PixelStatistics: PixelStatistics {
-            luminance_squared, kept, odd_luminance, odd_luminance_squared, odd_kept, dropped, rays, clamped,
+            luminance_squared, kept, odd_luminance_squared, dropped, rays, clamped,
         }),
+        layout!(PixelColors: PixelColors { all, odd, odd_kept }),
+        layout!(GuideSums: GuideSums { albedo, hits, normal, depth }),
         layout!(Camera: Camera<f32> {
             origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,
         }),

@@ -8,6 +8,7 @@ use std::borrow::Cow;
 
 use super::recorder::{End, Event, Purpose, Recorder, Source, Unrecorded, single};
 use crate::job::effect::EffectId;
+use crate::job::features::{GUIDE_SAMPLES, GuideSums};
 use crate::job::{Job, Settings, Strategy};
 use crate::optics::material::{
     Material, MaterialNumbers, MaterialSample, material_albedo, material_layers, material_sample,
@@ -49,17 +50,8 @@ pub struct PathResult<T> {
     pub rays: u32,
     /// Luminance that limiting fireflies took.
     pub clamped: T,
-}
-
-/// What one sample of the camera sees first.
-#[derive(Clone, Copy, Debug)]
-pub struct FeatureSample<T> {
-    /// See [`material_albedo`].
-    pub albedo: Vec3<T>,
-    /// Shading normal in the world.
-    pub normal: Vec3<T>,
-    /// Along the camera's axis, in the geometry's units.
-    pub depth: T,
+    /// What it saw first, where it is one of those that tell.
+    pub seen: GuideSums,
 }
 
 /// A job with its numbers in the precision of the shading.
@@ -124,7 +116,7 @@ impl<'a, T: Real> Integrator<'a, T> {
     pub fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<T> {
         let settings = self.settings;
         let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        let mut path = Path::new(state, recorder);
+        let mut path = Path::new(state, sample < GUIDE_SAMPLES, recorder);
         let mut ray = self.first_ray(pixel, &mut path);
         for bounce in 0.. {
             let mut met = None;
@@ -137,6 +129,9 @@ impl<'a, T: Real> Integrator<'a, T> {
             let material = &*self.material(&point);
             if point.surface.is_inside && material.transmits() {
                 self.absorb(material, distance, &mut path);
+            }
+            if path.is_looking {
+                self.look(&point, material, distance, &ray, bounce, &mut path);
             }
             let found = path.throughput * self.emitted_light(&point, material, distance, &ray, &mut path);
             self.add(Source::Surface, found, bounce, &mut path);
@@ -181,6 +176,25 @@ impl<'a, T: Real> Integrator<'a, T> {
             kept: kept.to_f32(),
         });
         path.throughput = path.throughput * kept;
+    }
+
+    /// Notes what is seen here: at the first surface, and behind mirrors and clear glass.
+    fn look<R: Recorder>(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        distance: T,
+        ray: &Ray<T>,
+        bounce: u32,
+        path: &mut Path<'_, T, R>,
+    ) {
+        let albedo = path.throughput * material_albedo(material, self.tables, &point.surface);
+        path.seen.albedo = albedo.to_f32().map(|share| share.clamp(0.0, 1.0));
+        path.seen.normal = point.surface.frame.normal.to_f32();
+        if bounce == 0 {
+            path.seen.hits = 1.0;
+            path.seen.depth = single(distance * ray.direction.dot(self.camera.forward));
+        }
     }
 
     /// The end of a path that met nothing.
@@ -241,6 +255,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         let wants_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
         let drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
         path.throughput = path.throughput * drawn.throughput;
+        path.is_looking &= drawn.is_mirror;
         let throughput = path.throughput;
         path.record(|| self.scattered(point, material, &drawn, throughput));
         if !survives(bounce, path) {
@@ -279,22 +294,6 @@ impl<'a, T: Real> Integrator<'a, T> {
             is_mirror: drawn.is_mirror,
             throughput: throughput.to_f32(),
         }
-    }
-
-    /// What the camera sees first through a pixel, with the same ray as [`Integrator::trace_path`]; `None` where it meets
-    /// nothing.
-    pub fn trace_features(&self, pixel: [u32; 2], sample: u32) -> Option<FeatureSample<T>> {
-        let settings = self.settings;
-        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        let mut nobody = Unrecorded;
-        let mut path = Path::new(state, &mut nobody);
-        let ray = self.first_ray(pixel, &mut path);
-        let (point, distance) = self.stop(&ray, 0, &mut path)?;
-        Some(FeatureSample {
-            albedo: material_albedo(&self.material(&point), self.tables, &point.surface),
-            normal: point.surface.frame.normal,
-            depth: distance * ray.direction.dot(self.camera.forward),
-        })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::PathResult;
 use crate::cpu::recorder::{Event, Purpose, Recorder, single};
+use crate::job::features::GuideSums;
 use crate::optics::random::{RandomState, random_pair};
 use crate::optics::real::Real;
 use crate::optics::vector::Vec3;
@@ -17,6 +18,10 @@ pub(super) struct Path<'r, T, R> {
     pub clamped: T,
     /// Rays traced.
     pub rays: u32,
+    /// What is seen first.
+    pub seen: GuideSums,
+    /// True while the path is one of those that tell what they see, and has met nothing but mirrors and clear glass.
+    pub is_looking: bool,
     recorder: &'r mut R,
 }
 
@@ -34,13 +39,15 @@ pub(super) struct Ray<T> {
 }
 
 impl<'r, T: Real, R: Recorder> Path<'r, T, R> {
-    pub fn new(state: RandomState, recorder: &'r mut R) -> Self {
+    pub fn new(state: RandomState, is_looking: bool, recorder: &'r mut R) -> Self {
         Self {
             state,
             throughput: Vec3::splat(T::one()),
             radiance: Vec3::zero(),
             clamped: T::zero(),
             rays: 0,
+            seen: GuideSums::default(),
+            is_looking,
             recorder,
         }
     }
@@ -75,6 +82,7 @@ impl<'r, T: Real, R: Recorder> Path<'r, T, R> {
             alpha,
             rays: self.rays,
             clamped: self.clamped,
+            seen: self.seen,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The table of effects.
 
 use super::{Effect, Switch, horizon};
-use crate::document::{Background, Document, MaterialSettings, Strategy};
+use crate::document::{Background, Denoise, Document, MaterialSettings, Strategy};
 use crate::job::effect::{ANY, Decision, EffectId};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
@@ -341,9 +341,21 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::PictureLayers,
         label: "Picture layers (AOVs)",
-        help: "Albedo, normal and distance of what is seen, by a pass of their own.",
-        decide: |_| Decision::off("drawn only when a picture with layers is saved"),
+        help: "Albedo, normal and distance of what is seen, beside the light.",
+        decide: |_| Decision::off("written only when a picture with layers is saved"),
         remove: None,
+    },
+    Effect {
+        id: EffectId::Denoising,
+        label: "Denoising",
+        help: "The picture's noise is taken out, led by the albedo and the normal of what is seen.",
+        decide: |facts| match facts.document.view.denoise {
+            Denoise::Off => Decision::off("the samples are shown as they are"),
+            Denoise::Fast => Decision::on("noise is taken out, quickly"),
+            Denoise::High => Decision::on("noise is taken out as well as can be"),
+            Denoise::Auto => Decision::on("noise is taken out until the samples alone are nearer to the truth"),
+        },
+        remove: Some(|document| document.view.denoise = Denoise::Off),
     },
 ];
 

@@ -11,7 +11,7 @@ use crate::gpu::GpuError;
 use crate::job::film::{Film, Image};
 use crate::optics::random::Sequence;
 use crate::render::engine::{EngineChoice, EngineInfo};
-use crate::render::output::{self, OutputError};
+use crate::render::output::{self, OutputError, Rendered};
 use crate::render::probe::Prober;
 use crate::render::session::{Session, SessionError};
 use crate::scene::environment::EnvironmentSource;
@@ -144,7 +144,7 @@ impl Stage {
             pixels: pixels.collect(),
         };
         let path = self.path(name);
-        output::write(&path, &image, &Document::default())?;
+        output::write(&path, Rendered::from(&image), &Document::default())?;
         Ok(EnvironmentSource::File(path))
     }
 

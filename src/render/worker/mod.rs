@@ -3,6 +3,7 @@
 //! The window submits documents, the latest wins; the worker publishes snapshots, the latest wins. What the two say to
 //! each other goes through two short locks. Work is cut into steps of [`STEP`], after each of which orders are read.
 
+mod denoising;
 mod stage;
 mod thread;
 
@@ -16,9 +17,10 @@ use super::assets::Assets;
 use super::convergence::Measurement;
 use super::display::{Scale, Shown};
 use super::engine::{EngineChoice, EngineInfo};
-use super::output::Layers;
+use super::output::{Layers, Rendered};
 use super::priority::lower_thread_priority;
 use super::session::Progress;
+use crate::analysis::denoised::DenoisedError;
 use crate::document::Document;
 use crate::job::Job;
 use crate::job::film::Image;
@@ -94,6 +96,8 @@ pub struct Picture {
     pub rgba: Vec<u8>,
     /// The linear picture that it shows.
     pub image: Arc<Image>,
+    /// The mean of the samples: another one where the picture was denoised.
+    pub samples: Arc<Image>,
     /// Differs from one picture to the next.
     pub serial: u64,
     /// The submission that it belongs to, see [`Worker::submit`].
@@ -106,6 +110,21 @@ pub struct Picture {
     pub map: Option<(Shown, Scale)>,
     /// What it shows, with the size at the full resolution.
     pub document: Arc<Document>,
+}
+
+impl Picture {
+    /// Whether its noise was taken out.
+    pub fn is_denoised(&self) -> bool {
+        !Arc::ptr_eq(&self.image, &self.samples)
+    }
+
+    /// As it is written to files.
+    pub fn rendered(&self) -> Rendered<'_> {
+        Rendered {
+            image: &self.samples,
+            denoised: self.is_denoised().then_some(&*self.image),
+        }
+    }
 }
 
 /// What is being rendered.
@@ -138,6 +157,8 @@ pub struct Snapshot {
     pub activity: Activity,
     /// What renders; `None` while it is being opened.
     pub engine: Option<EngineInfo>,
+    /// The error of the denoised picture.
+    pub denoised: Option<DenoisedError>,
     /// From the latest submission to its first picture.
     pub first_picture: Option<Duration>,
 }
@@ -219,6 +240,14 @@ struct OrderBook {
     orders: Orders,
     is_paused: bool,
     last_revision: u64,
+}
+
+impl Shared {
+    /// Has the thread look at what there is to do. It holds the lock while it decides to wait, so that no call is lost.
+    fn wake(&self) {
+        let _orders = lock(&self.orders);
+        self.ordered.notify_one();
+    }
 }
 
 /// What a panicking thread leaves behind a lock here is still whole: every write is a single assignment or push.

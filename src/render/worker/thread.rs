@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::denoising::Denoising;
 use super::stage::Stage;
 use super::{Activity, Event, FIRST_STEP, Level, Orders, Picture, STEP, Scene, Shared, Snapshot, Submission, lock};
 use crate::document::{Change, Document, ViewSettings};
@@ -11,8 +12,10 @@ use crate::job::film::Image;
 use crate::job::plan::Specialisation;
 use crate::panics::caught;
 use crate::render::assets::Assets;
-use crate::render::display::{Shown, display, map};
+use crate::render::denoise::Denoised;
+use crate::render::display::{Shown, display, map, map_of_errors};
 use crate::render::engine::{EngineChoice, EngineKind};
+use crate::render::output::Layers;
 use crate::render::session::{Session, SessionError};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
@@ -28,7 +31,7 @@ const PUBLISH_COST: u32 = 8;
 const SPEED_WEIGHT: f64 = 0.1;
 
 /// The thread's body.
-pub(super) fn run(shared: &Shared, choice: EngineChoice, assets: Assets, repaint: &dyn Fn()) {
+pub(super) fn run(shared: &Arc<Shared>, choice: EngineChoice, assets: Assets, repaint: &dyn Fn()) {
     let mut state = State {
         shared,
         repaint,
@@ -45,6 +48,11 @@ pub(super) fn run(shared: &Shared, choice: EngineChoice, assets: Assets, repaint
         told_at: Instant::now(),
         serial: 0,
         shown: Shown::default(),
+        denoising: Denoising::spawn({
+            let shared = shared.clone();
+            move || shared.wake()
+        }),
+        denoised: None,
     };
     state.open(choice);
     while state.turn().is_some() {}
@@ -70,6 +78,9 @@ struct State<'a> {
     serial: u64,
     /// What of a render is shown.
     shown: Shown,
+    denoising: Denoising,
+    /// The latest denoised picture of what is being rendered.
+    denoised: Option<Denoised>,
 }
 
 impl State<'_> {
@@ -101,7 +112,7 @@ impl State<'_> {
         if let Some(shown) = orders.shown {
             self.shown = shown;
             if self.stage.as_ref().is_some_and(|stage| stage.is_shown) {
-                self.guarded(Self::publish_picture);
+                self.guarded(Self::show_anew);
             }
         }
         orders.models.into_iter().for_each(|source| self.load_model(source));
@@ -110,6 +121,7 @@ impl State<'_> {
             .into_iter()
             .for_each(|source| self.load_environment(source));
         self.wanted_layers.extend(orders.layers);
+        self.collect_denoised();
         if let Some(submission) = orders.submission {
             self.take(submission);
         } else if self.stage.as_ref().is_some_and(Stage::is_settled) {
@@ -131,7 +143,7 @@ impl State<'_> {
         loop {
             let is_busy = self.should_render(book.is_paused);
             let rest_left = self.stage.as_ref().and_then(Stage::rest_left);
-            let has_news = self.activity(book.is_paused) != self.snapshot.activity;
+            let has_news = self.activity(book.is_paused) != self.snapshot.activity || self.denoising.has_news();
             if is_busy || has_news || !book.orders.is_empty() || rest_left.is_some_and(|left| left.is_zero()) {
                 break;
             }
@@ -161,6 +173,7 @@ impl State<'_> {
     /// What there is to do now that orders have been followed.
     fn activity(&self, is_paused: bool) -> Activity {
         match (&self.stage, &self.session) {
+            (Some(_), Some(_)) if self.denoising.is_pending() => Activity::Rendering,
             (Some(_), Some(session)) if session.progress().is_done => Activity::Done,
             (Some(_), Some(_)) if is_paused => Activity::Paused,
             (Some(_), Some(_)) => Activity::Rendering,
@@ -173,7 +186,7 @@ impl State<'_> {
         let activity = self.activity(is_paused);
         let is_news = self.snapshot.activity != activity;
         let is_unseen = self.stage.as_ref().is_some_and(|stage| !stage.is_shown);
-        if activity == Activity::Done && is_unseen {
+        if activity == Activity::Done && is_unseen && !self.denoising.is_pending() {
             // Its time was over before its first sample.
             self.guarded(Self::publish_picture);
         }
@@ -191,7 +204,11 @@ impl State<'_> {
         }
         for path in std::mem::take(&mut self.wanted_layers) {
             self.guarded(|state| {
-                let layers = state.session()?.layers()?;
+                let denoised = state.denoised.as_ref().map(|denoised| denoised.image.clone());
+                let layers = Layers {
+                    denoised,
+                    ..state.session()?.layers()?
+                };
                 lock(&state.shared.events).push(Event::LayersMade(path, Box::new(layers)));
                 (state.repaint)();
                 Ok(())
@@ -354,12 +371,20 @@ impl State<'_> {
     fn go_on(&mut self, change: Change) -> Result<(), SessionError> {
         let Some(stage) = self.stage.clone() else { return Ok(()) };
         self.session()?.submit(&stage.document())?;
+        let view = &stage.submission.document.view;
+        let shown = self.snapshot.picture.as_ref().map(|picture| &picture.document.view);
+        let denoises_alike =
+            shown.is_some_and(|old| (old.denoise, old.denoise_when) == (view.denoise, view.denoise_when));
         if let Some(scene) = &self.snapshot.scene {
             let document = stage.submission.document.clone();
             self.snapshot.scene = Some(Arc::new(Scene {
                 document,
                 ..Scene::clone(scene)
             }));
+        }
+        if !denoises_alike && stage.is_shown {
+            self.forget_denoised();
+            return self.publish_picture();
         }
         // Where nothing is left to render, the picture is the new submission's, too.
         let is_done = self.session()?.progress().is_done;
@@ -369,7 +394,7 @@ impl State<'_> {
             .clone()
             .filter(|_| stage.is_shown && (change.display || is_done))
         {
-            self.publish(last.image.clone(), last.samples_per_pixel)?;
+            self.publish(last.image.clone(), last.samples.clone(), last.samples_per_pixel)?;
         }
         Ok(())
     }
@@ -398,6 +423,7 @@ impl State<'_> {
         }
         let is_first_look = !stage.is_shown;
         self.stage = Some(stage);
+        self.forget_denoised();
         self.published_samples = 0;
         self.published_at = Instant::now();
         if is_first_look {
@@ -472,6 +498,15 @@ impl State<'_> {
         let interval = Duration::from_secs_f64(PUBLISH_SHARE * progress.render_seconds)
             .clamp(PUBLISH_INTERVAL[0], PUBLISH_INTERVAL[1])
             .max(PUBLISH_COST * self.publish_cost);
+        if self.denoising.shows(&stage.submission.document, &progress) {
+            if self.denoising.is_due(&progress) {
+                self.publish_picture()?;
+            }
+            if self.told_at.elapsed() >= interval {
+                self.tell(Activity::Rendering);
+            }
+            return Ok(());
+        }
         let is_first = self.published_samples == 0 && progress.samples_per_pixel > 0;
         let is_fresh = progress.samples_per_pixel > self.published_samples;
         if is_fresh && (is_first || progress.is_done || age >= interval) {
@@ -483,21 +518,67 @@ impl State<'_> {
         Ok(())
     }
 
+    /// What is shown already, in another way.
+    fn show_anew(&mut self) -> Result<(), SessionError> {
+        match self.snapshot.picture.clone().filter(|picture| picture.is_denoised()) {
+            Some(last) => self.publish(last.image.clone(), last.samples.clone(), last.samples_per_pixel),
+            None => self.publish_picture(),
+        }
+    }
+
+    /// Publishes what has been rendered; where it is shown denoised, asks for that instead.
     fn publish_picture(&mut self) -> Result<(), SessionError> {
         let begun = Instant::now();
-        let image = Arc::new(self.session()?.image()?);
         let progress = self.session()?.progress();
-        self.publish(image, progress.samples_per_pixel)?;
+        let Some(stage) = &self.stage else { return Ok(()) };
+        if self.denoising.shows(&stage.submission.document, &progress) {
+            let how = stage.submission.document.view.denoise;
+            let noisy = self.session()?.noisy()?;
+            self.denoising.ask(noisy, how, progress.samples_per_pixel);
+            return Ok(());
+        }
+        let image = Arc::new(self.session()?.image()?);
+        self.publish(image.clone(), image, progress.samples_per_pixel)?;
         self.published_samples = progress.samples_per_pixel;
         self.published_at = Instant::now();
         self.publish_cost = begun.elapsed();
         Ok(())
     }
 
-    fn publish(&mut self, image: Arc<Image>, samples_per_pixel: u32) -> Result<(), SessionError> {
+    /// Another picture is begun, or the same is shown in another way.
+    fn forget_denoised(&mut self) {
+        self.denoising.begin();
+        (self.denoised, self.snapshot.denoised) = (None, None);
+    }
+
+    /// Shows the denoised picture that has come back, if one has.
+    fn collect_denoised(&mut self) {
+        let Some(outcome) = self.denoising.collect() else {
+            return;
+        };
+        match outcome.denoised {
+            Ok(denoised) => {
+                let image = denoised.image.clone();
+                if let (Some(error), Some(session)) = (denoised.error, &mut self.session) {
+                    session.note_denoised(error);
+                }
+                self.snapshot.denoised = denoised.error;
+                self.denoised = Some(denoised);
+                self.guarded(|state| state.publish(image, outcome.noisy.image, outcome.samples_per_pixel));
+            }
+            Err(why) => {
+                self.say(Level::Warning, format!("{why}; pictures are shown as they are"));
+                self.guarded(Self::publish_picture);
+            }
+        }
+    }
+
+    fn publish(&mut self, image: Arc<Image>, samples: Arc<Image>, samples_per_pixel: u32) -> Result<(), SessionError> {
         let wanted = self.shown;
-        let map = match wanted {
-            Shown::Picture => None,
+        let denoised = self.denoised.as_ref().filter(|denoised| !denoised.error_map.is_empty());
+        let map = match (wanted, denoised) {
+            (Shown::Picture, _) => None,
+            (Shown::Error, Some(denoised)) => Some(map_of_errors(&denoised.error_map)),
             _ => map(self.session()?.film()?, wanted),
         };
         let Some(stage) = &mut self.stage else { return Ok(()) };
@@ -515,6 +596,7 @@ impl State<'_> {
             height: image.height,
             rgba,
             image,
+            samples,
             serial: self.serial,
             revision: stage.submission.revision,
             reduction: stage.reduction,
