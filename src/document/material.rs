@@ -151,6 +151,11 @@ impl MaterialSettings {
             metalness: unit(slot.metalness),
             roughness: unit(slot.roughness),
             ior: slot.ior.clamp(1.0, 4.0),
+            specular_weight: unit(slot.specular),
+            specular_color: slot.specular_color.map(unit),
+            anisotropy: slot.anisotropy.clamp(-1.0, 1.0),
+            rotation_deg: slot.anisotropy_rotation_rad.to_degrees(),
+            extra: slot.kept.clone(),
             ..Self::default()
         };
         lobe.apply(&mut material);

@@ -91,7 +91,9 @@ impl Kept {
             return Ok(model.clone());
         }
         let model = Arc::new(scene::load(source)?);
-        model.warnings.iter().for_each(|warning| log::warn!("{warning}"));
+        if let Some(summary) = model.report.summary() {
+            log::warn!("{source}: {summary}");
+        }
         self.model = Some((source.clone(), model.clone()));
         Ok(model)
     }

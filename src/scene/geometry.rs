@@ -236,8 +236,8 @@ impl Geometry {
 /// The triangles of a mesh that can be traced, and the sphere around them.
 pub(super) struct Framing {
     /// Those with finite corners and an area.
-    usable: Vec<usize>,
-    dropped_not_finite: usize,
+    pub usable: Vec<usize>,
+    pub dropped_not_finite: usize,
     bounds_world: [DVec3; 2],
     center_world: DVec3,
     /// See [`Geometry::world_units_per_unit`].

@@ -331,6 +331,41 @@ fn halved(picture: &Texture, is_color: bool) -> Texture {
     }
 }
 
+/// A picture whose sides are at most `side_max`, halved until they are; and the size that it had, where that was more.
+pub(super) fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, Option<[u32; 2]>) {
+    let whole = [picture.width, picture.height];
+    let mut scaled = picture;
+    while scaled.width.max(scaled.height) > side_max.max(1) {
+        scaled = halved(&scaled, is_color);
+    }
+    let is_scaled = [scaled.width, scaled.height] != whole;
+    (scaled, is_scaled.then_some(whole))
+}
+
+/// The mean of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TextureMean {
+    /// Of its codes, in [0, 1].
+    pub codes: [f32; 4],
+    /// Of the light that its codes stand for as sRGB.
+    pub linear: [f32; 3],
+}
+
+/// The mean of a picture.
+pub(super) fn texture_mean(picture: &Texture) -> TextureMean {
+    let mut sums = [0_u64; 4];
+    for texel in picture.rgba8.as_chunks::<4>().0 {
+        sums.iter_mut()
+            .zip(texel)
+            .for_each(|(sum, code)| *sum += u64::from(*code));
+    }
+    let texels = (picture.rgba8.len() / 4).max(1) as f64;
+    TextureMean {
+        codes: sums.map(|sum| (sum as f64 / (255.0 * texels)) as f32),
+        linear: mean_linear(picture),
+    }
+}
+
 /// The mean of a picture of sRGB codes, linear.
 fn mean_linear(picture: &Texture) -> [f32; 3] {
     let mut counts = [[0u32; DECODED]; 3];

@@ -279,8 +279,8 @@ impl State<'_> {
         let path = PathBuf::from(source.to_string());
         self.loaded(path, |state| {
             let model = state.session()?.assets().model(&source)?;
-            for warning in &model.warnings {
-                state.say(Level::Warning, warning.clone());
+            if let Some(summary) = model.report.summary() {
+                state.say(Level::Warning, summary);
             }
             Ok(Event::ModelOpened(source, model))
         });
