@@ -4,15 +4,15 @@ use std::path::Path;
 
 use super::files::Files;
 use super::geometry::Framing;
-use super::gltf;
 use super::model::{Model, ModelError, ModelOptions};
 use super::report::Fate;
+use super::{gltf, obj, ply, stl};
 
 /// Endings of the model files that can be read, without their dots.
-pub const MODEL_ENDINGS: [&str; 3] = ["glb", "gltf", "zip"];
+pub const MODEL_ENDINGS: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "zip"];
 
 /// Endings of models in the order in which they are looked for in folders and archives.
-const PREFERRED: [&str; 2] = ["glb", "gltf"];
+const PREFERRED: [&str; 5] = ["gltf", "glb", "obj", "ply", "stl"];
 
 /// Loads the model in a file, a folder or an archive.
 pub(super) fn load(path: &Path, options: &ModelOptions) -> Result<Model, ModelError> {
@@ -81,7 +81,17 @@ fn load_inside(path: &Path, files: Files, options: &ModelOptions) -> Result<Mode
 
 /// Loads the contents of a file by its ending.
 fn load_file(path: &Path, files: Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
-    gltf::load(path, files, bytes, options)
+    let model = match ending(path).as_str() {
+        "obj" => obj::load(path, &files, bytes, options)?,
+        "ply" => ply::load(path, bytes)?,
+        "stl" => stl::load(path, bytes)?,
+        // Whatever a glTF file is called: its first bytes tell.
+        _ => gltf::load(path, files, bytes, options)?,
+    };
+    if model.mesh.triangles.is_empty() {
+        return Err(ModelError::NoTriangles { path: path.to_owned() });
+    }
+    Ok(model)
 }
 
 /// What all formats have in common: lengths in bounding radii, and a word about triangles that cannot be shown.

@@ -130,6 +130,20 @@ impl Mesh {
         *self = flat;
     }
 
+    /// Gives every vertex the mean normal of its triangles, weighed by their areas: for scanned surfaces, which have no
+    /// creases.
+    pub fn smooth_normals(&mut self) {
+        let mut sums = vec![DVec3::ZERO; self.positions.len()];
+        for triangle in 0..self.triangles.len() {
+            let [a, b, c] = self.corners(triangle);
+            let doubled_area = (b - a).cross(c - a);
+            for vertex in self.triangles[triangle] {
+                sums[vertex as usize] += doubled_area;
+            }
+        }
+        self.normals = sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect();
+    }
+
     /// Replaces normals that are not finite or have no length by that of a triangle at the vertex; the rest are
     /// scaled to unit length. Gives the number of normals replaced.
     pub fn repair_normals(&mut self) -> usize {

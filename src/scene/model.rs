@@ -410,12 +410,6 @@ pub enum ModelError {
         /// What is wrong with it.
         reason: String,
     },
-    /// An ending that is not known.
-    #[error("{}: not a model that can be read; models are {}", path.display(), super::MODEL_ENDINGS.join(", "))]
-    UnknownEnding {
-        /// The model file.
-        path: PathBuf,
-    },
     /// A folder or an archive without a model.
     #[error("{}: no model in it; models are {}", path.display(), super::MODEL_ENDINGS.join(", "))]
     NoModelInside {

@@ -12,10 +12,10 @@ use rayon::prelude::*;
 use serde_json::Value as Json;
 
 use super::container::Document;
+use super::image;
 use super::material_extensions::{
     Anisotropy, Clearcoat, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension, kept,
 };
-use super::picture;
 use super::specular_glossiness::{Factors, convert, convert_textures};
 use crate::scene::model::{AlphaMode, Filter, ModelOptions, Slot, Texture, TextureRef, Wrap};
 use crate::scene::report::{Fate, ImportReport};
@@ -235,7 +235,7 @@ impl<'a> Materials<'a> {
         let results: Vec<_> = images
             .into_par_iter()
             .map(|image| {
-                let texture = picture::decode(self.document, image);
+                let texture = image::decode(self.document, image);
                 (
                     image,
                     texture.map(|texture| scaled_to(texture, side_max, is_color(image))),
@@ -257,7 +257,7 @@ impl<'a> Materials<'a> {
                     decoded.insert(image, texture);
                 }
                 Err(reason) => {
-                    let name = picture::name(self.document, image);
+                    let name = image::name(self.document, image);
                     self.report
                         .note(Fate::Missing, format!("a texture, grey instead ({reason})"), &name);
                 }

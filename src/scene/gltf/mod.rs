@@ -7,10 +7,10 @@
 mod accessor;
 mod compressed;
 mod container;
+mod image;
 mod material;
 mod material_extensions;
 mod nodes;
-mod picture;
 mod pose;
 mod primitive;
 mod specular_glossiness;

@@ -1,58 +1,19 @@
-//! The pictures of a file or beside it, as 8-bit RGBA.
+//! Pictures of models, whatever their format, as 8-bit RGBA.
 
 use std::io::Cursor;
 
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use image::{ImageReader, Limits};
 
-use super::container::Document;
-use crate::scene::model::Texture;
+use super::model::Texture;
 
 /// The first bytes of a KTX2 file.
 const KTX2: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
 /// The most memory that decoding one picture may take.
 const DECODED_MAX: u64 = 2 << 30;
 
-/// What to call a picture: its name, its file or its number.
-pub(super) fn name(document: &Document, index: usize) -> String {
-    let image = document.root.images.get(index);
-    let external = image
-        .and_then(|image| image.uri.as_deref())
-        .filter(|uri| !uri.starts_with("data:"));
-    image
-        .and_then(|image| image.name.clone().filter(|name| !name.is_empty()))
-        .or(external.map(str::to_owned))
-        .unwrap_or_else(|| format!("image {index}"))
-}
-
-/// Decodes a picture.
-///
-/// # Errors
-/// Why it cannot be had, in a few words.
-pub(super) fn decode(document: &Document, index: usize) -> Result<Texture, String> {
-    let image = document.root.images.get(index).ok_or("it is out of bounds")?;
-    let name = name(document, index);
-    let owned;
-    let view;
-    let bytes: &[u8] = match (&image.uri, image.buffer_view) {
-        (Some(uri), _) => {
-            owned = document.read_uri(&name, uri).map_err(|error| match error {
-                crate::scene::ModelError::Resource { reason, .. } => reason,
-                other => other.to_string(),
-            })?;
-            &owned
-        }
-        (None, Some(index)) => {
-            view = document.view(index.value()).map_err(|error| error.to_string())?;
-            &view
-        }
-        (None, None) => return Err("it has no data".to_owned()),
-    };
-    decode_bytes(name, bytes)
-}
-
 /// Decodes a picture of any known format; deeper ones are brought to 8 bits.
-pub(in crate::scene) fn decode_bytes(name: String, bytes: &[u8]) -> Result<Texture, String> {
+pub(super) fn decode_bytes(name: String, bytes: &[u8]) -> Result<Texture, String> {
     if bytes.starts_with(&KTX2) {
         return decode_ktx2(name, bytes);
     }
