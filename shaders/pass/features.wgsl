@@ -24,7 +24,7 @@ fn trace_features(pixel: vec2u, sample: u32) -> FeatureSample {
         return FeatureSample(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
     }
     let point = surface_at(hit, ray.direction);
-    let material = textured_material(materials[point.slot], point.uvs);
+    let material = textured_material(materials[point.slot], point.uvs, point.vertex_color);
     let albedo = material_albedo(material, point.surface);
     return FeatureSample(albedo, 1.0, point.surface.frame.normal, hit.t * dot(ray.direction, camera.forward));
 }

@@ -5,6 +5,7 @@ use super::layout::{self, Pane};
 use super::menu::Sheet;
 use super::{App, library, palette, panels, snapshots, widgets};
 use crate::document::{CameraSettings, MaterialSettings, PARAMETERS};
+use crate::scene::ModelOptions;
 use crate::scene::camera::framing_distance;
 
 impl App {
@@ -14,7 +15,8 @@ impl App {
             Action::Open(path) => {
                 self.open(path);
             }
-            Action::UseModel(source) => self.worker.open_model(source),
+            Action::UseModel(source) => self.worker.open_model(source, ModelOptions::default()),
+            Action::ImportModel(source, options) => self.worker.open_model(source, options),
             Action::UseEnvironment(source) => self.worker.open_environment(source),
             Action::ImportAs(lobe) => self.panels.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
@@ -136,6 +138,7 @@ impl App {
                 };
             }
             Command::Shortcuts => self.sheet = Sheet::Shortcuts,
+            Command::ModelFile => self.sheet = Sheet::ModelFile,
             Command::About => self.sheet = Sheet::About,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::SaveToMyPresets => self.change_library(library::Change::Add),

@@ -344,7 +344,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             let plain = &self.materials[point.slot as usize];
             let textured;
             let material = if plain.is_textured() {
-                textured = textured_material(self.textures, self.tables, plain, point.uvs);
+                textured = textured_material(self.textures, self.tables, plain, point.uvs, point.vertex_color);
                 &textured
             } else {
                 plain
@@ -410,7 +410,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         let [origin, direction] = pixel_ray(&self.camera, pixel, settings.image_size, state);
         let (point, distance) = self.stop(origin, direction, state, 0, &mut 0)?;
         let plain = &self.materials[point.slot as usize];
-        let material = textured_material(self.textures, self.tables, plain, point.uvs);
+        let material = textured_material(self.textures, self.tables, plain, point.uvs, point.vertex_color);
         Some(FeatureSample {
             albedo: material_albedo(&material, self.tables, &point.surface),
             normal: point.surface.frame.normal,

@@ -160,7 +160,7 @@ impl MaterialSettings {
         };
         lobe.apply(&mut material);
         material.textures = TextureUse {
-            color: slot.base_color_texture.is_some(),
+            color: slot.base_color_texture.is_some() || slot.has_vertex_colors,
             roughness: slot.metallic_roughness_texture.is_some(),
             normal: slot.normal_texture.is_some(),
             emission: slot.emissive_texture.is_some(),

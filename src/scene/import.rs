@@ -101,9 +101,18 @@ fn finish(model: &mut Model) {
     for slot in &mut model.slots {
         slot.attenuation_distance /= radius;
     }
+    (model.center, model.radius) = (framing.center_world.to_array(), framing.world_units_per_unit);
     let all = model.mesh.triangles.len();
     let no_area = all - framing.dropped_not_finite - framing.usable.len();
+    let (lights, cameras) = (model.lights.len(), model.cameras.len());
     let report = &mut model.report;
+    report.count(
+        Fate::Approximated,
+        "lights, as small squares that look at the model",
+        "",
+        lights,
+    );
+    report.count(Fate::Used, "cameras, as bookmarks", "", cameras);
     report.count(Fate::Used, "triangles", "", framing.usable.len());
     report.count(Fate::Ignored, "triangles without area", "", no_area);
     report.count(

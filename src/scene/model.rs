@@ -91,6 +91,10 @@ pub struct Model {
     pub textures: Vec<Texture>,
     /// What became of the parts of its file.
     pub report: ImportReport,
+    /// The middle of its bounding box; 0 for built-in models, whose file has no lights or cameras.
+    pub center: [f64; 3],
+    /// From there to the farthest vertex.
+    pub radius: f64,
     /// The cameras of the scene.
     pub cameras: Vec<ModelCamera>,
     /// The lights of the scene.

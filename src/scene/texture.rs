@@ -89,6 +89,8 @@ pub struct SlotTextures {
     pub constant_base_color: Option<[f32; 4]>,
     /// What a texture of one value multiplies roughness and metalness by.
     pub constant_roughness_metalness: Option<[f32; 2]>,
+    /// Colours at the vertices multiply the base colour.
+    pub has_vertex_colors: bool,
 }
 
 impl Default for SlotTextures {
@@ -103,6 +105,7 @@ impl Default for SlotTextures {
             mean_emission: [1.0; 3],
             constant_base_color: None,
             constant_roughness_metalness: None,
+            has_vertex_colors: false,
         }
     }
 }
@@ -169,6 +172,7 @@ impl Textures {
                 }),
                 constant_roughness_metalness: metallic_roughness
                     .map(|[_, roughness, metalness, _]| [roughness as f32, metalness as f32]),
+                has_vertex_colors: slot.has_vertex_colors,
                 alpha_cutoff: if slot.alpha_mode == AlphaMode::Mask {
                     slot.alpha_cutoff.max(0.0)
                 } else {
@@ -470,20 +474,23 @@ pub fn uvs_at<T: Real>(geometry: &Geometry, triangle: usize, weights: [T; 3]) ->
     ]
 }
 
-/// The material at a surface point: what its textures say multiplied in.
+/// The material at a surface point: what its textures say and the colour between its vertices multiplied in.
 /// `tables` holds all materials' tables.
 pub fn textured_material<T: Real>(
     textures: &Textures,
     tables: &[f32],
     material: &Material<T>,
     uvs: [[T; 2]; 2],
+    vertex_color: Vec3<T>,
 ) -> Material<T> {
     let mut at_point = *material;
+    at_point.base_color = material.base_color * vertex_color;
+    at_point.transmission_tint = material.transmission_tint * vertex_color;
     let [base_color, metallic_roughness, _, emission] = material.textures;
     if base_color != NO_TEXTURE {
         let (color, _) = texture_lookup(textures, base_color, uvs);
-        at_point.base_color = material.base_color * color;
-        at_point.transmission_tint = material.transmission_tint * color;
+        at_point.base_color = at_point.base_color * color;
+        at_point.transmission_tint = at_point.transmission_tint * color;
     }
     if metallic_roughness != NO_TEXTURE {
         let (values, _) = texture_lookup(textures, metallic_roughness, uvs);

@@ -15,8 +15,8 @@ use crate::render::assets::Assets;
 use crate::render::display::{Shown, display, map};
 use crate::render::engine::EngineChoice;
 use crate::render::session::{Session, SessionError};
-use crate::scene::ModelSource;
-use crate::scene::environment::EnvironmentSource;
+use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
+use crate::scene::{ModelOptions, ModelSource};
 
 /// Shortest and longest time between two pictures of the same render, and between two words about its progress: without
 /// a GPU the window, which is drawn anew for either, takes its time from the renderer.
@@ -105,7 +105,10 @@ impl State<'_> {
                 self.guarded(Self::publish_picture);
             }
         }
-        orders.models.into_iter().for_each(|source| self.load_model(source));
+        orders
+            .models
+            .into_iter()
+            .for_each(|(source, options)| self.load_model(source, options));
         orders
             .environments
             .into_iter()
@@ -274,15 +277,15 @@ impl State<'_> {
         false
     }
 
-    fn load_model(&mut self, source: ModelSource) {
+    fn load_model(&mut self, source: ModelSource, options: ModelOptions) {
         self.tell(Activity::Loading(source.to_string()));
         let path = PathBuf::from(source.to_string());
         self.loaded(path, |state| {
-            let model = state.session()?.assets().model(&source)?;
+            let model = state.session()?.assets().model(&source, &options)?;
             if let Some(summary) = model.report.summary() {
                 state.say(Level::Warning, summary);
             }
-            Ok(Event::ModelOpened(source, model))
+            Ok(Event::ModelOpened(source, options, model))
         });
     }
 
@@ -290,7 +293,10 @@ impl State<'_> {
         self.tell(Activity::Loading(source.to_string()));
         let path = PathBuf::from(source.to_string());
         self.loaded(path, |state| {
-            let environment = state.session()?.assets().environment(&source)?;
+            let environment = state
+                .session()?
+                .assets()
+                .environment(&source, EnvironmentEncoding::default())?;
             for warning in &environment.warnings {
                 state.say(Level::Warning, warning.clone());
             }
@@ -400,25 +406,24 @@ impl State<'_> {
     }
 
     fn hand_over(&mut self, document: &Document) -> Result<(), SessionError> {
-        if self.is_new_model(&document.model) {
+        if self.is_new_model(document) {
             self.tell(Activity::Loading(document.model.to_string()));
-            self.session()?.assets().model(&document.model)?;
+            self.session()?.assets().model(&document.model, &document.import)?;
             self.tell(Activity::Preparing);
         }
         let environment = &document.lighting.environment;
         if self.is_new_environment(environment) {
             self.tell(Activity::Loading(environment.to_string()));
-            self.session()?.assets().environment(environment)?;
+            let encoding = document.lighting.environment_encoding;
+            self.session()?.assets().environment(environment, encoding)?;
         }
         self.session()?.submit(document)?;
         Ok(())
     }
 
-    fn is_new_model(&self, source: &ModelSource) -> bool {
-        self.snapshot
-            .scene
-            .as_ref()
-            .is_none_or(|scene| scene.document.model != *source)
+    fn is_new_model(&self, document: &Document) -> bool {
+        let known = self.snapshot.scene.as_ref().map(|scene| &scene.document);
+        known.is_none_or(|known| (&known.model, &known.import) != (&document.model, &document.import))
     }
 
     fn is_new_environment(&self, source: &EnvironmentSource) -> bool {
@@ -433,7 +438,7 @@ impl State<'_> {
             return Ok(());
         };
         let session = self.session()?;
-        let model = session.assets().model(&document.model)?;
+        let model = session.assets().model(&document.model, &document.import)?;
         if let Some(job) = session.job().cloned() {
             self.snapshot.scene = Some(Arc::new(Scene { document, job, model }));
         }
