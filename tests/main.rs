@@ -39,6 +39,8 @@ mod environment;
 mod environment_files;
 #[path = "suite/environment_sampling.rs"]
 mod environment_sampling;
+#[path = "suite/environment_shapes.rs"]
+mod environment_shapes;
 #[path = "suite/environment_twin.rs"]
 mod environment_twin;
 #[path = "suite/files.rs"]

@@ -189,7 +189,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             break;
         }
         let point = surface_at(hit, ray.direction);
-        let material = textured_material(materials[point.slot], point.uvs);
+        let material = textured_material(materials[point.slot], point.uvs, point.vertex_color);
         if PLAN_ABSORPTION == 1u && point.surface.is_inside && material_transmits(material) {
             throughput *= exp(-material.absorption * hit.t);
         }

@@ -123,7 +123,8 @@ struct Material {
     has_rough_tables: u32,
     texture_roughness: f32,
     roughness_table: u32,
-    reserved: array<u32, 2>,
+    has_vertex_colors: u32,
+    reserved: u32,
 }
 
 // One use of a picture.
@@ -142,12 +143,14 @@ struct Triangle {
     corners: array<vec4u, 3>,
 }
 
-// What shading needs of a vertex besides its position; scalars, so that the stride is 44 bytes.
+// What shading needs of a vertex besides its position; scalars, so that the stride is 52 bytes.
 struct Vertex {
     normal: array<f32, 3>,
     uv: array<f32, 2>,
     second_uv: array<f32, 2>,
     tangent: array<f32, 4>,
+    // Linear red and green, then blue and 1, as half floats.
+    color: array<u32, 2>,
 }
 
 // An entry of the alias table over the triangles that emit.

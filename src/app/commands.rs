@@ -6,6 +6,7 @@ use super::menu::Sheet;
 use super::{App, library, palette, panels, snapshots, widgets};
 use crate::document::{CameraSettings, Document, MaterialSettings, PARAMETERS};
 use crate::render::explain::explain;
+use crate::scene::ModelOptions;
 use crate::scene::camera::framing_distance;
 
 impl App {
@@ -16,7 +17,8 @@ impl App {
             Action::Open(path) => {
                 self.open(path);
             }
-            Action::UseModel(source) => self.worker.open_model(source),
+            Action::UseModel(source) => self.worker.open_model(source, ModelOptions::default()),
+            Action::ImportModel(source, options) => self.worker.open_model(source, options),
             Action::UseEnvironment(source) => self.worker.open_environment(source),
             Action::ImportAs(lobe) => self.panels.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
@@ -149,6 +151,7 @@ impl App {
                 };
             }
             Command::Shortcuts => self.sheet = Sheet::Shortcuts,
+            Command::ModelFile => self.sheet = Sheet::ModelFile,
             Command::About => self.sheet = Sheet::About,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::SaveToMyPresets => self.change_library(library::Change::Add),

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 use egui::{Key, Ui};
 
 use super::theme;
+use crate::scene::MODEL_ENDINGS;
+use crate::scene::environment::ENDINGS;
 
 /// A dialog that is back sooner with nothing was never there: nobody cancels that fast.
 const NO_DIALOG: Duration = Duration::from_millis(400);
@@ -48,11 +50,14 @@ impl Purpose {
         match self {
             Self::Open => (
                 "Projects, materials, models, environments, pictures with a document",
-                &["json", "glb", "gltf", "hdr", "exr", "png"],
+                &[
+                    "json", "glb", "gltf", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "jpg", "jpeg", "tif",
+                    "tiff", "webp",
+                ],
             ),
             Self::SaveProject => ("Projects", &["json"]),
-            Self::OpenModel => ("glTF models", &["glb", "gltf"]),
-            Self::OpenEnvironment => ("Environment maps", &["hdr", "exr"]),
+            Self::OpenModel => ("Models", &MODEL_ENDINGS),
+            Self::OpenEnvironment => ("Environment maps", &ENDINGS),
             Self::OpenMaterial | Self::SaveMaterial => ("Materials", &["json"]),
             Self::OpenMeasured => ("Measured materials (MERL)", &["binary"]),
             Self::SavePicture => ("Pictures", &["png", "exr", "hdr"]),

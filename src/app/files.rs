@@ -11,8 +11,8 @@ use super::take_picture::Destination;
 use super::unsaved::Then;
 use crate::document::Document;
 use crate::render::worker::Level;
-use crate::scene::ModelSource;
-use crate::scene::environment::EnvironmentSource;
+use crate::scene::environment::{ENDINGS, EnvironmentSource};
+use crate::scene::{ModelOptions, ModelSource, is_model};
 use crate::store::file::Opened;
 use crate::store::{FileError, Loaded, file, preset, save_document, save_material};
 
@@ -66,9 +66,9 @@ fn kind_of(path: &Path) -> FileKind {
         .unwrap_or_default()
         .to_ascii_lowercase();
     match ending.as_str() {
-        "glb" | "gltf" => FileKind::Model,
-        "hdr" | "exr" => FileKind::Environment,
+        _ if is_model(path) || path.is_dir() => FileKind::Model,
         "json" | "png" => FileKind::Document,
+        ending if ENDINGS.contains(&ending) => FileKind::Environment,
         _ => FileKind::Unknown,
     }
 }
@@ -77,15 +77,15 @@ impl App {
     /// Opens a file by its ending, beside the window; true where it is of a kind that can be opened.
     pub(super) fn open(&mut self, path: PathBuf) -> bool {
         match kind_of(&path) {
-            FileKind::Model => self.worker.open_model(ModelSource::File(path)),
+            FileKind::Model => self.worker.open_model(ModelSource::File(path), ModelOptions::default()),
             FileKind::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
             FileKind::Document => self.files.disk.open(move || {
                 let opened = file::open(&path);
                 Done::Read(path, opened)
             }),
             FileKind::Unknown => {
-                let text = "opened are models (.glb, .gltf), environments (.hdr, .exr), materials and projects (.json), \
-                            and pictures saved here (.png)";
+                let text = "opened are models (.glb, .gltf, .obj, .ply, .stl, .zip), environments (.hdr, .exr, .jpg, \
+                            .tif, .webp), materials and projects (.json), and pictures saved here (.png)";
                 self.say(
                     Level::Error,
                     format!("{}: not a kind of file that can be opened; {text}", path.display()),

@@ -4,12 +4,14 @@ use egui::{RichText, Ui, vec2};
 
 use super::actions::{Action, Command, Menu};
 use super::edits::Edits;
+use super::import_sheet;
 use super::layout::Pane;
 use super::palette;
 use super::recent::Recent;
 use super::theme;
-use crate::document::{ImportLobe, MaterialSettings};
+use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::render::EngineChoice;
+use crate::scene::Model;
 
 /// Width of the account of a path where there is room, points.
 const PATH_WIDTH: f32 = 900.0;
@@ -24,6 +26,7 @@ pub(super) enum Sheet {
         selected: usize,
     },
     Shortcuts,
+    ModelFile,
     About,
     /// The account of a path.
     Path {
@@ -128,12 +131,22 @@ fn import_lobes(ui: &mut Ui, chosen: ImportLobe, actions: &mut Vec<Action>) {
 }
 
 /// Shows the sheet that is open.
-pub(super) fn sheet(ctx: &egui::Context, sheet: &mut Sheet, material: &MaterialSettings, actions: &mut Vec<Action>) {
+pub(super) fn sheet(
+    ctx: &egui::Context,
+    sheet: &mut Sheet,
+    desk: (&Document, &MaterialSettings),
+    model: Option<&Model>,
+    actions: &mut Vec<Action>,
+) {
+    let (document, material) = desk;
     let mut is_done = false;
     let modal = match sheet {
         Sheet::None => return,
         Sheet::Palette { search, selected } => egui::Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
             is_done = palette::show(ui, search, selected, material, actions);
+        }),
+        Sheet::ModelFile => egui::Modal::new(egui::Id::unique("model file")).show(ctx, |ui| {
+            is_done = import_sheet::show(ui, document, model, actions);
         }),
         Sheet::Shortcuts => egui::Modal::new(egui::Id::unique("shortcuts")).show(ctx, shortcuts),
         Sheet::About => egui::Modal::new(egui::Id::unique("about")).show(ctx, about),

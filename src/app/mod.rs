@@ -15,6 +15,7 @@ mod edits;
 mod environments;
 mod files;
 mod icons;
+mod import_sheet;
 pub mod layout;
 pub mod library;
 mod menu;
@@ -57,11 +58,12 @@ use turntable_sheet::TurntableSheet;
 use unsaved::Unsaved;
 use viewport::Viewport;
 
+use crate::document::of_model::materials_of;
 use crate::document::{Change, Document, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 use crate::scene::environment::EnvironmentSource;
-use crate::scene::{Model, ModelSource};
+use crate::scene::{Model, ModelOptions, ModelSource};
 
 /// A picture that has cost this much time keeps its size while nothing but the viewport's size changes.
 const KEPT_FROM: Duration = Duration::from_secs(10);
@@ -271,12 +273,12 @@ impl App {
                     self.say(level, text);
                     continue;
                 }
-                Event::ModelOpened(source, model) => {
+                Event::ModelOpened(source, options, model) => {
                     if let ModelSource::File(path) = &source {
                         self.say(Level::Info, format!("opened {}", path.display()));
                         self.panels.recent.add(path);
                     }
-                    self.adopt_model(source, &model);
+                    self.adopt_model(source, options, &model);
                     self.count_as_start(is_start);
                 }
                 Event::EnvironmentOpened(source, _) => {
@@ -299,20 +301,22 @@ impl App {
     }
 
     /// Takes a loaded model over: a file's materials come with it, a built-in keeps the one that is being edited.
-    fn adopt_model(&mut self, source: ModelSource, model: &Model) {
+    fn adopt_model(&mut self, source: ModelSource, options: ModelOptions, model: &Model) {
         let is_file = matches!(source, ModelSource::File(_));
         let edited = self.desk_material();
-        let slots = model.slots.iter();
-        self.document.materials = slots
-            .map(|slot| MaterialSettings::from_slot(slot, self.panels.import_lobe))
-            .collect();
+        self.document.materials = materials_of(model, self.panels.import_lobe);
         if !is_file && let Some(first) = self.document.materials.first_mut() {
             *first = edited;
         }
         self.panels.slot = 0;
+        let is_other = self.document.model != source;
         self.document.model = source;
-        let camera = &mut self.document.camera;
-        (camera.target, camera.distance, camera.position) = (None, None, None);
+        self.document.import = options;
+        if is_other {
+            let camera = &mut self.document.camera;
+            (camera.target, camera.distance, camera.position) = (None, None, None);
+            self.document.add_lights_and_cameras(model);
+        }
         self.edits.note(format!("Change the model to {}", model.name), "");
     }
 
@@ -428,7 +432,12 @@ impl App {
             self.layout.ui(&mut panes, ui);
         });
         let material = self.desk_material();
-        menu::sheet(ui.ctx(), &mut self.sheet, &material, actions);
+        let scene = self.worker.snapshot().scene.clone();
+        let model = scene
+            .as_ref()
+            .filter(|scene| scene.document.model == self.document.model);
+        let model = model.map(|scene| scene.model.as_ref());
+        menu::sheet(ui.ctx(), &mut self.sheet, (&self.document, &material), model, actions);
         if let Some((purpose, path)) = self.dialogs.show(ui) {
             self.chosen(purpose, path);
         }

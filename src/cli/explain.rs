@@ -66,7 +66,7 @@ fn account(arguments: &ExplainArguments) -> anyhow::Result<PathAccount> {
         );
     }
     session.submit(&document)?;
-    let model = session.assets().model(&document.model)?;
+    let model = session.assets().model(&document.model, &document.import)?;
     let job = session.job().context("the scene has no job")?;
     Ok(explain(&document, &model, job, arguments.pixel, arguments.sample))
 }

@@ -9,6 +9,7 @@ use anyhow::Context;
 use crate::document::parameter::parse_color;
 use crate::document::{AreaLight, AreaLightShape, Background, MaterialSettings, ParameterError, assign, range};
 use crate::render::output::{OutputError, format_of};
+use crate::scene::environment::EnvironmentEncoding;
 
 /// Pixels that a picture may have: with 64 bytes each a render stays below 9 GB.
 const PIXELS_MAX: u64 = 1 << 27;
@@ -162,6 +163,15 @@ pub(super) fn check_writable(path: &Path) -> anyhow::Result<()> {
         let _ = std::fs::remove_file(path);
     }
     Ok(())
+}
+
+/// `display` or `linear`.
+pub(super) fn environment_encoding(text: &str) -> Result<EnvironmentEncoding, String> {
+    match text {
+        "display" => Ok(EnvironmentEncoding::Display),
+        "linear" => Ok(EnvironmentEncoding::Linear),
+        other => Err(format!("{other} is neither display nor linear")),
+    }
 }
 
 /// `on` or `off`.

@@ -11,16 +11,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
-use crate::document::{
-    AreaLight, Background, Denoise, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, assign, range,
-};
+use crate::document::of_model::materials_of;
+use crate::document::{AreaLight, Background, Denoise, Document, ImportLobe, PixelFilter, Strategy, assign, range};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 use crate::render::denoise::{Attendant, Denoised};
 use crate::render::output::{self, Format, Layers, Rendered};
 use crate::render::{EngineChoice, Progress, Session, SessionError, StopReason};
-use crate::scene::environment::EnvironmentSource;
-use crate::scene::{Model, ModelSource};
+use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
+use crate::scene::{Model, ModelOptions, ModelSource, is_model};
 use crate::store::file::{self, Opened};
 use crate::store::preset;
 
@@ -48,15 +47,34 @@ pub struct RenderArguments {
 /// Arguments that describe what is rendered, and how.
 #[derive(Debug, Args)]
 pub struct SceneArguments {
-    /// What to render: a built-in model or a .glb or .gltf file.
+    /// What to render: a built-in model, a file (.glb, .gltf, .obj, .ply, .stl, .zip), or a folder with one.
     #[arg(long, default_value = "teapot", value_name = "FILE|teapot|sphere|plane|shaderball")]
     model: ModelSource,
+    /// Which scene of the model's file, counted from 0. Without it the file's default one.
+    #[arg(long, value_name = "N")]
+    scene: Option<usize>,
+    /// Which variant of the model's materials. Without it the file's own materials.
+    #[arg(long, value_name = "NAME")]
+    variant: Option<String>,
+    /// Pose the model as its first animation does at this time. Without it as the file has it at rest.
+    #[arg(long, value_name = "SECONDS", value_parser = parse::number_in(range::POSE_TIME_S), allow_negative_numbers = true)]
+    time_of_pose: Option<f64>,
+    /// The longest side of a model's textures in texels; larger ones are halved until they fit.
+    #[arg(long, default_value = "8192", value_name = "N", value_parser = parse::number_in(range::TEXTURE_SIDE))]
+    texture_size: f64,
+    /// Write what became of the parts of the model's file (used, approximated, ignored, missing), as JSON.
+    #[arg(long, value_name = "FILE")]
+    import_report: Option<PathBuf>,
     /// Put the model on a ground plane.
     #[arg(long)]
     ground: bool,
-    /// Where the light comes from: a built-in environment or a .hdr or .exr file.
+    /// Where the light comes from: a built-in environment, a picture of the whole sphere (.hdr, .exr, .png, .jpg, .tif,
+    /// .webp; lat-long or cube map), or a folder with the six faces of a cube.
     #[arg(long, default_value = "studio", value_name = "FILE|studio|sky|furnace")]
     environment: EnvironmentSource,
+    /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light.
+    #[arg(long, default_value = "display", value_name = "display|linear", value_parser = parse::environment_encoding)]
+    environment_encoding: EnvironmentEncoding,
     /// Turn the environment about the vertical axis, anticlockwise seen from above.
     #[arg(long, default_value = "0", value_name = "DEG", value_parser = parse::number_in(range::ROTATION_DEG), allow_negative_numbers = true)]
     environment_rotation: f64,
@@ -175,7 +193,12 @@ pub struct SceneArguments {
 /// # Errors
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
-    for path in arguments.outputs.iter().chain(&arguments.report) {
+    for path in arguments
+        .outputs
+        .iter()
+        .chain(&arguments.report)
+        .chain(&arguments.scene.import_report)
+    {
         parse::check_writable(path)?;
     }
     let takes_layers = |path: &PathBuf| output::format_of(path).is_ok_and(|format| format == Format::Exr);
@@ -228,12 +251,15 @@ pub fn run_default(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()
 fn open(path: &Path, document: &mut Document, session: &mut Session) -> anyhow::Result<()> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     match ending.to_ascii_lowercase().as_str() {
-        "glb" | "gltf" => {
+        _ if is_model(path) || path.is_dir() => {
             document.model = ModelSource::File(path.to_owned());
-            let model = session.assets().model(&document.model)?;
-            document.materials = slot_materials(&model, ImportLobe::default());
+            let model = session.assets().model(&document.model, &document.import)?;
+            document.materials = materials_of(&model, ImportLobe::default());
+            document.add_lights_and_cameras(&model);
         }
-        "hdr" | "exr" => document.lighting.environment = EnvironmentSource::File(path.to_owned()),
+        ending if ending != "png" && ENDINGS.contains(&ending) => {
+            document.lighting.environment = EnvironmentSource::File(path.to_owned())
+        }
         "json" | "png" => match file::open(path)? {
             Opened::Material(material) => {
                 warn(&material.warnings);
@@ -433,10 +459,18 @@ fn json_report(
     }))
 }
 
-/// The materials that a model's file gives its slots.
-fn slot_materials(model: &Model, lobe: ImportLobe) -> Vec<MaterialSettings> {
-    let slots = model.slots.iter();
-    slots.map(|slot| MaterialSettings::from_slot(slot, lobe)).collect()
+/// What became of the parts of a model's file, as JSON.
+fn write_import_report(path: &Path, model: &Model) -> anyhow::Result<()> {
+    let json = serde_json::json!({
+        "model": model.name,
+        "entries": model.report.entries,
+        "scenes": model.scenes,
+        "variants": model.variants,
+        "animation_seconds": model.duration_s,
+    });
+    let text = serde_json::to_string_pretty(&json)?;
+    file::save_atomically(path, text.as_bytes())?;
+    Ok(())
 }
 
 impl SceneArguments {
@@ -445,18 +479,27 @@ impl SceneArguments {
     /// # Errors
     /// One line that names the file, what is wrong and what to do.
     pub(super) fn document(&self, session: &mut Session) -> anyhow::Result<Document> {
-        let model = session.assets().model(&self.model)?;
         let mut document = Document {
             model: self.model.clone(),
+            import: ModelOptions {
+                scene: self.scene,
+                variant: self.variant.clone(),
+                time_s: self.time_of_pose.map(|time| time as f32),
+                texture_side_max: self.texture_size as u32,
+            },
             ground: self.ground,
             ..Document::default()
         };
+        let model = session.assets().model(&self.model, &document.import)?;
+        if let Some(path) = &self.import_report {
+            write_import_report(path, &model)?;
+        }
         if let Some(name) = &self.material {
             let material = preset::find(name)?;
             warn(&material.warnings);
             document.materials = vec![material.value];
         } else if matches!(self.model, ModelSource::File(_)) {
-            document.materials = slot_materials(&model, self.import_lobe);
+            document.materials = materials_of(&model, self.import_lobe);
         }
         for assignment in &self.assignments {
             for material in &mut document.materials {
@@ -465,11 +508,13 @@ impl SceneArguments {
         }
         let lighting = &mut document.lighting;
         lighting.environment = self.environment.clone();
+        lighting.environment_encoding = self.environment_encoding;
         lighting.rotation_deg = self.environment_rotation as f32;
         lighting.strength = self.environment_strength as f32;
         lighting.background = self.background;
         lighting.background_blur_deg = self.background_blur as f32;
         lighting.area_lights = self.area_lights.clone();
+        document.add_lights_and_cameras(&model);
         let camera = &mut document.camera;
         if let Some([yaw_deg, pitch_deg]) = self.camera_orbit {
             (camera.yaw_deg, camera.pitch_deg) = (yaw_deg, pitch_deg);

@@ -35,7 +35,8 @@ impl Change {
             display: old.view != new.view,
             camera: old.camera != new.camera,
             size: (render.width, render.height) != (other.width, other.height),
-            environment: light.environment != other_light.environment,
+            environment: (&light.environment, light.environment_encoding)
+                != (&other_light.environment, other_light.environment_encoding),
             lighting: (
                 light.rotation_deg,
                 light.strength,
@@ -50,7 +51,7 @@ impl Change {
             materials: light.ground_color != other_light.ground_color
                 || !look_alike(old, new)
                 || !emit_alike(&light.area_lights, &other_light.area_lights),
-            geometry: (&old.model, old.ground) != (&new.model, new.ground)
+            geometry: (&old.model, &old.import, old.ground) != (&new.model, &new.import, new.ground)
                 || !have_same_shapes(&light.area_lights, &other_light.area_lights),
             sampling: (
                 render.bounces,

@@ -10,6 +10,7 @@ pub mod import;
 pub mod match_look;
 mod material;
 pub mod measured_look;
+pub mod of_model;
 pub mod parameter;
 mod registry;
 mod settings;
@@ -34,7 +35,7 @@ pub use settings::{
 pub use crate::job::Strategy;
 pub use crate::scene::camera::PixelFilter;
 
-use crate::scene::ModelSource;
+use crate::scene::{ModelOptions, ModelSource};
 
 /// Everything that a picture depends on, except for the contents of the files it names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,6 +43,8 @@ use crate::scene::ModelSource;
 pub struct Document {
     /// What is rendered.
     pub model: ModelSource,
+    /// What is shown of a file that holds more than one picture.
+    pub import: ModelOptions,
     /// Whether the model stands on a ground plane.
     pub ground: bool,
     /// The materials in the order of the model's slots. A slot beyond the last takes the last one.
@@ -65,6 +68,7 @@ impl Default for Document {
     fn default() -> Self {
         Self {
             model: ModelSource::default(),
+            import: ModelOptions::default(),
             ground: false,
             materials: vec![MaterialSettings::default()],
             lighting: Lighting::default(),

@@ -12,7 +12,7 @@ use crate::named::named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 use crate::scene::camera::PixelFilter;
-use crate::scene::environment::EnvironmentSource;
+use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 use crate::scene::light::AreaShape;
 
 /// The ranges of the settings, both ends included.
@@ -57,6 +57,10 @@ pub mod range {
     pub const FIREFLY_CLAMP: RangeInclusive<f64> = 1e-6..=1e9;
     /// Distance and sides of an area light, bounding radii.
     pub const AREA_LENGTH: RangeInclusive<f64> = 1e-3..=1e3;
+    /// The longest side of a model's textures, texels.
+    pub const TEXTURE_SIDE: RangeInclusive<f64> = 16.0..=16384.0;
+    /// Time of a model's pose, seconds.
+    pub const POSE_TIME_S: RangeInclusive<f64> = 0.0..=1e6;
     /// How many area lights there may be.
     pub const AREA_LIGHTS: RangeInclusive<f64> = 0.0..=8.0;
     /// Linear colours of things that do not emit.
@@ -69,6 +73,8 @@ pub mod range {
 pub struct Lighting {
     /// The environment map.
     pub environment: EnvironmentSource,
+    /// What the numbers of a picture for screens stand for, where the map is one.
+    pub environment_encoding: EnvironmentEncoding,
     /// Turn of the map about +Y, anticlockwise seen from above, degrees.
     pub rotation_deg: f32,
     /// Factor on its radiance, at least 0.
@@ -88,6 +94,7 @@ impl Default for Lighting {
     fn default() -> Self {
         Self {
             environment: EnvironmentSource::default(),
+            environment_encoding: EnvironmentEncoding::default(),
             rotation_deg: 0.0,
             strength: 1.0,
             background: Background::default(),
@@ -360,6 +367,7 @@ pub struct SettingError {
 pub(super) fn check(document: &Document) -> Result<(), SettingError> {
     use range as r;
     let Document {
+        import,
         lighting,
         camera,
         view,
@@ -377,6 +385,12 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
             r::ROTATION_DEG,
         ),
         ("lighting.strength", f64::from(lighting.strength), r::STRENGTH),
+        (
+            "import.texture_side_max",
+            f64::from(import.texture_side_max),
+            r::TEXTURE_SIDE,
+        ),
+        ("import.time_s", f64::from(import.time_s.unwrap_or(0.0)), r::POSE_TIME_S),
         (
             "lighting.background_blur_deg",
             f64::from(lighting.background_blur_deg),

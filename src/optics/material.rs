@@ -101,8 +101,10 @@ pub struct Material<T> {
     pub texture_roughness: T,
     /// Where the table begins that has the lobe's roughness for that of GGX; [`NO_TEXTURE`] where both are the same.
     pub roughness_table: u32,
+    /// 1 where the colours at the vertices multiply the base colour.
+    pub has_vertex_colors: u32,
     /// Fills the last 16 bytes.
-    pub reserved: [u32; 2],
+    pub reserved: u32,
 }
 
 // SAFETY: f32 and u32 fields without padding (15 × 16 bytes); any bit pattern is valid.
@@ -153,6 +155,7 @@ impl<T: Real> Material<T> {
             has_rough_tables: self.has_rough_tables,
             texture_roughness: number(self.texture_roughness),
             roughness_table: self.roughness_table,
+            has_vertex_colors: self.has_vertex_colors,
             reserved: self.reserved,
         }
     }

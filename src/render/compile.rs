@@ -35,11 +35,13 @@ pub(super) struct Compiler {
 impl Compiler {
     pub(super) fn compile(&mut self, document: &Document, assets: &Assets) -> Result<Job, SessionError> {
         let document = &without_what_is_off(document);
-        let model = assets.model(&document.model)?;
+        let (source, options) = (&document.model, &document.import);
+        let model = assets.model(source, options)?;
         let shapes = document.lighting.area_lights.iter().map(AreaLight::shape).collect();
-        let geometry = assets.geometry(&document.model, document.ground, shapes)?;
-        let environment = assets.environment(&document.lighting.environment)?;
-        let textures = assets.textures(&document.model)?;
+        let geometry = assets.geometry(source, options, document.ground, shapes)?;
+        let lighting = &document.lighting;
+        let environment = assets.environment(&lighting.environment, lighting.environment_encoding)?;
+        let textures = assets.textures(source, options)?;
         let slots = slot_materials(document, model.slots.len());
         let (materials, tables) = self.materials(&slots, &textures);
         let lights = self.lights(&geometry, &materials);

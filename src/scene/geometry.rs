@@ -3,6 +3,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
+use half::f16;
 use obvhs::cwbvh::CwBvh;
 
 use super::bvh;
@@ -17,7 +18,7 @@ const GROUND_HALF_SIDE: f64 = 20.0;
 /// How far the ground is below the lowest point, in bounding radii: enough that flat bottoms do not flicker with it.
 const GROUND_GAP: f64 = 1e-4;
 
-/// What shading needs of a vertex besides its position. 44 bytes, scalars only: the same layout in WGSL.
+/// What shading needs of a vertex besides its position. 52 bytes, scalars only: the same layout in WGSL.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Vertex {
@@ -29,6 +30,23 @@ pub struct Vertex {
     pub second_uv: [f32; 2],
     /// Unit tangent and the sign of the bitangent, see [`Mesh::tangents`].
     pub tangent: [f32; 4],
+    /// Linear red, green and blue that multiply the material's, and 1, as half floats, two in a word.
+    pub color: [u32; 2],
+}
+
+impl Vertex {
+    /// A vertex's colour, packed.
+    fn packed_color(color: [f32; 4]) -> [u32; 2] {
+        let bits = |value: f32| u32::from(f16::from_f32(value.min(f16::MAX.to_f32())).to_bits());
+        let [r, g, b, _] = color.map(bits);
+        [r | g << 16, b | bits(1.0) << 16]
+    }
+
+    /// The linear colour that multiplies the material's.
+    pub fn rgb(&self) -> [f32; 3] {
+        let half = |bits: u32| f16::from_bits(bits as u16).to_f32();
+        [half(self.color[0]), half(self.color[0] >> 16), half(self.color[1])]
+    }
 }
 
 /// Geometry ready to trace, in units in which the model's bounding sphere about the origin has radius 1: a place p here
@@ -186,6 +204,7 @@ impl Geometry {
                 uv: mesh.uvs[vertex].to_array(),
                 second_uv: mesh.second_uvs.get(vertex).copied().unwrap_or_default().to_array(),
                 tangent: tangent.to_array(),
+                color: Vertex::packed_color(mesh.colors.get(vertex).copied().unwrap_or([1.0; 4])),
             });
         }
         for index in chosen {
@@ -231,10 +250,10 @@ impl Geometry {
 /// The triangles of a mesh that can be traced, and the sphere around them.
 pub(super) struct Framing {
     /// Those with finite corners and an area.
-    usable: Vec<usize>,
-    dropped_not_finite: usize,
+    pub usable: Vec<usize>,
+    pub dropped_not_finite: usize,
     bounds_world: [DVec3; 2],
-    center_world: DVec3,
+    pub center_world: DVec3,
     /// See [`Geometry::world_units_per_unit`].
     pub world_units_per_unit: f64,
 }

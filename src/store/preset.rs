@@ -160,9 +160,18 @@ fn is_newer(key: &str) -> bool {
     groups.iter().any(|group| key.starts_with(group)) || key == "base.weight" || key.ends_with("_texture")
 }
 
+/// Groups of keys that come with a model's materials and are kept although nothing shows them yet.
+const KEPT: [&str; 4] = [
+    "sheen.",
+    "iridescence.",
+    "diffuse_transmission.",
+    "transmission.dispersion",
+];
+
 /// A sentence for each key of "material" that has no effect.
 pub(super) fn unknown_keys(material: &MaterialSettings) -> impl Iterator<Item = String> + '_ {
-    material.extra.keys().map(|key| {
+    let is_kept = |key: &&String| KEPT.iter().any(|kept| key.starts_with(kept));
+    material.extra.keys().filter(move |key| !is_kept(key)).map(|key| {
         let hint = nearest_key(key).map_or_else(String::new, |near| format!("; did you mean {near}?"));
         format!("{key} is no parameter and has no effect{hint}")
     })

@@ -49,9 +49,10 @@ fn mean(session: &mut Session, case: &Case, run: Run) -> [[f64; 2]; 3] {
     // One kernel for the whole table.
     render.effects = EffectSwitches::all_on();
     if !run.is_adaptive {
-        render
-            .effects
-            .set("adaptive-sampling", glossmith::document::effect::Switch::Off);
+        render.effects.set(
+            glossmith::job::effect::EffectId::AdaptiveSampling,
+            glossmith::document::effect::Switch::Off,
+        );
     }
     case.keep(session.assets());
     session.forget();

@@ -62,10 +62,11 @@ fn rust_layouts() -> Vec<Layout> {
             transmission_tint, transmission_weight, absorption, transmission_roughness, rotation_rad, lobe, curve,
             horizon, fresnel, curve_table, albedo_table, inner_albedo_table, edge_tint, opacity,
             coat_color, coat_weight, coat_roughness, coat_ior, coat_table, light_luminance, textures,
-            opacity_texture, alpha_cutoff, normal_strength, has_rough_tables, texture_roughness, roughness_table, reserved,
+            opacity_texture, alpha_cutoff, normal_strength, has_rough_tables, texture_roughness, roughness_table,
+            has_vertex_colors, reserved,
         }),
         layout!(Triangle: Triangle { corners }),
-        layout!(Vertex: Vertex { normal, uv, second_uv, tangent }),
+        layout!(Vertex: Vertex { normal, uv, second_uv, tangent, color }),
         layout!(TextureRecord: TextureRecord {
             u_from_uv, first_texel, v_from_uv, width, height, wrap, flags,
         }),

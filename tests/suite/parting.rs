@@ -142,7 +142,7 @@ impl Pair {
 
     fn account(&mut self, document: &Document, pixel: [u32; 2], sample: u32) -> PathAccount {
         self.cpu.submit(document).unwrap();
-        let model = self.assets.model(&document.model).unwrap();
+        let model = self.assets.model(&document.model, &document.import).unwrap();
         explain(document, &model, self.cpu.job().unwrap(), pixel, sample)
     }
 }

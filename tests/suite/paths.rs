@@ -122,7 +122,7 @@ fn an_account_adds_up_to_what_the_engine_adds() {
             let mut session = submitted(&scene, &document);
             while !session.step(Duration::from_secs(1)).unwrap().is_done {}
             let (job, film) = (session.job().unwrap().clone(), session.film().unwrap().clone());
-            let model = session.assets().model(&document.model).unwrap();
+            let model = session.assets().model(&document.model, &document.import).unwrap();
             for index in (0..film.color.len()).step_by(7) {
                 let pixel = [index as u32 % film.width, index as u32 / film.width];
                 let accounts = [0, 1].map(|sample| explain(&document, &model, &job, pixel, sample));

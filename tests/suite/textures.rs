@@ -176,7 +176,7 @@ fn a_material_may_look_up_two_sets_of_coordinates() {
     let slot = textures.slots[0];
     assert!(texture_lookup::<f64>(&textures, slot.base_color, uvs).0.x < 1e-6);
     assert!((texture_lookup::<f64>(&textures, slot.emission, uvs).0.x - linear(100)).abs() < 1e-6);
-    assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+    assert!(model.report.is_clean(), "{:?}", model.report);
 }
 
 /// Pictures that a GPU can't hold are halved, the largest first, by the mean of the light.

@@ -7,7 +7,7 @@ use glossmith::document::Document;
 use glossmith::render::display::Shown;
 use glossmith::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 use glossmith::render::{EngineChoice, EngineKind};
-use glossmith::scene::ModelSource;
+use glossmith::scene::{ModelOptions, ModelSource};
 
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -262,7 +262,7 @@ fn a_pause_shows_the_first_sample_and_waits() {
 #[test]
 fn files_are_opened_beside_the_document() {
     let worker = worker();
-    worker.open_model(ModelSource::Shaderball);
+    worker.open_model(ModelSource::Shaderball, ModelOptions::default());
     worker.open_environment(glossmith::scene::environment::EnvironmentSource::File(
         "missing.hdr".into(),
     ));
@@ -271,7 +271,7 @@ fn files_are_opened_beside_the_document() {
     while (slots == 0 || why.is_empty()) && begun.elapsed() < PATIENCE {
         for event in worker.take_events() {
             match event {
-                Event::ModelOpened(ModelSource::Shaderball, model) => slots = model.slots.len(),
+                Event::ModelOpened(ModelSource::Shaderball, _, model) => slots = model.slots.len(),
                 Event::OpenFailed(_, text) => why = text,
                 _ => {}
             }

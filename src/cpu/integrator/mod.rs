@@ -162,7 +162,13 @@ impl<'a, T: Real> Integrator<'a, T> {
     fn material(&self, point: &SurfacePoint<T>) -> Cow<'_, Material<T>> {
         let plain = &self.materials[point.slot as usize];
         if plain.is_textured() {
-            Cow::Owned(textured_material(self.textures, self.tables, plain, point.uvs))
+            Cow::Owned(textured_material(
+                self.textures,
+                self.tables,
+                plain,
+                point.uvs,
+                point.vertex_color,
+            ))
         } else {
             Cow::Borrowed(plain)
         }

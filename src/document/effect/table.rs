@@ -243,8 +243,11 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::ColorTexture,
         label: "Colour textures",
-        help: "Base colours looked up in the model's pictures.",
-        decide: |facts| facts.needed_by(|m| m.textures[0] != NO_TEXTURE, "takes its colour from a texture"),
+        help: "Base colours looked up in the model's pictures, or given at its vertices.",
+        decide: |facts| {
+            let is_colored = |m: &Material<f32>| m.textures[0] != NO_TEXTURE || m.has_vertex_colors == 1;
+            facts.needed_by(is_colored, "takes its colour from a texture or from its vertices")
+        },
         remove: Some(|document| each_material(document, |material| material.textures.color = false)),
     },
     Effect {

@@ -156,7 +156,9 @@ fn grow(document: &Document, growing: Growing, size: u64, session: &Session) -> 
         Growing::Texels => {
             let height = (size as f64 / 2.0).sqrt().round() as u32;
             let source = EnvironmentSource::File(format!("{} x {height} texels", 2 * height).into());
-            let original = session.assets().environment(&document.lighting.environment)?;
+            let original = session
+                .assets()
+                .environment(&document.lighting.environment, document.lighting.environment_encoding)?;
             let resampled = resampled(&original, height).map_err(crate::render::SessionError::from)?;
             session.assets().keep_environment(source.clone(), resampled);
             grown.lighting.environment = source;

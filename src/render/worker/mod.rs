@@ -25,7 +25,7 @@ use crate::document::Document;
 use crate::job::Job;
 use crate::job::film::Image;
 use crate::scene::environment::{Environment, EnvironmentSource};
-use crate::scene::{Model, ModelSource};
+use crate::scene::{Model, ModelOptions, ModelSource};
 
 /// Longest that the worker does not look at its orders while rendering; and before the first picture, which is not to
 /// wait for the samples that come after it.
@@ -180,7 +180,7 @@ pub enum Event {
     /// Words for the user.
     Message(Level, String),
     /// A model that was asked for by [`Worker::open_model`]; the document has not been touched.
-    ModelOpened(ModelSource, Arc<Model>),
+    ModelOpened(ModelSource, ModelOptions, Arc<Model>),
     /// An environment that was asked for by [`Worker::open_environment`].
     EnvironmentOpened(EnvironmentSource, Arc<Environment>),
     /// A file that could not be opened, and why.
@@ -193,7 +193,7 @@ pub enum Event {
 #[derive(Debug, Default)]
 struct Orders {
     submission: Option<Submission>,
-    models: Vec<ModelSource>,
+    models: Vec<(ModelSource, ModelOptions)>,
     environments: Vec<EnvironmentSource>,
     layers: Vec<PathBuf>,
     engine: Option<EngineChoice>,
@@ -308,8 +308,8 @@ impl Worker {
     }
 
     /// Loads a model beside everything else; an [`Event`] tells how it went.
-    pub fn open_model(&self, source: ModelSource) {
-        self.order(|orders| orders.models.push(source));
+    pub fn open_model(&self, source: ModelSource, options: ModelOptions) {
+        self.order(|orders| orders.models.push((source, options)));
     }
 
     /// Loads an environment beside everything else; an [`Event`] tells how it went.

@@ -17,8 +17,8 @@ use crate::render::display::{Shown, display, map, map_of_errors};
 use crate::render::engine::{EngineChoice, EngineKind};
 use crate::render::output::Layers;
 use crate::render::session::{Session, SessionError};
-use crate::scene::ModelSource;
-use crate::scene::environment::EnvironmentSource;
+use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
+use crate::scene::{ModelOptions, ModelSource};
 
 /// Shortest and longest time between two pictures of the same render, and between two words about its progress: without
 /// a GPU the window, which is drawn anew for either, takes its time from the renderer.
@@ -32,28 +32,7 @@ const SPEED_WEIGHT: f64 = 0.1;
 
 /// The thread's body.
 pub(super) fn run(shared: &Arc<Shared>, choice: EngineChoice, assets: Assets, repaint: &dyn Fn()) {
-    let mut state = State {
-        shared,
-        repaint,
-        assets,
-        wanted_layers: Vec::new(),
-        session: None,
-        snapshot: Snapshot::default(),
-        stage: None,
-        taken_at: Instant::now(),
-        samples_per_second: 0.0,
-        published_at: Instant::now(),
-        published_samples: 0,
-        publish_cost: Duration::ZERO,
-        told_at: Instant::now(),
-        serial: 0,
-        shown: Shown::default(),
-        denoising: Denoising::spawn({
-            let shared = shared.clone();
-            move || shared.wake()
-        }),
-        denoised: None,
-    };
+    let mut state = State::new(shared, repaint, assets);
     state.open(choice);
     while state.turn().is_some() {}
 }
@@ -81,6 +60,33 @@ struct State<'a> {
     denoising: Denoising,
     /// The latest denoised picture of what is being rendered.
     denoised: Option<Denoised>,
+}
+
+impl<'a> State<'a> {
+    fn new(shared: &'a Arc<Shared>, repaint: &'a dyn Fn(), assets: Assets) -> Self {
+        Self {
+            shared,
+            repaint,
+            assets,
+            wanted_layers: Vec::new(),
+            session: None,
+            snapshot: Snapshot::default(),
+            stage: None,
+            taken_at: Instant::now(),
+            samples_per_second: 0.0,
+            published_at: Instant::now(),
+            published_samples: 0,
+            publish_cost: Duration::ZERO,
+            told_at: Instant::now(),
+            serial: 0,
+            shown: Shown::default(),
+            denoising: Denoising::spawn({
+                let shared = shared.clone();
+                move || shared.wake()
+            }),
+            denoised: None,
+        }
+    }
 }
 
 impl State<'_> {
@@ -115,7 +121,10 @@ impl State<'_> {
                 self.guarded(Self::show_anew);
             }
         }
-        orders.models.into_iter().for_each(|source| self.load_model(source));
+        orders
+            .models
+            .into_iter()
+            .for_each(|(source, options)| self.load_model(source, options));
         orders
             .environments
             .into_iter()
@@ -293,15 +302,15 @@ impl State<'_> {
         false
     }
 
-    fn load_model(&mut self, source: ModelSource) {
+    fn load_model(&mut self, source: ModelSource, options: ModelOptions) {
         self.tell(Activity::Loading(source.to_string()));
         let path = PathBuf::from(source.to_string());
         self.loaded(path, |state| {
-            let model = state.session()?.assets().model(&source)?;
-            for warning in &model.warnings {
-                state.say(Level::Warning, warning.clone());
+            let model = state.session()?.assets().model(&source, &options)?;
+            if let Some(summary) = model.report.summary() {
+                state.say(Level::Warning, summary);
             }
-            Ok(Event::ModelOpened(source, model))
+            Ok(Event::ModelOpened(source, options, model))
         });
     }
 
@@ -309,7 +318,10 @@ impl State<'_> {
         self.tell(Activity::Loading(source.to_string()));
         let path = PathBuf::from(source.to_string());
         self.loaded(path, |state| {
-            let environment = state.session()?.assets().environment(&source)?;
+            let environment = state
+                .session()?
+                .assets()
+                .environment(&source, EnvironmentEncoding::default())?;
             for warning in &environment.warnings {
                 state.say(Level::Warning, warning.clone());
             }
@@ -433,25 +445,24 @@ impl State<'_> {
     }
 
     fn hand_over(&mut self, document: &Document) -> Result<(), SessionError> {
-        if self.is_new_model(&document.model) {
+        if self.is_new_model(document) {
             self.tell(Activity::Loading(document.model.to_string()));
-            self.session()?.assets().model(&document.model)?;
+            self.session()?.assets().model(&document.model, &document.import)?;
             self.tell(Activity::Preparing);
         }
         let environment = &document.lighting.environment;
         if self.is_new_environment(environment) {
             self.tell(Activity::Loading(environment.to_string()));
-            self.session()?.assets().environment(environment)?;
+            let encoding = document.lighting.environment_encoding;
+            self.session()?.assets().environment(environment, encoding)?;
         }
         self.session()?.submit(document)?;
         Ok(())
     }
 
-    fn is_new_model(&self, source: &ModelSource) -> bool {
-        self.snapshot
-            .scene
-            .as_ref()
-            .is_none_or(|scene| scene.document.model != *source)
+    fn is_new_model(&self, document: &Document) -> bool {
+        let known = self.snapshot.scene.as_ref().map(|scene| &scene.document);
+        known.is_none_or(|known| (&known.model, &known.import) != (&document.model, &document.import))
     }
 
     fn is_new_environment(&self, source: &EnvironmentSource) -> bool {
@@ -466,7 +477,7 @@ impl State<'_> {
             return Ok(());
         };
         let session = self.session()?;
-        let model = session.assets().model(&document.model)?;
+        let model = session.assets().model(&document.model, &document.import)?;
         if let Some(job) = session.job().cloned() {
             self.snapshot.scene = Some(Arc::new(Scene { document, job, model }));
         }
@@ -641,24 +652,9 @@ mod tests {
 
     #[test]
     fn a_full_resolution_that_cannot_be_had_is_tried_once() {
-        let shared = Shared::default();
-        let mut state = State {
-            shared: &shared,
-            repaint: &|| {},
-            assets: Assets::default(),
-            wanted_layers: Vec::new(),
-            session: Some(Session::open(EngineChoice::Cpu).expect("the processor")),
-            snapshot: Snapshot::default(),
-            stage: None,
-            taken_at: Instant::now(),
-            samples_per_second: 0.0,
-            published_at: Instant::now(),
-            published_samples: 0,
-            publish_cost: Duration::ZERO,
-            told_at: Instant::now(),
-            serial: 0,
-            shown: Shown::default(),
-        };
+        let shared = Arc::new(Shared::default());
+        let mut state = State::new(&shared, &|| {}, Assets::default());
+        state.session = Some(Session::open(EngineChoice::Cpu).expect("the processor"));
         // A small picture is shown of a document whose model has gone since.
         let document = Document {
             model: ModelSource::File("gone.glb".into()),

@@ -242,7 +242,8 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         has_rough_tables: 0,
         texture_roughness: rng.range(0.1, 1.0),
         roughness_table: NO_TEXTURE,
-        reserved: [0; 2],
+        has_vertex_colors: 0,
+        reserved: 0,
     }
 }
 
