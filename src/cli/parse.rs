@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 
 use crate::document::parameter::parse_color;
-use crate::document::{AreaLight, AreaLightShape, Background, MaterialSettings, ParameterError, assign, range};
+use crate::document::{AreaLight, AreaLightShape, Background, Document, ParameterError, range};
 use crate::render::output::{OutputError, format_of};
 use crate::scene::environment::EnvironmentEncoding;
 
@@ -132,9 +132,9 @@ pub(super) fn background(text: &str) -> Result<Background, String> {
     }
 }
 
-/// `KEY=VALUE`, checked: whether a parameter takes a value does not depend on the material.
+/// `KEY=VALUE`, checked: whether a parameter takes a value does not depend on the document.
 pub(super) fn assignment(text: &str) -> Result<String, ParameterError> {
-    assign(&mut MaterialSettings::default(), text)?;
+    Document::default().assign(text)?;
     Ok(text.to_owned())
 }
 

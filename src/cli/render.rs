@@ -12,7 +12,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
 use crate::document::of_model::materials_of;
-use crate::document::{AreaLight, Background, Denoise, Document, ImportLobe, PixelFilter, Strategy, assign, range};
+use crate::document::{AreaLight, Background, Denoise, Document, ImportLobe, PixelFilter, Strategy, range};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 use crate::render::denoise::{Attendant, Denoised};
@@ -97,7 +97,8 @@ pub struct SceneArguments {
     /// The lobe of a file's own materials: geometric, its roughness matched to the look of the file's, or ggx.
     #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::choice::<ImportLobe>)]
     import_lobe: ImportLobe,
-    /// Set a parameter of every material, such as specular.roughness=0.2. May be repeated.
+    /// Set a parameter of every material, such as specular.roughness=0.2, or a setting, such as camera.fov=40. Stands over
+    /// all other options. May be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse::assignment)]
     assignments: Vec<String>,
     /// Where the camera is, in degrees around and above its target.
@@ -501,11 +502,6 @@ impl SceneArguments {
         } else if matches!(self.model, ModelSource::File(_)) {
             document.materials = materials_of(&model, self.import_lobe);
         }
-        for assignment in &self.assignments {
-            for material in &mut document.materials {
-                assign(material, assignment)?;
-            }
-        }
         let lighting = &mut document.lighting;
         lighting.environment = self.environment.clone();
         lighting.environment_encoding = self.environment_encoding;
@@ -548,6 +544,9 @@ impl SceneArguments {
         render.seed = self.seed;
         render.filter = self.filter;
         render.effects = self.effects;
+        for assignment in &self.assignments {
+            document.assign(assignment)?;
+        }
         document.check()?;
         Ok(document)
     }

@@ -12,7 +12,6 @@ mod material;
 pub mod measured_look;
 pub mod of_model;
 pub mod parameter;
-mod registry;
 mod settings;
 pub mod technique;
 pub mod turntable;
@@ -25,8 +24,9 @@ pub use custom_curve::CustomCurve;
 pub use history::History;
 pub use import::ImportLobe;
 pub use material::{Conductor, MaterialSettings, TextureUse};
-pub use parameter::{Choice, Kind, Parameter, ParameterError, Value, assign, parameter};
-pub use registry::PARAMETERS;
+pub use parameter::{
+    Choice, Kind, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, Value, assign, parameter, setting,
+};
 pub use settings::{
     AreaLight, AreaLightShape, Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings,
     SettingError, ViewSettings, range,

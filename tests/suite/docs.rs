@@ -7,7 +7,7 @@ use std::path::Path;
 use clap::{Arg, ArgAction, Command, CommandFactory};
 use glossmith::cli::Arguments;
 use glossmith::document::effect::EFFECTS;
-use glossmith::document::{Kind, PARAMETERS, Value, parameter};
+use glossmith::document::{Kind, PARAMETERS, Parameter, SETTINGS, Value, parameter};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
@@ -33,8 +33,8 @@ fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     text
 }
 
-fn parameters() -> String {
-    let row = |parameter: &'static glossmith::document::Parameter| {
+fn parameters<T: Default>(all: &[Parameter<T>]) -> String {
+    let row = |parameter: &Parameter<T>| {
         let expected = parameter.expected();
         let default = parameter.text(&parameter.default_value());
         vec![
@@ -48,7 +48,7 @@ fn parameters() -> String {
             parameter.help.to_owned(),
         ]
     };
-    table(&["key", "takes", "default", "what it does"], PARAMETERS.iter().map(row))
+    table(&["key", "takes", "default", "what it does"], all.iter().map(row))
 }
 
 fn choices(entries: impl Iterator<Item = (&'static str, &'static str)>) -> String {
@@ -182,7 +182,8 @@ fn options(name: &str) -> String {
 
 fn block(name: &str) -> String {
     match name {
-        "parameters" => parameters(),
+        "parameters" => parameters(&PARAMETERS),
+        "settings" => parameters(&SETTINGS),
         "lobes" => choices(Lobe::ALL.iter().map(|lobe| (lobe.name(), lobe.help()))),
         "curves" => curves(),
         "fresnel" => choices(Fresnel::ALL.iter().map(|fresnel| (fresnel.name(), fresnel.help()))),
@@ -248,6 +249,7 @@ fn the_guide_has_every_part() {
     wanted.extend(
         [
             "parameters",
+            "settings",
             "lobes",
             "curves",
             "fresnel",

@@ -6,7 +6,7 @@ use glossmith::document::import::{geometric_from_ggx, ggx_from_geometric};
 use glossmith::document::parameter::{Kind, Parameter, Value, assign, parameter, parse_color};
 use glossmith::document::{
     AreaLight, Background, Change, Conductor, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter,
-    Strategy, compile,
+    SETTINGS, Stage, Strategy, compile,
 };
 use glossmith::optics::albedo::{ALBEDO_LENGTH, ROUGH_ALBEDO_LENGTH, albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};
@@ -18,9 +18,9 @@ use glossmith::scene::{ModelSource, Slot};
 use glossmith::store::preset;
 use proptest::prelude::{Just, ProptestConfig, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
 
-/// Values that a parameter takes: both ends and something between, every choice.
-pub(crate) fn valid_values(parameter: &Parameter) -> Vec<Value> {
-    match &parameter.kind {
+/// Values of a kind: both ends and something between, every choice.
+fn values_of(kind: &Kind) -> Vec<Value> {
+    match kind {
         Kind::Number {
             range: [low, high],
             soft_range,
@@ -29,6 +29,10 @@ pub(crate) fn valid_values(parameter: &Parameter) -> Vec<Value> {
             let between = soft_range[0] + 0.317 * (soft_range[1] - soft_range[0]);
             [*low, between, *high].map(Value::Number).to_vec()
         }
+        Kind::Real { range: [low, high], .. } => [*low, low + 0.317 * (high - low), *high].map(Value::Real).to_vec(),
+        Kind::Count { range: [low, high] } => [*low, low + (high - low) / 3, *high].map(Value::Count).to_vec(),
+        Kind::Place { range: [low, high] } => vec![Value::Place([*low, *high, 0.1])],
+        Kind::Optional(kind, _) => values_of(kind).into_iter().chain([Value::Absent]).collect(),
         Kind::Color => vec![Value::Color([0.0, 1.0, 0.123_456_7]), Value::Color([0.9; 3])],
         Kind::Triple { range: [low, high] } => {
             vec![Value::Triple([*low, *high, 0.765_432_1]), Value::Triple([*low; 3])]
@@ -42,14 +46,26 @@ pub(crate) fn valid_values(parameter: &Parameter) -> Vec<Value> {
     }
 }
 
+/// Values that a parameter takes.
+pub(crate) fn valid_values<T>(parameter: &Parameter<T>) -> Vec<Value> {
+    values_of(&parameter.kind)
+}
+
 /// Texts that a parameter refuses.
-fn invalid_texts(parameter: &Parameter) -> Vec<String> {
-    let texts: &[&str] = match &parameter.kind {
+fn invalid_texts(kind: &Kind) -> Vec<String> {
+    let texts: &[&str] = match kind {
         Kind::Number { range: [low, high], .. } => {
             let beyond = [low - 1.0, high * 2.0 + 1.0].map(|x| x.to_string()).into_iter();
             let odd = ["NaN", "inf", "1e99", "much", ""].map(str::to_owned);
             return beyond.chain(odd).collect();
         }
+        Kind::Real { range: [low, high], .. } => {
+            let beyond = [low - 1.0, high * 2.0 + 1.0].map(|x| x.to_string()).into_iter();
+            return beyond.chain(["NaN", "inf", "much", ""].map(str::to_owned)).collect();
+        }
+        Kind::Count { .. } => &["-1", "1.5", "4294967296", "many", ""],
+        Kind::Place { .. } => &["1", "1,2", "1,2,x", "1,2,3,4", "NaN,0,0", "1e10,0,0"],
+        Kind::Optional(kind, _) => return invalid_texts(kind),
         Kind::Color => &[
             "#12345", "#+1+2+3", "#äöü", "1,1", "1,1,1,1", "-0.1,0,0", "1.1,0,0", "red", "NaN,0,0", "",
         ],
@@ -141,7 +157,7 @@ fn every_value_survives_the_material_the_text_and_the_file() {
 #[test]
 fn what_a_parameter_does_not_take_leaves_the_material_alone() {
     for parameter in PARAMETERS.iter() {
-        for text in invalid_texts(parameter) {
+        for text in invalid_texts(&parameter.kind) {
             let mut material = MaterialSettings::default();
             let error = assign(&mut material, &format!("{}={text}", parameter.key))
                 .expect_err(&text)
@@ -163,6 +179,39 @@ fn what_a_parameter_does_not_take_leaves_the_material_alone() {
                     other.key
                 );
             }
+        }
+    }
+}
+
+#[test]
+fn every_setting_is_set_by_its_key_checked_and_called_a_change_of_its_stage() {
+    for setting in SETTINGS.iter() {
+        let key = setting.key;
+        assert!(!setting.label.is_empty() && setting.help.ends_with('.'), "{key}");
+        assert!(
+            !PARAMETERS.iter().any(|parameter| parameter.key == key),
+            "{key} is a material's, too"
+        );
+        assert_eq!(setting.check(&setting.default_value()), Ok(()), "{key}");
+        for value in valid_values(setting) {
+            let mut document = Document::default();
+            document
+                .assign(&format!("{key} = {}", setting.text(&value)))
+                .expect(key);
+            assert_eq!(setting.get(&document), value, "{key}");
+            let json = serde_json::from_str(&setting.json_from_value(&value).to_string()).expect(key);
+            assert_eq!(setting.value_from_json(&json), Ok(value.clone()), "{key}");
+            let change = Change::between(&Document::default(), &document);
+            assert_eq!(change.is_none(), value == setting.default_value(), "{key}");
+            let restarts = !matches!(setting.stage, Stage::Display | Stage::Goal);
+            assert!(change.is_none() || change.restarts() == restarts, "{key}");
+            assert_eq!(document.check(), Ok(()), "{key}");
+        }
+        for text in invalid_texts(&setting.kind) {
+            let mut document = Document::default();
+            let error = document.assign(&format!("{key}={text}")).expect_err(&text).to_string();
+            assert!(error.starts_with(&format!("{key} does not take ")), "{error}");
+            assert_eq!(document, Document::default(), "{key} = {text}");
         }
     }
 }

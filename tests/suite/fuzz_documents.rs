@@ -82,6 +82,7 @@ fn value(random: &mut Random, kind: &Kind) -> Value {
             };
             Value::Curve((0..count).map(|i| point(i, random)).collect())
         }
+        other => panic!("no material has a parameter of this kind: {other:?}"),
     }
 }
 

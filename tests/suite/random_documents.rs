@@ -48,7 +48,7 @@ fn value(random: &mut Random, kind: &Kind, present: &Value) -> Value {
         Kind::Triple { range: [low, high] } => Value::Triple([0; 3].map(|_| range(random, *low, high.min(5.0)))),
         Kind::Choice(choices) => Value::Choice(choices[random.below(choices.len())].name),
         Kind::Toggle => Value::Toggle(random.below(2) == 0),
-        Kind::Curve => present.clone(),
+        _ => present.clone(),
     }
 }
 

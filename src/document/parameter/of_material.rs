@@ -2,9 +2,9 @@
 
 use std::sync::LazyLock;
 
-use super::custom_curve::CustomCurve;
-use super::parameter::{Choice, Kind, Parameter, Value};
-use super::{Conductor, MaterialSettings};
+use super::{Choice, Kind, Parameter, Stage, Value, choices};
+use crate::document::custom_curve::CustomCurve;
+use crate::document::{Conductor, MaterialSettings};
 use crate::named::Named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
@@ -52,16 +52,6 @@ macro_rules! choice_field {
             },
         )
     };
-}
-
-/// The choices of a closed list.
-fn choices<T: Named>() -> Kind {
-    let choice = |&choice: &T| Choice {
-        name: choice.name(),
-        label: choice.label(),
-        help: choice.help(),
-    };
-    Kind::Choice(T::ALL.iter().map(choice).collect())
 }
 
 type Get = fn(&MaterialSettings) -> Value;
@@ -377,6 +367,7 @@ fn of(key: &'static str, kind: Kind, (get, set): (Get, Set)) -> Parameter {
         symbol: "",
         help: "",
         kind,
+        stage: Stage::Materials,
         applies,
         get,
         set,
