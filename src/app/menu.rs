@@ -85,8 +85,14 @@ fn entry(ui: &mut Ui, command: Command, edits: &Edits, actions: &mut Vec<Action>
         .on_hover_text(command.help())
         .clicked()
     {
-        actions.push(Action::Do(command));
+        do_and_close(ui, actions, Action::Do(command));
     }
+}
+
+/// What is chosen by the keyboard closes the menu as well, for which egui waits for a click.
+pub(super) fn do_and_close(ui: &Ui, actions: &mut Vec<Action>, action: Action) {
+    actions.push(action);
+    ui.close();
 }
 
 fn with_step(verb: &str, step: Option<&str>) -> (String, bool) {
@@ -100,7 +106,7 @@ fn panes(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.separator();
     for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport) {
         if ui.button(pane.command()).clicked() {
-            actions.push(Action::Reveal(pane));
+            do_and_close(ui, actions, Action::Reveal(pane));
         }
     }
 }
@@ -110,7 +116,7 @@ fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
     for &choice in EngineChoice::ALL {
         let label = format!("Engine: {}", choice.label());
         if ui.button(label).on_hover_text(choice.help()).clicked() {
-            actions.push(Action::UseEngine(choice));
+            do_and_close(ui, actions, Action::UseEngine(choice));
         }
     }
 }
@@ -124,7 +130,7 @@ fn import_lobes(ui: &mut Ui, chosen: ImportLobe, actions: &mut Vec<Action>) {
                 .on_hover_text(lobe.help())
                 .clicked()
             {
-                actions.push(Action::ImportAs(lobe));
+                do_and_close(ui, actions, Action::ImportAs(lobe));
             }
         }
     });

@@ -375,9 +375,11 @@ pub(super) fn choice<T: PartialEq + Clone>(
                 } else {
                     item.on_hover_text(*help)
                 };
-                if item.clicked() && choice != value {
+                if item.clicked() {
+                    // By the keyboard, too, which egui alone would leave it open for.
+                    ui.close();
+                    changed |= choice != value;
                     *value = choice.clone();
-                    changed = true;
                 }
             }
         });

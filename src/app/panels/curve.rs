@@ -25,10 +25,12 @@ const FINE_STEPS: usize = 1000;
 const SNAP: f64 = 0.05;
 
 /// What the editor remembers.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::app) struct CurveState {
     dragged: Option<usize>,
     selected: Option<usize>,
+    /// The curve as this panel left it.
+    left: CustomCurve,
 }
 
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -55,6 +57,11 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         .map(|point| point.map(f64::from))
         .collect();
     let is_custom = material.curve == Curve::Custom;
+    let state = &mut desk.state.curve;
+    if state.left != material.custom_curve {
+        // Something else changed it, such as undo during a drag: which points there are now, the drag does not know.
+        (state.dragged, state.selected) = (None, None);
+    }
     quantile_plot(
         ui,
         &mut desk.state.curve,
@@ -72,6 +79,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
             desk.edits.note("Draw the curve", "custom curve");
         }
     }
+    desk.state.curve.left.clone_from(&material.custom_curve);
     distance_plot(ui, material.curve, &table);
     horizon(ui, material.roughness, curve_distance_max(material.curve, &table));
     if material != before {
@@ -173,7 +181,7 @@ fn quantile_plot(ui: &mut Ui, state: &mut CurveState, curve: Curve, table: &[f32
             plot_ui.line(Line::new("D(ξ)", PlotPoints::from(line)).color(accent).width(2.0));
             if let Some(points) = points {
                 edit(plot_ui, state, points);
-                draw_points(plot_ui, *state, points, accent);
+                draw_points(plot_ui, state, points, accent);
             }
         });
     let response = shown.response.accessible_name("The curve D over ξ");
@@ -192,7 +200,7 @@ fn quantile_plot(ui: &mut Ui, state: &mut CurveState, curve: Curve, table: &[f32
     });
 }
 
-fn draw_points(plot_ui: &mut PlotUi<'_>, state: CurveState, points: &[[f64; 2]], color: egui::Color32) {
+fn draw_points(plot_ui: &mut PlotUi<'_>, state: &CurveState, points: &[[f64; 2]], color: egui::Color32) {
     plot_ui.points(
         Points::new("points", PlotPoints::from(points.to_vec()))
             .radius(4.5)
@@ -242,9 +250,8 @@ fn edit(plot_ui: &PlotUi<'_>, state: &mut CurveState, points: &mut Vec<[f64; 2]>
         state.dragged = near(points, pressed.unwrap_or(pointer));
         state.selected = state.dragged.or(state.selected.filter(|_| !response.clicked()));
     }
-    // Undo by the keyboard may have taken the point away that is being dragged.
     if response.dragged()
-        && let Some(index) = state.dragged.filter(|index| *index < points.len())
+        && let Some(index) = state.dragged
     {
         let snaps = plot_ui
             .ctx()

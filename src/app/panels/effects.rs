@@ -103,6 +103,9 @@ fn switch(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect) {
             };
             ui.add_enabled_ui(effect.can_be(switch), |ui| {
                 let item = ui.selectable_value(&mut chosen, switch, switch.label());
+                if item.clicked() {
+                    ui.close();
+                }
                 item.on_hover_text(switch.help()).on_disabled_hover_text(why_not);
             });
         }

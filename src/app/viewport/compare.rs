@@ -266,6 +266,7 @@ fn rivals(ui: &mut Ui, desk: &mut Desk<'_>) {
         let mut entry = |ui: &mut Ui, text: &str, rival: Rival| {
             if ui.selectable_label(current == rival, text).clicked() {
                 chosen = Some(rival);
+                ui.close();
             }
         };
         widgets::note(ui, "The same material, look matched");
