@@ -85,6 +85,8 @@ mod precision;
 mod random_documents;
 #[path = "suite/renders.rs"]
 mod renders;
+#[path = "suite/same_paths.rs"]
+mod same_paths;
 #[path = "suite/statistics.rs"]
 mod statistics;
 #[path = "suite/structure.rs"]

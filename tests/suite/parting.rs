@@ -140,7 +140,8 @@ impl Pair {
         format!("pixel {pixel:?}: the first samples are the same")
     }
 
-    fn account(&mut self, document: &Document, pixel: [u32; 2], sample: u32) -> PathAccount {
+    /// The account of the processor's path.
+    pub fn account(&mut self, document: &Document, pixel: [u32; 2], sample: u32) -> PathAccount {
         self.cpu.submit(document).unwrap();
         let model = self.assets.model(&document.model, &document.import).unwrap();
         explain(document, &model, self.cpu.job().unwrap(), pixel, sample)

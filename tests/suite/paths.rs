@@ -1,5 +1,4 @@
-//! Paths one by one: their accounts add up to what the engine adds, no random number serves twice, and both engines trace
-//! the same ones.
+//! Paths one by one: their accounts add up to what the engine adds, and no random number serves twice.
 
 use std::collections::HashSet;
 use std::time::Duration;
@@ -15,16 +14,15 @@ use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{Model, ModelSource, Slot};
 
 use crate::analytic_scenes::room;
-use crate::parting::Pair;
 use crate::random_documents::random_document;
 use crate::renders::document;
 use crate::support::Random;
 
 /// A document and the model that it names, where that is not built in.
-struct Scene {
-    name: &'static str,
-    document: Document,
-    model: Option<Model>,
+pub struct Scene {
+    pub name: &'static str,
+    pub document: Document,
+    pub model: Option<Model>,
 }
 
 fn scene(name: &'static str, model: ModelSource, light: EnvironmentSource, assignments: &[&str]) -> Scene {
@@ -48,7 +46,7 @@ fn lit(document: &mut Document) {
 }
 
 /// Scenes in which paths do everything there is to do.
-fn scenes() -> Vec<Scene> {
+pub fn scenes() -> Vec<Scene> {
     let tinted = [
         "base.metalness=0",
         "transmission.weight=0.8",
@@ -219,41 +217,4 @@ fn numbers_that_are_drawn_twice_are_found() {
         number: 0.25,
     };
     assert!(misdrawn(&[number(3, Purpose::Roulette), roulette]).is_some());
-}
-
-/// Sample by sample the same numbers make the same paths: a number that one engine alone uses twice, a bounce that it
-/// alone limits, shows in most pixels.
-#[test]
-fn engines_trace_the_same_paths() {
-    let mut pair = Pair::open();
-    for scene in scenes() {
-        pair.keep(&scene.document.model, scene.model.clone());
-        for strategy in Strategy::ALL {
-            for sequence in Sequence::ALL {
-                let mut document = scene.document.clone();
-                document.render.strategy = *strategy;
-                document.render.sequence = *sequence;
-                let what = format!("{}, {strategy:?}, {sequence:?}", scene.name);
-                pair.assert_same_paths(&document, [0.02, 0.02], &what);
-            }
-        }
-        let mut limited = scene.document.clone();
-        limited.render.firefly_clamp = Some(0.2);
-        pair.assert_same_paths(&limited, [0.02, 0.02], &format!("{}, limited", scene.name));
-    }
-}
-
-/// A GPU that limits light that was reflected twice: the report names the bounce that it is found at.
-#[test]
-fn where_engines_part_is_told() {
-    let mut pair = Pair::open();
-    let glass = scenes().remove(0).document;
-    let same = pair.parting(&glass, [16, 16]);
-    assert!(same.contains("are the same"), "{same}");
-    pair.tamper = |document| document.render.firefly_clamp = Some(1e-3);
-    let told = pair.parting(&glass, [16, 16]);
-    assert!(
-        told.contains("they part at bounce 1 ") && told.contains("from"),
-        "{told}"
-    );
 }
