@@ -2,7 +2,7 @@
 # ARGS is handed on: make run ARGS="render --material gold --output gold.png"
 
 .DEFAULT_GOAL := help
-.PHONY: help run test test-thorough bench pictures
+.PHONY: help run test test-thorough bench pictures mutants
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -28,3 +28,7 @@ bench: ## Measure what docs/PERFORMANCE.md quotes
 pictures: ## Render the pictures of the documentation again
 	@scripts/setup run
 	scripts/pictures
+
+mutants: ## Change the program in small ways and see whether tests notice (MINUTES=60 SEED=1; docs/MUTANTS.md)
+	@scripts/setup test
+	scripts/mutants $(or $(MINUTES),60) $(or $(SEED),1)

@@ -77,8 +77,14 @@ mod nothing_lost;
 mod parting;
 #[path = "suite/paths.rs"]
 mod paths;
+#[path = "suite/picture_files.rs"]
+mod picture_files;
 #[path = "suite/plan.rs"]
 mod plan;
+#[path = "suite/plan_calls.rs"]
+mod plan_calls;
+#[path = "suite/plan_kernels.rs"]
+mod plan_kernels;
 #[path = "suite/precision.rs"]
 mod precision;
 #[path = "suite/random_documents.rs"]

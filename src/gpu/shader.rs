@@ -1,10 +1,18 @@
 //! Puts shaders together: `#import "optics/fresnel"` brings in `shaders/optics/fresnel.wgsl`, once.
+//!
+//! The shaders are part of the program. An aid for whoever works on them: where the environment variable
+//! [`FOLDER_VARIABLE`] names a folder, modules that are there are read from it instead, without compiling anything again.
+
+use std::path::Path;
 
 use include_dir::{Dir, include_dir};
 
 pub use super::generated_shader::GENERATED;
 
 static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/shaders");
+
+/// The environment variable that names a folder of shaders to read in place of those in the program.
+pub const FOLDER_VARIABLE: &str = "GLOSSMITH_SHADERS";
 
 /// A shader with everything that it imports.
 #[derive(Clone, Debug, Default)]
@@ -94,7 +102,13 @@ fn module_source(module: &str) -> Result<String, String> {
     if let Some((_, generate)) = GENERATED.iter().find(|(name, _)| *name == module) {
         return Ok(generate());
     }
-    let file = SHADERS.get_file(format!("{module}.wgsl"));
+    let name = format!("{module}.wgsl");
+    if let Some(folder) = std::env::var_os(FOLDER_VARIABLE)
+        && let Ok(text) = std::fs::read_to_string(Path::new(&folder).join(&name))
+    {
+        return Ok(text);
+    }
+    let file = SHADERS.get_file(name);
     let text = file.and_then(|file| file.contents_utf8());
     text.map(str::to_owned)
         .ok_or_else(|| format!("no shader module {module}"))

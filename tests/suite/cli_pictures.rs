@@ -1,37 +1,19 @@
 //! What pictures carry besides their colours: the document in a .png, layers in an .exr; and turntables.
 
 use std::collections::HashMap;
-use std::path::Path;
 
-use exr::prelude::{ReadChannels as _, ReadLayers as _, read};
 use glossmith::store::file::{self, Opened};
 use glossmith::store::picture::load_picture_document;
 use serde_json::Value;
 
-use crate::cli_support::Workplace;
+use crate::cli_support::{Workplace, channels};
 
 const SIZE: usize = 33;
 
-/// The channels of an EXR file by name.
-fn channels(path: &Path) -> HashMap<String, Vec<f32>> {
-    let image = read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_file(path)
-        .unwrap();
-    let channels = image.layer_data.channel_data.list.into_iter();
-    channels
-        .map(|channel| (channel.name.to_string(), channel.sample_data.values_as_f32().collect()))
-        .collect()
-}
-
-/// A white Lambertian sphere of radius 1 seen from 5 along +Z, 33 × 33 pixels.
+/// A coloured Lambertian sphere of radius 1 seen from 5 along +Z, 33 × 33 pixels, nothing behind it.
 fn layers(place: &Workplace, engine: &str) -> HashMap<String, Vec<f32>> {
     place.done(&format!(
-        "render --model sphere --environment furnace --size {SIZE}x{SIZE} --samples 8 --engine {engine} --camera-orbit 0,0 \
+        "render --model sphere --environment studio --background transparent --size {SIZE}x{SIZE} --samples 8 --engine {engine} --camera-orbit 0,0 \
          --camera-distance 5 --fov 30 --filter box --set specular.weight=0 --set base.metalness=0 \
          --set base.color=0.5,0.25,0.125 --aovs --output {engine}.exr"
     ));
@@ -100,38 +82,21 @@ fn layers_hold_the_spheres_depth_normals_and_albedo() {
     }
     assert!(seen > 200, "{seen} pixels were compared");
     assert!(layers["samples.Y"].iter().all(|samples| *samples == 8.0));
-    assert!(
-        layers["variance.Y"]
-            .iter()
-            .all(|variance| (0.0..1.0).contains(variance))
-    );
 }
 
 #[test]
 fn both_engines_write_the_same_layers() {
     let place = Workplace::new();
     let [cpu, gpu] = ["cpu", "gpu"].map(|engine| layers(&place, engine));
-    for name in [
-        "albedo.R",
-        "albedo.G",
-        "albedo.B",
-        "normal.X",
-        "normal.Y",
-        "normal.Z",
-        "depth.Z",
-        "samples.Y",
-    ] {
-        let differing = std::iter::zip(&cpu[name], &gpu[name])
-            .filter(|(a, b)| !(a == b || (**a - **b).abs() < 1e-3))
+    for (name, of_cpu) in &cpu {
+        // Both draw the same random numbers: what differs is rounding.
+        let differing = std::iter::zip(of_cpu, &gpu[name])
+            .filter(|(a, b)| !(a == b || (**a - **b).abs() < 1e-3 * a.abs().max(1e-2)))
             .count();
+        println!("{name}: {differing} pixels differ");
         // A ray that grazes the edge may meet it on one engine only.
         assert!(differing <= 4, "{name}: {differing} pixels differ");
     }
-    let mean = |layers: &HashMap<String, Vec<f32>>| layers["R"].iter().sum::<f32>() / (SIZE * SIZE) as f32;
-    assert!(
-        (mean(&cpu) / mean(&gpu) - 1.0).abs() < 0.01,
-        "the picture is there still"
-    );
 }
 
 #[test]

@@ -1,11 +1,12 @@
 //! The program run as a user runs it: in a folder of its own, by its arguments, judged by its files and messages.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use exr::prelude::{
-    Encoding, Image, Layer, LayerAttributes, SpecificChannels, Vec2, WritableImage, f16,
-    read_first_rgba_layer_from_file,
+    Encoding, Image, Layer, LayerAttributes, ReadChannels as _, ReadLayers as _, SpecificChannels, Vec2, WritableImage,
+    f16, read, read_first_rgba_layer_from_file,
 };
 use tempfile::TempDir;
 
@@ -145,6 +146,22 @@ pub fn read_exr(path: &Path) -> Picture {
     };
     let image = read_first_rgba_layer_from_file(path, new, set).unwrap();
     image.layer_data.channel_data.pixels
+}
+
+/// The channels of an EXR file by name.
+pub fn channels(path: &Path) -> HashMap<String, Vec<f32>> {
+    let image = read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .first_valid_layer()
+        .all_attributes()
+        .from_file(path)
+        .unwrap();
+    let channels = image.layer_data.channel_data.list.into_iter();
+    channels
+        .map(|channel| (channel.name.to_string(), channel.sample_data.values_as_f32().collect()))
+        .collect()
 }
 
 /// The values of `width` × `height` texels as an EXR file of half floats.

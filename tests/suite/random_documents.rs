@@ -38,13 +38,34 @@ fn range(random: &mut Random, low: f32, high: f32) -> f32 {
     low + (high - low) * random.unit()
 }
 
+/// Any number between two, one of them exactly, or hardly off the lower one.
+fn number(random: &mut Random, low: f32, high: f32) -> f32 {
+    match random.below(8) {
+        0 => low,
+        1 => high,
+        2 | 3 => range(random, low, low + 0.02 * (high - low)),
+        _ => range(random, low, high),
+    }
+}
+
+/// Any colour, or white or black but for one channel.
+fn color(random: &mut Random) -> [f32; 3] {
+    let chosen = random.below(6);
+    let other = [0.0, 1.0][random.below(2)];
+    [0, 1, 2].map(|channel| match chosen {
+        3.. => random.unit(),
+        _ if channel == chosen => random.unit(),
+        _ => other,
+    })
+}
+
 fn value(random: &mut Random, kind: &Kind, present: &Value) -> Value {
     match kind {
         Kind::Number {
             soft_range: [low, high],
             ..
-        } => Value::Number(range(random, *low, *high)),
-        Kind::Color => Value::Color([0; 3].map(|_| range(random, 0.0, 1.0))),
+        } => Value::Number(number(random, *low, *high)),
+        Kind::Color => Value::Color(color(random)),
         Kind::Triple { range: [low, high] } => Value::Triple([0; 3].map(|_| range(random, *low, high.min(5.0)))),
         Kind::Choice(choices) => Value::Choice(choices[random.below(choices.len())].name),
         Kind::Toggle => Value::Toggle(random.below(2) == 0),
@@ -80,6 +101,9 @@ pub fn random_document(random: &mut Random) -> Document {
     document.render.strategy = Strategy::ALL[random.below(3)];
     document.render.seed = random.below(1000) as u32;
     document.render.bounces = 1 + random.below(6) as u32;
+    if random.below(4) == 0 {
+        document.render.firefly_clamp = Some(range(random, 0.01, 2.0));
+    }
     if random.below(3) == 0 {
         document.camera.aperture = 0.1;
     }

@@ -3,7 +3,7 @@
 
 use glossmith::cpu::integrator;
 use glossmith::document::Document;
-use glossmith::gpu::shader::{EXTRA, GENERATED, Linked, link, link_with, module_names};
+use glossmith::gpu::shader::{EXTRA, FOLDER_VARIABLE, GENERATED, Linked, link, link_with, module_names};
 use glossmith::job::plan::Plan;
 use glossmith::job::tiles::TILE_SIDE;
 use glossmith::optics::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, TOTAL_NODES};
@@ -115,6 +115,21 @@ fn a_mistake_is_located_by_module_and_line() {
         "{message}"
     );
     assert!(link("optics/frensel").unwrap_err().contains("optics/frensel"));
+}
+
+#[test]
+fn shaders_are_read_from_the_folder_that_is_named() {
+    let folder = tempfile::TempDir::new().unwrap();
+    std::fs::create_dir(folder.path().join("pass")).unwrap();
+    std::fs::write(folder.path().join("pass/path_trace.wgsl"), "fn broken(").unwrap();
+    let run = std::process::Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        .args(["render", "--engine", "gpu", "--size", "8x8", "--samples", "1"])
+        .current_dir(folder.path())
+        .env(FOLDER_VARIABLE, folder.path())
+        .output()
+        .unwrap();
+    let message = String::from_utf8_lossy(&run.stderr);
+    assert!(!run.status.success() && message.contains("path_trace"), "{message}");
 }
 
 #[test]

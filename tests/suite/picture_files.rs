@@ -1,0 +1,190 @@
+//! Pictures as files: every format and every channel against the film that it was made of.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::time::Duration;
+
+use glossmith::document::{AreaLight, Background, Document, assign};
+use glossmith::job::film::Film;
+use glossmith::optics::tone::ToneCurve;
+use glossmith::render::output::{self, Layers};
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::picture::load_picture_document;
+use glossmith::store::snapshots;
+
+use crate::cli_support::{Workplace, channels};
+
+/// Coloured, brighter than white in places, its pixels covered in part or not at all, with more samples here than there.
+fn document() -> Document {
+    let mut document = Document {
+        model: ModelSource::Sphere,
+        ..Document::default()
+    };
+    for assignment in ["base.metalness=0", "base.color=0.9,0.3,0.05", "specular.roughness=0.3"] {
+        assign(&mut document.materials[0], assignment).unwrap();
+    }
+    document.lighting.environment = EnvironmentSource::Studio;
+    document.lighting.strength = 2.0;
+    document.lighting.background = Background::Transparent;
+    document.lighting.area_lights.push(AreaLight {
+        color: [1.0, 0.2, 0.1],
+        ..AreaLight::default()
+    });
+    (document.view.tone_map, document.view.exposure_ev) = (ToneCurve::None, -0.5);
+    (document.render.width, document.render.height) = (41, 29);
+    (document.render.samples, document.render.min_samples) = (64, 4);
+    (document.render.noise, document.render.adaptive) = (Some(0.02), Some(true));
+    document
+}
+
+fn rendered(document: &Document) -> (Film, Layers) {
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(document).unwrap();
+    while !session.step(Duration::from_secs(1)).unwrap().is_done {}
+    let layers = session.layers().unwrap();
+    (session.film().unwrap().clone(), layers)
+}
+
+/// The mean of each pixel straight from the sums: red, green, blue, multiplied by the alpha that follows.
+fn means(film: &Film) -> Vec<[f64; 4]> {
+    let mean = |(sum, [_, n]): (&[f64; 4], &[f64; 2])| sum.map(|x| x / n);
+    film.color.iter().zip(&film.statistics).map(mean).collect()
+}
+
+fn luminance([r, g, b, _]: [f64; 4]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+/// What the colour's channels of an .exr must hold.
+fn assert_color(found: &HashMap<String, Vec<f32>>, film: &Film) {
+    for (i, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
+        let expected: Vec<f32> = means(film).iter().map(|mean| mean[i] as f32).collect();
+        assert_eq!(found[name], expected, "{name}");
+    }
+}
+
+/// What an .exr with layers must hold beside the colour.
+fn assert_layers(found: &HashMap<String, Vec<f32>>, film: &Film, layers: &Layers) {
+    assert_color(found, film);
+    let features = &layers.features;
+    for (i, (color, axis)) in [("R", "X"), ("G", "Y"), ("B", "Z")].into_iter().enumerate() {
+        let of = |vectors: &[[f32; 3]]| vectors.iter().map(|vector| vector[i]).collect::<Vec<_>>();
+        assert_eq!(found[&format!("albedo.{color}")], of(&features.albedo), "{color}");
+        assert_eq!(found[&format!("normal.{axis}")], of(&features.normal), "{axis}");
+    }
+    assert_eq!(found["depth.Z"], features.depth);
+    let counts: Vec<f32> = film.statistics.iter().map(|[_, n]| *n as f32).collect();
+    assert_eq!(found["samples.Y"], counts);
+    // The spread of the samples over their number: the variance of the mean, with Bessel's correction.
+    for (pixel, mean) in means(film).into_iter().enumerate() {
+        let [squares, n] = film.statistics[pixel];
+        let expected = (squares - n * luminance(mean).powi(2)).max(0.0) / (n * (n - 1.0));
+        let error = f64::from(found["variance.Y"][pixel]) - expected;
+        // What rounding leaves of the difference of two squares.
+        let rounding = 1e-6 * expected + 1e-12 * squares;
+        assert!(error.abs() <= rounding, "pixel {pixel}: off by {error} of {expected}");
+    }
+}
+
+/// sRGB's encoding (IEC 61966-2-1) of what is in [0, 1], from 0 to 255.
+fn srgb_code(linear: f64) -> f64 {
+    let x = linear.clamp(0.0, 1.0);
+    255.0
+        * if x <= 0.003_130_8 {
+            12.92 * x
+        } else {
+            1.055 * x.powf(1.0 / 2.4) - 0.055
+        }
+}
+
+fn assert_png(path: &Path, film: &Film, exposure: f64) {
+    let found = image::open(path).unwrap().into_rgba8();
+    assert_eq!(found.dimensions(), (film.width, film.height));
+    for (pixel, mean) in found.pixels().zip(means(film)) {
+        let alpha = mean[3];
+        let expected = [0, 1, 2].map(|i| {
+            if alpha > 0.0 {
+                srgb_code(mean[i] / alpha * exposure)
+            } else {
+                0.0
+            }
+        });
+        for (code, expected) in pixel.0.into_iter().zip(expected.into_iter().chain([255.0 * alpha])) {
+            // To the nearest code, as far as f32 tells which.
+            assert!(
+                (f64::from(code) - expected).abs() < 0.51,
+                "{pixel:?}: {expected:?} of {mean:?}"
+            );
+        }
+    }
+}
+
+fn assert_hdr(path: &Path, film: &Film) {
+    let found = image::open(path).unwrap().into_rgb32f();
+    assert_eq!(found.dimensions(), (film.width, film.height));
+    for (pixel, mean) in found.pixels().zip(means(film)) {
+        // One exponent for the three: eight bits for the largest.
+        let step = mean[..3].iter().copied().fold(0.0, f64::max) / 128.0;
+        for (value, expected) in pixel.0.into_iter().zip(mean) {
+            assert!((f64::from(value) - expected).abs() <= step, "{pixel:?} of {mean:?}");
+        }
+    }
+}
+
+#[test]
+fn every_format_holds_the_film() {
+    let document = document();
+    let (film, layers) = rendered(&document);
+    let all = means(&film);
+    let count = |is: fn(&[f64; 4]) -> bool| all.iter().filter(|mean| is(mean)).count();
+    assert!(count(|mean| mean[3] > 0.05 && mean[3] < 0.95) > 20, "covered in part");
+    assert!(
+        count(|mean| mean[0] > 1.5 * mean[2] && mean[3] == 1.0) > 100,
+        "coloured"
+    );
+    let samples: Vec<f64> = film.statistics.iter().map(|[_, n]| *n).collect();
+    assert!(samples.iter().any(|n| *n != samples[0]), "samples differ");
+
+    let place = Workplace::new();
+    for name in ["a.exr", "a.png", "a.hdr"] {
+        output::write(&place.path(name), (&layers.image).into(), &document).unwrap();
+    }
+    output::write_layers(&place.path("layers.exr"), &layers).unwrap();
+    assert_color(&channels(&place.path("a.exr")), &film);
+    assert_layers(&channels(&place.path("layers.exr")), &film, &layers);
+    assert_png(&place.path("a.png"), &film, f64::from(document.view.exposure_ev).exp2());
+    assert_hdr(&place.path("a.hdr"), &film);
+}
+
+#[test]
+fn the_command_line_writes_the_film() {
+    let place = Workplace::new();
+    let run = |outputs: &str| {
+        place.done(&format!(
+            "render --model sphere --background transparent --area-light 80,0,3,1,1,10,#ff4020 --set base.metalness=0 \
+             --set base.color=0.9,0.3,0.05 --tone-map none --exposure 1 --size 21x17 --samples 5 --engine cpu {outputs}"
+        ))
+    };
+    run("--output plain.exr");
+    run("--aovs --output layers.exr --output a.png --output a.hdr");
+    // The .png says what was rendered.
+    let document = load_picture_document(&place.path("a.png")).unwrap().value;
+    let (film, layers) = rendered(&document);
+    assert_color(&channels(&place.path("plain.exr")), &film);
+    assert_layers(&channels(&place.path("layers.exr")), &film, &layers);
+    assert_png(&place.path("a.png"), &film, 2.0);
+    assert_hdr(&place.path("a.hdr"), &film);
+}
+
+#[test]
+fn a_pinned_state_keeps_its_pixels() {
+    let place = Workplace::new();
+    let pixels = image::RgbaImage::from_fn(7, 5, |x, y| {
+        image::Rgba([10 * x as u8, 200, 20 * y as u8, 30 * x as u8])
+    });
+    let path = snapshots::add(&place.path("pinned"), &document(), [7, 5], pixels.as_raw()).unwrap();
+    assert_eq!(image::open(&path).unwrap().into_rgba8(), pixels);
+    assert_eq!(load_picture_document(&path).unwrap().value, document());
+}

@@ -1,0 +1,277 @@
+//! What kernels leave out shows nowhere: on the processor by taking it out of the job, on the GPU by its kernels.
+
+use std::collections::HashSet;
+use std::sync::Arc;
+use std::time::Duration;
+
+use glossmith::cpu::CpuEngine;
+use glossmith::document::effect::EFFECTS;
+use glossmith::document::{Document, assign};
+use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
+use glossmith::job::effect::{ANY, Decision};
+use glossmith::job::film::Film;
+use glossmith::job::plan::Plan;
+use glossmith::job::{Job, Settings};
+use glossmith::optics::material::{Material, NO_TEXTURE};
+use glossmith::optics::vector::Vec3;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+use glossmith::store::PRESETS;
+
+use crate::gltf_builder::Folder;
+use crate::plan::job_in;
+use crate::random_documents::{apart, of_material, random_document, small};
+use crate::support::Random;
+use crate::textures::all_at_once;
+
+/// Takes out of a job what the kernel does without whose constant for this effect has this value.
+fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [Material<f32>]) {
+    let without: fn(&mut Material<f32>, u32) = match effect {
+        // Their code is guarded on both engines: the processor reads the plan, too.
+        "light-sampling" | "emitter-sampling" | "interreflection" | "firefly-clamp" => return,
+        "depth-of-field" => return settings.camera.lens_radius = 0.0,
+        "lobe" => |material, lobe| material.lobe = lobe,
+        "curve" => |material, curve| material.curve = curve,
+        "horizon" => |material, horizon| material.horizon = horizon,
+        "fresnel" => |material, fresnel| material.fresnel = fresnel,
+        "anisotropy" => |material, _| material.anisotropy = 0.0,
+        "base" => |material, _| {
+            let is_metal = material.metalness >= 1.0 && material.textures[1] == NO_TEXTURE;
+            // A metal's colour is that of its reflection.
+            if !is_metal && material.transmission_weight < 1.0 {
+                material.base_color = Vec3::zero();
+            }
+        },
+        "specular" => |material, _| material.specular_weight = 0.0,
+        "emission" => |material, _| material.emission = Vec3::zero(),
+        "transmission" => |material, _| material.transmission_weight = 0.0,
+        "absorption" => |material, _| material.absorption = Vec3::zero(),
+        "edge-tint" => |material, _| material.edge_tint = Vec3::splat(1.0),
+        "coat" => |material, _| material.coat_weight = 0.0,
+        "color-texture" => |material, _| material.textures[0] = NO_TEXTURE,
+        "roughness-texture" => |material, _| material.textures[1] = NO_TEXTURE,
+        "normal-map" => |material, _| material.textures[2] = NO_TEXTURE,
+        "emission-texture" => |material, _| material.textures[3] = NO_TEXTURE,
+        "rough-tables" => |material, _| material.has_rough_tables = 0,
+        "alpha" => |material, _| {
+            (material.opacity, material.alpha_cutoff) = (1.0, -1.0);
+            material.opacity_texture = NO_TEXTURE;
+        },
+        other => panic!("say here what a kernel reads that does without {other}"),
+    };
+    materials.iter_mut().for_each(|material| without(material, value));
+}
+
+/// The job as the kernel of its plan reads it: without whatever that kernel has no code for.
+fn as_its_kernel_reads(job: &Job) -> Job {
+    let mut read = job.clone();
+    let mut materials = job.materials.to_vec();
+    for (effect, decision) in job.plan.table() {
+        if effect
+            .constant()
+            .is_some_and(|constant| constant.general != decision.value)
+        {
+            take_out(effect.name(), decision.value, &mut read.settings, &mut materials);
+        }
+    }
+    read.materials = Arc::new(materials);
+    read
+}
+
+/// The job with a kernel that leaves nothing out.
+fn generally(job: &Job) -> Job {
+    Job {
+        plan: Plan::general(),
+        ..job.clone()
+    }
+}
+
+/// Four samples a pixel on the processor.
+fn on_cpu(job: Job) -> Film {
+    let mut engine = CpuEngine::default();
+    engine.submit(Arc::new(job));
+    engine.step(Duration::from_secs(1000), 4);
+    engine.film().clone()
+}
+
+/// The same on the GPU: the engine keeps the kernels that it has compiled.
+fn on_gpu(engine: &mut GpuEngine, job: Job) -> Film {
+    engine.submit(Arc::new(job)).unwrap();
+    engine.step(Duration::from_secs(1000), 4).unwrap();
+    engine.film().unwrap().clone()
+}
+
+fn gpu() -> GpuEngine {
+    GpuEngine::new(GpuDevice::open(AdapterKind::Any).unwrap()).unwrap()
+}
+
+/// The two pictures of the same random numbers, bit for bit.
+fn assert_same_bits(specialised: &Film, general: &Film, what: &str) {
+    let differing = std::iter::zip(&specialised.color, &general.color).filter(|(a, b)| a != b);
+    assert_eq!(differing.count(), 0, "{what}: pixels differ");
+    assert_eq!(specialised.dropped, general.dropped, "{what}");
+}
+
+/// Different code orders and fuses the same arithmetic differently, so that last bits differ, and now and then a decision
+/// of a path with them: nearly all pixels agree to 1e-3, and the whole picture does.
+pub fn assert_same_but_for_rounding(a: &Film, b: &Film, what: &str) {
+    let [off, whole] = apart(&a.luminance(), &b.luminance());
+    println!("{:.2} % of pixels off, the whole by {whole:.1e}", 100.0 * off);
+    assert!(off < 0.01, "{what}: {:.1} % of pixels are off", 100.0 * off);
+    assert!(whole < 1e-3, "{what}: the whole is off by {whole:.1e}");
+    assert_eq!(a.dropped, b.dropped, "{what}");
+}
+
+/// Jobs of documents whose materials and settings call for this and that, most of it at small weights and in one colour: by
+/// chance, always the same.
+fn random_jobs(count: usize) -> impl Iterator<Item = (Document, Job)> {
+    let mut random = Random::new(7);
+    jobs((0..count).map(move |_| random_document(&mut random)))
+}
+
+/// The jobs that documents are compiled to.
+fn jobs(documents: impl IntoIterator<Item = Document>) -> impl Iterator<Item = (Document, Job)> {
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    documents.into_iter().map(move |document| {
+        let job = job_in(&mut session, &document);
+        (document, job)
+    })
+}
+
+#[test]
+fn what_kernels_leave_out_shows_nowhere() {
+    let mut plans = HashSet::new();
+    let mut left_out = vec![0; EFFECTS.len()];
+    for (document, job) in random_jobs(200) {
+        plans.insert(job.plan.specialisation());
+        for (count, (effect, decision)) in left_out.iter_mut().zip(job.plan.table()) {
+            *count += usize::from(
+                effect
+                    .constant()
+                    .is_some_and(|constant| constant.general != decision.value),
+            );
+        }
+        let specialised = on_cpu(as_its_kernel_reads(&job));
+        let general = on_cpu(generally(&job));
+        assert_same_bits(&specialised, &general, &format!("{document:?}"));
+    }
+    assert!(plans.len() > 40, "only {} plans were met", plans.len());
+    for (effect, count) in EFFECTS.iter().zip(left_out) {
+        // No built-in model has textures: theirs are the next test's.
+        let is_of_texture = effect.name().ends_with("-texture") || effect.name() == "normal-map";
+        if effect.id.constant().is_some() && !is_of_texture {
+            assert!(
+                (5..200).contains(&count),
+                "{} is left out of {count} plans",
+                effect.name()
+            );
+        }
+    }
+}
+
+/// Weak and coloured: documents in which every effect of the materials takes part in the picture, but hardly.
+fn weak_documents(folder: &Folder) -> Vec<Document> {
+    let mut metals = of_material(ModelSource::Shaderball, PRESETS[0].clone());
+    let metal = &mut metals.materials[0];
+    for assignment in [
+        "base.metalness=1",
+        "specular.fresnel=schlick",
+        "specular.roughness=0.3",
+        "specular.edge_tint=1,0.6,1",
+        "specular.anisotropy=0.1",
+        "coat.weight=0.04",
+        "coat.roughness=0.3",
+        "emission.color=0,0,0.02",
+        "emission.strength=1",
+        "geometry.opacity=0.96",
+    ] {
+        assign(metal, assignment).unwrap();
+    }
+    let mut glass = of_material(ModelSource::Shaderball, PRESETS[0].clone());
+    for assignment in [
+        "base.metalness=0.04",
+        "base.color=0,0,0.9",
+        "specular.roughness=0.2",
+        "transmission.weight=0.5",
+        "transmission.color=1,1,0.6",
+        "transmission.depth=0.5",
+    ] {
+        assign(&mut glass.materials[0], assignment).unwrap();
+    }
+    glass.camera.aperture = 0.05;
+    vec![metals, glass, small(all_at_once(folder))]
+}
+
+/// What the kernels of weak effects do without: nothing that shows. Shown on the processor to be seen where it does.
+#[test]
+fn weak_effects_are_in_their_kernels() {
+    let folder = Folder::new();
+    let mut engine = gpu();
+    let mut seen = HashSet::new();
+    for (document, job) in jobs(weak_documents(&folder)) {
+        let general = on_cpu(generally(&job));
+        for (effect, decision) in job.plan.table() {
+            let Some(constant) = effect.constant().filter(|constant| constant.general != ANY) else {
+                continue;
+            };
+            if decision.value == constant.general {
+                let plan = job.plan.clone().with(effect, Decision::off("left out on purpose"));
+                let without = on_cpu(as_its_kernel_reads(&Job { plan, ..job.clone() }));
+                let [off, whole] = apart(&without.luminance(), &general.luminance());
+                println!(
+                    "without {}: {:.0} % of pixels off, {whole:.1e}",
+                    effect.name(),
+                    100.0 * off
+                );
+                if off > 0.05 {
+                    seen.insert(effect.name());
+                }
+            }
+        }
+        let specialised = on_gpu(&mut engine, job.clone());
+        assert_same_but_for_rounding(
+            &specialised,
+            &on_gpu(&mut engine, generally(&job)),
+            &format!("{document:?}"),
+        );
+    }
+    // Where emitters and clamp are, or nothing interreflects, other tests look.
+    for effect in EFFECTS
+        .iter()
+        .filter(|effect| effect.id.constant().is_some_and(|c| c.general != ANY))
+    {
+        let elsewhere = ["light-sampling", "emitter-sampling", "interreflection", "firefly-clamp"];
+        assert!(
+            seen.contains(effect.name()) || elsewhere.contains(&effect.name()),
+            "{} shows in no document",
+            effect.name()
+        );
+    }
+}
+
+/// The same paths on both engines: the GPU's by the kernel that leaves nothing out, the processor's without what the plan
+/// leaves out. One kernel serves all documents.
+#[test]
+fn the_general_kernel_draws_what_the_plan_says() {
+    let mut engine = gpu();
+    let folder = Folder::new();
+    let textured = small(all_at_once(&folder));
+    for (document, job) in random_jobs(40).chain(jobs([textured])) {
+        let planned = on_cpu(as_its_kernel_reads(&job));
+        let general = on_gpu(&mut engine, generally(&job));
+        assert_same_but_for_rounding(&planned, &general, &format!("{document:?}"));
+    }
+}
+
+#[test]
+fn kernels_of_shipped_materials_draw_what_the_general_one_does() {
+    let mut engine = gpu();
+    let shipped = PRESETS
+        .iter()
+        .map(|material| of_material(ModelSource::Sphere, material.clone()));
+    for (document, job) in jobs(shipped) {
+        let specialised = on_gpu(&mut engine, job.clone());
+        let general = on_gpu(&mut engine, generally(&job));
+        assert_same_but_for_rounding(&specialised, &general, &document.materials[0].name);
+    }
+}
