@@ -63,10 +63,10 @@ fn one_colour_black_and_one_pixel_stay_what_they_are() {
         assert!(pixel[..3].iter().all(|x| (x - 0.25).abs() < 0.01), "{pixel:?}");
     }
     let told = grey.error.unwrap();
-    assert!(told.relative < 0.02, "{told:?}");
+    assert!(told.value < 0.02, "{told:?}");
     let black = denoised(&film([16, 16], 2, 0.0, |_, _| [[0.0; 3]; 2]), Denoise::Auto);
     assert!(brightest(&black.image) < 1e-4);
-    assert!(black.error.unwrap().relative.is_finite());
+    assert!(black.error.unwrap().value.is_finite());
     let one = denoised(&film([1, 1], 4, 0.0, |_, _| [[0.5; 3], [2.0; 3]]), Denoise::Fast);
     assert!((one.image.pixels[0][0] - 2.0).abs() < 0.5, "{:?}", one.image.pixels);
     // Nothing has been rendered: nothing is done.
@@ -175,7 +175,7 @@ fn the_error_told_of_a_denoised_picture_is_the_true_one() {
             [&noisy.image, &high.image, &auto.image].map(|image| true_error(image, &reference));
         let told = high.error.unwrap();
         inside += u32::from((told.low..=told.high).contains(&truth));
-        std::iter::zip(&mut squares, [samples, truth, told.relative, mixed]).for_each(|(sum, x)| *sum += x * x);
+        std::iter::zip(&mut squares, [samples, truth, told.value, mixed]).for_each(|(sum, x)| *sum += x * x);
     }
     let [samples, truth, told, mixed] = squares.map(|sum: f64| (sum / f64::from(RENDERS)).sqrt());
     println!("samples {samples:.4}, denoised {truth:.4}, told {told:.4}, mixed {mixed:.4}, inside {inside}");
@@ -425,7 +425,7 @@ fn the_window_s_pictures_are_denoised_from_the_first_to_the_last() {
     assert!(seen.iter().all(|picture| picture.is_denoised()), "none is noisy");
     let counts: Vec<u32> = seen.iter().map(|picture| picture.samples_per_pixel).collect();
     assert!(counts.is_sorted() && *counts.last().unwrap() == 40, "{counts:?}");
-    assert!(worker.snapshot().denoised.is_some_and(|told| told.relative > 0.0));
+    assert!(worker.snapshot().denoised.is_some_and(|told| told.value > 0.0));
     // Another way of showing it renders nothing again.
     document.view.denoise = Denoise::Off;
     let seconds = worker.snapshot().progress.render_seconds;

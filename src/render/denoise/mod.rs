@@ -75,7 +75,8 @@ impl Denoiser {
                     width: noisy.size()[0],
                 });
                 let shares = (how == Denoise::Auto).then(|| errors.shares());
-                done.error = Some(errors.relative(shares.as_deref()));
+                done.error = Some(errors.error(shares.as_deref()));
+                done.bias = Some(errors.bias(shares.as_deref()));
                 done.error_map = noisy.spread(&errors.map(shares.as_deref()));
                 noisy.mixed(&denoised, shares.as_deref())
             }
