@@ -8,7 +8,7 @@
 
 use std::time::{Duration, Instant};
 
-use glossmith::analysis::denoised::DenoisedError;
+use glossmith::analysis::halves::Distance;
 use glossmith::analysis::halves::Halves;
 use glossmith::document::{Denoise, Document, assign};
 use glossmith::job::film::{Film, Image};
@@ -150,11 +150,11 @@ struct Told {
 }
 
 impl Told {
-    fn add(&mut self, true_squared: f64, told: Option<DenoisedError>) {
+    fn add(&mut self, true_squared: f64, told: Option<Distance>) {
         self.true_squared += true_squared;
         self.count += 1;
         let Some(told) = told else { return };
-        self.told_squared += told.relative.powi(2);
+        self.told_squared += told.value.powi(2);
         self.inside += u32::from((told.low..=told.high).contains(&true_squared.max(0.0).sqrt()));
     }
 

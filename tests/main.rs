@@ -23,6 +23,8 @@ mod coat;
 mod compare;
 #[path = "suite/crashed.rs"]
 mod crashed;
+#[path = "suite/denoise.rs"]
+mod denoise;
 #[path = "suite/density.rs"]
 mod density;
 #[path = "suite/desktop.rs"]

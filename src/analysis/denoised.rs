@@ -13,6 +13,7 @@
 
 use rayon::prelude::*;
 
+use super::halves::Distance;
 use super::noise::{BAND, MAP_RADIUS, box_sums};
 use crate::job::film::luminance;
 use crate::job::tiles::{TILE_SIDE, TileGrid};
@@ -34,18 +35,6 @@ pub struct DenoisedHalves<'a> {
     pub denoised: [&'a [[f32; 3]]; 2],
     /// Width of the pictures, pixels.
     pub width: usize,
-}
-
-/// The root mean square error of luminance over the mean luminance, with the band in which it lies with a probability of
-/// 95 %.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
-pub struct DenoisedError {
-    /// 0.01 is 1 %.
-    pub relative: f64,
-    /// Lower end of the band.
-    pub low: f64,
-    /// Its upper end.
-    pub high: f64,
 }
 
 /// Unbiased estimates of what a pixel's errors are; sums of them over pixels.
@@ -159,31 +148,58 @@ impl Errors {
         interpolated(self.grid, &of_tiles)
     }
 
-    /// The error of the mixture with these shares of the samples' mean; none is the denoised picture itself.
-    pub fn relative(&self, shares: Option<&[f32]>) -> DenoisedError {
-        let share = |pixel: usize| shares.map_or(0.0, |shares| f64::from(shares[pixel]));
+    /// The error of the mixture with these shares of the samples' mean, its bias included; none is the denoised picture
+    /// itself.
+    pub fn error(&self, shares: Option<&[f32]>) -> Distance {
+        let sum = self.sum(shares, |moments, denoised, samples| {
+            let rest = 2.0 * samples * denoised * moments.product + samples * samples * moments.noisy;
+            (
+                denoised * denoised * moments.denoised + rest,
+                denoised * denoised * moments.known + rest,
+            )
+        });
+        self.distance(&sum)
+    }
+
+    /// Of that error the filter's bias: what would stay if the picture were rendered and denoised again and again, and
+    /// averaged.
+    pub fn bias(&self, shares: Option<&[f32]>) -> Distance {
+        let sum = self.sum(shares, |moments, denoised, _| {
+            (denoised * denoised * (moments.denoised - moments.known), 0.0)
+        });
+        self.distance(&sum)
+    }
+
+    /// Sums over the pixels; `squares` gives a squared error and what of it is known for certain, for the shares of the
+    /// denoised picture and of the samples' mean.
+    fn sum(&self, shares: Option<&[f32]>, squares: impl Fn(&Moments, f64, f64) -> (f64, f64)) -> Moments {
         let mut sum = Moments::default();
         for (pixel, moments) in self.pixels.iter().enumerate() {
-            let (samples, denoised) = (share(pixel), 1.0 - share(pixel));
-            let rest = 2.0 * samples * denoised * moments.product + samples * samples * moments.noisy;
+            let samples = shares.map_or(0.0, |shares| f64::from(shares[pixel]));
+            let clean = 1.0 - samples;
+            let (denoised, known) = squares(moments, clean, samples);
+            let spread = clean.powi(4) + samples.powi(4);
             sum += Moments {
-                denoised: denoised * denoised * moments.denoised + rest,
-                known: denoised * denoised * moments.known + rest,
-                variance: (denoised.powi(4) + samples.powi(4)) * moments.variance,
-                squares: (denoised.powi(4) + samples.powi(4)) * moments.squares,
+                denoised,
+                known,
+                variance: spread * moments.variance,
+                squares: spread * moments.squares,
                 ..*moments
             };
         }
+        sum
+    }
+
+    fn distance(&self, sum: &Moments) -> Distance {
         let relative = |squared: f64| {
             let scale = self.mean_luminance.max(f64::MIN_POSITIVE);
             (squared.max(0.0) / sum.pixels.max(1.0)).sqrt() / scale
         };
         let band = BAND * sum.deviation();
-        let least = sum.known.max(0.0);
-        DenoisedError {
-            relative: relative(sum.denoised().max(0.0)),
-            low: relative((sum.denoised - band).max(least)),
-            high: relative((sum.denoised + band).max(least)),
+        Distance {
+            value: relative(sum.denoised()),
+            low: relative((sum.denoised - band).max(sum.known)),
+            high: relative((sum.denoised + band).max(sum.known)),
         }
     }
 

@@ -115,8 +115,10 @@ pub(super) fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter) {
                     });
             }
             if let Some(told) = snapshot.denoised {
-                ui.label(format!("denoised {}", percent(told.relative))).on_hover_ui(|ui| {
-                    ui.label("Error of the denoised picture, its bias included: root mean square over the mean luminance");
+                ui.label(format!("denoised {}", percent(told.value))).on_hover_ui(|ui| {
+                    ui.label(
+                        "Error of the denoised picture, its bias included: root mean square over the mean luminance",
+                    );
                     let (low, high) = (percent(told.low), percent(told.high));
                     ui.label(format!("The true one lies between {low} and {high} (95 %)."));
                 });

@@ -347,7 +347,7 @@ fn add_denoised(report: &mut serde_json::Value, document: &Document, denoised: O
     let error = denoised.and_then(|denoised| denoised.error);
     report["denoised"] = denoised.map(|_| document.view.denoise.name()).into();
     report["denoise_seconds"] = denoised.map(|denoised| denoised.seconds).into();
-    report["denoised_error"] = error.map(|error| error.relative).into();
+    report["denoised_error"] = error.map(|error| error.value).into();
     report["denoised_error_low"] = error.map(|error| error.low).into();
     report["denoised_error_high"] = error.map(|error| error.high).into();
 }
@@ -388,7 +388,7 @@ fn told(progress: &Progress) -> String {
     let Some(noise) = progress.noise else { return samples };
     let [error, low, high] = [noise.relative, noise.low, noise.high].map(|share| 100.0 * share);
     let denoised = progress.denoised.map_or(String::new(), |told| {
-        let [error, low, high] = [told.relative, told.low, told.high].map(|share| 100.0 * share);
+        let [error, low, high] = [told.value, told.low, told.high].map(|share| 100.0 * share);
         format!(", denoised {error:.2} % ({low:.2} to {high:.2} %)")
     });
     let why = match (progress.is_converged(), progress.noise_wanted, progress.stopped_by) {

@@ -10,7 +10,7 @@ use super::denoise::Noisy;
 use super::engine::{Engine, EngineChoice, EngineInfo, Precision, cpu};
 use super::output::Layers;
 use super::workshop::Workshop;
-use crate::analysis::denoised::DenoisedError;
+use crate::analysis::halves::Distance;
 use crate::analysis::noise::Noise;
 use crate::document::change::Change;
 use crate::document::{Denoise, Document};
@@ -69,7 +69,7 @@ pub struct Progress {
     /// The relative error to reach.
     pub noise_wanted: Option<f64>,
     /// The error of the denoised picture, as told to [`Session::note_denoised`].
-    pub denoised: Option<DenoisedError>,
+    pub denoised: Option<Distance>,
     /// The error to reach is that of the denoised picture, where it is the lesser.
     pub aims_at_denoised: bool,
     /// The processor draws, because the GPU's kernel is being compiled.
@@ -92,10 +92,7 @@ impl Progress {
     /// The relative error of which so much is to be left as was asked for.
     fn error_aimed_at(&self) -> Option<f64> {
         let noisy = self.noise.map(|noise| noise.relative);
-        let denoised = self
-            .denoised
-            .filter(|_| self.aims_at_denoised)
-            .map(|error| error.relative);
+        let denoised = self.denoised.filter(|_| self.aims_at_denoised).map(|error| error.value);
         noisy.into_iter().chain(denoised).reduce(f64::min)
     }
 
@@ -127,7 +124,7 @@ pub struct Session {
     /// Where kernels are compiled beside the picture; `None` where the session waits for them.
     workshop: Option<Workshop>,
     precision: Precision,
-    denoised: Option<DenoisedError>,
+    denoised: Option<Distance>,
 }
 
 impl Session {
@@ -447,7 +444,7 @@ impl Session {
     }
 
     /// Takes note of the error of the denoised picture: a noise to reach is that of what is shown.
-    pub fn note_denoised(&mut self, error: DenoisedError) {
+    pub fn note_denoised(&mut self, error: Distance) {
         self.denoised = Some(error);
     }
 

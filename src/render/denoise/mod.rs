@@ -26,6 +26,7 @@ const PIXELS_MAX: usize = 1 << 22;
 pub struct Denoiser {
     device: Arc<Device<'static>>,
     filter: Option<Filter<'static>>,
+    pixels_max: usize,
 }
 
 impl Denoiser {
@@ -35,7 +36,16 @@ impl Denoiser {
     /// [`LibraryError`] in one line that says what to do.
     pub fn open() -> Result<Self, LibraryError> {
         let device = Arc::new(Device::of(Library::get()?)?);
-        Ok(Self { device, filter: None })
+        Ok(Self {
+            device,
+            filter: None,
+            pixels_max: PIXELS_MAX,
+        })
+    }
+
+    /// The same, but pictures of more pixels than this are filtered in bands.
+    pub fn in_bands_of(self, pixels_max: usize) -> Self {
+        Self { pixels_max, ..self }
     }
 
     /// The picture without its noise; the same where nothing was rendered.
@@ -65,7 +75,8 @@ impl Denoiser {
                     width: noisy.size()[0],
                 });
                 let shares = (how == Denoise::Auto).then(|| errors.shares());
-                done.error = Some(errors.relative(shares.as_deref()));
+                done.error = Some(errors.error(shares.as_deref()));
+                done.bias = Some(errors.bias(shares.as_deref()));
                 done.error_map = noisy.spread(&errors.map(shares.as_deref()));
                 noisy.mixed(&denoised, shares.as_deref())
             }
@@ -93,11 +104,11 @@ impl Denoiser {
         scale: f32,
     ) -> Result<Colors, LibraryError> {
         let [width, height] = noisy.size();
-        if width * height <= PIXELS_MAX {
+        if width * height <= self.pixels_max {
             return self.clean_rows(color, noisy, quality, scale, 0..height);
         }
         let [overlap, alignment] = self.filter([width, 1], quality)?.overlap_and_alignment();
-        let rows = ((PIXELS_MAX / width).saturating_sub(2 * overlap) / alignment).max(1) * alignment;
+        let rows = ((self.pixels_max / width).saturating_sub(2 * overlap) / alignment).max(1) * alignment;
         let mut clean = Colors::with_capacity(color.len());
         for first in (0..height).step_by(rows) {
             let last = (first + rows).min(height);

@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::analysis::denoised::{Colors, DenoisedError};
+use crate::analysis::denoised::Colors;
+use crate::analysis::halves::Distance;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image, luminance};
 use crate::job::tiles::TileGrid;
@@ -104,7 +105,9 @@ pub struct Denoised {
     /// What is shown: the denoised picture, or where that is nearer to the truth (`auto`) a mixture with the samples.
     pub image: Arc<Image>,
     /// How far it is from the truth; `None` before there are two halves of samples.
-    pub error: Option<DenoisedError>,
+    pub error: Option<Distance>,
+    /// Of that the filter's bias.
+    pub bias: Option<Distance>,
     /// The error around each pixel, over the mean luminance; empty before there are two halves.
     pub error_map: Vec<f32>,
     /// How long it took.
@@ -117,6 +120,7 @@ impl Denoised {
         Self {
             image: noisy.image.clone(),
             error: None,
+            bias: None,
             error_map: Vec::new(),
             seconds: 0.0,
         }

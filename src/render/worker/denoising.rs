@@ -1,11 +1,11 @@
 //! The denoiser's thread behind the worker's: takes what has been rendered, the latest wins, and gives pictures back.
 
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::Duration;
 
 use super::lock;
 use crate::document::{Denoise, DenoiseWhen, Document};
+use crate::panics::caught;
 use crate::render::denoise::{Denoised, Denoiser, Noisy};
 use crate::render::priority::lower_thread_priority;
 use crate::render::session::Progress;
@@ -172,8 +172,7 @@ fn work((desk, asked): &(Mutex<Desk>, Condvar), wake: &dyn Fn()) {
             }
         };
         drop(desk_now);
-        let denoised = catch_unwind(AssertUnwindSafe(|| denoise(&mut denoiser, &request)))
-            .unwrap_or_else(|_| Err("the denoiser failed".to_owned()));
+        let denoised = caught(|| denoise(&mut denoiser, &request)).flatten();
         lock(desk).outcome = Some(Outcome {
             denoised,
             noisy: request.noisy,

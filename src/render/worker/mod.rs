@@ -20,7 +20,7 @@ use super::engine::{EngineChoice, EngineInfo};
 use super::output::{Layers, Rendered};
 use super::priority::lower_thread_priority;
 use super::session::Progress;
-use crate::analysis::denoised::DenoisedError;
+use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::job::Job;
 use crate::job::film::Image;
@@ -158,7 +158,7 @@ pub struct Snapshot {
     /// What renders; `None` while it is being opened.
     pub engine: Option<EngineInfo>,
     /// The error of the denoised picture.
-    pub denoised: Option<DenoisedError>,
+    pub denoised: Option<Distance>,
     /// From the latest submission to its first picture.
     pub first_picture: Option<Duration>,
 }
