@@ -11,6 +11,7 @@ mod geometry;
 mod gltf;
 mod import;
 mod intersect;
+mod ktx2;
 pub mod light;
 pub mod mesh;
 mod model;

@@ -474,6 +474,45 @@ fn pictures_may_be_webp_and_are_scaled_to_the_chosen_size() {
 }
 
 #[test]
+fn ktx2_pictures_of_plain_bytes_are_read() {
+    let ktx2 = |format: u32, size: [u32; 2], texels: &[u8]| {
+        let mut bytes = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
+        // Format, size of a number, width, height, depth, layers, faces, levels, compression.
+        let numbers = [format, 1, size[0], size[1], 0, 0, 1, 1, 0];
+        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        bytes.resize(80, 0);
+        let level = [104, texels.len() as u64, texels.len() as u64];
+        bytes.extend(level.iter().flat_map(|number| number.to_le_bytes()));
+        bytes.extend(texels);
+        bytes
+    };
+    let of = |picture: &[u8]| {
+        let (mut buffer, _) = square();
+        let view = buffer.view(picture);
+        let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 3, "material": 0});
+        let mut document = buffer.document(json!([primitive]));
+        document["images"] = json!([{"bufferView": view, "mimeType": "image/ktx2"}]);
+        document["textures"] = json!([{"extensions": {"KHR_texture_basisu": {"source": 0}}}]);
+        document["materials"] = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+        load_plain(&document, &buffer)
+    };
+    let rgb = of(&ktx2(29, [2, 1], &[1, 2, 3, 4, 5, 6]));
+    assert_eq!(rgb.textures[0].rgba8, [1, 2, 3, 255, 4, 5, 6, 255]);
+    let bgra = of(&ktx2(44, [1, 2], &[1, 2, 3, 4, 5, 6, 7, 8]));
+    assert_eq!(bgra.textures[0].rgba8, [3, 2, 1, 4, 7, 6, 5, 8]);
+    // Too few bytes, a format of floats, Basis Universal that is none.
+    for broken in [
+        ktx2(37, [2, 2], &[0; 12]),
+        ktx2(109, [1, 1], &[0; 16]),
+        ktx2(0, [4, 4], &[0; 16]),
+    ] {
+        let grey = of(&broken);
+        says(&grey, Fate::Missing, "a texture, grey instead");
+        assert_eq!((grey.textures.len(), grey.slots[0].base_color), (0, [0.5; 3]));
+    }
+}
+
+#[test]
 fn cameras_become_bookmarks_and_lights_small_squares() {
     let (buffer, mut document) = square();
     document["cameras"] = json!([{"type": "perspective", "name": "Front", "perspective": {"yfov": 0.5, "znear": 0.1}}]);

@@ -76,11 +76,16 @@ impl Document {
     /// Reads a file with its buffers; its pictures are read when asked for.
     pub fn read(path: &Path, files: Files, mut bytes: Vec<u8>, report: &mut ImportReport) -> Result<Self, ModelError> {
         let (text, blob) = split(path, &bytes)?;
+        let mut raw: serde_json::Value = parse(path, text)?;
+        add_what_the_crate_misses(&mut raw);
         let mut document = Self {
             path: path.to_owned(),
             files,
-            root: parse(path, text)?,
-            raw: parse(path, text)?,
+            root: serde_json::from_value(raw.clone()).map_err(|error| ModelError::Invalid {
+                path: path.to_owned(),
+                reason: format!("its JSON: {error}"),
+            })?,
+            raw,
             buffers: Vec::new(),
             decompressed: HashMap::new(),
             unknown_required: Vec::new(),
@@ -280,9 +285,29 @@ impl Document {
     }
 }
 
+/// The crate asks for some parts that the format leaves to the writer.
+fn add_what_the_crate_misses(raw: &mut serde_json::Value) {
+    let scenes = raw.get_mut("scenes").and_then(serde_json::Value::as_array_mut);
+    for scene in scenes
+        .into_iter()
+        .flatten()
+        .filter_map(serde_json::Value::as_object_mut)
+    {
+        scene.entry("nodes").or_insert_with(|| serde_json::json!([]));
+    }
+}
+
 /// Whether a breach of the rules at this place of the JSON changes no picture.
 fn is_harmless(place: &str) -> bool {
-    let ends = [".min", ".max", ".target", ".byteStride", ".byteLength", ".generator"];
+    let ends = [
+        ".bufferView",
+        ".min",
+        ".max",
+        ".target",
+        ".byteStride",
+        ".byteLength",
+        ".generator",
+    ];
     ends.iter().any(|end| place.ends_with(end)) || place.starts_with("animations") || place.contains("extensions")
 }
 
