@@ -57,6 +57,10 @@ mod gltf;
 mod gltf_builder;
 #[path = "suite/gltf_damaged.rs"]
 mod gltf_damaged;
+#[path = "suite/gltf_extensions.rs"]
+mod gltf_extensions;
+#[path = "suite/import_report.rs"]
+mod import_report;
 #[path = "suite/killed.rs"]
 mod killed;
 #[path = "suite/library.rs"]
@@ -67,6 +71,8 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/model_formats.rs"]
+mod model_formats;
 #[path = "suite/monkey.rs"]
 mod monkey;
 #[path = "suite/monkey_deeds.rs"]

@@ -22,6 +22,11 @@ pub enum Action {
     Do(Command),
     /// Opens a file by its ending.
     Open(PathBuf),
+    /// Takes a file that was dropped on the window: a picture becomes the base colour of the selected material, anything
+    /// else is opened.
+    Drop(PathBuf),
+    /// Takes text that was pasted into the window: the name of a file.
+    Paste(String),
     /// Changes the model.
     UseModel(ModelSource),
     /// Loads a model's file anew, to show another scene, variant or pose of it.

@@ -17,6 +17,8 @@ impl App {
             Action::Open(path) => {
                 self.open(path);
             }
+            Action::Drop(path) => self.drop_file(path),
+            Action::Paste(text) => self.paste(&text),
             Action::UseModel(source) => self.worker.open_model(source, ModelOptions::default()),
             Action::ImportModel(source, options) => self.worker.open_model(source, options),
             Action::UseEnvironment(source) => self.worker.open_environment(source),

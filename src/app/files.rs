@@ -12,7 +12,7 @@ use super::unsaved::Then;
 use crate::document::Document;
 use crate::render::worker::Level;
 use crate::scene::environment::{ENDINGS, EnvironmentSource};
-use crate::scene::{ModelOptions, ModelSource, is_model};
+use crate::scene::{ModelOptions, ModelSource, SlotPicture, is_model};
 use crate::store::file::Opened;
 use crate::store::{FileError, Loaded, file, preset, save_document, save_material};
 
@@ -20,6 +20,8 @@ use crate::store::{FileError, Loaded, file, preset, save_document, save_material
 pub(super) struct Files {
     pub(super) disk: Disk,
     pub(super) project: Option<PathBuf>,
+    /// A picture that was dropped on the window and may hold a document.
+    pub(super) dropped: Option<PathBuf>,
     /// Where the next whole picture goes.
     pub(super) wanted_pictures: Vec<Destination>,
 }
@@ -29,6 +31,7 @@ impl Files {
         Ok(Self {
             disk: Disk::new(ctx)?,
             project: None,
+            dropped: None,
             wanted_pictures: Vec::new(),
         })
     }
@@ -96,6 +99,46 @@ impl App {
         true
     }
 
+    /// Takes a file that was dropped: a picture for the selected material, anything else is opened.
+    pub(super) fn drop_file(&mut self, path: PathBuf) {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let is_picture =
+            !["hdr", "exr", "pic", "rgbe", "png"].contains(&ending.as_str()) && ENDINGS.contains(&ending.as_str());
+        if is_picture {
+            self.paint(path);
+        } else {
+            // A .png may hold a document: that is looked for first.
+            self.files.dropped = (ending == "png").then(|| path.clone());
+            self.open(path);
+        }
+    }
+
+    /// Makes a picture the base colour of the selected material.
+    fn paint(&mut self, file: PathBuf) {
+        let slot = self.panels.slot;
+        let mut options = self.document.import.clone();
+        options.pictures.retain(|picture| picture.slot != slot);
+        options.pictures.push(SlotPicture { slot, file });
+        self.worker.open_model(self.document.model.clone(), options);
+    }
+
+    /// Opens the file whose name was pasted.
+    pub(super) fn paste(&mut self, text: &str) {
+        let name = text.strip_prefix("file://").unwrap_or(text);
+        let path = PathBuf::from(name);
+        if text.contains("://") && !text.starts_with("file://") {
+            self.say(
+                Level::Error,
+                format!("{text}: web addresses are not opened; save the file and open it here"),
+            );
+        } else if path.exists() {
+            self.drop_file(path);
+        } else {
+            let shown: String = text.chars().take(80).collect();
+            self.say(Level::Warning, format!("pasted text is no file's name: {shown}"));
+        }
+    }
+
     /// Takes what has been read and written.
     pub(super) fn take_files(&mut self, ctx: &egui::Context) {
         let mut has_failed = false;
@@ -160,6 +203,9 @@ impl App {
                 if is_at_start && is_saved {
                     self.edits = Edits::new(self.document.clone());
                 }
+            }
+            Err(FileError::NoDocument { path }) if self.files.dropped.take_if(|dropped| *dropped == path).is_some() => {
+                self.paint(path);
             }
             Err(error) => self.say(Level::Error, error.to_string()),
         }

@@ -63,7 +63,7 @@ use crate::document::{Change, Document, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 use crate::scene::environment::EnvironmentSource;
-use crate::scene::{Model, ModelOptions, ModelSource};
+use crate::scene::{Model, ModelOptions, ModelSource, SlotPicture};
 
 /// A picture that has cost this much time keeps its size while nothing but the viewport's size changes.
 const KEPT_FROM: Duration = Duration::from_secs(10);
@@ -303,21 +303,40 @@ impl App {
     /// Takes a loaded model over: a file's materials come with it, a built-in keeps the one that is being edited.
     fn adopt_model(&mut self, source: ModelSource, options: ModelOptions, model: &Model) {
         let is_file = matches!(source, ModelSource::File(_));
+        let is_shown_anew = self.document.model == source && self.document.import != options;
         let edited = self.desk_material();
+        let before = std::mem::take(&mut self.document.materials);
         self.document.materials = materials_of(model, self.panels.import_lobe);
-        if !is_file && let Some(first) = self.document.materials.first_mut() {
+        if is_shown_anew {
+            self.keep_edits(before, &options);
+        } else if !is_file && let Some(first) = self.document.materials.first_mut() {
             *first = edited;
         }
         self.panels.slot = 0;
-        let is_other = self.document.model != source;
         self.document.model = source;
         self.document.import = options;
-        if is_other {
+        if !is_shown_anew {
             let camera = &mut self.document.camera;
             (camera.target, camera.distance, camera.position) = (None, None, None);
             self.document.add_lights_and_cameras(model);
         }
         self.edits.note(format!("Change the model to {}", model.name), "");
+    }
+
+    /// Where the same file is shown in another way: materials whose slots have the same name stay as they were edited. One
+    /// that was given a picture shows it.
+    fn keep_edits(&mut self, mut before: Vec<MaterialSettings>, options: &ModelOptions) {
+        let is_new = |picture: &&SlotPicture| !self.document.import.pictures.contains(picture);
+        for picture in options.pictures.iter().filter(is_new) {
+            if let Some(material) = before.get_mut(picture.slot) {
+                (material.base_color, material.textures.color) = ([1.0; 3], true);
+            }
+        }
+        for material in &mut self.document.materials {
+            if let Some(known) = before.iter().position(|known| known.name == material.name) {
+                *material = before.swap_remove(known);
+            }
+        }
     }
 
     fn desk_material(&self) -> MaterialSettings {
@@ -474,6 +493,19 @@ impl App {
     }
 }
 
+/// What was pasted as text in this frame.
+fn pasted(ctx: &egui::Context) -> impl Iterator<Item = String> {
+    let texts = ctx.input(|input| {
+        let events = input.events.iter();
+        let text = |event: &egui::Event| match event {
+            egui::Event::Paste(text) => Some(text.trim().to_owned()),
+            _ => None,
+        };
+        events.filter_map(text).collect::<Vec<_>>()
+    });
+    texts.into_iter().filter(|text| !text.is_empty())
+}
+
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
@@ -488,9 +520,17 @@ impl eframe::App for App {
         if !self.is_covered() {
             actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
         }
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        actions.extend(dropped.iter().map(|file| Action::Open(file.path().to_owned())));
         self.show(ui, &mut actions);
+        // After the viewport, which selects what a file is dropped on.
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        actions.extend(dropped.iter().map(|file| Action::Drop(file.path().to_owned())));
+        if !self.is_covered()
+            && ctx
+                .memory(|memory| memory.focused())
+                .is_none_or(|id| Some(id) == self.viewport.id())
+        {
+            actions.extend(pasted(&ctx).map(Action::Paste));
+        }
         for action in actions {
             self.apply(&ctx, action);
         }

@@ -487,6 +487,7 @@ impl SceneArguments {
                 variant: self.variant.clone(),
                 time_s: self.time_of_pose.map(|time| time as f32),
                 texture_side_max: self.texture_size as u32,
+                pictures: Vec::new(),
             },
             ground: self.ground,
             ..Document::default()

@@ -4,8 +4,10 @@ use std::path::Path;
 
 use super::files::Files;
 use super::geometry::Framing;
-use super::model::{Model, ModelError, ModelOptions};
+use super::model::{Filter, Model, ModelError, ModelOptions, SlotPicture, TextureRef, Wrap};
+use super::picture::decode_bytes;
 use super::report::Fate;
+use super::texture::scaled_to;
 use super::{gltf, obj, ply, stl};
 
 /// Endings of the model files that can be read, without their dots.
@@ -29,7 +31,7 @@ pub(super) fn load(path: &Path, options: &ModelOptions) -> Result<Model, ModelEr
             path: path.to_owned(),
             source,
         })?;
-        load_file(path, Files::beside(path), &bytes, options)?
+        load_file(path, Files::beside(path), bytes, options)?
     };
     let stem = if path.is_dir() {
         path.file_name()
@@ -73,18 +75,18 @@ fn load_inside(path: &Path, files: Files, options: &ModelOptions) -> Result<Mode
         .iter()
         .filter(|other| **other != name && is_model(Path::new(other)))
         .count();
-    let mut model = load_file(&path.join(&name), files.seen_from(&name), &bytes, options)?;
+    let mut model = load_file(&path.join(&name), files.seen_from(&name), bytes, options)?;
     model.report.note(Fate::Used, "the model file", &name);
     model.report.count(Fate::Ignored, "other models beside it", "", others);
     Ok(model)
 }
 
 /// Loads the contents of a file by its ending.
-fn load_file(path: &Path, files: Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
+fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
     let model = match ending(path).as_str() {
-        "obj" => obj::load(path, &files, bytes, options)?,
-        "ply" => ply::load(path, bytes)?,
-        "stl" => stl::load(path, bytes)?,
+        "obj" => obj::load(path, &files, &bytes, options)?,
+        "ply" => ply::load(path, &bytes)?,
+        "stl" => stl::load(path, &bytes)?,
         // Whatever a glTF file is called: its first bytes tell.
         _ => gltf::load(path, files, bytes, options)?,
     };
@@ -92,6 +94,37 @@ fn load_file(path: &Path, files: Files, bytes: &[u8], options: &ModelOptions) ->
         return Err(ModelError::NoTriangles { path: path.to_owned() });
     }
     Ok(model)
+}
+
+/// Gives slots the pictures that were chosen for them, in the first set of texture coordinates.
+pub(super) fn put_pictures(model: &mut Model, options: &ModelOptions) {
+    for SlotPicture { slot, file } in &options.pictures {
+        let name = file.display().to_string();
+        let picture = std::fs::read(file)
+            .map_err(|error| error.to_string())
+            .and_then(|bytes| decode_bytes(name.clone(), &bytes));
+        match (picture, model.slots.get_mut(*slot)) {
+            (Ok(picture), Some(slot)) => {
+                let (picture, _) = scaled_to(picture, options.texture_side_max, true);
+                slot.base_color = [1.0; 3];
+                slot.base_color_texture = Some(TextureRef {
+                    texture: model.textures.len(),
+                    uv_set: 0,
+                    texture_from_mesh_uv: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+                    wrap: [Wrap::Repeat; 2],
+                    filter: Filter::Linear,
+                });
+                model.textures.push(picture);
+                model.report.note(Fate::Used, "pictures of your own", &name);
+            }
+            (Err(reason), _) => model
+                .report
+                .note(Fate::Missing, format!("a picture of your own ({reason})"), &name),
+            (Ok(_), None) => model
+                .report
+                .note(Fate::Ignored, "a picture for a slot that is not there", &name),
+        }
+    }
 }
 
 /// What all formats have in common: lengths in bounding radii, and a word about triangles that cannot be shown.

@@ -74,6 +74,11 @@ impl Mesh {
 
     /// Adds all vertices and triangles of `other`, with their slots as they are.
     pub fn append(&mut self, other: Mesh) {
+        if self.positions.is_empty() && self.triangles.is_empty() {
+            // Most files have one mesh: nothing needs to be copied.
+            *self = other;
+            return;
+        }
         let base = self.positions.len() as u32;
         let counts = [self.positions.len(), other.positions.len()];
         append_optional(&mut self.second_uvs, &other.second_uvs, counts, Vec2::ZERO);

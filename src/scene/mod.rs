@@ -11,6 +11,7 @@ mod geometry;
 mod gltf;
 mod import;
 mod intersect;
+mod ktx2;
 pub mod light;
 pub mod mesh;
 mod model;
@@ -30,7 +31,7 @@ pub use geometry::{Geometry, Vertex};
 pub use import::{MODEL_ENDINGS, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
 pub use model::{
-    AlphaMode, Filter, LightKind, Model, ModelCamera, ModelError, ModelLight, ModelOptions, ModelSource, Slot, Texture,
-    TextureRef, Wrap, load, load_with,
+    AlphaMode, Filter, LightKind, Model, ModelCamera, ModelError, ModelLight, ModelOptions, ModelSource, Slot,
+    SlotPicture, Texture, TextureRef, Wrap, load, load_with,
 };
 pub use report::{Entry, Fate, ImportReport};

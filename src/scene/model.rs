@@ -119,6 +119,17 @@ pub struct ModelOptions {
     pub time_s: Option<f32>,
     /// The longest side of a texture; larger ones are halved until they fit.
     pub texture_side_max: u32,
+    /// Pictures that take the place of the base colours of slots.
+    pub pictures: Vec<SlotPicture>,
+}
+
+/// A picture for the base colour of a slot.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SlotPicture {
+    /// The number of the slot.
+    pub slot: usize,
+    /// The picture's file.
+    pub file: PathBuf,
 }
 
 impl Default for ModelOptions {
@@ -128,6 +139,7 @@ impl Default for ModelOptions {
             variant: None,
             time_s: None,
             texture_side_max: 8192,
+            pictures: Vec::new(),
         }
     }
 }
@@ -447,11 +459,13 @@ pub fn load_with(source: &ModelSource, options: &ModelOptions) -> Result<Model, 
         slots: slots.iter().map(|name| Slot::neutral(name)).collect(),
         ..Model::default()
     };
-    Ok(match source {
+    let mut model = match source {
         ModelSource::Teapot => built_in(teapot::mesh(teapot::DEFAULT_SEGMENTS), &["teapot"]),
         ModelSource::Sphere => built_in(shapes::sphere(192, 96), &["sphere"]),
         ModelSource::Plane => built_in(shapes::plane(), &["plane"]),
         ModelSource::Shaderball => built_in(shapes::shaderball(), &["body", "stand"]),
         ModelSource::File(path) => import::load(path, options)?,
-    })
+    };
+    import::put_pictures(&mut model, options);
+    Ok(model)
 }

@@ -15,29 +15,42 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
         path: path.to_owned(),
         reason: error.to_string(),
     };
-    let read = stl_io::read_stl(&mut Cursor::new(bytes)).map_err(invalid)?;
-    let triangles: Vec<[u32; 3]> = read
-        .faces
-        .iter()
-        .map(|face| face.vertices.map(|vertex| vertex as u32))
-        .collect();
-    let count = read.vertices.len();
-    let place = |vertex: &stl_io::Vertex| {
+    let mut source = Cursor::new(bytes);
+    let mut report = ImportReport::default();
+    let mut read: Vec<stl_io::Triangle> = Vec::new();
+    for triangle in stl_io::create_stl_reader(&mut source).map_err(invalid)? {
+        match triangle {
+            Ok(triangle) => read.push(triangle),
+            // What stands before the damage is shown.
+            Err(error) if read.is_empty() => return Err(invalid(error)),
+            Err(error) => {
+                report.note(
+                    Fate::Missing,
+                    format!("what follows a breach of the format ({error})"),
+                    "",
+                );
+                break;
+            }
+        }
+    }
+    let corners = read.iter().flat_map(|triangle| triangle.vertices);
+    let place = |vertex: stl_io::Vertex| {
         let [x, y, z] = vertex.0.map(f64::from);
         DVec3::new(x, z, -y)
     };
+    let positions: Vec<DVec3> = corners.map(place).collect();
+    let count = positions.len();
     let mut mesh = Mesh {
-        positions: read.vertices.iter().map(place).collect(),
-        normals: vec![Vec3::Y; count],
+        positions,
+        normals: vec![Vec3::ZERO; count],
         uvs: vec![Vec2::ZERO; count],
         tangents: vec![Vec4::W; count],
-        slots: vec![0; triangles.len()],
-        triangles,
+        slots: vec![0; read.len()],
+        triangles: (0..read.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         ..Mesh::default()
     };
-    mesh.flatten();
+    mesh.repair_normals();
     mesh.make_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], false);
-    let mut report = ImportReport::default();
     report.note(Fate::Used, "meshes", "");
     Ok(Model {
         mesh,

@@ -158,6 +158,9 @@ fn map_paths(document: &mut Document, map: impl Fn(&Path) -> PathBuf) {
     if let EnvironmentSource::File(path) = &mut document.lighting.environment {
         *path = map(path);
     }
+    for picture in &mut document.import.pictures {
+        picture.file = map(&picture.file);
+    }
 }
 
 fn folder(path: &Path) -> &Path {

@@ -235,3 +235,65 @@ fn tiled_exr_files_are_read_with_their_cube_or_their_levels() {
         assert_eq!(*texel, [(index % 40) as f32, (index / 40) as f32, 0.25, 1.0]);
     }
 }
+
+/// An attribute of an EXR header.
+fn attribute(name: &str, kind: &str, value: &[u8]) -> Vec<u8> {
+    let size = (value.len() as i32).to_le_bytes();
+    [name.as_bytes(), b"\0", kind.as_bytes(), b"\0", &size, value].concat()
+}
+
+#[test]
+fn coarse_chroma_is_spread_over_the_luminance() {
+    let (width, height) = (8_usize, 4_usize);
+    let numbers = |values: &[i32]| values.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
+    let channel = |name: &str, step: i32| [name.as_bytes(), b"\0", &numbers(&[1, 0, step, step])].concat();
+    let window = numbers(&[0, 0, width as i32 - 1, height as i32 - 1]);
+    let float = |x: f32| x.to_le_bytes();
+    let channels = [channel("BY", 2), channel("RY", 2), channel("Y", 1), vec![0]].concat();
+    let mut bytes = [
+        vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0],
+        attribute("channels", "chlist", &channels),
+        attribute("compression", "compression", &[0]),
+        attribute("dataWindow", "box2i", &window),
+        attribute("displayWindow", "box2i", &window),
+        attribute("lineOrder", "lineOrder", &[0]),
+        attribute("pixelAspectRatio", "float", &float(1.0)),
+        attribute("screenWindowCenter", "v2f", &[float(0.0), float(0.0)].concat()),
+        attribute("screenWindowWidth", "float", &float(1.0)),
+        vec![0],
+        vec![0; 8 * height],
+    ]
+    .concat();
+    let half = |x: f32| exr::prelude::f16::from_f32(x).to_le_bytes();
+    for row in 0..height {
+        let mut line: Vec<u8> = Vec::new();
+        if row % 2 == 0 {
+            // BY, then RY: −0.5 on the left, 0.5 on the right.
+            line.extend((0..width / 2).flat_map(|_| half(-0.5)));
+            line.extend((0..width / 2).flat_map(|x| half(if x < 2 { -0.5 } else { 0.5 })));
+        }
+        line.extend((0..width).flat_map(|x| half(1.0 + x as f32)));
+        bytes.extend(numbers(&[row as i32, line.len() as i32]));
+        bytes.extend(line);
+    }
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("chroma.exr");
+    std::fs::write(&path, &bytes).unwrap();
+    let environment = load_file(&path);
+    for (index, [red, green, blue, _]) in environment.texels.iter().enumerate() {
+        let (x, luminance) = (index % width, (1 + index % width) as f32);
+        // Between the third and the fifth column the chroma is interpolated.
+        let ry = [-0.5, -0.5, -0.5, 0.0, 0.5, 0.5, 0.5, 0.5][x];
+        assert_eq!(
+            (*red, *blue),
+            ((1.0 + ry) * luminance, 0.5 * luminance),
+            "texel {index}"
+        );
+        let sum = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+        assert!((sum - luminance).abs() < 1e-5, "texel {index}: {sum}");
+    }
+    for length in (0..bytes.len()).step_by(7) {
+        std::fs::write(&path, &bytes[..length]).unwrap();
+        assert!(load(&EnvironmentSource::File(path.clone())).is_err(), "{length} bytes");
+    }
+}

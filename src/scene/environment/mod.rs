@@ -13,6 +13,7 @@ mod display_referred;
 mod distribution;
 mod error;
 mod file;
+mod luminance_chroma;
 mod open_exr;
 mod procedural;
 mod radiance_hdr;

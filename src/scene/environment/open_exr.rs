@@ -17,9 +17,9 @@ use exr::meta::header::Header;
 use exr::prelude::f16;
 use rayon::prelude::*;
 
-use super::EnvironmentError;
 use super::canvas::Canvas;
 use super::file::{Picture, io};
+use super::{EnvironmentError, luminance_chroma};
 use crate::panics::contained;
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -55,7 +55,10 @@ pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
 fn read_guarded(path: &Path) -> Result<Picture, EnvironmentError> {
     let file_bytes = check_preamble(path)?;
     let file = BufReader::new(io(path, File::open(path))?);
-    let reader = Reader::read_from_buffered(file, false).map_err(|error| exr_error(path, error))?;
+    let reader = match Reader::read_from_buffered(file, false) {
+        Err(ExrError::NotSupported(what)) if what.contains("subsampling") => return luminance_chroma::read(path),
+        result => result.map_err(|error| exr_error(path, error))?,
+    };
     let layer = choose_layer(path, reader.headers())?;
     let header = reader.headers()[layer.index].clone();
     let (mut canvas, offset) = window(path, &header)?;
@@ -196,7 +199,7 @@ fn check_supported(path: &Path, header: &Header, file_bytes: u64) -> Result<(), 
 
 /// An empty picture of the display window, and the place of the first stored pixel in it: negative where pixels are stored
 /// outside of the window.
-fn window(path: &Path, header: &Header) -> Result<(Canvas, [i64; 2]), EnvironmentError> {
+pub(super) fn window(path: &Path, header: &Header) -> Result<(Canvas, [i64; 2]), EnvironmentError> {
     let display = header.shared_attributes.display_window;
     let canvas = Canvas::new(path, display.size.width() as u64, display.size.height() as u64)?;
     // Only its check of the size.
@@ -257,7 +260,7 @@ fn write_line(line: &LineRef<'_>, sample_type: SampleType, shown: &[bool; 3], of
 }
 
 /// What the crate says, in our words.
-fn exr_error(path: &Path, error: ExrError) -> EnvironmentError {
+pub(super) fn exr_error(path: &Path, error: ExrError) -> EnvironmentError {
     let path = path.to_owned();
     match error {
         ExrError::Io(source) => EnvironmentError::Read { path, source },

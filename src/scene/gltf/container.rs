@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use gltf::json;
@@ -73,18 +74,29 @@ pub(super) struct Document {
 
 impl Document {
     /// Reads a file with its buffers; its pictures are read when asked for.
-    pub fn read(path: &Path, files: Files, bytes: &[u8], report: &mut ImportReport) -> Result<Self, ModelError> {
-        let (text, blob) = split(path, bytes)?;
+    pub fn read(path: &Path, files: Files, mut bytes: Vec<u8>, report: &mut ImportReport) -> Result<Self, ModelError> {
+        let (text, blob) = split(path, &bytes)?;
+        let mut raw: serde_json::Value = parse(path, text)?;
+        add_what_the_crate_misses(&mut raw);
         let mut document = Self {
             path: path.to_owned(),
             files,
-            root: parse(path, text)?,
-            raw: parse(path, text)?,
+            root: serde_json::from_value(raw.clone()).map_err(|error| ModelError::Invalid {
+                path: path.to_owned(),
+                reason: format!("its JSON: {error}"),
+            })?,
+            raw,
             buffers: Vec::new(),
             decompressed: HashMap::new(),
             unknown_required: Vec::new(),
         };
         document.check_version()?;
+        // The rest of a large file's bytes would be there twice.
+        let blob = blob.map(|place| {
+            bytes.truncate(place.end);
+            bytes.drain(..place.start);
+            bytes
+        });
         document.check_extensions(report);
         document.choose_pictures();
         document.check_rules(report);
@@ -189,7 +201,7 @@ impl Document {
         }
     }
 
-    fn read_buffers(&mut self, mut blob: Option<&[u8]>, report: &mut ImportReport) {
+    fn read_buffers(&mut self, mut blob: Option<Vec<u8>>, report: &mut ImportReport) {
         for (index, buffer) in self.root.buffers.iter().enumerate() {
             let name = format!("buffer {index}");
             let is_fallback = compressed::EXTENSIONS
@@ -200,7 +212,7 @@ impl Document {
                     report.note(Fate::Missing, format!("a buffer: {error}"), &name);
                     Vec::new()
                 }),
-                (None, Some(blob)) => blob.to_vec(),
+                (None, Some(blob)) => blob,
                 _ => {
                     if !is_fallback {
                         report.note(Fate::Missing, "a buffer that has no data", &name);
@@ -273,14 +285,34 @@ impl Document {
     }
 }
 
+/// The crate asks for some parts that the format leaves to the writer.
+fn add_what_the_crate_misses(raw: &mut serde_json::Value) {
+    let scenes = raw.get_mut("scenes").and_then(serde_json::Value::as_array_mut);
+    for scene in scenes
+        .into_iter()
+        .flatten()
+        .filter_map(serde_json::Value::as_object_mut)
+    {
+        scene.entry("nodes").or_insert_with(|| serde_json::json!([]));
+    }
+}
+
 /// Whether a breach of the rules at this place of the JSON changes no picture.
 fn is_harmless(place: &str) -> bool {
-    let ends = [".min", ".max", ".target", ".byteStride", ".byteLength", ".generator"];
+    let ends = [
+        ".bufferView",
+        ".min",
+        ".max",
+        ".target",
+        ".byteStride",
+        ".byteLength",
+        ".generator",
+    ];
     ends.iter().any(|end| place.ends_with(end)) || place.starts_with("animations") || place.contains("extensions")
 }
 
-/// The JSON and the binary chunk of a file's bytes.
-fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), ModelError> {
+/// The JSON of a file's bytes, and where its binary chunk is.
+fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<Range<usize>>), ModelError> {
     let not_gltf = |reason: String| ModelError::NotGltf {
         path: path.to_owned(),
         reason,
@@ -315,14 +347,17 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
     }
 }
 
-/// The JSON chunk and, if there is one, the binary chunk after it.
-fn split_chunks(glb: &[u8]) -> Option<(&[u8], Option<&[u8]>)> {
+/// The JSON chunk and, if there is one, the place of the binary chunk after it.
+fn split_chunks(glb: &[u8]) -> Option<(&[u8], Option<Range<usize>>)> {
     let (kind, json, rest) = next_chunk(glb.get(12..)?)?;
     if kind != *b"JSON" {
         return None;
     }
     match next_chunk(rest) {
-        Some((kind, data, _)) => Some((json, (kind == *b"BIN\0").then_some(data))),
+        Some((kind, data, _)) => {
+            let start = glb.len() - rest.len() + 8;
+            Some((json, (kind == *b"BIN\0").then_some(start..start + data.len())))
+        }
         // Some writers leave a few bytes after the last chunk.
         None => (rest.len() < 8).then_some((json, None)),
     }

@@ -36,7 +36,7 @@ const MAX_VERTICES: usize = 1 << 31;
 const MAX_REPEATED_VERTICES: usize = 1 << 25;
 
 /// Loads the contents of a .gltf or .glb file; `path` is named in messages.
-pub(super) fn load(path: &Path, files: Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
+pub(super) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
     let mut report = ImportReport::default();
     let document = Document::read(path, files, bytes, &mut report)?;
     let pose = Pose::new(&document, options.time_s);
