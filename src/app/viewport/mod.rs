@@ -224,7 +224,7 @@ impl Viewport {
         }
         let is_dropped_on = ui.input(|input| !input.raw.dropped_files.is_empty());
         let under_pointer = response.hover_pos().filter(|_| is_dropped_on);
-        if let Some(slot) = under_pointer.and_then(|at| hit_at(at, place, scene)?.slot) {
+        if let Some(slot) = under_pointer.and_then(|at| hit_at(pixel_at(at, place, scene)?, scene)?.slot) {
             desk.actions.push(super::actions::Action::SelectSlot(slot));
         }
         self.keys(ui, response, &mut orbit, desk);
