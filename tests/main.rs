@@ -81,6 +81,8 @@ mod monkey_deeds;
 mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/parameters.rs"]
+mod parameters;
 #[path = "suite/parting.rs"]
 mod parting;
 #[path = "suite/paths.rs"]

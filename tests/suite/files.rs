@@ -15,7 +15,7 @@ use glossmith::store::project;
 use proptest::prelude::*;
 use serde_json::{Map, Value as Json, json};
 
-use crate::document::is_in_range;
+use crate::parameters::is_in_range;
 
 #[test]
 fn shipped_materials_are_in_the_format_that_is_saved() {
