@@ -3,7 +3,7 @@
 //!
 //! `GLOSSMITH_MONKEY_SEED=7` plays episode 7 alone; `GLOSSMITH_THOROUGH=1` (`make test-thorough`) plays more of them.
 
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 use std::path::PathBuf;
 use std::sync::{Mutex, Once};
 use std::time::{Duration, Instant};
@@ -167,7 +167,8 @@ impl Monkey {
             surroundings: Surroundings {
                 folder: folder.path().to_owned(),
                 files,
-                before: Default::default(),
+                before: HashSet::new(),
+                touched: HashSet::new(),
             },
             _folder: folder,
         };

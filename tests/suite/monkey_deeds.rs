@@ -58,6 +58,8 @@ pub(super) struct Surroundings {
     pub(super) files: Vec<PathBuf>,
     /// What there was before the deed before: what is new then is looked at first.
     pub(super) before: HashSet<(Role, String)>,
+    /// What it has had its hands on.
+    pub(super) touched: HashSet<(Role, String)>,
 }
 
 /// Something that can be clicked, dragged or typed into.
@@ -139,26 +141,26 @@ impl Deed {
         let mut all = found(harness);
         all.retain(|control| !ENDLESS.contains(&&*control.name));
         let key = |control: &Control| (control.role, control.name.clone());
-        let new: Vec<Control> = all
-            .iter()
-            .filter(|of| !around.before.contains(&key(of)))
-            .cloned()
-            .collect();
-        around.before = all.iter().map(key).collect();
+        let those = |is_it: &dyn Fn(&Control) -> bool| all.iter().filter(|of| is_it(of)).cloned().collect::<Vec<_>>();
+        let new = those(&|of| !around.before.contains(&key(of)));
+        let untouched = those(&|of| !around.touched.contains(&key(of)));
         let window = harness.ctx.content_rect();
         let has_path = all.iter().any(|control| PATHS.contains(&&*control.name));
         let has_side = all
             .iter()
             .any(|control| control.has_focus && SIDES.contains(&&*control.name));
-        // Menus and sheets that have just come up are what a hand goes to next.
-        let some = if !new.is_empty() && random.below(2) == 0 {
-            &new
-        } else {
-            &all
+        // Menus and sheets that have just come up are what a hand goes to next, and what it has not tried yet.
+        let some = match random.below(4) {
+            0 | 1 if !new.is_empty() => &new,
+            2 if !untouched.is_empty() => &untouched,
+            _ => &all,
         };
-        let Some(control) = pick(some, random) else {
+        let chosen = pick(some, random);
+        around.before = all.iter().map(key).collect();
+        let Some(control) = chosen else {
             return Self::Rest;
         };
+        around.touched.insert(key(&control));
         let is_path = PATHS.contains(&&*control.name);
         match random.below(100) {
             0..36 => Self::click(random, window, control),

@@ -7,7 +7,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::document::Document;
+use glossmith::document::{AreaLight, Document, MaterialSettings, range};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
@@ -17,7 +17,10 @@ use serde_json::json;
 use super::cli_support::write_hdr;
 use super::gltf_builder::{Folder, glb};
 use super::textures::{four_texels, textured_square};
-use super::ui::{Editor, drag, editor, editor_of, editor_with, options, picture, request, see, settle, undo, wait};
+use super::ui::{
+    Editor, assert_same_controls, controls, drag, editor, editor_of, editor_with, options, picture, request, see,
+    settle, undo, wait,
+};
 use super::worker::small_document;
 
 /// A file with a square whose colour and roughness are pictures.
@@ -154,6 +157,26 @@ fn tab_stops_on_controls_only() {
         seen.len() > 3 && seen.iter().all(|(role, _)| *role != Role::Label),
         "{seen:?}"
     );
+}
+
+/// A model's pictures are there some frames after its materials: their group moves no control below it.
+#[test]
+fn a_group_of_textures_comes_without_making_the_next_ones_others() {
+    let folder = Folder::new();
+    let material = json!({"normalTexture": {"index": 0}});
+    let (buffer, document) = textured_square(&material, &[four_texels()], &json!({}));
+    let path = folder.path("bumpy.glb");
+    std::fs::write(&path, glb(&document, &buffer.bytes)).expect("a temporary file");
+    let mut document = small_document();
+    document.materials.push(MaterialSettings::default());
+    document.model = ModelSource::File(path);
+    // The document names the model: its materials are there from the first frame on.
+    let mut harness = editor_with(document, Vec::new());
+    let before = controls(&harness);
+    see(&mut harness, "the texture", |harness| {
+        harness.query_by_label("Geometry normal texture").is_some()
+    });
+    assert_same_controls(&before, &controls(&harness), "the coming of the texture");
 }
 
 #[test]
@@ -406,4 +429,55 @@ fn a_point_that_undo_takes_away_while_it_is_dragged_is_let_go() {
     harness.drop_at(last);
     harness.run_steps(2);
     assert_eq!(*harness.state().document(), default);
+}
+
+/// A document whose numbers all lie at the lower or at the upper end of what is taken.
+fn extreme_document(is_high: bool) -> Document {
+    let end = |range: std::ops::RangeInclusive<f64>| if is_high { *range.end() } else { *range.start() };
+    let mut document = small_document();
+    let light = AreaLight {
+        yaw_deg: end(range::YAW_DEG),
+        pitch_deg: end(range::PITCH_DEG),
+        distance: end(range::AREA_LENGTH),
+        width: end(range::AREA_LENGTH),
+        height: end(range::AREA_LENGTH),
+        strength: end(range::STRENGTH) as f32,
+        ..AreaLight::default()
+    };
+    document.lighting.area_lights = vec![light];
+    document.lighting.strength = end(range::STRENGTH) as f32;
+    document.lighting.rotation_deg = end(range::ROTATION_DEG) as f32;
+    document.lighting.background_blur_deg = end(range::BACKGROUND_BLUR_DEG) as f32;
+    let camera = &mut document.camera;
+    (camera.yaw_deg, camera.pitch_deg) = (end(range::YAW_DEG), end(range::PITCH_DEG));
+    (camera.fov_deg, camera.aperture) = (end(range::FOV_DEG), end(range::APERTURE).max(1e-9));
+    camera.focus_distance = Some(end(range::DISTANCE));
+    document.view.exposure_ev = end(range::EXPOSURE_EV) as f32;
+    let render = &mut document.render;
+    render.samples = end(range::SAMPLES) as u32;
+    render.time_s = Some(end(range::TIME_S));
+    render.noise = Some(end(range::NOISE));
+    render.min_samples = end(range::MIN_SAMPLES) as u32;
+    render.bounces = end(range::BOUNCES) as u32;
+    render.firefly_clamp = Some(end(range::FIREFLY_CLAMP) as f32);
+    if !is_high {
+        (render.width, render.height) = (1, 1);
+    }
+    document.check().expect("the ends are taken");
+    document
+}
+
+/// Numbers that a document may have are shown as they are: a panel takes none of them for out of range.
+#[test]
+fn looking_at_a_panel_changes_nothing() {
+    for is_high in [false, true] {
+        let document = extreme_document(is_high);
+        let mut harness = editor_with(document.clone(), Vec::new());
+        request(&mut harness, Action::Do(Command::Pause));
+        for pane in Pane::ALL {
+            harness.state_mut().reveal(pane);
+            harness.run_steps(3);
+            assert_eq!(*harness.state().document(), document, "{pane:?}, high: {is_high}");
+        }
+    }
 }

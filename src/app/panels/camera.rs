@@ -298,12 +298,12 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
     if desk.state.resolution == Resolution::Document {
         let width = &mut desk.document.render.width;
         let response = widgets::row(ui, Name::new("Width", "Width", ""), |ui| {
-            widgets::number(ui, width, &whole(16.0..=16384.0, " px"))
+            widgets::number(ui, width, &whole(range::SIZE, " px"))
         });
         desk.edited(response, "Picture width", |document| &mut document.render.width);
         let height = &mut desk.document.render.height;
         let response = widgets::row(ui, Name::new("Height", "Height", ""), |ui| {
-            widgets::number(ui, height, &whole(16.0..=16384.0, " px"))
+            widgets::number(ui, height, &whole(range::SIZE, " px"))
         });
         desk.edited(response, "Picture height", |document| &mut document.render.height);
     }
@@ -314,7 +314,7 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
         "Samples",
         "Samples a pixel after which rendering stops: noise halves with four times as many.",
     );
-    let response = widgets::row(ui, name, |ui| widgets::number(ui, samples, &whole(1.0..=1e9, "")));
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, samples, &whole(range::SAMPLES, "")));
     desk.edited(response, "Samples", |document| &mut document.render.samples);
     let mut is_limited = desk.document.render.time_s.is_some();
     let name = Name::new("Time limit", "Time limit", "Stops rendering after some seconds.");
@@ -325,8 +325,8 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.edited(response, "Time limit", |document| &mut document.render.time_s);
     if let Some(time_s) = &mut desk.document.render.time_s {
         let style = NumberStyle {
-            decimals: 1,
-            ..whole(0.1..=1e6, " s")
+            decimals: 3,
+            ..whole(range::TIME_S, " s")
         };
         let response = widgets::row(ui, Name::new("Seconds", "Seconds", ""), |ui| {
             widgets::number(ui, time_s, &style)

@@ -25,14 +25,15 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         Kind::Toggle => textures.iter().any(|(key, _)| *key == parameter.key),
         _ => (parameter.applies)(&before),
     };
-    for parameter in PARAMETERS.iter().filter(is_shown) {
+    for parameter in PARAMETERS.iter() {
         if !groups.contains(&parameter.group) {
             groups.push(parameter.group);
         }
     }
     for group in groups {
-        widgets::group(ui, group, |ui| {
-            for parameter in PARAMETERS.iter().filter(|parameter| parameter.group == group) {
+        let parameters = || PARAMETERS.iter().filter(|parameter| parameter.group == group);
+        let mut rows = |ui: &mut Ui| {
+            for parameter in parameters() {
                 widgets::comes_and_goes(ui, |ui| {
                     if is_shown(&parameter) {
                         let picture = textures.iter().find(|(key, _)| *key == parameter.key);
@@ -40,6 +41,12 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
                         show_parameter(ui, desk, parameter, picture, &mut material);
                     }
                 });
+            }
+        };
+        // A group of textures comes with the model's pictures, above others that stay.
+        widgets::comes_and_goes(ui, |ui| {
+            if parameters().any(|parameter| is_shown(&parameter)) {
+                widgets::group(ui, group, &mut rows);
             }
         });
     }

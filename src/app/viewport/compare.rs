@@ -238,10 +238,13 @@ fn contestants(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.add(egui::Label::new(desk.material().name).truncate());
     ui.weak("B");
     rivals(ui, desk);
-    if let Some(why) = desk.state.compare.match_error(&desk.material()) {
-        let color = ui.visuals().warn_fg_color;
-        ui.colored_label(color, "not matched").on_hover_text(why);
-    }
+    let why = desk.state.compare.match_error(&desk.material());
+    widgets::comes_and_goes(ui, |ui| {
+        if let Some(why) = why {
+            let color = ui.visuals().warn_fg_color;
+            ui.colored_label(color, "not matched").on_hover_text(why);
+        }
+    });
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         if icons::button(ui, Icon::Close, "Stop comparing", "Stop comparing (C)").clicked() {
             desk.act(Command::Compare);
