@@ -45,6 +45,8 @@ mod environment_sampling;
 mod environment_shapes;
 #[path = "suite/environment_twin.rs"]
 mod environment_twin;
+#[path = "suite/explain.rs"]
+mod explain;
 #[path = "suite/files.rs"]
 mod files;
 #[path = "suite/fit.rs"]

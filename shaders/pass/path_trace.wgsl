@@ -1,4 +1,4 @@
-// The path tracer. Twin of src/cpu/integrator.rs.
+// The path tracer. Twin of src/cpu/integrator/mod.rs.
 #import "optics/material"
 #import "optics/random"
 #import "optics/warp"

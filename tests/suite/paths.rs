@@ -110,13 +110,16 @@ fn submitted(scene: &Scene, document: &Document) -> Session {
     session
 }
 
+/// Where fireflies are limited.
+const LIMIT: f32 = 0.5;
+
 #[test]
 fn an_account_adds_up_to_what_the_engine_adds() {
     for scene in scenes() {
         for strategy in Strategy::ALL {
             let mut document = scene.document.clone();
             (document.render.samples, document.render.strategy) = (2, *strategy);
-            document.render.firefly_clamp = Some(0.5);
+            document.render.firefly_clamp = Some(LIMIT);
             let mut session = submitted(&scene, &document);
             while !session.step(Duration::from_secs(1)).unwrap().is_done {}
             let (job, film) = (session.job().unwrap().clone(), session.film().unwrap().clone());
@@ -126,6 +129,8 @@ fn an_account_adds_up_to_what_the_engine_adds() {
                 let accounts = [0, 1].map(|sample| explain(&document, &model, &job, pixel, sample));
                 for account in &accounts {
                     assert_eq!(account.sum(), account.radiance, "{}: {account}", scene.name);
+                    let fault = unlimited(&account.events);
+                    assert!(fault.is_none(), "{}: {fault:?}\n{account}", scene.name);
                 }
                 let [even, odd] = accounts.map(|account| account.radiance.map(f64::from));
                 let sum = [0, 1, 2].map(|i| even[i] + odd[i]);
@@ -133,6 +138,27 @@ fn an_account_adds_up_to_what_the_engine_adds() {
             }
         }
     }
+}
+
+/// A contribution of a path whose reflections are not those of the bounce that it is found at, or that is not limited.
+fn unlimited(events: &[Event]) -> Option<&Event> {
+    let (mut bounce_here, mut reflections_here) = (0, 0);
+    events.iter().find(|event| match event {
+        Event::Hit { bounce, .. } => {
+            (bounce_here, reflections_here) = (*bounce, *bounce);
+            false
+        }
+        // Towards a light, or on the way on, it is reflected here.
+        Event::Light { .. } | Event::Scattered { .. } => {
+            reflections_here = bounce_here + 1;
+            false
+        }
+        Event::Contribution { reflections, added, .. } => {
+            let is_limited = *reflections <= 1 || added.iter().all(|x| *x <= LIMIT * 1.000_01);
+            *reflections != reflections_here || !is_limited
+        }
+        _ => false,
+    })
 }
 
 /// What is wrong with the numbers of a path: one that is drawn twice, or an event that was not given its own.

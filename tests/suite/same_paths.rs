@@ -116,7 +116,7 @@ fn where_engines_part_is_told() {
     let told = pair.parting(&glass, [16, 16]);
     let place = format!("they part at bounce {} of sample 0", first.unwrap() - 1);
     assert!(
-        told.contains(&place) && told.contains("contributions"),
+        told.contains(&place) && told.contains("contribution"),
         "{told}, not {place}"
     );
 }

@@ -159,7 +159,7 @@ fn ctrl_shift_and_a_click_explain_the_pixel() {
     harness.run_steps(2);
     assert!(harness.query_by_label("One path").is_some());
     let told = |text: &str| harness.query_by_label_contains(text).is_some();
-    assert!(told("camera") && told("bounce 0") && told("contributions"));
+    assert!(told("camera") && told("bounce 0") && told("contribution"));
     assert_eq!(harness.state().document(), &before, "nothing is edited");
     harness.get_by_label("Close").click_accesskit();
     harness.run_steps(2);

@@ -50,7 +50,11 @@ impl PathAccount {
     fn outcome(&self) -> String {
         let [r, g, b] = self.radiance;
         let count = self.contributions().count();
-        let mut text = format!("({r}, {g}, {b}) of {count} contributions, {} rays", self.rays);
+        let mut text = format!(
+            "({r}, {g}, {b}) of {}, {}",
+            counted(count, "contribution"),
+            counted(self.rays as usize, "ray")
+        );
         if self.alpha < 1.0 {
             text += &format!(", alpha {}", self.alpha);
         }
@@ -337,11 +341,17 @@ fn added(event: &Event) -> [String; 2] {
     [
         "+".into(),
         format!(
-            "{} from {} after {reflections} reflections{limited}",
+            "{} from {} after {}{limited}",
             vector(added),
-            of(*source)
+            of(*source),
+            counted(*reflections as usize, "reflection")
         ),
     ]
+}
+
+fn counted(count: usize, what: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{plural}")
 }
 
 /// Four digits, or as a power of ten where that would not tell.
