@@ -149,7 +149,7 @@ struct Vertex {
     uv: array<f32, 2>,
     second_uv: array<f32, 2>,
     tangent: array<f32, 4>,
-    // Linear red and green, then blue and 1, as half floats.
+    // Linear red and green, then blue and 1, as 16-bit fractions.
     color: array<u32, 2>,
 }
 

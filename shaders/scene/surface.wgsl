@@ -113,7 +113,7 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
 
 // The linear colour of a vertex that multiplies the material's.
 fn vertex_color(vertex: Vertex) -> vec3f {
-    return vec3f(unpack2x16float(vertex.color[0]), unpack2x16float(vertex.color[1]).x);
+    return vec3f(unpack2x16unorm(vertex.color[0]), unpack2x16unorm(vertex.color[1]).x);
 }
 
 fn looks_up_textures() -> bool {

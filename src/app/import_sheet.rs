@@ -1,6 +1,6 @@
 //! The sheet about the model's file: which of its pictures is shown, and what became of its parts.
 
-use egui::{RichText, Ui};
+use egui::{Align, Layout, RichText, Ui};
 
 use super::actions::Action;
 use super::{theme, widgets};
@@ -10,11 +10,18 @@ use crate::scene::{Fate, Model, ModelOptions};
 /// Shows the sheet of a model. What is chosen is asked for as an action; true where the sheet is done with.
 pub(super) fn show(ui: &mut Ui, document: &Document, model: Option<&Model>, actions: &mut Vec<Action>) -> bool {
     ui.set_width(560.0);
-    ui.heading("Model file");
+    let mut is_done = false;
+    ui.horizontal(|ui| {
+        ui.heading("Model file");
+        // Above what comes and goes, so that it stays where it is.
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            is_done = ui.button("Close").clicked()
+        });
+    });
     ui.label(document.model.to_string());
     let Some(model) = model else {
         widgets::note(ui, "The model is being loaded.");
-        return close(ui);
+        return is_done;
     };
     ui.add_space(theme::GAP);
     let mut options = document.import.clone();
@@ -24,12 +31,7 @@ pub(super) fn show(ui: &mut Ui, document: &Document, model: Option<&Model>, acti
     }
     ui.add_space(theme::GAP);
     entries(ui, model);
-    close(ui)
-}
-
-fn close(ui: &mut Ui) -> bool {
-    ui.add_space(theme::GAP);
-    ui.button("Close").clicked()
+    is_done
 }
 
 /// Scene, variant and pose, where the file has more than one.

@@ -3,7 +3,6 @@
 
 use bytemuck::{Pod, Zeroable};
 use glam::DVec3;
-use half::f16;
 use obvhs::cwbvh::CwBvh;
 
 use super::bvh;
@@ -30,22 +29,26 @@ pub struct Vertex {
     pub second_uv: [f32; 2],
     /// Unit tangent and the sign of the bitangent, see [`Mesh::tangents`].
     pub tangent: [f32; 4],
-    /// Linear red, green and blue that multiply the material's, and 1, as half floats, two in a word.
+    /// Linear red, green and blue in [0, 1] that multiply the material's, and 1, as 16-bit fractions, two in a word.
     pub color: [u32; 2],
 }
 
 impl Vertex {
     /// A vertex's colour, packed.
     fn packed_color(color: [f32; 4]) -> [u32; 2] {
-        let bits = |value: f32| u32::from(f16::from_f32(value.min(f16::MAX.to_f32())).to_bits());
+        let bits = |value: f32| (value.clamp(0.0, 1.0) * 65535.0).round() as u32;
         let [r, g, b, _] = color.map(bits);
         [r | g << 16, b | bits(1.0) << 16]
     }
 
     /// The linear colour that multiplies the material's.
     pub fn rgb(&self) -> [f32; 3] {
-        let half = |bits: u32| f16::from_bits(bits as u16).to_f32();
-        [half(self.color[0]), half(self.color[0] >> 16), half(self.color[1])]
+        let fraction = |bits: u32| f32::from(bits as u16) / 65535.0;
+        [
+            fraction(self.color[0]),
+            fraction(self.color[0] >> 16),
+            fraction(self.color[1]),
+        ]
     }
 }
 

@@ -5,6 +5,8 @@ use std::io::Read;
 use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use ruzstd::StreamingDecoder;
 
+use crate::panics::contained;
+
 /// The first bytes of a KTX2 file.
 const MAGIC: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
 /// Texels that a byte of Basis Universal may stand for, and beyond them.
@@ -50,7 +52,7 @@ pub(super) fn decode(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
 
 fn decode_basis(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
     // Some damaged files fail assertions inside the crate instead of giving errors.
-    let decoded = std::panic::catch_unwind(|| {
+    let decoded = contained(|| {
         let transcoder = Transcoder::new(bytes).map_err(|error| format!("Basis Universal: {error:?}"))?;
         let (width, height) = transcoder.base_dimensions();
         let [growth, floor] = BASIS_GROWTH;
@@ -64,7 +66,7 @@ fn decode_basis(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
             rgba8.map_err(|error| format!("Basis Universal: {error:?}"))?,
         ))
     });
-    decoded.map_err(|_| "it is damaged".to_owned())?
+    decoded.ok_or("it is damaged")?
 }
 
 /// Texels of `size` bytes, as they are or compressed by Zstandard.

@@ -16,6 +16,7 @@ use super::model::{AlphaMode, Filter, Model, ModelError, ModelOptions, Slot, Tex
 use super::picture::decode_bytes;
 use super::report::{Fate, ImportReport};
 use super::texture::scaled_to;
+use crate::panics::contained;
 
 /// Loads the contents of an OBJ file.
 pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
@@ -27,17 +28,17 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
         ignore_lines: true,
     };
     // Some malformed faces make the crate panic.
-    let loaded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+    let loaded = contained(|| {
         tobj::load_obj_buf(&mut BufReader::new(bytes), &load_options, |library| {
             read_library(files, library, &report)
         })
-    }));
+    });
     let invalid = |reason: String| ModelError::Invalid {
         path: path.to_owned(),
         reason,
     };
     let (parts, materials) = loaded
-        .map_err(|_| invalid("its faces contradict each other".to_owned()))?
+        .ok_or_else(|| invalid("its faces contradict each other".to_owned()))?
         .map_err(|error: LoadError| invalid(error.to_string()))?;
     let materials = materials.unwrap_or_default();
     let mut report = report.into_inner();

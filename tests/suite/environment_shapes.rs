@@ -15,9 +15,9 @@ fn load_file(path: &Path) -> Environment {
     load(&EnvironmentSource::File(path.to_owned())).expect("loads")
 }
 
-/// RGBE of a picture of 6 × 3 whose texel (x, y) is [x + 1, y + 1, 1] in 1/256.
+/// RGBE of a picture of 6 × 3 whose texel (x, y) is [x + 10, y + 20, 9] in 1/256.
 fn texel(x: usize, y: usize) -> [u8; 4] {
-    [x as u8 + 1, y as u8 + 1, 1, 128]
+    [x as u8 + 10, y as u8 + 20, 9, 128]
 }
 
 fn assert_is_that_picture(environment: &Environment, what: &str) {

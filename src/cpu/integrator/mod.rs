@@ -161,7 +161,7 @@ impl<'a, T: Real> Integrator<'a, T> {
     #[inline(always)]
     fn material(&self, point: &SurfacePoint<T>) -> Cow<'_, Material<T>> {
         let plain = &self.materials[point.slot as usize];
-        if plain.is_textured() {
+        if plain.is_textured() || plain.has_vertex_colors == 1 {
             Cow::Owned(textured_material(
                 self.textures,
                 self.tables,

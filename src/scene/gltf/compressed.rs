@@ -9,6 +9,7 @@ use serde_json::Value as Json;
 
 use super::accessor::{decode, unsigned};
 use super::container::Document;
+use crate::panics::contained;
 
 /// The extensions of buffer views and buffers.
 pub(super) const EXTENSIONS: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
@@ -118,8 +119,7 @@ fn decompress(document: &Document, primitive: &Json, extension: &Json) -> Result
         contract = contract.with_attribute(semantic, 0, accessor.is_some_and(|accessor| accessor.normalized));
     }
     // The crate's checks leave gaps where a damaged stream makes it panic.
-    let decoded = std::panic::catch_unwind(|| extension.decode(&payload, &contract));
-    decoded
-        .map_err(|_| "its stream contradicts itself".to_owned())?
+    contained(|| extension.decode(&payload, &contract))
+        .ok_or("its stream contradicts itself")?
         .map_err(|error| error.to_string())
 }
