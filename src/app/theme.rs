@@ -209,7 +209,7 @@ mod tests {
         let ctx = egui::Context::default();
         install(&ctx);
         // Fonts are there from the first frame on.
-        let _ = ctx.run_ui(egui::RawInput::default(), |_| {});
+        ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
         let formulas: String = Curve::ALL.iter().map(|curve| curve.formula()).collect();
         let shown = format!("✔✖📋·×−≤…ξθ²°{formulas}");
         ctx.fonts_mut(|fonts| {

@@ -78,7 +78,8 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         let is_wished = is_free && std::mem::take(&mut self.is_wished);
         ui.horizontal(|ui| {
             if is_busy {
-                if ui.button("Stop").clicked() {
+                // Another control than the one that starts it: a click under way when it ends must not start it again.
+                if ui.push_id("stop", |ui| ui.button("Stop")).inner.clicked() {
                     self.stop.store(true, Ordering::Relaxed);
                 }
                 ui.add(egui::Spinner::new().size(12.0));

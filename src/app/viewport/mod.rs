@@ -419,7 +419,7 @@ fn messages(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     );
     for index in open.into_iter().rev().take(3) {
         // Named, as others may come above it while it is being closed.
-        let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("message", desk.state.log[index].at)));
+        let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("message", desk.state.log[index].number)));
         let entry = &mut desk.state.log[index];
         let color = match entry.level {
             Level::Error => inside.visuals().error_fg_color,
@@ -429,7 +429,7 @@ fn messages(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
         let message = |ui: &mut Ui| {
             let text = egui::Label::new(egui::RichText::new(&entry.text).color(color)).wrap();
             ui.allocate_ui(vec2(width - 60.0, 0.0), |ui| ui.add(text));
-            let close = icons::button(ui, Icon::Close, &format!("Close message {index}"), "Close");
+            let close = icons::button(ui, Icon::Close, &format!("Close message {}", entry.number), "Close");
             entry.is_open &= !close.clicked();
         };
         frame.show(&mut inside, |ui| {
