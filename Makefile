@@ -2,14 +2,18 @@
 # ARGS is handed on: make run ARGS="render --material gold --output gold.png"
 
 .DEFAULT_GOAL := help
-.PHONY: help run test bench pictures mutants
+.PHONY: help run check test test-thorough bench pictures mutants
 
 help: ## Print this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
 
 run: ## Open the editor (without a display: render the default scene to a picture)
 	@scripts/setup run
 	cargo run --release -- $(ARGS)
+
+check: ## The quick loop: format, lints, the tests that concern what you changed
+	@scripts/setup test
+	scripts/check $(ARGS)
 
 test: ## Check format and lints, then run every test
 	@scripts/setup test
@@ -18,6 +22,11 @@ test: ## Check format and lints, then run every test
 	@if cargo clippy --version >/dev/null 2>&1; then set -x; cargo clippy --all-targets -- -D warnings; \
 	else echo "note: clippy is not installed, lints are not checked (rustup component add clippy)"; fi
 	cargo test $(ARGS)
+
+test-thorough: export GLOSSMITH_THOROUGH = 1
+test-thorough: test ## The same, and for an hour more: what is tried at random is tried more often
+	@if cargo deny --version >/dev/null 2>&1; then set -x; cargo deny check; \
+	else echo "note: cargo-deny is not installed, advisories and licences are not checked (cargo install cargo-deny)"; fi
 
 bench: ## Measure what docs/PERFORMANCE.md quotes
 	cargo bench $(ARGS)

@@ -7,9 +7,9 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use glam::Vec3A;
-use glossmith::analysis::film::Film;
 use glossmith::cpu::integrator::is_sound;
 use glossmith::document::Document;
+use glossmith::job::film::Film;
 use glossmith::optics::fresnel::{fresnel_conductor, half_vector_cosine};
 use glossmith::optics::numeric::normalize_or;
 use glossmith::optics::random::hash_bits;

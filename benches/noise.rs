@@ -10,13 +10,14 @@
 
 use std::time::Duration;
 
-use glossmith::analysis::film::Film;
 use glossmith::analysis::noise::noise;
-use glossmith::document::{AreaLight, Document, preset};
+use glossmith::document::{AreaLight, Document};
+use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Progress, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::preset;
 
 type Failure = Box<dyn std::error::Error>;
 

@@ -7,12 +7,14 @@
 
 use std::time::{Duration, Instant};
 
+use glossmith::document::Document;
 use glossmith::document::effect::{EffectSwitches, Switch};
-use glossmith::document::{Document, PRESETS};
+use glossmith::job::effect::EffectId;
 use glossmith::render::study::ledger::{LedgerOptions, ledger};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::PRESETS;
 
 #[path = "../tests/suite/random_documents.rs"]
 mod random_documents;
@@ -68,22 +70,22 @@ fn main() -> Result<(), Failure> {
 fn ledger_and_clock(engine: EngineChoice, sessions: &mut [Session; 2]) -> Result<(), Failure> {
     println!("| effect | by the ledger, ms a sample of every pixel | by the clock | apart, of the time with it |");
     println!("| --- | --- | --- | --- |");
-    let cases: [(&str, Edit); 5] = [
-        ("anisotropy", |document| document.materials[0].anisotropy = 0.5),
-        ("coat", |document| document.materials[0].coat_weight = 1.0),
-        ("ground", |document| document.ground = true),
-        ("depth-of-field", |document| document.camera.aperture = 0.05),
-        ("light-sampling", |_| {}),
+    let cases: [(EffectId, Edit); 5] = [
+        (EffectId::Anisotropy, |document| document.materials[0].anisotropy = 0.5),
+        (EffectId::Coat, |document| document.materials[0].coat_weight = 1.0),
+        (EffectId::Ground, |document| document.ground = true),
+        (EffectId::DepthOfField, |document| document.camera.aperture = 0.05),
+        (EffectId::LightSampling, |_| {}),
     ];
-    for (name, add) in cases {
+    for (effect, add) in cases {
         let mut with = plain();
         add(&mut with);
         let entries = ledger(&with, &LedgerOptions::new(engine), &mut |_| true)?.entries;
-        let Some(entry) = entries.into_iter().find(|entry| entry.name == name) else {
+        let Some(entry) = entries.into_iter().find(|entry| entry.name == effect.name()) else {
             continue;
         };
         let mut without = with.clone();
-        without.render.effects.set(name, Switch::Off);
+        without.render.effects.set(effect, Switch::Off);
         let mut milliseconds = [const { Vec::new() }; 2];
         for turn in 0..=TURNS {
             for (side, document) in [&with, &without].into_iter().enumerate() {

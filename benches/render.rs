@@ -6,8 +6,8 @@
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use glossmith::analysis::scatter::ScatterRequest;
 use glossmith::document::{Document, Strategy};
+use glossmith::job::scatter::ScatterRequest;
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::{Horizon, Lobe, raw_density, raw_sample};
 use glossmith::optics::random::{Sequence, random_pair, random_state};

@@ -3,13 +3,15 @@
 
 use std::path::{Path, PathBuf};
 
-use glossmith::document::{file, load_document, load_material};
 use glossmith::scene::environment::{self, EnvironmentSource};
 use glossmith::scene::{Geometry, ModelSource, load};
+use glossmith::store::{file, load_document, load_material};
 
 /// Kinds of files.
 #[allow(dead_code)]
-pub const FORMATS: [&str; 5] = ["glb", "hdr", "exr", "material", "project"];
+pub const FORMATS: [&str; 10] = [
+    "glb", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "material", "project",
+];
 
 /// Reads a file of a kind. Panics where what comes out can't be rendered; that is the point of it.
 pub fn try_file(format: &str, bytes: &[u8]) {
@@ -29,14 +31,14 @@ fn path(format: &str) -> PathBuf {
 
 fn try_path(format: &str, path: &Path) {
     match format {
-        "glb" => {
+        "glb" | "obj" | "ply" | "stl" | "zip" => {
             if let Ok(model) = load(&ModelSource::File(path.to_owned())) {
                 let geometry = Geometry::build(&model, true);
                 let hit = geometry.intersect([0.3, 0.2, -2.0], [0.01, 0.02, 1.0], f32::INFINITY);
                 assert!(hit.is_none_or(|hit| hit.t > 0.0));
             }
         }
-        "hdr" | "exr" => {
+        "hdr" | "exr" | "png" => {
             if let Ok(map) = environment::load(&EnvironmentSource::File(path.to_owned())) {
                 assert!(map.texels.iter().flatten().all(|x| x.is_finite() && *x >= 0.0));
                 assert!(

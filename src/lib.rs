@@ -1,17 +1,25 @@
 //! Glossmith: a material editor around the geometric lobe.
 //!
 //! The modules, in the order in which they may use each other:
-//! [`optics`] ← [`scene`], [`analysis`] ← [`document`] ← [`cpu`], [`gpu`] ← [`render`] ← [`cli`], [`app`] ← `main`.
+//! [`optics`] ← [`scene`] ← [`job`] ← [`cpu`], [`gpu`] ← [`render`] ← [`cli`], [`app`] ← `main`, and between [`job`] and
+//! [`render`] also [`analysis`] ← [`plot`] ← [`document`] ← [`store`].
+
+pub mod named;
+pub mod panics;
 
 pub mod optics;
-
-pub mod analysis;
 pub mod scene;
 
-pub mod document;
+pub mod job;
 
 pub mod cpu;
 pub mod gpu;
+
+pub mod analysis;
+pub mod plot;
+
+pub mod document;
+pub mod store;
 
 pub mod render;
 

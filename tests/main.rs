@@ -1,6 +1,10 @@
 //! The integration tests, in one binary: see docs/ARCHITECTURE.md.
 #![allow(clippy::unwrap_used, clippy::expect_used, missing_docs)]
 
+#[path = "suite/analytic.rs"]
+mod analytic;
+#[path = "suite/analytic_scenes.rs"]
+mod analytic_scenes;
 #[path = "suite/check.rs"]
 mod check;
 #[path = "suite/cli_errors.rs"]
@@ -17,6 +21,10 @@ mod cli_support;
 mod coat;
 #[path = "suite/compare.rs"]
 mod compare;
+#[path = "suite/crashed.rs"]
+mod crashed;
+#[path = "suite/denoise.rs"]
+mod denoise;
 #[path = "suite/density.rs"]
 mod density;
 #[path = "suite/desktop.rs"]
@@ -33,8 +41,12 @@ mod environment;
 mod environment_files;
 #[path = "suite/environment_sampling.rs"]
 mod environment_sampling;
+#[path = "suite/environment_shapes.rs"]
+mod environment_shapes;
 #[path = "suite/environment_twin.rs"]
 mod environment_twin;
+#[path = "suite/explain.rs"]
+mod explain;
 #[path = "suite/files.rs"]
 mod files;
 #[path = "suite/fit.rs"]
@@ -47,6 +59,10 @@ mod gltf;
 mod gltf_builder;
 #[path = "suite/gltf_damaged.rs"]
 mod gltf_damaged;
+#[path = "suite/gltf_extensions.rs"]
+mod gltf_extensions;
+#[path = "suite/import_report.rs"]
+mod import_report;
 #[path = "suite/killed.rs"]
 mod killed;
 #[path = "suite/library.rs"]
@@ -57,10 +73,22 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/model_formats.rs"]
+mod model_formats;
+#[path = "suite/monkey.rs"]
+mod monkey;
+#[path = "suite/monkey_deeds.rs"]
+mod monkey_deeds;
 #[path = "suite/noise.rs"]
 mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/parameters.rs"]
+mod parameters;
+#[path = "suite/parting.rs"]
+mod parting;
+#[path = "suite/paths.rs"]
+mod paths;
 #[path = "suite/picture_files.rs"]
 mod picture_files;
 #[path = "suite/plan.rs"]
@@ -75,8 +103,12 @@ mod precision;
 mod random_documents;
 #[path = "suite/renders.rs"]
 mod renders;
+#[path = "suite/same_paths.rs"]
+mod same_paths;
 #[path = "suite/statistics.rs"]
 mod statistics;
+#[path = "suite/structure.rs"]
+mod structure;
 #[path = "suite/study.rs"]
 mod study;
 #[path = "suite/support.rs"]
@@ -85,8 +117,6 @@ mod support;
 mod textures;
 #[path = "suite/tone.rs"]
 mod tone;
-#[path = "suite/tone_twin.rs"]
-mod tone_twin;
 #[path = "suite/transmission.rs"]
 mod transmission;
 #[path = "suite/ui.rs"]

@@ -1,13 +1,9 @@
 // D(xi): how far from the mirror direction the geometric lobe's samples lie. Twin of src/optics/curve.rs.
 // A custom curve's table lies in `tables` from index `table` on.
+#import "optics/choices"
 #import "optics/numeric"
 #import "scene/layout"
 
-const CURVE_LINEAR: u32 = 0u;
-const CURVE_SQRT: u32 = 1u;
-const CURVE_CBRT: u32 = 2u;
-const CURVE_SMOOTH: u32 = 3u;
-const CURVE_LONG_TAIL: u32 = 4u;
 const CUSTOM_INTERVALS: u32 = 64u;
 const LONG_TAIL_MAX: f32 = 17.32868;
 

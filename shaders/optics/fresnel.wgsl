@@ -1,11 +1,8 @@
 // The Fresnel factor at the half vector. Twin of src/optics/fresnel.rs.
+#import "optics/choices"
 #import "optics/numeric"
 #import "optics/refraction"
 #import "scene/plan"
-
-const FRESNEL_NONE: u32 = 0u;
-const FRESNEL_SCHLICK: u32 = 1u;
-const FRESNEL_DIELECTRIC: u32 = 2u;
 
 struct FresnelTerms {
     model: u32,

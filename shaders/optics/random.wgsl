@@ -1,6 +1,5 @@
 // Counter-based random numbers. Twin of src/optics/random.rs, equal to the bit.
-
-const SEQUENCE_SOBOL: u32 = 0u;
+#import "optics/choices"
 
 struct RandomState {
     key: u32,

@@ -1,19 +1,14 @@
-// The path tracer. Twin of src/cpu/integrator.rs.
+// The path tracer. Twin of src/cpu/integrator/mod.rs.
 #import "optics/material"
 #import "optics/random"
 #import "optics/warp"
 #import "scene/camera"
+#import "scene/choices"
 #import "scene/environment"
 #import "scene/light"
 #import "scene/surface"
 #import "scene/visibility"
 
-const STRATEGY_LOBE: u32 = 0u;
-const STRATEGY_LIGHT: u32 = 1u;
-const STRATEGY_MIS: u32 = 2u;
-const BACKGROUND_ENVIRONMENT: u32 = 0u;
-const BACKGROUND_TRANSPARENT: u32 = 1u;
-const BACKGROUND_BLURRED: u32 = 3u;
 // Pairs of numbers before the first bounce (pixel, lens) and a bounce (lobe twice, light twice).
 const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
@@ -30,6 +25,8 @@ struct PathResult {
     rays: u32,
     // Luminance that limiting fireflies took.
     clamped: f32,
+    // What it saw first, where it is one of those that tell.
+    seen: GuideSums,
 }
 
 fn far_radiance(direction: vec3f) -> vec3f {
@@ -153,14 +150,14 @@ fn camera_background(direction: vec3f, state: RandomState, rays: u32) -> PathRes
         // The numbers of the first bounce, which there is none of.
         let disc = globals.background.x * uniform_disc(random_pair(state, FIRST_DIMENSION));
         let blurred = world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
-        return PathResult(far_radiance(blurred), 1.0, rays, 0.0);
+        return PathResult(far_radiance(blurred), 1.0, rays, 0.0, GuideSums());
     }
     if globals.background_kind == BACKGROUND_ENVIRONMENT {
-        return PathResult(far_radiance(direction), 1.0, rays, 0.0);
+        return PathResult(far_radiance(direction), 1.0, rays, 0.0, GuideSums());
     }
     let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
     let color = select(globals.background, vec3f(0.0), is_transparent);
-    return PathResult(color, select(1.0, 0.0, is_transparent), rays, 0.0);
+    return PathResult(color, select(1.0, 0.0, is_transparent), rays, 0.0, GuideSums());
 }
 
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
@@ -175,6 +172,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var was_mirror = true;
     var rays = 0u;
     var leaves = false;
+    var seen = GuideSums();
+    // Nothing but mirrors and clear glass so far.
+    var looks = sample < GUIDE_SAMPLES;
     for (var bounce = 0u; ; bounce++) {
         var hit = Hit(0.0, NO_HIT, 0.0, 0.0);
         if !leaves {
@@ -189,9 +189,18 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             break;
         }
         let point = surface_at(hit, ray.direction);
-        let material = textured_material(materials[point.slot], point.uvs);
+        let material = textured_material(materials[point.slot], point.uvs, point.vertex_color);
         if PLAN_ABSORPTION == 1u && point.surface.is_inside && material_transmits(material) {
             throughput *= exp(-material.absorption * hit.t);
+        }
+        if looks {
+            let albedo = throughput * material_albedo(material, point.surface);
+            seen.albedo = clamp(albedo, vec3f(0.0), vec3f(1.0));
+            seen.normal = point.surface.frame.normal;
+            if bounce == 0u {
+                seen.hits = 1.0;
+                seen.depth = hit.t * dot(ray.direction, camera.forward);
+            }
         }
         if PLAN_EMISSION == 1u {
             let found = throughput * emitted_light(point, material, hit.t, lobe_density, was_mirror);
@@ -226,10 +235,11 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         lobe_density = drawn.density;
         was_mirror = drawn.is_mirror;
+        looks = looks && was_mirror;
         leaves = meets_nothing(point, drawn.wi);
         ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
     }
-    return PathResult(radiance, 1.0, rays, clamped);
+    return PathResult(radiance, 1.0, rays, clamped, seen);
 }
 
 // Finite and not negative: what may be added to the picture.
@@ -237,7 +247,6 @@ fn is_sound(color: vec3f) -> bool {
     // Infinity fails the upper bound; NaN fails both.
     return all(color >= vec3f(0.0)) && all(color <= vec3f(RADIANCE_MAX));
 }
-
 
 @compute @workgroup_size(TILE_SIDE, TILE_SIDE)
 fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) place: vec3u) {
@@ -247,8 +256,9 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
         return;
     }
     let index = pixel.y * globals.image_size.x + pixel.x;
-    var color = vec4f(0.0);
+    var colors = PixelColors();
     var sums = PixelStatistics();
+    var guides = GuideSums();
     for (var i = 0u; i < tile.sample_count; i++) {
         let sample = tile.first_sample + i;
         let path = trace_path(pixel, sample);
@@ -256,26 +266,36 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
         if is_sound(path.radiance) {
             let y = luminance(path.radiance);
             let odd = f32(sample % 2u);
-            color += vec4f(path.radiance, path.alpha);
+            colors.all += vec4f(path.radiance, path.alpha);
+            colors.odd += odd * path.radiance;
+            colors.odd_kept += odd;
             sums.luminance_squared += y * y;
             sums.kept += 1.0;
             sums.clamped += path.clamped;
-            sums.odd_luminance += odd * y;
             sums.odd_luminance_squared += odd * y * y;
-            sums.odd_kept += odd;
+            guides.albedo += path.seen.albedo;
+            guides.hits += path.seen.hits;
+            guides.normal += path.seen.normal;
+            guides.depth += path.seen.depth;
         } else {
             sums.dropped += 1.0;
         }
     }
-    color_sums[index] += color;
+    color_sums[index].all += colors.all;
+    color_sums[index].odd += colors.odd;
+    color_sums[index].odd_kept += colors.odd_kept;
     statistics[index].luminance_squared += sums.luminance_squared;
     statistics[index].kept += sums.kept;
-    statistics[index].odd_luminance += sums.odd_luminance;
     statistics[index].odd_luminance_squared += sums.odd_luminance_squared;
-    statistics[index].odd_kept += sums.odd_kept;
     statistics[index].dropped += sums.dropped;
     statistics[index].rays += sums.rays;
     if PLAN_FIREFLY_CLAMP == 1u {
         statistics[index].clamped += sums.clamped;
+    }
+    if tile.first_sample < GUIDE_SAMPLES {
+        guide_sums[index].albedo += guides.albedo;
+        guide_sums[index].hits += guides.hits;
+        guide_sums[index].normal += guides.normal;
+        guide_sums[index].depth += guides.depth;
     }
 }

@@ -1,9 +1,12 @@
 // The camera's rays. Twin of src/scene/camera.rs.
 #import "optics/random"
 #import "optics/warp"
+#import "scene/choices"
 #import "scene/layout"
 
-const FILTER_BOX: u32 = 0u;
+// The path's pairs of numbers for the place in the pixel and on the lens.
+const PIXEL_DIMENSION: u32 = 0u;
+const LENS_DIMENSION: u32 = 1u;
 const GAUSSIAN_SIGMA: f32 = 0.5;
 // 1 - exp(-(radius/sigma)^2/2): the Gaussian is cut off at 1.5 pixels.
 const GAUSSIAN_KEPT: f32 = 0.988891;
@@ -23,8 +26,8 @@ fn filter_offset(filter_kind: u32, xi: vec2f) -> vec2f {
 }
 
 fn pixel_ray(camera: Camera, pixel: vec2u, image_size: vec2u, state: RandomState) -> Ray {
-    let offset = filter_offset(camera.filter_kind, random_pair(state, 0u));
-    return camera_ray(camera, vec2f(pixel) + 0.5 + offset, image_size, random_pair(state, 1u));
+    let offset = filter_offset(camera.filter_kind, random_pair(state, PIXEL_DIMENSION));
+    return camera_ray(camera, vec2f(pixel) + 0.5 + offset, image_size, random_pair(state, LENS_DIMENSION));
 }
 
 fn camera_ray(camera: Camera, place: vec2f, image_size: vec2u, xi_lens: vec2f) -> Ray {

@@ -50,20 +50,37 @@ struct Tile {
     sample_count: u32,
 }
 
-// Sums over the samples of a pixel since the host last took them; scalars, so that the stride is 32 bytes.
+// Sums of a pixel's colours since the host last took them.
+struct PixelColors {
+    // With the coverage.
+    all: vec4f,
+    // The same of the odd samples alone: one of two independent halves.
+    odd: vec3f,
+    odd_kept: f32,
+}
+
+// Other sums over the samples of a pixel since the host last took them; scalars, so that the stride is 24 bytes.
 struct PixelStatistics {
     luminance_squared: f32,
     // Samples in the sums.
     kept: f32,
-    // The same of the odd samples alone: one of two independent halves.
-    odd_luminance: f32,
     odd_luminance_squared: f32,
-    odd_kept: f32,
     // Samples that were not sound.
     dropped: f32,
     rays: f32,
     // Luminance that limiting fireflies took.
     clamped: f32,
+}
+
+// Sums over a pixel's first samples of what they saw first.
+struct GuideSums {
+    // Each times what mirrors and glass before it leave of the light.
+    albedo: vec3f,
+    // How many samples met something.
+    hits: f32,
+    normal: vec3f,
+    // Along the camera's axis, in the geometry's units.
+    depth: f32,
 }
 
 struct Material {
@@ -106,7 +123,8 @@ struct Material {
     has_rough_tables: u32,
     texture_roughness: f32,
     roughness_table: u32,
-    reserved: array<u32, 2>,
+    has_vertex_colors: u32,
+    reserved: u32,
 }
 
 // One use of a picture.
@@ -125,12 +143,14 @@ struct Triangle {
     corners: array<vec4u, 3>,
 }
 
-// What shading needs of a vertex besides its position; scalars, so that the stride is 44 bytes.
+// What shading needs of a vertex besides its position; scalars, so that the stride is 52 bytes.
 struct Vertex {
     normal: array<f32, 3>,
     uv: array<f32, 2>,
     second_uv: array<f32, 2>,
     tangent: array<f32, 4>,
+    // Linear red and green, then blue and 1, as 16-bit fractions.
+    color: array<u32, 2>,
 }
 
 // An entry of the alias table over the triangles that emit.
@@ -152,7 +172,7 @@ struct LightCell {
 @group(0) @binding(7) var environment_map: texture_2d<f32>;
 @group(0) @binding(8) var<storage, read> environment_cells: array<AliasCell>;
 // Sums over the samples of a pixel since the host last took them: red, green, blue, alpha.
-@group(0) @binding(9) var<storage, read_write> color_sums: array<vec4f>;
+@group(0) @binding(9) var<storage, read_write> color_sums: array<PixelColors>;
 @group(0) @binding(10) var<storage, read_write> statistics: array<PixelStatistics>;
 @group(0) @binding(11) var<storage, read> light_cells: array<LightCell>;
 // What this dispatch renders.
@@ -163,3 +183,4 @@ struct LightCell {
 
 // Pixels along the side of a tile, which is a workgroup.
 const TILE_SIDE: u32 = 8u;
+@group(0) @binding(15) var<storage, read_write> guide_sums: array<GuideSums>;

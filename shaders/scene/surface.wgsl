@@ -11,6 +11,8 @@ struct SurfacePoint {
     slot: u32,
     // Both sets of texture coordinates.
     uvs: vec4f,
+    // The colour between the vertices; white where the material takes none.
+    vertex_color: vec3f,
 }
 
 // Rounding of the position's three products and sums, with what the box test and the transforms add.
@@ -102,7 +104,16 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
         frame = frame_from_tangent(shading, tangent.xyz, materials[slot].rotation_rad);
     }
     let surface = Surface(frame, normal, wo, coat_normal, place.is_back);
-    return SurfacePoint(surface, place.position, place.error, slot, uvs);
+    var color = vec3f(1.0);
+    if PLAN_COLOR_TEXTURES == 1u && materials[slot].has_vertex_colors == 1u {
+        color = vertex_color(a) * w + vertex_color(b) * hit.u + vertex_color(c) * hit.v;
+    }
+    return SurfacePoint(surface, place.position, place.error, slot, uvs, color);
+}
+
+// The linear colour of a vertex that multiplies the material's.
+fn vertex_color(vertex: Vertex) -> vec3f {
+    return vec3f(unpack2x16unorm(vertex.color[0]), unpack2x16unorm(vertex.color[1]).x);
 }
 
 fn looks_up_textures() -> bool {

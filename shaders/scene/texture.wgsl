@@ -69,7 +69,7 @@ fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
     );
 }
 
-fn textured_material(material: Material, uvs: vec4f) -> Material {
+fn textured_material(material: Material, uvs: vec4f, vertex_color: vec3f) -> Material {
     if PLAN_COLOR_TEXTURES + PLAN_ROUGHNESS_TEXTURES + PLAN_EMISSION_TEXTURES == 0u {
         return material;
     }
@@ -84,8 +84,9 @@ fn textured_material(material: Material, uvs: vec4f) -> Material {
     }
     var at_point = material;
     if PLAN_COLOR_TEXTURES == 1u {
-        at_point.base_color = material.base_color * found[0].xyz;
-        at_point.transmission_tint = material.transmission_tint * found[0].xyz;
+        let color = vertex_color * found[0].xyz;
+        at_point.base_color = material.base_color * color;
+        at_point.transmission_tint = material.transmission_tint * color;
     }
     if PLAN_ROUGHNESS_TEXTURES == 1u && material.textures.y != NO_TEXTURE {
         let values = found[1];

@@ -1,5 +1,5 @@
 // What stops a ray, and what lets it pass. Twin of Integrator::stop and Integrator::transmittance in
-// src/cpu/integrator.rs.
+// src/cpu/integrator/rays.rs.
 #import "optics/random"
 #import "scene/camera"
 #import "scene/plan"

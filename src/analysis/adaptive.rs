@@ -4,9 +4,9 @@
 //! σ² the variance of one sample, cost its rays. So a tile rests while it has more than its part, not when some error of
 //! its own is reached: that would give dark smooth tiles as few samples as they need, but noisy ones too many.
 
-use super::film::Film;
 use super::noise::{TileError, half_difference_variances, tile_errors};
-use super::tiles::TileGrid;
+use crate::job::film::Film;
+use crate::job::tiles::TileGrid;
 
 /// A tile counts with at least this part of a neighbour's variance: the edge of a small bright feature does not starve.
 const NEIGHBOUR_SHARE: f64 = 0.25;

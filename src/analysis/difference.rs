@@ -1,7 +1,7 @@
 //! How one picture differs from another: signed, in linear light.
 
 use super::error::relative_mean_squared_error;
-use super::film::Image;
+use crate::job::film::Image;
 
 /// The share of the pixels that the automatic scale leaves within its range.
 const SHARE_WITHIN: f64 = 0.99;

@@ -5,7 +5,7 @@
 //! bias: their noise has no mean in common. That holds even where both pictures draw the same random numbers, which
 //! makes small differences visible long before either picture is smooth.
 
-use super::film::{Film, luminance};
+use crate::job::film::Film;
 
 /// Standard deviations of a normal distribution that hold 95 %.
 const BAND: f64 = 1.959_964;
@@ -40,13 +40,9 @@ impl Distance {
 impl Halves {
     /// The halves of a film.
     pub fn of(film: &Film) -> Self {
-        let pixels = || film.color.iter().zip(&film.statistics).zip(&film.odd);
-        Self {
-            even: pixels()
-                .map(|((sum, [_, n]), [odd, _, odd_n])| (luminance(*sum) - odd) / (n - odd_n))
-                .collect(),
-            odd: film.odd.iter().map(|[sum, _, n]| sum / n).collect(),
-        }
+        let means = |pixel| film.halves(pixel).map(|half| half.luminance / half.samples);
+        let (even, odd) = (0..film.color.len()).map(|pixel| means(pixel).into()).unzip();
+        Self { even, odd }
     }
 
     /// Mean luminance of the picture.

@@ -1,8 +1,7 @@
-//! Histograms of what the lobes draw: the angle to the mirror direction (paper, Fig. 3) and the distance D (Fig. 2).
+//! Histograms of the angle between a lobe's samples and the mirror direction (paper, Fig. 3).
 
 use std::f64::consts::{PI, TAU};
 
-use crate::optics::curve::{Curve, curve_distance, curve_distance_max};
 use crate::optics::frame::{Frame, world_from_local};
 use crate::optics::vector::{Vec3, vec3};
 
@@ -82,15 +81,4 @@ pub fn angle_density(frame: &Frame<f64>, alpha_rad: f64, steps: u32, density: im
         })
         .sum();
     sum * sine * TAU / f64::from(steps)
-}
-
-/// Distances D(ξ) of a curve for equidistant ξ (`count` of them), over [0, D's maximum]. `table` as for
-/// [`curve_distance`].
-pub fn distance_histogram(curve: Curve, table: &[f32], count: u32, bins: usize) -> Histogram {
-    let mut histogram = Histogram::new(0.0, curve_distance_max(curve, table), bins);
-    for i in 0..count {
-        let xi = (f64::from(i) + 0.5) / f64::from(count);
-        histogram.add(curve_distance(curve, table, xi));
-    }
-    histogram
 }

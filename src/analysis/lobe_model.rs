@@ -6,7 +6,7 @@ use crate::optics::lobe::{ALPHA_MIN, Horizon, Lobe, LobeShape, MIRROR_WIDTH, lob
 use crate::optics::vector::{Vec3, vec3};
 
 /// A lobe with its settings. Directions are in the frame with the normal +z and the view in the half plane x ≤ 0, as in
-/// [`super::scatter`].
+/// [`crate::job::scatter`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct LobeModel {
     /// Name in legends and columns.

@@ -5,21 +5,13 @@
 
 pub mod adaptive;
 pub mod chi_square;
+pub mod denoised;
 pub mod difference;
 pub mod error;
-pub mod features;
-pub mod film;
 pub mod fit;
 pub mod halves;
 pub mod histogram;
 pub mod lobe_model;
-pub mod lobe_view;
 pub mod noise;
-pub mod plot;
-pub mod precision;
-pub mod probe;
 pub mod quadrature;
-pub mod sampling;
-pub mod scatter;
 pub mod sphere_grid;
-pub mod tiles;

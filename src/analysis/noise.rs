@@ -9,18 +9,18 @@
 
 use rayon::prelude::*;
 
-use super::film::{Film, luminance};
-use super::tiles::TileGrid;
+use crate::job::film::{Film, HalfSums};
+use crate::job::tiles::TileGrid;
 
 /// Standard deviations of a normal distribution that hold 95 %.
-const BAND: f64 = 1.959_964;
+pub(super) const BAND: f64 = 1.959_964;
 /// Share of the pixels that must have samples in both halves.
 const MEASURED_SHARE: f64 = 0.99;
 /// Fourth moment of a pixel's half difference over its squared variance, where it is skewed: between a normal
 /// distribution's 3 and the 6 of the difference of two exponential ones.
 const KURTOSIS: f64 = 4.5;
 /// Pixels to each side over which the gain of the sequence is averaged for a map.
-const MAP_RADIUS: usize = 3;
+pub(super) const MAP_RADIUS: usize = 3;
 
 /// The estimated error of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -40,16 +40,15 @@ pub struct Noise {
 /// Variance of the mean luminance of each pixel from the difference of its halves: unbiased, with one degree of freedom
 /// each. NaN where a half has no sample.
 pub fn half_difference_variances(film: &Film) -> Vec<f64> {
-    let of_pixel = |((sum, [_, n]), [odd, _, odd_n]): ((&[f64; 4], &[f64; 2]), &[f64; 3])| {
-        let even_n = n - odd_n;
-        if *odd_n < 1.0 || even_n < 1.0 {
+    let of_pixel = |pixel: usize| {
+        let [even, odd] = film.halves(pixel);
+        if odd.samples < 1.0 || even.samples < 1.0 {
             return f64::NAN;
         }
-        let difference = (luminance(*sum) - odd) / even_n - odd / odd_n;
-        difference * difference * even_n * odd_n / (n * n)
+        let difference = even.luminance / even.samples - odd.luminance / odd.samples;
+        difference * difference * even.samples * odd.samples / (even.samples + odd.samples).powi(2)
     };
-    let pixels = film.color.par_iter().zip(&film.statistics).zip(&film.odd);
-    pixels.map(of_pixel).collect()
+    (0..film.color.len()).into_par_iter().map(of_pixel).collect()
 }
 
 /// The relative error of a picture; `None` before there are samples in both halves. A picture without light has none.
@@ -90,10 +89,8 @@ fn sum_of_squared_variances(film: &Film, variances: &[f64]) -> f64 {
     let width = film.width as usize;
     let gains = gains(film, variances, width);
     let product = |pixel: usize| -> f64 {
-        let ([squares, n], [odd, odd_squares, odd_n]) = (film.statistics[pixel], film.odd[pixel]);
-        let even = luminance(film.color[pixel]) - odd;
-        let even_n = n - odd_n;
-        if even_n < 2.0 || odd_n < 2.0 {
+        let [even, odd] = film.halves(pixel);
+        if even.samples < 2.0 || odd.samples < 2.0 {
             // Too few for spreads: a normal distribution's fourth moment is three times its squared variance.
             return if variances[pixel].is_nan() {
                 0.0
@@ -101,9 +98,11 @@ fn sum_of_squared_variances(film: &Film, variances: &[f64]) -> f64 {
                 variances[pixel].powi(2) / 3.0
             };
         }
-        let spread = |sum: f64, squares: f64, n: f64| ((squares - sum * sum / n) / (n - 1.0)).max(0.0);
-        let of_halves = spread(even, squares - odd_squares, even_n) * spread(odd, odd_squares, odd_n);
-        of_halves * (gains[pixel] / n).powi(2)
+        let spread = |half: HalfSums| {
+            let squared_sum = half.luminance * half.luminance;
+            ((half.luminance_squared - squared_sum / half.samples) / (half.samples - 1.0)).max(0.0)
+        };
+        spread(even) * spread(odd) * (gains[pixel] / (even.samples + odd.samples)).powi(2)
     };
     let of_pixels: f64 = (0..variances.len()).into_par_iter().map(product).sum();
     let of_neighbours: f64 = box_sums(variances, width, MAP_RADIUS)
@@ -131,7 +130,7 @@ fn gains(film: &Film, variances: &[f64], width: usize) -> Vec<f64> {
 }
 
 /// For each pixel sum and number of the numbers in the square around it; NaN counts as missing.
-fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64; 2]> {
+pub(super) fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64; 2]> {
     let height = values.len() / width.max(1);
     let entry = |value: f64| if value.is_nan() { [0.0; 2] } else { [value, 1.0] };
     let add = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a + c, b + d];

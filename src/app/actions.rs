@@ -12,8 +12,8 @@ use crate::document::ImportLobe;
 use crate::document::MaterialSettings;
 use crate::render::EngineChoice;
 use crate::render::display::Shown;
-use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
+use crate::scene::{ModelOptions, ModelSource};
 
 /// Something for the app to do after the panels have been shown.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,14 +22,23 @@ pub enum Action {
     Do(Command),
     /// Opens a file by its ending.
     Open(PathBuf),
+    /// Takes a file that was dropped on the window: a picture becomes the base colour of the selected material, anything
+    /// else is opened.
+    Drop(PathBuf),
+    /// Takes text that was pasted into the window: the name of a file.
+    Paste(String),
     /// Changes the model.
     UseModel(ModelSource),
+    /// Loads a model's file anew, to show another scene, variant or pose of it.
+    ImportModel(ModelSource, ModelOptions),
     /// Changes the environment.
     UseEnvironment(EnvironmentSource),
     /// Replaces the selected material, keeping nothing of it.
     UseMaterial(Box<MaterialSettings>),
     /// Selects a material slot.
     SelectSlot(usize),
+    /// Shows everything that made a sample (from 0) of a pixel of the picture.
+    Explain([u32; 2], u32),
     /// Changes the user's folder of materials.
     ChangeLibrary(Change),
     /// Changes the pinned states.
@@ -133,10 +142,11 @@ const fn key(key: Key) -> Option<KeyboardShortcut> {
 commands! {
     New, File, "New", "Starts anew, with the default model, light and material.", keys(CTRL, Key::N), 0;
     Open, File, "Open…", "Opens a project, a material, a model or an environment.", keys(CTRL, Key::O), 0;
-    OpenModel, File, "Open model…", "Opens a glTF model (.glb, .gltf).", None, 0;
-    OpenEnvironment, File, "Open environment…", "Opens an environment map (.hdr, .exr).", keys(CTRL_SHIFT, Key::O), 0;
+    OpenModel, File, "Open model…", "Opens a model (.glb, .gltf, .obj, .ply, .stl, .zip).", None, 0;
+    OpenEnvironment, File, "Open environment…", "Opens an environment map (.hdr, .exr, .png, .jpg, .tif, .webp).", keys(CTRL_SHIFT, Key::O), 0;
     OpenMaterial, File, "Open material…", "Opens a material (.json) into the selected slot.", None, 0;
     OpenMeasured, File, "Open measured material…", "Opens a measured material (.binary of the MERL database) to match looks with.", None, 0;
+    ModelFile, File, "Model file…", "What became of the parts of the model's file; its scenes, variants and poses.", None, 0;
     Reload, File, "Reload files", "Reads model and environment again.", keys(CTRL, Key::R), 0;
     Save, File, "Save project", "Saves materials, light, camera and settings (.json).", keys(CTRL, Key::S), 1;
     SaveAs, File, "Save project as…", "Saves the project under another name.", keys(CTRL_SHIFT, Key::S), 1;

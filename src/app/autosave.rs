@@ -5,8 +5,10 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::document::recovery::{self, Recovered, Slot};
-use crate::document::{Document, FileError};
+use super::crash::Witness;
+use crate::document::Document;
+use crate::store::FileError;
+use crate::store::recovery::{self, Recovered, Slot};
 
 /// At least so long between two copies of a document that goes on changing.
 pub(super) const INTERVAL: Duration = Duration::from_secs(5);
@@ -24,6 +26,8 @@ pub(super) struct Autosave {
     /// What the file is to hold.
     kept: Option<Document>,
     kept_at: Option<Instant>,
+    /// What a panic puts aside.
+    pub(super) witness: Witness,
 }
 
 enum Order {
@@ -45,8 +49,10 @@ pub(super) enum Report {
 pub(super) struct Leftover {
     /// For [`Autosave::discard`].
     pub(super) index: usize,
-    /// The document, or why it can't be read.
-    pub(super) contents: Result<Recovered, String>,
+    /// The document, or why it can't be read; `None` where a panic left nothing but its report.
+    pub(super) contents: Option<Result<Recovered, String>>,
+    /// What a panic wrote.
+    pub(super) report: Option<recovery::Report>,
 }
 
 impl Autosave {
@@ -57,13 +63,15 @@ impl Autosave {
     pub(super) fn begin(folder: PathBuf, interval: Duration, ctx: egui::Context) -> std::io::Result<Self> {
         let (orders, ordered) = channel();
         let (sender, reports) = channel();
+        let witness = Witness::default();
+        let its_witness = witness.clone();
         let thread = std::thread::Builder::new().name("autosave".to_owned()).spawn(move || {
             let report = |report| {
                 // Nobody listens where the window was closed meanwhile.
                 let _ = sender.send(report);
                 ctx.request_repaint();
             };
-            work(&folder, &ordered, &report);
+            work(&folder, &its_witness, &ordered, &report);
         })?;
         Ok(Self {
             orders: Some(orders),
@@ -72,6 +80,7 @@ impl Autosave {
             interval,
             kept: None,
             kept_at: None,
+            witness,
         })
     }
 
@@ -83,6 +92,7 @@ impl Autosave {
     /// Takes the document as the frame left it. Returns after how long to be called again, where something is still to
     /// be put aside.
     pub(super) fn watch(&mut self, document: &Document, project: Option<&Path>, is_saved: bool) -> Option<Duration> {
+        self.witness.see(document, project, is_saved);
         if is_saved {
             if self.kept.take().is_some() {
                 self.order(Order::Forget);
@@ -129,6 +139,11 @@ impl Autosave {
 impl Drop for Autosave {
     /// Lets the thread do what it was told, and leaves it behind where that takes long.
     fn drop(&mut self) {
+        if std::thread::panicking() {
+            // The window ends by this panic: its file stays for the next start.
+            std::mem::forget(self.orders.take());
+            return;
+        }
         self.orders = None;
         let begun = Instant::now();
         while let Some(thread) = &self.thread
@@ -140,18 +155,25 @@ impl Drop for Autosave {
     }
 }
 
-fn work(folder: &Path, ordered: &Receiver<Order>, report: &dyn Fn(Report)) {
+fn work(folder: &Path, witness: &Witness, ordered: &Receiver<Order>, report: &dyn Fn(Report)) {
     let begin = || -> Result<_, FileError> {
         let leftovers: Vec<Option<Slot>> = recovery::leftovers(folder)?.into_iter().map(Some).collect();
         let load = |(index, slot): (usize, &Option<Slot>)| {
-            let contents = slot.as_ref()?.load().map_err(|error| error.to_string());
-            Some(Leftover { index, contents })
+            let slot = slot.as_ref()?;
+            let load = || slot.load().map_err(|error| error.to_string());
+            Some(Leftover {
+                index,
+                contents: slot.has_document().then(load),
+                report: slot.report(),
+            })
         };
         let found: Vec<Leftover> = leftovers.iter().enumerate().filter_map(load).collect();
         if !found.is_empty() {
             report(Report::Found(found));
         }
-        Ok((Slot::open(folder)?, leftovers))
+        let slot = Slot::open(folder)?;
+        witness.put_copies_at(slot.path());
+        Ok((slot, leftovers))
     };
     match begin() {
         Ok((slot, leftovers)) => obey(slot, leftovers, ordered, report),

@@ -4,17 +4,23 @@ use super::actions::{Action, Command};
 use super::layout::{self, Pane};
 use super::menu::Sheet;
 use super::{App, library, palette, panels, snapshots, widgets};
-use crate::document::{CameraSettings, MaterialSettings, PARAMETERS};
+use crate::document::{CameraSettings, Document, MaterialSettings, PARAMETERS};
+use crate::render::explain::explain;
+use crate::scene::ModelOptions;
 use crate::scene::camera::framing_distance;
 
 impl App {
     pub(super) fn apply(&mut self, ctx: &egui::Context, action: Action) {
+        self.autosave.witness.note(format!("{action:?}"));
         match action {
             Action::Do(command) => self.command(ctx, command),
             Action::Open(path) => {
                 self.open(path);
             }
-            Action::UseModel(source) => self.worker.open_model(source),
+            Action::Drop(path) => self.drop_file(path),
+            Action::Paste(text) => self.paste(&text),
+            Action::UseModel(source) => self.worker.open_model(source, ModelOptions::default()),
+            Action::ImportModel(source, options) => self.worker.open_model(source, options),
             Action::UseEnvironment(source) => self.worker.open_environment(source),
             Action::ImportAs(lobe) => self.panels.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
@@ -22,6 +28,7 @@ impl App {
                 self.panels.slot = slot;
                 self.edits.seal();
             }
+            Action::Explain(pixel, sample) => self.explain(pixel, sample),
             Action::ChangeLibrary(change) => self.change_library(change),
             Action::ChangeSnapshots(change) => self.change_snapshots(change),
             Action::UseSnapshot(path) => self.use_snapshot(&path),
@@ -41,6 +48,16 @@ impl App {
         }
     }
 
+    /// Lays the account of a path of the picture in progress over the window.
+    fn explain(&mut self, pixel: [u32; 2], sample: u32) {
+        if let Some(scene) = &self.worker.snapshot().scene {
+            let account = explain(&scene.document, &scene.model, &scene.job, pixel, sample);
+            self.sheet = Sheet::Path {
+                text: account.to_string(),
+            };
+        }
+    }
+
     /// Brings the parameter's row to the front and gives it the keys.
     fn edit_parameter(&mut self, ctx: &egui::Context, key: &str) {
         if let Some(parameter) = PARAMETERS.iter().find(|parameter| parameter.key == key) {
@@ -53,14 +70,12 @@ impl App {
         log::debug!("{}", command.label());
         match command {
             Command::Undo => {
-                if let Some(document) = self.edits.undo() {
-                    self.document = document;
-                }
+                let document = self.edits.undo();
+                self.step_to(document);
             }
             Command::Redo => {
-                if let Some(document) = self.edits.redo() {
-                    self.document = document;
-                }
+                let document = self.edits.redo();
+                self.step_to(document);
             }
             Command::ResetMaterial => {
                 let name = self.desk_material().name;
@@ -110,6 +125,8 @@ impl App {
             Command::Restart => {
                 self.worker.restart();
                 self.restart_rival();
+                // With the viewport's size, where the picture had been kept at another.
+                self.submitted = None;
             }
             Command::Compare => self.toggle_compare(),
             Command::SwapCompared => self.swap_compared(),
@@ -136,11 +153,25 @@ impl App {
                 };
             }
             Command::Shortcuts => self.sheet = Sheet::Shortcuts,
+            Command::ModelFile => self.sheet = Sheet::ModelFile,
             Command::About => self.sheet = Sheet::About,
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::SaveToMyPresets => self.change_library(library::Change::Add),
             of_files => self.file_command(ctx, of_files),
         }
+    }
+
+    /// Goes to another step of the history. Where that has another model, the slot is the one that was selected of it last.
+    fn step_to(&mut self, document: Option<Document>) {
+        let Some(document) = document else { return };
+        if document.model != self.document.model {
+            let left = std::mem::replace(&mut self.document.model, document.model.clone());
+            self.panels.slots_of.retain(|(model, _)| *model != left);
+            self.panels.slots_of.push((left, self.panels.slot));
+            let known = self.panels.slots_of.iter().find(|(model, _)| *model == document.model);
+            self.panels.slot = known.map_or(0, |(_, slot)| *slot);
+        }
+        self.document = document;
     }
 
     pub(super) fn use_material(&mut self, material: MaterialSettings) {

@@ -10,7 +10,7 @@ use crate::analysis::lobe_model::LobeModel;
 use crate::document::match_look::{lobe_of_material, matched_lobe};
 use crate::document::{Change, Document, MaterialSettings};
 use crate::optics::lobe::Lobe;
-use crate::render::EngineChoice;
+use crate::render::EngineKind;
 use crate::render::background::{self, Background};
 use crate::render::worker::{Event, Level, Pace, Picture, Snapshot, Worker};
 
@@ -117,7 +117,7 @@ pub(super) struct Compare {
 /// B's.
 struct Renderer {
     worker: Worker,
-    engine: &'static str,
+    engine: EngineKind,
     submitted: Option<Document>,
     is_paused: bool,
 }
@@ -371,13 +371,11 @@ impl App {
         };
         compare.match_look(ctx, &material);
         if compare.renderer.is_none() {
-            let choice = if engine == "gpu" {
-                EngineChoice::Gpu
-            } else {
-                EngineChoice::Cpu
-            };
             let repainting = ctx.clone();
-            let Ok(worker) = self.worker.spawn_beside(choice, move || repainting.request_repaint()) else {
+            let Ok(worker) = self
+                .worker
+                .spawn_beside(engine.into(), move || repainting.request_repaint())
+            else {
                 compare.is_on = false;
                 self.say(Level::Error, "the system gives no thread to render B on");
                 return;

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 use egui::{Key, Ui};
 
 use super::theme;
+use crate::scene::MODEL_ENDINGS;
+use crate::scene::environment::ENDINGS;
 
 /// A dialog that is back sooner with nothing was never there: nobody cancels that fast.
 const NO_DIALOG: Duration = Duration::from_millis(400);
@@ -48,11 +50,14 @@ impl Purpose {
         match self {
             Self::Open => (
                 "Projects, materials, models, environments, pictures with a document",
-                &["json", "glb", "gltf", "hdr", "exr", "png"],
+                &[
+                    "json", "glb", "gltf", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "jpg", "jpeg", "tif",
+                    "tiff", "webp",
+                ],
             ),
             Self::SaveProject => ("Projects", &["json"]),
-            Self::OpenModel => ("glTF models", &["glb", "gltf"]),
-            Self::OpenEnvironment => ("Environment maps", &["hdr", "exr"]),
+            Self::OpenModel => ("Models", &MODEL_ENDINGS),
+            Self::OpenEnvironment => ("Environment maps", &ENDINGS),
             Self::OpenMaterial | Self::SaveMaterial => ("Materials", &["json"]),
             Self::OpenMeasured => ("Measured materials (MERL)", &["binary"]),
             Self::SavePicture => ("Pictures", &["png", "exr", "hdr"]),
@@ -75,6 +80,8 @@ pub(super) struct Dialogs {
     pending: Option<Pending>,
     field: Option<PathField>,
     folder: Option<PathBuf>,
+    /// Paths are typed even where the system has dialogs.
+    is_typed: bool,
 }
 
 struct Pending {
@@ -91,6 +98,20 @@ struct PathField {
 }
 
 impl Dialogs {
+    /// Paths are typed, never chosen in the system's dialog; they begin in a folder.
+    pub(super) fn typed(folder: PathBuf) -> Self {
+        Self {
+            folder: Some(folder),
+            is_typed: true,
+            ..Self::default()
+        }
+    }
+
+    /// The folder of the file that was chosen last, if any.
+    pub(super) fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
     /// Whether the path field is open.
     pub(super) fn is_open(&self) -> bool {
         self.field.is_some()
@@ -104,6 +125,10 @@ impl Dialogs {
     /// Asks for a file, unless a dialog is open already. `suggestion` is a file's name to save under.
     pub(super) fn ask(&mut self, purpose: Purpose, suggestion: String, ctx: &egui::Context) {
         if self.pending.is_some() || self.field.is_some() {
+            return;
+        }
+        if self.is_typed {
+            self.open_field(purpose, &suggestion);
             return;
         }
         let (name, endings) = purpose.kind();

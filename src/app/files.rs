@@ -5,19 +5,23 @@ use std::path::{Path, PathBuf};
 use super::App;
 use super::actions::Command;
 use super::dialogs::Purpose;
-use super::disk::{Disk, Done, words};
+use super::disk::{Disk, Done, Task, words};
+use super::edits::Edits;
 use super::take_picture::Destination;
 use super::unsaved::Then;
-use crate::document::file::Opened;
-use crate::document::{Document, FileError, Loaded, file, preset, save_document, save_material};
+use crate::document::Document;
 use crate::render::worker::Level;
-use crate::scene::ModelSource;
-use crate::scene::environment::EnvironmentSource;
+use crate::scene::environment::{ENDINGS, EnvironmentSource};
+use crate::scene::{ModelOptions, ModelSource, SlotPicture, is_model};
+use crate::store::file::Opened;
+use crate::store::{FileError, Loaded, file, preset, save_document, save_material};
 
 /// The project's file, and the thread that reads and writes.
 pub(super) struct Files {
     pub(super) disk: Disk,
     pub(super) project: Option<PathBuf>,
+    /// A picture that was dropped on the window and may hold a document.
+    pub(super) dropped: Option<PathBuf>,
     /// Where the next whole picture goes.
     pub(super) wanted_pictures: Vec<Destination>,
 }
@@ -27,6 +31,7 @@ impl Files {
         Ok(Self {
             disk: Disk::new(ctx)?,
             project: None,
+            dropped: None,
             wanted_pictures: Vec::new(),
         })
     }
@@ -64,9 +69,9 @@ fn kind_of(path: &Path) -> FileKind {
         .unwrap_or_default()
         .to_ascii_lowercase();
     match ending.as_str() {
-        "glb" | "gltf" => FileKind::Model,
-        "hdr" | "exr" => FileKind::Environment,
+        _ if is_model(path) || path.is_dir() => FileKind::Model,
         "json" | "png" => FileKind::Document,
+        ending if ENDINGS.contains(&ending) => FileKind::Environment,
         _ => FileKind::Unknown,
     }
 }
@@ -75,15 +80,15 @@ impl App {
     /// Opens a file by its ending, beside the window; true where it is of a kind that can be opened.
     pub(super) fn open(&mut self, path: PathBuf) -> bool {
         match kind_of(&path) {
-            FileKind::Model => self.worker.open_model(ModelSource::File(path)),
+            FileKind::Model => self.worker.open_model(ModelSource::File(path), ModelOptions::default()),
             FileKind::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
-            FileKind::Document => self.files.disk.read(move || {
+            FileKind::Document => self.files.disk.open(move || {
                 let opened = file::open(&path);
                 Done::Read(path, opened)
             }),
             FileKind::Unknown => {
-                let text = "opened are models (.glb, .gltf), environments (.hdr, .exr), materials and projects (.json), \
-                            and pictures saved here (.png)";
+                let text = "opened are models (.glb, .gltf, .obj, .ply, .stl, .zip), environments (.hdr, .exr, .jpg, \
+                            .tif, .webp), materials and projects (.json), and pictures saved here (.png)";
                 self.say(
                     Level::Error,
                     format!("{}: not a kind of file that can be opened; {text}", path.display()),
@@ -92,6 +97,46 @@ impl App {
             }
         }
         true
+    }
+
+    /// Takes a file that was dropped: a picture for the selected material, anything else is opened.
+    pub(super) fn drop_file(&mut self, path: PathBuf) {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let is_picture =
+            !["hdr", "exr", "pic", "rgbe", "png"].contains(&ending.as_str()) && ENDINGS.contains(&ending.as_str());
+        if is_picture {
+            self.paint(path);
+        } else {
+            // A .png may hold a document: that is looked for first.
+            self.files.dropped = (ending == "png").then(|| path.clone());
+            self.open(path);
+        }
+    }
+
+    /// Makes a picture the base colour of the selected material.
+    fn paint(&mut self, file: PathBuf) {
+        let slot = self.panels.slot;
+        let mut options = self.document.import.clone();
+        options.pictures.retain(|picture| picture.slot != slot);
+        options.pictures.push(SlotPicture { slot, file });
+        self.worker.open_model(self.document.model.clone(), options);
+    }
+
+    /// Opens the file whose name was pasted.
+    pub(super) fn paste(&mut self, text: &str) {
+        let name = text.strip_prefix("file://").unwrap_or(text);
+        let path = PathBuf::from(name);
+        if text.contains("://") && !text.starts_with("file://") {
+            self.say(
+                Level::Error,
+                format!("{text}: web addresses are not opened; save the file and open it here"),
+            );
+        } else if path.exists() {
+            self.drop_file(path);
+        } else {
+            let shown: String = text.chars().take(80).collect();
+            self.say(Level::Warning, format!("pasted text is no file's name: {shown}"));
+        }
     }
 
     /// Takes what has been read and written.
@@ -124,6 +169,14 @@ impl App {
                     let (level, text) = words(result);
                     self.say(level, text);
                 }
+                Done::Broke(task, why) => {
+                    has_failed |= task == Task::Write;
+                    self.awaited = self.awaited.saturating_sub(usize::from(task == Task::Open));
+                    self.say(
+                        Level::Error,
+                        format!("reading or writing a file failed by an internal error: {why}"),
+                    );
+                }
             }
         }
         self.go_on_after_save(ctx, has_failed);
@@ -144,17 +197,27 @@ impl App {
                 self.adopt_picture(*loaded, &path);
                 self.count_as_start(is_at_start && is_saved);
             }
-            Ok(Opened::Document(loaded)) => self.unless_unsaved(ctx, Then::Adopt(loaded, path)),
+            Ok(Opened::Document(loaded)) => {
+                let is_saved = self.edits.is_saved(&self.document);
+                self.unless_unsaved(ctx, Then::Adopt(loaded, path));
+                if is_at_start && is_saved {
+                    self.edits = Edits::new(self.document.clone());
+                }
+            }
+            Err(FileError::NoDocument { path }) if self.files.dropped.take_if(|dropped| *dropped == path).is_some() => {
+                self.paint(path);
+            }
             Err(error) => self.say(Level::Error, error.to_string()),
         }
         self.awaited = self.awaited.saturating_sub(1);
     }
 
-    /// Files given at the start are where editing begins, not edits that could be lost; a project's changes are.
+    /// Files given at the start are where editing begins, not edits that could be lost or taken back; a project's changes
+    /// are.
     pub(super) fn count_as_start(&mut self, is_start: bool) {
         self.edits.record(&self.document, false);
         if is_start && self.files.project.is_none() {
-            self.edits.mark_saved();
+            self.edits = Edits::new(self.document.clone());
         }
     }
 
@@ -238,8 +301,10 @@ impl App {
                 self.open(path);
             }
             Purpose::OpenMeasured => self.panels.lobe.measured = Some(path),
-            Purpose::SaveProject => self.save_project(with_ending(path, "json")),
-            Purpose::SaveMaterial => self.save_material(with_ending(path, "json")),
+            // The ending says what is saved: a picture has the document inside, too.
+            Purpose::SaveProject if is_picture(&path) => self.want_picture(Destination::File(path)),
+            Purpose::SaveProject => self.save_project(as_json(path)),
+            Purpose::SaveMaterial => self.save_material(as_json(path)),
             Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
             Purpose::SaveWindow => self.window_picture = Some(path.with_extension("png")),
             Purpose::SavePicture => self.want_picture(Destination::File(with_ending(path, "png"))),
@@ -270,11 +335,49 @@ impl App {
     }
 }
 
+/// Whether a file of this name is a picture.
+fn is_picture(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    ["png", "exr", "hdr"].contains(&ending.to_ascii_lowercase().as_str())
+}
+
+/// The path with the ending of what is written as JSON, after any other that it has: that would say something else.
+fn as_json(path: PathBuf) -> PathBuf {
+    if path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+    {
+        return path;
+    }
+    let mut name = path.into_os_string();
+    name.push(".json");
+    name.into()
+}
+
 /// The path, with an ending where it has none.
 fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
     if path.extension().is_some() {
         path
     } else {
         path.with_extension(ending)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_saved_as_json_is_called_so() {
+        for (typed, named) in [
+            ("a.json", "a.json"),
+            ("a.JSON", "a.JSON"),
+            ("a", "a.json"),
+            ("a.2", "a.2.json"),
+            ("a.png", "a.png.json"),
+        ] {
+            assert_eq!(as_json(typed.into()), PathBuf::from(named));
+        }
+        assert!(is_picture(Path::new("001.PNG")) && !is_picture(Path::new("001")));
     }
 }

@@ -9,10 +9,11 @@ use egui::{ColorImage, TextureHandle, TextureOptions};
 
 use super::App;
 use super::disk::Done;
-use crate::document::library::{self, Entry, Removed};
-use crate::document::{FileError, MaterialSettings, PRESETS};
+use crate::document::MaterialSettings;
 use crate::render::thumbnails::{self, SIDE, ThumbnailWorker, Thumbnails};
 use crate::render::worker::Level;
+use crate::store::library::{self, Entry, Removed};
+use crate::store::{FileError, PRESETS};
 
 /// What can be done with a material of the user's.
 #[derive(Clone, Debug, PartialEq)]
@@ -148,7 +149,7 @@ impl App {
     /// Lists the user's folder, beside the window.
     pub(super) fn list_library(&mut self) {
         if let Some(folder) = self.panels.library.folder.clone() {
-            self.files.disk.read(move || {
+            self.files.disk.list(move || {
                 Done::Listed(library::list(&folder).map(|entries| Listed {
                     words: String::new(),
                     entries,

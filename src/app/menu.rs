@@ -4,12 +4,17 @@ use egui::{RichText, Ui, vec2};
 
 use super::actions::{Action, Command, Menu};
 use super::edits::Edits;
+use super::import_sheet;
 use super::layout::Pane;
 use super::palette;
 use super::recent::Recent;
 use super::theme;
-use crate::document::{ImportLobe, MaterialSettings};
+use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::render::EngineChoice;
+use crate::scene::Model;
+
+/// Width of the account of a path where there is room, points.
+const PATH_WIDTH: f32 = 900.0;
 
 /// What is open over the window.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -21,7 +26,12 @@ pub(super) enum Sheet {
         selected: usize,
     },
     Shortcuts,
+    ModelFile,
     About,
+    /// The account of a path.
+    Path {
+        text: String,
+    },
 }
 
 pub(super) fn bar(ui: &mut Ui, edits: &Edits, recent: &mut Recent, import_lobe: ImportLobe, actions: &mut Vec<Action>) {
@@ -75,8 +85,14 @@ fn entry(ui: &mut Ui, command: Command, edits: &Edits, actions: &mut Vec<Action>
         .on_hover_text(command.help())
         .clicked()
     {
-        actions.push(Action::Do(command));
+        do_and_close(ui, actions, Action::Do(command));
     }
+}
+
+/// What is chosen by the keyboard closes the menu as well, for which egui waits for a click.
+pub(super) fn do_and_close(ui: &Ui, actions: &mut Vec<Action>, action: Action) {
+    actions.push(action);
+    ui.close();
 }
 
 fn with_step(verb: &str, step: Option<&str>) -> (String, bool) {
@@ -90,24 +106,17 @@ fn panes(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.separator();
     for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport) {
         if ui.button(pane.command()).clicked() {
-            actions.push(Action::Reveal(pane));
+            do_and_close(ui, actions, Action::Reveal(pane));
         }
     }
 }
 
 fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
     ui.separator();
-    for (label, help, choice) in [
-        (
-            "Engine: choose",
-            "A hardware GPU if there is one, else the faster one here.",
-            EngineChoice::Auto,
-        ),
-        ("Engine: GPU", "The GPU, or Vulkan on the processor.", EngineChoice::Gpu),
-        ("Engine: processor", "The processor's cores.", EngineChoice::Cpu),
-    ] {
-        if ui.button(label).on_hover_text(help).clicked() {
-            actions.push(Action::UseEngine(choice));
+    for &choice in EngineChoice::ALL {
+        let label = format!("Engine: {}", choice.label());
+        if ui.button(label).on_hover_text(choice.help()).clicked() {
+            do_and_close(ui, actions, Action::UseEngine(choice));
         }
     }
 }
@@ -115,47 +124,52 @@ fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
 fn import_lobes(ui: &mut Ui, chosen: ImportLobe, actions: &mut Vec<Action>) {
     ui.separator();
     ui.menu_button("Lobe of opened models", |ui| {
-        for (lobe, label, help) in [
-            (
-                ImportLobe::Geometric,
-                "Geometric",
-                "Materials of a model's file get the geometric lobe, its roughness matched to the look of the file's.",
-            ),
-            (
-                ImportLobe::Ggx,
-                "GGX",
-                "Materials of a model's file keep GGX and its roughness.",
-            ),
-        ] {
-            if ui.radio(lobe == chosen, label).on_hover_text(help).clicked() {
-                actions.push(Action::ImportAs(lobe));
+        for &lobe in ImportLobe::ALL {
+            if ui
+                .radio(lobe == chosen, lobe.label())
+                .on_hover_text(lobe.help())
+                .clicked()
+            {
+                do_and_close(ui, actions, Action::ImportAs(lobe));
             }
         }
     });
 }
 
 /// Shows the sheet that is open.
-pub(super) fn sheet(ctx: &egui::Context, sheet: &mut Sheet, material: &MaterialSettings, actions: &mut Vec<Action>) {
+pub(super) fn sheet(
+    ctx: &egui::Context,
+    sheet: &mut Sheet,
+    desk: (&Document, &MaterialSettings),
+    model: Option<&Model>,
+    actions: &mut Vec<Action>,
+) {
+    let (document, material) = desk;
     let mut is_done = false;
     let modal = match sheet {
         Sheet::None => return,
         Sheet::Palette { search, selected } => egui::Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
             is_done = palette::show(ui, search, selected, material, actions);
         }),
+        Sheet::ModelFile => egui::Modal::new(egui::Id::unique("model file")).show(ctx, |ui| {
+            is_done = import_sheet::show(ui, document, model, actions);
+        }),
         Sheet::Shortcuts => egui::Modal::new(egui::Id::unique("shortcuts")).show(ctx, shortcuts),
         Sheet::About => egui::Modal::new(egui::Id::unique("about")).show(ctx, about),
+        Sheet::Path { text } => egui::Modal::new(egui::Id::unique("path")).show(ctx, |ui| path(ui, text)),
     };
     if is_done || modal.should_close() {
         *sheet = Sheet::None;
     }
 }
 
-const MOUSE: [(&str, &str); 8] = [
+const MOUSE: [(&str, &str); 9] = [
     ("Drag", "Turn the camera"),
     ("Middle drag, or ctrl and drag", "Pan"),
     ("Wheel, or right drag", "Zoom"),
     ("Shift and drag", "Turn the light"),
     ("Click", "Select the material there"),
+    ("Ctrl, shift and click", "Explain the last sample of the pixel"),
     ("Arrows, page up and down", "Turn and zoom, with the viewport focused"),
     ("Double-click on a label", "Reset the parameter"),
     ("Shift and drag a number", "Change it finely"),
@@ -199,4 +213,24 @@ fn about(ui: &mut Ui) {
     if ui.button("Close").clicked() {
         ui.close();
     }
+}
+
+/// Everything that made one sample of one pixel.
+fn path(ui: &mut Ui, text: &str) {
+    ui.set_width(PATH_WIDTH.min(0.9 * ui.ctx().content_rect().width()));
+    ui.heading("One path");
+    ui.add_space(theme::GAP);
+    let height = 0.7 * ui.ctx().content_rect().height();
+    egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        ui.add(egui::Label::new(RichText::new(text).monospace()).wrap());
+    });
+    ui.add_space(theme::GAP);
+    ui.horizontal(|ui| {
+        if ui.button("Copy").on_hover_text("Copies the account as text.").clicked() {
+            ui.ctx().copy_text(text.to_owned());
+        }
+        if ui.button("Close").clicked() {
+            ui.close();
+        }
+    });
 }

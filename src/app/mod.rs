@@ -8,12 +8,14 @@ pub mod actions;
 mod autosave;
 mod commands;
 pub mod compare;
+mod crash;
 mod dialogs;
 mod disk;
 mod edits;
 mod environments;
 mod files;
 mod icons;
+mod import_sheet;
 pub mod layout;
 pub mod library;
 mod menu;
@@ -41,8 +43,9 @@ use std::time::{Duration, Instant};
 use egui::Ui;
 use egui_tiles::Tree;
 
-use actions::Action;
+use actions::{Action, Command};
 use autosave::{Autosave, Leftover};
+pub use crash::report_panics;
 use dialogs::Dialogs;
 use edits::Edits;
 use layout::Pane;
@@ -55,12 +58,15 @@ use turntable_sheet::TurntableSheet;
 use unsaved::Unsaved;
 use viewport::Viewport;
 
+use crate::document::of_model::materials_of;
 use crate::document::{Change, Document, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 use crate::scene::environment::EnvironmentSource;
-use crate::scene::{Model, ModelSource};
+use crate::scene::{Model, ModelOptions, ModelSource, SlotPicture};
 
+/// A picture that has cost this much time keeps its size while nothing but the viewport's size changes.
+const KEPT_FROM: Duration = Duration::from_secs(10);
 /// Changes that follow each other within this are rendered as moving.
 const MOVING: Duration = Duration::from_millis(150);
 
@@ -77,6 +83,7 @@ pub fn run(files: Vec<PathBuf>, engine: EngineChoice) -> anyhow::Result<()> {
         ..Options::default()
     };
     crate::render::priority::let_rendering_give_way();
+    report_panics();
     let create: eframe::AppCreator<'_> = Box::new(move |creation| Ok(Box::new(App::new(creation, options)?)));
     eframe::run_native("Glossmith", settings::native_options(), create).map_err(|error| {
         anyhow::anyhow!(
@@ -104,6 +111,10 @@ pub struct Options {
     pub cache: Option<PathBuf>,
     /// At least so long between two copies of unsaved edits, instead of 5 s.
     pub autosave_interval: Option<Duration>,
+    /// The render time from which a picture keeps its size when the viewport gets another, instead of 10 s.
+    pub keep_pictures_from: Option<Duration>,
+    /// Files are chosen by typing a path that begins with this folder, even where the system has a dialog for it.
+    pub typed_paths: Option<PathBuf>,
 }
 
 /// The editor.
@@ -113,6 +124,9 @@ pub struct App {
     worker: Worker,
     /// The document as last submitted, with its size.
     submitted: Option<Document>,
+    /// What its size followed from.
+    submitted_resolution: Resolution,
+    keep_pictures_from: Duration,
     submitted_at: Instant,
     /// The submission's revision.
     revision: u64,
@@ -158,6 +172,8 @@ impl App {
             document,
             worker,
             submitted: None,
+            submitted_resolution: Resolution::default(),
+            keep_pictures_from: options.keep_pictures_from.unwrap_or(KEPT_FROM),
             submitted_at: Instant::now(),
             revision: 0,
             queue: Vec::new(),
@@ -175,7 +191,7 @@ impl App {
             layout: kept.layout.unwrap_or_else(layout::default_layout),
             is_maximised: false,
             viewport: Viewport::default(),
-            dialogs: Dialogs::default(),
+            dialogs: options.typed_paths.map(Dialogs::typed).unwrap_or_default(),
             sheet: Sheet::None,
             turntable: TurntableSheet::default(),
             files: files::Files::new(creation.egui_ctx.clone())?,
@@ -257,12 +273,12 @@ impl App {
                     self.say(level, text);
                     continue;
                 }
-                Event::ModelOpened(source, model) => {
+                Event::ModelOpened(source, options, model) => {
                     if let ModelSource::File(path) = &source {
                         self.say(Level::Info, format!("opened {}", path.display()));
                         self.panels.recent.add(path);
                     }
-                    self.adopt_model(source, &model);
+                    self.adopt_model(source, options, &model);
                     self.count_as_start(is_start);
                 }
                 Event::EnvironmentOpened(source, _) => {
@@ -285,21 +301,42 @@ impl App {
     }
 
     /// Takes a loaded model over: a file's materials come with it, a built-in keeps the one that is being edited.
-    fn adopt_model(&mut self, source: ModelSource, model: &Model) {
+    fn adopt_model(&mut self, source: ModelSource, options: ModelOptions, model: &Model) {
         let is_file = matches!(source, ModelSource::File(_));
+        let is_shown_anew = self.document.model == source && self.document.import != options;
         let edited = self.desk_material();
-        let slots = model.slots.iter();
-        self.document.materials = slots
-            .map(|slot| MaterialSettings::from_slot(slot, self.panels.import_lobe))
-            .collect();
-        if !is_file && let Some(first) = self.document.materials.first_mut() {
+        let before = std::mem::take(&mut self.document.materials);
+        self.document.materials = materials_of(model, self.panels.import_lobe);
+        if is_shown_anew {
+            self.keep_edits(before, &options);
+        } else if !is_file && let Some(first) = self.document.materials.first_mut() {
             *first = edited;
         }
         self.panels.slot = 0;
         self.document.model = source;
-        let camera = &mut self.document.camera;
-        (camera.target, camera.distance, camera.position) = (None, None, None);
+        self.document.import = options;
+        if !is_shown_anew {
+            let camera = &mut self.document.camera;
+            (camera.target, camera.distance, camera.position) = (None, None, None);
+            self.document.add_lights_and_cameras(model);
+        }
         self.edits.note(format!("Change the model to {}", model.name), "");
+    }
+
+    /// Where the same file is shown in another way: materials whose slots have the same name stay as they were edited. One
+    /// that was given a picture shows it.
+    fn keep_edits(&mut self, mut before: Vec<MaterialSettings>, options: &ModelOptions) {
+        let is_new = |picture: &&SlotPicture| !self.document.import.pictures.contains(picture);
+        for picture in options.pictures.iter().filter(is_new) {
+            if let Some(material) = before.get_mut(picture.slot) {
+                (material.base_color, material.textures.color) = ([1.0; 3], true);
+            }
+        }
+        for material in &mut self.document.materials {
+            if let Some(known) = before.iter().position(|known| known.name == material.name) {
+                *material = before.swap_remove(known);
+            }
+        }
     }
 
     fn desk_material(&self) -> MaterialSettings {
@@ -314,13 +351,16 @@ impl App {
     /// Records the frame's edit and hands the renderer what differs from what it has.
     fn record_and_submit(&mut self, ctx: &egui::Context) {
         let is_dragging = ctx.input(|input| input.pointer.any_down());
-        self.edits.record(&self.document, is_dragging);
+        if self.edits.record(&self.document, is_dragging) {
+            let label = self.edits.undo_label().unwrap_or("an edit taken back");
+            self.autosave.witness.note(label);
+        }
         if self.awaited > 0 {
             return;
         }
         let mut wanted = self.document.clone();
         match self.viewport.fill_size(self.panels.resolution) {
-            Some([width, height]) => (wanted.render.width, wanted.render.height) = (width, height),
+            Some(size) => self.set_size(&mut wanted, size),
             // The first frame has not been laid out: the size would be wrong.
             None if self.panels.resolution != Resolution::Document => return,
             None => {}
@@ -337,7 +377,27 @@ impl App {
         }
         self.revision = self.worker.submit(&wanted, pace);
         self.submitted = Some(wanted);
+        self.submitted_resolution = self.panels.resolution;
         self.submitted_at = Instant::now();
+    }
+
+    /// Gives a document that is to be rendered the viewport's size, unless nothing else would make the renderer start over
+    /// and the picture has cost too much for that.
+    fn set_size(&self, wanted: &mut Document, [width, height]: [u32; 2]) {
+        (wanted.render.width, wanted.render.height) = (width, height);
+        let Some(old) = &self.submitted else { return };
+        let old_size = (old.render.width, old.render.height);
+        if old_size == (width, height) || self.submitted_resolution != self.panels.resolution {
+            return;
+        }
+        let snapshot = self.worker.snapshot();
+        let is_its_picture = |picture: &Picture| picture.revision == self.revision && picture.reduction == 1;
+        let is_costly = snapshot.progress.render_seconds >= self.keep_pictures_from.as_secs_f64()
+            && snapshot.picture.as_deref().is_some_and(is_its_picture);
+        (wanted.render.width, wanted.render.height) = old_size;
+        if !is_costly || Change::between(old, wanted).restarts() {
+            (wanted.render.width, wanted.render.height) = (width, height);
+        }
     }
 
     /// Small pictures of materials wait until the picture is there, and while something is being changed.
@@ -391,7 +451,12 @@ impl App {
             self.layout.ui(&mut panes, ui);
         });
         let material = self.desk_material();
-        menu::sheet(ui.ctx(), &mut self.sheet, &material, actions);
+        let scene = self.worker.snapshot().scene.clone();
+        let model = scene
+            .as_ref()
+            .filter(|scene| scene.document.model == self.document.model);
+        let model = model.map(|scene| scene.model.as_ref());
+        menu::sheet(ui.ctx(), &mut self.sheet, (&self.document, &material), model, actions);
         if let Some((purpose, path)) = self.dialogs.show(ui) {
             self.chosen(purpose, path);
         }
@@ -408,6 +473,9 @@ impl App {
     }
 
     fn put_aside(&mut self, ctx: &egui::Context) {
+        if let Some(engine) = &self.worker.snapshot().engine {
+            self.autosave.witness.see_engine(&engine.to_string());
+        }
         let is_saved = self.edits.is_saved(&self.document);
         let project = self.files.project.as_deref();
         if let Some(wait) = self.autosave.watch(&self.document, project, is_saved) {
@@ -425,6 +493,19 @@ impl App {
     }
 }
 
+/// What was pasted as text in this frame.
+fn pasted(ctx: &egui::Context) -> impl Iterator<Item = String> {
+    let texts = ctx.input(|input| {
+        let events = input.events.iter();
+        let text = |event: &egui::Event| match event {
+            egui::Event::Paste(text) => Some(text.trim().to_owned()),
+            _ => None,
+        };
+        events.filter_map(text).collect::<Vec<_>>()
+    });
+    texts.into_iter().filter(|text| !text.is_empty())
+}
+
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
@@ -433,12 +514,23 @@ impl eframe::App for App {
         self.take_events(&ctx);
         self.picture_window(&ctx);
         let mut actions = std::mem::take(&mut self.queue);
+        if self.panels.study_ended() && self.panels.is_paused {
+            actions.push(Action::Do(Command::Pause));
+        }
         if !self.is_covered() {
             actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
         }
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        actions.extend(dropped.iter().map(|file| Action::Open(file.path().to_owned())));
         self.show(ui, &mut actions);
+        // After the viewport, which selects what a file is dropped on.
+        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
+        actions.extend(dropped.iter().map(|file| Action::Drop(file.path().to_owned())));
+        if !self.is_covered()
+            && ctx
+                .memory(|memory| memory.focused())
+                .is_none_or(|id| Some(id) == self.viewport.id())
+        {
+            actions.extend(pasted(&ctx).map(Action::Paste));
+        }
         for action in actions {
             self.apply(&ctx, action);
         }

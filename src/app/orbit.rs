@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::document::CameraSettings;
-use crate::document::job::Job;
+use crate::job::Job;
 
 /// Degrees of a turn for a drag of one point.
 const DEG_PER_POINT: f64 = 0.35;

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use egui::Ui;
 
 use super::actions::Action;
+use super::menu::do_and_close;
 use crate::render::background::Background;
 use crate::scene::environment::EnvironmentSource;
 
@@ -71,7 +72,7 @@ impl Recent {
                 let missing = self.search.as_ref().and_then(Background::latest).unwrap_or_default();
                 for path in &self.paths {
                     if entry(ui, path, missing.contains(path)) {
-                        actions.push(Action::Open(path.clone()));
+                        do_and_close(ui, actions, Action::Open(path.clone()));
                     }
                 }
                 ui.separator();

@@ -5,10 +5,11 @@ use std::time::{Duration, SystemTime};
 use egui::{RichText, Ui};
 
 use super::App;
-use super::autosave::{Leftover, Report};
+use super::autosave;
+use super::autosave::Leftover;
 use super::{theme, widgets};
-use crate::document::recovery::Recovered;
 use crate::render::worker::Level;
+use crate::store::recovery::{Recovered, Report};
 
 /// What is to be done with a leftover.
 enum Choice {
@@ -19,13 +20,17 @@ enum Choice {
 impl App {
     /// Takes what the thread told that puts documents aside.
     pub(super) fn take_autosave_reports(&mut self) {
+        for text in self.autosave.witness.take_told() {
+            self.say(Level::Error, text);
+        }
         for report in self.autosave.take_reports() {
             match report {
-                Report::Found(leftovers) => {
-                    self.say(Level::Info, format!("unsaved documents found: {}", leftovers.len()));
+                autosave::Report::Found(leftovers) => {
+                    let documents = leftovers.iter().filter(|leftover| leftover.contents.is_some());
+                    self.say(Level::Info, format!("unsaved documents found: {}", documents.count()));
                     self.leftovers = leftovers;
                 }
-                Report::Failed(error) => {
+                autosave::Report::Failed(error) => {
                     self.say(
                         Level::Warning,
                         format!("unsaved edits are not kept for a crash: {error}"),
@@ -56,7 +61,7 @@ impl App {
     }
 
     fn restore(&mut self, leftover: Leftover) {
-        let Ok(recovered) = leftover.contents else {
+        let Some(Ok(recovered)) = leftover.contents else {
             return;
         };
         for warning in &recovered.warnings {
@@ -91,12 +96,17 @@ impl App {
 fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usize, Choice)> {
     let mut chosen = None;
     ui.set_width(460.0);
-    ui.heading("Unsaved work was found");
-    widgets::note(
-        ui,
-        "Glossmith ended without closing. What had not been saved was put aside; restored, it can be undone, and is \
-         saved when you save it.",
-    );
+    if leftovers.iter().any(|leftover| leftover.contents.is_some()) {
+        ui.heading("Unsaved work was found");
+        widgets::note(
+            ui,
+            "Glossmith ended without closing. What had not been saved was put aside; restored, it can be undone, and \
+             is saved when you save it.",
+        );
+    } else {
+        ui.heading("Glossmith ended by an internal error");
+        widgets::note(ui, "Everything had been saved.");
+    }
     egui::ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
         for (at, leftover) in leftovers.iter().enumerate() {
             ui.add_space(theme::GAP);
@@ -118,28 +128,34 @@ fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usize, Choice)> {
 fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
     let mut choice = None;
     let name = match &leftover.contents {
-        Ok(recovered) => {
+        Some(Ok(recovered)) => {
             let name = name(recovered);
             ui.label(RichText::new(&name).strong());
             let age = SystemTime::now().duration_since(recovered.at).unwrap_or_default();
             widgets::note(ui, format!("{}, put aside {}", contents(recovered), ago(age)));
             name
         }
-        Err(why) => {
+        Some(Err(why)) => {
             ui.label(RichText::new("A damaged file").strong());
             ui.colored_label(ui.visuals().error_fg_color, why);
             "the damaged file".to_owned()
         }
+        None => "the notice".to_owned(),
     };
+    if let Some(report) = &leftover.report {
+        told(ui, report);
+    }
     ui.horizontal(|ui| {
-        let restore = ui
-            .add_enabled(leftover.contents.is_ok(), egui::Button::new("Restore"))
-            .accessible_name(format!("Restore {name}"));
-        if is_first && ui.memory(|memory| memory.focused().is_none()) {
-            restore.request_focus();
-        }
-        if restore.clicked() {
-            choice = Some(Choice::Restore);
+        if let Some(contents) = &leftover.contents {
+            let restore = ui
+                .add_enabled(contents.is_ok(), egui::Button::new("Restore"))
+                .accessible_name(format!("Restore {name}"));
+            if is_first && ui.memory(|memory| memory.focused().is_none()) {
+                restore.request_focus();
+            }
+            if restore.clicked() {
+                choice = Some(Choice::Restore);
+            }
         }
         let discard = ui.button("Discard").accessible_name(format!("Discard {name}"));
         if discard.on_hover_text("Removes it for good.").clicked() {
@@ -147,6 +163,17 @@ fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
         }
     });
     choice
+}
+
+/// What a panic said, and where more of it stands.
+fn told(ui: &mut Ui, report: &Report) {
+    let text = format!("It met an internal error: {}", report.message);
+    ui.add(egui::Label::new(RichText::new(text).color(ui.visuals().error_fg_color)).wrap());
+    let where_to = format!(
+        "Please report it with the file {}, which says what was done last, and stays when this is discarded.",
+        report.path.display()
+    );
+    ui.add(egui::Label::new(RichText::new(where_to).weak()).wrap());
 }
 
 /// What to call it.

@@ -7,10 +7,10 @@ use egui::{ColorImage, TextureHandle, TextureOptions};
 
 use super::App;
 use super::disk::Done;
-use crate::document::FileError;
-use crate::document::library::{self, Removed};
-use crate::document::snapshots::{self, Pinned};
 use crate::render::worker::Level;
+use crate::store::FileError;
+use crate::store::library::{self, Removed};
+use crate::store::snapshots::{self, Pinned};
 
 /// What can be done with pinned states.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,7 +70,7 @@ impl App {
     /// Lists the pinned states, beside the window.
     pub(super) fn list_snapshots(&mut self) {
         if let Some(folder) = self.panels.snapshots.folder.clone() {
-            self.files.disk.read(move || {
+            self.files.disk.list(move || {
                 Done::ListedPins(snapshots::list(&folder).map(|(pinned, errors)| PinsListed {
                     words: String::new(),
                     pinned,

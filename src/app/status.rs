@@ -114,6 +114,15 @@ pub(super) fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter) {
                         ui.label(format!("The true one lies between {low} and {high} (95 %)."));
                     });
             }
+            if let Some(told) = snapshot.denoised {
+                ui.label(format!("denoised {}", percent(told.value))).on_hover_ui(|ui| {
+                    ui.label(
+                        "Error of the denoised picture, its bias included: root mean square over the mean luminance",
+                    );
+                    let (low, high) = (percent(told.low), percent(told.high));
+                    ui.label(format!("The true one lies between {low} and {high} (95 %)."));
+                });
+            }
             ui.label(format!("{:.1} s", progress.render_seconds))
                 .on_hover_text("Render time of this picture");
             ui.label(format!("{} samples/s", short_number(snapshot.samples_per_second)))
@@ -136,10 +145,10 @@ fn engine(ui: &mut Ui, snapshot: &Snapshot) {
         ui.weak("no engine yet");
         return;
     };
-    let label = ui.label(RichText::new(engine.kind.to_uppercase()).strong());
+    let label = ui.label(RichText::new(engine.kind.label()).strong());
     let name = ui.label(&engine.adapter);
     label.union(name).on_hover_ui(|ui| {
-        ui.label(format!("Engine: {}", engine.kind));
+        ui.label(format!("Engine: {}", engine.kind.name()));
         ui.label(&engine.adapter);
         if !engine.driver.is_empty() {
             ui.label(&engine.driver);
@@ -197,9 +206,15 @@ fn samples(progress: &Progress) -> String {
     format!("{most} / {} samples{mean}", progress.samples_wanted)
 }
 
+/// Less than this is not told apart from nothing, percent.
+const PERCENT_MIN: f64 = 0.0001;
+
 /// A share as a percentage with three digits.
 pub(super) fn percent(share: f64) -> String {
     let value = 100.0 * share;
+    if value > 0.0 && value < PERCENT_MIN {
+        return format!("< {PERCENT_MIN} %");
+    }
     let decimals = match value {
         v if v >= 100.0 => 0,
         v if v >= 10.0 => 1,
@@ -237,8 +252,9 @@ mod tests {
         assert_eq!(short_number(1234.0), "1.23 k");
         assert_eq!(short_number(45_670_000.0), "45.7 M");
         assert_eq!(short_number(3.21e11), "321 G");
-        let percents = [0.0, 0.000_412, 0.0123, 0.5, 2.0].map(percent);
-        assert_eq!(percents, ["0.00 %", "0.0412 %", "1.23 %", "50.0 %", "200 %"]);
+        let percents = [0.0, 2e-9, 0.000_412, 0.0123, 0.5, 2.0].map(percent);
+        let expected = ["0.00 %", "< 0.0001 %", "0.0412 %", "1.23 %", "50.0 %", "200 %"];
+        assert_eq!(percents, expected);
     }
 
     #[test]

@@ -49,7 +49,7 @@ impl App {
 
     fn save_picture(&mut self, path: PathBuf, picture: Arc<Picture>) {
         self.files.disk.write_beside(move || {
-            output::write(&path, &picture.image, &picture.document).map_err(|error| error.to_string())?;
+            output::write(&path, picture.rendered(), &picture.document).map_err(|error| error.to_string())?;
             let size = format!("{} × {}", picture.width, picture.height);
             Ok(format!(
                 "saved {} ({size}, {} samples a pixel)",

@@ -1,7 +1,10 @@
 //! Dark and light, in untinted greys: colour is judged against its surroundings. One accent.
 
 use egui::style::{HandleShape, ScrollStyle, Selection, WidgetVisuals, Widgets};
-use egui::{Color32, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Theme, Vec2, Visuals};
+use egui::{
+    Color32, CornerRadius, FontDefinitions, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Theme, Vec2,
+    Visuals,
+};
 
 /// Space between the parts of a panel, points.
 pub(super) const GAP: f32 = 8.0;
@@ -70,8 +73,22 @@ pub(super) fn surround(is_dark: bool) -> Color32 {
 
 /// Sets both themes.
 pub(super) fn install(ctx: &egui::Context) {
+    ctx.set_fonts(fonts());
     ctx.set_style_of(Theme::Dark, style(&DARK, true));
     ctx.set_style_of(Theme::Light, style(&LIGHT, false));
+}
+
+/// egui's fonts; what the proportional one lacks, such as the cube root, comes from the one for code.
+fn fonts() -> FontDefinitions {
+    let mut fonts = FontDefinitions::default();
+    let monospace = fonts.families.get(&FontFamily::Monospace).cloned().unwrap_or_default();
+    let proportional = fonts.families.entry(FontFamily::Proportional).or_default();
+    for name in monospace {
+        if !proportional.contains(&name) {
+            proportional.push(name);
+        }
+    }
+    fonts
 }
 
 fn style(palette: &Palette, is_dark: bool) -> Style {
@@ -179,4 +196,27 @@ fn visuals(palette: &Palette, is_dark: bool) -> Visuals {
 /// The grey between the panels.
 pub(super) fn ground(is_dark: bool) -> Color32 {
     Color32::from_gray(if is_dark { DARK.ground } else { LIGHT.ground })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::curve::Curve;
+
+    /// Among them what egui's colour picker shows and what the results of the hard cases are marked with.
+    #[test]
+    fn the_fonts_have_what_is_shown() {
+        let ctx = egui::Context::default();
+        install(&ctx);
+        // Fonts are there from the first frame on.
+        ctx.run_ui(egui::RawInput::default(), |_| {}).textures_delta.clear();
+        let formulas: String = Curve::ALL.iter().map(|curve| curve.formula()).collect();
+        let shown = format!("✔✖📋·×−≤…ξθ²°{formulas}");
+        ctx.fonts_mut(|fonts| {
+            for glyph in shown.chars() {
+                let font = FontId::proportional(13.0);
+                assert!(fonts.has_glyph(&font, glyph), "{glyph} is not drawn");
+            }
+        });
+    }
 }

@@ -175,6 +175,14 @@ impl Running {
         })
     }
 
+    /// What to say in the end, once it has come.
+    fn outcome(&self) -> Option<Result<String, String>> {
+        match self.renderer.latest() {
+            Some(State::Done(done)) => Some(done),
+            _ => self.renderer.failure().map(|why| Err(format!("turntable: {why}"))),
+        }
+    }
+
     fn show(&self, ui: &mut Ui) {
         let progress = match self.renderer.latest() {
             Some(State::Progress(progress)) => progress,
@@ -224,8 +232,9 @@ impl App {
     /// Opens the sheet, with the size of the picture as it is.
     pub(super) fn open_turntable(&mut self) {
         let project = self.files.project.as_deref().and_then(Path::parent);
+        let beside = project.or(self.dialogs.folder()).unwrap_or(Path::new(""));
         // Nothing but a place to begin with: where there is no working folder a path can be typed.
-        let folder = std::path::absolute(project.unwrap_or(Path::new("")).join("turntable")).unwrap_or_default();
+        let folder = std::path::absolute(beside.join("turntable")).unwrap_or_default();
         let render = self
             .submitted
             .as_ref()
@@ -241,12 +250,7 @@ impl App {
 
     /// Shows the sheet where it is open, and says how the turntable ended.
     pub(super) fn show_turntable(&mut self, ctx: &egui::Context) {
-        let latest = self
-            .turntable
-            .running
-            .as_ref()
-            .and_then(|running| running.renderer.latest());
-        if let Some(State::Done(done)) = latest {
+        if let Some(done) = self.turntable.running.as_ref().and_then(Running::outcome) {
             self.turntable.running = None;
             let (level, text) = super::disk::words(done);
             self.say(level, text);
@@ -270,11 +274,7 @@ impl App {
         }
         if begins {
             let kind = self.worker.snapshot().engine.as_ref().map(|engine| engine.kind);
-            let engine = if kind == Some("gpu") {
-                EngineChoice::Gpu
-            } else {
-                EngineChoice::Cpu
-            };
+            let engine = kind.map_or(EngineChoice::Cpu, EngineChoice::from);
             let table = self.turntable.order(&self.document);
             match Running::begin(ctx, table, engine) {
                 Ok(running) => self.turntable.running = Some(running),

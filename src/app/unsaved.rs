@@ -7,8 +7,9 @@ use egui::{Ui, ViewportCommand};
 use super::App;
 use super::actions::Command;
 use super::{theme, widgets};
-use crate::document::{Document, Loaded};
+use crate::document::Document;
 use crate::render::worker::Level;
+use crate::store::Loaded;
 
 /// What would lose the edits.
 pub(super) enum Then {

@@ -151,7 +151,8 @@ fn row_label(ui: &mut Ui, name: Name<'_>, width: f32) -> Response {
         job.append(name.symbol, 6.0, format(ui.visuals().weak_text_color()));
     }
     let layout = Layout::left_to_right(Align::Center);
-    let label = egui::Label::new(job).truncate().selectable(false).sense(Sense::click());
+    // Not a stop of the tab key: a press of a key on it would do nothing.
+    let label = egui::Label::new(job).truncate().selectable(false).sense(Sense::CLICK);
     let response = ui.allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, |ui| {
         ui.set_min_width(width);
         ui.add(label)
@@ -280,6 +281,7 @@ pub(super) fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response 
     let radius = ui.visuals().widgets.inactive.corner_radius;
     ui.painter()
         .rect_stroke(swatch.rect, radius, line, egui::StrokeKind::Inside);
+    show_focus(ui, &swatch);
     let mut response = swatch.clone();
     if hex_field(ui, name, linear) {
         response.mark_changed();
@@ -373,9 +375,11 @@ pub(super) fn choice<T: PartialEq + Clone>(
                 } else {
                     item.on_hover_text(*help)
                 };
-                if item.clicked() && choice != value {
+                if item.clicked() {
+                    // By the keyboard, too, which egui alone would leave it open for.
+                    ui.close();
+                    changed |= choice != value;
                     *value = choice.clone();
-                    changed = true;
                 }
             }
         });
@@ -416,7 +420,7 @@ fn step_by_keys<T: PartialEq + Clone>(
 /// The heading of a group of rows, which opens and closes it.
 pub(super) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
     let header = RichText::new(title).strong();
-    egui::CollapsingHeader::new(header)
+    let shown = egui::CollapsingHeader::new(header)
         .id_salt(title)
         .default_open(true)
         .open(wish(ui).is_some_and(|wish| wish.group == title).then_some(true))
@@ -425,6 +429,16 @@ pub(super) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
             body(ui);
             ui.add_space(theme::GAP);
         });
+    show_focus(ui, &shown.header_response);
+}
+
+/// A frame around what has the keys, where egui draws it as if it had not.
+fn show_focus(ui: &Ui, response: &Response) {
+    if response.has_focus() {
+        let stroke = egui::Stroke::new(1.0, theme::accent(ui.visuals().dark_mode));
+        ui.painter()
+            .rect_stroke(response.rect, 3.0, stroke, egui::StrokeKind::Inside);
+    }
 }
 
 /// Content that comes, goes and changes by itself, as what other threads answer does, above controls that stay. egui
@@ -499,6 +513,13 @@ pub(super) fn name_field(ui: &mut Ui, name: &mut String) -> Option<Option<String
     }
     field.request_focus();
     None
+}
+
+/// Why work beside the window came to nothing, where it did.
+pub(super) fn failure(ui: &mut Ui, why: Option<String>) {
+    if let Some(why) = why {
+        ui.add(egui::Label::new(RichText::new(why).color(ui.visuals().error_fg_color)).wrap());
+    }
 }
 
 /// A note in weak text.

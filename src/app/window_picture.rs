@@ -8,8 +8,8 @@ use std::time::Duration;
 use egui::ColorImage;
 
 use super::App;
-use crate::document::file::save_atomically;
-use crate::document::picture::png_bytes;
+use crate::store::file::save_atomically;
+use crate::store::picture::png_bytes;
 
 /// How long the picture may take to come.
 const PATIENCE: Duration = Duration::from_secs(20);

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
-use crate::render::EngineChoice;
 use crate::render::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
 use crate::render::hard::{self, HardOptions, HardRow};
+use crate::render::{EngineChoice, EngineKind};
 
 /// Arguments of `glossmith check`.
 #[derive(Debug, Args)]
@@ -105,7 +105,7 @@ fn run_hard(arguments: &CheckArguments) -> anyhow::Result<()> {
     let checks: Vec<Check> = rows.iter().map(|row| row.check.clone()).collect();
     if let Some(path) = &arguments.markdown {
         let mut engines = vec![(engine, rows)];
-        if engines[0].0.kind != "cpu" {
+        if engines[0].0.kind != EngineKind::Cpu {
             engines.push(run_on(EngineChoice::Cpu)?);
         }
         write(path, &hard::markdown(&engines))?;

@@ -10,11 +10,12 @@ use super::lobe_spec::lobe_model;
 use super::names;
 use crate::analysis::fit::Merl;
 use crate::analysis::lobe_model::LobeModel;
-use crate::analysis::lobe_view::LobeView;
+use crate::document::MaterialSettings;
 use crate::document::match_look::{Candidate, LookMatch, Target, comparison, match_look};
-use crate::document::{MaterialSettings, save_material};
 use crate::optics::lobe::Lobe;
 use crate::optics::vector::Vec3;
+use crate::plot::lobe_view::LobeView;
+use crate::store::save_material;
 
 /// View angles where none is given.
 const VIEW_ANGLE_DEG: f64 = 0.0;
@@ -32,7 +33,7 @@ pub struct FitArguments {
     #[arg(long, value_name = "DEG")]
     view_angle: Option<f64>,
     /// The lobe to fit. For the geometric one the curve is fitted too.
-    #[arg(long, default_value = "geometric", value_name = "NAME", value_parser = names::lobe)]
+    #[arg(long, default_value = "geometric", value_name = "NAME", value_parser = names::choice::<Lobe>)]
     lobe: Lobe,
     /// The material to write.
     #[arg(long, value_name = "MATERIAL.json")]

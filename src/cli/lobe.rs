@@ -8,18 +8,18 @@ use clap::Args;
 use super::lobe_spec::lobe_model;
 use super::names;
 use crate::analysis::lobe_model::LobeModel;
-use crate::analysis::lobe_view::{LobeView, ViewKind, lobe_view};
-use crate::analysis::plot::lobe_view_file;
 use crate::document::match_look::lobe_of_material;
-use crate::document::preset;
 use crate::optics::lobe::Horizon;
+use crate::plot::lobe_view::{LobeView, ViewKind, lobe_view};
+use crate::plot::lobe_view_file;
+use crate::store::preset;
 
 /// Arguments of `glossmith lobe`.
 #[derive(Debug, Args)]
 pub struct LobeArguments {
     /// What is shown: a slice in the plane of incidence, the lobe in space, the density over the hemisphere, the albedo,
     /// the reciprocity error, the share of the samples below the horizon, the density of the geometric lobe's distance D.
-    #[arg(long, value_name = "polar|3d|hemisphere|albedo|reciprocity|horizon|distance", value_parser = names::view_kind)]
+    #[arg(long, value_name = "polar|3d|hemisphere|albedo|reciprocity|horizon|distance", value_parser = names::choice::<ViewKind>)]
     plot: ViewKind,
     /// A lobe, its roughness in [0, 1] (for the microfacet lobes the square root of α, or alpha=A itself; 0.3 without
     /// one) and the geometric lobe's curve, such as geometric:0.3/sqrt. May be repeated to compare.
@@ -29,7 +29,7 @@ pub struct LobeArguments {
     #[arg(long = "material", value_name = "FILE|NAME")]
     materials: Vec<String>,
     /// What happens to samples below the surface, for the lobes of --lobe.
-    #[arg(long, default_value = "mirror", value_name = "mirror|absorb|none", value_parser = names::horizon)]
+    #[arg(long, default_value = "mirror", value_name = "mirror|absorb|none", value_parser = names::choice::<Horizon>)]
     horizon: Horizon,
     /// Angles between view and normal, from 0 to below 90 [default: 45, or all where the plot is against the angle].
     #[arg(long, value_name = "DEG[,DEG…]", value_delimiter = ',', value_parser = parse_angle)]

@@ -4,7 +4,7 @@ use crate::analysis::lobe_model::{LobeModel, roughness_min};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
 
-use super::names::{curve, lobe};
+use super::names::choice;
 
 /// Roughness where none is given.
 const ROUGHNESS_DEFAULT: f64 = 0.3;
@@ -20,11 +20,11 @@ pub(super) fn lobe_model(text: &str) -> Result<LobeModel, String> {
         Some((name, number)) => (name, Some(number)),
         None => (front, None),
     };
-    let lobe = lobe(name)?;
+    let lobe = choice::<Lobe>(name)?;
     let curve = match curve_name {
         None => Curve::Smooth,
         Some(_) if lobe != Lobe::Geometric => return Err(format!("only the geometric lobe has curves, not {name}")),
-        Some(name) => curve(name)?,
+        Some(name) => choice::<Curve>(name)?,
     };
     if curve == Curve::Custom {
         return Err("the custom curve has no points here; name another, or give its material by --material".to_owned());

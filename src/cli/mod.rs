@@ -4,6 +4,7 @@
 //! do); 2 the arguments are wrong.
 
 mod check;
+mod explain;
 mod fit;
 mod lobe;
 mod lobe_spec;
@@ -12,6 +13,7 @@ mod parse;
 mod plan;
 mod render;
 mod scatter;
+mod shell;
 mod study;
 mod turntable;
 
@@ -47,6 +49,8 @@ pub enum Command {
     Render(Box<render::RenderArguments>),
     /// Show which effects a scene calls for, and why.
     Plan(Box<plan::PlanArguments>),
+    /// Show everything that made one sample of one pixel.
+    Explain(Box<explain::ExplainArguments>),
     /// Render a turn about the model as numbered pictures.
     Turntable(Box<turntable::TurntableArguments>),
     /// Prove on this machine that the renderer is right.
@@ -59,6 +63,10 @@ pub enum Command {
     Lobe(lobe::LobeArguments),
     /// Measure what accuracy costs in time.
     Study(study::StudyArguments),
+    /// Print a script that completes these arguments in a shell.
+    Completions(shell::CompletionsArguments),
+    /// Print a manual page.
+    Manual(shell::ManualArguments),
 }
 
 impl Command {
@@ -70,12 +78,15 @@ impl Command {
         match self {
             Command::Render(arguments) => render::run(&arguments),
             Command::Plan(arguments) => plan::run(&arguments),
+            Command::Explain(arguments) => explain::run(&arguments),
             Command::Turntable(arguments) => turntable::run(&arguments),
             Command::Check(arguments) => check::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
             Command::Lobe(arguments) => lobe::run(&arguments),
             Command::Study(arguments) => study::run(&arguments),
+            Command::Completions(arguments) => shell::completions(&arguments),
+            Command::Manual(arguments) => shell::manual(&arguments),
         }
     }
 }

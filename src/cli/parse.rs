@@ -7,8 +7,9 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 
 use crate::document::parameter::parse_color;
-use crate::document::{AreaLight, AreaLightShape, Background, MaterialSettings, ParameterError, assign, range};
+use crate::document::{AreaLight, AreaLightShape, Background, Document, ParameterError, range};
 use crate::render::output::{OutputError, format_of};
+use crate::scene::environment::EnvironmentEncoding;
 
 /// Pixels that a picture may have: with 64 bytes each a render stays below 9 GB.
 const PIXELS_MAX: u64 = 1 << 27;
@@ -112,6 +113,14 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     }
 }
 
+/// Column and row of a pixel, as in 40,22.
+pub(super) fn pixel(text: &str) -> Result<[u32; 2], String> {
+    let place: Option<[u32; 2]> = text
+        .split_once(',')
+        .and_then(|(x, y)| Some([x.trim().parse().ok()?, y.trim().parse().ok()?]));
+    place.ok_or_else(|| "give a column and a row from 0,0 at the top left, such as 40,22".to_owned())
+}
+
 /// What the camera sees where it meets nothing.
 pub(super) fn background(text: &str) -> Result<Background, String> {
     match text {
@@ -123,9 +132,9 @@ pub(super) fn background(text: &str) -> Result<Background, String> {
     }
 }
 
-/// `KEY=VALUE`, checked: whether a parameter takes a value does not depend on the material.
+/// `KEY=VALUE`, checked: whether a parameter takes a value does not depend on the document.
 pub(super) fn assignment(text: &str) -> Result<String, ParameterError> {
-    assign(&mut MaterialSettings::default(), text)?;
+    Document::default().assign(text)?;
     Ok(text.to_owned())
 }
 
@@ -154,6 +163,15 @@ pub(super) fn check_writable(path: &Path) -> anyhow::Result<()> {
         let _ = std::fs::remove_file(path);
     }
     Ok(())
+}
+
+/// `display` or `linear`.
+pub(super) fn environment_encoding(text: &str) -> Result<EnvironmentEncoding, String> {
+    match text {
+        "display" => Ok(EnvironmentEncoding::Display),
+        "linear" => Ok(EnvironmentEncoding::Linear),
+        other => Err(format!("{other} is neither display nor linear")),
+    }
 }
 
 /// `on` or `off`.

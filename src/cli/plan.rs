@@ -7,8 +7,8 @@ use clap::Args;
 
 use super::parse;
 use super::render::SceneArguments;
-use crate::document::effect::Constant;
-use crate::document::plan::Plan;
+use crate::job::effect::{Decision, EffectId};
+use crate::job::plan::Plan;
 use crate::render::{EngineChoice, Session};
 
 /// Arguments of `glossmith plan`: those of `glossmith render` that describe the scene.
@@ -43,10 +43,10 @@ pub fn run(arguments: &PlanArguments) -> anyhow::Result<()> {
 }
 
 fn print(plan: &Plan) {
-    let width = plan.table().map(|(effect, _)| effect.name.len()).max().unwrap_or(0);
+    let width = plan.table().map(|(effect, _)| effect.name().len()).max().unwrap_or(0);
     for (effect, decision) in plan.table() {
         let word = if decision.is_on { "on" } else { "off" };
-        println!("{:width$}  {word:3}  {}", effect.name, decision.reason);
+        println!("{:width$}  {word:3}  {}", effect.name(), decision.reason);
     }
     println!(
         "{} of {} effects are simulated; the kernel leaves out {}",
@@ -57,13 +57,13 @@ fn print(plan: &Plan) {
 }
 
 fn json(plan: &Plan) -> serde_json::Value {
-    let row = |(effect, decision): (&crate::document::effect::Effect, &crate::document::effect::Decision)| {
+    let row = |(effect, decision): (EffectId, &Decision)| {
         serde_json::json!({
-            "name": effect.name,
+            "name": effect.name(),
             "on": decision.is_on,
             "reason": decision.reason,
-            "constant": effect.constant.map(|constant: Constant| constant.name),
-            "value": effect.constant.map(|_| decision.value),
+            "constant": effect.constant().map(|constant| constant.name),
+            "value": effect.constant().map(|_| decision.value),
         })
     };
     serde_json::json!({

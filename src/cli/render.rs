@@ -2,6 +2,7 @@
 
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, bail};
@@ -10,16 +11,17 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
-use crate::document::file::{self, Opened};
-use crate::document::{
-    AreaLight, Background, Document, ImportLobe, MaterialSettings, PixelFilter, Strategy, assign, preset, range,
-};
+use crate::document::of_model::materials_of;
+use crate::document::{AreaLight, Background, Denoise, Document, ImportLobe, PixelFilter, Strategy, range};
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
-use crate::render::output::{self, Format};
+use crate::render::denoise::{Attendant, Denoised};
+use crate::render::output::{self, Format, Layers, Rendered};
 use crate::render::{EngineChoice, Progress, Session, SessionError, StopReason};
-use crate::scene::environment::EnvironmentSource;
-use crate::scene::{Model, ModelSource};
+use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
+use crate::scene::{Model, ModelOptions, ModelSource, is_model};
+use crate::store::file::{self, Opened};
+use crate::store::preset;
 
 /// Step of the session between two looks at the clock and the progress bar.
 const STEP: Duration = Duration::from_millis(200);
@@ -45,15 +47,34 @@ pub struct RenderArguments {
 /// Arguments that describe what is rendered, and how.
 #[derive(Debug, Args)]
 pub struct SceneArguments {
-    /// What to render: a built-in model or a .glb or .gltf file.
+    /// What to render: a built-in model, a file (.glb, .gltf, .obj, .ply, .stl, .zip), or a folder with one.
     #[arg(long, default_value = "teapot", value_name = "FILE|teapot|sphere|plane|shaderball")]
     model: ModelSource,
+    /// Which scene of the model's file, counted from 0. Without it the file's default one.
+    #[arg(long, value_name = "N")]
+    scene: Option<usize>,
+    /// Which variant of the model's materials. Without it the file's own materials.
+    #[arg(long, value_name = "NAME")]
+    variant: Option<String>,
+    /// Pose the model as its first animation does at this time. Without it as the file has it at rest.
+    #[arg(long, value_name = "SECONDS", value_parser = parse::number_in(range::POSE_TIME_S), allow_negative_numbers = true)]
+    time_of_pose: Option<f64>,
+    /// The longest side of a model's textures in texels; larger ones are halved until they fit.
+    #[arg(long, default_value = "8192", value_name = "N", value_parser = parse::number_in(range::TEXTURE_SIDE))]
+    texture_size: f64,
+    /// Write what became of the parts of the model's file (used, approximated, ignored, missing), as JSON.
+    #[arg(long, value_name = "FILE")]
+    import_report: Option<PathBuf>,
     /// Put the model on a ground plane.
     #[arg(long)]
     ground: bool,
-    /// Where the light comes from: a built-in environment or a .hdr or .exr file.
+    /// Where the light comes from: a built-in environment, a picture of the whole sphere (.hdr, .exr, .png, .jpg, .tif,
+    /// .webp; lat-long or cube map), or a folder with the six faces of a cube.
     #[arg(long, default_value = "studio", value_name = "FILE|studio|sky|furnace")]
     environment: EnvironmentSource,
+    /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light.
+    #[arg(long, default_value = "display", value_name = "display|linear", value_parser = parse::environment_encoding)]
+    environment_encoding: EnvironmentEncoding,
     /// Turn the environment about the vertical axis, anticlockwise seen from above.
     #[arg(long, default_value = "0", value_name = "DEG", value_parser = parse::number_in(range::ROTATION_DEG), allow_negative_numbers = true)]
     environment_rotation: f64,
@@ -74,9 +95,10 @@ pub struct SceneArguments {
     #[arg(long, value_name = "FILE|NAME")]
     material: Option<String>,
     /// The lobe of a file's own materials: geometric, its roughness matched to the look of the file's, or ggx.
-    #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::import_lobe)]
+    #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::choice::<ImportLobe>)]
     import_lobe: ImportLobe,
-    /// Set a parameter of every material, such as specular.roughness=0.2. May be repeated.
+    /// Set a parameter of every material, such as specular.roughness=0.2, or a setting, such as camera.fov=40. Stands over
+    /// all other options. May be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse::assignment)]
     assignments: Vec<String>,
     /// Where the camera is, in degrees around and above its target.
@@ -101,7 +123,7 @@ pub struct SceneArguments {
     #[arg(long, value_name = "X", value_parser = parse::number_in(range::DISTANCE), allow_negative_numbers = true)]
     focus_distance: Option<f64>,
     /// Pixel filter: box (to compare with other renderers) or gaussian (smoother edges).
-    #[arg(long, default_value = "gaussian", value_name = "box|gaussian", value_parser = names::filter)]
+    #[arg(long, default_value = "gaussian", value_name = "box|gaussian", value_parser = names::choice::<PixelFilter>)]
     filter: PixelFilter,
     /// Width and height in pixels.
     #[arg(long, default_value = "512x512", value_name = "WxH", value_parser = parse::size)]
@@ -132,10 +154,10 @@ pub struct SceneArguments {
     #[arg(long, value_name = "X", value_parser = parse::number_in(range::FIREFLY_CLAMP), allow_negative_numbers = true)]
     firefly_clamp: Option<f64>,
     /// Random numbers: sobol (Owen-scrambled, less noise) or independent.
-    #[arg(long, default_value = "sobol", value_name = "sobol|independent", value_parser = names::sequence)]
+    #[arg(long, default_value = "sobol", value_name = "sobol|independent", value_parser = names::choice::<Sequence>)]
     sequence: Sequence,
     /// How light is found: by sampling the lobe, the light, or both weighed against each other.
-    #[arg(long, default_value = "mis", value_name = "lobe|light|mis", value_parser = names::strategy)]
+    #[arg(long, default_value = "mis", value_name = "lobe|light|mis", value_parser = names::choice::<Strategy>)]
     strategy: Strategy,
     /// Which effects are simulated: those that the scene calls for; all, needed or not; or these alone (names of
     /// `glossmith plan`, with commas between; +NAME and -NAME change what the scene calls for).
@@ -153,7 +175,7 @@ pub struct SceneArguments {
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     pub(super) engine: EngineChoice,
     /// Tone curve of .png pictures.
-    #[arg(long, default_value = "agx", value_name = "agx|aces|pbr-neutral|none", value_parser = names::tone)]
+    #[arg(long, default_value = "agx", value_name = "agx|aces|pbr-neutral|none", value_parser = names::choice::<ToneCurve>)]
     tone_map: ToneCurve,
     /// Exposure of .png pictures, in stops.
     #[arg(long, default_value = "0", value_name = "EV", value_parser = parse::number_in(range::EXPOSURE_EV), allow_negative_numbers = true)]
@@ -161,6 +183,10 @@ pub struct SceneArguments {
     /// Expose .png pictures so that their mean brightness is middle grey; --exposure is added.
     #[arg(long)]
     auto_exposure: bool,
+    /// Take the picture's noise out with Open Image Denoise: quickly, as well as can be, or (auto) the less the nearer the
+    /// samples alone are to the truth. With --noise and auto rendering stops at the error of the denoised picture.
+    #[arg(long, default_value = "off", value_name = "off|fast|high|auto", value_parser = names::choice::<Denoise>)]
+    denoise: Denoise,
 }
 
 /// Renders as the arguments say.
@@ -168,7 +194,12 @@ pub struct SceneArguments {
 /// # Errors
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
-    for path in arguments.outputs.iter().chain(&arguments.report) {
+    for path in arguments
+        .outputs
+        .iter()
+        .chain(&arguments.report)
+        .chain(&arguments.scene.import_report)
+    {
         parse::check_writable(path)?;
     }
     let takes_layers = |path: &PathBuf| output::format_of(path).is_ok_and(|format| format == Format::Exr);
@@ -221,12 +252,15 @@ pub fn run_default(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()
 fn open(path: &Path, document: &mut Document, session: &mut Session) -> anyhow::Result<()> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     match ending.to_ascii_lowercase().as_str() {
-        "glb" | "gltf" => {
+        _ if is_model(path) || path.is_dir() => {
             document.model = ModelSource::File(path.to_owned());
-            let model = session.assets().model(&document.model)?;
-            document.materials = slot_materials(&model, ImportLobe::default());
+            let model = session.assets().model(&document.model, &document.import)?;
+            document.materials = materials_of(&model, ImportLobe::default());
+            document.add_lights_and_cameras(&model);
         }
-        "hdr" | "exr" => document.lighting.environment = EnvironmentSource::File(path.to_owned()),
+        ending if ending != "png" && ENDINGS.contains(&ending) => {
+            document.lighting.environment = EnvironmentSource::File(path.to_owned())
+        }
         "json" | "png" => match file::open(path)? {
             Opened::Material(material) => {
                 warn(&material.warnings);
@@ -266,19 +300,29 @@ fn render(
     or_fall_back(submitted, &mut session, engine, document)?;
     eprintln!("{} ({})", session.engine(), session.engine().reason);
     let setup_seconds = begun.elapsed().as_secs_f64();
-    let progress = step_to_end(&mut session, engine, document)?;
+    let (progress, denoised) = step_to_end(&mut session, engine, document)?;
     eprintln!("{}", told(&progress));
     let image = session.image()?;
+    let shown = denoised.as_ref().map(|denoised| &denoised.image);
     for path in targets.outputs {
         if targets.has_layers && output::format_of(path)? == Format::Exr {
-            output::write_layers(path, &session.layers()?)?;
+            let layers = Layers {
+                denoised: shown.cloned(),
+                ..session.layers()?
+            };
+            output::write_layers(path, &layers)?;
         } else {
-            output::write(path, &image, document)?;
+            let rendered = Rendered {
+                image: &image,
+                denoised: shown.map(Arc::as_ref),
+            };
+            output::write(path, rendered, document)?;
         }
         eprintln!("wrote {}", path.display());
     }
     if let Some(path) = targets.report {
-        let report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
+        let mut report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
+        add_denoised(&mut report, document, denoised.as_ref());
         let text = serde_json::to_string_pretty(&report)?;
         std::fs::write(path, text + "\n")
             .with_context(|| format!("{}: the report could not be written", path.display()))?;
@@ -298,13 +342,29 @@ pub(super) fn bar(template: &str, steps: u64) -> anyhow::Result<ProgressBar> {
     Ok(ProgressBar::new(steps).with_style(ProgressStyle::with_template(template)?))
 }
 
-/// Steps until the session is done, with a progress bar on a terminal.
-fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document) -> anyhow::Result<Progress> {
+/// What became of the denoised picture, for the report: which quality, null without; seconds; error with its band.
+fn add_denoised(report: &mut serde_json::Value, document: &Document, denoised: Option<&Denoised>) {
+    let error = denoised.and_then(|denoised| denoised.error);
+    report["denoised"] = denoised.map(|_| document.view.denoise.name()).into();
+    report["denoise_seconds"] = denoised.map(|denoised| denoised.seconds).into();
+    report["denoised_error"] = error.map(|error| error.value).into();
+    report["denoised_error_low"] = error.map(|error| error.low).into();
+    report["denoised_error_high"] = error.map(|error| error.high).into();
+}
+
+/// Steps until the session is done, with a progress bar on a terminal, and denoises the picture where that is asked for.
+fn step_to_end(
+    session: &mut Session,
+    engine: EngineChoice,
+    document: &Document,
+) -> anyhow::Result<(Progress, Option<Denoised>)> {
     const BAR_STEPS: f64 = 1000.0;
     let bar = bar("{bar:40} {msg}, {eta} left", BAR_STEPS as u64)?;
+    let mut attendant = Attendant::new(document);
     loop {
         let stepped = session.step(STEP).map(|_| ());
         or_fall_back(stepped, session, engine, document)?;
+        attendant.attend(session, &session.progress())?;
         let progress = session.progress();
         bar.set_position((BAR_STEPS * progress.share_done(document.render.time_s)) as u64);
         let error = progress.noise.map_or(String::new(), |noise| {
@@ -313,7 +373,8 @@ fn step_to_end(session: &mut Session, engine: EngineChoice, document: &Document)
         bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
         if progress.is_done {
             bar.finish_and_clear();
-            return Ok(progress);
+            let denoised = attendant.finish(session)?;
+            return Ok((session.progress(), denoised));
         }
     }
 }
@@ -326,13 +387,17 @@ fn told(progress: &Progress) -> String {
     );
     let Some(noise) = progress.noise else { return samples };
     let [error, low, high] = [noise.relative, noise.low, noise.high].map(|share| 100.0 * share);
+    let denoised = progress.denoised.map_or(String::new(), |told| {
+        let [error, low, high] = [told.value, told.low, told.high].map(|share| 100.0 * share);
+        format!(", denoised {error:.2} % ({low:.2} to {high:.2} %)")
+    });
     let why = match (progress.is_converged(), progress.noise_wanted, progress.stopped_by) {
         (_, None, _) => "",
         (true, ..) => ", as exact as was asked for",
         (false, _, Some(StopReason::Time)) => ", less exact than was asked for: the time was over",
         (false, ..) => ", less exact than was asked for: no more samples are allowed",
     };
-    format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){why}")
+    format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){denoised}{why}")
 }
 
 /// Goes on with the processor where the GPU fails, unless the GPU was asked for by name.
@@ -371,7 +436,7 @@ fn json_report(
     let rays = film.total_rays();
     Ok(serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
-        "engine": engine.kind,
+        "engine": engine.kind.name(),
         "adapter": engine.adapter,
         "driver": engine.driver,
         "width": film.width,
@@ -395,10 +460,18 @@ fn json_report(
     }))
 }
 
-/// The materials that a model's file gives its slots.
-fn slot_materials(model: &Model, lobe: ImportLobe) -> Vec<MaterialSettings> {
-    let slots = model.slots.iter();
-    slots.map(|slot| MaterialSettings::from_slot(slot, lobe)).collect()
+/// What became of the parts of a model's file, as JSON.
+fn write_import_report(path: &Path, model: &Model) -> anyhow::Result<()> {
+    let json = serde_json::json!({
+        "model": model.name,
+        "entries": model.report.entries,
+        "scenes": model.scenes,
+        "variants": model.variants,
+        "animation_seconds": model.duration_s,
+    });
+    let text = serde_json::to_string_pretty(&json)?;
+    file::save_atomically(path, text.as_bytes())?;
+    Ok(())
 }
 
 impl SceneArguments {
@@ -407,31 +480,38 @@ impl SceneArguments {
     /// # Errors
     /// One line that names the file, what is wrong and what to do.
     pub(super) fn document(&self, session: &mut Session) -> anyhow::Result<Document> {
-        let model = session.assets().model(&self.model)?;
         let mut document = Document {
             model: self.model.clone(),
+            import: ModelOptions {
+                scene: self.scene,
+                variant: self.variant.clone(),
+                time_s: self.time_of_pose.map(|time| time as f32),
+                texture_side_max: self.texture_size as u32,
+                pictures: Vec::new(),
+            },
             ground: self.ground,
             ..Document::default()
         };
+        let model = session.assets().model(&self.model, &document.import)?;
+        if let Some(path) = &self.import_report {
+            write_import_report(path, &model)?;
+        }
         if let Some(name) = &self.material {
             let material = preset::find(name)?;
             warn(&material.warnings);
             document.materials = vec![material.value];
         } else if matches!(self.model, ModelSource::File(_)) {
-            document.materials = slot_materials(&model, self.import_lobe);
-        }
-        for assignment in &self.assignments {
-            for material in &mut document.materials {
-                assign(material, assignment)?;
-            }
+            document.materials = materials_of(&model, self.import_lobe);
         }
         let lighting = &mut document.lighting;
         lighting.environment = self.environment.clone();
+        lighting.environment_encoding = self.environment_encoding;
         lighting.rotation_deg = self.environment_rotation as f32;
         lighting.strength = self.environment_strength as f32;
         lighting.background = self.background;
         lighting.background_blur_deg = self.background_blur as f32;
         lighting.area_lights = self.area_lights.clone();
+        document.add_lights_and_cameras(&model);
         let camera = &mut document.camera;
         if let Some([yaw_deg, pitch_deg]) = self.camera_orbit {
             (camera.yaw_deg, camera.pitch_deg) = (yaw_deg, pitch_deg);
@@ -445,6 +525,7 @@ impl SceneArguments {
         document.view.tone_map = self.tone_map;
         document.view.exposure_ev = self.exposure as f32;
         document.view.auto_exposure = self.auto_exposure;
+        document.view.denoise = self.denoise;
         let render = &mut document.render;
         [render.width, render.height] = self.size;
         // With a time or noise to reach only, samples are not limited.
@@ -464,6 +545,9 @@ impl SceneArguments {
         render.seed = self.seed;
         render.filter = self.filter;
         render.effects = self.effects;
+        for assignment in &self.assignments {
+            document.assign(assignment)?;
+        }
         document.check()?;
         Ok(document)
     }

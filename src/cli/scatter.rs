@@ -7,12 +7,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
-use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
+use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::render::EngineChoice;
 
-use super::names::{curve, horizon, lobe};
+use super::names::choice;
 use super::parse::{check_writable, number_in};
 
 /// Samples that fit in memory on any machine of today.
@@ -24,7 +24,7 @@ const IOR: std::ops::RangeInclusive<f64> = 0.2..=5.0;
 #[derive(Debug, Args)]
 pub struct ScatterArguments {
     /// The lobe.
-    #[arg(long, value_name = "NAME", value_parser = lobe)]
+    #[arg(long, value_name = "NAME", value_parser = choice::<Lobe>)]
     lobe: Lobe,
     /// The geometric lobe's curve D(ξ).
     #[arg(long, default_value = "smooth", value_name = "NAME", value_parser = named_curve)]
@@ -33,7 +33,7 @@ pub struct ScatterArguments {
     #[arg(long, default_value = "0.3", value_name = "R", value_parser = number_in(0.0..=1.0), allow_negative_numbers = true)]
     roughness: f64,
     /// What happens to samples below the surface.
-    #[arg(long, default_value = "mirror", value_name = "mirror|absorb|none", value_parser = horizon)]
+    #[arg(long, default_value = "mirror", value_name = "mirror|absorb|none", value_parser = choice::<Horizon>)]
     horizon: Horizon,
     /// Angle between the view and the normal, 0 to 90.
     #[arg(long, default_value = "45", value_name = "DEG", value_parser = number_in(0.0..=90.0), allow_negative_numbers = true)]
@@ -84,7 +84,7 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
     match format_of(&arguments.output)? {
         Format::Csv => write_csv(&arguments.output, &cloud)
             .with_context(|| format!("{}: could not be written; is there room?", arguments.output.display()))?,
-        Format::Png => crate::analysis::plot::scatter_png(&arguments.output, &request, &cloud)?,
+        Format::Png => crate::plot::scatter_png(&arguments.output, &request, &cloud)?,
     }
     eprintln!("wrote {}", arguments.output.display());
     Ok(())
@@ -119,7 +119,7 @@ fn format_of(path: &Path) -> anyhow::Result<Format> {
 
 /// A custom curve's points have no place on the command line.
 fn named_curve(text: &str) -> Result<Curve, String> {
-    match curve(text)? {
+    match choice::<Curve>(text)? {
         Curve::Custom => Err("it has no points here; draw it in the editor, or choose a named curve".to_owned()),
         named => Ok(named),
     }

@@ -19,7 +19,7 @@ pub struct TurntableArguments {
     #[arg(long, default_value_t = 36, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u32).range(1..=9999))]
     frames: u32,
     /// What turns, anticlockwise seen from above.
-    #[arg(long, default_value = "camera", value_name = "camera|model|light", value_parser = names::turn)]
+    #[arg(long, default_value = "camera", value_name = "camera|model|light", value_parser = names::choice::<Turn>)]
     turn: Turn,
     /// The folder for the pictures frame-0001.png, frame-0002.png and so on; made where it is not there.
     #[arg(long, default_value = "turntable", value_name = "FOLDER")]
@@ -69,7 +69,7 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
     let engine = session.engine().clone();
     let report = serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
-        "engine": engine.kind,
+        "engine": engine.kind.name(),
         "adapter": engine.adapter,
         "driver": engine.driver,
         "width": render.width,

@@ -1,9 +1,9 @@
 //! The engine on the processor: the same path tracer as the GPU's, on all cores.
 
-pub mod features;
 pub mod integrator;
 pub mod precision;
 pub mod probe;
+pub mod recorder;
 pub mod sampling;
 pub mod scatter;
 
@@ -12,10 +12,10 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
-use crate::analysis::features::Features;
-use crate::analysis::film::Film;
-use crate::analysis::tiles::{Schedule, SliceLimits, TileGrid, Work};
-use crate::document::job::Job;
+use crate::job::Job;
+use crate::job::features::GUIDE_SAMPLES;
+use crate::job::film::Film;
+use crate::job::tiles::{Schedule, SliceLimits, TileGrid, Work};
 use crate::optics::real::Real;
 use integrator::{Integrator, is_sound};
 
@@ -124,11 +124,6 @@ impl CpuEngine {
         (self.film, self.schedule)
     }
 
-    /// What the camera sees first, over the first `samples` of each pixel; `None` without a job.
-    pub fn features(&self, samples: u32) -> Option<Features> {
-        Some(features::features(self.job.as_deref()?, samples))
-    }
-
     /// Completed samples a pixel.
     pub fn samples_per_pixel(&self) -> u32 {
         self.schedule.samples_per_pixel()
@@ -151,6 +146,9 @@ fn render_tile<T: Real>(integrator: &Integrator<'_, T>, grid: TileGrid, work: &W
                 let [r, g, b] = path.radiance.to_f64();
                 sums.add(pixel, sample, [r, g, b, path.alpha.to_f64()]);
                 sums.clamped += path.clamped.to_f64();
+                if sample < GUIDE_SAMPLES {
+                    sums.guides[pixel].add(&path.seen);
+                }
             } else {
                 sums.dropped += 1;
             }

@@ -5,8 +5,8 @@ use rayon::prelude::*;
 
 use super::integrator::{Integrator, is_sound};
 use super::probe::moved_direction;
-use crate::analysis::precision::{ERROR_BOUND, Finding, PrecisionMap, relative_error};
-use crate::document::job::Job;
+use crate::job::Job;
+use crate::job::precision::{ERROR_BOUND, Finding, PrecisionMap, relative_error};
 use crate::optics::frame::Frame;
 use crate::optics::material::{Material, MaterialNumbers, Surface, material_evaluate, material_sample};
 use crate::optics::random::{RandomState, path_state, random_pair};
@@ -74,7 +74,7 @@ fn find(job: &Job, integrator: &Integrator<'_, f32>, pixel: [u32; 2], size: [u32
     };
     let point = surface_at(&job.geometry, &job.materials, &job.textures, &hit, direction);
     let plain = &job.materials[point.slot as usize];
-    let material = textured_material(&job.textures, &job.tables, plain, point.uvs);
+    let material = textured_material(&job.textures, &job.tables, plain, point.uvs, point.vertex_color);
     let state = path_state(of_picture[0], of_picture[1], settings.seed, 0, settings.sequence);
     Finding {
         cosine: point.surface.normal.dot(point.surface.wo).clamp(0.0, 1.0),

@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::analysis::probe::{
+use crate::job::probe::{
     FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, NO_HIT, ProbeScene, RandomQuestion, RayAnswer,
     RayQuestion,
 };

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use crate::analysis::sampling::{QUAD_NORMAL, SamplingRequest, SamplingRun, SamplingStage};
+use crate::job::sampling::{QUAD_NORMAL, SamplingRequest, SamplingRun, SamplingStage};
 use crate::optics::frame::frame_from_normal;
 use crate::optics::lobe::{Horizon, LobeShape, raw_sampler};
 use crate::optics::random::{Sequence, random_pair, random_state};

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
+use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::lobe::{lobe_evaluate, lobe_sample};
 use crate::optics::random::{Sequence, random_pair, random_state};
 

@@ -1,6 +1,6 @@
 //! What differs between two documents, and what follows from it.
 
-use super::{AreaLight, Document, PARAMETERS, RenderSettings};
+use super::{AreaLight, Document, PARAMETERS, SETTINGS, Stage};
 
 /// What differs between two documents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -21,57 +21,52 @@ pub struct Change {
     pub geometry: bool,
     /// Bounces, sequence, strategy, seed, pixel filter, effects switched on or off, the part that is rendered.
     pub sampling: bool,
-    /// What is to be reached: samples, seconds, noise, and how samples are shared out on the way.
+    /// What is to be reached: samples, seconds, noise, of the samples or of the denoised picture, and how samples are
+    /// shared out on the way.
     pub target: bool,
 }
 
 impl Change {
     /// What differs from `old` in `new`. Names and whatever else no picture depends on do not count.
     pub fn between(old: &Document, new: &Document) -> Self {
-        let (light, other_light) = (&old.lighting, &new.lighting);
-        let (render, other) = (&old.render, &new.render);
-        Self {
-            display: old.view != new.view,
-            camera: old.camera != new.camera,
-            size: (render.width, render.height) != (other.width, other.height),
-            environment: light.environment != other_light.environment,
-            lighting: (
-                light.rotation_deg,
-                light.strength,
-                light.background,
-                light.background_blur_deg,
-            ) != (
-                other_light.rotation_deg,
-                other_light.strength,
-                other_light.background,
-                other_light.background_blur_deg,
-            ),
-            materials: light.ground_color != other_light.ground_color
-                || !look_alike(old, new)
-                || !shine_alike(&light.area_lights, &other_light.area_lights),
-            geometry: (&old.model, old.ground) != (&new.model, new.ground)
-                || !stand_alike(&light.area_lights, &other_light.area_lights),
-            sampling: (
-                render.bounces,
-                render.firefly_clamp,
-                render.sequence,
-                render.strategy,
-                render.seed,
-                render.filter,
-                render.effects,
-                render.region,
-            ) != (
-                other.bounces,
-                other.firefly_clamp,
-                other.sequence,
-                other.strategy,
-                other.seed,
-                other.filter,
-                other.effects,
-                other.region,
-            ),
-            target: aim(render) != aim(other),
+        let mut change = Self::default();
+        for setting in SETTINGS.iter() {
+            if setting.get(old) != setting.get(new) {
+                *change.at(setting.stage) = true;
+            }
         }
+        change.beside_settings(old, new);
+        change
+    }
+
+    /// What a change of a setting of this stage calls for.
+    fn at(&mut self, stage: Stage) -> &mut bool {
+        match stage {
+            Stage::Display => &mut self.display,
+            Stage::Goal => &mut self.target,
+            Stage::Camera => &mut self.camera,
+            Stage::Size => &mut self.size,
+            Stage::Sampling => &mut self.sampling,
+            Stage::Lighting => &mut self.lighting,
+            Stage::Materials => &mut self.materials,
+            Stage::Geometry => &mut self.geometry,
+        }
+    }
+
+    /// What differs in all that is no setting of its own: files, lists, materials.
+    fn beside_settings(&mut self, old: &Document, new: &Document) {
+        let (light, other_light) = (&old.lighting, &new.lighting);
+        let (lights, other_lights) = (&light.area_lights, &other_light.area_lights);
+        let (render, other) = (&old.render, &new.render);
+        self.display |= old.view.denoise_when != new.view.denoise_when;
+        self.target |= old.view.denoise != new.view.denoise;
+        self.environment |= (&light.environment, light.environment_encoding)
+            != (&other_light.environment, other_light.environment_encoding);
+        self.lighting |= light.background != other_light.background;
+        self.materials |= !look_alike(old, new) || !emit_alike(lights, other_lights);
+        self.geometry |=
+            (&old.model, &old.import) != (&new.model, &new.import) || !have_same_shapes(lights, other_lights);
+        self.sampling |= (render.effects, render.region) != (other.effects, other.region);
     }
 
     /// As if nothing had been rendered yet.
@@ -103,45 +98,14 @@ impl Change {
         };
         self != stays
     }
-
-    /// True where geometry must be loaded or built.
-    pub fn needs_geometry(self) -> bool {
-        self.geometry
-    }
-
-    /// True where an environment must be loaded.
-    pub fn needs_environment(self) -> bool {
-        self.environment
-    }
-
-    /// True where materials must be compiled; a model brings its own number of slots.
-    pub fn needs_materials(self) -> bool {
-        self.materials || self.geometry
-    }
-
-    /// True where the picture must be shown anew.
-    pub fn needs_display(self) -> bool {
-        self.display || self.restarts()
-    }
 }
 
-fn aim(render: &RenderSettings) -> impl PartialEq {
-    let RenderSettings {
-        samples,
-        time_s,
-        noise,
-        min_samples,
-        ..
-    } = *render;
-    (samples, time_s, noise, min_samples, render.is_adaptive())
+fn emit_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
+    let emission = |light: &AreaLight| (light.color, light.strength);
+    old.iter().map(emission).eq(new.iter().map(emission))
 }
 
-fn shine_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
-    let shine = |light: &AreaLight| (light.color, light.strength);
-    old.iter().map(shine).eq(new.iter().map(shine))
-}
-
-fn stand_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
+fn have_same_shapes(old: &[AreaLight], new: &[AreaLight]) -> bool {
     old.iter().map(AreaLight::shape).eq(new.iter().map(AreaLight::shape))
 }
 

@@ -108,7 +108,8 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         has_rough_tables: 0,
         texture_roughness: settings.roughness,
         roughness_table: NO_TEXTURE,
-        reserved: [0; 2],
+        has_vertex_colors: u32::from(uses.color && slot.has_vertex_colors),
+        reserved: 0,
     };
     if material.textures[1] == NO_TEXTURE {
         // Else it is brought into range where the texture has been looked up.
@@ -246,6 +247,7 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         normal_strength: 0.0,
         texture_roughness: 0.0,
         roughness_table: NO_TEXTURE,
+        has_vertex_colors: 0,
         base_color: Vec3::zero(),
         emission: Vec3::zero(),
         rotation_rad: 0.0,

@@ -8,33 +8,22 @@ use rayon::prelude::*;
 use super::MaterialSettings;
 use crate::analysis::fit::{Measure, roughness, total_variation};
 use crate::analysis::lobe_model::{LobeModel, NORMAL, roughness_min};
+use crate::named::named;
 use crate::optics::albedo::table_lookup;
 use crate::optics::lobe::Lobe;
 use crate::optics::material::MATCHED_NODES;
 
-/// The lobe that a model's materials get.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum ImportLobe {
-    /// The geometric lobe, its roughness matched to the look of GGX.
-    #[default]
-    Geometric,
-    /// GGX with the roughness of the file.
-    Ggx,
+named! {
+    /// The lobe that a model's materials get.
+    #[derive(Default)]
+    ImportLobe {
+        #[default]
+        Geometric, "geometric", "Geometric", "The geometric lobe, its roughness matched to the look of GGX.";
+        Ggx, "ggx", "GGX", "GGX with the roughness of the file.";
+    }
 }
 
 impl ImportLobe {
-    /// Every choice, in the order of the menus.
-    pub const ALL: &[Self] = &[Self::Geometric, Self::Ggx];
-
-    /// Name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Geometric => "geometric",
-            Self::Ggx => "ggx",
-        }
-    }
-
     /// Gives a material that has the roughness of a file this lobe.
     pub(super) fn apply(self, material: &mut MaterialSettings) {
         match self {

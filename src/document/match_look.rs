@@ -8,11 +8,11 @@ use crate::analysis::fit::{
     CurveFit, CurveTarget, Measure, Merl, fit_curve, nearest_roughness, roughness, total_variation,
 };
 use crate::analysis::lobe_model::{LobeModel, roughness_min, view_direction};
-use crate::analysis::lobe_view::{Axis, LinePlot, Series, slice_angles_deg};
 use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
 use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::vector::{Vec3, vec3};
+use crate::plot::lobe_view::{Axis, LinePlot, Series, slice_angles_deg};
 
 /// Largest distances that a fitted curve may have: long tails need more than 1.
 const DISTANCES_MAX: [f64; 6] = [1.0, 1.5, 2.5, 4.0, 7.0, 12.0];

@@ -151,11 +151,16 @@ impl MaterialSettings {
             metalness: unit(slot.metalness),
             roughness: unit(slot.roughness),
             ior: slot.ior.clamp(1.0, 4.0),
+            specular_weight: unit(slot.specular),
+            specular_color: slot.specular_color.map(unit),
+            anisotropy: slot.anisotropy.clamp(-1.0, 1.0),
+            rotation_deg: slot.anisotropy_rotation_rad.to_degrees(),
+            extra: slot.kept.clone(),
             ..Self::default()
         };
         lobe.apply(&mut material);
         material.textures = TextureUse {
-            color: slot.base_color_texture.is_some(),
+            color: slot.base_color_texture.is_some() || slot.has_vertex_colors,
             roughness: slot.metallic_roughness_texture.is_some(),
             normal: slot.normal_texture.is_some(),
             emission: slot.emissive_texture.is_some(),

@@ -5,23 +5,14 @@ pub mod change;
 mod compile;
 pub mod custom_curve;
 pub mod effect;
-pub mod file;
 pub mod history;
 pub mod import;
-pub mod job;
-pub mod library;
 pub mod match_look;
 mod material;
 pub mod measured_look;
+pub mod of_model;
 pub mod parameter;
-pub mod picture;
-pub mod plan;
-pub mod preset;
-pub mod project;
-pub mod recovery;
-mod registry;
 mod settings;
-pub mod snapshots;
 pub mod technique;
 pub mod turntable;
 
@@ -30,22 +21,21 @@ use serde::{Deserialize, Serialize};
 pub use change::Change;
 pub use compile::{compile, compile_textured};
 pub use custom_curve::CustomCurve;
-pub use file::{FileError, Loaded};
 pub use history::History;
 pub use import::ImportLobe;
 pub use material::{Conductor, MaterialSettings, TextureUse};
-pub use parameter::{Choice, Kind, Parameter, ParameterError, Value, assign, parameter};
-pub use preset::{PRESETS, load_material, material_by_name, save_material};
-pub use project::{load_document, save_document};
-pub use registry::PARAMETERS;
+pub use parameter::{
+    Choice, Kind, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, Value, assign, parameter, setting,
+};
 pub use settings::{
-    AreaLight, AreaLightShape, Background, Bookmark, CameraSettings, Lighting, RenderSettings, SettingError, Strategy,
-    ViewSettings, range,
+    AreaLight, AreaLightShape, Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings,
+    SettingError, ViewSettings, range,
 };
 
+pub use crate::job::Strategy;
 pub use crate::scene::camera::PixelFilter;
 
-use crate::scene::ModelSource;
+use crate::scene::{ModelOptions, ModelSource};
 
 /// Everything that a picture depends on, except for the contents of the files it names.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,6 +43,8 @@ use crate::scene::ModelSource;
 pub struct Document {
     /// What is rendered.
     pub model: ModelSource,
+    /// What is shown of a file that holds more than one picture.
+    pub import: ModelOptions,
     /// Whether the model stands on a ground plane.
     pub ground: bool,
     /// The materials in the order of the model's slots. A slot beyond the last takes the last one.
@@ -76,6 +68,7 @@ impl Default for Document {
     fn default() -> Self {
         Self {
             model: ModelSource::default(),
+            import: ModelOptions::default(),
             ground: false,
             materials: vec![MaterialSettings::default()],
             lighting: Lighting::default(),

@@ -5,11 +5,15 @@ use std::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
 use super::effect::{EffectSwitches, Switch};
+use super::parameter::{ParameterError, SETTINGS, Stage};
 use super::{Document, MaterialSettings};
+use crate::job::Strategy;
+use crate::job::effect::EffectId;
+use crate::named::named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 use crate::scene::camera::PixelFilter;
-use crate::scene::environment::EnvironmentSource;
+use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 use crate::scene::light::AreaShape;
 
 /// The ranges of the settings, both ends included.
@@ -54,6 +58,10 @@ pub mod range {
     pub const FIREFLY_CLAMP: RangeInclusive<f64> = 1e-6..=1e9;
     /// Distance and sides of an area light, bounding radii.
     pub const AREA_LENGTH: RangeInclusive<f64> = 1e-3..=1e3;
+    /// The longest side of a model's textures, texels.
+    pub const TEXTURE_SIDE: RangeInclusive<f64> = 16.0..=16384.0;
+    /// Time of a model's pose, seconds.
+    pub const POSE_TIME_S: RangeInclusive<f64> = 0.0..=1e6;
     /// How many area lights there may be.
     pub const AREA_LIGHTS: RangeInclusive<f64> = 0.0..=8.0;
     /// Linear colours of things that do not emit.
@@ -66,6 +74,8 @@ pub mod range {
 pub struct Lighting {
     /// The environment map.
     pub environment: EnvironmentSource,
+    /// What the numbers of a picture for screens stand for, where the map is one.
+    pub environment_encoding: EnvironmentEncoding,
     /// Turn of the map about +Y, anticlockwise seen from above, degrees.
     pub rotation_deg: f32,
     /// Factor on its radiance, at least 0.
@@ -85,6 +95,7 @@ impl Default for Lighting {
     fn default() -> Self {
         Self {
             environment: EnvironmentSource::default(),
+            environment_encoding: EnvironmentEncoding::default(),
             rotation_deg: 0.0,
             strength: 1.0,
             background: Background::default(),
@@ -228,6 +239,32 @@ pub struct ViewSettings {
     pub exposure_ev: f32,
     /// The exposure is added to one that brings the picture's mean brightness to middle grey.
     pub auto_exposure: bool,
+    /// Whether the picture's noise is taken out, and how.
+    pub denoise: Denoise,
+    /// When that is done in the window.
+    pub denoise_when: DenoiseWhen,
+}
+
+named! {
+    /// How a picture's noise is taken out.
+    #[derive(Default)]
+    Denoise {
+        #[default]
+        Off = 0, "off", "Off", "The samples as they are.";
+        Fast = 1, "fast", "Fast", "Noise is taken out, in about half the time.";
+        High = 2, "high", "High quality", "Noise is taken out as well as can be.";
+        Auto = 3, "auto", "Until samples are better", "Noise is taken out as well as can be, and less where the samples alone are nearer to the truth: tile by tile, so that the picture converges to it.";
+    }
+}
+
+named! {
+    /// When the window takes a picture's noise out.
+    #[derive(Default)]
+    DenoiseWhen {
+        #[default]
+        Rendering = 0, "rendering", "While rendering", "From the first sample on.";
+        End = 1, "end", "At the end", "Once all has been rendered.";
+    }
 }
 
 /// How, and for how long, the picture is rendered.
@@ -298,52 +335,14 @@ impl RenderSettings {
 
     /// Whether samples go where the error is.
     pub fn is_adaptive(&self) -> bool {
-        let is_switched_off = self.effects.get("adaptive-sampling") == Switch::Off;
+        let is_switched_off = self.effects.get(EffectId::AdaptiveSampling) == Switch::Off;
         !is_switched_off && self.adaptive.unwrap_or(self.noise.is_some())
-    }
-}
-
-macro_rules! named {
-    ($(#[$doc:meta])* $type:ident { $($(#[$attribute:meta])* $variant:ident = $index:literal, $name:literal, $label:literal, $help:literal;)* }) => {
-        $(#[$doc])*
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-        #[repr(u32)]
-        pub enum $type {
-            $(#[doc = $help] #[serde(rename = $name)] $(#[$attribute])* $variant = $index,)*
-        }
-
-        impl $type {
-            /// Every one, in the order of the menus.
-            pub const ALL: &'static [$type] = &[$($type::$variant),*];
-
-            /// Name in files and on the command line.
-            pub fn name(self) -> &'static str {
-                match self { $($type::$variant => $name,)* }
-            }
-            /// Name in the menus.
-            pub fn label(self) -> &'static str {
-                match self { $($type::$variant => $label,)* }
-            }
-            /// What it means.
-            pub fn help(self) -> &'static str {
-                match self { $($type::$variant => $help,)* }
-            }
-        }
-    };
-}
-
-named! {
-    /// How light is found. All three converge to the same picture.
-    Strategy {
-        Lobe = 0, "lobe", "Lobe", "Sample the material's lobe and see what light it meets.";
-        Light = 1, "light", "Light", "Sample the light and see how the material reflects it.";
-        #[default]
-        Mis = 2, "mis", "Both (MIS)", "Sample both, each weighed by its density (Veach 1997).";
     }
 }
 
 named! {
     /// The shape of an area light.
+    #[derive(Default)]
     AreaLightShape {
         #[default]
         Quad = 0, "quad", "Rectangle", "Two sides, width and height.";
@@ -353,114 +352,79 @@ named! {
 
 /// A setting out of its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{name} is {value}; it must lie between {low} and {high}")]
-pub struct SettingError {
-    /// The setting as it is called in files.
-    pub name: &'static str,
-    /// Its value.
-    pub value: f64,
-    /// The least value it takes.
-    pub low: f64,
-    /// The largest value it takes.
-    pub high: f64,
+pub enum SettingError {
+    /// Of the table.
+    #[error(transparent)]
+    Setting(#[from] ParameterError),
+    /// Of a bookmark's camera.
+    #[error("bookmark {0}: {1}")]
+    Bookmark(String, ParameterError),
+    /// A number of a list.
+    #[error("{name} is {value}; it must lie between {low} and {high}")]
+    Range {
+        /// As it is called in files.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The least value it takes.
+        low: f64,
+        /// The largest value it takes.
+        high: f64,
+    },
 }
 
 /// See [`Document::check`].
 pub(super) fn check(document: &Document) -> Result<(), SettingError> {
-    use range as r;
-    let Document {
-        lighting,
-        camera,
-        view,
-        render,
-        ..
-    } = document;
-    let colors = match lighting.background {
-        Background::Color(color) => [color, lighting.ground_color],
-        _ => [lighting.ground_color; 2],
+    for setting in SETTINGS.iter() {
+        setting.check(&setting.get(document))?;
+    }
+    for bookmark in &document.bookmarks {
+        let seen = Document {
+            camera: bookmark.camera,
+            ..Document::default()
+        };
+        for setting in SETTINGS.iter().filter(|setting| setting.stage == Stage::Camera) {
+            let checked = setting.check(&setting.get(&seen));
+            checked.map_err(|error| SettingError::Bookmark(bookmark.name.clone(), error))?;
+        }
+    }
+    let lights = &document.lighting.area_lights;
+    let number = (
+        "the number of lighting.area_lights",
+        lights.len() as f64,
+        range::AREA_LIGHTS,
+    );
+    let background = match document.lighting.background {
+        Background::Color(color) => color.map(f64::from),
+        _ => [0.0; 3],
     };
-    let single = [
-        (
-            "lighting.rotation_deg",
-            f64::from(lighting.rotation_deg),
-            r::ROTATION_DEG,
-        ),
-        ("lighting.strength", f64::from(lighting.strength), r::STRENGTH),
-        (
-            "lighting.background_blur_deg",
-            f64::from(lighting.background_blur_deg),
-            r::BACKGROUND_BLUR_DEG,
-        ),
-        ("view.exposure_ev", f64::from(view.exposure_ev), r::EXPOSURE_EV),
-        ("render.width", f64::from(render.width), r::SIZE),
-        ("render.height", f64::from(render.height), r::SIZE),
-        ("render.samples", f64::from(render.samples), r::SAMPLES),
-        ("render.time_s", render.time_s.unwrap_or(1.0), r::TIME_S),
-        ("render.noise", render.noise.unwrap_or(1.0), r::NOISE),
-        ("render.min_samples", f64::from(render.min_samples), r::MIN_SAMPLES),
-        ("render.bounces", f64::from(render.bounces), r::BOUNCES),
-        (
-            "render.firefly_clamp",
-            f64::from(render.firefly_clamp.unwrap_or(1.0)),
-            r::FIREFLY_CLAMP,
-        ),
-        (
-            "the number of lighting.area_lights",
-            lighting.area_lights.len() as f64,
-            r::AREA_LIGHTS,
-        ),
-    ];
-    let of_area_lights = lighting.area_lights.iter().flat_map(area_light_numbers);
-    let triples = [
-        ("lighting.background", colors[0].map(f64::from), r::COLOR),
-        ("lighting.ground_color", colors[1].map(f64::from), r::COLOR),
-    ];
-    let of_bookmarks = document
-        .bookmarks
+    let background = background.map(|value| ("lighting.background", value, range::COLOR));
+    let sides = render_region(document);
+    let numbers = lights
         .iter()
-        .flat_map(|bookmark| camera_numbers(&bookmark.camera))
-        .map(|(_, value, range)| ("a number of a bookmark's camera", value, range));
-    let region = render
-        .region
-        .unwrap_or([0.0, 0.0, 1.0, 1.0])
-        .map(|side| ("render.region", side, r::REGION));
-    let components = triples
-        .into_iter()
-        .flat_map(|(name, values, range)| values.map(|value| (name, value, range.clone())));
-    let numbers = single.into_iter().chain(of_area_lights).chain(components).chain(region);
-    // Within the picture, and not empty.
-    let [left, top, right, bottom] = render.region.unwrap_or([0.0, 0.0, 1.0, 1.0]);
-    let sides = [(right, left), (bottom, top)].map(|(far, near)| ("render.region", far, near.next_up()..=1.0));
-    let numbers = numbers.chain(camera_numbers(camera)).chain(of_bookmarks).chain(sides);
+        .flat_map(area_light_numbers)
+        .chain(background)
+        .chain(sides)
+        .chain([number]);
     for (name, value, range) in numbers {
         if !range.contains(&value) {
             let (low, high) = range.into_inner();
-            return Err(SettingError { name, value, low, high });
+            return Err(SettingError::Range { name, value, low, high });
         }
     }
     Ok(())
 }
 
-fn camera_numbers(camera: &CameraSettings) -> impl Iterator<Item = (&'static str, f64, RangeInclusive<f64>)> {
-    use range as r;
-    let single = [
-        ("camera.yaw_deg", camera.yaw_deg, r::YAW_DEG),
-        ("camera.pitch_deg", camera.pitch_deg, r::PITCH_DEG),
-        ("camera.fov_deg", camera.fov_deg, r::FOV_DEG),
-        ("camera.distance", camera.distance.unwrap_or(1.0), r::DISTANCE),
-        ("camera.aperture", camera.aperture, r::APERTURE),
-        (
-            "camera.focus_distance",
-            camera.focus_distance.unwrap_or(1.0),
-            r::DISTANCE,
-        ),
-    ];
-    let place = |name, place: Option<[f64; 3]>| place.unwrap_or_default().map(|value| (name, value, r::COORDINATE));
-    let places = [
-        place("camera.target", camera.target),
-        place("camera.position", camera.position),
-    ];
-    single.into_iter().chain(places.into_iter().flatten())
+/// The sides of the rendered part: within the picture, and not empty.
+fn render_region(document: &Document) -> [(&'static str, f64, RangeInclusive<f64>); 4] {
+    let [left, top, right, bottom] = document.render.region.unwrap_or([0.0, 0.0, 1.0, 1.0]);
+    let far = |near: f64| near.next_up()..=1.0;
+    [
+        ("render.region", left, range::REGION),
+        ("render.region", top, range::REGION),
+        ("render.region", right, far(left)),
+        ("render.region", bottom, far(top)),
+    ]
 }
 
 /// What an area light is checked for.

@@ -1,48 +1,16 @@
 //! The frames of a turntable: one document turned once about the vertical axis.
 
 use super::Document;
+use crate::named::named;
 
-/// What turns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Turn {
-    /// The camera goes around; model and light stay.
-    #[default]
-    Camera,
-    /// The model turns where it stands; camera and light stay.
-    Model,
-    /// The light goes around: environment and area lights; camera and model stay.
-    Light,
-}
-
-impl Turn {
-    /// All of them, in the order of the menus.
-    pub const ALL: &'static [Self] = &[Self::Camera, Self::Model, Self::Light];
-
-    /// Name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Camera => "camera",
-            Self::Model => "model",
-            Self::Light => "light",
-        }
-    }
-
-    /// Name in the menus.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Camera => "Camera",
-            Self::Model => "Model",
-            Self::Light => "Light",
-        }
-    }
-
-    /// What it does to the pictures.
-    pub fn help(self) -> &'static str {
-        match self {
-            Self::Camera => "The camera goes around; model and light stay.",
-            Self::Model => "The model turns where it stands; camera and light stay.",
-            Self::Light => "The light goes around; camera and model stay.",
-        }
+named! {
+    /// What turns.
+    #[derive(Default)]
+    Turn {
+        #[default]
+        Camera, "camera", "Camera", "The camera goes around; model and light stay.";
+        Model, "model", "Model", "The model turns where it stands; camera and light stay.";
+        Light, "light", "Light", "Environment and area lights go around; camera and model stay.";
     }
 }
 

@@ -5,30 +5,26 @@ use std::time::{Duration, Instant};
 
 use super::compute;
 use super::device::{GpuDevice, GpuError};
-use super::layout::{PixelStatistics, Tile};
+use super::layout::{PixelColors, PixelStatistics, Tile};
 use super::pipeline::Pipelines;
 use super::resources::{DISPATCH_TILES, Resources};
 use super::timer::Timer;
-use crate::analysis::features::{FeatureSums, Features};
-use crate::analysis::film::Film;
-use crate::analysis::tiles::{Schedule, SliceLimits, Work};
-use crate::document::job::Job;
-use crate::document::plan::Specialisation;
+use crate::job::Job;
+use crate::job::features::GuideSums;
+use crate::job::film::Film;
+use crate::job::plan::Specialisation;
+use crate::job::tiles::{Schedule, SliceLimits, Work};
 
 /// Longest dispatch: other users of the adapter, the window among them, wait for its end.
 const SLICE: Duration = Duration::from_millis(30);
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
-/// Tiles of a dispatch that looks for features: one ray a pixel.
-const FEATURE_TILES: usize = 2048;
 
 /// Renders on a GPU.
 #[derive(Debug)]
 pub struct GpuEngine {
     gpu: GpuDevice,
     pipelines: Pipelines,
-    /// Compiled at the first use.
-    feature_pipelines: Option<Pipelines>,
     resources: Option<Resources>,
     film: Film,
     schedule: Schedule,
@@ -39,9 +35,9 @@ pub struct GpuEngine {
     /// Pixel samples a second, to cut work to a budget; 0 before the first slice.
     samples_per_second: f64,
     timer: Option<Timer>,
-    /// Threads of software Vulkan, each of which gets as many neighbouring workgroups: what is dealt to them costs each as
-    /// much. 1 on a GPU, which gives each of its units the next one.
-    hands: usize,
+    /// Groups that tiles are interleaved in: one for each thread of software Vulkan, which takes a run of workgroups and would
+    /// else render cheap background while another renders the model. 1 on a GPU, whose units take one workgroup at a time.
+    groups: usize,
     /// What the dispatches of the job took by the timer.
     gpu_seconds: f64,
 }
@@ -55,14 +51,13 @@ impl GpuEngine {
         let pipelines = Pipelines::new(&gpu)?;
         Ok(Self {
             timer: Timer::new(&gpu),
-            hands: if gpu.is_software() {
+            groups: if gpu.is_software() {
                 std::thread::available_parallelism().map_or(1, usize::from)
             } else {
                 1
             },
             gpu,
             pipelines,
-            feature_pipelines: None,
             resources: None,
             film: Film::default(),
             schedule: Schedule::default(),
@@ -172,7 +167,7 @@ impl GpuEngine {
             first_sample: work.first_sample,
             sample_count: work.count,
         };
-        let tiles: Vec<Tile> = dealt(works, self.hands).map(tile).collect();
+        let tiles: Vec<Tile> = interleaved(works, self.groups).map(tile).collect();
         let begun = Instant::now();
         self.dispatch(&tiles)?;
         let seconds = begun.elapsed().as_secs_f64().max(1e-6);
@@ -206,23 +201,25 @@ impl GpuEngine {
             return Ok(());
         };
         let pixels = self.film.color.len();
-        let colors: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
+        let colors: Vec<PixelColors> = self.gpu.read(&resources.sums[0], pixels)?;
         let statistics: Vec<PixelStatistics> = self.gpu.read(&resources.sums[1], pixels)?;
-        for (sum, color) in self.film.color.iter_mut().zip(colors) {
-            for (sum, x) in sum.iter_mut().zip(color) {
-                *sum += f64::from(x);
-            }
+        let guides: Vec<GuideSums> = self.gpu.read(&resources.sums[2], pixels)?;
+        for (pixel, colors) in colors.iter().enumerate() {
+            add(&mut self.film.color[pixel], &colors.all);
+            add(&mut self.film.odd_color[pixel], &colors.odd);
+            self.film.odd_statistics[pixel][1] += f64::from(colors.odd_kept);
         }
         for (pixel, sums) in statistics.iter().enumerate() {
-            let (of_all, of_odd) = (&mut self.film.statistics[pixel], &mut self.film.odd[pixel]);
+            let of_all = &mut self.film.statistics[pixel];
             of_all[0] += f64::from(sums.luminance_squared);
             of_all[1] += f64::from(sums.kept);
-            of_odd[0] += f64::from(sums.odd_luminance);
-            of_odd[1] += f64::from(sums.odd_luminance_squared);
-            of_odd[2] += f64::from(sums.odd_kept);
+            self.film.odd_statistics[pixel][0] += f64::from(sums.odd_luminance_squared);
             self.film.rays[pixel] += f64::from(sums.rays);
             self.film.dropped += sums.dropped as u64;
             self.film.clamped += f64::from(sums.clamped);
+        }
+        for (sums, seen) in self.film.guides.iter_mut().zip(&guides) {
+            sums.add(seen);
         }
         resources.clear_sums(&self.gpu);
         (self.unflushed, self.is_flushed) = (0, true);
@@ -236,52 +233,6 @@ impl GpuEngine {
     pub fn film(&mut self) -> Result<&Film, GpuError> {
         self.flush()?;
         Ok(&self.film)
-    }
-
-    /// What the camera sees first, over the first `samples` of each pixel; `None` without a job.
-    ///
-    /// # Errors
-    /// If the device fails.
-    pub fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
-        // The sums lend their place.
-        self.flush()?;
-        let Some(resources) = &self.resources else {
-            return Ok(None);
-        };
-        let pipelines = match self.feature_pipelines.take() {
-            Some(pipelines) => pipelines,
-            None => self.pipelines.beside(&self.gpu, "features")?,
-        };
-        let pipelines = self.feature_pipelines.insert(pipelines);
-        let job = resources.job();
-        let pipeline = pipelines.get(&self.gpu, &job.plan)?;
-        let grid = self.schedule.grid();
-        let numbers: Vec<usize> = (0..grid.tiles()).collect();
-        for first_sample in 0..samples {
-            for some in numbers.chunks(FEATURE_TILES) {
-                let tile = |&number: &usize| Tile {
-                    origin: grid.origin(number),
-                    first_sample,
-                    sample_count: 1,
-                };
-                let tiles: Vec<Tile> = some.iter().map(tile).collect();
-                dispatch(&self.gpu, resources, pipeline, &tiles, None)?;
-            }
-        }
-        let pixels = self.film.color.len();
-        let albedo_hits: Vec<[f32; 4]> = self.gpu.read(&resources.sums[0], pixels)?;
-        let normal_depth: Vec<PixelStatistics> = self.gpu.read(&resources.sums[1], pixels)?;
-        resources.clear_sums(&self.gpu);
-        let both = albedo_hits.into_iter().zip(normal_depth);
-        let sums: Vec<_> = both
-            .map(|(albedo_hits, lent)| FeatureSums {
-                albedo_hits,
-                normal_depth: [lent.luminance_squared, lent.kept, lent.odd_luminance, lent.odd_kept],
-            })
-            .collect();
-        let units = job.geometry.world_units_per_unit;
-        let size = [grid.width, grid.height];
-        Ok(Some(Features::from_sums(size, &sums, samples, units)))
     }
 
     /// What has been rendered of each tile.
@@ -300,9 +251,15 @@ impl GpuEngine {
     }
 }
 
-/// All of them in the order in which so many players lay down their cards, one after the other, once they were dealt.
-fn dealt<T>(cards: &[T], hands: usize) -> impl Iterator<Item = &T> {
-    (0..hands).flat_map(move |hand| cards.iter().skip(hand).step_by(hands))
+fn add(sums: &mut [f64], values: &[f32]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += f64::from(*value);
+    }
+}
+
+/// The items of `groups` interleaved groups, one group after the other: 0, n, 2n, …, then 1, n + 1, …
+fn interleaved<T>(items: &[T], groups: usize) -> impl Iterator<Item = &T> {
+    (0..groups).flat_map(move |group| items.iter().skip(group).step_by(groups))
 }
 
 /// Runs a pass over tiles, and waits for its end.
@@ -321,11 +278,11 @@ fn dispatch(
 
 #[cfg(test)]
 mod tests {
-    use super::dealt;
+    use super::interleaved;
 
     #[test]
-    fn every_tile_is_dealt_and_neighbours_go_to_different_hands() {
-        let of = |hands| dealt(&[0, 1, 2, 3, 4, 5, 6], hands).copied().collect::<Vec<_>>();
+    fn every_tile_is_in_a_group_and_neighbours_are_in_different_ones() {
+        let of = |groups| interleaved(&[0, 1, 2, 3, 4, 5, 6], groups).copied().collect::<Vec<_>>();
         assert_eq!(of(1), [0, 1, 2, 3, 4, 5, 6]);
         assert_eq!(of(2), [0, 2, 4, 6, 1, 3, 5]);
         assert_eq!(of(9), [0, 1, 2, 3, 4, 5, 6]);

@@ -1,9 +1,9 @@
 //! Compiled kernels kept on disk between starts, where the driver can (`Features::PIPELINE_CACHE`: Vulkan).
 
-use std::path::PathBuf;
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
 use super::device::GpuDevice;
-use crate::document::file::save_atomically;
 
 /// The driver's cache of a device, and the file that it is kept in.
 #[derive(Debug)]
@@ -48,12 +48,20 @@ impl KernelCache {
     /// Writes what the driver has compiled. A cache: where it can't be written, the next start compiles again.
     pub(super) fn save(&self) {
         let Some(data) = self.cache.get_data() else { return };
-        let written = self.path.parent().map(std::fs::create_dir_all);
-        let written = written.is_some_and(|made| made.is_ok()) && save_atomically(&self.path, &data).is_ok();
-        if !written {
-            log::debug!("{}: compiled kernels could not be kept", self.path.display());
+        if let Err(error) = replace(&self.path, &data) {
+            log::debug!("{}: compiled kernels could not be kept: {error}", self.path.display());
         }
     }
+}
+
+/// Another start finds the old cache or the new one, never a part.
+fn replace(path: &Path, data: &[u8]) -> std::io::Result<()> {
+    let folder = path.parent().unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)?;
+    let mut file = tempfile::NamedTempFile::new_in(folder)?;
+    file.write_all(data)?;
+    file.persist(path)?;
+    Ok(())
 }
 
 #[cfg(test)]

@@ -2,9 +2,22 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::document::job::{BackgroundKind, Settings};
+use crate::job::{BackgroundKind, Settings};
 use crate::scene::Geometry;
 use crate::scene::camera::Camera;
+
+const BACKGROUND_ENVIRONMENT: u32 = 0;
+const BACKGROUND_TRANSPARENT: u32 = 1;
+const BACKGROUND_COLOR: u32 = 2;
+const BACKGROUND_BLURRED: u32 = 3;
+
+/// The kinds of background by their names in WGSL, with the numbers that the shaders know them by.
+pub(super) const BACKGROUNDS: [(&str, u32); 4] = [
+    ("ENVIRONMENT", BACKGROUND_ENVIRONMENT),
+    ("TRANSPARENT", BACKGROUND_TRANSPARENT),
+    ("COLOR", BACKGROUND_COLOR),
+    ("BLURRED", BACKGROUND_BLURRED),
+];
 
 /// The uniforms of a job.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
@@ -60,7 +73,19 @@ pub struct Tile {
     pub sample_count: u32,
 }
 
-/// Sums over the samples of a pixel since the host last took them.
+/// Sums of a pixel's colours since the host last took them.
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+#[repr(C)]
+pub struct PixelColors {
+    /// Linear red, green, blue and the coverage.
+    pub all: [f32; 4],
+    /// Red, green and blue of the odd samples.
+    pub odd: [f32; 3],
+    /// Odd samples in the sums.
+    pub odd_kept: f32,
+}
+
+/// Other sums over the samples of a pixel since the host last took them.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct PixelStatistics {
@@ -68,12 +93,8 @@ pub struct PixelStatistics {
     pub luminance_squared: f32,
     /// Samples in the sums.
     pub kept: f32,
-    /// Sum of the odd samples' luminance.
-    pub odd_luminance: f32,
     /// Sum of the odd samples' squared luminance.
     pub odd_luminance_squared: f32,
-    /// Odd samples in the sums.
-    pub odd_kept: f32,
     /// Samples that were not sound.
     pub dropped: f32,
     /// Rays traced.
@@ -86,10 +107,10 @@ impl Globals {
     /// The uniforms of a job.
     pub fn new(settings: &Settings, node_count: usize, environment_cells_size: [u32; 2]) -> Self {
         let (background_kind, background) = match settings.background {
-            BackgroundKind::Environment => (0, [0.0; 3]),
-            BackgroundKind::Transparent => (1, [0.0; 3]),
-            BackgroundKind::Color(color) => (2, color),
-            BackgroundKind::Blurred(sine) => (3, [sine as f32, 0.0, 0.0]),
+            BackgroundKind::Environment => (BACKGROUND_ENVIRONMENT, [0.0; 3]),
+            BackgroundKind::Transparent => (BACKGROUND_TRANSPARENT, [0.0; 3]),
+            BackgroundKind::Color(color) => (BACKGROUND_COLOR, color),
+            BackgroundKind::Blurred(sine) => (BACKGROUND_BLURRED, [sine as f32, 0.0, 0.0]),
         };
         Self {
             camera: settings.camera.cast(),

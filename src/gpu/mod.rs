@@ -3,6 +3,7 @@
 mod compute;
 pub mod device;
 mod engine;
+mod generated_shader;
 mod kernel_cache;
 pub mod layout;
 mod pipeline;

@@ -6,7 +6,7 @@ use super::compute::{self, READ, UNIFORMS, WRITE, buffer_entry};
 use super::device::{GpuDevice, GpuError};
 use super::kernel_cache::KernelCache;
 use super::shader;
-use crate::document::plan::{Plan, Specialisation};
+use crate::job::plan::{Plan, Specialisation};
 
 /// A pass over the picture: its shader, its binding layout, and a pipeline for each plan met.
 #[derive(Debug)]
@@ -32,14 +32,6 @@ impl Pipelines {
             entries: &binding_entries(),
         });
         Self::of_pass(gpu, "path_trace", bindings)
-    }
-
-    /// Links and compiles another pass that reads the same bindings.
-    ///
-    /// # Errors
-    /// As [`Pipelines::new`].
-    pub fn beside(&self, gpu: &GpuDevice, name: &'static str) -> Result<Self, GpuError> {
-        Self::of_pass(gpu, name, self.bindings.clone())
     }
 
     fn of_pass(gpu: &GpuDevice, name: &'static str, bindings: wgpu::BindGroupLayout) -> Result<Self, GpuError> {
@@ -94,7 +86,7 @@ impl Pipelines {
     }
 }
 
-/// Uniforms, eleven read-only buffers, the environment's map, two buffers of sums.
+/// Uniforms, eleven read-only buffers, the environment's map, three buffers of sums.
 fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let environment_map = wgpu::BindGroupLayoutEntry {
         ty: wgpu::BindingType::Texture {
@@ -107,8 +99,8 @@ fn binding_entries() -> Vec<wgpu::BindGroupLayoutEntry> {
     let entry = |binding: u32| match binding {
         0 => buffer_entry(binding, UNIFORMS),
         7 => environment_map,
-        9 | 10 => buffer_entry(binding, WRITE),
+        9 | 10 | 15 => buffer_entry(binding, WRITE),
         _ => buffer_entry(binding, READ),
     };
-    (0..=14).map(entry).collect()
+    (0..=15).map(entry).collect()
 }

@@ -9,7 +9,7 @@ use wgpu::util::DeviceExt;
 use super::compute::{self, READ, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
 use super::layout::{self, Globals};
-use crate::analysis::probe::ProbeScene;
+use crate::job::probe::ProbeScene;
 
 /// Questions a dispatch: within the limit of 65 535 workgroups of 64.
 const BATCH: usize = 1 << 20;

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::device::{GpuDevice, GpuError};
-use super::layout::{self, Globals, PixelStatistics, Tile};
-use crate::document::job::Job;
+use super::layout::{self, Globals, PixelColors, PixelStatistics, Tile};
+use crate::job::Job;
+use crate::job::features::GuideSums;
 use crate::scene::Geometry;
 use crate::scene::environment::Environment;
 
@@ -24,8 +25,8 @@ pub struct Resources {
     light_cells: wgpu::Buffer,
     /// Records, words.
     textures: [wgpu::Buffer; 2],
-    /// Sums of colours and of statistics since the last flush.
-    pub sums: [wgpu::Buffer; 2],
+    /// Sums of colours, of statistics and of what is seen first, since the last flush.
+    pub sums: [wgpu::Buffer; 3],
     /// What a dispatch renders: [`Tile`] by tile.
     pub tiles: wgpu::Buffer,
     pub bind_group: wgpu::BindGroup,
@@ -75,8 +76,9 @@ impl Resources {
         let sums = match old.filter(|old| pixels(&old.job) == pixels(&job)) {
             Some(old) => old.sums.clone(),
             None => [
-                gpu.empty_storage("the picture", bytes_of(size_of::<[f32; 4]>()))?,
+                gpu.empty_storage("the picture", bytes_of(size_of::<PixelColors>()))?,
                 gpu.empty_storage("the picture", bytes_of(size_of::<PixelStatistics>()))?,
+                gpu.empty_storage("the picture", bytes_of(size_of::<GuideSums>()))?,
             ],
         };
         clear(gpu, &sums);
@@ -107,6 +109,7 @@ impl Resources {
             tiles.as_entire_binding(),
             textures[0].as_entire_binding(),
             textures[1].as_entire_binding(),
+            sums[2].as_entire_binding(),
         ];
         let entries: Vec<_> = (0..)
             .zip(resources)

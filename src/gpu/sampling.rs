@@ -8,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 use super::device::{GpuDevice, GpuError};
 use super::scatter::LobePass;
 use super::timer::Timer;
-use crate::analysis::sampling::{QUAD_NORMAL, SamplingRequest, SamplingRun};
+use crate::job::sampling::{QUAD_NORMAL, SamplingRequest, SamplingRun};
 use crate::optics::vector::Vec3;
 
 /// Pixels along a side of a workgroup.

@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use super::compute::{self, READ, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
 use super::timer::Timer;
-use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
+use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::vector::Vec3;
 
 /// Samples a dispatch: within the limit of 65 535 workgroups of 64.

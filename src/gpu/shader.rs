@@ -7,15 +7,12 @@ use std::path::Path;
 
 use include_dir::{Dir, include_dir};
 
-use crate::optics::lobe::Lobe;
+pub use super::generated_shader::GENERATED;
 
 static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 
 /// The environment variable that names a folder of shaders to read in place of those in the program.
 pub const FOLDER_VARIABLE: &str = "GLOSSMITH_SHADERS";
-
-/// The module that is generated from the registry of lobes.
-const LOBE_REGISTRY: &str = "optics/lobe/registry";
 
 /// A shader with everything that it imports.
 #[derive(Clone, Debug, Default)]
@@ -102,8 +99,8 @@ pub fn module_names() -> Vec<String> {
 }
 
 fn module_source(module: &str) -> Result<String, String> {
-    if module == LOBE_REGISTRY {
-        return Ok(lobe_registry());
+    if let Some((_, generate)) = GENERATED.iter().find(|(name, _)| *name == module) {
+        return Ok(generate());
     }
     let name = format!("{module}.wgsl");
     if let Some(folder) = std::env::var_os(FOLDER_VARIABLE)
@@ -115,60 +112,4 @@ fn module_source(module: &str) -> Result<String, String> {
     let text = file.and_then(|file| file.contents_utf8());
     text.map(str::to_owned)
         .ok_or_else(|| format!("no shader module {module}"))
-}
-
-/// WGSL that finds a lobe's functions by its number: the twin of the `match`es in `src/optics/lobe/mod.rs`.
-fn lobe_registry() -> String {
-    let mut text = String::from("// Generated from the registry in src/optics/lobe/mod.rs.\n");
-    for lobe in Lobe::ALL {
-        text += &format!("#import \"optics/lobe/{}\"\n", lobe.module());
-    }
-    for lobe in Lobe::ALL {
-        text += &format!(
-            "const LOBE_{}: u32 = {}u;\n",
-            lobe.module().to_uppercase(),
-            *lobe as u32
-        );
-    }
-    let cases = |call: &dyn Fn(&str) -> String| -> String {
-        let case = |lobe: &Lobe| {
-            format!(
-                "        case {}u: {{ return {}; }}\n",
-                *lobe as u32,
-                call(lobe.module())
-            )
-        };
-        Lobe::ALL.iter().map(case).collect()
-    };
-    let dispatch = |signature: &str, switch: &str, cases: String, otherwise: &str| {
-        format!(
-            "fn {signature} {{\n    switch {switch} {{\n{cases}        default: {{ return {otherwise}; }}\n    }}\n}}\n"
-        )
-    };
-    let directions = "shape: LobeShape, frame: Frame, wo: vec3f";
-    text += &dispatch(
-        &format!("raw_sample({directions}, xi: vec3f) -> vec3f"),
-        "shape.lobe",
-        cases(&|module| format!("{module}_sample(shape, frame, wo, xi)")),
-        "frame.normal",
-    );
-    for name in ["density", "weight"] {
-        text += &dispatch(
-            &format!("raw_{name}({directions}, wi: vec3f) -> f32"),
-            "shape.lobe",
-            cases(&|module| format!("{module}_{name}(shape, frame, wo, wi)")),
-            "0.0",
-        );
-    }
-    let property = |signature: &str, value: &dyn Fn(Lobe) -> String, otherwise: &str| {
-        let case = |lobe: &Lobe| format!("        case {}u: {{ return {}; }}\n", *lobe as u32, value(*lobe));
-        dispatch(signature, "lobe", Lobe::ALL.iter().map(case).collect(), otherwise)
-    };
-    let hemispherical = |lobe: Lobe| format!("{}_HEMISPHERICAL", lobe.module().to_uppercase());
-    text += &property("is_hemispherical(lobe: u32) -> bool", &hemispherical, "true");
-    let anisotropic = |lobe: Lobe| lobe.is_anisotropic().to_string();
-    text += &property("is_anisotropic(lobe: u32) -> bool", &anisotropic, "false");
-    let facets = |lobe: Lobe| format!("{}u", lobe.facets() as u32);
-    text += &property("facets(lobe: u32) -> u32", &facets, "0u");
-    text
 }

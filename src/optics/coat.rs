@@ -10,7 +10,7 @@ use super::curve::Curve;
 use super::frame::frame_from_normal;
 use super::fresnel::{fresnel_dielectric, half_vector_cosine};
 use super::lobe::{Horizon, Lobe, LobeShape, is_mirror, lobe_evaluate, lobe_sample};
-use super::material::{Material, MaterialSample, Surface};
+use super::material::{Layer, Material, MaterialSample, Surface};
 use super::numeric::sampled_share;
 use super::real::{Mask, Real};
 use super::vector::Vec3;
@@ -94,6 +94,7 @@ pub fn coat_sample<T: Real>(
         throughput: Vec3::splat(reflected * drawn.weight / probability.max(T::from_f64(1e-20))),
         density,
         is_mirror,
+        layer: Layer::Coat,
     }
 }
 

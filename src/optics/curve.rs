@@ -3,51 +3,42 @@
 //! A curve is the quantile function of the distance D. The lobe's density needs h(D) = f_D(D)/D, f_D being the density
 //! of D (docs/MATHEMATICS.md, section 1).
 
-use serde::{Deserialize, Serialize};
-
 use super::numeric::log1p;
 use super::real::Real;
+use crate::named::named;
 
-macro_rules! curves {
-    ($($variant:ident = $index:literal, $name:literal, $label:literal, $formula:literal, $help:literal;)*) => {
-        /// The curve D(ξ).
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-        #[repr(u32)]
-        pub enum Curve {
-            $(#[doc = $help] #[serde(rename = $name)] $variant = $index,)*
-        }
-
-        impl Curve {
-            /// Every curve, in the order of the menus.
-            pub const ALL: &'static [Curve] = &[$(Curve::$variant),*];
-
-            /// Name in presets and on the command line.
-            pub fn name(self) -> &'static str {
-                match self { $(Curve::$variant => $name,)* }
-            }
-            /// Name in the menus.
-            pub fn label(self) -> &'static str {
-                match self { $(Curve::$variant => $label,)* }
-            }
-            /// D(ξ) written out.
-            pub fn formula(self) -> &'static str {
-                match self { $(Curve::$variant => $formula,)* }
-            }
-            /// What the curve does to the highlight.
-            pub fn help(self) -> &'static str {
-                match self { $(Curve::$variant => $help,)* }
-            }
-        }
-    };
+named! {
+    /// The curve D(ξ).
+    Curve {
+        Linear = 0, "linear", "Linear", "Crowded around the mirror direction.";
+        Sqrt = 1, "sqrt", "Square root", "The simplest: an even disc with a sharp edge.";
+        Cbrt = 2, "cbrt", "Cube root", "Pushed outwards, with a sharp edge.";
+        Smooth = 3, "smooth", "Smooth", "A soft edge, closest to Phong.";
+        LongTail = 4, "long-tail", "Long tail", "A wide glow like GGX; crosses the surface at any roughness.";
+        Custom = 5, "custom", "Custom", "A monotone curve of your own.";
+    }
 }
 
-curves! {
-    Linear = 0, "linear", "Linear", "ξ", "Crowded around the mirror direction.";
-    Sqrt = 1, "sqrt", "Square root", "√ξ", "The simplest: an even disc with a sharp edge.";
-    Cbrt = 2, "cbrt", "Cube root", "∛ξ", "Pushed outwards, with a sharp edge.";
-    Smooth = 3, "smooth", "Smooth", "1 − √(1 − √ξ)", "A soft edge, closest to Phong.";
-    LongTail = 4, "long-tail", "Long tail", "−ln(1 − √ξ)", "A wide glow like GGX; crosses the surface at any roughness.";
-    Custom = 5, "custom", "Custom", "drawn", "A monotone curve of your own.";
+impl Curve {
+    /// True where D(ξ) is at most 1 whatever ξ.
+    pub fn is_within_unit(self) -> bool {
+        match self {
+            Self::Linear | Self::Sqrt | Self::Cbrt | Self::Smooth => true,
+            Self::LongTail | Self::Custom => false,
+        }
+    }
+
+    /// D(ξ) written out.
+    pub fn formula(self) -> &'static str {
+        match self {
+            Self::Linear => "ξ",
+            Self::Sqrt => "√ξ",
+            Self::Cbrt => "∛ξ",
+            Self::Smooth => "1 − √(1 − √ξ)",
+            Self::LongTail => "−ln(1 − √ξ)",
+            Self::Custom => "drawn",
+        }
+    }
 }
 
 /// Intervals of a custom curve's table, equal in D.

@@ -1,46 +1,18 @@
 //! The Fresnel factor: which share of the light is reflected at the half vector of view and sampled direction.
 
-use serde::{Deserialize, Serialize};
-
 use super::real::Real;
 use super::refraction::refracted_square;
 use super::vector::{Vec3, vec3};
+use crate::named::named;
 
-macro_rules! fresnels {
-    ($($variant:ident = $index:literal, $name:literal, $label:literal, $help:literal;)*) => {
-        /// The Fresnel model.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-        #[serde(rename_all = "lowercase")]
-        #[repr(u32)]
-        pub enum Fresnel {
-            $(#[doc = $help] $variant = $index,)*
-        }
-
-        impl Fresnel {
-            /// Every model, in the order of the menus.
-            pub const ALL: &'static [Fresnel] = &[$(Fresnel::$variant),*];
-
-            /// Name in presets and on the command line.
-            pub fn name(self) -> &'static str {
-                match self { $(Fresnel::$variant => $name,)* }
-            }
-            /// Name in the menus.
-            pub fn label(self) -> &'static str {
-                match self { $(Fresnel::$variant => $label,)* }
-            }
-            /// When to choose it.
-            pub fn help(self) -> &'static str {
-                match self { $(Fresnel::$variant => $help,)* }
-            }
-        }
-    };
-}
-
-fresnels! {
-    None = 0, "none", "None", "Every sample counts fully: F = 1 at any angle, tinted by the specular colour.";
-    Schlick = 1, "schlick", "Schlick", "Schlick's approximation from the reflectance at normal incidence.";
-    Dielectric = 2, "dielectric", "Dielectric", "The exact equations for glass, water, plastic, lacquer, from the index of refraction.";
-    Conductor = 3, "conductor", "Conductor", "The exact equations for metals, from η and k of each colour channel.";
+named! {
+    /// The Fresnel model.
+    Fresnel {
+        None = 0, "none", "None", "Every sample counts fully: F = 1 at any angle, tinted by the specular colour.";
+        Schlick = 1, "schlick", "Schlick", "Schlick's approximation from the reflectance at normal incidence.";
+        Dielectric = 2, "dielectric", "Dielectric", "The exact equations for glass, water, plastic, lacquer, from the index of refraction.";
+        Conductor = 3, "conductor", "Conductor", "The exact equations for metals, from η and k of each colour channel.";
+    }
 }
 
 /// What the Fresnel factor depends on, besides the angle.

@@ -101,8 +101,10 @@ pub struct Material<T> {
     pub texture_roughness: T,
     /// Where the table begins that has the lobe's roughness for that of GGX; [`NO_TEXTURE`] where both are the same.
     pub roughness_table: u32,
+    /// 1 where the colours at the vertices multiply the base colour.
+    pub has_vertex_colors: u32,
     /// Fills the last 16 bytes.
-    pub reserved: [u32; 2],
+    pub reserved: u32,
 }
 
 // SAFETY: f32 and u32 fields without padding (15 × 16 bytes); any bit pattern is valid.
@@ -153,6 +155,7 @@ impl<T: Real> Material<T> {
             has_rough_tables: self.has_rough_tables,
             texture_roughness: number(self.texture_roughness),
             roughness_table: self.roughness_table,
+            has_vertex_colors: self.has_vertex_colors,
             reserved: self.reserved,
         }
     }
@@ -272,6 +275,20 @@ fn by_index<E: Copy>(all: &[E], index: u32) -> E {
     all[(index as usize).min(all.len() - 1)]
 }
 
+/// A layer of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Layer {
+    /// The coat.
+    Coat,
+    /// The specular lobe.
+    Specular,
+    /// The Lambertian base.
+    Base,
+    /// The refracting lobe.
+    Refraction,
+}
+
 /// A direction drawn from a material.
 #[derive(Clone, Copy, Debug)]
 pub struct MaterialSample<T> {
@@ -284,6 +301,8 @@ pub struct MaterialSample<T> {
     pub density: T,
     /// True where the lobe is weighed as a mirror: light sampling has no share in this direction.
     pub is_mirror: bool,
+    /// The layer that was chosen: for accounts of paths, nothing is computed from it.
+    pub layer: Layer,
 }
 
 /// How a surface point is lit and seen.
@@ -461,7 +480,7 @@ pub fn material_sample<T: Real>(
     }
     let below = T::one() - layers.coat_probability;
     let draw = |shape: &LobeShape<'_, T>, xi| lobe_sample(shape, &surface.frame, surface.normal, surface.wo, xi);
-    let finish = |shape: &LobeShape<'_, T>, drawn: LobeSample<T>, color: Vec3<T>, probability: T| {
+    let finish = |layer, shape: &LobeShape<'_, T>, drawn: LobeSample<T>, color: Vec3<T>, probability: T| {
         let is_mirror = is_mirror(shape).any();
         let density = if wants_density && !is_mirror {
             below * probability * lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, drawn.wi)[1]
@@ -474,6 +493,7 @@ pub fn material_sample<T: Real>(
             throughput: color * layers.below_coat * scale,
             density,
             is_mirror,
+            layer,
         }
     };
     let mut xi = numbers.lobe;
@@ -489,18 +509,18 @@ pub fn material_sample<T: Real>(
             xi = numbers.below;
         }
         if layer.less(specular).any() {
-            return finish(&shape, drawn, color, specular);
+            return finish(Layer::Specular, &shape, drawn, color, specular);
         }
     }
     let base_end = specular + (T::one() - specular) * (base / (base + through).max(T::from_f64(1e-20)));
     if layer.less(base_end).any() || !T::zero().less(through).any() {
         let shape = base_shape();
-        return finish(&shape, draw(&shape, xi), layers.base, base);
+        return finish(Layer::Base, &shape, draw(&shape, xi), layers.base, base);
     }
     let shape = material.transmission_shape(tables, surface.is_inside);
     let drawn = draw(&shape, xi);
     let color = transmission_color(material, &layers, &shape, surface, drawn.wi);
-    finish(&shape, drawn, color, through)
+    finish(Layer::Refraction, &shape, drawn, color, through)
 }
 
 /// What is refracted into a direction: of lobes made of facets what the facet does not reflect, of others what the

@@ -5,29 +5,15 @@
 //! the hash of Laine and Karras (Burley, "Practical hash-based Owen scrambling", JCGT 2020; constants by Vegdahl).
 
 use super::real::Real;
+use crate::named::named;
 
-/// Which numbers a render draws.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Hash, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-#[repr(u32)]
-pub enum Sequence {
-    /// Owen-scrambled Sobol points: the error falls faster than 1/√n where the integrand is smooth.
-    #[default]
-    Sobol = 0,
-    /// Independent hashed numbers.
-    Independent = 1,
-}
-
-impl Sequence {
-    /// Every sequence, in the order of the menus.
-    pub const ALL: &'static [Sequence] = &[Sequence::Sobol, Sequence::Independent];
-
-    /// Name in files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Sequence::Sobol => "sobol",
-            Sequence::Independent => "independent",
-        }
+named! {
+    /// Which numbers a render draws.
+    #[derive(Default)]
+    Sequence {
+        #[default]
+        Sobol = 0, "sobol", "Sobol", "Owen-scrambled Sobol points: the error falls faster than 1/√n where the integrand is smooth.";
+        Independent = 1, "independent", "Independent", "Independent hashed numbers.";
     }
 }
 

@@ -1,57 +1,35 @@
 //! Tone curves: from scene-referred to display-referred linear Rec. 709, and sRGB's encoding.
 //!
-//! To add a curve: a function here, one of the same name in `shaders/optics/tone.wgsl`, a line in the registry and in
-//! the shader's switch.
-
-use serde::{Deserialize, Serialize};
+//! To add a curve: a function here, a line in the list of curves, one in [`tone_map`].
 
 use super::real::Real;
 use super::vector::{Vec3, vec3};
+use crate::named::named;
 
-macro_rules! tone_curves {
-    ($($(#[$attribute:meta])* $variant:ident = $index:literal, $function:ident, $name:literal, $label:literal, $help:literal;)*) => {
-        /// The tone curve.
-        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-        #[repr(u32)]
-        pub enum ToneCurve {
-            $(#[doc = $help] #[serde(rename = $name)] $(#[$attribute])* $variant = $index,)*
-        }
-
-        impl ToneCurve {
-            /// Every curve, in the order of the menus.
-            pub const ALL: &'static [ToneCurve] = &[$(ToneCurve::$variant),*];
-
-            /// Name in files and on the command line.
-            pub fn name(self) -> &'static str {
-                match self { $(ToneCurve::$variant => $name,)* }
-            }
-            /// Name in the menus.
-            pub fn label(self) -> &'static str {
-                match self { $(ToneCurve::$variant => $label,)* }
-            }
-            /// When to choose it.
-            pub fn help(self) -> &'static str {
-                match self { $(ToneCurve::$variant => $help,)* }
-            }
-        }
-
-        /// Display-referred linear Rec. 709 in [0, 1] from exposed scene-referred linear Rec. 709. What is negative or
-        /// not a number counts as 0, what is beyond [`SCENE_MAX`] as that.
-        #[inline(always)]
-        pub fn tone_map<T: Real>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
-            let scene = rgb_linear.map(|x| x.clamp(T::zero(), T::from_f64(SCENE_MAX)));
-            let display = match curve { $(ToneCurve::$variant => $function(scene),)* };
-            display.map(|x| x.clamp(T::zero(), T::one()))
-        }
-    };
+named! {
+    /// The tone curve.
+    #[derive(Default)]
+    ToneCurve {
+        #[default]
+        Agx = 0, "agx", "AgX", "Bright colours fade to white as on film: for any picture with strong light.";
+        Aces = 1, "aces", "ACES", "Strong contrast and saturation, as in films and games (Hill's fit of ACES 1.0).";
+        PbrNeutral = 2, "pbr-neutral", "PBR Neutral", "Colours below the highlights stay exactly as they are: for product pictures.";
+        None = 3, "none", "None", "Cut off at white: for comparing numbers.";
+    }
 }
 
-tone_curves! {
-    #[default]
-    Agx = 0, tone_agx, "agx", "AgX", "Bright colours fade to white as on film: for any picture with strong light.";
-    Aces = 1, tone_aces, "aces", "ACES", "Strong contrast and saturation, as in films and games (Hill's fit of ACES 1.0).";
-    PbrNeutral = 2, tone_pbr_neutral, "pbr-neutral", "PBR Neutral", "Colours below the highlights stay exactly as they are: for product pictures.";
-    None = 3, tone_none, "none", "None", "Cut off at white: for comparing numbers.";
+/// Display-referred linear Rec. 709 in [0, 1] from exposed scene-referred linear Rec. 709. What is negative or not a
+/// number counts as 0, what is beyond [`SCENE_MAX`] as that.
+#[inline(always)]
+pub fn tone_map<T: Real>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
+    let scene = rgb_linear.map(|x| x.clamp(T::zero(), T::from_f64(SCENE_MAX)));
+    let display = match curve {
+        ToneCurve::Agx => tone_agx(scene),
+        ToneCurve::Aces => tone_aces(scene),
+        ToneCurve::PbrNeutral => tone_pbr_neutral(scene),
+        ToneCurve::None => tone_none(scene),
+    };
+    display.map(|x| x.clamp(T::zero(), T::one()))
 }
 
 /// The largest scene-referred value told from others: the largest half float.

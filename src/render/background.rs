@@ -5,6 +5,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
+use crate::panics::caught;
+
 /// How long to wait before looking whether work that is held may go on.
 const HOLD_STEP: Duration = Duration::from_millis(25);
 
@@ -17,6 +19,7 @@ struct Shared<Q, A> {
     orders: Mutex<Orders<Q>>,
     ordered: Condvar,
     answer: Mutex<Option<A>>,
+    failure: Mutex<Option<String>>,
 }
 
 struct Orders<Q> {
@@ -75,6 +78,7 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
             }),
             ordered: Condvar::new(),
             answer: Mutex::new(None),
+            failure: Mutex::new(None),
         });
         let of_thread = shared.clone();
         std::thread::Builder::new().name(name.to_owned()).spawn(move || {
@@ -84,7 +88,12 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
                     shared: &of_thread,
                     repaint: &repaint,
                 };
-                work(query, &desk);
+                *lock(&of_thread.failure) = None;
+                if let Err(why) = caught(|| work(query, &desk)) {
+                    *lock(&of_thread.failure) = Some(format!("an internal error: {why}"));
+                }
+                // Free again before the window looks.
+                lock(&of_thread.orders).is_busy = false;
                 repaint();
             }
         })?;
@@ -100,6 +109,11 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
     /// The latest answer.
     pub fn latest(&self) -> Option<A> {
         lock(&self.shared.answer).clone()
+    }
+
+    /// Why the latest query came to nothing, where the work panicked; the thread goes on.
+    pub fn failure(&self) -> Option<String> {
+        lock(&self.shared.failure).clone()
     }
 
     /// The first answer that is good enough, for a test to wait for.
@@ -132,7 +146,6 @@ impl<Q, A> Drop for Background<Q, A> {
 /// Waits for a query; `None` when it is time to go.
 fn next<Q, A>(shared: &Shared<Q, A>) -> Option<Q> {
     let mut orders = lock(&shared.orders);
-    orders.is_busy = false;
     loop {
         if orders.quit {
             return None;
@@ -142,5 +155,32 @@ fn next<Q, A>(shared: &Shared<Q, A>) -> Option<Q> {
             return Some(query);
         }
         orders = shared.ordered.wait(orders).unwrap_or_else(PoisonError::into_inner);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_told_and_leaves_the_thread_free() {
+        let work = |query: u32, desk: &Desk<'_, u32, u32>| {
+            assert!(query != 2, "two, on purpose");
+            desk.publish(query);
+        };
+        let background = Background::spawn("failing", || {}, work).expect("a thread");
+        background.ask(1);
+        background.wait_for(|answer| *answer == 1);
+        background.ask(2);
+        let begun = std::time::Instant::now();
+        while background.is_busy() || background.failure().is_none() {
+            assert!(begun.elapsed() < Duration::from_secs(60), "busy for ever");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        let why = background.failure().unwrap_or_default();
+        assert!(why.contains("two, on purpose"), "{why}");
+        background.ask(3);
+        background.wait_for(|answer| *answer == 3);
+        assert_eq!(background.failure(), None);
     }
 }

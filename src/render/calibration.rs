@@ -10,8 +10,8 @@ use super::assets::Assets;
 use super::compile::Compiler;
 use super::engine::{Engine, EngineInfo, Precision, cpu, gpu};
 use crate::document::Document;
-use crate::document::job::Job;
 use crate::gpu::{AdapterKind, GpuDevice};
+use crate::job::Job;
 
 /// Side of the picture that is measured on, in pixels.
 const SIZE: u32 = 96;

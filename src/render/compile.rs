@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use super::assets::Assets;
 use super::session::SessionError;
-use crate::document::effect::{Facts, Switch};
-use crate::document::job::{BackgroundKind, Job, Settings};
-use crate::document::plan::{Plan, without_what_is_off};
+use crate::document::effect::{Facts, Switch, plan, without_what_is_off};
 use crate::document::{
     AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile_textured,
 };
+use crate::job::effect::EffectId;
+use crate::job::{BackgroundKind, Job, Settings};
 use crate::optics::material::Material;
 use crate::scene::Geometry;
 use crate::scene::camera::{Camera, framing_distance, orbit_direction};
@@ -35,11 +35,13 @@ pub(super) struct Compiler {
 impl Compiler {
     pub(super) fn compile(&mut self, document: &Document, assets: &Assets) -> Result<Job, SessionError> {
         let document = &without_what_is_off(document);
-        let model = assets.model(&document.model)?;
+        let (source, options) = (&document.model, &document.import);
+        let model = assets.model(source, options)?;
         let shapes = document.lighting.area_lights.iter().map(AreaLight::shape).collect();
-        let geometry = assets.geometry(&document.model, document.ground, shapes)?;
-        let environment = assets.environment(&document.lighting.environment)?;
-        let textures = assets.textures(&document.model)?;
+        let geometry = assets.geometry(source, options, document.ground, shapes)?;
+        let lighting = &document.lighting;
+        let environment = assets.environment(&lighting.environment, lighting.environment_encoding)?;
+        let textures = assets.textures(source, options)?;
         let slots = slot_materials(document, model.slots.len());
         let (materials, tables) = self.materials(&slots, &textures);
         let lights = self.lights(&geometry, &materials);
@@ -47,8 +49,8 @@ impl Compiler {
         let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
         let switches = document.render.effects;
         let sampled = Sampled {
-            environment: switches.get("light-sampling") != Switch::Off,
-            emitters: switches.get("emitter-sampling") != Switch::Off,
+            environment: switches.get(EffectId::LightSampling) != Switch::Off,
+            emitters: switches.get(EffectId::EmitterSampling) != Switch::Off,
         };
         let settings = Settings {
             image_size: [document.render.width, document.render.height],
@@ -70,7 +72,7 @@ impl Compiler {
             strategy: document.render.strategy,
             seed: document.render.seed,
         };
-        let plan = Plan::new(&Facts {
+        let plan = plan(&Facts {
             document,
             slots: &slots,
             materials: &materials,
@@ -115,7 +117,7 @@ impl Compiler {
 
 /// One material a slot, the last one repeated where the document has too few, the ground's where there is one, and those
 /// of the area lights.
-fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
+pub(super) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialSettings> {
     let last = document.materials.last().cloned().unwrap_or_default();
     let mut materials = document.materials.clone();
     materials.resize(slots, last);

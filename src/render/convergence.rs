@@ -1,10 +1,10 @@
 //! When a session looks at the error of its picture, what it saw, and what it renders next.
 
 use crate::analysis::adaptive::{Round, next_goals};
-use crate::analysis::film::Film;
 use crate::analysis::noise::{Noise, noise};
-use crate::analysis::tiles::Schedule;
 use crate::document::RenderSettings;
+use crate::job::film::Film;
+use crate::job::tiles::Schedule;
 
 /// Looking at the error takes at most this share of the time; near its end twice as much, not to go too far.
 const COST_SHARE: f64 = 0.015;
@@ -162,8 +162,10 @@ impl Convergence {
             _ => paced.max(GROWTH_WATCHED),
         };
         let growth = growth.max(growth_min);
-        let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0);
-        self.goals = vec![(goal as u32).min(settings.samples); samples.len()];
+        let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0) as u32;
+        // With two samples of every pixel the error can be told for the first time.
+        let goal = if most < 2 { goal.min(2) } else { goal };
+        self.goals = vec![goal.min(settings.samples); samples.len()];
     }
 }
 

@@ -2,12 +2,12 @@
 
 use rayon::prelude::*;
 
-use crate::analysis::film::{Film, Image};
 use crate::analysis::noise::relative_errors;
-use crate::analysis::plot::scale_color;
 use crate::document::ViewSettings;
+use crate::job::film::{Film, Image};
 use crate::optics::tone::{srgb_from_linear, tone_map};
 use crate::optics::vector::vec3;
+use crate::plot::scale_color;
 
 /// Luminance of middle grey.
 const MIDDLE_GREY: f64 = 0.18;
@@ -117,20 +117,7 @@ const ERRORS_SPAN: f64 = 300.0;
 pub fn map(film: &Film, shown: Shown) -> Option<(Vec<u8>, Scale)> {
     let (values, scale) = match shown {
         Shown::Picture | Shown::Precision => return None,
-        Shown::Error => {
-            let errors = relative_errors(film);
-            let mut sorted = errors.clone();
-            sorted.sort_by(f32::total_cmp);
-            let rank = ((1.0 - ERRORS_ABOVE) * sorted.len() as f64) as usize;
-            let high = sorted.get(rank).or(sorted.last()).copied().unwrap_or(0.0);
-            let high = f64::from(high).max(1e-9);
-            let scale = Scale {
-                low: high / ERRORS_SPAN,
-                high,
-                is_logarithmic: true,
-            };
-            (errors, scale)
-        }
+        Shown::Error => return Some(map_of_errors(&relative_errors(film))),
         Shown::Samples => {
             let counts: Vec<f32> = film.statistics.iter().map(|[_, n]| *n as f32).collect();
             let high = f64::from(counts.iter().copied().fold(0.0, f32::max)).max(1.0);
@@ -142,9 +129,28 @@ pub fn map(film: &Film, shown: Shown) -> Option<(Vec<u8>, Scale)> {
             (counts, scale)
         }
     };
+    Some((colored(&values, scale), scale))
+}
+
+/// Errors of pixels in colours, see [`map`].
+pub fn map_of_errors(errors: &[f32]) -> (Vec<u8>, Scale) {
+    let mut sorted = errors.to_vec();
+    sorted.sort_by(f32::total_cmp);
+    let rank = ((1.0 - ERRORS_ABOVE) * sorted.len() as f64) as usize;
+    let high = sorted.get(rank).or(sorted.last()).copied().unwrap_or(0.0);
+    let high = f64::from(high).max(1e-9);
+    let scale = Scale {
+        low: high / ERRORS_SPAN,
+        high,
+        is_logarithmic: true,
+    };
+    (colored(errors, scale), scale)
+}
+
+fn colored(values: &[f32], scale: Scale) -> Vec<u8> {
     let color = |value: &f32| {
         let [red, green, blue] = scale_color(scale.place(f64::from(*value)));
         [red, green, blue, 255]
     };
-    Some((values.par_iter().flat_map_iter(color).collect(), scale))
+    values.par_iter().flat_map_iter(color).collect()
 }

@@ -5,36 +5,46 @@ use std::str::FromStr;
 use std::sync::Arc;
 use std::time::Duration;
 
-use crate::analysis::features::Features;
-use crate::analysis::film::Film;
-use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
-use crate::analysis::tiles::Schedule;
 use crate::cpu::CpuEngine;
-use crate::document::job::Job;
 use crate::gpu::scatter::Scatterer;
 use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
+use crate::job::Job;
+use crate::job::film::Film;
+use crate::job::scatter::{ScatterCloud, ScatterRequest};
+use crate::job::tiles::Schedule;
+use crate::named::{Named, named};
 
-/// The engine that a user asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum EngineChoice {
-    /// A hardware GPU if there is one, else the faster of software Vulkan and the processor.
-    #[default]
-    Auto,
-    /// The GPU, software Vulkan included.
-    Gpu,
-    /// The processor.
-    Cpu,
+named! {
+    /// The engine that a user asks for.
+    #[derive(Default)]
+    EngineChoice {
+        #[default]
+        Auto, "auto", "Automatic", "A hardware GPU if there is one, else the faster of software Vulkan and the processor.";
+        Gpu, "gpu", "GPU", "The GPU, software Vulkan included.";
+        Cpu, "cpu", "CPU", "The processor.";
+    }
 }
 
 impl FromStr for EngineChoice {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "auto" => Ok(Self::Auto),
-            "gpu" => Ok(Self::Gpu),
-            "cpu" => Ok(Self::Cpu),
-            other => Err(format!("no engine is called {other}: auto, gpu or cpu")),
+        Self::by_name(text).ok_or_else(|| format!("no engine is called {text}: auto, gpu or cpu"))
+    }
+}
+
+named! {
+    /// An engine.
+    EngineKind {
+        Gpu, "gpu", "GPU", "Compute shaders on an adapter.";
+        Cpu, "cpu", "CPU", "Rust on the processor's cores.";
+    }
+}
+
+impl From<EngineKind> for EngineChoice {
+    fn from(kind: EngineKind) -> Self {
+        match kind {
+            EngineKind::Gpu => Self::Gpu,
+            EngineKind::Cpu => Self::Cpu,
         }
     }
 }
@@ -42,8 +52,8 @@ impl FromStr for EngineChoice {
 /// What renders, and why it was chosen.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct EngineInfo {
-    /// `gpu` or `cpu`.
-    pub kind: &'static str,
+    /// Which of the two.
+    pub kind: EngineKind,
     /// The adapter's or processor's name.
     pub adapter: String,
     /// The adapter's driver; empty for the processor.
@@ -56,7 +66,7 @@ pub struct EngineInfo {
 
 impl fmt::Display for EngineInfo {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} on {}", self.kind, self.adapter)
+        write!(f, "{} on {}", self.kind.name(), self.adapter)
     }
 }
 
@@ -141,19 +151,12 @@ impl Engine {
             Engine::Gpu(engine) => engine.film(),
         }
     }
-
-    pub(super) fn features(&mut self, samples: u32) -> Result<Option<Features>, GpuError> {
-        match self {
-            Engine::Cpu(engine) => Ok(engine.features(samples)),
-            Engine::Gpu(engine) => engine.features(samples),
-        }
-    }
 }
 
 pub(super) fn cpu(reason: String) -> (Engine, EngineInfo) {
     let threads = rayon::current_num_threads();
     let info = EngineInfo {
-        kind: "cpu",
+        kind: EngineKind::Cpu,
         adapter: format!("{} ({threads} threads)", processor_name()),
         driver: String::new(),
         reason,
@@ -164,7 +167,7 @@ pub(super) fn cpu(reason: String) -> (Engine, EngineInfo) {
 
 pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineInfo), GpuError> {
     let info = EngineInfo {
-        kind: "gpu",
+        kind: EngineKind::Gpu,
         adapter: device.info.name.clone(),
         driver: device.driver(),
         reason,

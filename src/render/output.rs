@@ -3,16 +3,17 @@
 use std::fs::File;
 use std::io::{BufWriter, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use image::Rgb;
 use image::codecs::hdr::HdrEncoder;
 
 use super::display::display;
-use crate::analysis::features::Features;
-use crate::analysis::film::Image;
 use crate::document::Document;
-use crate::document::picture::png_bytes;
-use crate::document::project::document_text;
+use crate::job::features::Features;
+use crate::job::film::Image;
+use crate::store::picture::png_bytes;
+use crate::store::project::document_text;
 
 /// Why a picture can't be written.
 #[derive(Debug, thiserror::Error)]
@@ -33,11 +34,28 @@ pub enum OutputError {
     },
 }
 
+/// A picture to write.
+#[derive(Clone, Copy, Debug)]
+pub struct Rendered<'a> {
+    /// The mean of the samples, linear.
+    pub image: &'a Image,
+    /// The same denoised: what is shown, where it is there.
+    pub denoised: Option<&'a Image>,
+}
+
+impl<'a> From<&'a Image> for Rendered<'a> {
+    fn from(image: &'a Image) -> Self {
+        Self { image, denoised: None }
+    }
+}
+
 /// A picture with what is known beside it about each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
     /// The linear picture.
     pub image: Image,
+    /// The same denoised.
+    pub denoised: Option<Arc<Image>>,
     /// What the camera sees first.
     pub features: Features,
     /// Samples in each pixel's mean.
@@ -76,15 +94,20 @@ pub fn format_of(path: &Path) -> Result<Format, OutputError> {
 }
 
 /// Writes a picture of a document in the format of the file's ending. A .png has the document's exposure and tone curve,
-/// and the document itself inside.
+/// and the document itself inside. A denoised picture takes the samples' place; in an .exr file it stands beside them, as
+/// `denoised.R`, `.G`, `.B`.
 ///
 /// # Errors
 /// [`OutputError`] naming the file.
-pub fn write(path: &Path, image: &Image, document: &Document) -> Result<(), OutputError> {
-    let written = match format_of(path)? {
-        Format::Png => write_png(path, image, document),
-        Format::Exr => write_exr(path, image),
-        Format::Hdr => write_hdr(path, image),
+pub fn write(path: &Path, rendered: Rendered<'_>, document: &Document) -> Result<(), OutputError> {
+    let shown = rendered.denoised.unwrap_or(rendered.image);
+    let written = match (format_of(path)?, rendered.denoised) {
+        (Format::Png, _) => write_png(path, shown, document),
+        (Format::Exr, None) => write_exr(path, shown),
+        (Format::Exr, Some(denoised)) => {
+            write_channels(path, rendered.image, color_channels(rendered.image, Some(denoised)))
+        }
+        (Format::Hdr, _) => write_hdr(path, shown),
     };
     written.map_err(|reason| OutputError::Write {
         path: path.to_owned(),
@@ -121,8 +144,8 @@ fn write_exr(path: &Path, image: &Image) -> Result<(), String> {
         .map_err(|error| error.to_string())
 }
 
-/// Writes an EXR file with layers beside the colour: `albedo.R`, `.G`, `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`;
-/// `samples.Y`; `variance.Y`.
+/// Writes an EXR file with layers beside the colour: `denoised.R`, `.G`, `.B` where it was denoised; `albedo.R`, `.G`,
+/// `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`; `samples.Y`; `variance.Y`.
 ///
 /// # Errors
 /// [`OutputError`] naming the file.
@@ -134,30 +157,38 @@ pub fn write_layers(path: &Path, layers: &Layers) -> Result<(), OutputError> {
 }
 
 fn write_exr_layers(path: &Path, layers: &Layers) -> Result<(), String> {
+    let features = &layers.features;
+    let mut channels = color_channels(&layers.image, layers.denoised.as_deref());
+    for i in 0..3 {
+        let vector = |values: &[[f32; 3]]| values.iter().map(|value| value[i]).collect();
+        channels.push((format!("albedo.{}", COLORS[i]), vector(&features.albedo)));
+        channels.push((format!("normal.{}", ["X", "Y", "Z"][i]), vector(&features.normal)));
+    }
+    channels.push(("depth.Z".to_owned(), features.depth.clone()));
+    channels.push(("samples.Y".to_owned(), layers.samples.clone()));
+    channels.push(("variance.Y".to_owned(), layers.variance.clone()));
+    write_channels(path, &layers.image, channels)
+}
+
+const COLORS: [&str; 4] = ["R", "G", "B", "A"];
+
+/// A picture's colours and opacity, and the colours of the denoised one, as named channels.
+fn color_channels(image: &Image, denoised: Option<&Image>) -> Vec<(String, Vec<f32>)> {
+    let channel = |image: &Image, i: usize| image.pixels.iter().map(|pixel| pixel[i]).collect();
+    let own = (0..4).map(|i| (COLORS[i].to_owned(), channel(image, i)));
+    let of_denoised = |denoised| (0..3).map(move |i| (format!("denoised.{}", COLORS[i]), channel(denoised, i)));
+    own.chain(denoised.into_iter().flat_map(of_denoised)).collect()
+}
+
+/// Writes channels of the size of `image`.
+fn write_channels(path: &Path, image: &Image, channels: Vec<(String, Vec<f32>)>) -> Result<(), String> {
     use exr::prelude::{
         AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage as _,
     };
-    let image = &layers.image;
-    let features = &layers.features;
-    let channel = |name: &str, values: Vec<f32>| AnyChannel::new(name, FlatSamples::F32(values));
-    let color = (0..4).map(|i| image.pixels.iter().map(|pixel| pixel[i]).collect());
-    let vector = |values: &[[f32; 3]], i: usize| values.iter().map(|value| value[i]).collect::<Vec<f32>>();
-    let mut channels: Vec<_> = ["R", "G", "B", "A"]
-        .into_iter()
-        .zip(color)
-        .map(|(name, of)| channel(name, of))
-        .collect();
-    for (i, (color, axis)) in ["R", "G", "B"].into_iter().zip(["X", "Y", "Z"]).enumerate() {
-        channels.push(channel(&format!("albedo.{color}"), vector(&features.albedo, i)));
-        channels.push(channel(&format!("normal.{axis}"), vector(&features.normal, i)));
-    }
-    channels.push(channel("depth.Z", features.depth.clone()));
-    channels.push(channel("samples.Y", layers.samples.clone()));
-    channels.push(channel("variance.Y", layers.variance.clone()));
+    let channel = |(name, values): (String, Vec<f32>)| AnyChannel::new(name.as_str(), FlatSamples::F32(values));
     let size = (image.width as usize, image.height as usize);
-    let attributes = LayerAttributes::default();
-    let channels = AnyChannels::sort(channels.into_iter().collect());
-    let layer = Layer::new(size, attributes, Encoding::FAST_LOSSLESS, channels);
+    let channels = AnyChannels::sort(channels.into_iter().map(channel).collect());
+    let layer = Layer::new(size, LayerAttributes::default(), Encoding::FAST_LOSSLESS, channels);
     Image::from_layer(layer)
         .write()
         .to_file(path)

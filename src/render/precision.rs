@@ -4,9 +4,9 @@ use std::io;
 use std::sync::Arc;
 
 use super::background::Background;
-use crate::analysis::precision::PrecisionMap;
 use crate::cpu::precision::precision;
-use crate::document::job::Job;
+use crate::job::Job;
+use crate::job::precision::PrecisionMap;
 
 /// Longest side of the map in pixels.
 const SIDE_MAX_PX: u32 = 320;

@@ -1,12 +1,12 @@
 //! Questions to single functions of an engine.
 
 use super::engine::{EngineChoice, device_for_functions};
-use crate::analysis::probe::{
-    FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, ProbeScene, RandomQuestion, RayAnswer, RayQuestion,
-};
 use crate::cpu::probe as cpu;
 use crate::gpu::GpuError;
 use crate::gpu::probe::Probe;
+use crate::job::probe::{
+    FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, ProbeScene, RandomQuestion, RayAnswer, RayQuestion,
+};
 use crate::optics::vector::Vec3;
 
 /// Answers with the functions that the chosen engine renders with.

@@ -8,7 +8,7 @@ use super::engine::{EngineChoice, Sampler};
 use crate::analysis::fit::{Measure, Nearest, nearest_roughness};
 use crate::analysis::histogram::{angle_density, angle_histogram};
 use crate::analysis::lobe_model::{LobeModel, view_direction};
-use crate::analysis::scatter::{ScatterCloud, ScatterRequest};
+use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::curve::Curve;
 use crate::optics::frame::frame_from_normal;
 use crate::optics::lobe::{Horizon, Lobe};

@@ -6,20 +6,20 @@ use std::time::{Duration, Instant};
 use super::assets::Assets;
 use super::compile::Compiler;
 use super::convergence::{Convergence, Measurement, fewest_samples, mean_samples};
+use super::denoise::Noisy;
 use super::engine::{Engine, EngineChoice, EngineInfo, Precision, cpu};
 use super::output::Layers;
 use super::workshop::Workshop;
-use crate::analysis::film::{Film, Image};
+use crate::analysis::halves::Distance;
 use crate::analysis::noise::Noise;
-use crate::document::Document;
 use crate::document::change::Change;
-use crate::document::job::Job;
+use crate::document::{Denoise, Document};
 use crate::gpu::GpuError;
+use crate::job::Job;
+use crate::job::features::Features;
+use crate::job::film::{Film, Image};
 use crate::scene::ModelError;
 use crate::scene::environment::EnvironmentError;
-
-/// Samples of a pixel over which albedo, normal and depth are averaged.
-const FEATURE_SAMPLES: u32 = 32;
 
 /// What a session can't do.
 #[derive(Debug, thiserror::Error)]
@@ -68,6 +68,10 @@ pub struct Progress {
     pub noise: Option<Noise>,
     /// The relative error to reach.
     pub noise_wanted: Option<f64>,
+    /// The error of the denoised picture, as told to [`Session::note_denoised`].
+    pub denoised: Option<Distance>,
+    /// The error to reach is that of the denoised picture, where it is the lesser.
+    pub aims_at_denoised: bool,
     /// The processor draws, because the GPU's kernel is being compiled.
     pub is_standing_in: bool,
     /// How long the kernel took that was compiled last beside the picture, seconds.
@@ -81,8 +85,15 @@ pub struct Progress {
 impl Progress {
     /// Whether the picture is as exact as was asked for.
     pub fn is_converged(&self) -> bool {
-        let pair = self.noise.zip(self.noise_wanted);
-        pair.is_some_and(|(noise, wanted)| noise.relative <= wanted)
+        let pair = self.error_aimed_at().zip(self.noise_wanted);
+        pair.is_some_and(|(error, wanted)| error <= wanted)
+    }
+
+    /// The relative error of which so much is to be left as was asked for.
+    fn error_aimed_at(&self) -> Option<f64> {
+        let noisy = self.noise.map(|noise| noise.relative);
+        let denoised = self.denoised.filter(|_| self.aims_at_denoised).map(|error| error.value);
+        noisy.into_iter().chain(denoised).reduce(f64::min)
     }
 
     /// How much has been done of what is to be done, in [0, 1]: of samples, time and noise the one that is nearest.
@@ -90,8 +101,8 @@ impl Progress {
         let by_samples = f64::from(self.samples_per_pixel) / f64::from(self.samples_wanted.max(1));
         let by_time = time_limit_s.map_or(0.0, |limit| self.render_seconds / limit);
         // The time that a noise takes goes with the inverse of its square.
-        let pair = self.noise.zip(self.noise_wanted);
-        let by_noise = pair.map_or(0.0, |(noise, wanted)| (wanted / noise.relative.max(1e-30)).powi(2));
+        let pair = self.error_aimed_at().zip(self.noise_wanted);
+        let by_noise = pair.map_or(0.0, |(error, wanted)| (wanted / error.max(1e-30)).powi(2));
         by_samples.max(by_time).max(by_noise).clamp(0.0, 1.0)
     }
 }
@@ -113,6 +124,7 @@ pub struct Session {
     /// Where kernels are compiled beside the picture; `None` where the session waits for them.
     workshop: Option<Workshop>,
     precision: Precision,
+    denoised: Option<Distance>,
 }
 
 impl Session {
@@ -146,6 +158,7 @@ impl Session {
             stand_in_seconds: 0.0,
             workshop: None,
             precision: Precision::default(),
+            denoised: None,
         }
     }
 
@@ -264,6 +277,7 @@ impl Session {
     }
 
     fn start_clocks(&mut self) {
+        self.denoised = None;
         self.convergence = Convergence::default();
         (self.render_time, self.step_time, self.stand_in_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);
     }
@@ -355,6 +369,8 @@ impl Session {
             kernel_seconds: self.workshop.as_ref().and_then(Workshop::compile_seconds),
             noise: self.convergence.noise(),
             noise_wanted: settings.and_then(|render| render.noise),
+            denoised: self.denoised,
+            aims_at_denoised: self.shows_nearer(),
             ..Progress::default()
         };
         let has_all = progress.samples_per_pixel >= progress.samples_wanted;
@@ -403,11 +419,12 @@ impl Session {
     /// # Errors
     /// If the GPU fails.
     pub fn layers(&mut self) -> Result<Layers, SessionError> {
-        let features = self.engine.features(FEATURE_SAMPLES)?.unwrap_or_default();
+        let units = self.world_units_per_unit();
         let film = self.engine.film()?;
         Ok(Layers {
             image: film.image(),
-            features,
+            denoised: None,
+            features: Features::of(film, units),
             samples: film.statistics.iter().map(|statistics| statistics[1] as f32).collect(),
             variance: film
                 .variance_of_mean()
@@ -415,6 +432,30 @@ impl Session {
                 .map(|variance| variance as f32)
                 .collect(),
         })
+    }
+
+    /// What the denoiser needs of what has been rendered.
+    ///
+    /// # Errors
+    /// If the GPU fails.
+    pub fn noisy(&mut self) -> Result<Noisy, SessionError> {
+        let region = self.document.as_ref().and_then(|document| document.render.region);
+        Ok(Noisy::of(self.film()?, region))
+    }
+
+    /// Takes note of the error of the denoised picture: a noise to reach is that of what is shown.
+    pub fn note_denoised(&mut self, error: Distance) {
+        self.denoised = Some(error);
+    }
+
+    /// Whether samples or the denoised picture are shown, whichever is nearer to the truth.
+    fn shows_nearer(&self) -> bool {
+        let document = self.document.as_ref();
+        document.is_some_and(|document| document.view.denoise == Denoise::Auto)
+    }
+
+    fn world_units_per_unit(&self) -> f64 {
+        self.job.as_ref().map_or(1.0, |job| job.geometry.world_units_per_unit)
     }
 
     /// Goes on with the processor after the GPU failed, with the same document from its start.

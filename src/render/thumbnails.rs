@@ -11,9 +11,9 @@ use std::time::Duration;
 use super::background::{Background, Desk};
 use super::display::display;
 use super::{EngineChoice, Session, SessionError, picture_cache};
-use crate::document::preset::material_text;
 use crate::document::{Document, MaterialSettings, RenderSettings};
 use crate::scene::ModelSource;
+use crate::store::preset::material_text;
 
 /// Columns and rows of a thumbnail.
 pub const SIDE: u32 = 64;
@@ -118,7 +118,7 @@ mod tests {
     use std::sync::atomic::Ordering;
 
     use super::*;
-    use crate::document::material_by_name;
+    use crate::store::material_by_name;
 
     fn mean(pixels: &[u8]) -> [f64; 3] {
         [0, 1, 2].map(|channel| {

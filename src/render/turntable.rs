@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use super::output::{self, OutputError};
+use super::denoise::Attendant;
+use super::output::{self, OutputError, Rendered};
 use super::session::{Session, SessionError};
+use crate::document::Document;
 use crate::document::turntable::{Turn, turned};
-use crate::document::{Document, FileError};
+use crate::store::FileError;
 
 /// Step of the session between two looks at whether to go on.
 const STEP: Duration = Duration::from_millis(100);
@@ -79,6 +81,7 @@ pub fn render(
     })?;
     let mut outcome = TurntableOutcome::default();
     let mut center_world = [0.0; 3];
+    let mut attendant = Attendant::new(&table.document);
     for frame in 0..table.frames {
         let document = turned(&table.document, table.turn, frame, table.frames, center_world);
         session.submit(&document)?;
@@ -87,7 +90,9 @@ pub fn render(
             center_world = job.geometry.center_world.to_array();
         }
         loop {
-            let progress = session.step(STEP)?;
+            session.step(STEP)?;
+            attendant.attend(session, &session.progress())?;
+            let progress = session.progress();
             let by_samples = f64::from(progress.samples_per_pixel) / f64::from(progress.samples_wanted.max(1));
             let by_time = document
                 .render
@@ -106,7 +111,12 @@ pub fn render(
             }
         }
         outcome.dropped += session.film()?.dropped;
-        output::write(&frame_path(&table.folder, frame + 1), &session.image()?, &document)?;
+        let denoised = attendant.finish(session)?;
+        let rendered = Rendered {
+            image: &session.image()?,
+            denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
+        };
+        output::write(&frame_path(&table.folder, frame + 1), rendered, &document)?;
         outcome.frames = frame + 1;
     }
     Ok(outcome)

@@ -8,9 +8,9 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
 use super::engine::Engine;
-use crate::document::job::Job;
-use crate::document::plan::Specialisation;
 use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
+use crate::job::Job;
+use crate::job::plan::Specialisation;
 
 /// Kernels that are kept besides the one in use.
 const KEPT: usize = 3;

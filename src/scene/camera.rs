@@ -1,52 +1,26 @@
 //! The camera: a thin lens, and the pixel filter that its rays are drawn from.
 
+use crate::named::named;
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
 
-use crate::optics::random::{RandomState, random_pair};
 use crate::optics::real::Real;
 use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_disc;
 
-/// How a pixel weighs what is around its centre.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-#[repr(u32)]
-pub enum PixelFilter {
-    /// The pixel's square, evenly: what other renderers' pictures are compared with.
-    Box = 0,
-    /// A Gaussian of σ = 0.5 pixels, cut off at 1.5: smoother edges.
-    #[default]
-    Gaussian = 1,
-}
-
-impl PixelFilter {
-    /// Every one, in the order of the menus.
-    pub const ALL: &'static [PixelFilter] = &[PixelFilter::Box, PixelFilter::Gaussian];
-
-    /// Name in files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            PixelFilter::Box => "box",
-            PixelFilter::Gaussian => "gaussian",
-        }
-    }
-    /// Name in the menus.
-    pub fn label(self) -> &'static str {
-        match self {
-            PixelFilter::Box => "Box",
-            PixelFilter::Gaussian => "Gaussian",
-        }
-    }
-    /// What it does to the picture.
-    pub fn help(self) -> &'static str {
-        match self {
-            PixelFilter::Box => "Evenly over the pixel: what to compare renderers with.",
-            PixelFilter::Gaussian => "By a Gaussian of half a pixel's width, cut off at 1.5 pixels: smoother edges.",
-        }
+named! {
+    /// How the samples of a pixel are spread around its centre.
+    #[derive(Default)]
+    PixelFilter {
+        Box = 0, "box", "Box", "Evenly over the pixel's square: what to compare renderers with.";
+        #[default]
+        Gaussian = 1, "gaussian", "Gaussian", "By a Gaussian of half a pixel's width, cut off at 1.5 pixels: smoother edges.";
     }
 }
 
+/// The path's pair of numbers for the place in the pixel.
+pub const PIXEL_DIMENSION: u32 = 0;
+/// The path's pair of numbers for the place on the lens.
+pub const LENS_DIMENSION: u32 = 1;
 /// Radius at which the Gaussian is cut off, in pixels.
 pub const GAUSSIAN_RADIUS: f64 = 1.5;
 /// Its standard deviation in pixels.
@@ -145,18 +119,19 @@ pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
     [radius * phi_rad.cos(), radius * phi_rad.sin()]
 }
 
-/// The ray of a sample through its pixel, drawn with the path's first two pairs of numbers: (origin, unit direction).
+/// The ray of a sample through its pixel, drawn with two pairs of numbers, for the place in the pixel and on the lens:
+/// (origin, unit direction).
 #[inline(always)]
 pub fn pixel_ray<T: Real>(
     camera: &Camera<T>,
     pixel: [u32; 2],
     image_size: [u32; 2],
-    state: RandomState,
+    [xi_pixel, xi_lens]: [[T; 2]; 2],
 ) -> [Vec3<T>; 2] {
-    let offset: [T; 2] = filter_offset(camera.filter_kind, random_pair(state, 0));
+    let offset: [T; 2] = filter_offset(camera.filter_kind, xi_pixel);
     let half = T::from_f64(0.5);
     let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
-    camera_ray(camera, place, image_size, random_pair(state, 1))
+    camera_ray(camera, place, image_size, xi_lens)
 }
 
 /// The ray through a point of the picture, in pixels from its top left: (origin, unit direction).

@@ -17,7 +17,7 @@ const GROUND_HALF_SIDE: f64 = 20.0;
 /// How far the ground is below the lowest point, in bounding radii: enough that flat bottoms do not flicker with it.
 const GROUND_GAP: f64 = 1e-4;
 
-/// What shading needs of a vertex besides its position. 44 bytes, scalars only: the same layout in WGSL.
+/// What shading needs of a vertex besides its position. 52 bytes, scalars only: the same layout in WGSL.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Vertex {
@@ -29,6 +29,27 @@ pub struct Vertex {
     pub second_uv: [f32; 2],
     /// Unit tangent and the sign of the bitangent, see [`Mesh::tangents`].
     pub tangent: [f32; 4],
+    /// Linear red, green and blue in [0, 1] that multiply the material's, and 1, as 16-bit fractions, two in a word.
+    pub color: [u32; 2],
+}
+
+impl Vertex {
+    /// A vertex's colour, packed.
+    fn packed_color(color: [f32; 4]) -> [u32; 2] {
+        let bits = |value: f32| (value.clamp(0.0, 1.0) * 65535.0).round() as u32;
+        let [r, g, b, _] = color.map(bits);
+        [r | g << 16, b | bits(1.0) << 16]
+    }
+
+    /// The linear colour that multiplies the material's.
+    pub fn rgb(&self) -> [f32; 3] {
+        let fraction = |bits: u32| f32::from(bits as u16) / 65535.0;
+        [
+            fraction(self.color[0]),
+            fraction(self.color[0] >> 16),
+            fraction(self.color[1]),
+        ]
+    }
 }
 
 /// Geometry ready to trace, in units in which the model's bounding sphere about the origin has radius 1: a place p here
@@ -117,11 +138,6 @@ impl Geometry {
         self.sort_by_leaves();
     }
 
-    /// Levels of the hierarchy.
-    pub fn hierarchy_depth(&self) -> usize {
-        bvh::depth(&self.bvh)
-    }
-
     /// The material of the ground, for the slot after the model's.
     pub fn ground_slot() -> Slot {
         Slot::neutral("ground")
@@ -191,6 +207,7 @@ impl Geometry {
                 uv: mesh.uvs[vertex].to_array(),
                 second_uv: mesh.second_uvs.get(vertex).copied().unwrap_or_default().to_array(),
                 tangent: tangent.to_array(),
+                color: Vertex::packed_color(mesh.colors.get(vertex).copied().unwrap_or([1.0; 4])),
             });
         }
         for index in chosen {
@@ -236,10 +253,10 @@ impl Geometry {
 /// The triangles of a mesh that can be traced, and the sphere around them.
 pub(super) struct Framing {
     /// Those with finite corners and an area.
-    usable: Vec<usize>,
-    dropped_not_finite: usize,
+    pub usable: Vec<usize>,
+    pub dropped_not_finite: usize,
     bounds_world: [DVec3; 2],
-    center_world: DVec3,
+    pub center_world: DVec3,
     /// See [`Geometry::world_units_per_unit`].
     pub world_units_per_unit: f64,
 }

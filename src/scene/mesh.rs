@@ -6,8 +6,8 @@ use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
 
 /// Triangles with attributes at their vertices. Counter-clockwise order seen from outside; right-handed, +Y up.
 ///
-/// All attribute vectors have the length of `positions` (`second_uvs` may be empty), `slots` has the length of
-/// `triangles`.
+/// All attribute vectors have the length of `positions` (`second_uvs` and `colors` may be empty), `slots` has the length
+/// of `triangles`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Places in model units. Double precision, so that a small part far from the origin keeps its shape.
@@ -18,6 +18,8 @@ pub struct Mesh {
     pub uvs: Vec<Vec2>,
     /// The second set of texture coordinates; empty where no texture looks it up.
     pub second_uvs: Vec<Vec2>,
+    /// Linear colours and opacities that multiply those of the material; empty where there are none.
+    pub colors: Vec<[f32; 4]>,
     /// Unit tangents along growing u (xyz) and the sign (w, ±1) of the bitangent w · (normal × tangent), which points
     /// upwards in the image (along falling v), as in glTF.
     pub tangents: Vec<Vec4>,
@@ -37,12 +39,15 @@ impl Mesh {
         if !self.second_uvs.is_empty() {
             self.second_uvs.push(Vec2::ZERO);
         }
+        if !self.colors.is_empty() {
+            self.colors.push(WHITE);
+        }
         self.tangents.push(tangent);
         index
     }
 
     /// Adds a vertex like another one and gives its index.
-    fn copy_vertex(&mut self, from: usize) -> u32 {
+    pub(super) fn copy_vertex(&mut self, from: usize) -> u32 {
         let index = self.push_vertex(
             self.positions[from],
             self.normals[from],
@@ -51,6 +56,9 @@ impl Mesh {
         );
         if let Some(&uv) = self.second_uvs.get(from) {
             self.second_uvs[index as usize] = uv;
+        }
+        if let Some(&color) = self.colors.get(from) {
+            self.colors[index as usize] = color;
         }
         index
     }
@@ -66,13 +74,15 @@ impl Mesh {
 
     /// Adds all vertices and triangles of `other`, with their slots as they are.
     pub fn append(&mut self, other: Mesh) {
-        let base = self.positions.len() as u32;
-        if !(self.second_uvs.is_empty() && other.second_uvs.is_empty()) {
-            self.second_uvs.resize(self.positions.len(), Vec2::ZERO);
-            self.second_uvs.extend(&other.second_uvs);
-            self.second_uvs
-                .resize(self.positions.len() + other.positions.len(), Vec2::ZERO);
+        if self.positions.is_empty() && self.triangles.is_empty() {
+            // Most files have one mesh: nothing needs to be copied.
+            *self = other;
+            return;
         }
+        let base = self.positions.len() as u32;
+        let counts = [self.positions.len(), other.positions.len()];
+        append_optional(&mut self.second_uvs, &other.second_uvs, counts, Vec2::ZERO);
+        append_optional(&mut self.colors, &other.colors, counts, WHITE);
         self.positions.extend(other.positions);
         self.normals.extend(other.normals);
         self.uvs.extend(other.uvs);
@@ -117,8 +127,26 @@ impl Mesh {
             let corners = self.triangles.iter().flatten();
             flat.second_uvs = corners.map(|&vertex| self.second_uvs[vertex as usize]).collect();
         }
+        if !self.colors.is_empty() {
+            let corners = self.triangles.iter().flatten();
+            flat.colors = corners.map(|&vertex| self.colors[vertex as usize]).collect();
+        }
         flat.slots = std::mem::take(&mut self.slots);
         *self = flat;
+    }
+
+    /// Gives every vertex the mean normal of its triangles, weighed by their areas: for scanned surfaces, which have no
+    /// creases.
+    pub fn smooth_normals(&mut self) {
+        let mut sums = vec![DVec3::ZERO; self.positions.len()];
+        for triangle in 0..self.triangles.len() {
+            let [a, b, c] = self.corners(triangle);
+            let doubled_area = (b - a).cross(c - a);
+            for vertex in self.triangles[triangle] {
+                sums[vertex as usize] += doubled_area;
+            }
+        }
+        self.normals = sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect();
     }
 
     /// Replaces normals that are not finite or have no length by that of a triangle at the vertex; the rest are
@@ -150,6 +178,16 @@ impl Mesh {
             }
         }
         count
+    }
+
+    /// Tangents along growing u of a texture, as [`Mesh::mikktspace_tangents`] where `is_exact` (a normal texture is made
+    /// for these), else as [`Mesh::generate_tangents`], which is faster.
+    pub fn make_tangents(&mut self, texture_from_uv: [f32; 6], is_exact: bool) {
+        if is_exact {
+            self.mikktspace_tangents(texture_from_uv);
+        } else {
+            self.generate_tangents(texture_from_uv);
+        }
     }
 
     /// Tangents along growing u of a texture that the texture coordinates look into by these coefficients
@@ -209,6 +247,19 @@ impl Mesh {
         let sign = if determinant < 0.0 { 1.0 } else { -1.0 };
         (determinant != 0.0 && determinant.is_finite()).then_some((along_u.try_normalize()?, sign))
     }
+}
+
+/// The colour of a vertex without one.
+const WHITE: [f32; 4] = [1.0; 4];
+
+/// Appends values that may be missing on either side, where there are `counts` vertices on each.
+fn append_optional<T: Copy>(values: &mut Vec<T>, others: &[T], counts: [usize; 2], default: T) {
+    if values.is_empty() && others.is_empty() {
+        return;
+    }
+    values.resize(counts[0], default);
+    values.extend(others);
+    values.resize(counts[0] + counts[1], default);
 }
 
 /// The unit normal of the plane through three points in counter-clockwise order; +Y where they are on one line.

@@ -6,18 +6,32 @@ pub mod camera;
 mod convex;
 pub mod environment;
 pub mod facing;
+mod files;
 mod geometry;
 mod gltf;
+mod import;
 mod intersect;
+mod ktx2;
 pub mod light;
 pub mod mesh;
 mod model;
+mod obj;
+mod picture;
+mod ply;
+pub mod report;
 pub mod shapes;
+mod stl;
 pub mod surface;
+mod tangents;
 pub mod teapot;
 pub mod texture;
 mod traverse;
 
 pub use geometry::{Geometry, Vertex};
+pub use import::{MODEL_ENDINGS, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
-pub use model::{AlphaMode, Filter, Model, ModelError, ModelSource, Slot, Texture, TextureRef, Wrap, load};
+pub use model::{
+    AlphaMode, Filter, LightKind, Model, ModelCamera, ModelError, ModelLight, ModelOptions, ModelSource, Slot,
+    SlotPicture, Texture, TextureRef, Wrap, load, load_with,
+};
+pub use report::{Entry, Fate, ImportReport};

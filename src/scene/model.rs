@@ -2,12 +2,13 @@
 
 use std::fmt;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
 use super::mesh::Mesh;
-use super::{gltf, shapes, teapot};
+use super::report::ImportReport;
+use super::{import, shapes, teapot};
 
 /// Where a model comes from. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a
 /// path; a file of such a name is written with its folder (`./teapot`).
@@ -23,7 +24,7 @@ pub enum ModelSource {
     Plane,
     /// A ball with an inset band that shows its core, on a stand.
     Shaderball,
-    /// A glTF 2.0 file, .gltf or .glb.
+    /// A file with one of [`MODEL_ENDINGS`](super::MODEL_ENDINGS), or a folder with such files.
     File(PathBuf),
 }
 
@@ -88,8 +89,100 @@ pub struct Model {
     pub slots: Vec<Slot>,
     /// The pictures that the slots refer to.
     pub textures: Vec<Texture>,
-    /// What of the file was left out, one line each.
-    pub warnings: Vec<String>,
+    /// What became of the parts of its file.
+    pub report: ImportReport,
+    /// The middle of its bounding box; 0 for built-in models, whose file has no lights or cameras.
+    pub center: [f64; 3],
+    /// From there to the farthest vertex.
+    pub radius: f64,
+    /// The cameras of the scene.
+    pub cameras: Vec<ModelCamera>,
+    /// The lights of the scene.
+    pub lights: Vec<ModelLight>,
+    /// Names of the variants of its materials (KHR_materials_variants).
+    pub variants: Vec<String>,
+    /// Names of the scenes in the file.
+    pub scenes: Vec<String>,
+    /// How long its first animation takes, seconds; 0 where there is none.
+    pub duration_s: f32,
+}
+
+/// What is shown of a file that holds more than one picture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ModelOptions {
+    /// The number of the scene; the file's default one where none is given.
+    pub scene: Option<usize>,
+    /// The variant of the materials (KHR_materials_variants); the file's own materials where none is given.
+    pub variant: Option<String>,
+    /// The time of the first animation whose pose is shown, seconds; where the nodes are without it where none is given.
+    pub time_s: Option<f32>,
+    /// The longest side of a texture; larger ones are halved until they fit.
+    pub texture_side_max: u32,
+    /// Pictures that take the place of the base colours of slots.
+    pub pictures: Vec<SlotPicture>,
+}
+
+/// A picture for the base colour of a slot.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SlotPicture {
+    /// The number of the slot.
+    pub slot: usize,
+    /// The picture's file.
+    pub file: PathBuf,
+}
+
+impl Default for ModelOptions {
+    fn default() -> Self {
+        Self {
+            scene: None,
+            variant: None,
+            time_s: None,
+            texture_side_max: 8192,
+            pictures: Vec::new(),
+        }
+    }
+}
+
+/// A camera of a file, in the units of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelCamera {
+    /// What to call it.
+    pub name: String,
+    /// Where it is.
+    pub position: [f64; 3],
+    /// Where it looks, of length 1.
+    pub forward: [f64; 3],
+    /// Vertical field of view, degrees.
+    pub fov_deg: f64,
+}
+
+/// What kind a light of a file is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightKind {
+    /// The same in all directions, from a place.
+    Point,
+    /// A cone, from a place.
+    Spot,
+    /// Parallel, from far away.
+    Directional,
+}
+
+/// A light of a file (KHR_lights_punctual), in the units of the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ModelLight {
+    /// What to call it.
+    pub name: String,
+    /// How it shines.
+    pub kind: LightKind,
+    /// Where it is.
+    pub position: [f64; 3],
+    /// Where it shines, of length 1.
+    pub forward: [f64; 3],
+    /// Linear RGB.
+    pub color: [f32; 3],
+    /// Candela, or lux where it is directional; both taken as radiometric numbers.
+    pub intensity: f32,
 }
 
 /// The parameters of one material as the file gives them (glTF's metallic-roughness model).
@@ -135,6 +228,18 @@ pub struct Slot {
     pub normal_scale: f32,
     /// Emission (sRGB-encoded).
     pub emissive_texture: Option<TextureRef>,
+    /// Share of the specular reflection that is kept, in [0, 1] (KHR_materials_specular).
+    pub specular: f32,
+    /// Tint of the specular reflection of what is no metal, linear, each in [0, 1].
+    pub specular_color: [f32; 3],
+    /// Stretch of the reflection along the tangent, in [0, 1] (KHR_materials_anisotropy).
+    pub anisotropy: f32,
+    /// Turn of the stretch from the tangent towards the bitangent, radians.
+    pub anisotropy_rotation_rad: f32,
+    /// The base colour is multiplied by the colours at the vertices.
+    pub has_vertex_colors: bool,
+    /// What the renderer cannot show yet, under the keys of a material's file.
+    pub kept: serde_json::Map<String, serde_json::Value>,
 }
 
 /// glTF's material where a file names none.
@@ -161,6 +266,12 @@ impl Default for Slot {
             normal_texture: None,
             normal_scale: 1.0,
             emissive_texture: None,
+            specular: 1.0,
+            specular_color: [1.0; 3],
+            anisotropy: 0.0,
+            anisotropy_rotation_rad: 0.0,
+            has_vertex_colors: false,
+            kept: serde_json::Map::new(),
         }
     }
 }
@@ -288,7 +399,7 @@ pub enum ModelError {
         actual: u64,
     },
     /// Contents that break the rules of the format.
-    #[error("{}: damaged glTF: {reason}; export the model again", path.display())]
+    #[error("{}: damaged: {reason}; export the model again", path.display())]
     Invalid {
         /// The model file.
         path: PathBuf,
@@ -315,6 +426,12 @@ pub enum ModelError {
         /// What is wrong with it.
         reason: String,
     },
+    /// A folder or an archive without a model.
+    #[error("{}: no model in it; models are {}", path.display(), super::MODEL_ENDINGS.join(", "))]
+    NoModelInside {
+        /// The folder or archive.
+        path: PathBuf,
+    },
     /// Nothing to draw.
     #[error("{}: no triangles in its scene; export a mesh with faces", path.display())]
     NoTriangles {
@@ -324,18 +441,31 @@ pub enum ModelError {
 }
 
 /// Loads a model. Blocks for as long as reading and decoding take; never panics on a damaged file.
+///
+/// # Errors
+/// Names the file, what is wrong with it and what to do, where there is nothing to show.
 pub fn load(source: &ModelSource) -> Result<Model, ModelError> {
+    load_with(source, &ModelOptions::default())
+}
+
+/// The same where a file holds more than one picture.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(source: &ModelSource, options: &ModelOptions) -> Result<Model, ModelError> {
     let built_in = |mesh: Mesh, slots: &[&str]| Model {
         name: source.to_string(),
         mesh,
         slots: slots.iter().map(|name| Slot::neutral(name)).collect(),
         ..Model::default()
     };
-    Ok(match source {
+    let mut model = match source {
         ModelSource::Teapot => built_in(teapot::mesh(teapot::DEFAULT_SEGMENTS), &["teapot"]),
         ModelSource::Sphere => built_in(shapes::sphere(192, 96), &["sphere"]),
         ModelSource::Plane => built_in(shapes::plane(), &["plane"]),
         ModelSource::Shaderball => built_in(shapes::shaderball(), &["body", "stand"]),
-        ModelSource::File(path) => gltf::load(Path::new(path))?,
-    })
+        ModelSource::File(path) => import::load(path, options)?,
+    };
+    import::put_pictures(&mut model, options);
+    Ok(model)
 }

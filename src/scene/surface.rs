@@ -7,7 +7,7 @@ use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 
 use super::texture::{Textures, mapped_normal, opacity_at, uvs_at};
-use super::{Geometry, Hit, triangle_normal};
+use super::{Geometry, Hit, Vertex, triangle_normal};
 
 /// Rounding of the position's three products and sums, with what the box test and the transforms add.
 pub const POSITION_ERROR: f64 = 1e-6;
@@ -30,6 +30,8 @@ pub struct SurfacePoint<T> {
     pub slot: u32,
     /// Both sets of texture coordinates; zero where the material looks up no texture.
     pub uvs: [[T; 2]; 2],
+    /// The colour between the vertices, linear RGB; white where the material takes none.
+    pub vertex_color: Vec3<T>,
 }
 
 impl<T: Real> SurfacePoint<T> {
@@ -143,6 +145,12 @@ pub fn surface_at<T: Real>(
         let axis = |i: usize| [corners[i].tangent[0], corners[i].tangent[1], corners[i].tangent[2]];
         interpolate(axis(0), axis(1), axis(2))
     };
+    let color = if material.has_vertex_colors == 1 {
+        let [a, b, c] = corners.map(vertex_color);
+        a * w + b * u + c * v
+    } else {
+        Vec3::splat(T::one())
+    };
     let coat_normal = facing(smoothed);
     let mut shading = coat_normal;
     if material.textures[2] != NO_TEXTURE {
@@ -168,7 +176,14 @@ pub fn surface_at<T: Real>(
         error,
         slot,
         uvs,
+        vertex_color: color,
     }
+}
+
+/// The linear colour of a vertex that multiplies the material's.
+#[inline(always)]
+fn vertex_color<T: Real>(vertex: &Vertex) -> Vec3<T> {
+    Vec3::from_f32(vertex.rgb())
 }
 
 /// The share of light that is stopped where a ray met the geometry, in [0, 1].

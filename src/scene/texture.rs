@@ -89,6 +89,8 @@ pub struct SlotTextures {
     pub constant_base_color: Option<[f32; 4]>,
     /// What a texture of one value multiplies roughness and metalness by.
     pub constant_roughness_metalness: Option<[f32; 2]>,
+    /// Colours at the vertices multiply the base colour.
+    pub has_vertex_colors: bool,
 }
 
 impl Default for SlotTextures {
@@ -103,6 +105,7 @@ impl Default for SlotTextures {
             mean_emission: [1.0; 3],
             constant_base_color: None,
             constant_roughness_metalness: None,
+            has_vertex_colors: false,
         }
     }
 }
@@ -169,6 +172,7 @@ impl Textures {
                 }),
                 constant_roughness_metalness: metallic_roughness
                     .map(|[_, roughness, metalness, _]| [roughness as f32, metalness as f32]),
+                has_vertex_colors: slot.has_vertex_colors,
                 alpha_cutoff: if slot.alpha_mode == AlphaMode::Mask {
                     slot.alpha_cutoff.max(0.0)
                 } else {
@@ -331,6 +335,41 @@ fn halved(picture: &Texture, is_color: bool) -> Texture {
     }
 }
 
+/// A picture whose sides are at most `side_max`, halved until they are; and the size that it had, where that was more.
+pub(super) fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, Option<[u32; 2]>) {
+    let whole = [picture.width, picture.height];
+    let mut scaled = picture;
+    while scaled.width.max(scaled.height) > side_max.max(1) {
+        scaled = halved(&scaled, is_color);
+    }
+    let is_scaled = [scaled.width, scaled.height] != whole;
+    (scaled, is_scaled.then_some(whole))
+}
+
+/// The mean of a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TextureMean {
+    /// Of its codes, in [0, 1].
+    pub codes: [f32; 4],
+    /// Of the light that its codes stand for as sRGB.
+    pub linear: [f32; 3],
+}
+
+/// The mean of a picture.
+pub(super) fn texture_mean(picture: &Texture) -> TextureMean {
+    let mut sums = [0_u64; 4];
+    for texel in picture.rgba8.as_chunks::<4>().0 {
+        sums.iter_mut()
+            .zip(texel)
+            .for_each(|(sum, code)| *sum += u64::from(*code));
+    }
+    let texels = (picture.rgba8.len() / 4).max(1) as f64;
+    TextureMean {
+        codes: sums.map(|sum| (sum as f64 / (255.0 * texels)) as f32),
+        linear: mean_linear(picture),
+    }
+}
+
 /// The mean of a picture of sRGB codes, linear.
 fn mean_linear(picture: &Texture) -> [f32; 3] {
     let mut counts = [[0u32; DECODED]; 3];
@@ -435,20 +474,23 @@ pub fn uvs_at<T: Real>(geometry: &Geometry, triangle: usize, weights: [T; 3]) ->
     ]
 }
 
-/// The material at a surface point: what its textures say multiplied in.
+/// The material at a surface point: what its textures say and the colour between its vertices multiplied in.
 /// `tables` holds all materials' tables.
 pub fn textured_material<T: Real>(
     textures: &Textures,
     tables: &[f32],
     material: &Material<T>,
     uvs: [[T; 2]; 2],
+    vertex_color: Vec3<T>,
 ) -> Material<T> {
     let mut at_point = *material;
+    at_point.base_color = material.base_color * vertex_color;
+    at_point.transmission_tint = material.transmission_tint * vertex_color;
     let [base_color, metallic_roughness, _, emission] = material.textures;
     if base_color != NO_TEXTURE {
         let (color, _) = texture_lookup(textures, base_color, uvs);
-        at_point.base_color = material.base_color * color;
-        at_point.transmission_tint = material.transmission_tint * color;
+        at_point.base_color = at_point.base_color * color;
+        at_point.transmission_tint = at_point.transmission_tint * color;
     }
     if metallic_roughness != NO_TEXTURE {
         let (values, _) = texture_lookup(textures, metallic_roughness, uvs);

@@ -1,8 +1,8 @@
 //! The checks that `glossmith check` runs: χ² of every sampler on both engines, and that the tests can fail.
 
 use glossmith::analysis::chi_square::sidak_level;
-use glossmith::analysis::scatter::{ScatterCloud, ScatterRequest};
 use glossmith::cpu;
+use glossmith::job::scatter::{ScatterCloud, ScatterRequest};
 use glossmith::render::check::{CheckOptions, chi_square, run, sample_cases};
 use glossmith::render::{EngineChoice, Sampler};
 use rayon::prelude::*;

@@ -45,18 +45,19 @@ fn bad_environments_are_refused() {
     place.done(&format!("{QUICK} --environment whole.exr"));
     let mut exr = std::fs::read(place.path("whole.exr")).unwrap();
     place.write("cut.exr", &exr[..exr.len() / 2]);
-    // Both compressions put these 16 rows in one chunk. The attribute's name, its type and its length of 1 come before its value: DWAA is 8.
+    // Both compressions put these 16 rows in one chunk. The attribute's name, its type and its length of 1 come before its value: HTJ2K is 10.
     let name = b"compression\0compression\0\x01\0\0\0";
     let value = exr.windows(name.len()).position(|window| window == name).unwrap() + name.len();
-    exr[value] = 8;
-    place.write("dwa.exr", &exr);
+    exr[value] = 10;
+    place.write("htj2k.exr", &exr);
     for (file, words) in [
         ("cut.hdr", ["cut short", "again"]),
         ("text.hdr", ["not a", "check where it came from"]),
         ("cut.exr", ["cut short", "again"]),
-        ("dwa.exr", ["DWA", "not supported"]),
+        ("htj2k.exr", ["not supported", "re-save it"]),
         ("missing.hdr", ["cannot read", "check the path"]),
-        ("picture.jpg", ["neither a .hdr nor an .exr", "convert"]),
+        ("picture.jpg", ["cannot read", "check the path"]),
+        ("picture.svg", ["neither a .hdr nor an .exr", "convert"]),
     ] {
         place.refused(
             1,

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use glossmith::document::file::{self, Opened};
-use glossmith::document::picture::load_picture_document;
+use glossmith::store::file::{self, Opened};
+use glossmith::store::picture::load_picture_document;
 use serde_json::Value;
 
 use crate::cli_support::{Workplace, channels};

@@ -4,8 +4,9 @@ use std::collections::HashSet;
 
 use exr::meta::MetaData;
 use exr::meta::attribute::SampleType;
-use glossmith::document::{PARAMETERS, PRESETS, preset::command_line_name};
+use glossmith::document::PARAMETERS;
 use glossmith::optics::tone::ToneCurve;
+use glossmith::store::{PRESETS, preset::command_line_name};
 use serde_json::Value;
 
 use crate::cli_support::{Picture, Workplace, channels, read_exr, write_exr, write_hdr};

@@ -1,18 +1,21 @@
 //! Comparing, pinning, pictures that bring their document back, turntables: in the editor with the real renderer.
 
 use std::path::Path;
+use std::time::Duration;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, Vec2};
+use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable as _;
-use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::compare::Rival;
 use glossmith::app::layout::Pane;
+use glossmith::app::{App, Options, Resolution};
+use glossmith::document::Document;
 use glossmith::document::match_look::{Target, lobe_of_material, match_look};
-use glossmith::document::{Document, PRESETS};
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::worker::{Activity, Picture};
+use glossmith::store::PRESETS;
 
 use super::ui::{Editor, editor, editor_of, options, request, see, settle, wait};
 use super::worker::small_document;
@@ -36,6 +39,44 @@ fn settle_both(harness: &mut Editor, what: &str, is_b: impl Fn(&Document) -> boo
 fn rival(harness: &Editor) -> Document {
     let snapshot = harness.state().rival_snapshot().expect("it is compared");
     Document::clone(&snapshot.picture.as_ref().expect("it was waited for").document)
+}
+
+/// A picture that has cost some time stays when only the viewport's size changes; the wish for another size is another
+/// matter.
+#[test]
+fn a_costly_picture_survives_a_comparison_and_panels_that_go() {
+    for (keep_from, is_kept) in [(Duration::ZERO, true), (Duration::from_secs(3600), false)] {
+        let mut document = small_document();
+        document.render.samples = 2;
+        let mut harness = Harness::builder()
+            .with_size(Vec2::new(1000.0, 700.0))
+            .with_pixels_per_point(0.25)
+            .build_eframe(move |creation| {
+                let options = Options {
+                    document: Some(document),
+                    resolution: Some(Resolution::Native),
+                    keep_pictures_from: Some(keep_from),
+                    ..options()
+                };
+                App::new(creation, options).expect("a thread to render on")
+            });
+        settle(&mut harness);
+        let size = |harness: &Editor| {
+            let snapshot = harness.state().snapshot();
+            let picture = snapshot.picture.as_ref().expect("it was waited for");
+            ([picture.width, picture.height], picture.serial)
+        };
+        let before = size(&harness);
+        for command in [Command::Compare, Command::Compare, Command::Maximise] {
+            request(&mut harness, Action::Do(command));
+            settle(&mut harness);
+        }
+        assert_eq!(size(&harness) == before, is_kept, "{before:?}");
+        // Started over, it has the viewport's size.
+        request(&mut harness, Action::Do(Command::Restart));
+        settle(&mut harness);
+        assert_ne!(size(&harness).0, before.0);
+    }
 }
 
 #[test]

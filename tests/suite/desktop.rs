@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use glossmith::document::{Document, load_document};
+use glossmith::document::Document;
+use glossmith::store::load_document;
 use tempfile::TempDir;
 
 /// A slow machine has to open a window, compile and render.

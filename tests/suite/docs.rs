@@ -7,13 +7,14 @@ use std::path::Path;
 use clap::{Arg, ArgAction, Command, CommandFactory};
 use glossmith::cli::Arguments;
 use glossmith::document::effect::EFFECTS;
-use glossmith::document::preset::command_line_name;
-use glossmith::document::{Kind, PARAMETERS, PRESETS, Value, parameter};
+use glossmith::document::{Kind, PARAMETERS, Parameter, SETTINGS, Value, parameter};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear};
 use glossmith::optics::vector::Vec3;
+use glossmith::store::PRESETS;
+use glossmith::store::preset::command_line_name;
 
 const BEGIN: &str = "<!-- made from the program: ";
 const END: &str = "<!-- end -->";
@@ -32,8 +33,8 @@ fn table(head: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> String {
     text
 }
 
-fn parameters() -> String {
-    let row = |parameter: &'static glossmith::document::Parameter| {
+fn parameters<T: Default>(all: &[Parameter<T>]) -> String {
+    let row = |parameter: &Parameter<T>| {
         let expected = parameter.expected();
         let default = parameter.text(&parameter.default_value());
         vec![
@@ -47,7 +48,7 @@ fn parameters() -> String {
             parameter.help.to_owned(),
         ]
     };
-    table(&["key", "takes", "default", "what it does"], PARAMETERS.iter().map(row))
+    table(&["key", "takes", "default", "what it does"], all.iter().map(row))
 }
 
 fn choices(entries: impl Iterator<Item = (&'static str, &'static str)>) -> String {
@@ -78,10 +79,11 @@ fn horizons() -> String {
 fn effects() -> String {
     let row = |effect: &glossmith::document::effect::Effect| {
         vec![
-            format!("`{}`", effect.name),
+            format!("`{}`", effect.name()),
             effect.help.to_owned(),
             effect
-                .constant
+                .id
+                .constant()
                 .map_or_else(String::new, |constant| format!("`{}`", constant.name)),
             if effect.remove.is_some() { "yes" } else { "no" }.to_owned(),
         ]
@@ -180,7 +182,8 @@ fn options(name: &str) -> String {
 
 fn block(name: &str) -> String {
     match name {
-        "parameters" => parameters(),
+        "parameters" => parameters(&PARAMETERS),
+        "settings" => parameters(&SETTINGS),
         "lobes" => choices(Lobe::ALL.iter().map(|lobe| (lobe.name(), lobe.help()))),
         "curves" => curves(),
         "fresnel" => choices(Fresnel::ALL.iter().map(|fresnel| (fresnel.name(), fresnel.help()))),
@@ -246,6 +249,7 @@ fn the_guide_has_every_part() {
     wanted.extend(
         [
             "parameters",
+            "settings",
             "lobes",
             "curves",
             "fresnel",

@@ -1,12 +1,10 @@
-//! Documents: parameters, differences, history, compilation.
+//! Documents: differences, history, compilation.
 
 use glossmith::document::custom_curve::CustomCurve;
 use glossmith::document::history::History;
 use glossmith::document::import::{geometric_from_ggx, ggx_from_geometric};
-use glossmith::document::parameter::{Kind, Parameter, Value, assign, parameter, parse_color};
 use glossmith::document::{
-    AreaLight, Background, Change, Conductor, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter,
-    Strategy, compile, preset,
+    AreaLight, Background, Change, Document, ImportLobe, MaterialSettings, PARAMETERS, PixelFilter, Strategy, compile,
 };
 use glossmith::optics::albedo::{ALBEDO_LENGTH, ROUGH_ALBEDO_LENGTH, albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_LENGTH, Curve, curve_distance, custom_table};
@@ -15,210 +13,11 @@ use glossmith::optics::random::Sequence;
 use glossmith::optics::tone::ToneCurve;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{ModelSource, Slot};
+use glossmith::store::preset;
+
 use proptest::prelude::{Just, ProptestConfig, prop, prop_assert, prop_assert_eq, prop_oneof, proptest};
 
-/// Values that a parameter takes: both ends and something between, every choice.
-pub(crate) fn valid_values(parameter: &Parameter) -> Vec<Value> {
-    match &parameter.kind {
-        Kind::Number {
-            range: [low, high],
-            soft_range,
-            ..
-        } => {
-            let between = soft_range[0] + 0.317 * (soft_range[1] - soft_range[0]);
-            [*low, between, *high].map(Value::Number).to_vec()
-        }
-        Kind::Color => vec![Value::Color([0.0, 1.0, 0.123_456_7]), Value::Color([0.9; 3])],
-        Kind::Triple { range: [low, high] } => {
-            vec![Value::Triple([*low, *high, 0.765_432_1]), Value::Triple([*low; 3])]
-        }
-        Kind::Choice(choices) => choices.iter().map(|choice| Value::Choice(choice.name)).collect(),
-        Kind::Toggle => vec![Value::Toggle(false), Value::Toggle(true)],
-        Kind::Curve => vec![
-            Value::Curve(vec![[0.0, 0.0], [1.0, 1.0]]),
-            Value::Curve(vec![[0.0, 0.25], [0.333, 0.25], [0.9, 7.1], [1.0, 20.0]]),
-        ],
-    }
-}
-
-/// Texts that a parameter refuses.
-fn invalid_texts(parameter: &Parameter) -> Vec<String> {
-    let texts: &[&str] = match &parameter.kind {
-        Kind::Number { range: [low, high], .. } => {
-            let beyond = [low - 1.0, high * 2.0 + 1.0].map(|x| x.to_string()).into_iter();
-            let odd = ["NaN", "inf", "1e99", "much", ""].map(str::to_owned);
-            return beyond.chain(odd).collect();
-        }
-        Kind::Color => &[
-            "#12345", "#+1+2+3", "#äöü", "1,1", "1,1,1,1", "-0.1,0,0", "1.1,0,0", "red", "NaN,0,0", "",
-        ],
-        Kind::Triple { .. } => &["1", "1,2", "1,2,x", "-1,0,0", "21,0,0", "inf,0,0"],
-        Kind::Choice(_) => &["", "no such", "Geometric"],
-        Kind::Toggle => &["", "1", "yes"],
-        Kind::Curve => &[
-            "",
-            "0:0",
-            "0:0,1",
-            "0:0,0.5:2,1:1",
-            "0.1:0,1:1",
-            "0:0,1:21",
-            "0:0,1:0",
-            "0:0,0.5:0.5,0.5:0.6,1:1",
-            "0:-1,1:1",
-            "0:0,1:NaN",
-        ],
-    };
-    texts.iter().map(|text| (*text).to_owned()).collect()
-}
-
-pub(crate) fn is_in_range(material: &MaterialSettings) -> bool {
-    PARAMETERS
-        .iter()
-        .all(|parameter| parameter.check(&parameter.get(material)).is_ok())
-}
-
-#[test]
-fn every_parameter_is_described_and_its_default_is_in_range() {
-    let mut keys: Vec<_> = PARAMETERS.iter().map(|parameter| parameter.key).collect();
-    for key in ["color", "metalness"] {
-        assert!(keys.contains(&format!("base.{key}").as_str()), "{key}");
-    }
-    for key in ["lobe", "roughness", "curve", "horizon", "fresnel", "ior", "color"] {
-        assert!(keys.contains(&format!("specular.{key}").as_str()), "{key}");
-    }
-    keys.sort_unstable();
-    let count = keys.len();
-    keys.dedup();
-    assert_eq!(keys.len(), count, "keys are unique");
-    for parameter in PARAMETERS.iter() {
-        assert!(
-            !parameter.label.is_empty() && parameter.help.ends_with('.'),
-            "{}",
-            parameter.key
-        );
-        assert_eq!(parameter.check(&parameter.default_value()), Ok(()), "{}", parameter.key);
-        if let Kind::Number {
-            range,
-            soft_range,
-            step,
-            ..
-        } = &parameter.kind
-        {
-            assert!(range[0] <= soft_range[0] && soft_range[0] < soft_range[1] && soft_range[1] <= range[1]);
-            assert!(
-                *step > 0.0 && *step < soft_range[1] - soft_range[0],
-                "{}",
-                parameter.key
-            );
-        }
-    }
-}
-
-#[test]
-fn every_value_survives_the_material_the_text_and_the_file() {
-    for parameter in PARAMETERS.iter() {
-        for value in valid_values(parameter) {
-            let key = parameter.key;
-            let mut material = MaterialSettings::default();
-            parameter.set(&mut material, value.clone()).expect(key);
-            assert_eq!(parameter.get(&material), value, "{key}");
-
-            let mut from_text = MaterialSettings::default();
-            assign(&mut from_text, &format!(" {key} = {} ", parameter.text(&value))).expect(key);
-            assert_eq!(from_text, material, "{key}");
-
-            let json = serde_json::from_str(&parameter.json_from_value(&value).to_string()).expect(key);
-            assert_eq!(parameter.value_from_json(&json), Ok(value), "{key}");
-
-            let text = preset::material_text(&material);
-            let loaded = preset::parse_material("x.json".as_ref(), text.as_bytes()).expect(key);
-            assert_eq!((loaded.value, loaded.warnings), (material, vec![]), "{key}");
-        }
-    }
-}
-
-#[test]
-fn what_a_parameter_does_not_take_leaves_the_material_alone() {
-    for parameter in PARAMETERS.iter() {
-        for text in invalid_texts(parameter) {
-            let mut material = MaterialSettings::default();
-            let error = assign(&mut material, &format!("{}={text}", parameter.key))
-                .expect_err(&text)
-                .to_string();
-            assert!(
-                error.starts_with(&format!("{} does not take ", parameter.key)),
-                "{error}"
-            );
-            assert!(error.contains("; give ") || error.contains("; let "), "{error}");
-            assert_eq!(material, MaterialSettings::default(), "{} = {text}", parameter.key);
-        }
-        for other in PARAMETERS.iter() {
-            let value = other.default_value();
-            if std::mem::discriminant(&value) != std::mem::discriminant(&parameter.default_value()) {
-                assert!(
-                    parameter.check(&value).is_err(),
-                    "{} takes {}'s",
-                    parameter.key,
-                    other.key
-                );
-            }
-        }
-    }
-}
-
-#[test]
-fn errors_say_what_would_be_right() {
-    let error = |assignment: &str| {
-        assign(&mut MaterialSettings::default(), assignment)
-            .expect_err(assignment)
-            .to_string()
-    };
-    let expected = "specular.roughness does not take 1.5; give a number from 0 to 1";
-    assert_eq!(error("specular.roughness=1.5"), expected);
-    let expected = "specular.horizon does not take up; give one of mirror, absorb, none";
-    assert_eq!(error("specular.horizon=up"), expected);
-    let expected = "specular.rotation does not take 400; give a number from -360 to 360 °";
-    assert_eq!(error("specular.rotation=400"), expected);
-    assert!(error("specular.rougness=1").ends_with("did you mean specular.roughness?"));
-    assert!(error("roughness=1").ends_with("did you mean specular.roughness?"));
-    assert!(error("metalnes=1").ends_with("did you mean base.metalness?"));
-    assert!(error("qqqqqqqq=1").contains("the parameters are base.weight, "));
-    assert!(error("specular.roughness").contains("KEY=VALUE"));
-    assert!(error(&format!("specular.lobe={}", "x".repeat(5000))).len() < 300);
-    assert!(parameter("specular.roughness").is_ok() && parameter("specular.Roughness").is_err());
-}
-
-#[test]
-fn hexadecimal_colours_are_srgb_and_triples_linear() {
-    assert_eq!(parse_color("#ffffff"), Ok([1.0; 3]));
-    assert_eq!(parse_color("0.5,0.25,1"), Ok([0.5, 0.25, 1.0]));
-    let [r, g, b] = parse_color("#0A80FF").expect("a colour");
-    // IEC 61966-2-1: 10/255 lies on the straight part, 128/255 decodes to 0.2158605.
-    assert!((r - 10.0 / 255.0 / 12.92).abs() < 1e-7 && (g - 0.215_860_5).abs() < 1e-6 && b == 1.0);
-}
-
-#[test]
-fn a_metal_brings_its_indices_and_indices_of_ones_own_are_custom() {
-    let mut material = MaterialSettings::default();
-    assign(&mut material, "specular.conductor=gold").expect("gold");
-    assert_eq!(material.eta, [0.143, 0.375, 1.442]);
-    assert_eq!(material.k, [3.983, 2.386, 1.603]);
-    assign(&mut material, "specular.eta=0.143,0.375,1.442").expect("its own");
-    assert_eq!(material.conductor.name(), "gold");
-    assign(&mut material, "specular.k=1,2,3").expect("another");
-    assert_eq!(
-        (material.conductor, material.eta),
-        (Conductor::Custom, [0.143, 0.375, 1.442])
-    );
-    let text = br#"{"glossmith": 1, "material": {"specular.k": [1, 2, 3], "specular.conductor": "gold"}}"#;
-    let loaded = preset::parse_material("x.json".as_ref(), text).expect("valid").value;
-    assert_eq!(
-        loaded.k,
-        [1.0, 2.0, 3.0],
-        "the file's k wins over its metal's, in whatever order"
-    );
-    assert_eq!(loaded.conductor, Conductor::Custom);
-}
+use crate::parameters::{is_in_range, valid_values};
 
 #[test]
 fn slots_of_a_model_become_materials_in_range() {
@@ -491,17 +290,17 @@ fn every_edit_is_the_change_that_it_is() {
 #[test]
 fn changes_say_what_follows() {
     let (none, all) = (Change::default(), Change::everything());
-    assert!(none.is_none() && !none.restarts() && !none.needs_display());
-    assert!(all.restarts() && all.needs_geometry() && all.needs_environment() && all.needs_materials());
+    assert!(none.is_none() && !none.restarts());
+    assert!(all.restarts() && all.geometry && all.environment && all.materials);
     let display = Change { display: true, ..none };
-    assert!(!display.restarts() && display.needs_display());
+    assert!(!display.restarts() && display.display);
     let target = Change { target: true, ..none };
-    assert!(!target.restarts() && !target.is_none() && !target.needs_display());
+    assert!(!target.restarts() && !target.is_none());
     let geometry = Change { geometry: true, ..none };
-    assert!(geometry.restarts() && geometry.needs_geometry() && geometry.needs_materials() && geometry.needs_display());
-    assert!(!geometry.needs_environment());
+    assert!(geometry.restarts() && geometry.geometry);
+    assert!(!geometry.environment);
     let camera = Change { camera: true, ..none };
-    assert!(camera.restarts() && !camera.needs_geometry() && !camera.needs_materials());
+    assert!(camera.restarts() && !camera.geometry && !camera.materials);
 }
 
 #[test]

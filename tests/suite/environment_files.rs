@@ -168,7 +168,14 @@ fn exr_files_are_read_in_every_supported_compression_and_number_type() {
             assert_shows(&load_file(&path).unwrap(), factor, [0, 1, 2]);
         }
     }
-    for compression in [Compression::PXR24, Compression::B44, Compression::B44A] {
+    let lossy = [
+        Compression::PXR24,
+        Compression::B44,
+        Compression::B44A,
+        Compression::DWAA(None),
+        Compression::DWAB(None),
+    ];
+    for compression in lossy {
         let environment = load_file(&exr_file(&folder, "lossy.exr", &RGB, "half", compression)).unwrap();
         for (index, texel) in environment.texels.iter().enumerate() {
             for (channel, found) in texel[..3].iter().enumerate() {
@@ -333,8 +340,9 @@ fn what_is_no_environment_is_refused() {
     );
     assert_says(&refusal(&write_bytes(&folder, "empty.hdr", b"")), &["no content"]);
     assert_says(&refusal(&write_bytes(&folder, "empty.exr", b"")), &["no content"]);
+    assert_says(&refusal(&write_bytes(&folder, "a.jpg", text)), &["a.jpg", "re-save it"]);
     assert_says(
-        &refusal(&write_bytes(&folder, "a.jpg", text)),
+        &refusal(&write_bytes(&folder, "a.svg", text)),
         &["neither a .hdr nor an .exr", "convert"],
     );
     assert_says(
@@ -350,7 +358,10 @@ fn what_is_no_environment_is_refused() {
         &["cannot read", "check the path"],
     );
     std::fs::create_dir(folder.path().join("folder.hdr")).unwrap();
-    assert_says(&refusal(&folder.path().join("folder.hdr")), &["cannot read"]);
+    assert_says(
+        &refusal(&folder.path().join("folder.hdr")),
+        &["folder without six pictures", "px, nx"],
+    );
 }
 
 #[test]
@@ -360,13 +371,14 @@ fn sizes_that_cannot_be_are_refused() {
     let refused = |size: &str| refusal(&write_bytes(&folder, "size.hdr", &header(size)));
     assert_says(&refused("-Y 0 +X 0"), &["no pixels"]);
     assert_says(
-        &refused("-Y 4097 +X 8192"),
-        &["8192 × 4097", "8192 × 4096", "scale it down"],
+        &refused("-Y 4097 +X 32769"),
+        &["32769 × 4097", "32768 × 32768", "scale it down"],
     );
-    assert_says(&refused("-Y 4096 +X 8193"), &["scale it down"]);
-    assert_says(&refused("-Y 4294967295 +X 4294967295"), &["not supported"]);
+    assert_says(&refused("-Y 4294967295 +X 4294967295"), &["scale it down"]);
     assert_says(&refused("-Y 4096 +X 8192"), &["cut short", "row 1 of 4096"]);
-    assert_says(&refused("+Y 4 +X 8"), &["Orientation", "rows from the top"]);
+    assert_says(&refused("+X 8 +Y 4"), &["cut short", "column 1 of 8"]);
+    assert_says(&refused("+Y 4 +Y 8"), &["resolution '+Y 4 +Y 8'"]);
+    assert_says(&refused("-Y 4"), &["resolution '-Y 4'"]);
 }
 
 /// The offset of an attribute's value in an EXR header.
@@ -384,11 +396,11 @@ fn exr_features_beyond_reach_are_refused() {
     let folder = TempDir::new().unwrap();
     let exr = std::fs::read(exr_file(&folder, "a.exr", &RGB, "half", Compression::ZIP16)).unwrap();
     let compression = attribute_offset(&exr, b"compression\0compression\0");
-    for (code, name) in [(8, "DWAA compression"), (9, "DWAB compression")] {
+    for code in [10, 11] {
         let mut bytes = exr.clone();
         bytes[compression] = code;
-        let error = refusal(&write_bytes(&folder, "dwa.exr", &bytes));
-        assert_says(&error, &[name, "not supported", "re-save it with ZIP or PIZ"]);
+        let error = refusal(&write_bytes(&folder, "htj2k.exr", &bytes));
+        assert_says(&error, &["not supported", "re-save it"]);
     }
     let mut bytes = exr.clone();
     bytes[5] |= 8;
@@ -416,7 +428,7 @@ fn an_exr_header_that_promises_too_much_is_refused() {
             refusal(&write_bytes(&folder, "promise.exr", &bytes))
         };
         assert_says(&promise(8192, 4096), &["cut short", "header promises"]);
-        assert_says(&promise(10_000, 4096), &["10000 × 4096", "scale it down"]);
+        assert_says(&promise(40_000, 4096), &["40000 × 4096", "scale it down"]);
         promise(i32::MAX / 2, i32::MAX / 2);
         promise(0, 0);
         promise(-5, 3);
@@ -428,11 +440,11 @@ proptest! {
 
     /// Whatever the damage: a picture that can be rendered or an error, no panic.
     #[test]
-    fn damaged_files_never_panic(kind in 0..8_usize, damage in any::<[(u16, u8); 3]>()) {
+    fn damaged_files_never_panic(kind in 0..10_usize, damage in any::<[(u16, u8); 3]>()) {
         let folder = TempDir::new().unwrap();
         let exr_kinds = [
             Compression::Uncompressed, Compression::RLE, Compression::ZIP1, Compression::ZIP16, Compression::PIZ,
-            Compression::PXR24, Compression::B44A,
+            Compression::PXR24, Compression::B44A, Compression::DWAA(None), Compression::DWAB(None),
         ];
         let (name, mut bytes) = match exr_kinds.get(kind) {
             Some(compression) => {

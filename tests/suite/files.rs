@@ -3,19 +3,19 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use glossmith::document::file::{self, FileError, Opened};
-use glossmith::document::preset::{self, PRESETS, SHIPPED};
 use glossmith::document::{
     AreaLight, Background, Bookmark, Document, MaterialSettings, PARAMETERS, PixelFilter, Strategy as LightStrategy,
-    project,
 };
 use glossmith::optics::tone::ToneCurve;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::file::{self, FileError, Opened};
+use glossmith::store::preset::{self, PRESETS, SHIPPED};
+use glossmith::store::project;
 use proptest::prelude::*;
 use serde_json::{Map, Value as Json, json};
 
-use crate::document::is_in_range;
+use crate::parameters::is_in_range;
 
 #[test]
 fn shipped_materials_are_in_the_format_that_is_saved() {
@@ -293,7 +293,7 @@ fn broken_documents_are_named_with_the_part_that_is_wrong() {
         (json!({"glossmith": 1, "material": {}}), "not a Glossmith project"),
         (
             json!({"glossmith-document": 1, "render": {"width": 0}}),
-            "render.width is 0",
+            "render.width does not take 0",
         ),
         (
             json!({"glossmith-document": 1, "render": {"width": -4}}),
@@ -301,7 +301,7 @@ fn broken_documents_are_named_with_the_part_that_is_wrong() {
         ),
         (
             json!({"glossmith-document": 1, "render": {"bounces": 65}}),
-            "between 1 and 64",
+            "from 1 to 64",
         ),
         (
             json!({"glossmith-document": 1, "camera": {"fov_deg": "wide"}}),
@@ -309,7 +309,7 @@ fn broken_documents_are_named_with_the_part_that_is_wrong() {
         ),
         (
             json!({"glossmith-document": 1, "camera": {"fov_deg": 180}}),
-            "camera.fov_deg is 180",
+            "camera.fov does not take 180",
         ),
         (
             json!({"glossmith-document": 1, "view": {"tone_map": "sepia"}}),
@@ -317,7 +317,7 @@ fn broken_documents_are_named_with_the_part_that_is_wrong() {
         ),
         (
             json!({"glossmith-document": 1, "lighting": {"strength": -1}}),
-            "lighting.strength is -1",
+            "lighting.strength does not take -1",
         ),
         (
             json!({"glossmith-document": 1, "materials": [{"material": {"specular.roughness": 2}}]}),

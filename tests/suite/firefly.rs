@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use glossmith::analysis::film::Film;
 use glossmith::document::{AreaLight, Document, PixelFilter};
+use glossmith::job::film::Film;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 

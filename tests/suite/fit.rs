@@ -9,11 +9,12 @@ use glossmith::analysis::fit::{
     CurveTarget, Measure, Merl, MerlError, Nearest, fit_curve, nearest_roughness, total_variation,
 };
 use glossmith::analysis::lobe_model::{LobeModel, NORMAL, view_direction};
+use glossmith::document::MaterialSettings;
 use glossmith::document::match_look::{Candidate, MatchError, Target, curve_from_fit, match_look};
-use glossmith::document::{MaterialSettings, load_material};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::{Horizon, Lobe, phong};
 use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::store::load_material;
 
 use crate::support::Random;
 

@@ -3,11 +3,11 @@
 
 use std::time::Duration;
 
-use glossmith::analysis::film::Film;
 use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{
     AreaLight, AreaLightShape, Background, Document, Kind, MaterialSettings, PARAMETERS, PixelFilter, Strategy, Value,
 };
+use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
@@ -82,6 +82,7 @@ fn value(random: &mut Random, kind: &Kind) -> Value {
             };
             Value::Curve((0..count).map(|i| point(i, random)).collect())
         }
+        other => panic!("no material has a parameter of this kind: {other:?}"),
     }
 }
 

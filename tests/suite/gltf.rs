@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3};
-use glossmith::scene::{AlphaMode, Geometry, Wrap};
+use glossmith::scene::{AlphaMode, Fate, Geometry, Wrap};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Buffer, Folder, SQUARE, glb, png, square};
@@ -32,7 +32,7 @@ fn a_square_is_read_as_it_is() {
         (model.slots.len(), model.slots[0].metalness, model.slots[0].roughness),
         (1, 1.0, 1.0)
     );
-    assert!(model.warnings.is_empty(), "{:?}", model.warnings);
+    assert!(model.report.is_clean(), "{:?}", model.report);
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn materials_and_textures_become_slots() {
     );
     assert_eq!(lamp.attenuation_color, [0.25, 0.5, 0.75]);
     assert!(default.attenuation_distance.is_infinite());
-    assert_eq!(model.warnings.len(), 1, "{:?}", model.warnings);
+    assert_eq!(model.report.lines().len(), 1, "{:?}", model.report);
     assert!(lamp.double_sided && !default.double_sided);
     let color = lamp.base_color_texture.expect("a colour texture");
     assert_eq!(
@@ -292,13 +292,16 @@ fn buffers_and_pictures_may_be_beside_the_file_or_in_its_text() {
     );
 
     fs::remove_file(folder.path("picture.png")).expect("remove");
-    let error = folder
+    let grey = folder
         .load("beside.gltf", document.to_string().as_bytes())
-        .expect_err("no picture");
-    assert!(
-        error.to_string().contains("beside.gltf") && error.to_string().contains("picture.png"),
-        "{error}"
+        .expect("a missing picture stops nothing");
+    let missing: Vec<_> = grey.report.of(Fate::Missing).collect();
+    assert_eq!(
+        (missing.len(), missing[0].names[0].as_str()),
+        (1, "picture.png"),
+        "{missing:?}"
     );
+    assert_eq!((grey.textures.len(), grey.slots[0].emission), (0, [0.0; 3]));
 
     // Three vertices at 0, +X and +Y in base 64.
     document = json!({

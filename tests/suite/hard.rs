@@ -4,12 +4,13 @@ use std::collections::HashSet;
 use std::path::Path;
 use std::time::Duration;
 
+use glossmith::document::Document;
 use glossmith::document::effect::EffectSwitches;
-use glossmith::document::{Document, PRESETS};
 use glossmith::render::hard::{HardOptions, catalogue, markdown, run};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::PRESETS;
 
 fn options(engine: EngineChoice, thorough: bool) -> HardOptions {
     HardOptions {

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use glossmith::document::{Bookmark, Document, load_document, save_document};
+use glossmith::document::{Bookmark, Document};
+use glossmith::store::{load_document, save_document};
 
 use super::support::Random;
 

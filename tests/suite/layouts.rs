@@ -2,9 +2,10 @@
 
 use std::mem::offset_of;
 
-use glossmith::gpu::layout::{Globals, PixelStatistics, Tile, Triangle};
+use glossmith::gpu::layout::{Globals, PixelColors, PixelStatistics, Tile, Triangle};
 use glossmith::gpu::sampling::Sampling;
 use glossmith::gpu::scatter::Scatter;
+use glossmith::job::features::GuideSums;
 use glossmith::optics::material::Material;
 use glossmith::scene::Vertex;
 use glossmith::scene::camera::Camera;
@@ -49,8 +50,10 @@ fn rust_layouts() -> Vec<Layout> {
         }),
         layout!(Tile: Tile { origin, first_sample, sample_count }),
         layout!(PixelStatistics: PixelStatistics {
-            luminance_squared, kept, odd_luminance, odd_luminance_squared, odd_kept, dropped, rays, clamped,
+            luminance_squared, kept, odd_luminance_squared, dropped, rays, clamped,
         }),
+        layout!(PixelColors: PixelColors { all, odd, odd_kept }),
+        layout!(GuideSums: GuideSums { albedo, hits, normal, depth }),
         layout!(Camera: Camera<f32> {
             origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,
         }),
@@ -59,10 +62,11 @@ fn rust_layouts() -> Vec<Layout> {
             transmission_tint, transmission_weight, absorption, transmission_roughness, rotation_rad, lobe, curve,
             horizon, fresnel, curve_table, albedo_table, inner_albedo_table, edge_tint, opacity,
             coat_color, coat_weight, coat_roughness, coat_ior, coat_table, light_luminance, textures,
-            opacity_texture, alpha_cutoff, normal_strength, has_rough_tables, texture_roughness, roughness_table, reserved,
+            opacity_texture, alpha_cutoff, normal_strength, has_rough_tables, texture_roughness, roughness_table,
+            has_vertex_colors, reserved,
         }),
         layout!(Triangle: Triangle { corners }),
-        layout!(Vertex: Vertex { normal, uv, second_uv, tangent }),
+        layout!(Vertex: Vertex { normal, uv, second_uv, tangent, color }),
         layout!(TextureRecord: TextureRecord {
             u_from_uv, first_texel, v_from_uv, width, height, wrap, flags,
         }),

@@ -7,8 +7,9 @@ use egui::accesskit::Role;
 use egui_kittest::kittest::Queryable as _;
 use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
-use glossmith::document::{MaterialSettings, PRESETS, load_material};
+use glossmith::document::MaterialSettings;
 use glossmith::render::thumbnails::key;
+use glossmith::store::{PRESETS, load_material};
 
 use super::ui::{Editor, editor_of, options, request, see, wait};
 

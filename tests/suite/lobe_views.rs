@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use glossmith::analysis::lobe_model::{LobeModel, NORMAL, view_direction};
-use glossmith::analysis::lobe_view::{LinePlot, LobeView, ViewKind, lobe_view};
-use glossmith::analysis::plot::lobe_view_file;
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::{Horizon, Lobe, lobe_sample};
+use glossmith::plot::lobe_view::{LinePlot, LobeView, ViewKind, lobe_view};
+use glossmith::plot::lobe_view_file;
 
 use crate::support::Random;
 

@@ -4,9 +4,9 @@
 use std::time::Duration;
 
 use glossmith::analysis::error::{Estimates, z_test};
-use glossmith::analysis::film::Film;
 use glossmith::analysis::noise::noise;
 use glossmith::document::{AreaLight, Background, Document, assign};
+use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session, StopReason};
 use glossmith::scene::ModelSource;

@@ -10,13 +10,14 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::{App, Options};
-use glossmith::document::{Document, PRESETS, load_document, save_document};
+use glossmith::document::Document;
 use glossmith::scene::ModelSource;
+use glossmith::store::{PRESETS, load_document, save_document};
 
 use super::ui::{Editor, editor_of, options, request, see, wait};
 
 /// An editor that keeps unsaved edits in a folder.
-fn keeping_editor(data: &Path) -> Editor {
+pub(super) fn keeping_editor(data: &Path) -> Editor {
     editor_of(Options {
         data: Some(data.to_owned()),
         autosave_interval: Some(Duration::from_millis(20)),
@@ -24,7 +25,7 @@ fn keeping_editor(data: &Path) -> Editor {
     })
 }
 
-fn edit(harness: &mut Editor, roughness: f32) {
+pub(super) fn edit(harness: &mut Editor, roughness: f32) {
     harness.run_steps(3);
     harness
         .get_by_role_and_label(Role::SpinButton, "Specular roughness")

@@ -4,14 +4,15 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::time::Duration;
 
-use glossmith::analysis::film::Film;
-use glossmith::document::picture::load_picture_document;
-use glossmith::document::{AreaLight, Background, Document, assign, snapshots};
+use glossmith::document::{AreaLight, Background, Document, assign};
+use glossmith::job::film::Film;
 use glossmith::optics::tone::ToneCurve;
 use glossmith::render::output::{self, Layers};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::picture::load_picture_document;
+use glossmith::store::snapshots;
 
 use crate::cli_support::{Workplace, channels};
 
@@ -159,7 +160,7 @@ fn every_format_holds_the_film() {
 
     let place = Workplace::new();
     for name in ["a.exr", "a.png", "a.hdr"] {
-        output::write(&place.path(name), &layers.image, &document).unwrap();
+        output::write(&place.path(name), (&layers.image).into(), &document).unwrap();
     }
     output::write_layers(&place.path("layers.exr"), &layers).unwrap();
     assert_color(&channels(&place.path("a.exr")), &film);

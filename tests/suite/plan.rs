@@ -4,15 +4,17 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use std::time::Duration;
 
-use glossmith::analysis::film::Film;
-use glossmith::document::effect::{ANY, Decision, EFFECTS, Effect, EffectSwitches, Switch};
-use glossmith::document::job::Job;
-use glossmith::document::plan::Plan;
-use glossmith::document::{AreaLight, Document, MaterialSettings, PRESETS, assign};
+use glossmith::document::effect::{EFFECTS, Effect, EffectSwitches, Switch};
+use glossmith::document::{AreaLight, Document, MaterialSettings, assign};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
+use glossmith::job::Job;
+use glossmith::job::effect::{ANY, Decision, EffectId};
+use glossmith::job::film::Film;
+use glossmith::job::plan::Plan;
 use glossmith::optics::curve::Curve;
 use glossmith::render::{Assets, EngineChoice, Session};
 use glossmith::scene::ModelSource;
+use glossmith::store::PRESETS;
 
 use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
@@ -48,15 +50,15 @@ pub fn job_in(session: &mut Session, document: &Document) -> Job {
 fn effects_have_words_and_names_of_their_own() {
     let mut names = HashSet::new();
     for effect in EFFECTS {
-        assert!(names.insert(effect.name), "{} twice", effect.name);
+        assert!(names.insert(effect.name()), "{} twice", effect.name());
         assert!(
             effect.help.ends_with('.') && !effect.label.is_empty(),
             "{}",
-            effect.name
+            effect.name()
         );
     }
     for (effect, decision) in job(&Document::default()).plan.table() {
-        assert!(decision.reason.len() > 5, "{}: no reason", effect.name);
+        assert!(decision.reason.len() > 5, "{}: no reason", effect.name());
     }
 }
 
@@ -65,7 +67,7 @@ fn a_convex_body_alone_sees_nothing_but_the_light() {
     let sees = |model: ModelSource, edit: fn(&mut Document)| {
         let mut document = of_material(model, MaterialSettings::default());
         edit(&mut document);
-        job(&document).plan.has("interreflection")
+        job(&document).plan.has(EffectId::Interreflection)
     };
     assert!(!sees(ModelSource::Sphere, |_| {}));
     assert!(!sees(ModelSource::Plane, |_| {}));
@@ -85,7 +87,7 @@ fn a_mirror_calls_for_no_light_sampling_but_under_a_rough_coat() {
         edit(&mut mirror);
         job(&of_material(ModelSource::Sphere, mirror))
             .plan
-            .has("light-sampling")
+            .has(EffectId::LightSampling)
     };
     assert!(!samples_light(|_| {}));
     assert!(samples_light(|m| (m.coat_weight, m.coat_roughness) = (0.5, 0.2)));
@@ -105,14 +107,17 @@ fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
         document
     };
     let plane = document(ModelSource::Plane, 0.4);
-    assert!(!job(&plane).plan.has("horizon"));
+    assert!(!job(&plane).plan.has(EffectId::Horizon));
     // The kernel leaves it out: the processor's engine takes each material's.
     let mut session = Session::open(EngineChoice::Gpu).unwrap();
     let [specialised, general] = [plane.clone(), generally(&plane)].map(|document| film(&mut session, &document));
     assert_same_but_for_rounding(&specialised, &general, "a steep view");
-    assert!(job(&document(ModelSource::Plane, 0.95)).plan.has("horizon"), "rough");
     assert!(
-        job(&document(ModelSource::Sphere, 0.4)).plan.has("horizon"),
+        job(&document(ModelSource::Plane, 0.95)).plan.has(EffectId::Horizon),
+        "rough"
+    );
+    assert!(
+        job(&document(ModelSource::Sphere, 0.4)).plan.has(EffectId::Horizon),
         "a silhouette"
     );
     let edits: [(&str, Edit); 4] = [
@@ -126,7 +131,7 @@ fn the_horizon_is_left_out_where_every_view_is_steep_enough() {
     for (what, edit) in edits {
         let mut other = plane.clone();
         edit(&mut other);
-        assert!(job(&other).plan.has("horizon"), "{what}");
+        assert!(job(&other).plan.has(EffectId::Horizon), "{what}");
     }
 }
 
@@ -165,8 +170,8 @@ fn needing(effect: &str) -> Document {
 
 /// The wrong decision: what is called for is left out, or another is chosen.
 fn broken(effect: &Effect, plan: &Plan) -> Decision {
-    let is_choice = effect.constant.is_some_and(|constant| constant.general == ANY);
-    let (_, right) = plan.table().find(|(of, _)| of.name == effect.name).unwrap();
+    let is_choice = effect.id.constant().is_some_and(|constant| constant.general == ANY);
+    let (_, right) = plan.table().find(|(of, _)| *of == effect.id).unwrap();
     match right.value {
         _ if !is_choice => Decision::off("broken on purpose"),
         0 => Decision::which(1, "broken on purpose"),
@@ -177,7 +182,7 @@ fn broken(effect: &Effect, plan: &Plan) -> Decision {
 #[test]
 fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
     let folder = Folder::new();
-    let switched = |effect: &&Effect| effect.constant.is_some();
+    let switched = |effect: &&Effect| effect.id.constant().is_some();
     // One engine, which keeps the kernels that it has compiled.
     let mut engine = GpuEngine::new(GpuDevice::open(AdapterKind::Any).unwrap()).unwrap();
     let mut picture = |job: Job| {
@@ -186,22 +191,23 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
         engine.film().unwrap().color.clone()
     };
     for effect in EFFECTS.iter().filter(switched) {
-        let is_of_texture = effect.name.ends_with("texture") || ["normal-map", "rough-tables"].contains(&effect.name);
+        let is_of_texture =
+            effect.name().ends_with("texture") || ["normal-map", "rough-tables"].contains(&effect.name());
         let document = if is_of_texture {
             small(all_at_once(&folder))
         } else {
-            needing(effect.name)
+            needing(effect.name())
         };
         let right = job(&document);
-        assert!(right.plan.has(effect.name), "{} is not called for", effect.name);
+        assert!(right.plan.has(effect.id), "{} is not called for", effect.name());
         let wrong = Job {
-            plan: right.plan.clone().with(effect.name, broken(effect, &right.plan)),
+            plan: right.plan.clone().with(effect.id, broken(effect, &right.plan)),
             ..right.clone()
         };
         assert!(
             picture(right) != picture(wrong),
             "{}: leaving it out shows nowhere",
-            effect.name
+            effect.name()
         );
     }
 }
@@ -211,11 +217,14 @@ fn switching_an_effect_off_takes_it_out_of_the_scene_on_both_engines() {
     let glass = PRESETS.iter().find(|material| material.name == "Amber").unwrap();
     let mut document = of_material(ModelSource::Sphere, glass.clone());
     let plan = job(&document).plan;
-    assert!(plan.has("transmission") && plan.has("absorption"));
-    document.render.effects.set("transmission", Switch::Off);
+    assert!(plan.has(EffectId::Transmission) && plan.has(EffectId::Absorption));
+    document.render.effects.set(EffectId::Transmission, Switch::Off);
     let plan = job(&document).plan;
-    assert!(!plan.has("transmission") && !plan.has("absorption"));
-    let (_, decision) = plan.table().find(|(effect, _)| effect.name == "transmission").unwrap();
+    assert!(!plan.has(EffectId::Transmission) && !plan.has(EffectId::Absorption));
+    let (_, decision) = plan
+        .table()
+        .find(|(effect, _)| *effect == EffectId::Transmission)
+        .unwrap();
     assert!(decision.reason.contains("you"), "{}", decision.reason);
 }
 
@@ -225,21 +234,24 @@ fn either_kind_of_light_sampling_is_taken_out_alone() {
     document.lighting.area_lights.push(AreaLight::default());
     let has = |document: &Document| {
         let plan = job(document).plan;
-        ["light-sampling", "emitter-sampling"].map(|name| plan.has(name))
+        [EffectId::LightSampling, EffectId::EmitterSampling].map(|effect| plan.has(effect))
     };
     assert_eq!(has(&document), [true, true]);
     let mut reference = document.clone();
     reference.render.samples = 256;
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
     let both = film(&mut session, &reference);
-    for (name, left) in [("light-sampling", [false, true]), ("emitter-sampling", [true, false])] {
+    for (effect, left) in [
+        (EffectId::LightSampling, [false, true]),
+        (EffectId::EmitterSampling, [true, false]),
+    ] {
         document.render.effects = EffectSwitches::default();
-        document.render.effects.set(name, Switch::Off);
-        assert_eq!(has(&document), left, "without {name}");
+        document.render.effects.set(effect, Switch::Off);
+        assert_eq!(has(&document), left, "without {effect}");
         // The light that is not sampled is still met.
         reference.render.effects = document.render.effects;
         let without = film(&mut session, &reference);
-        super::renders::assert_same_picture(&both, &without, name);
+        super::renders::assert_same_picture(&both, &without, effect.name());
     }
 }
 
@@ -248,7 +260,7 @@ fn the_plan_is_printed_and_effects_are_chosen_on_the_command_line() {
     let place = Workplace::new();
     let text = place.done("plan --model sphere --json plan.json").stdout;
     for effect in EFFECTS {
-        assert!(text.contains(effect.name), "{} is missing:\n{text}", effect.name);
+        assert!(text.contains(effect.name()), "{} is missing:\n{text}", effect.name());
     }
     let json: serde_json::Value = serde_json::from_str(&place.read("plan.json")).unwrap();
     assert_eq!(json["effects"].as_array().unwrap().len(), EFFECTS.len());
@@ -260,8 +272,8 @@ fn the_plan_is_printed_and_effects_are_chosen_on_the_command_line() {
     assert!(has(&effects("--effects auto"), "ground"));
     assert!(!has(&effects("--effects -ground"), "ground"));
     let all = effects("--effects all");
-    for effect in EFFECTS.iter().filter(|effect| effect.constant.is_some()) {
-        assert!(has(&all, effect.name), "{} is left out", effect.name);
+    for effect in EFFECTS.iter().filter(|effect| effect.id.constant().is_some()) {
+        assert!(has(&all, effect.name()), "{} is left out", effect.name());
     }
     assert!(has(&effects("--noise 0.5"), "adaptive-sampling"));
     assert!(!has(

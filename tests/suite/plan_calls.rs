@@ -1,8 +1,9 @@
 //! What calls for an effect: for each of the registry the least that does, one channel and one place at a time.
 
-use glossmith::document::effect::{ANY, EFFECTS, EffectSwitches, Switch};
-use glossmith::document::plan::Plan;
+use glossmith::document::effect::{EFFECTS, EffectSwitches, Switch};
 use glossmith::document::{AreaLight, Background, Document, MaterialSettings, Strategy, TextureUse};
+use glossmith::job::effect::{ANY, EffectId};
+use glossmith::job::plan::Plan;
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::{Horizon, Lobe};
@@ -270,8 +271,8 @@ fn calls_for(effect: &str) -> Calls {
 
 /// Whether the kernel's code for an effect is whole; of what has none, whether it is simulated.
 fn is_whole(plan: &Plan, name: &str) -> bool {
-    let (effect, decision) = plan.table().find(|(effect, _)| effect.name == name).unwrap();
-    match effect.constant {
+    let (effect, decision) = plan.table().find(|(effect, _)| effect.name() == name).unwrap();
+    match effect.constant() {
         Some(constant) => decision.value == constant.general,
         None => decision.is_on,
     }
@@ -284,7 +285,7 @@ fn the_least_of_an_effect_calls_for_it() {
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
     let mut plan = |document: &Document| job_in(&mut session, document).plan;
     for effect in EFFECTS {
-        let name = effect.name;
+        let name = effect.name();
         let calls = calls_for(name);
         let is_of_texture = name.ends_with("-texture") || name == "normal-map";
         let without = if is_of_texture {
@@ -317,15 +318,15 @@ fn textures_call_for_what_they_are_the_cause_of() {
     let folder = Folder::new();
     let mut holes = textured(&folder);
     holes.materials[0].textures.opacity = true;
-    assert!(job(&holes).plan.has("alpha"));
-    assert!(!job(&textured(&folder)).plan.has("alpha"));
+    assert!(job(&holes).plan.has(EffectId::Alpha));
+    assert!(!job(&textured(&folder)).plan.has(EffectId::Alpha));
     let mut rough = textured(&folder);
     rough.materials[0].textures.roughness = true;
     let plan = job(&rough).plan;
     // The texture may make it less metallic anywhere.
-    assert!(plan.has("rough-tables") && plan.has("base"));
+    assert!(plan.has(EffectId::RoughTables) && plan.has(EffectId::Base));
     rough.materials[0].transmission_weight = LEAST;
-    assert!(job(&rough).plan.has("transmission"));
+    assert!(job(&rough).plan.has(EffectId::Transmission));
 }
 
 /// Where materials share a choice the kernel is made for it, where they do not for any.
@@ -333,7 +334,7 @@ fn textures_call_for_what_they_are_the_cause_of() {
 fn choices_are_those_of_the_materials() {
     let value = |document: &Document, name: &str| {
         let plan = job(document).plan;
-        let (_, decision) = plan.table().find(|(effect, _)| effect.name == name).unwrap();
+        let (_, decision) = plan.table().find(|(effect, _)| effect.name() == name).unwrap();
         decision.value
     };
     let mut document = two_metals();
@@ -360,8 +361,8 @@ fn choices_are_those_of_the_materials() {
 #[test]
 fn what_is_left_out_is_counted() {
     let plan = job(&metal()).plan;
-    let kernels = EFFECTS.iter().filter(|effect| effect.constant.is_some());
-    let left_out = kernels.filter(|effect| !is_whole(&plan, effect.name)).count();
+    let kernels = EFFECTS.iter().filter(|effect| effect.id.constant().is_some());
+    let left_out = kernels.filter(|effect| !is_whole(&plan, effect.name())).count();
     assert!(left_out > 10, "{left_out}");
     assert_eq!(plan.left_out(), left_out);
     assert_eq!(Plan::general().left_out(), 0);
@@ -370,11 +371,11 @@ fn what_is_left_out_is_counted() {
 #[test]
 fn a_switch_that_makes_no_difference_stays_automatic() {
     for effect in EFFECTS {
-        for switch in Switch::ALL {
+        for &switch in Switch::ALL {
             let mut switches = EffectSwitches::default();
-            switches.set(effect.name, switch);
+            switches.set(effect.id, switch);
             let expected = if effect.can_be(switch) { switch } else { Switch::Auto };
-            assert_eq!(switches.get(effect.name), expected, "{} {switch:?}", effect.name);
+            assert_eq!(switches.get(effect.id), expected, "{} {switch:?}", effect.name());
         }
     }
 }

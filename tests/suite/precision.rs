@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use glossmith::analysis::precision::{Fault, Finding, PrecisionMap};
 use glossmith::cpu::precision::precision;
-use glossmith::document::job::Job;
-use glossmith::document::{Document, PRESETS};
+use glossmith::document::Document;
+use glossmith::job::Job;
+use glossmith::job::precision::{Fault, Finding, PrecisionMap};
 use glossmith::optics::material::Material;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::{Geometry, Model, ModelSource, shapes};
+use glossmith::store::PRESETS;
 
 const SIZE: [u32; 2] = [40, 32];
 

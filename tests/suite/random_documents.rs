@@ -1,8 +1,9 @@
 //! Documents with some of everything, in range: for the tests of plans, and for the benchmark that takes more of them.
 
-use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, PRESETS, Strategy, Value};
+use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, Strategy, Value};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::PRESETS;
 
 use crate::support::Random;
 
@@ -68,7 +69,7 @@ fn value(random: &mut Random, kind: &Kind, present: &Value) -> Value {
         Kind::Triple { range: [low, high] } => Value::Triple([0; 3].map(|_| range(random, *low, high.min(5.0)))),
         Kind::Choice(choices) => Value::Choice(choices[random.below(choices.len())].name),
         Kind::Toggle => Value::Toggle(random.below(2) == 0),
-        Kind::Curve => present.clone(),
+        _ => present.clone(),
     }
 }
 

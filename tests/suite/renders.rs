@@ -4,15 +4,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glossmith::analysis::error::{Estimates, z_test};
-use glossmith::analysis::film::Film;
-use glossmith::document::job::Job;
 use glossmith::document::{Background, Document, MaterialSettings, PixelFilter, Strategy, assign};
+use glossmith::job::Job;
+use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::{self, Environment, EnvironmentSource};
-
-use crate::plan_kernels::assert_same_but_for_rounding;
 
 /// A small document: one material from assignments, box filter, independent samples (so that variances are honest).
 pub fn document(model: ModelSource, light: EnvironmentSource, assignments: &[&str]) -> Document {
@@ -86,30 +84,6 @@ pub fn with_strategy(document: &Document, strategy: Strategy, seed: u32) -> Docu
     document.render.strategy = strategy;
     document.render.seed = seed;
     document
-}
-
-#[test]
-fn engines_draw_the_same_picture() {
-    for assignments in [
-        &["specular.roughness=0.4", "base.metalness=1"][..],
-        &[
-            "specular.roughness=0.2",
-            "base.metalness=0",
-            "specular.fresnel=dielectric",
-        ],
-        &[
-            "specular.lobe=ggx",
-            "specular.anisotropy=0.6",
-            "specular.fresnel=conductor",
-        ],
-        &["specular.curve=long-tail", "specular.horizon=absorb"],
-    ] {
-        let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, assignments);
-        document.render.samples = 16;
-        let [cpu, gpu] = [EngineChoice::Cpu, EngineChoice::Gpu].map(|choice| render(choice, &document));
-        assert_eq!((cpu.dropped, gpu.dropped), (0, 0));
-        assert_same_but_for_rounding(&cpu, &gpu, &format!("cpu against gpu, {assignments:?}"));
-    }
 }
 
 /// Sees the z-test fail: another roughness is found.
@@ -206,24 +180,6 @@ fn a_white_dielectric_is_white_in_the_furnace() {
     assert!((mean - 1.0).abs() < 0.003, "mean {mean}");
 }
 
-/// A convex Lambertian body under a constant sky: exactly albedo × radiance.
-#[test]
-fn lambert_sphere_under_a_constant_sky() {
-    let assignments = ["base.metalness=0", "specular.weight=0", "base.color=0.6,0.3,0.1"];
-    for choice in [EngineChoice::Cpu, EngineChoice::Gpu] {
-        let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &assignments);
-        document.lighting.strength = 2.0;
-        document.lighting.background = Background::Transparent;
-        document.render.samples = 8;
-        for pixel in render(choice, &document).image().pixels {
-            let [r, g, b, alpha] = pixel;
-            for (value, albedo) in [(r, 0.6), (g, 0.3), (b, 0.1)] {
-                assert!((value - 2.0 * albedo * alpha).abs() < 2e-4, "{pixel:?}");
-            }
-        }
-    }
-}
-
 /// A mirror sphere shows the environment where the mirrored ray points: against a direct look-up.
 #[test]
 fn mirror_sphere_shows_the_environment() {
@@ -271,40 +227,6 @@ fn mirror_sphere_shows_the_environment() {
             let error = (f64::from(pixel[i]) - expected[i]).abs();
             assert!(error < 0.02, "pixel {x},{y}: {pixel:?}, expected {expected:?}");
         }
-    }
-}
-
-/// Single-scattering GGX on a sphere in the furnace, seen from distance 4: the mean over the disc without its outermost
-/// 1/64 of the picture's half width, against the quadrature of the height-correlated model.
-#[test]
-fn ggx_sphere_in_the_furnace() {
-    const SIDE: u32 = 128;
-    let half_picture = (22.5_f64).to_radians().tan();
-    let edge = (0.25_f64).asin().tan() / half_picture - 1.0 / 64.0;
-    for (alpha, expected) in [(0.1, 0.9753), (0.3, 0.8452), (0.6, 0.6232), (1.0, 0.3970)] {
-        let roughness = format!("specular.roughness={}", f64::sqrt(alpha));
-        let assignments = ["specular.lobe=ggx", "specular.fresnel=none", &roughness];
-        let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &assignments);
-        document.lighting.background = Background::Transparent;
-        document.camera.distance = Some(4.0);
-        document.camera.fov_deg = 45.0;
-        (document.render.width, document.render.height) = (SIDE, SIDE);
-        document.render.samples = 128;
-        document.render.sequence = Sequence::Sobol;
-        let film = render(EngineChoice::Cpu, &document);
-        let (mut sum, mut count) = (0.0, 0.0);
-        for (i, (color, statistics)) in (0..).zip(film.color.iter().zip(&film.statistics)) {
-            let centred = |i: u32| (f64::from(i) + 0.5) / f64::from(SIDE) * 2.0 - 1.0;
-            if centred(i % SIDE).hypot(centred(i / SIDE)) < edge {
-                sum += color[1] / statistics[1];
-                count += 1.0;
-            }
-        }
-        let mean = sum / count;
-        assert!(
-            (mean - expected).abs() < 1e-3,
-            "alpha {alpha}: {mean}, expected {expected}"
-        );
     }
 }
 

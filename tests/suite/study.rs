@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::time::Duration;
 
-use glossmith::analysis::sampling::{SamplingRequest, SamplingStage};
 use glossmith::document::technique::{Setting, Technique, techniques};
 use glossmith::document::{Document, MaterialSettings, Strategy};
 use glossmith::gpu::sampling::SamplingMeter;
 use glossmith::gpu::{AdapterKind, GpuDevice};
+use glossmith::job::sampling::{SamplingRequest, SamplingStage};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
@@ -118,6 +118,26 @@ fn a_race_is_stopped_when_it_is_no_longer_wanted() {
     });
     assert!(matches!(stopped, Err(StudyError::Stopped)));
     assert_eq!(told, 3);
+}
+
+/// Whoever stops a race waits for a slice, not for a lane's whole time.
+#[test]
+fn a_race_asks_after_every_turn_whether_it_is_still_wanted() {
+    let options = RaceOptions {
+        seconds: 0.1,
+        ..quick(&["bounces=1"], ReferenceCache::none())
+    };
+    let mut words: Vec<String> = Vec::new();
+    race(&sphere(16), &options, &mut |progress| {
+        words.push(progress.what);
+        true
+    })
+    .unwrap();
+    let count = |wanted: &str| words.iter().filter(|what| *what == wanted).count();
+    assert_eq!(count("Round 1"), 2, "after the turn of either: {words:?}");
+    // The one with the largest error renders all of its samples once more.
+    let again = words.iter().filter(|what| what.starts_with("Equal error"));
+    assert!(again.map(|what| count(what)).max() > Some(1), "{words:?}");
 }
 
 #[test]

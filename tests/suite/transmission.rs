@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use glossmith::analysis::film::Film;
 use glossmith::cpu::CpuEngine;
-use glossmith::document::job::Job;
 use glossmith::document::{Background, Document, ImportLobe, MaterialSettings, Strategy, compile};
+use glossmith::job::Job;
+use glossmith::job::film::Film;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
@@ -98,38 +98,6 @@ fn rough_ggx_glass_makes_no_light() {
     }
 }
 
-/// Beer and Lambert: with the index 1 every ray goes straight on; along the axis of glass the reflections between front
-/// and back add up to a geometric series.
-#[test]
-fn absorption_is_exponential_in_the_way() {
-    let color = [0.9, 0.5, 0.1];
-    for choice in ENGINES {
-        for ior in [1.0, 1.5] {
-            let ior_assignment = format!("specular.ior={ior}");
-            let absorbing = [
-                "transmission.color=0.9,0.5,0.1",
-                "transmission.depth=0.8",
-                &ior_assignment,
-            ];
-            let mut document = glass(EnvironmentSource::Furnace, &absorbing);
-            // Close to the axis: half a degree off it the way inside is shorter by less than a thousandth.
-            (document.camera.fov_deg, document.camera.distance) = (1.0, Some(4.0));
-            document.render.samples = 256;
-            let reflected = f64::powi((ior - 1.0) / (ior + 1.0), 2);
-            for (value, color) in mean(&render(choice, &document)).into_iter().zip(color) {
-                let passed = f64::powf(color, 2.0 / 0.8);
-                let expected = reflected + (1.0 - reflected).powi(2) * passed / (1.0 - reflected * passed);
-                // The mesh is a little smaller than the sphere.
-                let limit = 0.005 * expected + if ior == 1.0 { 0.0 } else { 0.001 };
-                assert!(
-                    (value - expected).abs() < limit,
-                    "{choice:?} {ior}: {value}, {expected}"
-                );
-            }
-        }
-    }
-}
-
 /// With the index of the air around it and no roughness, the sphere is not there.
 #[test]
 fn glass_with_the_index_of_air_is_invisible() {
@@ -190,30 +158,6 @@ fn strategies_agree_on_rough_glass() {
         let light = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Light, 1));
         let off = mis.difference_in_sigma(&light);
         assert!(off.abs() < 4.0, "mis against light, {assignments:?}: {off:.1} sigma");
-    }
-}
-
-#[test]
-fn engines_agree_on_glass() {
-    for assignments in [
-        &[
-            "specular.roughness=0",
-            "transmission.color=0.8,0.4,0.2",
-            "transmission.depth=0.5",
-        ][..],
-        &["specular.roughness=0.4", "transmission.color=0.5,0.9,0.7"],
-        &[
-            "specular.lobe=ggx-ndf",
-            "specular.roughness=0.5",
-            "transmission.roughness=-0.2",
-        ],
-    ] {
-        let mut document = glass(EnvironmentSource::Studio, assignments);
-        document.model = ModelSource::Teapot;
-        let cpu = render(EngineChoice::Cpu, &document);
-        let gpu = render(EngineChoice::Gpu, &with_strategy(&document, Strategy::Mis, 7));
-        assert_eq!((cpu.dropped, gpu.dropped), (0, 0));
-        assert_same_picture(&cpu, &gpu, &format!("cpu against gpu, {assignments:?}"));
     }
 }
 

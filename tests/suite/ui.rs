@@ -11,12 +11,13 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options, Resolution};
-use glossmith::document::{AreaLight, Document, PRESETS, save_document, save_material};
+use glossmith::document::{AreaLight, Document};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::EngineChoice;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::{PRESETS, save_document, save_material};
 
 use super::worker::small_document;
 
@@ -56,8 +57,11 @@ pub(super) fn editor() -> Editor {
     harness
 }
 
+/// Controls by role and name; `None` where several have the same.
+pub(super) type Controls = HashMap<(Role, String), Option<NodeId>>;
+
 /// The controls whose role and name no other has, with what they are told apart by.
-fn controls(harness: &Editor) -> HashMap<(Role, String), Option<NodeId>> {
+pub(super) fn controls(harness: &Editor) -> Controls {
     let mut found = HashMap::new();
     for node in harness.root().children_recursive() {
         let node = node.accesskit_node();
@@ -74,19 +78,24 @@ fn controls(harness: &Editor) -> HashMap<(Role, String), Option<NodeId>> {
     found
 }
 
+/// Fails where a control that both have is another one.
+pub(super) fn assert_same_controls(before: &Controls, after: &Controls, what: &str) {
+    for (control, id) in after {
+        let was = before.get(control).unwrap_or(id);
+        assert!(
+            was == id || was.is_none() || id.is_none(),
+            "{control:?} became another during {what}"
+        );
+    }
+}
+
 /// Steps until something is seen, while every control stays the one that it was: else a click under way would be lost.
 pub(super) fn see(harness: &mut Editor, what: &str, until: impl Fn(&Editor) -> bool) {
     let begun = Instant::now();
     while !until(harness) {
         let before = controls(harness);
         harness.step();
-        for (control, id) in &controls(harness) {
-            let was = before.get(control).unwrap_or(id);
-            assert!(
-                was == id || was.is_none() || id.is_none(),
-                "{control:?} became another during {what}"
-            );
-        }
+        assert_same_controls(&before, &controls(harness), what);
         let app = harness.state();
         let state = (app.snapshot().activity.clone(), app.messages());
         assert!(begun.elapsed() < PATIENCE, "waited in vain for {what}: {state:?}");

@@ -7,7 +7,8 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::Options;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
-use glossmith::document::Document;
+use glossmith::document::{AreaLight, Document, MaterialSettings, range};
+use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::Lobe;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -16,18 +17,26 @@ use serde_json::json;
 use super::cli_support::write_hdr;
 use super::gltf_builder::{Folder, glb};
 use super::textures::{four_texels, textured_square};
-use super::ui::{Editor, drag, editor, editor_of, editor_with, options, picture, request, see, settle, undo, wait};
+use super::ui::{
+    Editor, assert_same_controls, controls, drag, editor, editor_of, editor_with, options, picture, request, see,
+    settle, undo, wait,
+};
 use super::worker::small_document;
 
 /// A file with a square whose colour and roughness are pictures.
 fn textured_file(folder: &Folder) -> std::path::PathBuf {
+    let path = folder.path("square.glb");
+    write_textured_square(&path);
+    path
+}
+
+/// Writes a square whose colour and roughness are pictures.
+pub(super) fn write_textured_square(path: &std::path::Path) {
     let material = json!({"pbrMetallicRoughness": {
         "baseColorTexture": {"index": 0}, "metallicRoughnessTexture": {"index": 1}
     }});
     let (buffer, document) = textured_square(&material, &[four_texels(), four_texels()], &json!({}));
-    let path = folder.path("square.glb");
-    std::fs::write(&path, glb(&document, &buffer.bytes)).expect("a temporary file");
-    path
+    std::fs::write(path, glb(&document, &buffer.bytes)).expect("a temporary file");
 }
 
 #[test]
@@ -59,6 +68,115 @@ fn textures_have_rows_that_switch_them() {
         assert_eq!(*harness.state().document(), before);
         assert!(picture(&harness) == textured, "{label}: undo");
     }
+}
+
+/// Files given at the start are where editing begins; undo does not go behind them.
+#[test]
+fn undo_stops_at_the_files_given_at_the_start() {
+    let folder = Folder::new();
+    let light = folder.path("orange.hdr");
+    write_hdr(&light, 16, 8, |_, _| [1.0, 0.4, 0.1]);
+    let mut harness = editor_with(small_document(), vec![textured_file(&folder), light]);
+    settle(&mut harness);
+    let start = harness.state().document().clone();
+    assert!(matches!(start.model, ModelSource::File(_)), "{:?}", start.model);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .set_value_accesskit(0.85);
+    settle(&mut harness);
+    assert_ne!(*harness.state().document(), start);
+    for _ in 0..3 {
+        undo(&mut harness);
+    }
+    assert_eq!(*harness.state().document(), start);
+}
+
+#[test]
+fn redo_comes_back_to_the_slot_that_was_selected_of_the_model() {
+    let mut harness = editor();
+    request(&mut harness, Action::UseModel(ModelSource::Shaderball));
+    wait(&mut harness, "the model", |app| {
+        app.document().model == ModelSource::Shaderball
+    });
+    settle(&mut harness);
+    request(&mut harness, Action::SelectSlot(1));
+    undo(&mut harness);
+    assert_eq!(harness.state().document().model, ModelSource::Sphere);
+    harness.key_press_modifiers(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    settle(&mut harness);
+    let before = harness.state().document().materials.clone();
+    request(
+        &mut harness,
+        Action::UseMaterial(Box::new(glossmith::store::PRESETS[5].clone())),
+    );
+    let after = harness.state().document().materials.clone();
+    assert_eq!(after[0], before[0]);
+    assert_eq!(after[1], glossmith::store::PRESETS[5]);
+}
+
+/// Enter chooses from a menu and closes it, as a click does.
+#[test]
+fn enter_closes_the_menu_it_chooses_from() {
+    let mut harness = editor();
+    let press = |harness: &mut Editor, role: Role, label: &str| {
+        harness.get_by_role_and_label(role, label).focus();
+        harness.run_steps(2);
+        harness.key_press(Key::Enter);
+        harness.run_steps(3);
+    };
+    let is_there = |harness: &Editor, label: &str| harness.query_by_role_and_label(Role::Button, label).is_some();
+    press(&mut harness, Role::ComboBox, "Specular lobe");
+    press(&mut harness, Role::Button, Lobe::Ggx.label());
+    assert_eq!(harness.state().document().materials[0].lobe, Lobe::Ggx);
+    assert!(!is_there(&harness, Lobe::Ggx.label()), "the menu stays open");
+    let light = Command::ToggleTheme.label();
+    press(&mut harness, Role::Button, "View");
+    assert!(is_there(&harness, light));
+    press(&mut harness, Role::Button, light);
+    assert_eq!(harness.ctx.theme(), egui::Theme::Light);
+    assert!(!is_there(&harness, light), "the menu stays open");
+}
+
+/// Tab goes from control to control, not to the labels before them.
+#[test]
+fn tab_stops_on_controls_only() {
+    let mut harness = editor();
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Specular roughness")
+        .focus();
+    harness.run_steps(2);
+    let mut seen = Vec::new();
+    for _ in 0..6 {
+        harness.key_press(Key::Tab);
+        harness.run_steps(2);
+        let nodes = harness.root().children_recursive();
+        let focused = nodes.map(|node| node.accesskit_node()).find(|node| node.is_focused());
+        seen.extend(focused.map(|node| (node.role(), node.label())));
+    }
+    assert!(
+        seen.len() > 3 && seen.iter().all(|(role, _)| *role != Role::Label),
+        "{seen:?}"
+    );
+}
+
+/// A model's pictures are there some frames after its materials: their group moves no control below it.
+#[test]
+fn a_group_of_textures_comes_without_making_the_next_ones_others() {
+    let folder = Folder::new();
+    let material = json!({"normalTexture": {"index": 0}});
+    let (buffer, document) = textured_square(&material, &[four_texels()], &json!({}));
+    let path = folder.path("bumpy.glb");
+    std::fs::write(&path, glb(&document, &buffer.bytes)).expect("a temporary file");
+    let mut document = small_document();
+    document.materials.push(MaterialSettings::default());
+    document.model = ModelSource::File(path);
+    // The document names the model: its materials are there from the first frame on.
+    let mut harness = editor_with(document, Vec::new());
+    let before = controls(&harness);
+    see(&mut harness, "the texture", |harness| {
+        harness.query_by_label("Geometry normal texture").is_some()
+    });
+    assert_same_controls(&before, &controls(&harness), "the coming of the texture");
 }
 
 #[test]
@@ -241,4 +359,125 @@ fn the_palette_leads_to_parameters_and_panels() {
         harness.query_by_label("Samples view angle").is_some(),
         "the panel is in front"
     );
+}
+
+/// Brings the curve's panel to the front and makes the curve a custom one, by the button or by the menu.
+fn make_custom(harness: &mut Editor, is_by_button: bool) {
+    harness.state_mut().reveal(Pane::Curve);
+    harness.run_steps(3);
+    if is_by_button {
+        harness.get_by_label("Edit as custom").click();
+    } else {
+        harness.get_by_role_and_label(Role::ComboBox, "Curve shape").click();
+        harness.run_steps(3);
+        harness
+            .get_by_role_and_label(Role::Button, Curve::Custom.label())
+            .click();
+    }
+    harness.run_steps(4);
+}
+
+#[test]
+fn a_named_curve_becomes_a_custom_one_in_its_panel() {
+    for is_by_button in [true, false] {
+        let mut harness = editor();
+        let before = harness.state().document().clone();
+        make_custom(&mut harness, is_by_button);
+        settle(&mut harness);
+        assert_eq!(harness.state().document().materials[0].curve, Curve::Custom);
+        assert!(harness.query_by_label("Edit as custom").is_none());
+        undo(&mut harness);
+        assert_eq!(*harness.state().document(), before);
+    }
+}
+
+#[test]
+fn a_point_that_undo_takes_away_while_it_is_dragged_is_let_go() {
+    let mut harness = editor();
+    make_custom(&mut harness, false);
+    let default = harness.state().document().clone();
+    // Eleven points instead of the default five, the last of which is taken hold of.
+    harness.get_by_role_and_label(Role::ComboBox, "Curve shape").click();
+    harness.run_steps(3);
+    harness
+        .get_by_role_and_label(Role::Button, Curve::Smooth.label())
+        .click();
+    harness.run_steps(3);
+    harness.get_by_label("Edit as custom").click();
+    harness.run_steps(4);
+    let plot = harness.get_by_label("The curve D over ξ").rect();
+    let last = plot.right_top() + plot.size() * Vec2::new(-0.03 / 1.06, 0.06 / 1.12);
+    harness.hover_at(last);
+    harness.step();
+    harness.drag_at(last);
+    harness.step();
+    harness.hover_at(last - Vec2::new(0.0, 20.0));
+    harness.step();
+    let dragged = harness.state().document().materials[0].custom_curve.clone();
+    assert!(
+        dragged.points()[dragged.points().len() - 1][1] > 1.0,
+        "the point follows"
+    );
+    // The drag, the eleven points, the named curve.
+    for _ in 0..3 {
+        harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
+        harness.step();
+    }
+    assert_eq!(*harness.state().document(), default);
+    harness.hover_at(last - Vec2::new(0.0, 40.0));
+    harness.step();
+    harness.drop_at(last);
+    harness.run_steps(2);
+    assert_eq!(*harness.state().document(), default);
+}
+
+/// A document whose numbers all lie at the lower or at the upper end of what is taken.
+fn extreme_document(is_high: bool) -> Document {
+    let end = |range: std::ops::RangeInclusive<f64>| if is_high { *range.end() } else { *range.start() };
+    let mut document = small_document();
+    let light = AreaLight {
+        yaw_deg: end(range::YAW_DEG),
+        pitch_deg: end(range::PITCH_DEG),
+        distance: end(range::AREA_LENGTH),
+        width: end(range::AREA_LENGTH),
+        height: end(range::AREA_LENGTH),
+        strength: end(range::STRENGTH) as f32,
+        ..AreaLight::default()
+    };
+    document.lighting.area_lights = vec![light];
+    document.lighting.strength = end(range::STRENGTH) as f32;
+    document.lighting.rotation_deg = end(range::ROTATION_DEG) as f32;
+    document.lighting.background_blur_deg = end(range::BACKGROUND_BLUR_DEG) as f32;
+    let camera = &mut document.camera;
+    (camera.yaw_deg, camera.pitch_deg) = (end(range::YAW_DEG), end(range::PITCH_DEG));
+    (camera.fov_deg, camera.aperture) = (end(range::FOV_DEG), end(range::APERTURE).max(1e-9));
+    camera.focus_distance = Some(end(range::DISTANCE));
+    document.view.exposure_ev = end(range::EXPOSURE_EV) as f32;
+    let render = &mut document.render;
+    render.samples = end(range::SAMPLES) as u32;
+    render.time_s = Some(end(range::TIME_S));
+    render.noise = Some(end(range::NOISE));
+    render.min_samples = end(range::MIN_SAMPLES) as u32;
+    render.bounces = end(range::BOUNCES) as u32;
+    render.firefly_clamp = Some(end(range::FIREFLY_CLAMP) as f32);
+    if !is_high {
+        (render.width, render.height) = (1, 1);
+    }
+    document.check().expect("the ends are taken");
+    document
+}
+
+/// Numbers that a document may have are shown as they are: a panel takes none of them for out of range.
+#[test]
+fn looking_at_a_panel_changes_nothing() {
+    for is_high in [false, true] {
+        let document = extreme_document(is_high);
+        let mut harness = editor_with(document.clone(), Vec::new());
+        request(&mut harness, Action::Do(Command::Pause));
+        for pane in Pane::ALL {
+            harness.state_mut().reveal(pane);
+            harness.run_steps(3);
+            assert_eq!(*harness.state().document(), document, "{pane:?}, high: {is_high}");
+        }
+    }
 }

@@ -6,6 +6,7 @@ use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
 use glossmith::document::effect::Switch;
+use glossmith::job::effect::EffectId;
 use glossmith::render::display::Shown;
 use glossmith::scene::ModelSource;
 
@@ -46,7 +47,10 @@ fn an_effect_is_switched_off_and_back() {
     harness.state_mut().reveal(Pane::Effects);
     harness.run_steps(2);
     choose(&mut harness, "Ground: auto, on or off", "off");
-    assert_eq!(harness.state().document().render.effects.get("ground"), Switch::Off);
+    assert_eq!(
+        harness.state().document().render.effects.get(EffectId::Ground),
+        Switch::Off
+    );
     assert!(harness.state().document().ground, "the document keeps its ground");
     assert_ne!(picture(&harness), before);
     undo(&mut harness);
@@ -142,4 +146,22 @@ fn the_precision_view_tells_that_nothing_is_wrong() {
     }
     request(&mut harness, Action::Show(Shown::Picture));
     assert!(harness.query_by_label("0 dropped").is_none());
+}
+
+#[test]
+fn ctrl_shift_and_a_click_explain_the_pixel() {
+    let mut harness = editor();
+    let before = harness.state().document().clone();
+    let center = harness.get_by_label("Viewport").rect().center();
+    harness.event(egui::Event::ModifiersChanged(Modifiers::COMMAND | Modifiers::SHIFT));
+    click_at(&mut harness, center);
+    harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
+    harness.run_steps(2);
+    assert!(harness.query_by_label("One path").is_some());
+    let told = |text: &str| harness.query_by_label_contains(text).is_some();
+    assert!(told("camera") && told("bounce 0") && told("contribution"));
+    assert_eq!(harness.state().document(), &before, "nothing is edited");
+    harness.get_by_label("Close").click_accesskit();
+    harness.run_steps(2);
+    assert!(harness.query_by_label("One path").is_none());
 }

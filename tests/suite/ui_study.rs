@@ -73,6 +73,34 @@ fn a_race_can_be_stopped() {
     wait(&mut harness, "a finished picture", glossmith::app::App::is_settled);
 }
 
+/// The viewport renders again after a study whose panel is not seen any more.
+#[test]
+fn a_study_that_ends_behind_another_panel_lets_the_viewport_go_on() {
+    for is_maximised in [false, true] {
+        let mut harness = editor_of(glossmith::app::Options {
+            document: Some(sphere()),
+            ..options()
+        });
+        settle(&mut harness);
+        harness.state_mut().reveal(Pane::Race);
+        harness.run_steps(2);
+        harness
+            .get_by_role_and_label(Role::SpinButton, "Time of each")
+            .set_value_accesskit(0.02);
+        harness.run_steps(2);
+        harness.get_by_label("Run the race").click_accesskit();
+        harness.run_steps(3);
+        if is_maximised {
+            request(&mut harness, Action::Do(Command::Maximise));
+        } else {
+            harness.state_mut().reveal(Pane::Lighting);
+        }
+        // Something to go on with: at rest only the first sample of it is rendered.
+        request(&mut harness, Action::Do(Command::Restart));
+        wait(&mut harness, "a finished picture", glossmith::app::App::is_settled);
+    }
+}
+
 #[test]
 fn the_ledger_is_measured_on_demand() {
     let mut harness = editor_of(glossmith::app::Options {

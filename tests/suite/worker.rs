@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glossmith::document::Document;
-use glossmith::render::EngineChoice;
 use glossmith::render::display::Shown;
 use glossmith::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
-use glossmith::scene::ModelSource;
+use glossmith::render::{EngineChoice, EngineKind};
+use glossmith::scene::{ModelOptions, ModelSource};
 
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -71,6 +71,19 @@ fn a_document_becomes_its_picture() {
     session.submit(&document).expect("a sphere");
     while !session.step(Duration::from_millis(50)).expect("no GPU to fail").is_done {}
     assert_eq!(*picture.image, session.image().expect("no GPU to fail"));
+}
+
+/// The panel says so: once every pixel has two samples.
+#[test]
+fn the_error_is_known_from_the_second_sample_on() {
+    let mut document = small_document();
+    document.render.samples = 8;
+    let mut session = glossmith::render::Session::open(EngineChoice::Cpu).expect("the processor");
+    session.submit(&document).expect("a sphere");
+    while session.history().is_empty() {
+        session.step(Duration::from_millis(1)).expect("no GPU to fail");
+    }
+    assert_eq!(session.history()[0].samples_per_pixel, 2.0);
 }
 
 /// Maps of the error and of the samples show what has been rendered; it is not rendered again.
@@ -249,7 +262,7 @@ fn a_pause_shows_the_first_sample_and_waits() {
 #[test]
 fn files_are_opened_beside_the_document() {
     let worker = worker();
-    worker.open_model(ModelSource::Shaderball);
+    worker.open_model(ModelSource::Shaderball, ModelOptions::default());
     worker.open_environment(glossmith::scene::environment::EnvironmentSource::File(
         "missing.hdr".into(),
     ));
@@ -258,7 +271,7 @@ fn files_are_opened_beside_the_document() {
     while (slots == 0 || why.is_empty()) && begun.elapsed() < PATIENCE {
         for event in worker.take_events() {
             match event {
-                Event::ModelOpened(ModelSource::Shaderball, model) => slots = model.slots.len(),
+                Event::ModelOpened(ModelSource::Shaderball, _, model) => slots = model.slots.len(),
                 Event::OpenFailed(_, text) => why = text,
                 _ => {}
             }
@@ -281,7 +294,8 @@ fn a_lost_device_leaves_the_document_to_the_processor() {
     });
     let engine = snapshot.engine.as_ref().expect("it renders");
     assert_eq!(
-        engine.kind, "gpu",
+        engine.kind,
+        EngineKind::Gpu,
         "a Vulkan driver is needed: apt install mesa-vulkan-drivers"
     );
     assert_eq!(snapshot.activity, Activity::Rendering, "it is lost in the middle");
@@ -289,7 +303,11 @@ fn a_lost_device_leaves_the_document_to_the_processor() {
     let snapshot = wait(&worker, "the processor", |snapshot| {
         let picture = snapshot.picture.as_ref();
         let is_new = picture.is_some_and(|picture| picture.revision == revision);
-        snapshot.engine.as_ref().is_some_and(|engine| engine.kind == "cpu") && is_new
+        snapshot
+            .engine
+            .as_ref()
+            .is_some_and(|engine| engine.kind == EngineKind::Cpu)
+            && is_new
     });
     assert_eq!(*snapshot.picture.as_ref().expect("waited for").document, document);
     let errors = errors(&worker);

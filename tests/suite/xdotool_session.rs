@@ -1,10 +1,11 @@
 //! A person's session, from the files given at the start to what a crash left.
 
-use glossmith::document::picture::load_picture_document;
-use glossmith::document::{CameraSettings, MaterialSettings, load_document, load_material};
+use glossmith::document::{CameraSettings, MaterialSettings};
 use glossmith::optics::curve::Curve;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::picture::load_picture_document;
+use glossmith::store::{load_document, load_material};
 
 use super::cli_support::write_hdr;
 use super::desktop::Desktop;

@@ -1,13 +1,11 @@
 // What all lobes share, and what happens below the horizon. Twin of src/optics/lobe/mod.rs.
 // raw_sample, raw_density, raw_weight, is_hemispherical, is_anisotropic, facets and LOBE_* are generated from the
 // registry.
+#import "optics/choices"
 #import "optics/frame"
-#import "optics/refraction"
 #import "optics/lobe/registry"
+#import "optics/refraction"
 
-const HORIZON_MIRROR: u32 = 0u;
-const HORIZON_ABSORB: u32 = 1u;
-const HORIZON_NONE: u32 = 2u;
 const FACETS_NONE: u32 = 0u;
 const FACETS_VISIBLE: u32 = 1u;
 const FACETS_ALL: u32 = 2u;

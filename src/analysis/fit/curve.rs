@@ -3,7 +3,6 @@
 //! variation distance that counts (iteratively reweighted least squares).
 
 use std::f64::consts::FRAC_1_PI;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use ndarray::{Array1, Array2};
 use rayon::prelude::*;
@@ -13,6 +12,7 @@ use crate::analysis::lobe_model::{NORMAL, view_direction};
 use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
 use crate::optics::lobe::Horizon;
 use crate::optics::vector::Vec3;
+use crate::panics::contained;
 
 /// Hat functions of h.
 const HATS: usize = 22;
@@ -182,7 +182,7 @@ fn solve(target: &CurveTarget, rows: &[Vec<f64>], weights: &[f64]) -> Option<Vec
     }
     let (triangle, reduced) = cholesky(&mut gram, &right)?;
     // The solver gives up on rounding trouble by a panic.
-    let (solution, _) = catch_unwind(AssertUnwindSafe(|| nnls::nnls(triangle.view(), reduced.view()))).ok()?;
+    let (solution, _) = contained(|| nnls::nnls(triangle.view(), reduced.view()))?;
     solution.iter().all(|x| x.is_finite()).then(|| solution.to_vec())
 }
 

@@ -6,7 +6,8 @@ use super::{Desk, Resolution};
 use crate::app::actions::{Action, Command};
 use crate::app::icons::{self, Icon};
 use crate::app::widgets::{self, Name, NumberStyle};
-use crate::document::{Bookmark, PixelFilter, Strategy, range};
+use crate::document::{Bookmark, Denoise, DenoiseWhen, PixelFilter, Strategy, range};
+use crate::named::Named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 
@@ -181,10 +182,7 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
 }
 
 fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let choices: Vec<_> = ToneCurve::ALL
-        .iter()
-        .map(|curve| (*curve, curve.label(), curve.help()))
-        .collect();
+    let choices = named_choices::<ToneCurve>();
     let tone_map = &mut desk.document.view.tone_map;
     let name = Name::new(
         "Tone map",
@@ -208,6 +206,41 @@ fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.edited(response, "Automatic exposure", |document| {
         &mut document.view.auto_exposure
     });
+    denoising(ui, desk);
+}
+
+fn denoising(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let view = &mut desk.document.view;
+    let name = Name::new(
+        "Denoise",
+        "Denoise",
+        "Takes the picture's noise out, led by what is seen, and tells how far it then is from the truth.",
+    );
+    let choices = named_choices::<Denoise>();
+    let response = widgets::row(ui, name, |ui| {
+        widgets::choice(ui, "denoise", &mut view.denoise, &choices)
+    });
+    desk.edited(response, "Denoise", |document| &mut document.view.denoise);
+    if desk.document.view.denoise == Denoise::Off {
+        return;
+    }
+    let when = &mut desk.document.view.denoise_when;
+    let choices = named_choices::<DenoiseWhen>();
+    let name = Name::new(
+        "Denoise when",
+        "When",
+        "From the first sample on, or once all has been rendered.",
+    );
+    let response = widgets::row(ui, name, |ui| widgets::choice(ui, "denoise when", when, &choices));
+    desk.edited(response, "Denoise when", |document| &mut document.view.denoise_when);
+}
+
+/// A closed list as a menu takes it.
+fn named_choices<T: Named>() -> Vec<(T, &'static str, &'static str)> {
+    T::ALL
+        .iter()
+        .map(|choice| (*choice, choice.label(), choice.help()))
+        .collect()
 }
 
 pub(in crate::app) fn exposure_style() -> NumberStyle<'static> {
@@ -265,12 +298,12 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
     if desk.state.resolution == Resolution::Document {
         let width = &mut desk.document.render.width;
         let response = widgets::row(ui, Name::new("Width", "Width", ""), |ui| {
-            widgets::number(ui, width, &whole(16.0..=16384.0, " px"))
+            widgets::number(ui, width, &whole(range::SIZE, " px"))
         });
         desk.edited(response, "Picture width", |document| &mut document.render.width);
         let height = &mut desk.document.render.height;
         let response = widgets::row(ui, Name::new("Height", "Height", ""), |ui| {
-            widgets::number(ui, height, &whole(16.0..=16384.0, " px"))
+            widgets::number(ui, height, &whole(range::SIZE, " px"))
         });
         desk.edited(response, "Picture height", |document| &mut document.render.height);
     }
@@ -281,7 +314,7 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
         "Samples",
         "Samples a pixel after which rendering stops: noise halves with four times as many.",
     );
-    let response = widgets::row(ui, name, |ui| widgets::number(ui, samples, &whole(1.0..=1e9, "")));
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, samples, &whole(range::SAMPLES, "")));
     desk.edited(response, "Samples", |document| &mut document.render.samples);
     let mut is_limited = desk.document.render.time_s.is_some();
     let name = Name::new("Time limit", "Time limit", "Stops rendering after some seconds.");
@@ -292,8 +325,8 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.edited(response, "Time limit", |document| &mut document.render.time_s);
     if let Some(time_s) = &mut desk.document.render.time_s {
         let style = NumberStyle {
-            decimals: 1,
-            ..whole(0.1..=1e6, " s")
+            decimals: 3,
+            ..whole(range::TIME_S, " s")
         };
         let response = widgets::row(ui, Name::new("Seconds", "Seconds", ""), |ui| {
             widgets::number(ui, time_s, &style)

@@ -5,7 +5,6 @@ use egui::Ui;
 use super::Desk;
 use super::hard_cases::{self, HardState};
 use crate::app::widgets;
-use crate::render::EngineChoice;
 use crate::render::background::Background;
 use crate::render::check::{Check, CheckOptions, GroupSummary, run, summaries};
 
@@ -26,10 +25,7 @@ pub(in crate::app) struct CheckState {
 }
 
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let engine = match desk.snapshot.engine.as_ref().map(|engine| engine.kind) {
-        Some("gpu") => EngineChoice::Gpu,
-        _ => EngineChoice::Cpu,
-    };
+    let engine = super::study::engine(desk);
     let state = &mut desk.state.check;
     widgets::note(
         ui,
@@ -66,8 +62,10 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         ui.checkbox(&mut state.thorough, "Thorough")
             .on_hover_text("Every lobe at every roughness and angle, with more samples: takes minutes.");
     });
+    widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
     widgets::comes_and_goes(ui, |ui| match worker.latest() {
         None => {}
+        Some(Standing::Checking(_)) if !worker.is_busy() => {}
         Some(Standing::Checking(group)) => {
             ui.horizontal(|ui| {
                 ui.add(egui::Spinner::new().size(12.0));

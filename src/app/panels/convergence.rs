@@ -8,15 +8,18 @@ use egui_plot::{GridInput, GridMark, HLine, Line, LineStyle, Plot, PlotPoints, P
 use super::Desk;
 use crate::app::status::percent;
 use crate::app::{theme, widgets};
+use crate::document::RenderSettings;
 use crate::render::{Measurement, Progress};
 
+/// The share of an axis at either end in which there are no labels: half of a label's height in a low chart.
+const LABEL_GAP: f64 = 0.05;
 /// The errors that are aimed at where the document names none.
 const STEPS: [f64; 10] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005];
 
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let history = &desk.snapshot.history;
     let Some(last) = history.last() else {
-        widgets::note(ui, "The error is known once every pixel has two samples.");
+        widgets::note(ui, unknown(&desk.document.render));
         return;
     };
     let progress = &desk.snapshot.progress;
@@ -27,6 +30,13 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         "Dots: the estimated relative error against the engine's own time, thin lines its 95 % band, dashed the law \
          1/√t through the last one.",
     );
+}
+
+/// When the error is known for the first time.
+fn unknown(render: &RenderSettings) -> String {
+    let is_aimed = render.noise.is_some() || render.is_adaptive();
+    let least = if is_aimed { render.least_samples().max(2) } else { 2 };
+    format!("The error is known once every pixel has {least} samples.")
 }
 
 fn words(ui: &mut Ui, last: &Measurement, progress: &Progress) {
@@ -133,12 +143,27 @@ pub(super) fn log_log(name: &str, height: f32, margin: [f32; 2]) -> Plot<'static
         .show_background(false)
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
-        .x_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| duration(10.0_f64.powf(mark.value)))
-        .y_axis_formatter(|mark: GridMark, _: &RangeInclusive<f64>| percent_short(10.0_f64.powf(mark.value)))
+        .x_axis_formatter(|mark: GridMark, range: &RangeInclusive<f64>| {
+            label_within(mark.value, range, || duration(10.0_f64.powf(mark.value)))
+        })
+        .y_axis_formatter(|mark: GridMark, range: &RangeInclusive<f64>| {
+            label_within(mark.value, range, || percent_short(10.0_f64.powf(mark.value)))
+        })
         .set_margin_fraction(margin.into())
 }
 
-/// A line for each power of ten, fainter ones for its 2 and 5.
+/// A mark's label, unless it is so near an end of the axis that it would be drawn over what stands beside the chart.
+fn label_within(value: f64, range: &RangeInclusive<f64>, label: impl FnOnce() -> String) -> String {
+    let gap = LABEL_GAP * (range.end() - range.start());
+    if (range.start() + gap..=range.end() - gap).contains(&value) {
+        label()
+    } else {
+        String::new()
+    }
+}
+
+/// A line for each power of ten, fainter ones for its 2 and 5: those that lie in the chart, as labels of others would be
+/// drawn beside it.
 fn decades(input: GridInput) -> Vec<GridMark> {
     let (low, high) = input.bounds;
     let (first, last) = (low.floor() as i32, high.ceil() as i32);
@@ -148,7 +173,7 @@ fn decades(input: GridInput) -> Vec<GridMark> {
             step_size,
         })
     });
-    marks.collect()
+    marks.filter(|mark| (low..=high).contains(&mark.value)).collect()
 }
 
 #[cfg(test)]
@@ -168,6 +193,31 @@ mod tests {
                 mean_luminance: 1.0,
             },
         }
+    }
+
+    #[test]
+    fn labels_stay_within_their_chart() {
+        for bounds in [(-1.7, 0.4), (0.05, 0.2), (-3.0, 3.0)] {
+            let marks = decades(GridInput {
+                bounds,
+                base_step_size: 1.0,
+            });
+            let range = bounds.0..=bounds.1;
+            for mark in &marks {
+                assert!(range.contains(&mark.value), "{mark:?} beside {bounds:?}");
+            }
+            let label = |value| label_within(value, &range, || "label".to_owned());
+            assert_eq!(label(0.5 * (bounds.0 + bounds.1)), "label");
+            assert_eq!([label(bounds.0), label(bounds.1)], ["", ""]);
+        }
+    }
+
+    #[test]
+    fn the_panel_says_at_which_sample_the_error_is_known() {
+        let mut render = RenderSettings::default();
+        assert_eq!(unknown(&render), "The error is known once every pixel has 2 samples.");
+        render.noise = Some(0.01);
+        assert_eq!(unknown(&render), "The error is known once every pixel has 16 samples.");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The D(ξ) curve of the geometric lobe: looked at, and drawn by dragging points.
 
-use egui::{Key, Modifiers, Ui, Vec2b};
+use egui::{Key, Modifiers, Pos2, Ui, Vec2b};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints, PlotUi, Points};
 
 use super::Desk;
@@ -25,10 +25,12 @@ const FINE_STEPS: usize = 1000;
 const SNAP: f64 = 0.05;
 
 /// What the editor remembers.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(in crate::app) struct CurveState {
     dragged: Option<usize>,
     selected: Option<usize>,
+    /// The curve as this panel left it.
+    left: CustomCurve,
 }
 
 pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -41,12 +43,13 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         return;
     }
     let mut material = before.clone();
+    head(ui, desk, &mut material);
+    // Only now: the head may just have made the curve a custom one, which is looked up in its table.
     let table = if material.curve == Curve::Custom {
         material.custom_curve.table()
     } else {
         Vec::new()
     };
-    head(ui, desk, &mut material);
     let mut points: Vec<[f64; 2]> = material
         .custom_curve
         .points()
@@ -54,6 +57,11 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         .map(|point| point.map(f64::from))
         .collect();
     let is_custom = material.curve == Curve::Custom;
+    let state = &mut desk.state.curve;
+    if state.left != material.custom_curve {
+        // Something else changed it, such as undo during a drag: which points there are now, the drag does not know.
+        (state.dragged, state.selected) = (None, None);
+    }
     quantile_plot(
         ui,
         &mut desk.state.curve,
@@ -71,6 +79,7 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
             desk.edits.note("Draw the curve", "custom curve");
         }
     }
+    desk.state.curve.left.clone_from(&material.custom_curve);
     distance_plot(ui, material.curve, &table);
     horizon(ui, material.roughness, curve_distance_max(material.curve, &table));
     if material != before {
@@ -162,6 +171,7 @@ fn quantile_plot(ui: &mut Ui, state: &mut CurveState, curve: Curve, table: &[f32
         .filter(|[_, distance]| curve != Curve::LongTail || *distance <= SHOWN_MAX)
         .collect();
     let top = curve_distance_max::<f64>(curve, table).min(if curve == Curve::LongTail { SHOWN_MAX } else { f64::MAX });
+    let is_drawn_on = state.dragged.is_some();
     let shown = plot("quantile", "ξ: share of the samples", plot_height(ui))
         .include_x(0.0)
         .include_x(1.0)
@@ -171,24 +181,26 @@ fn quantile_plot(ui: &mut Ui, state: &mut CurveState, curve: Curve, table: &[f32
             plot_ui.line(Line::new("D(ξ)", PlotPoints::from(line)).color(accent).width(2.0));
             if let Some(points) = points {
                 edit(plot_ui, state, points);
-                draw_points(plot_ui, *state, points, accent);
+                draw_points(plot_ui, state, points, accent);
             }
         });
-    shown
-        .response
-        .accessible_name("The curve D over ξ")
-        .on_hover_ui_at_pointer(|ui| {
-            ui.label("The share ξ of the samples stays within the distance D of the mirror direction.");
-            if curve == Curve::Custom {
-                widgets::note(
-                    ui,
-                    "Drag points (ctrl: in steps). Double-click: a new point, or one away.",
-                );
-            }
-        });
+    let response = shown.response.accessible_name("The curve D over ξ");
+    if is_drawn_on {
+        // The help would lie over what is being drawn.
+        return;
+    }
+    response.on_hover_ui_at_pointer(|ui| {
+        ui.label("The share ξ of the samples stays within the distance D of the mirror direction.");
+        if curve == Curve::Custom {
+            widgets::note(
+                ui,
+                "Drag points (ctrl: in steps). Double-click: a new point, or one away.",
+            );
+        }
+    });
 }
 
-fn draw_points(plot_ui: &mut PlotUi<'_>, state: CurveState, points: &[[f64; 2]], color: egui::Color32) {
+fn draw_points(plot_ui: &mut PlotUi<'_>, state: &CurveState, points: &[[f64; 2]], color: egui::Color32) {
     plot_ui.points(
         Points::new("points", PlotPoints::from(points.to_vec()))
             .radius(4.5)
@@ -210,18 +222,18 @@ fn edit(plot_ui: &PlotUi<'_>, state: &mut CurveState, points: &mut Vec<[f64; 2]>
         state.dragged = None;
         return;
     };
-    let near = |points: &[[f64; 2]]| {
+    let near = |points: &[[f64; 2]], place: Pos2| {
         let distance = |point: &[f64; 2]| {
             plot_ui
                 .screen_from_plot(PlotPoint::new(point[0], point[1]))
-                .distance(pointer)
+                .distance(place)
         };
         let nearest = (0..points.len()).min_by(|a, b| distance(&points[*a]).total_cmp(&distance(&points[*b])));
         nearest.filter(|index| distance(&points[*index]) <= REACH)
     };
     let at = plot_ui.plot_from_screen(pointer);
     if response.double_clicked() {
-        match near(points) {
+        match near(points, pointer) {
             Some(index) if index > 0 && index + 1 < points.len() => {
                 points.remove(index);
                 state.selected = None;
@@ -234,7 +246,8 @@ fn edit(plot_ui: &PlotUi<'_>, state: &mut CurveState, points: &mut Vec<[f64; 2]>
     }
     if response.drag_started() || response.clicked() {
         // Where the button went down, not where the drag was noticed.
-        state.dragged = near(points);
+        let pressed = plot_ui.ctx().input(|input| input.pointer.press_origin());
+        state.dragged = near(points, pressed.unwrap_or(pointer));
         state.selected = state.dragged.or(state.selected.filter(|_| !response.clicked()));
     }
     if response.dragged()

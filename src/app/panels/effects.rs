@@ -6,7 +6,8 @@ use super::Desk;
 use super::convergence::duration;
 use crate::app::theme;
 use crate::app::widgets;
-use crate::document::effect::{Decision, Effect, EffectSwitches, Switch};
+use crate::document::effect::{Effect, EffectSwitches, Switch};
+use crate::job::effect::Decision;
 use crate::render::study::ledger::Entry;
 
 /// Radius of the mark before an effect, points.
@@ -44,8 +45,8 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     }
     ui.add_space(theme::GAP);
     for (effect, decision) in plan.table() {
-        let entry = ledger.as_ref().and_then(|ledger| ledger.effect(effect.name));
-        row(ui, desk, effect, decision, entry.filter(|_| decision.is_on));
+        let entry = ledger.as_ref().and_then(|ledger| ledger.effect(effect.name()));
+        row(ui, desk, Effect::of(effect), decision, entry.filter(|_| decision.is_on));
     }
     if let Some(ledger) = &ledger {
         ui.add_space(theme::GAP);
@@ -89,25 +90,23 @@ fn mark(ui: &mut Ui, is_on: bool) {
 }
 
 fn switch(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect) {
-    let current = desk.document.render.effects.get(effect.name);
+    let current = desk.document.render.effects.get(effect.id);
     let mut chosen = current;
-    let menu = egui::ComboBox::from_id_salt(effect.name)
+    let menu = egui::ComboBox::from_id_salt(effect.name())
         .width(64.0)
         .selected_text(current.label());
     let shown = menu.show_ui(ui, |ui| {
-        for switch in Switch::ALL {
-            let help = match switch {
-                Switch::Auto => "Simulated where the scene calls for it.",
-                Switch::On => "Its code runs whether it is needed or not: to see what it costs.",
-                Switch::Off => "Taken out of the scene: to see what it does to the picture.",
-            };
+        for &switch in Switch::ALL {
             let why_not = match switch {
                 Switch::On => "It has no code that could run where it is not called for.",
                 _ => "Nothing can be rendered without it.",
             };
             ui.add_enabled_ui(effect.can_be(switch), |ui| {
                 let item = ui.selectable_value(&mut chosen, switch, switch.label());
-                item.on_hover_text(help).on_disabled_hover_text(why_not);
+                if item.clicked() {
+                    ui.close();
+                }
+                item.on_hover_text(switch.help()).on_disabled_hover_text(why_not);
             });
         }
     });
@@ -115,7 +114,7 @@ fn switch(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect) {
         .response
         .accessible_name(format!("{}: auto, on or off", effect.label));
     if chosen != current {
-        desk.document.render.effects.set(effect.name, chosen);
+        desk.document.render.effects.set(effect.id, chosen);
         desk.edits.note(format!("Switch {}", effect.label.to_lowercase()), "");
     }
 }

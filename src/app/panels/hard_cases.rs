@@ -56,10 +56,11 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
             only: String::new(),
         });
     }
+    widgets::failure(ui, worker.failure());
     let Some(standing) = worker.latest() else {
         return;
     };
-    if let Some(name) = standing.running {
+    if let Some(name) = standing.running.filter(|_| worker.is_busy()) {
         ui.horizontal(|ui| {
             ui.add(egui::Spinner::new().size(12.0));
             ui.label(name);

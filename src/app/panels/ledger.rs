@@ -35,6 +35,11 @@ impl LedgerState {
         self.worker.is_running()
     }
 
+    /// See [`StudyWorker::lets_renderer_go`].
+    pub(super) fn lets_renderer_go(&mut self) -> bool {
+        self.worker.lets_renderer_go()
+    }
+
     /// What was measured last.
     pub(super) fn found(&self) -> Option<Arc<Ledger>> {
         self.worker.found()

@@ -10,12 +10,12 @@ use super::Desk;
 use super::lobe_match::{self, MatchState};
 use super::lobe_plot::line_plot;
 use crate::analysis::lobe_model::LobeModel;
-use crate::analysis::lobe_view::{LinePlot, LobeView, MapPlot, SolidPlot, ViewKind, lobe_view};
-use crate::analysis::plot::lobe_view_picture;
 use crate::app::widgets::{self, Name, NumberStyle};
 use crate::document::match_look::lobe_of_material;
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
+use crate::plot::lobe_view::{LinePlot, LobeView, MapPlot, SolidPlot, ViewKind, lobe_view};
+use crate::plot::lobe_view_picture;
 use crate::render::background::Background;
 
 /// Pictures are drawn this much larger than they are shown on a screen of one pixel a point.
@@ -176,8 +176,11 @@ fn view(ui: &mut Ui, state: &mut LobeState, query: Query) {
         worker.ask(query.clone());
         state.asked = Some(query);
     }
+    widgets::failure(ui, worker.failure());
     let Some(shown) = worker.latest() else {
-        ui.add(egui::Spinner::new());
+        if worker.is_busy() {
+            ui.add(egui::Spinner::new());
+        }
         return;
     };
     match &*shown {

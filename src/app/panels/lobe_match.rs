@@ -9,11 +9,11 @@ use super::Desk;
 use super::lobe_plot::line_plot;
 use crate::analysis::fit::Merl;
 use crate::analysis::lobe_model::LobeModel;
-use crate::analysis::lobe_view::LinePlot;
 use crate::app::actions::{Action, Command};
 use crate::app::widgets;
 use crate::document::match_look::{LookMatch, Target, VIEW_ANGLE_MAX_DEG, comparison, match_look};
 use crate::optics::lobe::Lobe;
+use crate::plot::lobe_view::LinePlot;
 use crate::render::background::Background;
 
 /// What to match.
@@ -87,6 +87,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, sou
             ui.add(egui::Spinner::new().size(12.0));
         }
     });
+    widgets::failure(ui, worker.failure());
     match worker.latest() {
         None => {}
         Some(Err(why)) => {

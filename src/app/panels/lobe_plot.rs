@@ -3,8 +3,8 @@
 use egui::{Color32, Ui};
 use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoints};
 
-use crate::analysis::lobe_view::{Axis, LinePlot, Series};
-use crate::analysis::plot::series_color;
+use crate::plot::lobe_view::{Axis, LinePlot, Series};
+use crate::plot::series_color;
 
 /// Where a value lies on an axis.
 fn place(axis: &Axis, value: f64) -> f64 {

@@ -25,14 +25,15 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         Kind::Toggle => textures.iter().any(|(key, _)| *key == parameter.key),
         _ => (parameter.applies)(&before),
     };
-    for parameter in PARAMETERS.iter().filter(is_shown) {
+    for parameter in PARAMETERS.iter() {
         if !groups.contains(&parameter.group) {
             groups.push(parameter.group);
         }
     }
     for group in groups {
-        widgets::group(ui, group, |ui| {
-            for parameter in PARAMETERS.iter().filter(|parameter| parameter.group == group) {
+        let parameters = || PARAMETERS.iter().filter(|parameter| parameter.group == group);
+        let mut rows = |ui: &mut Ui| {
+            for parameter in parameters() {
                 widgets::comes_and_goes(ui, |ui| {
                     if is_shown(&parameter) {
                         let picture = textures.iter().find(|(key, _)| *key == parameter.key);
@@ -40,6 +41,12 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
                         show_parameter(ui, desk, parameter, picture, &mut material);
                     }
                 });
+            }
+        };
+        // A group of textures comes with the model's pictures, above others that stay.
+        widgets::comes_and_goes(ui, |ui| {
+            if parameters().any(|parameter| is_shown(&parameter)) {
+                widgets::group(ui, group, &mut rows);
             }
         });
     }
@@ -50,8 +57,11 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 /// The model's slots, where there is a choice.
 fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let count = desk.slots();
-    if desk.state.slot >= count {
+    // While a model is loaded nobody knows how many it has.
+    let Some(count) = desk.scene().map(|scene| scene.model.slots.len()) else {
+        return;
+    };
+    if desk.state.slot >= count.max(1) {
         desk.state.slot = 0;
     }
     if count < 2 {
@@ -148,10 +158,10 @@ impl SlotPicture {
     }
 }
 
-/// At most so many texels each way of a picture are shown.
+/// Most texels to a side of the small copy that is shown.
 const SMALL_SIDE: u32 = 64;
 
-/// Every so manieth texel of a picture.
+/// A picture reduced to at most [`SMALL_SIDE`] texels a side, by the nearest texel.
 fn small_copy(picture: &Texture) -> egui::ColorImage {
     let [width, height] = [picture.width, picture.height].map(|side| side.clamp(1, SMALL_SIDE));
     let pixels = (0..width * height).map(|i| {

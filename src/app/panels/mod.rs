@@ -32,6 +32,7 @@ use super::widgets::RowResponse;
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::render::display::Shown;
 use crate::render::worker::{Scene, Snapshot};
+use crate::scene::ModelSource;
 
 /// What panels work on.
 pub(super) struct Desk<'a> {
@@ -47,6 +48,8 @@ pub(super) struct Desk<'a> {
 pub(super) struct PanelState {
     /// The material slot that is edited.
     pub(super) slot: usize,
+    /// The slots that were selected of other models, for when undo or redo brings them back.
+    pub(super) slots_of: Vec<(ModelSource, usize)>,
     /// What was said, oldest first.
     pub(super) log: Vec<log::Entry>,
     /// Small pictures of environments.
@@ -90,6 +93,12 @@ impl PanelState {
     fn is_studying(&self) -> bool {
         self.race.is_running() || self.ledger.is_running()
     }
+
+    /// True once the study has ended for which the viewport's renderer rests.
+    pub(super) fn study_ended(&mut self) -> bool {
+        let (by_race, by_ledger) = (self.race.lets_renderer_go(), self.ledger.lets_renderer_go());
+        by_race || by_ledger
+    }
 }
 
 /// How large the picture is.
@@ -117,11 +126,6 @@ impl Desk<'_> {
             .scene
             .as_deref()
             .filter(|scene| scene.document.model == self.document.model)
-    }
-
-    /// Material slots of the model, at least 1.
-    pub(super) fn slots(&self) -> usize {
-        self.scene().map_or(1, |scene| scene.model.slots.len()).max(1)
     }
 
     /// The material of the selected slot.

@@ -7,7 +7,8 @@ use crate::app::actions::{Action, Command};
 use crate::app::library::{Change, Library, Shown};
 use crate::app::theme;
 use crate::app::widgets::{self, PictureRow};
-use crate::document::{MaterialSettings, PRESETS};
+use crate::document::MaterialSettings;
+use crate::store::PRESETS;
 
 /// Side of a material's picture, points.
 const PICTURE: f32 = 36.0;

@@ -13,9 +13,9 @@ use super::study::{StudyWorker, engine};
 use crate::app::status::percent;
 use crate::app::widgets::{self, Name, NumberStyle};
 use crate::app::{theme, widgets::RowResponse};
-use crate::document::plan::Plan;
 use crate::document::technique::{GROUPS, Technique};
 use crate::document::{Document, ViewSettings};
+use crate::job::plan::Plan;
 use crate::render::display::display;
 use crate::render::study::race::{Race, RaceOptions, Runner, race};
 use crate::render::study::references::ReferenceCache;
@@ -70,6 +70,11 @@ impl RaceState {
     /// Whether a race is being run.
     pub(super) fn is_running(&self) -> bool {
         self.worker.is_running()
+    }
+
+    /// See [`StudyWorker::lets_renderer_go`].
+    pub(super) fn lets_renderer_go(&mut self) -> bool {
+        self.worker.lets_renderer_go()
     }
 
     /// Races when the panel is shown next.
@@ -321,7 +326,7 @@ fn pictures(ui: &mut Ui, desk: &Desk<'_>, state: &mut RaceState, race: &Arc<Race
 }
 
 fn pictured(ui: &Ui, race: &Arc<Race>, view: &ViewSettings) -> Pictured {
-    let load = |image: &crate::analysis::film::Image| {
+    let load = |image: &crate::job::film::Image| {
         let size = [image.width as usize, image.height as usize];
         let pixels = ColorImage::from_rgba_unmultiplied(size, &display(image, view));
         ui.ctx().load_texture("race", pixels, TextureOptions::LINEAR)

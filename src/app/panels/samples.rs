@@ -6,10 +6,10 @@ use egui::{Color32, ColorImage, Pos2, Rect, Sense, Stroke, TextureHandle, Textur
 use egui_plot::{Bar, BarChart, Legend, Line, Plot, PlotPoints};
 
 use super::Desk;
-use crate::analysis::scatter::ScatterRequest;
 use crate::app::status::short_number;
 use crate::app::theme;
 use crate::app::widgets::{self, Name, NumberStyle};
+use crate::job::scatter::ScatterRequest;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::vector::Vec3;
 use crate::render::EngineChoice;
@@ -96,10 +96,12 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         worker.ask(query.clone());
         state.asked = Some(query);
     }
+    widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
     match worker.latest() {
-        None => {
+        None if worker.is_busy() => {
             ui.add(egui::Spinner::new());
         }
+        None => {}
         Some(Err(why)) => {
             ui.colored_label(ui.visuals().error_fg_color, why);
         }
@@ -148,11 +150,7 @@ fn query(desk: &Desk<'_>) -> Option<SampleQuery> {
         seed: desk.document.render.seed,
     };
     Some(SampleQuery {
-        engine: if engine.kind == "gpu" {
-            EngineChoice::Gpu
-        } else {
-            EngineChoice::Cpu
-        },
+        engine: engine.kind.into(),
         request,
         compare: state.look == Look::Angle && state.compare,
     })

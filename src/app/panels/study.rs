@@ -51,6 +51,12 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         self.worker.as_ref().is_some_and(Background::is_busy)
     }
 
+    /// True once the study for which the viewport's renderer was stopped has ended. To be asked in each frame, whether its
+    /// panel is seen or not.
+    pub(super) fn lets_renderer_go(&mut self) -> bool {
+        !self.is_running() && std::mem::take(&mut self.holds_renderer)
+    }
+
     /// Starts the study when its controls are shown next, unless it runs.
     pub(super) fn wish(&mut self) {
         self.is_wished = true;
@@ -67,15 +73,13 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         begin: impl FnOnce(&Desk<'_>) -> Work<R>,
     ) {
         let is_busy = self.is_running();
-        if !is_busy && std::mem::take(&mut self.holds_renderer) && desk.state.is_paused {
-            desk.act(Command::Pause);
-        }
         // Two at once would take each other's time; this one's state is not on the desk.
         let is_free = !desk.state.is_studying();
         let is_wished = is_free && std::mem::take(&mut self.is_wished);
         ui.horizontal(|ui| {
             if is_busy {
-                if ui.button("Stop").clicked() {
+                // Another control than the one that starts it: a click under way when it ends must not start it again.
+                if ui.push_id("stop", |ui| ui.button("Stop")).inner.clicked() {
                     self.stop.store(true, Ordering::Relaxed);
                 }
                 ui.add(egui::Spinner::new().size(12.0));
@@ -103,6 +107,9 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             }
             Some(Standing::Stopped) => widgets::note(ui, "Stopped."),
             _ => {}
+        });
+        widgets::comes_and_goes(ui, |ui| {
+            widgets::failure(ui, self.worker.as_ref().and_then(Background::failure))
         });
     }
 
@@ -143,8 +150,6 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
 
 /// The engine that the viewport renders with.
 pub(super) fn engine(desk: &Desk<'_>) -> EngineChoice {
-    match desk.snapshot.engine.as_ref().map(|engine| engine.kind) {
-        Some("gpu") => EngineChoice::Gpu,
-        _ => EngineChoice::Cpu,
-    }
+    let engine = desk.snapshot.engine.as_ref();
+    engine.map_or(EngineChoice::Cpu, |engine| engine.kind.into())
 }

@@ -12,9 +12,9 @@ use crate::app::icons::{self, Icon};
 use crate::app::panels::Desk;
 use crate::app::theme;
 use crate::app::widgets::{self, NumberStyle};
-use crate::document::PRESETS;
 use crate::optics::lobe::Lobe;
 use crate::render::worker::Picture;
+use crate::store::PRESETS;
 
 /// Half the width in which the divider can be taken hold of, points.
 const GRIP: f32 = 5.0;
@@ -238,10 +238,13 @@ fn contestants(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.add(egui::Label::new(desk.material().name).truncate());
     ui.weak("B");
     rivals(ui, desk);
-    if let Some(why) = desk.state.compare.match_error(&desk.material()) {
-        let color = ui.visuals().warn_fg_color;
-        ui.colored_label(color, "not matched").on_hover_text(why);
-    }
+    let why = desk.state.compare.match_error(&desk.material());
+    widgets::comes_and_goes(ui, |ui| {
+        if let Some(why) = why {
+            let color = ui.visuals().warn_fg_color;
+            ui.colored_label(color, "not matched").on_hover_text(why);
+        }
+    });
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
         if icons::button(ui, Icon::Close, "Stop comparing", "Stop comparing (C)").clicked() {
             desk.act(Command::Compare);
@@ -266,6 +269,7 @@ fn rivals(ui: &mut Ui, desk: &mut Desk<'_>) {
         let mut entry = |ui: &mut Ui, text: &str, rival: Rival| {
             if ui.selectable_label(current == rival, text).clicked() {
                 chosen = Some(rival);
+                ui.close();
             }
         };
         widgets::note(ui, "The same material, look matched");

@@ -4,6 +4,7 @@ use egui::{Align, Layout, Rect, Ui, UiBuilder, vec2};
 
 use crate::app::actions::{Action, Command};
 use crate::app::icons::{self, Icon};
+use crate::app::menu::do_and_close;
 use crate::app::panels::{Desk, camera, lighting};
 use crate::app::widgets;
 use crate::optics::tone::ToneCurve;
@@ -60,12 +61,12 @@ fn models(ui: &mut Ui, desk: &mut Desk<'_>) {
     let shown = combo.show_ui(ui, |ui| {
         for (label, source) in &MODELS {
             if ui.selectable_label(desk.document.model == *source, *label).clicked() {
-                desk.actions.push(Action::UseModel(source.clone()));
+                do_and_close(ui, desk.actions, Action::UseModel(source.clone()));
             }
         }
         ui.separator();
         if ui.selectable_label(false, "Open…").clicked() {
-            desk.act(Command::OpenModel);
+            do_and_close(ui, desk.actions, Action::Do(Command::OpenModel));
         }
     });
     shown.response.accessible_name("Model").on_hover_text("Model");
@@ -83,12 +84,12 @@ fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
                 .on_hover_text(*help)
                 .clicked()
             {
-                desk.actions.push(Action::UseEnvironment(source.clone()));
+                do_and_close(ui, desk.actions, Action::UseEnvironment(source.clone()));
             }
         }
         ui.separator();
         if ui.selectable_label(false, "Open…").clicked() {
-            desk.act(Command::OpenEnvironment);
+            do_and_close(ui, desk.actions, Action::Do(Command::OpenEnvironment));
         }
     });
     shown

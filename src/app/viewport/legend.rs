@@ -2,8 +2,8 @@
 
 use egui::{Align2, Color32, Rect, TextStyle, Ui, pos2, vec2};
 
-use crate::analysis::plot::scale_color;
 use crate::app::status::percent;
+use crate::plot::scale_color;
 use crate::render::display::{Scale, Shown};
 
 /// Size of the strip of colours, points.

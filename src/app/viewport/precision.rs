@@ -5,8 +5,8 @@ use std::sync::Arc;
 use egui::{Align, Color32, ColorImage, Layout, Rect, Sense, Ui, UiBuilder, pos2, vec2};
 
 use super::Shown;
-use crate::analysis::precision::{Fault, PrecisionMap};
-use crate::document::job::Job;
+use crate::job::Job;
+use crate::job::precision::{Fault, PrecisionMap};
 use crate::render::precision::{self, PrecisionMaps};
 
 /// Height of the legend, and its distance from the viewport's edges, points.

@@ -8,11 +8,11 @@ use image::RgbImage;
 
 use super::folder::Folder;
 use super::{Bar, CacheArguments, CommonArguments, digits, make_folder};
-use crate::analysis::film::Image;
-use crate::analysis::lobe_view::Axis;
-use crate::analysis::plot::{NamedPoint, PictureSheet, PointPlot, picture_sheet_file, point_plot_file};
 use crate::document::technique::{Technique, TechniqueError, check_techniques, techniques};
 use crate::document::{Document, ViewSettings};
+use crate::job::film::Image;
+use crate::plot::lobe_view::Axis;
+use crate::plot::{NamedPoint, PictureSheet, PointPlot, picture_sheet_file, point_plot_file};
 use crate::render::display::display;
 use crate::render::study::race::{Race, RaceOptions, Runner, race};
 use crate::render::{EngineChoice, Session};

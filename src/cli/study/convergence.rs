@@ -4,8 +4,8 @@ use clap::Args;
 
 use super::folder::Folder;
 use super::{Bar, CacheArguments, CommonArguments, digits, make_folder};
-use crate::analysis::lobe_view::{Axis, LinePlot, Series};
-use crate::analysis::plot::line_plot_file;
+use crate::plot::line_plot_file;
+use crate::plot::lobe_view::{Axis, LinePlot, Series};
 use crate::render::study::{ConvergencePoint, ConvergenceReport, convergence};
 
 /// Longest time for the reference where none is given, seconds; the same quickly.

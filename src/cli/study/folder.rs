@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context as _;
 use serde::Serialize;
 
-use crate::analysis::plot::PlotError;
+use crate::plot::PlotError;
 
 /// The folder that a study writes into, and the name that its files begin with.
 pub(super) struct Folder<'a> {

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::folder::Folder;
 use super::{Bar, CommonArguments, digits, make_folder};
-use crate::analysis::plot::{BarPlot, bar_plot_file};
+use crate::plot::{BarPlot, bar_plot_file};
 use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
 
 /// Arguments of `glossmith study ledger`.

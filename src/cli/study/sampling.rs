@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::folder::Folder;
 use super::{Bar, digits, make_folder};
-use crate::analysis::plot::{BarPlot, bar_plot_file};
+use crate::plot::{BarPlot, bar_plot_file};
 use crate::render::EngineChoice;
 use crate::render::study::sampling::{PAPER, SAMPLES, SamplingOptions, SamplingReport, SamplingRow, sampling};
 

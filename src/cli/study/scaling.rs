@@ -6,8 +6,8 @@ use clap::Args;
 
 use super::folder::Folder;
 use super::{Bar, CommonArguments, digits, make_folder};
-use crate::analysis::lobe_view::{Axis, LinePlot, Series};
-use crate::analysis::plot::line_plot_file;
+use crate::plot::line_plot_file;
+use crate::plot::lobe_view::{Axis, LinePlot, Series};
 use crate::render::study::scaling::{Growing, ScalingOptions, ScalingPoint, ScalingReport, scaling};
 
 /// Arguments of `glossmith study scaling`.
@@ -45,7 +45,7 @@ pub(super) fn run(arguments: &ScalingArguments) -> anyhow::Result<()> {
         cells
     };
     folder.csv(&head, report.points.iter().map(row))?;
-    for growing in Growing::ALL {
+    for &growing in Growing::ALL {
         let name = format!("scaling-{}", growing.name());
         Folder { path, name: &name }.plots(&plot(&report, growing), line_plot_file)?;
     }

@@ -1,6 +1,6 @@
-//! What happens to samples below the surface.
+//! What happens to samples that point into the surface, and where none can.
 
-use super::{Constant, Decision, Effect, Facts};
+use super::{Decision, Facts};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::material::Material;
@@ -9,37 +9,31 @@ use crate::scene::facing::least_view_cosine;
 /// How far below the view's cosine roughness must stay: the rounding of either.
 const MARGIN: f64 = 1e-3;
 
-pub(super) const EFFECT: Effect = Effect {
-    name: "horizon",
-    label: "Horizon",
-    help: "What happens to samples of a lobe that point into the surface.",
-    constant: Constant::choice("PLAN_HORIZON"),
-    decide: |facts| {
-        let crosses = |lobe: u32| !Lobe::ALL[lobe as usize].is_hemispherical();
-        let shared = facts.shared(|m| m.horizon, |number| Horizon::ALL[number as usize].name());
-        if facts.reflecting().all(|material| material.roughness == 0.0) {
-            Decision {
-                is_on: false,
-                reason: "every lobe is a mirror: no sample points below the surface".to_owned(),
-                ..shared
-            }
-        } else if !facts.reflecting().any(|material| crosses(material.lobe)) {
-            Decision {
-                is_on: false,
-                reason: "no lobe draws samples below the surface".to_owned(),
-                ..shared
-            }
-        } else if stays_above(facts) {
-            Decision {
-                value: Horizon::Absorb as u32,
-                ..Decision::off("roughness is below the cosine of every view: no sample is below the surface")
-            }
-        } else {
-            shared
+/// Which rule all lobes share; off where it is proven that no sample is below the surface.
+pub(super) fn decide(facts: &Facts<'_>) -> Decision {
+    let crosses = |lobe: u32| !Lobe::ALL[lobe as usize].is_hemispherical();
+    let shared = facts.shared(|m| m.horizon, |number| Horizon::ALL[number as usize].name());
+    if facts.reflecting().all(|material| material.roughness == 0.0) {
+        Decision {
+            is_on: false,
+            reason: "every lobe is a mirror: no sample points below the surface".to_owned(),
+            ..shared
         }
-    },
-    remove: None,
-};
+    } else if !facts.reflecting().any(|material| crosses(material.lobe)) {
+        Decision {
+            is_on: false,
+            reason: "no lobe draws samples below the surface".to_owned(),
+            ..shared
+        }
+    } else if stays_above(facts) {
+        Decision {
+            value: Horizon::Absorb as u32,
+            ..Decision::off("roughness is below the cosine of every view: no sample is below the surface")
+        }
+    } else {
+        shared
+    }
+}
 
 /// Whether every view is steep enough for every lobe: a sample's height above the surface is at least
 /// (1 − R)(n·r − R) (docs/MATHEMATICS.md, section 3). Only where no ray but the camera's meets anything are the views
@@ -47,7 +41,9 @@ pub(super) const EFFECT: Effect = Effect {
 fn stays_above(facts: &Facts<'_>) -> bool {
     let is_bounded = |material: &Material<f32>| {
         material.lobe == Lobe::Geometric as u32
-            && material.curve <= Curve::Smooth as u32
+            && Curve::ALL
+                .iter()
+                .any(|curve| *curve as u32 == material.curve && curve.is_within_unit())
             && material.anisotropy == 0.0
             && !material.is_textured()
             && material.coat_weight == 0.0

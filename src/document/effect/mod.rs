@@ -1,75 +1,32 @@
-//! The effects that the renderer can simulate, one file each, and what decides whether a scene calls for one.
+//! The effects that the renderer can simulate: what each is, and what decides whether a scene calls for it.
 //!
-//! To add an effect: one file with an `EFFECT`, and one line in the registry below. If it has code of its own, an
-//! override constant in `shaders/scene/plan.wgsl` switches it. The plan, the command line, the panel, the documentation
-//! and the tests of specialised against general pictures loop over the registry.
+//! To add an effect: its name in [`crate::job::effect`], and a line in the table here. Its code, if it has any, is
+//! switched by the constant named there. The plan, the command line, the panel, the documentation and the tests of
+//! specialised against general pictures loop over the table.
 
+mod horizon;
 mod switches;
+mod table;
 
 use crate::document::{Document, MaterialSettings};
+use crate::job::Settings;
+use crate::job::effect::{ANY, Decision, EffectId};
+use crate::job::plan::Plan;
 use crate::optics::material::Material;
 use crate::scene::Geometry;
 use crate::scene::environment::Environment;
 
-use super::job::Settings;
-
 pub use switches::{EffectSwitches, Switch, SwitchError};
+pub use table::EFFECTS;
 
-/// The value of a constant that leaves a choice to each material.
-pub const ANY: u32 = u32::MAX;
-
-macro_rules! effects {
-    ($($module:ident)*) => {
-        $(mod $module;)*
-
-        /// Every effect, in the order of the table.
-        pub static EFFECTS: &[Effect] = &[$($module::EFFECT),*];
-    };
-}
-
-effects! {
-    environment
-    light_sampling
-    area_lights
-    emission
-    emitter_sampling
-    background
-    ground
-    interreflection
-    base
-    specular
-    lobe
-    curve
-    anisotropy
-    horizon
-    fresnel
-    edge_tint
-    coat
-    transmission
-    absorption
-    color_texture
-    roughness_texture
-    rough_tables
-    normal_map
-    emission_texture
-    alpha
-    depth_of_field
-    firefly_clamp
-    adaptive_sampling
-    variance
-    picture_layers
-}
-
-/// Something that costs time and that not every scene needs.
+/// What the user is told about an effect, and how a scene calls for it.
 pub struct Effect {
-    /// Name on the command line, in files and reports.
-    pub name: &'static str,
+    /// Which one.
+    pub id: EffectId,
     /// Name in the panel.
     pub label: &'static str,
     /// What it is, in a sentence.
     pub help: &'static str,
-    /// What switches its code in `shaders/scene/plan.wgsl`; `None` where it has none that could be left out.
-    pub constant: Option<Constant>,
     /// Whether a scene calls for it.
     pub decide: fn(&Facts<'_>) -> Decision,
     /// Takes it out of the scene, so that it is no longer called for; `None` where nothing could be rendered without.
@@ -77,71 +34,48 @@ pub struct Effect {
 }
 
 impl Effect {
+    /// The effect of a name.
+    pub fn of(id: EffectId) -> &'static Self {
+        &EFFECTS[id as usize]
+    }
+
+    /// Name on the command line, in files and reports.
+    pub fn name(&self) -> &'static str {
+        self.id.name()
+    }
+
     /// Whether a switch makes a difference: what has no code of its own cannot run needlessly, and nothing could be rendered
     /// without some.
     pub fn can_be(&self, switch: Switch) -> bool {
         match switch {
             Switch::Auto => true,
-            Switch::On => self.constant.is_some(),
+            Switch::On => self.id.constant().is_some(),
             Switch::Off => self.remove.is_some(),
         }
     }
 }
 
-/// An override constant of the pipelines.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Constant {
-    /// Its name in WGSL.
-    pub name: &'static str,
-    /// Its value where nothing is left out.
-    pub general: u32,
+/// What a scene calls for, and what the user switched on besides. What was switched off must be taken out of the scene
+/// before, see [`without_what_is_off`].
+pub fn plan(facts: &Facts<'_>) -> Plan {
+    let switches = facts.document.render.effects;
+    Plan::new(|id| match (switches.get(id), id.constant()) {
+        (Switch::Off, _) => Decision::off("switched off by you"),
+        (Switch::On, Some(constant)) => Decision::which(constant.general, "switched on by you"),
+        _ => (Effect::of(id).decide)(facts),
+    })
 }
 
-impl Constant {
-    /// 1 where the effect is simulated.
-    const fn flag(name: &'static str) -> Option<Self> {
-        Some(Self { name, general: 1 })
-    }
-
-    /// Which of several, or [`ANY`].
-    const fn choice(name: &'static str) -> Option<Self> {
-        Some(Self { name, general: ANY })
-    }
-}
-
-/// What is decided about an effect, and why.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub struct Decision {
-    /// It is simulated.
-    pub is_on: bool,
-    /// The value of its constant.
-    pub value: u32,
-    /// In words.
-    pub reason: String,
-}
-
-impl Decision {
-    /// Simulated.
-    pub fn on(reason: impl Into<String>) -> Self {
-        Self::which(1, reason)
-    }
-
-    /// Left out.
-    pub fn off(reason: impl Into<String>) -> Self {
-        Self {
-            is_on: false,
-            ..Self::which(0, reason)
+/// The document with the effects taken out that the user switched off.
+pub fn without_what_is_off(document: &Document) -> Document {
+    let switches: EffectSwitches = document.render.effects;
+    let mut document = document.clone();
+    for effect in EFFECTS {
+        if let (Switch::Off, Some(remove)) = (switches.get(effect.id), effect.remove) {
+            remove(&mut document);
         }
     }
-
-    /// Simulated, with a constant of this value.
-    pub fn which(value: u32, reason: impl Into<String>) -> Self {
-        Self {
-            is_on: true,
-            value,
-            reason: reason.into(),
-        }
-    }
+    document
 }
 
 /// What decisions rest on: the scene as compiled.
@@ -198,9 +132,8 @@ impl Facts<'_> {
             Some(other) => Decision::which(ANY, format!("{} and {} are mixed", name(first), name(other))),
         }
     }
-}
 
-/// The effect of a name.
-pub fn named(name: &str) -> Option<&'static Effect> {
-    EFFECTS.iter().find(|effect| effect.name == name)
+    fn is_environment_black(&self) -> bool {
+        self.environment.is_black || self.settings.environment_strength == 0.0
+    }
 }

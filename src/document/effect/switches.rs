@@ -6,31 +6,17 @@ use std::str::FromStr;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::{EFFECTS, Effect};
+use crate::job::effect::EffectId;
+use crate::named::named;
 
-/// What the user decides about an effect.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Switch {
-    /// Simulated where the scene calls for it.
-    #[default]
-    Auto,
-    /// The code for it runs whether it is needed or not.
-    On,
-    /// Taken out of the scene, even if that changes the picture.
-    Off,
-}
-
-impl Switch {
-    /// The three, in the order of the panel.
-    pub const ALL: [Switch; 3] = [Switch::Auto, Switch::On, Switch::Off];
-
-    /// Name in the panel.
-    pub fn label(self) -> &'static str {
-        match self {
-            Switch::Auto => "auto",
-            Switch::On => "on",
-            Switch::Off => "off",
-        }
+named! {
+    /// What the user decides about an effect.
+    #[derive(Default)]
+    Switch {
+        #[default]
+        Auto, "auto", "auto", "Simulated where the scene calls for it.";
+        On, "on", "on", "Its code runs whether it is needed or not: to see what it costs.";
+        Off, "off", "off", "Taken out of the scene: to see what it does to the picture.";
     }
 }
 
@@ -49,18 +35,18 @@ impl EffectSwitches {
         Self::of(|_| Switch::On)
     }
 
-    /// The switch that `choose` gives for each effect's name.
-    pub fn of(choose: impl Fn(&'static str) -> Switch) -> Self {
+    /// The switch that `choose` gives for each effect.
+    pub fn of(choose: impl Fn(EffectId) -> Switch) -> Self {
         let mut switches = Self::default();
-        for effect in EFFECTS {
-            switches.set(effect.name, choose(effect.name));
+        for &effect in EffectId::ALL {
+            switches.set(effect, choose(effect));
         }
         switches
     }
 
-    /// The switch of an effect; automatic where there is none of that name.
-    pub fn get(&self, name: &str) -> Switch {
-        let bit = bit(name);
+    /// The switch of an effect.
+    pub fn get(&self, effect: EffectId) -> Switch {
+        let bit = bit(effect);
         match (self.on & bit != 0, self.off & bit != 0) {
             (true, _) => Switch::On,
             (false, true) => Switch::Off,
@@ -69,9 +55,9 @@ impl EffectSwitches {
     }
 
     /// Sets the switch of an effect; to automatic where it can't be set so ([`Effect::can_be`]).
-    pub fn set(&mut self, name: &str, switch: Switch) {
-        let bit = bit(name);
-        let is_possible = super::named(name).is_some_and(|effect| effect.can_be(switch));
+    pub fn set(&mut self, effect: EffectId, switch: Switch) {
+        let bit = bit(effect);
+        let is_possible = Effect::of(effect).can_be(switch);
         self.on &= !bit;
         self.off &= !bit;
         match switch {
@@ -100,7 +86,7 @@ pub enum SwitchError {
 }
 
 fn names(chosen: fn(&Effect) -> bool) -> String {
-    let names: Vec<_> = EFFECTS.iter().filter(|e| chosen(e)).map(|e| e.name).collect();
+    let names: Vec<_> = EFFECTS.iter().filter(|e| chosen(e)).map(Effect::name).collect();
     names.join(", ")
 }
 
@@ -128,31 +114,30 @@ impl FromStr for EffectSwitches {
         };
         for item in items {
             let name = item.trim_start_matches(['+', '-']);
-            let effect = super::named(name).ok_or_else(|| SwitchError::Unknown(name.to_owned()))?;
+            let id: EffectId = name.parse().map_err(|_| SwitchError::Unknown(name.to_owned()))?;
             let switch = match item.chars().next() {
                 Some('+') => Switch::On,
                 Some('-') => Switch::Off,
                 _ => Switch::Auto,
             };
             match switch {
-                _ if effect.can_be(switch) => {}
+                _ if Effect::of(id).can_be(switch) => {}
                 Switch::On => return Err(SwitchError::NoCode(name.to_owned())),
                 _ => return Err(SwitchError::Needed(name.to_owned())),
             }
-            switches.set(name, switch);
+            switches.set(id, switch);
         }
         Ok(switches)
     }
 }
 
-fn bit(name: &str) -> u64 {
-    let place = EFFECTS.iter().position(|effect| effect.name == name);
-    place.map_or(0, |place| 1 << place)
+fn bit(effect: EffectId) -> u64 {
+    1 << effect as u32
 }
 
 impl Serialize for EffectSwitches {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let switched = EFFECTS.iter().map(|effect| (effect.name, self.get(effect.name)));
+        let switched = EffectId::ALL.iter().map(|effect| (effect.name(), self.get(*effect)));
         let switched = switched.filter(|(_, switch)| *switch != Switch::Auto);
         switched.collect::<BTreeMap<_, _>>().serialize(serializer)
     }
@@ -162,7 +147,9 @@ impl<'de> Deserialize<'de> for EffectSwitches {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let mut switches = Self::default();
         for (name, switch) in BTreeMap::<String, Switch>::deserialize(deserializer)? {
-            switches.set(&name, switch);
+            if let Ok(effect) = name.parse() {
+                switches.set(effect, switch);
+            }
         }
         Ok(switches)
     }

@@ -6,42 +6,26 @@
 //!
 //! To add a lobe: one Rust file, one WGSL file of the same name, one line in the registry below.
 
-use serde::{Deserialize, Serialize};
-
 use super::curve::Curve;
 use super::frame::Frame;
 use super::numeric::normalize_or;
 use super::real::{Mask, Real};
 use super::refraction::{facet_density_factor, facet_refracted, facet_weight, refracted, refracting_normal};
 use super::vector::Vec3;
+use crate::named::named;
 
 macro_rules! lobes {
     ($($module:ident $variant:ident = $index:literal, $name:literal, $label:literal, $help:literal;)*) => {
         $(pub mod $module;)*
 
-        /// A reflection lobe.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-        #[repr(u32)]
-        pub enum Lobe {
-            $(#[doc = $help] #[serde(rename = $name)] $variant = $index,)*
+        named! {
+            /// A reflection lobe.
+            Lobe {
+                $($variant = $index, $name, $label, $help;)*
+            }
         }
 
         impl Lobe {
-            /// Every lobe, in the order of the menus.
-            pub const ALL: &'static [Lobe] = &[$(Lobe::$variant),*];
-
-            /// Name in presets and on the command line.
-            pub fn name(self) -> &'static str {
-                match self { $(Lobe::$variant => $name,)* }
-            }
-            /// Name in the menus.
-            pub fn label(self) -> &'static str {
-                match self { $(Lobe::$variant => $label,)* }
-            }
-            /// What the lobe is, with its source.
-            pub fn help(self) -> &'static str {
-                match self { $(Lobe::$variant => $help,)* }
-            }
             /// The name of its Rust module and WGSL file, and the prefix of its WGSL functions.
             pub fn module(self) -> &'static str {
                 match self { $(Lobe::$variant => stringify!($module),)* }
@@ -107,30 +91,12 @@ lobes! {
 /// Draws a direction from one lobe.
 pub type RawSampler<T> = for<'a> fn(&LobeShape<'a, T>, &Frame<T>, Vec3<T>, [T; 3]) -> Vec3<T>;
 
-/// What happens to a sample that points below the surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-#[repr(u32)]
-pub enum Horizon {
-    /// It is reflected at the surface: no energy is lost (the paper's "invert").
-    Mirror = 0,
-    /// It is lost.
-    Absorb = 1,
-    /// It stays where it is: for plots of the lobe itself.
-    None = 2,
-}
-
-impl Horizon {
-    /// Every policy, in the order of the menus.
-    pub const ALL: &'static [Horizon] = &[Horizon::Mirror, Horizon::Absorb, Horizon::None];
-
-    /// Name in presets and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Horizon::Mirror => "mirror",
-            Horizon::Absorb => "absorb",
-            Horizon::None => "none",
-        }
+named! {
+    /// What happens to samples that point below the surface.
+    Horizon {
+        Mirror = 0, "mirror", "Mirror", "They are reflected at the surface: no light is lost.";
+        Absorb = 1, "absorb", "Absorb", "They are lost: the surface darkens towards grazing angles.";
+        None = 2, "none", "None", "They go through the surface: for plots of the lobe itself.";
     }
 }
 

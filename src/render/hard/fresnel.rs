@@ -1,7 +1,7 @@
 //! Fresnel's equations where they cancel, overflow or change form, against complex arithmetic in f64.
 
 use super::{HardCase, HardError, Stage};
-use crate::analysis::probe::FresnelQuestion;
+use crate::job::probe::FresnelQuestion;
 
 /// Cosines from grazing to head-on.
 const COSINES: [f32; 14] = [

@@ -11,8 +11,8 @@ use super::rays::{
 };
 use super::stage::document;
 use super::{HardCase, HardError, Stage, over_zero};
-use crate::analysis::film::Film;
 use crate::document::Document;
+use crate::job::film::Film;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Horizon;
 use crate::optics::random::hash_bits;

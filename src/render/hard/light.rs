@@ -5,10 +5,10 @@ use std::f64::consts::{PI, TAU};
 use super::stage::document;
 use super::{HardCase, HardError, Stage, over_zero};
 use crate::document::{Background, Document, MaterialSettings};
-use crate::optics::random::path_state;
+use crate::optics::random::{path_state, random_pair};
 use crate::optics::vector::Vec3;
 use crate::scene::ModelSource;
-use crate::scene::camera::pixel_ray;
+use crate::scene::camera::{LENS_DIMENSION, PIXEL_DIMENSION, pixel_ray};
 use crate::scene::environment::{Environment, EnvironmentSource, environment_direction, environment_radiance};
 
 pub(super) const CASES: &[HardCase] = &[
@@ -197,7 +197,8 @@ fn background_error(stage: &mut Stage, document: &Document, environment: &Enviro
     for (i, pixel) in film.image().pixels.iter().enumerate() {
         let (x, y) = (i as u32 % film.width, i as u32 / film.width);
         let state = path_state(x, y, settings.seed, 0, settings.sequence);
-        let [_, direction] = pixel_ray(&settings.camera, [x, y], settings.image_size, state);
+        let numbers = [PIXEL_DIMENSION, LENS_DIMENSION].map(|dimension| random_pair(state, dimension));
+        let [_, direction] = pixel_ray(&settings.camera, [x, y], settings.image_size, numbers);
         let expected = environment_radiance(environment, direction).to_f64();
         for (found, expected) in pixel.iter().zip(expected) {
             worst = worst.max((f64::from(*found) / expected - 1.0).abs());

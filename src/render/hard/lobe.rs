@@ -2,8 +2,8 @@
 //! its terms vanishes.
 
 use super::{HardCase, HardError, Stage};
-use crate::analysis::probe::{LobeAnswer, LobeQuestion, ProbeScene};
 use crate::document::CustomCurve;
+use crate::job::probe::{LobeAnswer, LobeQuestion, ProbeScene};
 use crate::optics::curve::Curve;
 use crate::optics::frame::frame_from_normal;
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_middle};

@@ -17,7 +17,7 @@ use std::time::Instant;
 
 use super::check::Check;
 use super::engine::{EngineChoice, EngineInfo};
-use crate::analysis::film::Image;
+use crate::job::film::Image;
 pub use stage::{HardError, Stage};
 
 /// A place where naive code breaks.

@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::{HardCase, HardError, Stage};
-use crate::analysis::precision::{ERROR_BOUND, relative_error};
-use crate::analysis::probe::{MaterialQuestion, ProbeScene};
 use crate::cpu::probe::probe_material;
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Value, compile};
+use crate::job::precision::{ERROR_BOUND, relative_error};
+use crate::job::probe::{MaterialQuestion, ProbeScene};
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_sample};
 use crate::optics::random::hash_bits;
@@ -84,7 +84,7 @@ fn random_material(numbers: &mut Numbers) -> MaterialSettings {
             Kind::Triple { range } => Value::Triple([(); 3].map(|()| within(*range))),
             Kind::Choice(all) => Value::Choice(all[numbers.below(all.len())].name),
             Kind::Toggle => Value::Toggle(numbers.below(2) == 0),
-            Kind::Curve => continue,
+            _ => continue,
         };
         // A value out of its range is refused; these are not.
         let _ = parameter.set(&mut material, value);

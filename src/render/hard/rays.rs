@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::meshes::{add_square, cube, model};
 use super::{HardError, Stage};
-use crate::analysis::probe::{NO_HIT, ProbeScene, RayAnswer, RayQuestion};
+use crate::job::probe::{NO_HIT, ProbeScene, RayAnswer, RayQuestion};
 use crate::optics::random::hash_bits;
 use crate::scene::mesh::Mesh;
 use crate::scene::surface::surface_at;

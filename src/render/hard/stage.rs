@@ -5,13 +5,13 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Duration;
 use std::{fs, io};
 
-use crate::analysis::film::{Film, Image};
 use crate::document::effect::EffectSwitches;
 use crate::document::{Document, PixelFilter};
 use crate::gpu::GpuError;
+use crate::job::film::{Film, Image};
 use crate::optics::random::Sequence;
 use crate::render::engine::{EngineChoice, EngineInfo};
-use crate::render::output::{self, OutputError};
+use crate::render::output::{self, OutputError, Rendered};
 use crate::render::probe::Prober;
 use crate::render::session::{Session, SessionError};
 use crate::scene::environment::EnvironmentSource;
@@ -63,10 +63,7 @@ impl Stage {
     /// Where a GPU was asked for and fails, or there is no temporary folder.
     pub fn open(choice: EngineChoice, thorough: bool) -> Result<Self, HardError> {
         let session = Session::open(choice)?;
-        let choice = match session.engine().kind {
-            "gpu" => EngineChoice::Gpu,
-            _ => EngineChoice::Cpu,
-        };
+        let choice = session.engine().kind.into();
         Ok(Self {
             thorough,
             prober: Prober::open(choice)?,
@@ -147,7 +144,7 @@ impl Stage {
             pixels: pixels.collect(),
         };
         let path = self.path(name);
-        output::write(&path, &image, &Document::default())?;
+        output::write(&path, Rendered::from(&image), &Document::default())?;
         Ok(EnvironmentSource::File(path))
     }
 

@@ -10,10 +10,10 @@ use super::glb::Glb;
 use super::meshes::cube;
 use super::stage::document;
 use super::{HardCase, HardError, Stage};
-use crate::analysis::probe::RandomQuestion;
 use crate::cpu::CpuEngine;
 use crate::cpu::probe::probe_random;
 use crate::document::{MaterialSettings, Strategy};
+use crate::job::probe::RandomQuestion;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::random::{Sequence, hash_bits, random_state};
 use crate::scene::ModelSource;
@@ -139,7 +139,7 @@ fn many_samples(stage: &mut Stage) -> Result<f64, HardError> {
         oracle.step_in::<f64>(Duration::from_secs(10), samples);
     }
     let expected = oracle.film();
-    let of = |film: &crate::analysis::film::Film| [film.luminance()[0], film.variance_of_mean()[0]];
+    let of = |film: &crate::job::film::Film| [film.luminance()[0], film.variance_of_mean()[0]];
     let errors = of(&found)
         .into_iter()
         .zip(of(expected))

@@ -5,7 +5,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::references::{Effort, ReferenceCache};
-use super::{Machine, Steps, StudyError, Watch, settled, warmed};
+use super::{Machine, Steps, StudyError, Watch, warmed};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::render::{EngineChoice, Precision, Session, StopReason};
@@ -89,7 +89,7 @@ pub fn convergence(
         noise: noise / REFERENCE_GAIN,
         seconds: reference_seconds,
     };
-    let mut other = Session::open_with(settled(session.engine()), session.assets().clone())?;
+    let mut other = Session::open_with(session.engine().kind.into(), session.assets().clone())?;
     let mut go_on = |share: f64| steps.tell("Reference", share);
     let reference = cache.reference(&mut other, document, Precision::Single, effort, &mut go_on)?;
     Ok(ConvergenceReport {

@@ -7,13 +7,14 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::{Machine, Steps, StudyError, Watch, median, quantile, settled, warmed, without_aim};
+use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_aim};
 use crate::analysis::halves::{Distance, Halves};
 use crate::analysis::noise::noise;
-use crate::document::effect::{EFFECTS, Switch};
-use crate::document::plan::Plan;
+use crate::document::effect::{Effect, Switch};
 use crate::document::technique::{Setting, Technique, converged};
 use crate::document::{Document, PixelFilter, Strategy};
+use crate::job::effect::EffectId;
+use crate::job::plan::Plan;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
 use crate::optics::random::Sequence;
@@ -156,7 +157,7 @@ struct Rival {
 /// What can't be rendered; [`StudyError::Stopped`].
 pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_>) -> Result<Ledger, StudyError> {
     let mut with = Session::open(options.engine)?;
-    let mut without = Session::open_with(settled(with.engine()), with.assets().clone())?;
+    let mut without = Session::open_with(with.engine().kind.into(), with.assets().clone())?;
     let document = without_aim(document);
     warmed(&mut with, &document)?;
     let plan = with.job().map_or_else(Plan::general, |job| job.plan.clone());
@@ -181,14 +182,14 @@ pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_
 fn rivals(document: &Document, plan: &Plan) -> Vec<Rival> {
     let mut rivals = Vec::new();
     for (effect, decision) in plan.table() {
-        if !decision.is_on || effect.remove.is_none() {
+        if !decision.is_on || Effect::of(effect).remove.is_none() {
             continue;
         }
         let mut changed = document.clone();
-        changed.render.effects.set(effect.name, Switch::Off);
+        changed.render.effects.set(effect, Switch::Off);
         rivals.push(Rival {
-            name: effect.name,
-            label: effect.label.to_owned(),
+            name: effect.name(),
+            label: Effect::of(effect).label.to_owned(),
             instead: "without".to_owned(),
             kind: EntryKind::Effect,
             document: changed,
@@ -270,9 +271,9 @@ fn setting_rivals(document: &Document) -> Vec<Rival> {
     }
     let general = changed(&|document| {
         let switches = &mut document.render.effects;
-        for effect in EFFECTS {
-            if switches.get(effect.name) == Switch::Auto {
-                switches.set(effect.name, Switch::On);
+        for &effect in EffectId::ALL {
+            if switches.get(effect) == Switch::Auto {
+                switches.set(effect, Switch::On);
             }
         }
     });

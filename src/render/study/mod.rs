@@ -12,9 +12,10 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::engine::{EngineChoice, EngineInfo};
+use super::engine::EngineInfo;
 use super::session::{Session, SessionError};
-use crate::document::{Document, FileError};
+use crate::document::Document;
+use crate::store::FileError;
 
 pub use convergence::{ConvergencePoint, ConvergenceReport, convergence};
 
@@ -108,7 +109,7 @@ impl Machine {
     fn of(info: &EngineInfo) -> Self {
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            engine: info.kind,
+            engine: info.kind.name(),
             adapter: info.adapter.clone(),
             driver: info.driver.clone(),
         }
@@ -133,14 +134,6 @@ fn warmed(session: &mut Session, document: &Document) -> Result<(), StudyError> 
     session.forget();
     session.submit(document)?;
     Ok(())
-}
-
-/// An engine that is what was asked for, for every one of several sessions alike.
-fn settled(info: &EngineInfo) -> EngineChoice {
-    match info.kind {
-        "gpu" => EngineChoice::Gpu,
-        _ => EngineChoice::Cpu,
-    }
 }
 
 /// The middle value; NaN where there is none.

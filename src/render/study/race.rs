@@ -11,13 +11,13 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::references::{Effort, Reference, ReferenceCache};
-use super::{Machine, Steps, StudyError, Watch, settled, warmed, without_aim};
-use crate::analysis::film::Image;
+use super::{Machine, Steps, StudyError, Watch, warmed, without_aim};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::document::technique::{Technique, converged, most_accurate};
+use crate::job::film::Image;
 use crate::render::assets::Assets;
-use crate::render::{EngineChoice, Precision, Session};
+use crate::render::{EngineChoice, EngineKind, Precision, Session};
 
 /// References are this many times as exact as the noise to reach, where the time suffices.
 const REFERENCE_GAIN: f64 = 8.0;
@@ -170,9 +170,10 @@ pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -
     }
     let equal_error = runners.iter().map(|runner| runner.error.value).fold(0.0, f64::max);
     for (lane, runner) in lanes.iter_mut().zip(&mut runners) {
-        steps.tell(format!("Equal error: {}", runner.label), 0.0)?;
+        let what = format!("Equal error: {}", runner.label);
         let share = (runner.error.value / equal_error.max(f64::MIN_POSITIVE)).powi(2);
-        rerun(lane, (runner.samples_per_pixel * share).max(SAMPLES_MIN))?;
+        let samples = (runner.samples_per_pixel * share).max(SAMPLES_MIN);
+        rerun(lane, samples, &mut |done| steps.tell(what.clone(), done))?;
         runner.equal_error = lane.session.image()?;
         runner.equal_error_seconds = lane.session.progress().engine_seconds;
         steps.finish(1.0);
@@ -202,8 +203,8 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
         }
         let mut session = Session::open_with(engine, assets.clone())?;
         // Not one on the GPU and another on the processor.
-        engine = settled(session.engine());
-        if technique.is_double() && session.engine().kind == "gpu" {
+        engine = session.engine().kind.into();
+        if technique.is_double() && session.engine().kind == EngineKind::Gpu {
             log::warn!("{technique}: the GPU shades in f32 only; left out");
             continue;
         }
@@ -317,18 +318,23 @@ fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> 
             is_done = false;
             let slice = options.slice.min(Duration::from_secs_f64(left.max(1e-3)));
             lane.session.step(slice)?;
+            // After each turn, not after each round: who stops it does not wait for the others' turns.
+            steps.tell(format!("Round {}", round + 1), share_of_all(lanes, options.seconds))?;
         }
-        let shares = lanes
-            .iter()
-            .map(|lane| lane.session.progress().engine_seconds / options.seconds);
-        let done: f64 = shares.map(|share| share.min(1.0)).sum();
-        steps.tell(format!("Round {}", round + 1), done)?;
         if is_done {
             break;
         }
     }
     steps.finish(count as f64);
     Ok(())
+}
+
+/// The sum of the shares of their time that all of them have had.
+fn share_of_all(lanes: &[Lane], seconds: f64) -> f64 {
+    let shares = lanes
+        .iter()
+        .map(|lane| lane.session.progress().engine_seconds / seconds);
+    shares.map(|share| share.min(1.0)).sum()
 }
 
 fn runner(
@@ -367,8 +373,8 @@ fn runner(
     })
 }
 
-/// Renders anew up to so many samples a pixel in the mean.
-fn rerun(lane: &mut Lane, samples: f64) -> Result<(), StudyError> {
+/// Renders anew up to so many samples a pixel in the mean; `tell` is told the share that has been done.
+fn rerun(lane: &mut Lane, samples: f64, tell: &mut dyn FnMut(f64) -> Result<(), StudyError>) -> Result<(), StudyError> {
     let mut document = lane.document.clone();
     if !document.render.is_adaptive() {
         document.render.samples = samples.round() as u32;
@@ -378,6 +384,7 @@ fn rerun(lane: &mut Lane, samples: f64) -> Result<(), StudyError> {
     let mut step = Duration::from_millis(1);
     loop {
         let progress = lane.session.step(step)?;
+        tell((progress.mean_samples / samples).min(1.0))?;
         if progress.is_done || progress.mean_samples >= samples {
             return Ok(());
         }

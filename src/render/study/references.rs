@@ -7,14 +7,14 @@ use std::time::{Duration, SystemTime};
 use serde::{Deserialize, Serialize};
 
 use super::{Machine, StudyError, UNLIMITED};
-use crate::analysis::film::Image;
 use crate::analysis::halves::Halves;
 use crate::document::Document;
-use crate::document::file::save_atomically;
 use crate::document::technique::converged;
+use crate::job::film::Image;
 use crate::render::{Precision, Session};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
+use crate::store::file::save_atomically;
 
 /// To be raised where the format or the pictures change within a version of the program.
 const FORMAT: u32 = 1;

@@ -9,14 +9,14 @@ use std::time::Duration;
 
 use serde::Serialize;
 
-use super::{Machine, Steps, StudyError, Watch, median, settled};
-use crate::analysis::sampling::{SamplingRequest, SamplingRun, SamplingStage};
+use super::{Machine, Steps, StudyError, Watch, median};
 use crate::document::{AreaLight, Document, Strategy};
 use crate::gpu::sampling::SamplingMeter;
 use crate::gpu::{AdapterKind, GpuDevice};
+use crate::job::sampling::{SamplingRequest, SamplingRun, SamplingStage};
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
-use crate::render::{EngineChoice, Session};
+use crate::render::{EngineChoice, EngineKind, Session};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 
@@ -133,9 +133,9 @@ fn shapes() -> Vec<(Lobe, Curve, String)> {
 /// A GPU that fails; [`StudyError::Stopped`].
 pub fn sampling(options: &SamplingOptions, watch: &mut Watch<'_>) -> Result<SamplingReport, StudyError> {
     let mut session = Session::open(options.engine)?;
-    let mut meter = match settled(session.engine()) {
-        EngineChoice::Gpu => Meter::Gpu(Box::new(SamplingMeter::new(GpuDevice::open(AdapterKind::Any)?))),
-        _ => Meter::Cpu,
+    let mut meter = match session.engine().kind {
+        EngineKind::Gpu => Meter::Gpu(Box::new(SamplingMeter::new(GpuDevice::open(AdapterKind::Any)?))),
+        EngineKind::Cpu => Meter::Cpu,
     };
     let shapes = shapes();
     let mut steps = Steps::new(watch, 2.0 * SAMPLES.len() as f64);

@@ -6,50 +6,24 @@ use serde::Serialize;
 
 use super::{Machine, Steps, StudyError, Watch, median, quantile, warmed, without_aim};
 use crate::document::Document;
+use crate::named::named;
 use crate::optics::vector::Vec3;
 use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{Environment, EnvironmentSource, environment_direction, environment_radiance};
 use crate::scene::shapes::bumpy_sphere;
 use crate::scene::{Model, ModelSource, Slot};
 
-/// What grows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Growing {
-    /// The triangles of the model.
-    Triangles,
-    /// The pixels of the picture.
-    Pixels,
-    /// The longest path.
-    Bounces,
-    /// The texels of the environment.
-    Texels,
+named! {
+    /// What grows.
+    Growing {
+        Triangles, "triangles", "Triangles", "The triangles of the model.";
+        Pixels, "pixels", "Pixels", "The pixels of the picture.";
+        Bounces, "bounces", "Bounces at most", "The longest path.";
+        Texels, "texels", "Texels of the environment", "The texels of the environment.";
+    }
 }
 
 impl Growing {
-    /// All of them.
-    pub const ALL: [Self; 4] = [Self::Triangles, Self::Pixels, Self::Bounces, Self::Texels];
-
-    /// What is counted.
-    pub fn label(self) -> &'static str {
-        match self {
-            Self::Triangles => "Triangles",
-            Self::Pixels => "Pixels",
-            Self::Bounces => "Bounces at most",
-            Self::Texels => "Texels of the environment",
-        }
-    }
-
-    /// Name in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Triangles => "triangles",
-            Self::Pixels => "pixels",
-            Self::Bounces => "bounces",
-            Self::Texels => "texels",
-        }
-    }
-
     /// The sizes that are tried.
     fn sizes(self, is_quick: bool) -> Vec<u64> {
         let all: &[u64] = match self {
@@ -128,7 +102,8 @@ pub fn scaling(
     let mut session = Session::open(options.engine)?;
     let document = without_aim(document);
     let cases: Vec<_> = Growing::ALL
-        .into_iter()
+        .iter()
+        .copied()
         .flat_map(|growing| {
             growing
                 .sizes(options.is_quick)
@@ -181,7 +156,9 @@ fn grow(document: &Document, growing: Growing, size: u64, session: &Session) -> 
         Growing::Texels => {
             let height = (size as f64 / 2.0).sqrt().round() as u32;
             let source = EnvironmentSource::File(format!("{} x {height} texels", 2 * height).into());
-            let original = session.assets().environment(&document.lighting.environment)?;
+            let original = session
+                .assets()
+                .environment(&document.lighting.environment, document.lighting.environment_encoding)?;
             let resampled = resampled(&original, height).map_err(crate::render::SessionError::from)?;
             session.assets().keep_environment(source.clone(), resampled);
             grown.lighting.environment = source;

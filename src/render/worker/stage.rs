@@ -29,6 +29,8 @@ pub(super) struct Stage {
     pub(super) reduction: u32,
     /// Whether a picture of it has been published.
     pub(super) is_shown: bool,
+    /// The full resolution can't be had.
+    pub(super) is_final: bool,
 }
 
 impl Stage {
@@ -56,6 +58,7 @@ impl Stage {
             submission,
             reduction,
             is_shown: false,
+            is_final: false,
         }
     }
 
@@ -79,12 +82,13 @@ impl Stage {
             Pace::Moving => self.submission.at.elapsed() >= SETTLE,
             Pace::Still => true,
         };
-        self.reduction > 1 && self.is_shown && has_rested
+        self.reduction > 1 && self.is_shown && !self.is_final && has_rested
     }
 
     /// When to look at [`Stage::is_settled`] again if nothing else happens.
     pub(super) fn rest_left(&self) -> Option<Duration> {
-        (self.reduction > 1 && self.is_shown).then(|| SETTLE.saturating_sub(self.submission.at.elapsed()))
+        (self.reduction > 1 && self.is_shown && !self.is_final)
+            .then(|| SETTLE.saturating_sub(self.submission.at.elapsed()))
     }
 
     /// Whether another submission may take its place. One that moves is shown first: otherwise a steady stream of

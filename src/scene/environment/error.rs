@@ -6,7 +6,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum EnvironmentError {
     /// An empty name.
-    #[error("no environment was named: give studio, sky, furnace, or a .hdr or .exr file")]
+    #[error("no environment was named: give studio, sky, furnace, or a picture's file")]
     NoName,
     /// The file system refused.
     #[error("cannot read the environment {}: {source}; check the path and its permissions", path.display())]
@@ -16,13 +16,24 @@ pub enum EnvironmentError {
         /// What the system said.
         source: std::io::Error,
     },
-    /// Neither .hdr nor .exr.
+    /// An ending that is not known.
     #[error(
-        "the environment {} is neither a .hdr nor an .exr file: convert it to one of them, or use studio, sky or furnace",
+        "the environment {} is neither a .hdr nor an .exr file, nor a PNG, JPEG, TIFF or WebP picture: convert it to one \
+         of them, or use studio, sky or furnace",
         path.display()
     )]
     UnknownExtension {
         /// The file.
+        path: PathBuf,
+    },
+    /// A folder without the faces of a cube.
+    #[error(
+        "the environment {} is a folder without six pictures whose names end in px, nx, py, ny, pz, nz (or right, left, \
+         top, bottom, front, back): name a file in it",
+        path.display()
+    )]
+    NoFaces {
+        /// The folder.
         path: PathBuf,
     },
     /// The content is not what the extension says.
@@ -64,8 +75,8 @@ pub enum EnvironmentError {
     },
     /// Larger than the largest size.
     #[error(
-        "{} is {width} × {height}, larger than the {} × {} that fit: scale it down",
-        path.display(), super::MAX_WIDTH, super::MAX_HEIGHT
+        "{} is {width} × {height}, larger than the {} × {} that are read: scale it down",
+        path.display(), super::file::SOURCE_MAX_WIDTH, super::file::SOURCE_MAX_HEIGHT
     )]
     TooLarge {
         /// The file.

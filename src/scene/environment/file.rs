@@ -1,13 +1,20 @@
-//! Environments from .hdr and .exr files: which decoder, and what is mended afterwards.
+//! Environments from files: which decoder, and what is mended afterwards.
 
 use std::path::Path;
 
-use super::{Environment, EnvironmentError};
+use super::{Environment, EnvironmentEncoding, EnvironmentError, cube, display_referred, open_exr, radiance_hdr};
 
-/// The most columns of a file's picture.
+/// The most columns that are kept of a file's picture; larger ones are made smaller.
 pub const MAX_WIDTH: u32 = 8192;
-/// The most rows of a file's picture.
+/// The most rows that are kept of a file's picture.
 pub const MAX_HEIGHT: u32 = 4096;
+/// The most columns of a file's picture.
+pub const SOURCE_MAX_WIDTH: u32 = 32768;
+/// The most rows of a file's picture: a strip of six faces stands upright.
+pub const SOURCE_MAX_HEIGHT: u32 = 32768;
+
+/// Endings of the files that can be read, without their dots.
+pub const ENDINGS: [&str; 10] = ["hdr", "exr", "png", "jpg", "jpeg", "tif", "tiff", "webp", "pic", "rgbe"];
 
 /// A decoded picture: `width` × `height` texels, rows from the top, numbers as they were in the file.
 pub(super) struct Picture {
@@ -15,19 +22,16 @@ pub(super) struct Picture {
     pub height: u32,
     pub texels: Vec<[f32; 4]>,
     pub warnings: Vec<String>,
+    /// The file says that it holds the six faces of a cube, in OpenEXR's order.
+    pub is_cube: bool,
 }
 
-/// Loads a .hdr or .exr file.
-pub(super) fn load(path: &Path) -> Result<Environment, EnvironmentError> {
-    let extension = path
-        .extension()
-        .map(|extension| extension.to_string_lossy().to_lowercase());
-    let mut picture = match extension.as_deref() {
-        Some("hdr") => super::radiance_hdr::read(path)?,
-        Some("exr") => super::open_exr::read(path)?,
-        _ => {
-            return Err(EnvironmentError::UnknownExtension { path: path.to_owned() });
-        }
+/// Loads a picture of the whole sphere: a lat-long map or a cube map in a file, or the six faces of one in a folder.
+pub(super) fn load(path: &Path, encoding: EnvironmentEncoding) -> Result<Environment, EnvironmentError> {
+    let mut picture = if path.is_dir() {
+        cube::read_folder(path, encoding)?
+    } else {
+        cube::unfolded(decode(path, encoding)?)
     };
     mend(&mut picture);
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
@@ -36,21 +40,24 @@ pub(super) fn load(path: &Path) -> Result<Environment, EnvironmentError> {
     Ok(environment)
 }
 
-/// Refuses sizes that do not fit or are nothing.
-pub(super) fn check_size(path: &Path, width: u64, height: u64) -> Result<(u32, u32), EnvironmentError> {
-    if width == 0 || height == 0 {
-        return Err(EnvironmentError::Empty {
-            name: path.display().to_string(),
-        });
+fn ending(path: &Path) -> String {
+    let ending = path.extension().unwrap_or_default();
+    ending.to_string_lossy().to_lowercase()
+}
+
+/// Whether a file's ending is one of [`ENDINGS`].
+pub(super) fn is_readable(path: &Path) -> bool {
+    ENDINGS.contains(&ending(path).as_str())
+}
+
+/// The picture in a file.
+pub(super) fn decode(path: &Path, encoding: EnvironmentEncoding) -> Result<Picture, EnvironmentError> {
+    match ending(path).as_str() {
+        "hdr" | "pic" | "rgbe" => radiance_hdr::read(path),
+        "exr" => open_exr::read(path),
+        _ if is_readable(path) => display_referred::read(path, encoding),
+        _ => Err(EnvironmentError::UnknownExtension { path: path.to_owned() }),
     }
-    if width > u64::from(MAX_WIDTH) || height > u64::from(MAX_HEIGHT) {
-        return Err(EnvironmentError::TooLarge {
-            path: path.to_owned(),
-            width,
-            height,
-        });
-    }
-    Ok((width as u32, height as u32))
 }
 
 /// The file system's answer, or the matching error.

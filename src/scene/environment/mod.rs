@@ -7,9 +7,13 @@
 //!
 //! The functions whose names start with `environment_` have WGSL twins in `shaders/scene/environment.wgsl`.
 
+mod canvas;
+mod cube;
+mod display_referred;
 mod distribution;
 mod error;
 mod file;
+mod luminance_chroma;
 mod open_exr;
 mod procedural;
 mod radiance_hdr;
@@ -27,12 +31,12 @@ use crate::scene::alias::grid_place;
 
 pub use distribution::AliasCell;
 pub use error::EnvironmentError;
-pub use file::{MAX_HEIGHT, MAX_WIDTH};
+pub use file::{ENDINGS, MAX_HEIGHT, MAX_WIDTH};
 pub use procedural::{SkyParams, furnace, sky, studio, sun_direction, sun_irradiance};
 pub use thumbnail::thumbnail;
 
-/// Where an environment comes from. Written `studio`, `sky`, `furnace` or the name of a .hdr or .exr file; a file of one
-/// of those three names is reached as `./studio`.
+/// Where an environment comes from. Written `studio`, `sky`, `furnace` or the name of a file; a file of one of those three
+/// names is reached as `./studio`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EnvironmentSource {
@@ -43,8 +47,20 @@ pub enum EnvironmentSource {
     Sky,
     /// Radiance 1 from everywhere.
     Furnace,
-    /// A lat-long picture in a .hdr or .exr file.
+    /// A picture of the whole sphere: a lat-long map or a cube map in a file with one of [`ENDINGS`], or a folder with the
+    /// six faces of a cube.
     File(PathBuf),
+}
+
+/// What the whole numbers of a panorama stand for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EnvironmentEncoding {
+    /// sRGB codes: the picture is meant for a screen.
+    #[default]
+    Display,
+    /// Radiance in proportion.
+    Linear,
 }
 
 impl FromStr for EnvironmentSource {
@@ -145,11 +161,22 @@ impl Environment {
 /// # Errors
 /// One line with the file's name, what is wrong and what to do, for files that cannot be read or shown.
 pub fn load(source: &EnvironmentSource) -> Result<Environment, EnvironmentError> {
+    load_encoded(source, EnvironmentEncoding::default())
+}
+
+/// The same where pictures for screens are taken as `encoding` says.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_encoded(
+    source: &EnvironmentSource,
+    encoding: EnvironmentEncoding,
+) -> Result<Environment, EnvironmentError> {
     match source {
         EnvironmentSource::Studio => studio(),
         EnvironmentSource::Sky => sky(&SkyParams::default()),
         EnvironmentSource::Furnace => furnace(),
-        EnvironmentSource::File(path) => file::load(Path::new(path)),
+        EnvironmentSource::File(path) => file::load(Path::new(path), encoding),
     }
 }
 

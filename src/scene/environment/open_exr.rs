@@ -12,19 +12,23 @@ use exr::compression::Compression;
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
 use exr::meta::MetaData;
-use exr::meta::attribute::SampleType;
+use exr::meta::attribute::{AttributeValue, EnvironmentMap, SampleType, Text};
 use exr::meta::header::Header;
 use exr::prelude::f16;
 use rayon::prelude::*;
 
-use super::EnvironmentError;
-use super::file::{Picture, check_size, io};
+use super::canvas::Canvas;
+use super::file::{Picture, io};
+use super::{EnvironmentError, luminance_chroma};
+use crate::panics::contained;
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The bit of the version field that says that some part is deep.
 const DEEP_FLAG: u32 = 1 << 11;
-/// Deflate cannot do better than 1032 : 1, the other schemes that matter stay below it.
+/// Deflate cannot do better than 1032 : 1, the other lossless schemes stay below it.
 const MAX_COMPRESSION: u64 = 1500;
+/// DWA deflates one number for 64 pixels that are all the same.
+const MAX_COMPRESSION_DWA: u64 = 64 * 1032;
 /// Chunks that are decompressed together: enough for every core, little enough to hold in memory.
 const CHUNKS_AT_ONCE: usize = 32;
 
@@ -38,7 +42,7 @@ struct Layer {
 /// Reads the first layer that has colour or luminance, at its largest size, into its display window.
 pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
     // Some damaged files fail assertions inside the crate instead of giving errors.
-    std::panic::catch_unwind(|| read_guarded(path)).unwrap_or_else(|_| {
+    contained(|| read_guarded(path)).unwrap_or_else(|| {
         let detail = "its pixels contradict each other".to_owned();
         Err(EnvironmentError::Damaged {
             path: path.to_owned(),
@@ -51,10 +55,13 @@ pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
 fn read_guarded(path: &Path) -> Result<Picture, EnvironmentError> {
     let file_bytes = check_preamble(path)?;
     let file = BufReader::new(io(path, File::open(path))?);
-    let reader = Reader::read_from_buffered(file, false).map_err(|error| exr_error(path, error))?;
+    let reader = match Reader::read_from_buffered(file, false) {
+        Err(ExrError::NotSupported(what)) if what.contains("subsampling") => return luminance_chroma::read(path),
+        result => result.map_err(|error| exr_error(path, error))?,
+    };
     let layer = choose_layer(path, reader.headers())?;
     let header = reader.headers()[layer.index].clone();
-    let window = Window::new(path, &header)?;
+    let (mut canvas, offset) = window(path, &header)?;
     check_supported(path, &header, file_bytes)?;
 
     let chunks = reader
@@ -63,22 +70,19 @@ fn read_guarded(path: &Path) -> Result<Picture, EnvironmentError> {
         })
         .map_err(|error| exr_error(path, error))?;
     let meta_data = chunks.meta_data().clone();
-    // Zeroed memory costs nothing before a row is written: a header's promise alone allocates no pages.
-    let mut texels = vec![[0.0; 4]; window.width as usize * window.height as usize];
     for_each_block(chunks, &meta_data, |block| {
         for line in block.lines(&header.channels) {
             let channel = line.location.channel;
             let sample_type = header.channels.list[channel].sample_type;
-            write_line(&line, sample_type, &layer.components[channel], &window, &mut texels);
+            write_line(&line, sample_type, &layer.components[channel], offset, &mut canvas);
         }
     })
     .map_err(|error| exr_error(path, error))?;
-    Ok(Picture {
-        width: window.width,
-        height: window.height,
-        texels,
-        warnings: layer.warnings,
-    })
+    let mut picture = canvas.finish();
+    picture.warnings.extend(layer.warnings);
+    let layout = header.shared_attributes.other.get(&Text::from("envmap"));
+    picture.is_cube = matches!(layout, Some(AttributeValue::EnvironmentMap(EnvironmentMap::Cube)));
+    Ok(picture)
 }
 
 /// Looks at the first eight bytes, which the crate's errors do not tell apart; returns the length of the file.
@@ -171,22 +175,17 @@ fn choose_layer(path: &Path, headers: &[Header]) -> Result<Layer, EnvironmentErr
 
 /// Refuses what is not to be decoded, and headers that promise more than the file can hold.
 fn check_supported(path: &Path, header: &Header, file_bytes: u64) -> Result<(), EnvironmentError> {
-    let compression = match header.compression {
-        Compression::DWAA(_) => "DWAA compression",
-        Compression::DWAB(_) => "DWAB compression",
-        Compression::HTJ2K32 | Compression::HTJ2K256 => "HTJ2K compression",
-        _ => "",
-    };
-    if !compression.is_empty() {
+    if matches!(header.compression, Compression::HTJ2K32 | Compression::HTJ2K256) {
         return Err(EnvironmentError::Unsupported {
             path: path.to_owned(),
-            feature: compression.to_owned(),
+            feature: "HTJ2K compression".to_owned(),
             remedy: "re-save it with ZIP or PIZ compression",
         });
     }
     let promised = (header.layer_size.area() as u64).saturating_mul(header.channels.bytes_per_pixel as u64);
     let least = match header.compression {
         Compression::Uncompressed => promised,
+        Compression::DWAA(_) | Compression::DWAB(_) => promised / MAX_COMPRESSION_DWA,
         _ => promised / MAX_COMPRESSION,
     };
     if file_bytes < least {
@@ -198,30 +197,23 @@ fn check_supported(path: &Path, header: &Header, file_bytes: u64) -> Result<(), 
     Ok(())
 }
 
-/// The display window, and where the stored pixels lie in it.
-struct Window {
-    width: u32,
-    height: u32,
-    /// The place of the first stored pixel; negative where pixels are stored outside of the window.
-    offset: [i64; 2],
-}
-
-impl Window {
-    fn new(path: &Path, header: &Header) -> Result<Self, EnvironmentError> {
-        let display = header.shared_attributes.display_window;
-        let (width, height) = check_size(path, display.size.width() as u64, display.size.height() as u64)?;
-        check_size(
-            path,
-            header.layer_size.width() as u64,
-            header.layer_size.height() as u64,
-        )?;
-        let position = header.own_attributes.layer_position;
-        let offset = [
-            i64::from(position.x()) - i64::from(display.position.x()),
-            i64::from(position.y()) - i64::from(display.position.y()),
-        ];
-        Ok(Self { width, height, offset })
-    }
+/// An empty picture of the display window, and the place of the first stored pixel in it: negative where pixels are stored
+/// outside of the window.
+pub(super) fn window(path: &Path, header: &Header) -> Result<(Canvas, [i64; 2]), EnvironmentError> {
+    let display = header.shared_attributes.display_window;
+    let canvas = Canvas::new(path, display.size.width() as u64, display.size.height() as u64)?;
+    // Only its check of the size.
+    Canvas::new(
+        path,
+        header.layer_size.width() as u64,
+        header.layer_size.height() as u64,
+    )?;
+    let position = header.own_attributes.layer_position;
+    let offset = [
+        i64::from(position.x()) - i64::from(display.position.x()),
+        i64::from(position.y()) - i64::from(display.position.y()),
+    ];
+    Ok((canvas, offset))
 }
 
 /// Decompresses all chunks, on all cores, and hands the blocks on in order. (The crate's own parallel reader runs them
@@ -244,37 +236,31 @@ fn for_each_block(
     }
 }
 
-/// Writes what the window shows of one line of one channel to the texels.
-fn write_line(
-    line: &LineRef<'_>,
-    sample_type: SampleType,
-    shown: &[bool; 3],
-    window: &Window,
-    texels: &mut [[f32; 4]],
-) {
-    let row = line.location.position.y() as i64 + window.offset[1];
-    if !(0..i64::from(window.height)).contains(&row) {
+/// Writes what the window shows of one line of one channel to the picture.
+fn write_line(line: &LineRef<'_>, sample_type: SampleType, shown: &[bool; 3], offset: [i64; 2], canvas: &mut Canvas) {
+    let [width, height] = canvas.source_size().map(i64::from);
+    let row = line.location.position.y() as i64 + offset[1];
+    if !(0..height).contains(&row) {
         return;
     }
-    let first_column = line.location.position.x() as i64 + window.offset[0];
+    let first_column = line.location.position.x() as i64 + offset[0];
     let end_column = first_column + line.location.sample_count as i64;
-    let columns = first_column.max(0)..end_column.min(i64::from(window.width));
+    let columns = first_column.max(0)..end_column.min(width);
     let bytes = |column: i64, size: usize| &line.value[(column - first_column) as usize * size..][..size];
     let sample = |column: i64| match sample_type {
         SampleType::F16 => f16::from_bits(bytemuck::pod_read_unaligned(bytes(column, 2))).to_f32(),
         SampleType::F32 => bytemuck::pod_read_unaligned(bytes(column, 4)),
         SampleType::U32 => bytemuck::pod_read_unaligned::<u32>(bytes(column, 4)) as f32,
     };
-    let texels = &mut texels[row as usize * window.width as usize..][..window.width as usize];
     for (component, _) in shown.iter().enumerate().filter(|(_, shown)| **shown) {
         for column in columns.clone() {
-            texels[column as usize][component] = sample(column);
+            canvas.add(column as u32, row as u32, component, sample(column));
         }
     }
 }
 
 /// What the crate says, in our words.
-fn exr_error(path: &Path, error: ExrError) -> EnvironmentError {
+pub(super) fn exr_error(path: &Path, error: ExrError) -> EnvironmentError {
     let path = path.to_owned();
     match error {
         ExrError::Io(source) => EnvironmentError::Read { path, source },

@@ -20,6 +20,32 @@ impl Document {
         Ok(bytes.chunks_exact(N * size).map(vector).collect())
     }
 
+    /// The elements of an accessor of three or four components, the fourth 1 where there are three.
+    pub fn read_colors(&self, accessor: usize, what: &str) -> Result<Vec<[f32; 4]>, ModelError> {
+        let is_vec3 =
+            self.root.accessors.get(accessor).map(|accessor| accessor.type_) == Some(Checked::Valid(Type::Vec3));
+        if !is_vec3 {
+            return self.read_vectors(accessor, what);
+        }
+        let colors = self.read_vectors::<3>(accessor, what)?;
+        Ok(colors.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect())
+    }
+
+    /// The elements of a vector accessor of unsigned integers, which may be floats in old files.
+    pub fn read_unsigned<const N: usize>(&self, accessor: usize, what: &str) -> Result<Vec<[u32; N]>, ModelError> {
+        let (component, _, bytes) = self.read_elements(accessor, N, what)?;
+        let size = component.size();
+        let vector = |element: &[u8]| {
+            std::array::from_fn(|i| decode(component, false, &element[i * size..(i + 1) * size]) as u32)
+        };
+        Ok(bytes.chunks_exact(N * size).map(vector).collect())
+    }
+
+    /// The matrices of an accessor, column by column.
+    pub fn read_matrices(&self, accessor: usize, what: &str) -> Result<Vec<[f32; 16]>, ModelError> {
+        self.read_vectors(accessor, what)
+    }
+
     /// The elements of a scalar accessor of unsigned integers.
     pub fn read_indices(&self, accessor: usize) -> Result<Vec<u32>, ModelError> {
         let (component, _, bytes) = self.read_elements(accessor, 1, "indices")?;
@@ -45,7 +71,8 @@ impl Document {
         let (Checked::Valid(component), Checked::Valid(kind)) = (accessor.component_type, accessor.type_) else {
             return Err(invalid("is of unknown type"));
         };
-        let is_vector = matches!(kind, Type::Scalar | Type::Vec2 | Type::Vec3 | Type::Vec4);
+        // The columns of smaller matrices of bytes have gaps, which nothing that is read here has.
+        let is_vector = matches!(kind, Type::Scalar | Type::Vec2 | Type::Vec3 | Type::Vec4 | Type::Mat4);
         if !is_vector || kind.multiplicity() != components {
             return Err(invalid(&format!("does not have {components} components")));
         }
@@ -76,7 +103,8 @@ impl Document {
             .byte_stride
             .map_or(0, |stride| stride.0);
         let stride = if stride == 0 { size } else { stride };
-        let bytes = self.view(view).ok()?.get(usize::try_from(offset).ok()?..)?;
+        let view = self.view(view).ok()?;
+        let bytes = view.get(usize::try_from(offset).ok()?..)?;
         let Some(last) = count.checked_sub(1) else {
             return Some(Vec::new());
         };
@@ -118,7 +146,7 @@ impl Document {
 }
 
 /// Little-endian unsigned integers of a component type's size.
-fn unsigned(component: ComponentType, bytes: &[u8]) -> Vec<u32> {
+pub(super) fn unsigned(component: ComponentType, bytes: &[u8]) -> Vec<u32> {
     let number = |bytes: &[u8]| {
         bytes
             .iter()
@@ -129,7 +157,7 @@ fn unsigned(component: ComponentType, bytes: &[u8]) -> Vec<u32> {
 }
 
 /// One little-endian component.
-fn decode(component: ComponentType, normalized: bool, bytes: &[u8]) -> f32 {
+pub(super) fn decode(component: ComponentType, normalized: bool, bytes: &[u8]) -> f32 {
     let scale = |value: f32, largest: f32| {
         if normalized { (value / largest).max(-1.0) } else { value }
     };

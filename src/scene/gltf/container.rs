@@ -1,78 +1,107 @@
 //! The outer parts of a glTF file: GLB chunks, JSON, extensions, and the buffers and pictures beside it.
 
-use std::fs;
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use gltf::json;
+use rayon::prelude::*;
 
+use super::compressed;
+use crate::scene::files::Files;
 use crate::scene::model::ModelError;
+use crate::scene::report::{Fate, ImportReport};
 
-/// Extensions that change nothing here or are understood. Required ones beyond these are errors.
-pub(super) const UNDERSTOOD: [&str; 12] = [
-    "KHR_texture_transform",
-    "KHR_mesh_quantization",
-    "KHR_materials_clearcoat",
-    "KHR_materials_ior",
-    "KHR_materials_transmission",
-    "KHR_materials_emissive_strength",
-    "KHR_materials_specular",
-    "KHR_materials_volume",
-    "KHR_materials_variants",
-    "KHR_materials_unlit",
-    "KHR_lights_punctual",
+/// Extensions that change nothing here or are understood.
+const UNDERSTOOD: [&str; 31] = [
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
     "FB_ngon_encoding",
+    "KHR_accessor_float64",
+    "KHR_animation_pointer",
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
+    "KHR_texture_basisu",
+    "KHR_texture_transform",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "EXT_texture_avif",
+    "MSFT_texture_dds",
+    "MSFT_lod",
 ];
 
-const REMEDIES: [(&str, &str); 7] = [
-    ("KHR_draco_mesh_compression", "export without Draco mesh compression"),
-    (
-        "EXT_meshopt_compression",
-        "export without meshopt compression (gltfpack without -c)",
-    ),
-    (
-        "KHR_meshopt_compression",
-        "export without meshopt compression (gltfpack without -c)",
-    ),
-    ("KHR_texture_basisu", "export textures as PNG or JPEG instead of KTX2"),
-    ("EXT_texture_webp", "export textures as PNG or JPEG instead of WebP"),
-    ("EXT_texture_avif", "export textures as PNG or JPEG instead of AVIF"),
-    ("MSFT_texture_dds", "export textures as PNG or JPEG instead of DDS"),
+/// Where a texture's picture may be other than in its `source`, the one that is preferred first.
+const TEXTURE_SOURCES: [&str; 4] = [
+    "EXT_texture_webp",
+    "KHR_texture_basisu",
+    "EXT_texture_avif",
+    "MSFT_texture_dds",
 ];
 
-fn remedy(extension: &str) -> &'static str {
-    let known = REMEDIES.iter().find(|(name, _)| *name == extension);
-    known.map_or("export without this extension", |(_, remedy)| remedy)
-}
-
-/// A file whose JSON is valid, with its buffers.
+/// A file whose JSON can be read, with its buffers.
 pub(super) struct Document {
     path: PathBuf,
-    /// The JSON; every index in it is in range.
+    files: Files,
+    /// The JSON. Its indices may be out of range.
     pub root: json::Root,
     /// The JSON once more, for what the crate does not know.
     pub raw: serde_json::Value,
-    /// The contents of the buffers, each at least as long as declared.
+    /// The contents of the buffers; empty where they are missing.
     pub buffers: Vec<Vec<u8>>,
+    /// Buffer views that were compressed, as they are without.
+    pub decompressed: HashMap<usize, Vec<u8>>,
+    /// Required extensions that are not known.
+    pub unknown_required: Vec<String>,
 }
 
 impl Document {
     /// Reads a file with its buffers; its pictures are read when asked for.
-    pub fn read(path: &Path) -> Result<Self, ModelError> {
-        let bytes = fs::read(path).map_err(|source| ModelError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
+    pub fn read(path: &Path, files: Files, mut bytes: Vec<u8>, report: &mut ImportReport) -> Result<Self, ModelError> {
         let (text, blob) = split(path, &bytes)?;
+        let mut raw: serde_json::Value = parse(path, text)?;
+        add_what_the_crate_misses(&mut raw);
         let mut document = Self {
             path: path.to_owned(),
-            root: parse(path, text)?,
-            raw: parse(path, text)?,
+            files,
+            root: serde_json::from_value(raw.clone()).map_err(|error| ModelError::Invalid {
+                path: path.to_owned(),
+                reason: format!("its JSON: {error}"),
+            })?,
+            raw,
             buffers: Vec::new(),
+            decompressed: HashMap::new(),
+            unknown_required: Vec::new(),
         };
         document.check_version()?;
-        document.check_extensions()?;
-        document.validate()?;
-        document.read_buffers(blob)?;
+        // The rest of a large file's bytes would be there twice.
+        let blob = blob.map(|place| {
+            bytes.truncate(place.end);
+            bytes.drain(..place.start);
+            bytes
+        });
+        document.check_extensions(report);
+        document.choose_pictures();
+        document.check_rules(report);
+        document.read_buffers(blob, report);
+        document.decompress_views(report);
         Ok(document)
     }
 
@@ -93,6 +122,11 @@ impl Document {
         }
     }
 
+    /// An extension of a material, mesh or other part of the file, given by the way to it.
+    pub fn extension(&self, part: &serde_json::Value, name: &str) -> Option<serde_json::Value> {
+        part.get("extensions")?.get(name).cloned()
+    }
+
     fn check_version(&self) -> Result<(), ModelError> {
         match self.root.asset.version.split('.').next() {
             Some("2") => Ok(()),
@@ -106,46 +140,43 @@ impl Document {
         }
     }
 
-    fn check_extensions(&mut self) -> Result<(), ModelError> {
-        let unsupported = |name: &str| ModelError::Extension {
-            path: self.path.clone(),
-            name: name.to_owned(),
-            remedy: remedy(name),
-        };
-        // Of several the one whose remedy is known says most.
-        let mut required: Vec<&String> = self
-            .root
-            .extensions_required
-            .iter()
-            .filter(|name| !UNDERSTOOD.contains(&name.as_str()))
-            .collect();
-        required.sort_by_key(|name| !REMEDIES.iter().any(|(known, _)| known == name));
-        if let Some(name) = required.first() {
-            return Err(unsupported(name));
+    /// Tells of extensions that are not known: what they change is not shown, the rest is.
+    fn check_extensions(&mut self, report: &mut ImportReport) {
+        let is_known = |name: &String| UNDERSTOOD.contains(&name.as_str());
+        let required = std::mem::take(&mut self.root.extensions_required);
+        for name in required.iter().filter(|name| !is_known(name)) {
+            report.note(
+                Fate::Ignored,
+                format!("the extension {name}, which the file requires"),
+                "",
+            );
+            self.unknown_required.push(name.clone());
         }
-        // Checked here; the crate knows fewer.
-        self.root.extensions_required.clear();
-        // A texture whose picture is there in a foreign format only.
-        if let Some(texture) = self
-            .root
-            .textures
-            .iter()
-            .position(|texture| texture.source.value() == u32::MAX as usize)
-        {
-            let used = &self.root.extensions_used;
-            let format = REMEDIES
-                .iter()
-                .find(|(name, _)| name.contains("_texture_") && used.iter().any(|u| u == name));
-            return Err(format.map_or_else(
-                || self.invalid(format!("texture {texture} has no picture")),
-                |(name, _)| unsupported(name),
-            ));
+        let used = self.root.extensions_used.iter();
+        for name in used.filter(|name| !is_known(name) && !required.contains(name)) {
+            report.note(Fate::Ignored, format!("the optional extension {name}"), "");
         }
-        Ok(())
     }
 
-    /// Lets the crate check indices and enumerations.
-    fn validate(&mut self) -> Result<(), ModelError> {
+    /// Gives textures that have a picture in an extension's format only that picture.
+    fn choose_pictures(&mut self) {
+        let images = self.root.images.len();
+        for (index, texture) in self.root.textures.iter_mut().enumerate() {
+            if texture.source.value() < images {
+                continue;
+            }
+            let extensions = &self.raw["textures"][index]["extensions"];
+            let source = TEXTURE_SOURCES
+                .iter()
+                .find_map(|name| extensions.get(name)?.get("source")?.as_u64());
+            if let Some(source) = source {
+                texture.source = json::Index::new(source as u32);
+            }
+        }
+    }
+
+    /// Lets the crate look for broken rules. Few of them matter here: every index is checked where it is used.
+    fn check_rules(&mut self, report: &mut ImportReport) {
         // The crate's own check of primitives looks up their positions without asking whether they are there.
         let accessors = self.root.accessors.len();
         let mut primitives = self.root.meshes.iter().flat_map(|mesh| &mesh.primitives);
@@ -155,45 +186,70 @@ impl Document {
                 .values()
                 .any(|accessor| accessor.value() >= accessors)
         }) {
-            return Err(self.invalid(format!("a mesh refers to an accessor beyond the {accessors} there are")));
+            let what = format!("a reference of a mesh to an accessor beyond the {accessors} there are");
+            report.note(Fate::Ignored, what, "");
+            return;
         }
-        match gltf::Document::from_json(std::mem::take(&mut self.root)) {
-            Ok(document) => {
-                self.root = document.into_json();
-                Ok(())
+        if let Err(gltf::Error::Validation(errors)) = gltf::Document::from_json(self.root.clone()) {
+            for (path, error) in errors.iter().filter(|(path, _)| !is_harmless(&path.to_string())) {
+                report.note(
+                    Fate::Ignored,
+                    format!("a breach of the format's rules, {error}"),
+                    &path.to_string(),
+                );
             }
-            Err(gltf::Error::Validation(errors)) => {
-                let first: Vec<String> = errors
-                    .iter()
-                    .take(3)
-                    .map(|(path, error)| format!("{path}: {error}"))
-                    .collect();
-                let more = if errors.len() > 3 {
-                    format!(" and {} more", errors.len() - 3)
-                } else {
-                    String::new()
-                };
-                Err(self.invalid(format!("{}{more}", first.join("; "))))
-            }
-            Err(error) => Err(self.invalid(error.to_string())),
         }
     }
 
-    fn read_buffers(&mut self, mut blob: Option<&[u8]>) -> Result<(), ModelError> {
+    fn read_buffers(&mut self, mut blob: Option<Vec<u8>>, report: &mut ImportReport) {
         for (index, buffer) in self.root.buffers.iter().enumerate() {
             let name = format!("buffer {index}");
+            let is_fallback = compressed::EXTENSIONS
+                .iter()
+                .any(|extension| self.raw["buffers"][index]["extensions"][extension]["fallback"] == true);
             let data = match (&buffer.uri, blob.take()) {
-                (Some(uri), _) => self.read_uri(&name, uri)?,
-                (None, Some(blob)) => blob.to_vec(),
-                (None, None) => return Err(self.invalid(format!("{name} has no data"))),
+                (Some(uri), _) => self.read_uri(&name, uri).unwrap_or_else(|error| {
+                    report.note(Fate::Missing, format!("a buffer: {error}"), &name);
+                    Vec::new()
+                }),
+                (None, Some(blob)) => blob,
+                _ => {
+                    if !is_fallback {
+                        report.note(Fate::Missing, "a buffer that has no data", &name);
+                    }
+                    Vec::new()
+                }
             };
-            if (data.len() as u64) < buffer.byte_length.0 {
-                let (actual, expected) = (data.len(), buffer.byte_length.0);
-                return Err(self.invalid(format!("{name} has only {actual} of {expected} bytes")));
+            let (actual, expected) = (data.len(), buffer.byte_length.0);
+            if !data.is_empty() && (actual as u64) < expected {
+                report.note(
+                    Fate::Missing,
+                    format!("a buffer's end: {actual} of {expected} bytes are there"),
+                    &name,
+                );
             }
             self.buffers.push(data);
         }
-        Ok(())
+    }
+
+    fn decompress_views(&mut self, report: &mut ImportReport) {
+        let views: Vec<usize> = (0..self.root.buffer_views.len()).collect();
+        let decoded: Vec<_> = views
+            .into_par_iter()
+            .filter_map(|view| Some((view, compressed::meshopt_view(self, view)?)))
+            .collect();
+        for (view, result) in decoded {
+            match result {
+                Ok(bytes) => {
+                    report.note(Fate::Used, "buffer views with meshopt compression", "");
+                    self.decompressed.insert(view, bytes);
+                }
+                Err(reason) => {
+                    let name = format!("buffer view {view}");
+                    report.note(Fate::Missing, format!("data with meshopt compression: {reason}"), &name);
+                }
+            }
+        }
     }
 
     /// The bytes of a data URI or of a file beside the model.
@@ -206,24 +262,57 @@ impl Document {
             return Err(self.resource(uri, "web addresses are not loaded"));
         }
         let file = percent_decoded(uri);
-        let folder = self.path.parent().unwrap_or(Path::new(""));
-        fs::read(folder.join(&file)).map_err(|error| self.resource(&file, error))
+        self.files.read(&file).map_err(|error| self.resource(&file, error))
     }
 
     /// The bytes of a buffer view.
-    pub fn view(&self, index: usize) -> Result<&[u8], ModelError> {
+    pub fn view(&self, index: usize) -> Result<Cow<'_, [u8]>, ModelError> {
+        if let Some(bytes) = self.decompressed.get(&index) {
+            return Ok(Cow::Borrowed(bytes));
+        }
         let beyond = || self.invalid(format!("buffer view {index} reaches beyond its buffer"));
         let view = self.root.buffer_views.get(index).ok_or_else(beyond)?;
         let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let end = start.checked_add(view.byte_length.0).ok_or_else(beyond)?;
-        self.buffers[view.buffer.value()]
-            .get(start as usize..end as usize)
+        self.slice(view.buffer.value(), start, view.byte_length.0)
+            .map(Cow::Borrowed)
             .ok_or_else(beyond)
+    }
+
+    /// A part of a buffer, where it is there.
+    pub fn slice(&self, buffer: usize, start: u64, length: u64) -> Option<&[u8]> {
+        let end = usize::try_from(start.checked_add(length)?).ok()?;
+        self.buffers.get(buffer)?.get(usize::try_from(start).ok()?..end)
     }
 }
 
-/// The JSON and the binary chunk of a file's bytes.
-fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>), ModelError> {
+/// The crate asks for some parts that the format leaves to the writer.
+fn add_what_the_crate_misses(raw: &mut serde_json::Value) {
+    let scenes = raw.get_mut("scenes").and_then(serde_json::Value::as_array_mut);
+    for scene in scenes
+        .into_iter()
+        .flatten()
+        .filter_map(serde_json::Value::as_object_mut)
+    {
+        scene.entry("nodes").or_insert_with(|| serde_json::json!([]));
+    }
+}
+
+/// Whether a breach of the rules at this place of the JSON changes no picture.
+fn is_harmless(place: &str) -> bool {
+    let ends = [
+        ".bufferView",
+        ".min",
+        ".max",
+        ".target",
+        ".byteStride",
+        ".byteLength",
+        ".generator",
+    ];
+    ends.iter().any(|end| place.ends_with(end)) || place.starts_with("animations") || place.contains("extensions")
+}
+
+/// The JSON of a file's bytes, and where its binary chunk is.
+fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<Range<usize>>), ModelError> {
     let not_gltf = |reason: String| ModelError::NotGltf {
         path: path.to_owned(),
         reason,
@@ -258,14 +347,17 @@ fn split<'a>(path: &Path, bytes: &'a [u8]) -> Result<(&'a [u8], Option<&'a [u8]>
     }
 }
 
-/// The JSON chunk and, if there is one, the binary chunk after it.
-fn split_chunks(glb: &[u8]) -> Option<(&[u8], Option<&[u8]>)> {
+/// The JSON chunk and, if there is one, the place of the binary chunk after it.
+fn split_chunks(glb: &[u8]) -> Option<(&[u8], Option<Range<usize>>)> {
     let (kind, json, rest) = next_chunk(glb.get(12..)?)?;
     if kind != *b"JSON" {
         return None;
     }
     match next_chunk(rest) {
-        Some((kind, data, _)) => Some((json, (kind == *b"BIN\0").then_some(data))),
+        Some((kind, data, _)) => {
+            let start = glb.len() - rest.len() + 8;
+            Some((json, (kind == *b"BIN\0").then_some(start..start + data.len())))
+        }
         // Some writers leave a few bytes after the last chunk.
         None => (rest.len() < 8).then_some((json, None)),
     }

@@ -1,17 +1,28 @@
 //! Materials as slots, and their pictures.
 
 use std::collections::HashMap;
-use std::io::Cursor;
 
 use gltf::json;
-use image::ImageReader;
 use json::extensions::texture::TextureTransform;
 use json::material::Material;
+use json::mesh::Primitive;
 use json::texture::WrappingMode;
 use json::validation::Checked;
+use rayon::prelude::*;
+use serde_json::Value as Json;
 
 use super::container::Document;
-use crate::scene::model::{AlphaMode, Filter, ModelError, Slot, Texture, TextureRef, Wrap};
+use super::image;
+use super::material_extensions::{
+    Anisotropy, Clearcoat, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension, kept,
+};
+use super::specular_glossiness::{Factors, convert, convert_textures};
+use crate::scene::model::{AlphaMode, Filter, ModelOptions, Slot, Texture, TextureRef, Wrap};
+use crate::scene::report::{Fate, ImportReport};
+use crate::scene::texture::{TextureMean, scaled_to, texture_mean};
+
+/// The largest index of refraction that a material takes.
+const IOR_MAX: f32 = 4.0;
 
 /// The texture coordinates that a slot's pictures look up.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +31,8 @@ pub(super) struct UvUse {
     pub sets: [Option<u32>; 2],
     /// How the normal texture is placed: tangents follow it.
     pub normal_texture_from_uv: [f32; 6],
+    /// Whether tangents must be those that a normal texture was made for.
+    pub has_normal_texture: bool,
 }
 
 impl Default for UvUse {
@@ -27,46 +40,127 @@ impl Default for UvUse {
         Self {
             sets: [Some(0), None],
             normal_texture_from_uv: affine(&TextureTransform::default()),
+            has_normal_texture: false,
         }
     }
 }
+
+/// A picture that slots look up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PictureKey {
+    /// An image of the file.
+    Image(usize),
+    /// The base colour that a material of the specular-glossiness workflow is turned into.
+    BaseColor(usize),
+    /// Its metalness and roughness.
+    Surface(usize),
+}
+
+/// A texture of which a slot takes the mean only: the image, and what its mean changes.
+struct MeanUse {
+    slot: usize,
+    image: usize,
+    what: &'static str,
+    apply: Apply,
+}
+
+/// What a texture's mean changes of a slot.
+type Apply = fn(&mut Slot, &TextureMean);
+
+/// A texture, where there is one, of which the mean is to be applied.
+fn mean(info: &Option<TextureInfo>, what: &'static str, apply: Apply) -> Option<(usize, &'static str, Apply)> {
+    Some((info.as_ref()?.index, what, apply))
+}
+
+/// A material of the specular-glossiness workflow that has textures.
+struct Conversion {
+    material: usize,
+    factors: Factors,
+    diffuse: Option<usize>,
+    specular: Option<usize>,
+}
+
+/// A texture with its set of coordinates and its transform.
+type Reference = (usize, u32, Option<TextureTransform>);
 
 /// The materials that primitives have asked for so far.
 pub(super) struct Materials<'a> {
     document: &'a Document,
+    /// The variant that is shown (KHR_materials_variants).
+    variant: Option<u64>,
+    texture_side_max: u32,
     /// Slot of a material, none for the default one.
     slot_of: HashMap<Option<usize>, u32>,
     slots: Vec<(Slot, UvUse)>,
-    /// The images in use; a texture's number is its place here.
-    images: Vec<usize>,
-    /// What was left out.
-    pub warnings: Vec<String>,
+    /// The pictures in use; a texture's number is its place here.
+    pictures: Vec<PictureKey>,
+    means: Vec<MeanUse>,
+    conversions: Vec<Conversion>,
+    report: ImportReport,
 }
 
 impl<'a> Materials<'a> {
-    pub fn new(document: &'a Document) -> Self {
+    pub fn new(document: &'a Document, options: &ModelOptions) -> Self {
+        let names = &document.raw["extensions"]["KHR_materials_variants"]["variants"];
+        let mut report = ImportReport::default();
+        let variant = options.variant.as_ref().and_then(|wanted| {
+            let names = names.as_array()?.iter();
+            let found = names
+                .clone()
+                .position(|variant| variant["name"].as_str() == Some(wanted.as_str()));
+            found.map(|index| index as u64)
+        });
+        if let (Some(wanted), None) = (&options.variant, variant) {
+            report.note(Fate::Missing, format!("the variant \"{wanted}\""), "");
+        }
         Self {
             document,
+            variant,
+            texture_side_max: options.texture_side_max,
             slot_of: HashMap::new(),
             slots: Vec::new(),
-            images: Vec::new(),
-            warnings: Vec::new(),
+            pictures: Vec::new(),
+            means: Vec::new(),
+            conversions: Vec::new(),
+            report,
         }
+    }
+
+    /// The material of a primitive in the variant that is shown.
+    pub fn of_primitive(&self, primitive: &Primitive, raw: &Json) -> Option<usize> {
+        let mappings = raw["extensions"]["KHR_materials_variants"]["mappings"].as_array();
+        let mapped = self.variant.zip(mappings).and_then(|(variant, mappings)| {
+            let has_variant = |mapping: &&Json| {
+                let variants = mapping["variants"].as_array();
+                variants.is_some_and(|variants| variants.iter().any(|index| index.as_u64() == Some(variant)))
+            };
+            mappings.iter().find(has_variant)?["material"].as_u64()
+        });
+        let material = mapped.map(|index| index as usize);
+        material.or(primitive.material.map(|material| material.value()))
     }
 
     /// The slot of a material, or of the default material.
     pub fn slot(&mut self, material: Option<usize>) -> u32 {
+        let material = material.filter(|&index| {
+            let is_there = index < self.document.root.materials.len();
+            if !is_there {
+                let what = "a material that is out of bounds";
+                self.report.note(Fate::Missing, what, &format!("material {index}"));
+            }
+            is_there
+        });
         if let Some(&slot) = self.slot_of.get(&material) {
             return slot;
         }
-        let read = match material {
-            Some(index) => self.read(index),
-            None => (Slot::default(), UvUse::default()),
-        };
-        let slot = self.slots.len() as u32;
-        self.slots.push(read);
-        self.slot_of.insert(material, slot);
-        slot
+        let slot = self.slots.len();
+        self.slots.push((Slot::default(), UvUse::default()));
+        if let Some(index) = material {
+            self.slots[slot] = self.read(index, slot);
+            self.report.note(Fate::Used, "materials", &self.slots[slot].0.name);
+        }
+        self.slot_of.insert(material, slot as u32);
+        slot as u32
     }
 
     /// Which texture coordinates a slot's pictures use.
@@ -74,57 +168,119 @@ impl<'a> Materials<'a> {
         self.slots[slot as usize].1
     }
 
-    /// The slots with their pictures decoded; forgets the warnings.
-    pub fn finish(self) -> Result<(Vec<Slot>, Vec<Texture>), ModelError> {
-        let textures = self
-            .images
-            .iter()
-            .map(|&image| decode(self.document, image))
-            .collect::<Result<_, _>>()?;
-        Ok((self.slots.into_iter().map(|(slot, _)| slot).collect(), textures))
+    /// Says that a mesh with this slot has colours at its vertices.
+    pub fn has_vertex_colors(&mut self, slot: u32) {
+        self.slots[slot as usize].0.has_vertex_colors = true;
+    }
+
+    /// The slots with their pictures decoded. What of them is missing becomes grey.
+    pub fn finish(mut self, report: &mut ImportReport) -> (Vec<Slot>, Vec<Texture>) {
+        let mut images: Vec<usize> = self.means.iter().map(|mean| mean.image).collect();
+        images.extend(
+            self.conversions
+                .iter()
+                .flat_map(|conversion| [conversion.diffuse, conversion.specular])
+                .flatten(),
+        );
+        images.extend(self.pictures.iter().filter_map(|key| match key {
+            PictureKey::Image(image) => Some(*image),
+            _ => None,
+        }));
+        images.sort_unstable();
+        images.dedup();
+        let decoded: HashMap<usize, Texture> = self.decode(images);
+        let mut slots: Vec<Slot> = self.slots.into_iter().map(|(slot, _)| slot).collect();
+        for mean in &self.means {
+            if let Some(texture) = decoded.get(&mean.image) {
+                (mean.apply)(&mut slots[mean.slot], &texture_mean(texture));
+                self.report.note(Fate::Approximated, mean.what, &slots[mean.slot].name);
+            }
+        }
+        let converted: HashMap<usize, [Texture; 2]> = self
+            .conversions
+            .par_iter()
+            .map(|conversion| {
+                let image = |image: Option<usize>| decoded.get(&image?);
+                let name = format!("material {}", conversion.material);
+                let [diffuse, specular] = [conversion.diffuse, conversion.specular].map(image);
+                (
+                    conversion.material,
+                    convert_textures(&name, conversion.factors, diffuse, specular),
+                )
+            })
+            .collect();
+        let textures = self.pictures.iter().map(|key| match key {
+            PictureKey::Image(image) => decoded.get(image).cloned(),
+            PictureKey::BaseColor(material) => converted.get(material).map(|[color, _]| color.clone()),
+            PictureKey::Surface(material) => converted.get(material).map(|[_, surface]| surface.clone()),
+        });
+        let textures = without_missing(&mut slots, textures.collect());
+        report.append(self.report);
+        (slots, textures)
+    }
+
+    /// Decodes pictures on all cores, none larger than wished. Those that cannot be had are told.
+    fn decode(&mut self, images: Vec<usize>) -> HashMap<usize, Texture> {
+        let is_color = |image: usize| {
+            let is_used_as_color = |slot: &Slot| {
+                let colors = [slot.base_color_texture, slot.emissive_texture];
+                colors
+                    .into_iter()
+                    .flatten()
+                    .any(|r| self.pictures[r.texture] == PictureKey::Image(image))
+            };
+            self.slots.iter().any(|(slot, _)| is_used_as_color(slot))
+        };
+        let side_max = self.texture_side_max;
+        let results: Vec<_> = images
+            .into_par_iter()
+            .map(|image| {
+                let texture = image::decode(self.document, image);
+                (
+                    image,
+                    texture.map(|texture| scaled_to(texture, side_max, is_color(image))),
+                )
+            })
+            .collect();
+        let mut decoded = HashMap::new();
+        for (image, result) in results {
+            match result {
+                Ok((texture, scaled_from)) => {
+                    self.report.note(Fate::Used, "textures", &texture.name);
+                    if let Some([width, height]) = scaled_from {
+                        let what = format!(
+                            "a picture of {width} × {height}, used at {} × {}",
+                            texture.width, texture.height
+                        );
+                        self.report.note(Fate::Approximated, what, &texture.name);
+                    }
+                    decoded.insert(image, texture);
+                }
+                Err(reason) => {
+                    let name = image::name(self.document, image);
+                    self.report
+                        .note(Fate::Missing, format!("a texture, grey instead ({reason})"), &name);
+                }
+            }
+        }
+        decoded
     }
 
     /// A material and the texture coordinates of its pictures: the normal texture's are the first set, since tangents
     /// follow it; pictures on a third set are left out.
-    fn read(&mut self, index: usize) -> (Slot, UvUse) {
+    fn read(&mut self, index: usize, slot: usize) -> (Slot, UvUse) {
         let root = &self.document.root;
         let material = &root.materials[index];
+        let raw = &self.document.raw["materials"][index];
         let pbr = &material.pbr_metallic_roughness;
-        let extensions = material.extensions.as_ref();
         let [red, green, blue, opacity] = pbr.base_color_factor.0;
+        let extensions = material.extensions.as_ref();
         let strength = extensions
             .and_then(|e| e.emissive_strength.as_ref())
             .map_or(1.0, |e| e.emissive_strength.0);
-        let volume = extensions.and_then(|e| e.volume.as_ref());
-        let transmission = extensions
-            .and_then(|e| e.transmission.as_ref())
-            .map_or(0.0, |e| unit(e.transmission_factor.0));
-        let attenuation_distance = volume
-            .map(|volume| volume.attenuation_distance.0)
-            .filter(|distance| distance.is_finite() && *distance > 0.0);
-        if transmission > 0.0 && attenuation_distance.is_some() && [red, green, blue] != [1.0; 3] {
-            self.warnings.push(format!(
-                "material {index}: its volume colours what is seen through, not its base colour"
-            ));
-        }
-        let mut sets = [None; 2];
-        let info = |info: &Option<json::texture::Info>| {
-            let info = info.as_ref()?;
-            let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
-            Some((info.index.value(), info.tex_coord, transform))
-        };
-        let normal = material.normal_texture.as_ref();
-        let normal_texture = self.texture(
-            normal.map(|normal| (normal.index.value(), normal.tex_coord, self.normal_transform(index))),
-            &mut sets,
-        );
-        let mut uv_use = UvUse::default();
-        if let Some(texture) = &normal_texture {
-            uv_use.normal_texture_from_uv = texture.texture_from_mesh_uv;
-        }
-        let [coat, coat_roughness] = self.coat(index);
-        let slot = Slot {
-            name: material.name.clone().unwrap_or_else(|| format!("material {index}")),
+        let name = material.name.clone().filter(|name| !name.is_empty());
+        let mut read = Slot {
+            name: name.unwrap_or_else(|| format!("material {index}")),
             base_color: [red, green, blue].map(unit),
             metalness: unit(pbr.metallic_factor.0),
             roughness: unit(pbr.roughness_factor.0),
@@ -133,29 +289,245 @@ impl<'a> Materials<'a> {
             alpha_mode: alpha_mode(material),
             alpha_cutoff: material.alpha_cutoff.map_or(0.5, |cutoff| cutoff.0),
             double_sided: material.double_sided,
-            ior: extensions
-                .and_then(|e| e.ior.as_ref())
-                .map_or(1.5, |e| e.ior.0.clamp(1.0, 100.0)),
-            transmission,
-            coat,
-            coat_roughness,
-            attenuation_color: volume.map_or([1.0; 3], |volume| volume.attenuation_color.0.map(unit)),
-            attenuation_distance: attenuation_distance.unwrap_or(f32::INFINITY),
-            base_color_texture: self.texture(info(&pbr.base_color_texture), &mut sets),
-            metallic_roughness_texture: self.texture(info(&pbr.metallic_roughness_texture), &mut sets),
-            normal_texture,
-            normal_scale: normal.map_or(1.0, |normal| normal.scale),
-            emissive_texture: self.texture(info(&material.emissive_texture), &mut sets),
+            ..Slot::default()
         };
+        let mut sets = [None; 2];
+        let info = |info: &Option<json::texture::Info>| {
+            let info = info.as_ref()?;
+            let transform = info.extensions.as_ref().and_then(|e| e.texture_transform.clone());
+            Some((info.index.value(), info.tex_coord, transform))
+        };
+        let mut uv_use = UvUse::default();
+        if let Some(normal) = &material.normal_texture {
+            let reference = (normal.index.value(), normal.tex_coord, self.normal_transform(index));
+            read.normal_texture = self.texture(Some(reference), &mut sets, &read.name);
+            read.normal_scale = normal.scale;
+            if let Some(texture) = &read.normal_texture {
+                uv_use.normal_texture_from_uv = texture.texture_from_mesh_uv;
+                uv_use.has_normal_texture = true;
+            }
+        }
+        match extension::<SpecularGlossiness>(raw, "KHR_materials_pbrSpecularGlossiness") {
+            Some(workflow) => self.read_specular_glossiness(index, &workflow, &mut read, &mut sets),
+            None => {
+                read.base_color_texture = self.texture(info(&pbr.base_color_texture), &mut sets, &read.name);
+                read.metallic_roughness_texture =
+                    self.texture(info(&pbr.metallic_roughness_texture), &mut sets, &read.name);
+            }
+        }
+        read.emissive_texture = self.texture(info(&material.emissive_texture), &mut sets, &read.name);
+        self.read_layers(raw, slot, &mut read);
+        self.read_interior(material, raw, slot, &mut read);
+        if raw["extensions"].get("KHR_materials_unlit").is_some() {
+            make_unlit(&mut read);
+            self.report
+                .note(Fate::Approximated, "an unlit material, which shines", &read.name);
+        }
+        if material.occlusion_texture.is_some() {
+            let what = "an occlusion texture, which path tracing needs none of";
+            self.report.note(Fate::Ignored, what, &read.name);
+        }
+        let (kept, names) = kept(raw);
+        for what in names {
+            self.report
+                .note(Fate::Ignored, format!("{what}, kept in the material"), &read.name);
+        }
+        read.kept = kept;
         uv_use.sets = [sets[0].or(Some(0)), sets[1]];
-        (slot, uv_use)
+        (read, uv_use)
     }
 
-    /// A reference to the picture of a texture, given as (texture, set of coordinates, transform).
+    /// The old workflow of diffuse and specular colours.
+    fn read_specular_glossiness(
+        &mut self,
+        material: usize,
+        workflow: &SpecularGlossiness,
+        read: &mut Slot,
+        sets: &mut [Option<u32>; 2],
+    ) {
+        let factors = Factors {
+            diffuse: workflow.diffuse_factor,
+            specular: workflow.specular_factor,
+            glossiness: workflow.glossiness_factor,
+        };
+        self.report.note(
+            Fate::Approximated,
+            "specular-glossiness, as metalness and roughness",
+            &read.name,
+        );
+        let [red, green, blue, opacity] = factors.diffuse;
+        read.opacity = unit(opacity);
+        let textures = [&workflow.diffuse_texture, &workflow.specular_glossiness_texture];
+        let images = textures.map(|info| self.image(info.as_ref()?.index));
+        let Some(placed) = textures.into_iter().flatten().next() else {
+            let converted = convert([red, green, blue], factors.specular, factors.glossiness);
+            read.base_color = converted.base_color;
+            (read.metalness, read.roughness) = (converted.metalness, converted.roughness);
+            return;
+        };
+        (read.base_color, read.metalness, read.roughness, read.opacity) = ([1.0; 3], 1.0, 1.0, 1.0);
+        let placed = self.texture(Some(placed.reference()), sets, &read.name);
+        let place = |key: PictureKey, pictures: &mut Vec<PictureKey>| {
+            pictures.push(key);
+            placed.map(|placed| TextureRef {
+                texture: pictures.len() - 1,
+                ..placed
+            })
+        };
+        read.base_color_texture = place(PictureKey::BaseColor(material), &mut self.pictures);
+        read.metallic_roughness_texture = place(PictureKey::Surface(material), &mut self.pictures);
+        self.conversions.push(Conversion {
+            material,
+            factors,
+            diffuse: images[0],
+            specular: images[1],
+        });
+    }
+
+    /// Specular reflection, coat and anisotropy.
+    fn read_layers(&mut self, raw: &Json, slot: usize, read: &mut Slot) {
+        let mut means = Vec::new();
+        if let Some(specular) = extension::<Specular>(raw, "KHR_materials_specular") {
+            read.specular = unit(specular.specular_factor);
+            read.specular_color = specular.specular_color_factor.map(unit);
+            if specular.specular_color_factor.iter().any(|factor| *factor > 1.0) {
+                let what = "a specular colour above 1, taken as 1";
+                self.report.note(Fate::Approximated, what, &read.name);
+            }
+            means.extend(mean(
+                &specular.specular_texture,
+                "a specular texture, by its mean",
+                |slot, mean| {
+                    slot.specular *= mean.codes[3];
+                },
+            ));
+            means.extend(mean(
+                &specular.specular_color_texture,
+                "a specular colour texture, by its mean",
+                |slot, mean| {
+                    slot.specular_color = [0, 1, 2].map(|i| slot.specular_color[i] * mean.linear[i]);
+                },
+            ));
+        }
+        if let Some(coat) = extension::<Clearcoat>(raw, "KHR_materials_clearcoat") {
+            (read.coat, read.coat_roughness) = (unit(coat.clearcoat_factor), unit(coat.clearcoat_roughness_factor));
+            if read.coat > 0.0 {
+                means.extend(mean(
+                    &coat.clearcoat_texture,
+                    "a coat texture, by its mean",
+                    |slot, mean| {
+                        slot.coat *= mean.codes[0];
+                    },
+                ));
+                means.extend(mean(
+                    &coat.clearcoat_roughness_texture,
+                    "a coat roughness texture, by its mean",
+                    |slot, mean| {
+                        slot.coat_roughness *= mean.codes[1];
+                    },
+                ));
+            }
+            if coat.clearcoat_normal_texture.is_some() {
+                self.report
+                    .note(Fate::Ignored, "a coat normal texture: coats lie smooth", &read.name);
+            }
+        }
+        if let Some(anisotropy) = extension::<Anisotropy>(raw, "KHR_materials_anisotropy") {
+            read.anisotropy = unit(anisotropy.anisotropy_strength);
+            read.anisotropy_rotation_rad = anisotropy.anisotropy_rotation;
+            means.extend(mean(
+                &anisotropy.anisotropy_texture,
+                "an anisotropy texture, by its mean",
+                |slot, mean| {
+                    slot.anisotropy *= mean.codes[2];
+                    let [x, y] = [0, 1].map(|i| 2.0_f32 * mean.codes[i] - 1.0);
+                    slot.anisotropy_rotation_rad += y.atan2(x);
+                },
+            ));
+        }
+        self.add_means(slot, means);
+    }
+
+    /// Index of refraction, transmission and absorption.
+    fn read_interior(&mut self, material: &Material, raw: &Json, slot: usize, read: &mut Slot) {
+        let extensions = material.extensions.as_ref();
+        let ior = extensions.and_then(|e| e.ior.as_ref()).map_or(1.5, |e| e.ior.0);
+        // 0 stands for a mirror.
+        let ior = if ior == 0.0 { f32::INFINITY } else { ior };
+        read.ior = ior.clamp(1.0, IOR_MAX);
+        if read.ior != ior {
+            let what = format!("an index of refraction of {ior}, taken as {}", read.ior);
+            self.report.note(Fate::Approximated, what, &read.name);
+        }
+        let transmission = extensions.and_then(|e| e.transmission.as_ref());
+        read.transmission = transmission.map_or(0.0, |e| unit(e.transmission_factor.0));
+        let volume = extensions.and_then(|e| e.volume.as_ref());
+        if let Some(volume) = volume {
+            read.attenuation_color = volume.attenuation_color.0.map(unit);
+            let distance = volume.attenuation_distance.0;
+            if distance.is_finite() && distance > 0.0 {
+                read.attenuation_distance = distance;
+            }
+        }
+        if read.transmission == 0.0 {
+            return;
+        }
+        let [red, green, blue] = read.base_color;
+        if read.attenuation_distance.is_finite() && [red, green, blue] != [1.0; 3] {
+            let what = "a base colour under a volume, which colours what is seen through instead";
+            self.report.note(Fate::Approximated, what, &read.name);
+        }
+        let thickness = extension::<Volume>(raw, "KHR_materials_volume").map_or(0.0, |volume| volume.thickness_factor);
+        if thickness <= 0.0 && read.ior != 1.0 {
+            self.report
+                .note(Fate::Approximated, "a thin wall, which refracts as a solid", &read.name);
+        }
+        let transmission = extension::<Transmission>(raw, "KHR_materials_transmission").unwrap_or_default();
+        let what = "a transmission texture, by its mean";
+        let applied = mean(&transmission.transmission_texture, what, |slot, mean| {
+            slot.transmission *= mean.codes[0];
+        });
+        self.add_means(slot, applied.into_iter().collect());
+    }
+
+    fn add_means(&mut self, slot: usize, means: Vec<(usize, &'static str, Apply)>) {
+        for (texture, what, apply) in means {
+            if let Some(image) = self.image(texture) {
+                self.means.push(MeanUse {
+                    slot,
+                    image,
+                    what,
+                    apply,
+                });
+            }
+        }
+    }
+
+    /// The image of a texture.
+    fn image(&mut self, texture: usize) -> Option<usize> {
+        let image = self
+            .document
+            .root
+            .textures
+            .get(texture)
+            .map(|texture| texture.source.value());
+        let found = image.filter(|&image| image < self.document.root.images.len());
+        if found.is_none() {
+            self.report.note(
+                Fate::Missing,
+                "a texture without a picture",
+                &format!("texture {texture}"),
+            );
+        }
+        found
+    }
+
+    /// A reference to the picture of a texture. Where the texture itself is not there, none.
     fn texture(
         &mut self,
-        reference: Option<(usize, u32, Option<TextureTransform>)>,
+        reference: Option<Reference>,
         sets: &mut [Option<u32>; 2],
+        owner: &str,
     ) -> Option<TextureRef> {
         let (texture, set, transform) = reference?;
         let set = transform
@@ -164,21 +536,19 @@ impl<'a> Materials<'a> {
             .unwrap_or(set);
         let place = sets.iter().position(|known| known.is_none_or(|known| known == set));
         let Some(uv_set) = place else {
-            self.warnings.push(format!(
-                "a texture on TEXCOORD_{set} is left out: its material looks up two other sets already"
-            ));
+            let what = format!("a texture on TEXCOORD_{set}: its material looks up two other sets already");
+            self.report.note(Fate::Ignored, what, owner);
             return None;
         };
+        let image = self.image(texture)?;
         sets[uv_set] = Some(set);
-        let texture = &self.document.root.textures[texture];
-        let image = texture.source.value();
-        let place = self.images.iter().position(|&known| known == image).unwrap_or_else(|| {
-            self.images.push(image);
-            self.images.len() - 1
+        let key = PictureKey::Image(image);
+        let place = self.pictures.iter().position(|known| *known == key).unwrap_or_else(|| {
+            self.pictures.push(key);
+            self.pictures.len() - 1
         });
-        let sampler = texture
-            .sampler
-            .map(|sampler| &self.document.root.samplers[sampler.value()]);
+        let sampler = self.document.root.textures[texture].sampler;
+        let sampler = sampler.and_then(|sampler| self.document.root.samplers.get(sampler.value()));
         let wrap = sampler.map_or([Wrap::Repeat; 2], |sampler| {
             [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]
         });
@@ -197,30 +567,56 @@ impl<'a> Materials<'a> {
         })
     }
 
-    /// Weight and roughness of the coat (KHR_materials_clearcoat), which the crate does not know.
-    fn coat(&mut self, material: usize) -> [f32; 2] {
-        let coat = &self.document.raw["materials"][material]["extensions"]["KHR_materials_clearcoat"];
-        let kinds = [
-            "clearcoatTexture",
-            "clearcoatRoughnessTexture",
-            "clearcoatNormalTexture",
-        ];
-        if kinds.iter().any(|kind| coat.get(kind).is_some()) {
-            self.warnings
-                .push(format!("material {material}: the textures of its coat are left out"));
-        }
-        ["clearcoatFactor", "clearcoatRoughnessFactor"].map(|key| {
-            coat.get(key)
-                .and_then(serde_json::Value::as_f64)
-                .map_or(0.0, |x| unit(x as f32))
-        })
-    }
-
     /// The crate knows no KHR_texture_transform on normal textures.
     fn normal_transform(&self, material: usize) -> Option<TextureTransform> {
         let extensions = &self.document.raw["materials"][material]["normalTexture"]["extensions"];
         serde_json::from_value(extensions.get("KHR_texture_transform")?.clone()).ok()
     }
+}
+
+/// The textures that are there, with the slots' references to them; what is not there becomes a plain grey.
+fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>) -> Vec<Texture> {
+    let mut place = 0;
+    let places: Vec<Option<usize>> = textures
+        .iter()
+        .map(|texture| {
+            texture.as_ref().map(|_| {
+                place += 1;
+                place - 1
+            })
+        })
+        .collect();
+    let keep = |reference: &mut Option<TextureRef>| {
+        let Some(texture) = reference.as_mut() else { return true };
+        match places[texture.texture] {
+            Some(place) => texture.texture = place,
+            None => *reference = None,
+        }
+        reference.is_some()
+    };
+    for slot in slots {
+        if !keep(&mut slot.base_color_texture) {
+            slot.base_color = slot.base_color.map(|factor| 0.5 * factor);
+        }
+        if !keep(&mut slot.metallic_roughness_texture) {
+            (slot.metalness, slot.roughness) = (0.0, 0.5 * slot.roughness);
+        }
+        keep(&mut slot.normal_texture);
+        if !keep(&mut slot.emissive_texture) {
+            slot.emission = [0.0; 3];
+        }
+    }
+    textures.into_iter().flatten().collect()
+}
+
+/// A material that shows its colour whatever the light: it shines with it, and reflects nothing.
+fn make_unlit(slot: &mut Slot) {
+    slot.emission = slot.base_color;
+    slot.emissive_texture = slot.base_color_texture;
+    slot.base_color = [0.0; 3];
+    (slot.metalness, slot.specular) = (0.0, 0.0);
+    (slot.metallic_roughness_texture, slot.normal_texture) = (None, None);
+    (slot.coat, slot.transmission) = (0.0, 0.0);
 }
 
 fn unit(value: f32) -> f32 {
@@ -259,37 +655,4 @@ fn affine(transform: &TextureTransform) -> [f32; 6] {
         cos * scale_v,
         offset_v,
     ]
-}
-
-/// A picture of the file or beside it, as 8-bit RGBA.
-fn decode(document: &Document, index: usize) -> Result<Texture, ModelError> {
-    let image = &document.root.images[index];
-    let external = image.uri.as_deref().filter(|uri| !uri.starts_with("data:"));
-    let name = image
-        .name
-        .clone()
-        .or(external.map(str::to_owned))
-        .unwrap_or_else(|| format!("image {index}"));
-    let owned;
-    let bytes = match (&image.uri, image.buffer_view) {
-        (Some(uri), _) => {
-            owned = document.read_uri(&name, uri)?;
-            &owned
-        }
-        (None, Some(view)) => document.view(view.value())?,
-        (None, None) => return Err(document.invalid(format!("{name} has no data"))),
-    };
-    let picture = ImageReader::new(Cursor::new(bytes))
-        .with_guessed_format()
-        .map_err(image::ImageError::from);
-    let picture = picture
-        .and_then(ImageReader::decode)
-        .map_err(|error| document.resource(&name, error))?
-        .into_rgba8();
-    Ok(Texture {
-        name,
-        width: picture.width(),
-        height: picture.height(),
-        rgba8: picture.into_raw(),
-    })
 }

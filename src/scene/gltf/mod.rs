@@ -1,183 +1,186 @@
-//! glTF 2.0 files (.gltf and .glb): the meshes of the default scene in their rest pose, with their materials.
+//! glTF 2.0 files (.gltf and .glb): a scene in a pose, with its materials, cameras and lights.
 //!
-//! The gltf crate parses and validates the JSON; buffers are read by [`accessor`], which checks every range before it
-//! reads, since a damaged file must give an error and never a panic.
+//! The gltf crate parses the JSON; buffers are read by [`accessor`], which checks every range before it reads, since a
+//! damaged file must give an error and never a panic. Whatever cannot be read is left out, and the report says so: only
+//! a file that leaves nothing to show is an error.
 
 mod accessor;
+mod compressed;
 mod container;
+mod image;
 mod material;
+mod material_extensions;
+mod nodes;
+mod pose;
 mod primitive;
+mod specular_glossiness;
+mod transform;
 
 use std::path::Path;
 
-use glam::{DMat3, DMat4, DQuat, DVec3};
-use gltf::json;
+use glam::DMat4;
 
 use self::container::Document;
 use self::material::Materials;
-use super::geometry::Framing;
+use self::nodes::MeshNode;
+use self::pose::Pose;
+use self::primitive::Bending;
+use super::files::Files;
 use super::mesh::Mesh;
-use super::model::{Model, ModelError};
+use super::model::{Model, ModelError, ModelOptions};
+use super::report::{Fate, ImportReport};
 
 /// More vertices than this are refused, so that indices of 32 bits suffice with the ground and split vertices added.
 const MAX_VERTICES: usize = 1 << 31;
+/// More vertices than this are not made by repeating meshes: a small file could ask for any amount of memory.
+const MAX_REPEATED_VERTICES: usize = 1 << 25;
 
-/// Loads a .gltf or .glb file.
-pub(super) fn load(path: &Path) -> Result<Model, ModelError> {
-    let document = Document::read(path)?;
-    let mut materials = Materials::new(&document);
-    let mut warnings = general_warnings(&document.root);
-    let mut meshes: Vec<Option<Mesh>> = vec![None; document.root.meshes.len()];
-    let mut whole = Mesh::default();
-    for (mesh_index, world_from_node) in mesh_nodes(&document)? {
-        let local = match meshes[mesh_index].take() {
-            Some(mesh) => mesh,
-            None => primitive::read_mesh(&document, mesh_index, &mut materials, &mut warnings)?,
-        };
-        if whole.positions.len() + local.positions.len() > MAX_VERTICES {
-            return Err(document.invalid(format!("its scene has more than {MAX_VERTICES} vertices")));
-        }
-        whole.append(transformed(local.clone(), world_from_node));
-        meshes[mesh_index] = Some(local);
+/// Loads the contents of a .gltf or .glb file; `path` is named in messages.
+pub(super) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
+    let mut report = ImportReport::default();
+    let document = Document::read(path, files, bytes, &mut report)?;
+    let pose = Pose::new(&document, options.time_s);
+    let contents = nodes::contents(&document, &pose, options.scene, &mut report);
+    let mut materials = Materials::new(&document, options);
+    let mesh = assemble(&document, &pose, &contents.meshes, &mut materials, &mut report)?;
+    if mesh.triangles.is_empty() {
+        return Err(nothing_to_show(&document, path, &report));
     }
-    if whole.triangles.is_empty() {
-        return Err(ModelError::NoTriangles { path: path.to_owned() });
-    }
-    warnings.append(&mut materials.warnings);
-    let (mut slots, textures) = materials.finish()?;
-    let world_units_per_unit = Framing::of(&whole).world_units_per_unit as f32;
-    for slot in &mut slots {
-        slot.attenuation_distance /= world_units_per_unit;
-    }
-    warnings.dedup();
-    let name = path
-        .file_stem()
-        .map_or_else(|| "model".into(), |stem| stem.to_string_lossy().into_owned());
+    let (slots, textures) = materials.finish(&mut report);
     Ok(Model {
-        name,
-        mesh: whole,
+        mesh,
         slots,
         textures,
-        warnings,
+        report,
+        cameras: contents.cameras,
+        lights: contents.lights,
+        variants: materials_variants(&document),
+        scenes: scene_names(&document),
+        duration_s: duration_s(&document),
+        ..Model::default()
     })
 }
 
-/// What the file has that is left out as a whole.
-fn general_warnings(root: &json::Root) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if !root.animations.is_empty() {
-        warnings.push("animations are left out: the model is shown at rest".to_owned());
-    }
-    if root.nodes.iter().any(|node| node.skin.is_some()) {
-        warnings.push("skinning is left out: the model is shown in its bind pose".to_owned());
-    }
-    let unknown = root
-        .extensions_used
-        .iter()
-        .filter(|name| !container::UNDERSTOOD.contains(&name.as_str()));
-    let unknown: Vec<&str> = unknown.map(String::as_str).collect();
-    if !unknown.is_empty() {
-        warnings.push(format!("optional extensions left out: {}", unknown.join(", ")));
-    }
-    warnings
-}
-
-/// The meshes of the scene, each with the transform of its node.
-fn mesh_nodes(document: &Document) -> Result<Vec<(usize, DMat4)>, ModelError> {
-    let root = &document.root;
-    let mut found = Vec::new();
-    let mut seen = vec![false; root.nodes.len()];
-    let mut open: Vec<(usize, DMat4)> = scene_roots(root)
-        .into_iter()
-        .map(|node| (node, DMat4::IDENTITY))
-        .collect();
-    open.reverse();
-    while let Some((index, world_from_parent)) = open.pop() {
-        if std::mem::replace(&mut seen[index], true) {
-            return Err(document.invalid(format!("node {index} is in its scene twice, or is its own ancestor")));
+/// All meshes of a scene in one.
+fn assemble(
+    document: &Document,
+    pose: &Pose,
+    nodes: &[MeshNode],
+    materials: &mut Materials,
+    report: &mut ImportReport,
+) -> Result<Mesh, ModelError> {
+    let mut kept: Vec<Option<Mesh>> = vec![None; document.root.meshes.len()];
+    let mut is_first_use = vec![true; document.root.meshes.len()];
+    let mut uses_left = vec![0_usize; document.root.meshes.len()];
+    for node in nodes {
+        if let Some(uses) = uses_left.get_mut(node.mesh) {
+            *uses += 1;
         }
-        let node = &root.nodes[index];
-        let world_from_node = world_from_parent * parent_from_node(node);
-        found.extend(node.mesh.map(|mesh| (mesh.value(), world_from_node)));
-        let children = node.children.iter().flatten().rev();
-        open.extend(children.map(|child| (child.value(), world_from_node)));
     }
-    Ok(found)
-}
-
-/// The topmost nodes of the default scene; of the first where none is the default; all topmost nodes where there is no
-/// scene.
-fn scene_roots(root: &json::Root) -> Vec<usize> {
-    let scene = root.scene.map_or(0, |scene| scene.value());
-    if let Some(scene) = root.scenes.get(scene) {
-        return scene.nodes.iter().map(|node| node.value()).collect();
-    }
-    let mut is_child = vec![false; root.nodes.len()];
-    for child in root.nodes.iter().flat_map(|node| node.children.iter().flatten()) {
-        is_child[child.value()] = true;
-    }
-    (0..root.nodes.len()).filter(|&node| !is_child[node]).collect()
-}
-
-fn parent_from_node(node: &json::Node) -> DMat4 {
-    if let Some(matrix) = node.matrix {
-        return DMat4::from_cols_array(&matrix.map(f64::from));
-    }
-    let vector = |v: [f32; 3]| DVec3::from_array(v.map(f64::from));
-    let rotation = node.rotation.map_or(DQuat::IDENTITY, |rotation| {
-        let rotation = DQuat::from_array(rotation.0.map(f64::from));
-        if rotation.length_squared() > 0.0 {
-            rotation.normalize()
+    let mut whole = Mesh::default();
+    let mut left_out = 0;
+    for node in nodes {
+        let name = nodes::node_name(&document.root, node.node);
+        let Some(uses_left) = uses_left.get_mut(node.mesh) else {
+            report.note(Fate::Missing, "a mesh that is out of bounds", &name);
+            continue;
+        };
+        *uses_left -= 1;
+        let is_first = std::mem::replace(&mut is_first_use[node.mesh], false);
+        let skin = document.root.nodes[node.node].skin.map(|skin| skin.value());
+        let weights = pose.weights(document, node.node);
+        let is_bent = skin.is_some() || weights.iter().any(|weight| *weight != 0.0);
+        let joints = skin.and_then(|skin| pose.joints(document, skin));
+        let bending = Bending {
+            weights,
+            joints: joints.as_deref(),
+        };
+        let local = match kept[node.mesh].take() {
+            Some(mesh) if !is_bent => mesh,
+            _ => {
+                let mut once = ImportReport::default();
+                let mesh = primitive::read_mesh(document, node.mesh, bending, materials, &mut once);
+                if is_first {
+                    report.append(once);
+                }
+                mesh
+            }
+        };
+        let vertices = whole.positions.len() + local.positions.len();
+        if vertices > MAX_VERTICES {
+            return Err(document.invalid(format!("its scene has more than {MAX_VERTICES} vertices")));
+        }
+        if !is_first && vertices > MAX_REPEATED_VERTICES {
+            left_out += 1;
+            continue;
+        }
+        // Joints have put a skinned mesh where it is.
+        let world_from_mesh = if joints.is_some() {
+            DMat4::IDENTITY
         } else {
-            DQuat::IDENTITY
+            node.world_from_node
+        };
+        if !is_bent && *uses_left > 0 {
+            kept[node.mesh] = Some(local.clone());
         }
-    });
-    DMat4::from_scale_rotation_translation(
-        vector(node.scale.unwrap_or([1.0; 3])),
-        rotation,
-        vector(node.translation.unwrap_or_default()),
-    )
+        whole.append(transform::transformed(local, world_from_mesh));
+    }
+    report.count(Fate::Used, "meshes", "", nodes.len() - left_out);
+    report.count(Fate::Ignored, "repeated meshes, too many for the memory", "", left_out);
+    Ok(whole)
 }
 
-/// A mesh moved by a node's transform. One that mirrors turns the triangles round, so that they still face outwards.
-fn transformed(mut mesh: Mesh, world_from_node: DMat4) -> Mesh {
-    let linear = DMat3::from_mat4(world_from_node);
-    let mirrors = linear.determinant() < 0.0;
-    let normals_from = normal_matrix(linear);
-    for position in &mut mesh.positions {
-        *position = world_from_node.transform_point3(*position);
+/// Why a file shows nothing.
+fn nothing_to_show(document: &Document, path: &Path, report: &ImportReport) -> ModelError {
+    if let Some(name) = document.unknown_required.first() {
+        return ModelError::Extension {
+            path: path.to_owned(),
+            name: name.clone(),
+            remedy: "export without this extension",
+        };
     }
-    for normal in &mut mesh.normals {
-        *normal = (normals_from * normal.as_dvec3()).as_vec3();
-    }
-    for tangent in &mut mesh.tangents {
-        let direction = (linear * tangent.truncate().as_dvec3()).normalize_or_zero().as_vec3();
-        *tangent = direction.extend(if mirrors { -tangent.w } else { tangent.w });
-    }
-    if mirrors {
-        mesh.triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
-    }
-    mesh.repair_normals();
-    mesh
-}
-
-/// What normals are multiplied by, up to a positive factor: the inverse transpose, as the matrix of cofactors so that
-/// one that flattens the mesh works too.
-fn normal_matrix(linear: DMat3) -> DMat3 {
-    let largest = linear
-        .to_cols_array()
+    let blamed = [Fate::Missing, Fate::Ignored]
         .into_iter()
-        .fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
-    let scaled = if largest > 0.0 {
-        linear * largest.recip()
-    } else {
-        linear
-    };
-    let (x, y, z) = (scaled.x_axis, scaled.y_axis, scaled.z_axis);
-    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    if scaled.determinant() < 0.0 {
-        -cofactors
-    } else {
-        cofactors
+        .flat_map(|fate| report.of(fate));
+    let blamed: Vec<String> = blamed
+        .filter(|entry| !entry.what.starts_with("points and lines"))
+        .take(3)
+        .map(|entry| entry.line())
+        .collect();
+    if blamed.is_empty() {
+        return ModelError::NoTriangles { path: path.to_owned() };
     }
+    document.invalid(format!("no triangles in its scene; {}", blamed.join(", ")))
+}
+
+fn materials_variants(document: &Document) -> Vec<String> {
+    let variants = &document.raw["extensions"]["KHR_materials_variants"]["variants"];
+    let variants = variants.as_array().map_or(&[][..], Vec::as_slice);
+    let name = |(index, variant): (usize, &serde_json::Value)| {
+        variant["name"]
+            .as_str()
+            .map_or_else(|| format!("variant {index}"), str::to_owned)
+    };
+    variants.iter().enumerate().map(name).collect()
+}
+
+fn scene_names(document: &Document) -> Vec<String> {
+    let scenes = document.root.scenes.iter().enumerate();
+    scenes
+        .map(|(index, scene)| scene.name.clone().unwrap_or_else(|| format!("scene {index}")))
+        .collect()
+}
+
+/// How long the first animation takes, seconds; 0 where there is none.
+fn duration_s(document: &Document) -> f32 {
+    let samplers = document
+        .root
+        .animations
+        .first()
+        .map_or(&[][..], |animation| &animation.samplers);
+    let last = |sampler: &gltf::json::animation::Sampler| {
+        let times = document.read_vectors::<1>(sampler.input.value(), "times").ok()?;
+        times.last().map(|time| time[0]).filter(|time| time.is_finite())
+    };
+    samplers.iter().filter_map(last).fold(0.0, f32::max)
 }

@@ -3,9 +3,9 @@
 use std::sync::{LazyLock, OnceLock};
 
 use bytemuck::{bytes_of, cast_slice};
-use glossmith::document::job::{BackgroundKind, Settings, Strategy};
 use glossmith::gpu::layout::{Globals, triangles};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
+use glossmith::job::{BackgroundKind, Settings, Strategy};
 use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
 use glossmith::optics::fresnel::Fresnel;
@@ -242,7 +242,8 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         has_rough_tables: 0,
         texture_roughness: rng.range(0.1, 1.0),
         roughness_table: NO_TEXTURE,
-        reserved: [0; 2],
+        has_vertex_colors: 0,
+        reserved: 0,
     }
 }
 

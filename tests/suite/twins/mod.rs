@@ -18,5 +18,4 @@ mod material;
 mod refraction;
 mod surface;
 mod texture;
-mod tone;
 mod trace;

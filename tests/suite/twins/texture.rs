@@ -2,6 +2,7 @@
 
 use glossmith::optics::material::{Material, NO_TEXTURE};
 use glossmith::optics::real::Real;
+use glossmith::optics::vector::Vec3;
 use glossmith::scene::texture::{mapped_normal, opacity_at, texture_lookup, textured_material, wrapped};
 
 use super::bench::SCENE;
@@ -73,10 +74,11 @@ fn textured_materials_agree() {
             Case::new(
                 "textured_material",
                 "material u v second_u second_v",
-                "let m = textured_material(materials[material], vec4f(u, v, second_u, second_v));",
+                "let m = textured_material(materials[material], vec4f(u, v, second_u, second_v), vec3f(0.5, 0.75, 0.25));",
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
-                    let m = textured_material(&SCENE.textures, &SCENE.tables, &material, uvs(row));
+                    let tint = Vec3::from_f32([0.5, 0.75, 0.25]);
+                    let m = textured_material(&SCENE.textures, &SCENE.tables, &material, uvs(row), tint);
                     row.put_vector(m.base_color);
                     row.put_vector(m.transmission_tint);
                     row.put_vector(m.emission);

@@ -1,0 +1,265 @@
+//! How far a denoised picture is from the one that it converges to, told from the samples that it was made of.
+//!
+//! The two halves A and B of a film's samples are independent. Each is denoised by itself, to D and E, and the denoised
+//! picture is their mean M = (D + E)/2. With T the truth, a = A − T, d = D − T and so on:
+//!
+//! - (D − A)(E − B) = de + ab − db − ea. All but de have the expectation 0, as the halves are independent: what
+//!   remains is the square of the filter's bias.
+//! - (D − E)²/4 = (d² + e²)/4 − de/2 is known without noise.
+//!
+//! Their sum is ((d + e)/2)² = (M − T)², the squared error of this very picture, its bias included, plus noise of mean 0.
+//! Likewise (A − B)²/4 tells the squared error of the samples' own mean X, and (D − E)(A − B)/4 the product of both
+//! errors. From the three follows which mixture of M and X is nearest to the truth. docs/MATHEMATICS.md, section 8.
+
+use rayon::prelude::*;
+
+use super::halves::Distance;
+use super::noise::{BAND, MAP_RADIUS, box_sums};
+use crate::job::film::luminance;
+use crate::job::tiles::{TILE_SIDE, TileGrid};
+
+/// Tiles to each side over which a tile's errors are averaged before it is decided what it shows.
+const RADIUS: usize = 2;
+/// Standard errors by which the denoised picture's error must be beyond doubt before samples are preferred.
+const DOUBT: f64 = 1.0;
+
+/// A linear picture without opacity, row by row.
+pub type Colors = Vec<[f32; 3]>;
+
+/// Two independent halves of a picture, and what a denoiser made of each.
+#[derive(Clone, Copy, Debug)]
+pub struct DenoisedHalves<'a> {
+    /// The means of the halves' samples.
+    pub noisy: [&'a [[f32; 3]]; 2],
+    /// The same, denoised.
+    pub denoised: [&'a [[f32; 3]]; 2],
+    /// Width of the pictures, pixels.
+    pub width: usize,
+}
+
+/// Unbiased estimates of what a pixel's errors are; sums of them over pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Moments {
+    /// Squared error of the denoised picture.
+    denoised: f64,
+    /// Of it what is known without noise.
+    known: f64,
+    /// Squared error of the samples' mean.
+    noisy: f64,
+    /// Product of both errors.
+    product: f64,
+    /// Variance of the first, from the halves' noise around each pixel, and the squares of its own noise.
+    variance: f64,
+    squares: f64,
+    /// Squared difference of the two pictures.
+    difference: f64,
+    /// Pixels.
+    pixels: f64,
+}
+
+impl std::ops::AddAssign for Moments {
+    fn add_assign(&mut self, other: Self) {
+        self.denoised += other.denoised;
+        self.known += other.known;
+        self.noisy += other.noisy;
+        self.product += other.product;
+        self.variance += other.variance;
+        self.squares += other.squares;
+        self.difference += other.difference;
+        self.pixels += other.pixels;
+    }
+}
+
+impl Moments {
+    /// The squared error of the denoised picture, no less than what is known of it for certain.
+    fn denoised(&self) -> f64 {
+        self.denoised.max(self.known)
+    }
+
+    /// Standard error of the first. Where most pixels have not yet met what their noise comes from, their own squares tell
+    /// far too little of it.
+    fn deviation(&self) -> f64 {
+        self.variance.max(self.squares).sqrt()
+    }
+
+    /// The share of the samples' mean with which a mixture is nearest to the truth, as far as that is beyond doubt.
+    fn share(&self) -> f64 {
+        let denoised = (self.denoised - DOUBT * self.deviation()).max(self.known);
+        let share = (denoised - self.product) / self.difference;
+        if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
+/// What is known of a denoised picture's error.
+#[derive(Clone, Debug)]
+pub struct Errors {
+    pixels: Vec<Moments>,
+    grid: TileGrid,
+    mean_luminance: f64,
+}
+
+impl Errors {
+    /// Reads them off; pictures of no pixels have none.
+    pub fn of(halves: &DenoisedHalves<'_>) -> Self {
+        let [noisy, other_noisy] = halves.noisy;
+        let [denoised, other_denoised] = halves.denoised;
+        let bright = |color: [f32; 3]| luminance(color.map(f64::from));
+        let squares = |noisy: &[[f32; 3]], denoised: &[[f32; 3]]| -> Vec<f64> {
+            let pairs = noisy.par_iter().zip(denoised);
+            pairs.map(|(x, clean)| (bright(*x) - bright(*clean)).powi(2)).collect()
+        };
+        let noise = [(noisy, denoised), (other_noisy, other_denoised)]
+            .map(|(noisy, denoised)| box_sums(&squares(noisy, denoised), halves.width, MAP_RADIUS));
+        let of_pixel = |i: usize| {
+            let (a, b) = (bright(noisy[i]), bright(other_noisy[i]));
+            let (d, e) = (bright(denoised[i]), bright(other_denoised[i]));
+            let squared_bias = (d - a) * (e - b);
+            let [around, other_around] = noise.each_ref().map(|noise| noise[i][0] / noise[i][1]);
+            let known = (d - e).powi(2) / 4.0;
+            Moments {
+                denoised: squared_bias + known,
+                known,
+                noisy: (a - b).powi(2) / 4.0,
+                product: (d - e) * (a - b) / 4.0,
+                variance: around * other_around,
+                squares: squared_bias.powi(2),
+                difference: (0.5 * (d + e - a - b)).powi(2),
+                pixels: 1.0,
+            }
+        };
+        let pixels: Vec<_> = (0..noisy.len()).into_par_iter().map(of_pixel).collect();
+        let brightness = denoised.par_iter().chain(other_denoised).map(|color| bright(*color));
+        let mean_luminance = brightness.sum::<f64>() / (2 * noisy.len()).max(1) as f64;
+        Self {
+            grid: TileGrid {
+                width: halves.width as u32,
+                height: (noisy.len() / halves.width.max(1)) as u32,
+            },
+            pixels,
+            mean_luminance,
+        }
+    }
+
+    /// The share of the samples' mean at each pixel with which a mixture with the denoised picture is nearest to the
+    /// truth: decided by tiles, without seams between them.
+    pub fn shares(&self) -> Vec<f32> {
+        let tiles = self.around_tiles(RADIUS);
+        let of_tiles: Vec<f64> = tiles.iter().map(Moments::share).collect();
+        interpolated(self.grid, &of_tiles)
+    }
+
+    /// The error of the mixture with these shares of the samples' mean, its bias included; none is the denoised picture
+    /// itself.
+    pub fn error(&self, shares: Option<&[f32]>) -> Distance {
+        let sum = self.sum(shares, |moments, denoised, samples| {
+            let rest = 2.0 * samples * denoised * moments.product + samples * samples * moments.noisy;
+            (
+                denoised * denoised * moments.denoised + rest,
+                denoised * denoised * moments.known + rest,
+            )
+        });
+        self.distance(&sum)
+    }
+
+    /// Of that error the filter's bias: what would stay if the picture were rendered and denoised again and again, and
+    /// averaged.
+    pub fn bias(&self, shares: Option<&[f32]>) -> Distance {
+        let sum = self.sum(shares, |moments, denoised, _| {
+            (denoised * denoised * (moments.denoised - moments.known), 0.0)
+        });
+        self.distance(&sum)
+    }
+
+    /// Sums over the pixels; `squares` gives a squared error and what of it is known for certain, for the shares of the
+    /// denoised picture and of the samples' mean.
+    fn sum(&self, shares: Option<&[f32]>, squares: impl Fn(&Moments, f64, f64) -> (f64, f64)) -> Moments {
+        let mut sum = Moments::default();
+        for (pixel, moments) in self.pixels.iter().enumerate() {
+            let samples = shares.map_or(0.0, |shares| f64::from(shares[pixel]));
+            let clean = 1.0 - samples;
+            let (denoised, known) = squares(moments, clean, samples);
+            let spread = clean.powi(4) + samples.powi(4);
+            sum += Moments {
+                denoised,
+                known,
+                variance: spread * moments.variance,
+                squares: spread * moments.squares,
+                ..*moments
+            };
+        }
+        sum
+    }
+
+    fn distance(&self, sum: &Moments) -> Distance {
+        let relative = |squared: f64| {
+            let scale = self.mean_luminance.max(f64::MIN_POSITIVE);
+            (squared.max(0.0) / sum.pixels.max(1.0)).sqrt() / scale
+        };
+        let band = BAND * sum.deviation();
+        Distance {
+            value: relative(sum.denoised()),
+            low: relative((sum.denoised - band).max(sum.known)),
+            high: relative((sum.denoised + band).max(sum.known)),
+        }
+    }
+
+    /// The error around each pixel of the mixture with these shares of the samples' mean, over the mean luminance: for a
+    /// map.
+    pub fn map(&self, shares: Option<&[f32]>) -> Vec<f32> {
+        let tiles = self.around_tiles(1);
+        let squared: Vec<f64> = tiles
+            .iter()
+            .map(|tile| tile.denoised().max(0.0) / tile.pixels.max(1.0))
+            .collect();
+        let noisy: Vec<f64> = tiles.iter().map(|tile| tile.noisy / tile.pixels.max(1.0)).collect();
+        let (denoised, noisy) = (interpolated(self.grid, &squared), interpolated(self.grid, &noisy));
+        let error = |pixel: usize| {
+            let share = shares.map_or(0.0, |shares| shares[pixel]);
+            let squared = (1.0 - share).powi(2) * denoised[pixel] + share * share * noisy[pixel];
+            (f64::from(squared).sqrt() / self.mean_luminance.max(f64::MIN_POSITIVE)) as f32
+        };
+        (0..self.pixels.len()).map(error).collect()
+    }
+
+    /// Sums over the tiles around each tile.
+    fn around_tiles(&self, radius: usize) -> Vec<Moments> {
+        let grid = self.grid;
+        let mut tiles = vec![Moments::default(); grid.tiles()];
+        for (pixel, moments) in self.pixels.iter().enumerate() {
+            tiles[grid.of_pixel(pixel)] += *moments;
+        }
+        let (columns, rows) = (grid.columns(), grid.rows());
+        let around = |tile: usize| {
+            let (x, y) = (tile % columns, tile / columns);
+            let mut sum = Moments::default();
+            for y in y.saturating_sub(radius)..(y + radius + 1).min(rows) {
+                for x in x.saturating_sub(radius)..(x + radius + 1).min(columns) {
+                    sum += tiles[y * columns + x];
+                }
+            }
+            sum
+        };
+        (0..grid.tiles()).map(around).collect()
+    }
+}
+
+/// Bilinear between the tiles' centres.
+fn interpolated(grid: TileGrid, tiles: &[f64]) -> Vec<f32> {
+    let (columns, rows) = (grid.columns(), grid.rows());
+    let place = |pixel: u32, count: usize| {
+        let x = ((f64::from(pixel) + 0.5) / f64::from(TILE_SIDE) - 0.5).clamp(0.0, (count - 1) as f64);
+        (x as usize, (x as usize + 1).min(count - 1), x.fract())
+    };
+    let of_row = |y: u32| {
+        let (top, bottom, down) = place(y, rows);
+        (0..grid.width).map(move |x| {
+            let (left, right, across) = place(x, columns);
+            let between = |row: usize| {
+                let (left, right) = (tiles[row * columns + left], tiles[row * columns + right]);
+                left + across * (right - left)
+            };
+            (between(top) + down * (between(bottom) - between(top))) as f32
+        })
+    };
+    (0..grid.height).flat_map(of_row).collect()
+}

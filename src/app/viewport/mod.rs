@@ -1,0 +1,481 @@
+//! The picture, and the camera that the pointer moves.
+//!
+//! As in Marmoset and Substance, with or without alt: left drag turns, middle drag (or ctrl and left) pans, right drag
+//! and the wheel zoom, shift and left turns the light. As in Blender: shift and middle pans. A click selects the
+//! material of what was clicked; with ctrl and shift it explains the pixel.
+
+mod compare;
+mod header;
+mod legend;
+mod precision;
+mod region;
+
+use egui::{
+    Color32, ColorImage, Key, Modifiers, PointerButton, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui,
+    Vec2, pos2, vec2,
+};
+
+use super::compare::View;
+use super::icons::{self, Icon};
+use super::orbit::Orbit;
+use super::panels::{Desk, Resolution};
+use super::theme;
+use crate::optics::material::Material;
+use crate::render::display;
+use crate::render::worker::{Level, Picture, Scene};
+use crate::scene::camera::camera_ray;
+use crate::scene::surface::surface_at;
+
+/// Degrees of the environment's turn for a drag of one point.
+const LIGHT_DEG_PER_POINT: f32 = 0.35;
+/// Change of the distance's logarithm for a point of wheel or drag.
+const ZOOM_PER_POINT: f64 = 0.004;
+/// Points of a drag that an arrow key stands for.
+const KEY_POINTS: f64 = 14.0;
+/// Sides of the squares behind transparent pictures, points.
+const CHECKER: f32 = 12.0;
+/// How long a message stays, seconds.
+const MESSAGE_SECONDS: f32 = 12.0;
+/// By how much less a picture that fills the viewport may be stretched: what rounding to pixels makes of its shape.
+const STRETCH_MAX: f32 = 0.03;
+/// Largest side of a picture that fills the viewport.
+const SIDE_MAX_PX: u32 = 8192;
+
+/// The viewport's own state.
+#[derive(Default)]
+pub(super) struct Viewport {
+    picture: Shown,
+    /// B's, where two are compared.
+    rival: Shown,
+    /// How B differs from A.
+    difference: Shown,
+    /// What of the numbers is not to be trusted.
+    precision: precision::Precision,
+    /// Where the picture may be, points.
+    area: Option<Rect>,
+    pixels_per_point: f32,
+    is_software: bool,
+    id: Option<egui::Id>,
+    region: region::RegionTool,
+}
+
+/// A texture, and what it shows.
+#[derive(Default)]
+struct Shown {
+    texture: Option<TextureHandle>,
+    key: Option<[u64; 2]>,
+    /// Some of it lets through what is behind.
+    is_transparent: bool,
+}
+
+impl Shown {
+    /// Makes the texture show what the key stands for.
+    fn upload(&mut self, ui: &Ui, key: [u64; 2], image: impl FnOnce() -> ColorImage) {
+        if self.key == Some(key) {
+            return;
+        }
+        let image = image();
+        self.is_transparent = is_transparent(&image);
+        match &mut self.texture {
+            Some(texture) => texture.set(image, TextureOptions::LINEAR),
+            None => self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR)),
+        }
+        self.key = Some(key);
+    }
+
+    fn show(&self, ui: &Ui, clip: Rect, place: Rect) {
+        if let Some(texture) = &self.texture {
+            let painter = ui.painter_at(clip);
+            let whole = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+            painter.image(texture.id(), place, whole, Color32::WHITE);
+        }
+    }
+
+    /// Paints a picture as far as `clip` shows it; `source` tells renderers apart whose serials may be the same.
+    fn paint(&mut self, ui: &Ui, clip: Rect, place: Rect, picture: &Picture, source: u64) {
+        self.upload(ui, [source, picture.serial], || {
+            let size = [picture.width as usize, picture.height as usize];
+            ColorImage::from_rgba_premultiplied(size, &picture.rgba)
+        });
+        if self.is_transparent {
+            checker(ui, clip.intersect(place));
+        }
+        self.show(ui, clip, place);
+    }
+}
+
+impl Viewport {
+    /// The widget that takes the focus; `None` before the first frame.
+    pub(super) fn id(&self) -> Option<egui::Id> {
+        self.id
+    }
+
+    /// The next drag says which part of the picture is rendered.
+    pub(super) fn draw_region(&mut self) {
+        self.region.arm();
+    }
+
+    /// The size that a picture that fills the viewport has; `None` before the viewport was laid out, or where the
+    /// picture's size is the document's.
+    pub(super) fn fill_size(&self, resolution: Resolution) -> Option<[u32; 2]> {
+        let area = self.area?;
+        let scale = match resolution {
+            Resolution::Document => return None,
+            Resolution::Native => self.pixels_per_point,
+            Resolution::Half => 0.5 * self.pixels_per_point,
+            Resolution::Auto if self.is_software => 1.0_f32.min(self.pixels_per_point),
+            Resolution::Auto => self.pixels_per_point,
+        };
+        let side = |points: f32| ((points * scale).round() as u32).clamp(16, SIDE_MAX_PX);
+        Some([side(area.width()), side(area.height())])
+    }
+
+    pub(super) fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let whole = ui.max_rect();
+        let is_dark = ui.visuals().dark_mode;
+        ui.painter().rect_filled(whole, 0.0, theme::surround(is_dark));
+        let bar = Rect::from_min_size(whole.min, vec2(whole.width(), theme::BAR_HEIGHT));
+        let is_compared = desk.state.compare.is_on;
+        let below = if is_compared { compare::BAR_HEIGHT } else { 0.0 };
+        let compare_bar = Rect::from_min_size(bar.left_bottom(), vec2(whole.width(), below));
+        let area = Rect::from_min_max(compare_bar.left_bottom(), whole.max);
+        self.area = Some(if is_compared {
+            compare::area_of_a(area, desk.state.compare.view)
+        } else {
+            area
+        });
+        self.pixels_per_point = ui.ctx().pixels_per_point();
+        self.is_software = desk.snapshot.engine.as_ref().is_none_or(|engine| engine.is_software);
+        header::show(ui, bar, desk);
+        if is_compared {
+            compare::bar(ui, compare_bar, desk);
+        }
+
+        let response = ui.interact(area, ui.scope_id().with("viewport"), Sense::click_and_drag());
+        self.id = Some(response.id);
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Canvas, true, "Viewport"));
+        let picture = desk.snapshot.picture.clone();
+        if let Some(picture) = &picture {
+            let place = if is_compared {
+                self.compared(ui, area, picture, desk)
+            } else {
+                let place = placed(area, picture, desk.state.resolution);
+                self.picture.paint(ui, place, place, picture, 0);
+                if let Some(scene) = &desk.snapshot.scene
+                    && desk.state.shown == display::Shown::Precision
+                {
+                    self.precision.show(ui, area, place, &scene.job);
+                }
+                place
+            };
+            if is_compared && desk.state.compare.view == View::Wipe {
+                Self::divider(ui, place, desk);
+            }
+            if let Some((shown, scale)) = picture.map {
+                legend::show(ui, area, shown, scale);
+            }
+            // Where two are compared, both are shown whole.
+            let is_drawing = !is_compared && self.region.show(ui, &response, place, desk);
+            if let Some(scene) = desk.snapshot.scene.clone().filter(|_| !is_drawing) {
+                self.navigate(ui, &response, place, &scene, desk);
+            }
+        } else {
+            waiting(ui, area, desk);
+        }
+        if response.has_focus() {
+            let stroke = egui::Stroke::new(1.0, theme::accent(is_dark));
+            ui.painter().rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
+        }
+        messages(ui, area, desk);
+        drop_hint(ui, area);
+    }
+
+    fn navigate(&self, ui: &mut Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
+        let modifiers = ui.input(|input| input.modifiers);
+        let before = Orbit::new(&desk.document.camera, &scene.job);
+        let mut orbit = before;
+        let moved = response.drag_delta();
+        let points = [f64::from(moved.x), f64::from(moved.y)];
+        if moved != Vec2::ZERO {
+            let height = f64::from(place.height().max(1.0));
+            let pans = response.dragged_by(PointerButton::Middle)
+                || (response.dragged_by(PointerButton::Primary) && modifiers.command);
+            if pans {
+                orbit.pan(points.map(|p| p / height));
+                desk.edits.note("Pan", "pan");
+            } else if response.dragged_by(PointerButton::Primary) && modifiers.shift {
+                let rotation_deg = &mut desk.document.lighting.rotation_deg;
+                *rotation_deg = wrapped_deg(*rotation_deg + LIGHT_DEG_PER_POINT * moved.x);
+                desk.edits.note("Turn the light", "Environment rotation");
+            } else if response.dragged_by(PointerButton::Primary) {
+                orbit.turn(points);
+                desk.edits.note("Turn the camera", "turn");
+            } else if response.dragged_by(PointerButton::Secondary) {
+                orbit.zoom((ZOOM_PER_POINT * (points[1] - points[0])).exp());
+                desk.edits.note("Zoom", "zoom");
+            }
+        }
+        if response.hovered() {
+            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            if scroll != 0.0 || pinch != 1.0 {
+                orbit.zoom((-ZOOM_PER_POINT * f64::from(scroll)).exp() / f64::from(pinch));
+                desk.edits.note("Zoom", "zoom");
+            }
+        }
+        let is_dropped_on = ui.input(|input| !input.raw.dropped_files.is_empty());
+        let under_pointer = response.hover_pos().filter(|_| is_dropped_on);
+        if let Some(slot) = under_pointer.and_then(|at| hit_at(pixel_at(at, place, scene)?, scene)?.slot) {
+            desk.actions.push(super::actions::Action::SelectSlot(slot));
+        }
+        self.keys(ui, response, &mut orbit, desk);
+        orbit.write(&before, &mut desk.document.camera);
+        if response.clicked()
+            && let Some(at) = response.interact_pointer_pos()
+        {
+            response.request_focus();
+            self.clicked(ui, at, place, scene, desk);
+        }
+    }
+
+    /// A click says what is sharp, where that was asked for or ctrl is held, or has the pixel explained, where shift is
+    /// held, too; otherwise it selects a slot, and the plots take the angle of the place.
+    fn clicked(&self, ui: &Ui, at: Pos2, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
+        let Some(pixel) = pixel_at(at, place, scene) else {
+            return;
+        };
+        let modifiers = ui.input(|input| input.modifiers);
+        if modifiers.command && modifiers.shift {
+            let last = desk.snapshot.progress.samples_per_pixel.saturating_sub(1);
+            let pixel = pixel.map(|share| share as u32);
+            desk.actions.push(super::actions::Action::Explain(pixel, last));
+            return;
+        }
+        let Some(hit) = hit_at(pixel, scene) else { return };
+        let picks_focus = desk.state.picks_focus || modifiers.command;
+        if picks_focus && desk.document.camera.aperture > 0.0 {
+            desk.document.camera.focus_distance = Some(hit.depth);
+            desk.state.picks_focus = false;
+            desk.edits.note("Focus", "");
+            return;
+        }
+        desk.state.samples.view_angle_deg = Some(hit.view_angle_deg);
+        if let Some(slot) = hit.slot {
+            desk.actions.push(super::actions::Action::SelectSlot(slot));
+        }
+    }
+
+    /// Arrows turn, with ctrl they pan; page up and down zoom.
+    fn keys(&self, ui: &Ui, response: &Response, orbit: &mut Orbit, desk: &mut Desk<'_>) {
+        if !response.has_focus() {
+            return;
+        }
+        ui.memory_mut(|memory| {
+            let filter = egui::EventFilter {
+                horizontal_arrows: true,
+                vertical_arrows: true,
+                ..Default::default()
+            };
+            memory.set_focus_lock_filter(response.id, filter);
+        });
+        let arrows = [
+            (Key::ArrowLeft, [-KEY_POINTS, 0.0]),
+            (Key::ArrowRight, [KEY_POINTS, 0.0]),
+            (Key::ArrowUp, [0.0, -KEY_POINTS]),
+            (Key::ArrowDown, [0.0, KEY_POINTS]),
+        ];
+        for (key, points) in arrows {
+            let pressed = |modifiers| ui.input_mut(|input| input.count_and_consume_key(modifiers, key)) as f64;
+            let (pans, turns) = (pressed(Modifiers::COMMAND), pressed(Modifiers::NONE));
+            if turns > 0.0 {
+                orbit.turn(points.map(|p| p * turns));
+                desk.edits.note("Turn the camera", "turn");
+            }
+            if pans > 0.0 {
+                orbit.pan(points.map(|p| 2e-3 * p * pans));
+                desk.edits.note("Pan", "pan");
+            }
+        }
+        for (key, factor) in [(Key::PageUp, 0.9), (Key::PageDown, 1.0 / 0.9)] {
+            if ui.input_mut(|input| input.consume_key(Modifiers::NONE, key)) {
+                orbit.zoom(factor);
+                desk.edits.note("Zoom", "zoom");
+            }
+        }
+    }
+}
+
+fn wrapped_deg(angle: f32) -> f32 {
+    (angle + 180.0).rem_euclid(360.0) - 180.0
+}
+
+fn is_transparent(image: &ColorImage) -> bool {
+    image.pixels.iter().any(|pixel| pixel.a() < 255)
+}
+
+/// Where the picture is shown: over the whole area, or with its own shape in the middle of it, as large as fits. A
+/// picture that was kept while the area got another shape keeps its own, too.
+fn placed(area: Rect, picture: &Picture, resolution: Resolution) -> Rect {
+    placed_size(area, [picture.width, picture.height], resolution)
+}
+
+fn placed_size(area: Rect, size: [u32; 2], resolution: Resolution) -> Rect {
+    let size = Vec2::from(size.map(|side| side as f32));
+    let stretch = size.x / size.y.max(1.0) * area.height() / area.width().max(1.0);
+    if resolution != Resolution::Document && (stretch - 1.0).abs() < STRETCH_MAX {
+        return area;
+    }
+    let scale = (area.width() / size.x).min(area.height() / size.y);
+    Rect::from_center_size(area.center(), size * scale)
+}
+
+/// What is seen at a place of the window.
+struct SeenSurface {
+    /// The material slot; `None` for the ground and area lights, which are no materials of the document.
+    slot: Option<usize>,
+    /// Along the camera's viewing direction, scene units.
+    depth: f64,
+    /// Between view and shading normal, degrees.
+    view_angle_deg: f32,
+}
+
+/// The place in the picture, in pixels, below its size.
+fn pixel_at(at: Pos2, place: Rect, scene: &Scene) -> Option<[f64; 2]> {
+    let share = (at - place.min) / place.size();
+    let is_inside = (0.0..1.0).contains(&share.x) && (0.0..1.0).contains(&share.y);
+    let [width, height] = scene.job.settings.image_size.map(f64::from);
+    is_inside.then(|| [f64::from(share.x) * width, f64::from(share.y) * height])
+}
+
+fn hit_at(pixel: [f64; 2], scene: &Scene) -> Option<SeenSurface> {
+    let size = scene.job.settings.image_size;
+    let (camera, geometry) = (&scene.job.settings.camera, &scene.job.geometry);
+    let [origin, direction] = camera_ray(camera, pixel, size, [0.5; 2]);
+    let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::INFINITY)?;
+    let slot = *geometry.slots.get(hit.triangle as usize)? as usize;
+    let materials: Vec<_> = scene.job.materials.iter().map(Material::cast).collect();
+    let point = surface_at(geometry, &materials, &scene.job.textures, &hit, direction);
+    let cosine: f64 = point.surface.frame.normal.dot(point.surface.wo);
+    Some(SeenSurface {
+        slot: (slot < scene.model.slots.len()).then_some(slot),
+        depth: f64::from(hit.t) * direction.dot(camera.forward) * geometry.world_units_per_unit,
+        view_angle_deg: cosine.clamp(0.0, 1.0).acos().to_degrees() as f32,
+    })
+}
+
+/// Squares that show through where the picture is transparent.
+fn checker(ui: &Ui, place: Rect) {
+    let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
+    let [light, dark] = if ui.visuals().dark_mode { [70, 54] } else { [206, 182] };
+    painter.rect_filled(place, 0.0, Color32::from_gray(dark));
+    let (columns, rows) = (
+        (place.width() / CHECKER).ceil() as u32,
+        (place.height() / CHECKER).ceil() as u32,
+    );
+    for row in 0..rows {
+        for column in (row % 2..columns).step_by(2) {
+            let min = place.min + CHECKER * vec2(column as f32, row as f32);
+            painter.rect_filled(
+                Rect::from_min_size(min, Vec2::splat(CHECKER)),
+                0.0,
+                Color32::from_gray(light),
+            );
+        }
+    }
+}
+
+/// What is going on before there is a picture.
+fn waiting(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
+    let center = area.center();
+    let spinner = Rect::from_center_size(center - vec2(0.0, 16.0), Vec2::splat(24.0));
+    egui::Spinner::new().paint_at(ui, spinner);
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    let text = desk.snapshot.activity.to_string();
+    let color = ui.visuals().text_color();
+    ui.painter()
+        .text(center + vec2(0.0, 16.0), egui::Align2::CENTER_CENTER, text, font, color);
+}
+
+/// The latest warnings and errors, until they are old or closed.
+fn messages(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
+    for entry in &mut desk.state.log {
+        entry.is_open &= entry.at.elapsed().as_secs_f32() < MESSAGE_SECONDS;
+    }
+    let open: Vec<usize> = (0..desk.state.log.len())
+        .filter(|i| desk.state.log[*i].is_open)
+        .collect();
+    if open.is_empty() {
+        return;
+    }
+    ui.ctx().request_repaint_after(std::time::Duration::from_secs(1));
+    let width = (area.width() - 32.0).clamp(120.0, 520.0);
+    let rect = Rect::from_min_max(
+        pos2(area.center().x - 0.5 * width, area.top() + 12.0),
+        pos2(area.center().x + 0.5 * width, area.bottom()),
+    );
+    let mut inside = ui.new_child(
+        egui::UiBuilder::new()
+            .max_rect(rect)
+            .layout(egui::Layout::top_down(egui::Align::Center)),
+    );
+    for index in open.into_iter().rev().take(3) {
+        // Named, as others may come above it while it is being closed.
+        let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("message", desk.state.log[index].number)));
+        let entry = &mut desk.state.log[index];
+        let color = match entry.level {
+            Level::Error => inside.visuals().error_fg_color,
+            _ => inside.visuals().warn_fg_color,
+        };
+        let frame = egui::Frame::popup(inside.style()).stroke(egui::Stroke::new(1.0, color.gamma_multiply(0.6)));
+        let message = |ui: &mut Ui| {
+            let text = egui::Label::new(egui::RichText::new(&entry.text).color(color)).wrap();
+            ui.allocate_ui(vec2(width - 60.0, 0.0), |ui| ui.add(text));
+            let close = icons::button(ui, Icon::Close, &format!("Close message {}", entry.number), "Close");
+            entry.is_open &= !close.clicked();
+        };
+        frame.show(&mut inside, |ui| {
+            ui.scope_builder(builder, |ui| ui.horizontal_top(message));
+        });
+    }
+}
+
+fn drop_hint(ui: &Ui, area: Rect) {
+    if ui.input(|input| input.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let accent = theme::accent(ui.visuals().dark_mode);
+    ui.painter().rect_filled(area, 0.0, Color32::from_black_alpha(140));
+    ui.painter().rect_stroke(
+        area.shrink(6.0),
+        4.0,
+        egui::Stroke::new(2.0, accent),
+        egui::StrokeKind::Inside,
+    );
+    let font = egui::TextStyle::Heading.resolve(ui.style());
+    let text =
+        "Drop a model (.glb, .gltf), an environment (.hdr, .exr), a material or project (.json), a picture (.png)";
+    ui.painter()
+        .text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_is_transparent_wherever_it_lets_through() {
+        let mut image = ColorImage::filled([3, 2], Color32::GRAY);
+        assert!(!is_transparent(&image));
+        image.pixels[4] = Color32::from_black_alpha(254);
+        assert!(is_transparent(&image));
+    }
+
+    #[test]
+    fn a_picture_fills_the_viewport_unless_that_would_distort_it() {
+        let area = Rect::from_min_size(pos2(10.0, 20.0), vec2(300.0, 200.0));
+        let place = |size| placed_size(area, size, Resolution::Auto);
+        assert_eq!(place([300, 200]), area);
+        assert_eq!(place([151, 100]), area);
+        let kept = place([300, 150]);
+        assert_eq!((kept.size(), kept.center()), (vec2(300.0, 150.0), area.center()));
+    }
+}

@@ -1,0 +1,72 @@
+//! `glossmith explain`: everything that made one sample of one pixel.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use clap::Args;
+
+use super::parse;
+use super::render::SceneArguments;
+use crate::render::explain::{PathAccount, explain};
+use crate::render::{EngineChoice, Session};
+
+/// Arguments of `glossmith explain`: a pixel, a sample, and those of `glossmith render` that describe the scene.
+#[derive(Debug, Args)]
+pub struct ExplainArguments {
+    /// Column and row of the pixel, from 0,0 at the top left.
+    #[arg(long, value_name = "X,Y", value_parser = parse::pixel)]
+    pixel: [u32; 2],
+    /// Number of the sample in its pixel, from 0.
+    #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
+    sample: u32,
+    /// Write the account as JSON: to a file, or in place of the words (-).
+    #[arg(long, value_name = "FILE|-")]
+    json: Option<PathBuf>,
+    #[command(flatten)]
+    scene: SceneArguments,
+}
+
+/// Traces the path on the processor and prints its account.
+///
+/// # Errors
+/// One line that names the file, what is wrong and what to do.
+pub fn run(arguments: &ExplainArguments) -> anyhow::Result<()> {
+    let to_stdout = |path: &&Path| *path == Path::new("-");
+    let json = arguments.json.as_deref();
+    let file = json.filter(|path| !to_stdout(path));
+    if let Some(path) = file {
+        parse::check_writable(path)?;
+    }
+    let account = account(arguments)?;
+    let text = serde_json::to_string_pretty(&account)? + "\n";
+    match file {
+        Some(path) => std::fs::write(path, text)
+            .with_context(|| format!("{}: the account could not be written", path.display()))?,
+        None if json.is_some() => {
+            print!("{text}");
+            return Ok(());
+        }
+        None => {}
+    }
+    print!("{account}");
+    Ok(())
+}
+
+fn account(arguments: &ExplainArguments) -> anyhow::Result<PathAccount> {
+    // Only the processor tells what happens on a path.
+    let mut session = Session::open(EngineChoice::Cpu)?;
+    let document = arguments.scene.document(&mut session)?;
+    let size = [document.render.width, document.render.height];
+    let [x, y] = arguments.pixel;
+    if x >= size[0] || y >= size[1] {
+        bail!(
+            "--pixel {x},{y}: the picture has {} x {} pixels; give a place in it, or another --size",
+            size[0],
+            size[1]
+        );
+    }
+    session.submit(&document)?;
+    let model = session.assets().model(&document.model, &document.import)?;
+    let job = session.job().context("the scene has no job")?;
+    Ok(explain(&document, &model, job, arguments.pixel, arguments.sample))
+}

@@ -1,0 +1,57 @@
+//! What a shell knows about the program: `glossmith completions` and `glossmith manual`.
+
+use std::io::{self, Write as _};
+
+use anyhow::Context;
+use clap::{Args, CommandFactory};
+use clap_complete::Shell;
+
+use super::Arguments;
+
+/// Arguments of `glossmith completions`.
+#[derive(Debug, Args)]
+pub struct CompletionsArguments {
+    /// The shell that reads them.
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+/// Arguments of `glossmith manual`.
+#[derive(Debug, Args)]
+pub struct ManualArguments {
+    /// The subcommand that the page is about; without one the page of the program itself.
+    subcommand: Option<String>,
+}
+
+/// Prints a script that completes the program's arguments in a shell.
+///
+/// # Errors
+/// Where standard output can't be written to.
+pub fn completions(arguments: &CompletionsArguments) -> anyhow::Result<()> {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut Arguments::command(), "glossmith", &mut script);
+    print(&script)
+}
+
+/// Prints a manual page in roff.
+///
+/// # Errors
+/// Where there is no such subcommand, or standard output can't be written to.
+pub fn manual(arguments: &ManualArguments) -> anyhow::Result<()> {
+    let mut command = Arguments::command();
+    // Gives subcommands their names in full: glossmith render.
+    command.build();
+    if let Some(name) = &arguments.subcommand {
+        let found = command.find_subcommand(name).cloned();
+        command = found.with_context(|| format!("no subcommand is called {name}; `glossmith --help` lists them"))?;
+    }
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command).render(&mut page)?;
+    print(&page)
+}
+
+fn print(bytes: &[u8]) -> anyhow::Result<()> {
+    io::stdout()
+        .write_all(bytes)
+        .context("standard output could not be written to")
+}

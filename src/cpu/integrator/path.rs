@@ -1,0 +1,88 @@
+//! A path under way: its sums, and its random numbers as they are drawn.
+
+use super::PathResult;
+use crate::cpu::recorder::{Event, Purpose, Recorder, single};
+use crate::job::features::GuideSums;
+use crate::optics::random::{RandomState, random_pair};
+use crate::optics::real::Real;
+use crate::optics::vector::Vec3;
+
+/// A path under way. Every number that it takes is drawn by [`Path::pair`], every event told by [`Path::record`].
+pub(super) struct Path<'r, T, R> {
+    state: RandomState,
+    /// What light from the ray's other end is multiplied by.
+    pub throughput: Vec3<T>,
+    /// What it has found.
+    pub radiance: Vec3<T>,
+    /// Luminance that limiting fireflies took.
+    pub clamped: T,
+    /// Rays traced.
+    pub rays: u32,
+    /// What is seen first.
+    pub seen: GuideSums,
+    /// True while the path is one of those that tell what they see, and has met nothing but mirrors and clear glass.
+    pub is_looking: bool,
+    recorder: &'r mut R,
+}
+
+/// A ray of a path, and how its direction was drawn.
+pub(super) struct Ray<T> {
+    pub origin: Vec3<T>,
+    /// Unit vector.
+    pub direction: Vec3<T>,
+    /// The density of the direction, for what competes with light sampling.
+    pub lobe_density: T,
+    /// True where light sampling could not have drawn the direction.
+    pub is_mirror: bool,
+    /// True where it is proven that nothing lies ahead.
+    pub leaves: bool,
+}
+
+impl<'r, T: Real, R: Recorder> Path<'r, T, R> {
+    pub fn new(state: RandomState, is_looking: bool, recorder: &'r mut R) -> Self {
+        Self {
+            state,
+            throughput: Vec3::splat(T::one()),
+            radiance: Vec3::zero(),
+            clamped: T::zero(),
+            rays: 0,
+            seen: GuideSums::default(),
+            is_looking,
+            recorder,
+        }
+    }
+
+    /// The pair of numbers number `dimension`, each with its purpose.
+    #[inline(always)]
+    pub fn pair(&mut self, dimension: u32, purposes: [Purpose; 2]) -> [T; 2] {
+        let pair = random_pair(self.state, dimension);
+        for (half, purpose) in (0..).zip(purposes) {
+            if purpose != Purpose::Unused {
+                self.record(|| Event::Number {
+                    dimension,
+                    half,
+                    value: single(pair[half as usize]),
+                    purpose,
+                });
+            }
+        }
+        pair
+    }
+
+    /// Tells of an event.
+    #[inline(always)]
+    pub fn record(&mut self, event: impl FnOnce() -> Event) {
+        self.recorder.record(event);
+    }
+
+    /// What the path found.
+    pub fn result(self, alpha: T) -> PathResult<T> {
+        PathResult {
+            radiance: self.radiance,
+            alpha,
+            rays: self.rays,
+            clamped: self.clamped,
+            seen: self.seen,
+        }
+    }
+}

@@ -1,0 +1,367 @@
+//! The table of effects.
+
+use super::{Effect, Switch, horizon};
+use crate::document::{Background, Denoise, Document, MaterialSettings, Strategy};
+use crate::job::effect::{ANY, Decision, EffectId};
+use crate::optics::curve::Curve;
+use crate::optics::fresnel::Fresnel;
+use crate::optics::lobe::Lobe;
+use crate::optics::material::{Material, NO_TEXTURE};
+use crate::optics::vector::Vec3;
+
+/// Every effect, in the order of [`EffectId::ALL`].
+pub static EFFECTS: &[Effect] = &[
+    Effect {
+        id: EffectId::Environment,
+        label: "Environment light",
+        help: "Light that arrives from the environment map.",
+        decide: |facts| {
+            if facts.is_environment_black() {
+                Decision::off("the environment is black")
+            } else {
+                Decision::on("the environment shines")
+            }
+        },
+        remove: Some(|document| document.lighting.strength = 0.0),
+    },
+    Effect {
+        id: EffectId::LightSampling,
+        label: "Sampling the environment",
+        help: "Directions drawn where the environment is bright, a shadow ray for each.",
+        decide: |facts| {
+            let environment = facts.environment;
+            if facts.is_environment_black() {
+                Decision::off("the environment is black")
+            } else if environment.is_constant {
+                Decision::off("the environment is equally bright everywhere")
+            } else if facts.settings.strategy == Strategy::Lobe {
+                Decision::off("light is found by the lobes alone")
+            } else if facts.materials.iter().all(Material::is_mirror) {
+                Decision::off("every surface is a mirror, which meets light in one direction only")
+            } else {
+                Decision::on("the environment is brighter here than there")
+            }
+        },
+        remove: Some(|document| document.render.effects.set(EffectId::LightSampling, Switch::Off)),
+    },
+    Effect {
+        id: EffectId::AreaLights,
+        label: "Area lights",
+        help: "Rectangles that shine beside the model.",
+        decide: |facts| match facts.document.lighting.area_lights.len() {
+            0 => Decision::off("there is no area light"),
+            1 => Decision::on("there is one area light"),
+            lights => Decision::on(format!("there are {lights} area lights")),
+        },
+        remove: Some(|document| document.lighting.area_lights.clear()),
+    },
+    Effect {
+        id: EffectId::Emission,
+        label: "Emission",
+        help: "Light that surfaces give off.",
+        decide: |facts| facts.needed_by(|material| material.emission.max_component() > 0.0, "emits light"),
+        remove: Some(|document| {
+            document.lighting.area_lights.clear();
+            each_material(document, |material| material.emission_strength = 0.0);
+        }),
+    },
+    Effect {
+        id: EffectId::EmitterSampling,
+        label: "Sampling emitters",
+        help: "Directions drawn towards the triangles that emit, a shadow ray for each.",
+        decide: |facts| {
+            if facts.settings.light_choice.density_per_luminance <= 0.0 {
+                Decision::off("no triangle emits light")
+            } else if facts.settings.strategy == Strategy::Lobe {
+                Decision::off("light is found by the lobes alone")
+            } else if facts.materials.iter().all(Material::is_mirror) {
+                Decision::off("every surface is a mirror, which meets light in one direction only")
+            } else {
+                Decision::on("some triangles emit light")
+            }
+        },
+        remove: Some(|document| document.render.effects.set(EffectId::EmitterSampling, Switch::Off)),
+    },
+    Effect {
+        id: EffectId::Background,
+        label: "Background",
+        help: "The environment, seen by the camera where it meets nothing.",
+        decide: |facts| match facts.document.lighting.background {
+            Background::Environment => Decision::on("the environment is visible"),
+            Background::Transparent => Decision::off("the background is transparent"),
+            Background::Color(_) => Decision::off("the background is one colour"),
+        },
+        remove: Some(|document| document.lighting.background = Background::Transparent),
+    },
+    Effect {
+        id: EffectId::Ground,
+        label: "Ground",
+        help: "A plane that catches shadows and reflections.",
+        decide: |facts| {
+            if facts.document.ground {
+                Decision::on("the model stands on a ground")
+            } else {
+                Decision::off("there is no ground")
+            }
+        },
+        remove: Some(|document| document.ground = false),
+    },
+    Effect {
+        id: EffectId::Interreflection,
+        label: "Shadows and interreflection",
+        help: "Rays that leave a surface and may meet another one.",
+        decide: |facts| {
+            if facts.geometry.is_convex {
+                Decision::off("the scene is one convex body: what leaves its outside meets nothing")
+            } else if facts.settings.bounces <= 1 {
+                Decision::on("paths end at the first surface, but shadows are cast")
+            } else {
+                Decision::on("surfaces may see each other")
+            }
+        },
+        remove: None,
+    },
+    Effect {
+        id: EffectId::Base,
+        label: "Diffuse base",
+        help: "Light that enters the surface and leaves it in all directions (Lambert).",
+        decide: |facts| facts.needed_by(Material::has_base, "has a diffuse base"),
+        remove: Some(|document| {
+            each_material(document, |material| material.base_weight = 0.0);
+            document.lighting.ground_color = [0.0; 3];
+        }),
+    },
+    Effect {
+        id: EffectId::Specular,
+        label: "Specular lobe",
+        help: "Light that the surface reflects around the mirror direction.",
+        decide: |facts| facts.needed_by(Material::has_specular, "reflects"),
+        remove: Some(|document| {
+            for material in &mut document.materials {
+                material.specular_weight = 0.0;
+                material.transmission_weight = 0.0;
+            }
+        }),
+    },
+    Effect {
+        id: EffectId::Lobe,
+        label: "Choice of lobe",
+        help: "Code for every lobe, chosen from at each hit; with one lobe in the scene, only that one's.",
+        decide: |facts| facts.shared(|material| material.lobe, |number| Lobe::ALL[number as usize].label()),
+        remove: None,
+    },
+    Effect {
+        id: EffectId::Curve,
+        label: "Choice of curve",
+        help: "Code for every D(ξ) curve, the interception of the long tail's among it; with one curve, only that one's.",
+        decide: |facts| {
+            let geometric = facts
+                .reflecting()
+                .filter(|material| material.lobe == Lobe::Geometric as u32);
+            let mut curves = geometric.map(|material| material.curve);
+            let Some(first) = curves.next() else {
+                // Any number will do; the first keeps the other curves' code out.
+                return Decision {
+                    value: 0,
+                    ..Decision::off("no material has a geometric lobe")
+                };
+            };
+            let label = |number: u32| Curve::ALL[number as usize].label();
+            match curves.find(|&curve| curve != first) {
+                None => Decision::which(first, format!("{} in every geometric lobe", label(first))),
+                Some(other) => Decision::which(ANY, format!("{} and {} are mixed", label(first), label(other))),
+            }
+        },
+        remove: None,
+    },
+    Effect {
+        id: EffectId::Anisotropy,
+        label: "Anisotropy",
+        help: "Lobes stretched along the surface's tangent.",
+        decide: |facts| facts.needed_by(|m| m.has_specular() && m.anisotropy != 0.0, "stretches its lobe"),
+        remove: Some(|document| each_material(document, |material| material.anisotropy = 0.0)),
+    },
+    Effect {
+        id: EffectId::Horizon,
+        label: "Horizon",
+        help: "What happens to samples of a lobe that point into the surface.",
+        decide: horizon::decide,
+        remove: None,
+    },
+    Effect {
+        id: EffectId::Fresnel,
+        label: "Fresnel",
+        help: "Code for every Fresnel term, chosen from at each hit; with one term in the scene, only that one's.",
+        decide: |facts| facts.shared(|m| m.fresnel, |number| Fresnel::ALL[number as usize].label()),
+        remove: None,
+    },
+    Effect {
+        id: EffectId::EdgeTint,
+        label: "Edge tint",
+        help: "Metals whose reflection is tinted towards grazing angles (F82).",
+        decide: |facts| {
+            facts.needed_by(
+                |m| m.has_specular() && m.edge_tint != Vec3::splat(1.0),
+                "tints its edge",
+            )
+        },
+        remove: Some(|document| each_material(document, |material| material.edge_tint = [1.0; 3])),
+    },
+    Effect {
+        id: EffectId::Coat,
+        label: "Coat",
+        help: "A clear layer over the other lobes, with a reflection of its own.",
+        decide: |facts| facts.needed_by(|m| m.coat_weight > 0.0, "has a coat"),
+        remove: Some(|document| each_material(document, |material| material.coat_weight = 0.0)),
+    },
+    Effect {
+        id: EffectId::Transmission,
+        label: "Refraction",
+        help: "Light that passes through surfaces and is refracted there.",
+        decide: |facts| facts.needed_by(Material::transmits, "transmits light"),
+        remove: Some(|document| each_material(document, |material| material.transmission_weight = 0.0)),
+    },
+    Effect {
+        id: EffectId::Absorption,
+        label: "Absorption",
+        help: "Light that fades on its way through a clear solid (Beer and Lambert).",
+        decide: |facts| {
+            facts.needed_by(
+                |material| material.transmits() && material.absorption.max_component() > 0.0,
+                "absorbs light inside",
+            )
+        },
+        remove: Some(|document| {
+            for material in &mut document.materials {
+                // Without a depth the colour tints the surface: white is what absorbs nothing.
+                if material.transmission_depth > 0.0 {
+                    material.transmission_color = [1.0; 3];
+                }
+            }
+        }),
+    },
+    Effect {
+        id: EffectId::ColorTexture,
+        label: "Colour textures",
+        help: "Base colours looked up in the model's pictures, or given at its vertices.",
+        decide: |facts| {
+            let is_colored = |m: &Material<f32>| m.textures[0] != NO_TEXTURE || m.has_vertex_colors == 1;
+            facts.needed_by(is_colored, "takes its colour from a texture or from its vertices")
+        },
+        remove: Some(|document| each_material(document, |material| material.textures.color = false)),
+    },
+    Effect {
+        id: EffectId::RoughnessTexture,
+        label: "Roughness textures",
+        help: "Roughness and metalness looked up in the model's pictures.",
+        decide: |facts| facts.needed_by(|m| m.textures[1] != NO_TEXTURE, "takes its roughness from a texture"),
+        remove: Some(|document| each_material(document, |material| material.textures.roughness = false)),
+    },
+    Effect {
+        id: EffectId::RoughTables,
+        label: "Albedos over roughness",
+        help: "What the base is left with where a texture changes the roughness, or the surface is metal in part.",
+        decide: |facts| {
+            facts.needed_by(
+                |m| m.has_rough_tables == 1,
+                "is metal in part, or its roughness changes over a base",
+            )
+        },
+        remove: None,
+    },
+    Effect {
+        id: EffectId::NormalMap,
+        label: "Normal maps",
+        help: "Shading normals bent by the model's pictures.",
+        decide: |facts| facts.needed_by(|m| m.textures[2] != NO_TEXTURE, "has a normal map"),
+        remove: Some(|document| each_material(document, |material| material.textures.normal = false)),
+    },
+    Effect {
+        id: EffectId::EmissionTexture,
+        label: "Emission textures",
+        help: "Emission looked up in the model's pictures.",
+        decide: |facts| facts.needed_by(|m| m.textures[3] != NO_TEXTURE, "takes its emission from a texture"),
+        remove: Some(|document| each_material(document, |material| material.textures.emission = false)),
+    },
+    Effect {
+        id: EffectId::Alpha,
+        label: "Opacity",
+        help: "Surfaces that let some light go straight on.",
+        decide: |facts| facts.needed_by(Material::has_holes, "is not opaque everywhere"),
+        remove: Some(|document| {
+            for material in &mut document.materials {
+                material.textures.opacity = false;
+                material.opacity = 1.0;
+            }
+        }),
+    },
+    Effect {
+        id: EffectId::DepthOfField,
+        label: "Depth of field",
+        help: "Rays from all over the lens: sharp only at the distance of focus.",
+        decide: |facts| {
+            if facts.settings.camera.lens_radius > 0.0 {
+                Decision::on("the lens is open")
+            } else {
+                Decision::off("the camera is a pinhole")
+            }
+        },
+        remove: Some(|document| document.camera.aperture = 0.0),
+    },
+    Effect {
+        id: EffectId::FireflyClamp,
+        label: "Firefly clamp",
+        help: "Light that was reflected twice or more is limited: less noise, and less energy than there is.",
+        decide: |facts| match facts.document.render.firefly_clamp {
+            Some(limit) => Decision::on(format!("limited to a radiance of {limit}")),
+            None => Decision::off("no limit is set"),
+        },
+        remove: Some(|document| document.render.firefly_clamp = None),
+    },
+    Effect {
+        id: EffectId::AdaptiveSampling,
+        label: "Adaptive sampling",
+        help: "Tiles rest while others need samples more, so that time goes where the error is.",
+        decide: |facts| {
+            let render = &facts.document.render;
+            match (render.is_adaptive(), render.noise) {
+                (false, _) => Decision::off("every pixel gets as many samples"),
+                (true, Some(noise)) => {
+                    Decision::on(format!("samples go where the error is, until the noise is {noise}"))
+                }
+                (true, None) => Decision::on("samples go where the error is"),
+            }
+        },
+        remove: Some(|document| document.render.adaptive = Some(false)),
+    },
+    Effect {
+        id: EffectId::Variance,
+        label: "Variance",
+        help: "Sums of squares beside those of the light: the error of the picture is told from them.",
+        decide: |_| Decision::on("the error of the picture is told from them"),
+        remove: None,
+    },
+    Effect {
+        id: EffectId::PictureLayers,
+        label: "Picture layers (AOVs)",
+        help: "Albedo, normal and distance of what is seen, beside the light.",
+        decide: |_| Decision::off("written only when a picture with layers is saved"),
+        remove: None,
+    },
+    Effect {
+        id: EffectId::Denoising,
+        label: "Denoising",
+        help: "The picture's noise is taken out, led by the albedo and the normal of what is seen.",
+        decide: |facts| match facts.document.view.denoise {
+            Denoise::Off => Decision::off("the samples are shown as they are"),
+            Denoise::Fast => Decision::on("noise is taken out, quickly"),
+            Denoise::High => Decision::on("noise is taken out as well as can be"),
+            Denoise::Auto => Decision::on("noise is taken out until the samples alone are nearer to the truth"),
+        },
+        remove: Some(|document| document.view.denoise = Denoise::Off),
+    },
+];
+
+fn each_material(document: &mut Document, change: impl FnMut(&mut MaterialSettings)) {
+    document.materials.iter_mut().for_each(change);
+}

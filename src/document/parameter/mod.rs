@@ -1,0 +1,382 @@
+//! What a parameter is: a key, what to call it, what it takes, and how to read and write it. Those of a material stand in
+//! [`PARAMETERS`], those of the rest of a document in [`SETTINGS`].
+
+mod of_document;
+mod of_material;
+mod text;
+
+use serde_json::Value as Json;
+
+use super::custom_curve::CustomCurve;
+use super::{Document, MaterialSettings};
+use crate::named::Named;
+use text::shortened;
+
+pub use of_document::SETTINGS;
+pub use of_material::PARAMETERS;
+pub(crate) use text::nearest_key;
+pub use text::{ColorError, parse_color};
+
+/// The value of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A number in the parameter's unit.
+    Number(f32),
+    /// The same in double precision.
+    Real(f64),
+    /// A whole number.
+    Count(u32),
+    /// Coordinates in scene units.
+    Place([f64; 3]),
+    /// Left to the program.
+    Absent,
+    /// Linear RGB, each in [0, 1].
+    Color([f32; 3]),
+    /// A number for each colour channel.
+    Triple([f32; 3]),
+    /// The name of one of the parameter's choices.
+    Choice(&'static str),
+    /// On or off.
+    Toggle(bool),
+    /// A curve's points (ξ, D).
+    Curve(Vec<[f32; 2]>),
+}
+
+/// What a parameter takes.
+#[derive(Clone, Debug)]
+pub enum Kind {
+    /// A number.
+    Number {
+        /// Least and largest value that it takes.
+        range: [f32; 2],
+        /// What a slider spans.
+        soft_range: [f32; 2],
+        /// Unit, or empty.
+        unit: &'static str,
+        /// What an arrow key changes it by.
+        step: f32,
+    },
+    /// A number in double precision.
+    Real {
+        /// Least and largest value that it takes.
+        range: [f64; 2],
+        /// Unit, or empty.
+        unit: &'static str,
+    },
+    /// A whole number.
+    Count {
+        /// Least and largest value that it takes.
+        range: [u32; 2],
+    },
+    /// Coordinates in scene units.
+    Place {
+        /// Least and largest value that each takes.
+        range: [f64; 2],
+    },
+    /// What may be left to the program, which is written as this word.
+    Optional(Box<Kind>, &'static str),
+    /// Linear RGB, each in [0, 1].
+    Color,
+    /// A number for each colour channel.
+    Triple {
+        /// Least and largest value that each takes.
+        range: [f32; 2],
+    },
+    /// One of several.
+    Choice(Vec<Choice>),
+    /// On or off.
+    Toggle,
+    /// The points of a [`CustomCurve`].
+    Curve,
+}
+
+/// One of several values to choose from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// Name in files and on the command line.
+    pub name: &'static str,
+    /// Name in the menus.
+    pub label: &'static str,
+    /// When to choose it.
+    pub help: &'static str,
+}
+
+/// What a change of a parameter calls for. See [`super::Change`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Stage {
+    /// What has been rendered is shown anew.
+    Display,
+    /// Rendering goes on towards another goal.
+    Goal,
+    /// The picture starts over, seen by another camera.
+    Camera,
+    /// The picture starts over at another size.
+    Size,
+    /// The picture starts over, drawn by other numbers or another way.
+    Sampling,
+    /// The picture starts over under other light.
+    Lighting,
+    /// Materials are compiled.
+    Materials,
+    /// Geometry is built.
+    Geometry,
+}
+
+/// The choices of a closed list.
+fn choices<T: Named>() -> Kind {
+    let choice = |&choice: &T| Choice {
+        name: choice.name(),
+        label: choice.label(),
+        help: choice.help(),
+    };
+    Kind::Choice(T::ALL.iter().map(choice).collect())
+}
+
+/// A parameter of a material or of a document, declared once for panels, files, the command line and tests.
+#[derive(Clone, Debug)]
+pub struct Parameter<T: 'static = MaterialSettings> {
+    /// Name in files and on the command line.
+    pub key: &'static str,
+    /// Which parameters it is shown with.
+    pub group: &'static str,
+    /// Name in panels.
+    pub label: &'static str,
+    /// The paper's symbol, or the usual one; empty where there is none.
+    pub symbol: &'static str,
+    /// What it does to the picture.
+    pub help: &'static str,
+    /// What it takes.
+    pub kind: Kind,
+    /// What a change of it calls for.
+    pub stage: Stage,
+    /// True where the parameter has an effect.
+    pub applies: fn(&T) -> bool,
+    get: fn(&T) -> Value,
+    /// Only called with values that `check` accepts.
+    set: fn(&mut T, Value),
+}
+
+/// Why a parameter cannot be set.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ParameterError {
+    /// Text that is no assignment.
+    #[error("{text}: write KEY=VALUE, such as specular.roughness=0.3")]
+    NoAssignment {
+        /// The text.
+        text: String,
+    },
+    /// No parameter of that name.
+    #[error("no parameter is called {key}; {hint}")]
+    UnknownKey {
+        /// The name.
+        key: String,
+        /// The nearest name, or all of them.
+        hint: String,
+    },
+    /// A value that the parameter does not take.
+    #[error("{key} does not take {value}; {expected}")]
+    Invalid {
+        /// The parameter.
+        key: &'static str,
+        /// The value as it was given.
+        value: String,
+        /// What it takes.
+        expected: String,
+    },
+}
+
+/// The parameter of a material with this key.
+///
+/// # Errors
+/// [`ParameterError::UnknownKey`], which suggests the nearest.
+pub fn parameter(key: &str) -> Result<&'static Parameter, ParameterError> {
+    let found = PARAMETERS.iter().find(|parameter| parameter.key == key);
+    found.ok_or_else(|| unknown_key(key))
+}
+
+/// The setting of a document with this key.
+pub fn setting(key: &str) -> Option<&'static Parameter<Document>> {
+    SETTINGS.iter().find(|setting| setting.key == key)
+}
+
+/// The keys of materials, then those of documents.
+pub fn keys() -> impl Iterator<Item = &'static str> {
+    let of_documents = SETTINGS.iter().map(|setting| setting.key);
+    PARAMETERS.iter().map(|parameter| parameter.key).chain(of_documents)
+}
+
+fn unknown_key(key: &str) -> ParameterError {
+    ParameterError::UnknownKey {
+        key: key.to_owned(),
+        hint: match nearest_key(key) {
+            Some(near) => format!("did you mean {near}?"),
+            None => format!("the parameters are {}", keys().collect::<Vec<_>>().join(", ")),
+        },
+    }
+}
+
+/// The key and the text of `KEY=VALUE`.
+fn split_assignment(assignment: &str) -> Result<(&str, &str), ParameterError> {
+    let split = assignment.split_once('=').map(|(key, text)| (key.trim(), text));
+    split.ok_or_else(|| ParameterError::NoAssignment {
+        text: assignment.to_owned(),
+    })
+}
+
+/// Sets a parameter of a material from `KEY=VALUE`; see [`Parameter::parse`].
+///
+/// # Errors
+/// Says what is wrong and what would be right.
+pub fn assign(material: &mut MaterialSettings, assignment: &str) -> Result<(), ParameterError> {
+    let (key, text) = split_assignment(assignment)?;
+    let parameter = parameter(key)?;
+    parameter.set(material, parameter.parse(text)?)
+}
+
+impl Document {
+    /// Sets a setting of the document, or a parameter of all its materials, from `KEY=VALUE`; see [`Parameter::parse`].
+    ///
+    /// # Errors
+    /// Says what is wrong and what would be right.
+    pub fn assign(&mut self, assignment: &str) -> Result<(), ParameterError> {
+        let (key, text) = split_assignment(assignment)?;
+        if let Some(setting) = setting(key) {
+            return setting.set(self, setting.parse(text)?);
+        }
+        let mut materials = self.materials.iter_mut();
+        materials.try_for_each(|material| assign(material, assignment))
+    }
+}
+
+impl<T: Default> Parameter<T> {
+    /// The value of a new material or document.
+    pub fn default_value(&self) -> Value {
+        self.get(&T::default())
+    }
+}
+
+/// Whether a value lies in a range, both ends included; nothing that is not a number does.
+fn within<N: PartialOrd + Copy>([low, high]: [N; 2], value: N) -> bool {
+    (low..=high).contains(&value)
+}
+
+impl<T> Parameter<T> {
+    /// The value that something has.
+    pub fn get(&self, of: &T) -> Value {
+        (self.get)(of)
+    }
+
+    /// Sets the value.
+    ///
+    /// # Errors
+    /// [`ParameterError::Invalid`] where the value is of the wrong kind or out of range; nothing is changed then.
+    pub fn set(&self, of: &mut T, value: Value) -> Result<(), ParameterError> {
+        self.check(&value)?;
+        (self.set)(of, value);
+        Ok(())
+    }
+
+    /// Whether the parameter takes a value.
+    ///
+    /// # Errors
+    /// [`ParameterError::Invalid`] where it does not.
+    pub fn check(&self, value: &Value) -> Result<(), ParameterError> {
+        let kind = match (&self.kind, value) {
+            (Kind::Optional(..), Value::Absent) => return Ok(()),
+            (Kind::Optional(kind, _), _) => kind,
+            (kind, _) => kind,
+        };
+        let is_valid = match (kind, value) {
+            (Kind::Number { range, .. }, Value::Number(x)) => within(*range, *x),
+            (Kind::Real { range, .. }, Value::Real(x)) => within(*range, *x),
+            (Kind::Count { range }, Value::Count(n)) => within(*range, *n),
+            (Kind::Place { range }, Value::Place(place)) => place.iter().all(|x| within(*range, *x)),
+            (Kind::Color, Value::Color(color)) => color.iter().all(|x| within([0.0, 1.0], *x)),
+            (Kind::Triple { range }, Value::Triple(triple)) => triple.iter().all(|x| within(*range, *x)),
+            (Kind::Choice(choices), Value::Choice(name)) => choices.iter().any(|choice| choice.name == *name),
+            (Kind::Toggle, Value::Toggle(_)) => true,
+            (Kind::Curve, Value::Curve(points)) => {
+                return match CustomCurve::try_from(points.clone()) {
+                    Ok(_) => Ok(()),
+                    Err(error) => Err(self.invalid(&self.text(value), error.to_string())),
+                };
+            }
+            _ => false,
+        };
+        if is_valid {
+            Ok(())
+        } else {
+            Err(self.invalid(&self.text(value), self.expected()))
+        }
+    }
+
+    /// The value written as on the command line: a number, `#rrggbb` (sRGB), `r,g,b` (linear), a name, `true`,
+    /// `false`, or `ξ:D,ξ:D,…`.
+    ///
+    /// # Errors
+    /// [`ParameterError::Invalid`], which says what the parameter takes.
+    pub fn parse(&self, text: &str) -> Result<Value, ParameterError> {
+        let text = text.trim();
+        let value = self
+            .kind
+            .parse(text)
+            .ok_or_else(|| self.invalid(text, self.expected()))?;
+        self.check(&value)?;
+        Ok(value)
+    }
+
+    /// The value as [`Parameter::parse`] reads it, exact.
+    pub fn text(&self, value: &Value) -> String {
+        match value {
+            Value::Number(x) => x.to_string(),
+            Value::Real(x) => x.to_string(),
+            Value::Count(n) => n.to_string(),
+            Value::Place([x, y, z]) => format!("{x},{y},{z}"),
+            Value::Absent => self.kind.word_for_absent().to_owned(),
+            Value::Color([r, g, b]) | Value::Triple([r, g, b]) => format!("{r},{g},{b}"),
+            Value::Choice(name) => (*name).to_owned(),
+            Value::Toggle(on) => on.to_string(),
+            Value::Curve(points) => {
+                let points: Vec<_> = points.iter().map(|[xi, distance]| format!("{xi}:{distance}")).collect();
+                points.join(",")
+            }
+        }
+    }
+
+    /// The value read from a file.
+    ///
+    /// # Errors
+    /// [`ParameterError::Invalid`], which says what the parameter takes.
+    pub fn value_from_json(&self, json: &Json) -> Result<Value, ParameterError> {
+        let value = self.kind.value_from_json(json);
+        let value = value.ok_or_else(|| self.invalid(&shortened(json.to_string()), self.expected_in_json()))?;
+        self.check(&value)?;
+        Ok(value)
+    }
+
+    fn invalid(&self, value: &str, expected: String) -> ParameterError {
+        ParameterError::Invalid {
+            key: self.key,
+            value: if value.is_empty() {
+                "nothing".to_owned()
+            } else {
+                shortened(value.to_owned())
+            },
+            expected,
+        }
+    }
+
+    /// What the parameter takes, as a request.
+    pub fn expected(&self) -> String {
+        format!("give {}", self.kind.expected())
+    }
+
+    fn expected_in_json(&self) -> String {
+        match &self.kind {
+            Kind::Color => "give [r, g, b] (linear, each from 0 to 1)".to_owned(),
+            Kind::Triple { range: [low, high] } => format!("give [r, g, b], each from {low} to {high}"),
+            Kind::Curve => "give points [[ξ, D], …] such as [[0, 0], [0.5, 0.4], [1, 1]]".to_owned(),
+            _ => self.expected(),
+        }
+    }
+}

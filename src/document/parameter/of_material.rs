@@ -1,0 +1,462 @@
+//! The parameters of a material.
+
+use std::sync::LazyLock;
+
+use super::{Choice, Kind, Parameter, Stage, Value, choices};
+use crate::document::custom_curve::CustomCurve;
+use crate::document::{Conductor, MaterialSettings};
+use crate::named::Named;
+use crate::optics::curve::Curve;
+use crate::optics::fresnel::Fresnel;
+use crate::optics::lobe::{Horizon, Lobe};
+
+/// Reads and writes a field through the variant of [`Value`] that holds it.
+macro_rules! field {
+    ($variant:ident $field:ident) => {
+        (
+            |material: &MaterialSettings| Value::$variant(material.$field),
+            |material: &mut MaterialSettings, value: Value| {
+                if let Value::$variant(value) = value {
+                    material.$field = value;
+                }
+            },
+        )
+    };
+}
+
+/// Reads and writes whether a kind of texture is looked up.
+macro_rules! texture {
+    ($kind:ident) => {
+        (
+            |material: &MaterialSettings| Value::Toggle(material.textures.$kind),
+            |material: &mut MaterialSettings, value: Value| {
+                if let Value::Toggle(is_on) = value {
+                    material.textures.$kind = is_on;
+                }
+            },
+        )
+    };
+}
+
+/// Reads and writes a field that is one of a closed list.
+macro_rules! choice_field {
+    ($field:ident) => {
+        (
+            |material: &MaterialSettings| Value::Choice(material.$field.name()),
+            |material: &mut MaterialSettings, value: Value| {
+                if let Value::Choice(name) = value
+                    && let Some(choice) = Named::by_name(name)
+                {
+                    material.$field = choice;
+                }
+            },
+        )
+    };
+}
+
+type Get = fn(&MaterialSettings) -> Value;
+type Set = fn(&mut MaterialSettings, Value);
+
+/// Every parameter, in the order of the panels. In files they are read in this order too: a conductor before the η and
+/// k that may replace its own.
+pub static PARAMETERS: LazyLock<Vec<Parameter>> = LazyLock::new(|| {
+    let mut all = base();
+    all.extend(specular_shape());
+    all.extend(specular_fresnel());
+    all.extend(coat());
+    all.extend(transmission());
+    all.extend(emission());
+    all.extend(geometry());
+    all
+});
+
+fn base() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Weight",
+            help: "Darkens the base: its colour is multiplied by it.",
+            ..of("base.weight", unit_number(), field!(Number base_weight))
+        },
+        Parameter {
+            label: "Colour",
+            help: "Colour of the diffuse base; of a metal, its reflection seen head-on.",
+            ..of("base.color", Kind::Color, field!(Color base_color))
+        },
+        Parameter {
+            label: "Colour texture",
+            help: "Multiplies the colour by the model's texture.",
+            ..of("base.color_texture", Kind::Toggle, texture!(color))
+        },
+        Parameter {
+            label: "Metalness",
+            help: "0: a dielectric, its reflection over a diffuse base. 1: a metal, no base, the reflection coloured.",
+            ..of("base.metalness", unit_number(), field!(Number metalness))
+        },
+    ]
+}
+
+fn specular_shape() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Weight",
+            help: "How much of the reflection is kept; at 0 only the base is left.",
+            ..of("specular.weight", unit_number(), field!(Number specular_weight))
+        },
+        Parameter {
+            label: "Lobe",
+            help: "The model of how reflected light is spread.",
+            ..of("specular.lobe", choices::<Lobe>(), choice_field!(lobe))
+        },
+        Parameter {
+            label: "Roughness",
+            symbol: "R",
+            help: "How far the reflection is spread: from a mirror at 0 to, for the geometric lobe, perfectly diffuse at 1.",
+            applies: |material| has_specular(material) && material.lobe != Lobe::Lambert,
+            ..of("specular.roughness", unit_number(), field!(Number roughness))
+        },
+        Parameter {
+            label: "Roughness texture",
+            help: "Multiplies roughness and metalness by the model's texture.",
+            ..of("specular.roughness_texture", Kind::Toggle, texture!(roughness))
+        },
+        Parameter {
+            label: "Curve",
+            symbol: "D(ξ)",
+            help: "The profile of the geometric lobe's highlight, from its middle to its edge.",
+            applies: is_geometric,
+            ..of("specular.curve", choices::<Curve>(), choice_field!(curve))
+        },
+        Parameter {
+            label: "Custom curve",
+            symbol: "D(ξ)",
+            help: "Your own profile: the share ξ of the samples stays within the distance D of the mirror direction.",
+            applies: |material| is_geometric(material) && material.curve == Curve::Custom,
+            ..of("specular.custom_curve", Kind::Curve, custom_curve())
+        },
+        Parameter {
+            label: "Anisotropy",
+            symbol: "R_x, R_y",
+            help: "Stretches the highlight along the surface's tangent, below 0 across it: brushed metal, hair, satin.",
+            applies: |material| has_specular(material) && material.lobe.is_anisotropic(),
+            ..of(
+                "specular.anisotropy",
+                number([-1.0, 1.0], [-1.0, 1.0], "", 0.01),
+                field!(Number anisotropy),
+            )
+        },
+        Parameter {
+            label: "Rotation",
+            help: "Turns the direction of the stretch about the normal, anticlockwise seen from outside.",
+            applies: |material| has_specular(material) && material.lobe.is_anisotropic() && material.anisotropy != 0.0,
+            ..of(
+                "specular.rotation",
+                number([-360.0, 360.0], [-180.0, 180.0], "°", 1.0),
+                field!(Number rotation_deg),
+            )
+        },
+        Parameter {
+            label: "Below the surface",
+            help: "What happens to samples that point into the surface.",
+            applies: |material| has_specular(material) && !material.lobe.is_hemispherical(),
+            ..of("specular.horizon", choices::<Horizon>(), choice_field!(horizon))
+        },
+    ]
+}
+
+fn specular_fresnel() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Fresnel",
+            symbol: "F",
+            help: "How the share of reflected light grows towards grazing angles. A material that transmits light follows the exact equations of a dielectric.",
+            applies: |material| has_specular(material) && !transmits(material),
+            ..of("specular.fresnel", choices::<Fresnel>(), choice_field!(fresnel))
+        },
+        Parameter {
+            label: "Index of refraction",
+            symbol: "n",
+            help: "How strongly the dielectric reflects and refracts: water 1.33, plastic and glass 1.5, diamond 2.4.",
+            applies: |material| {
+                if transmits(material) {
+                    return true;
+                }
+                let of_dielectric = matches!(material.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
+                has_specular(material) && of_dielectric && material.metalness < 1.0
+            },
+            ..of(
+                "specular.ior",
+                number([1.0, 4.0], [1.0, 2.5], "", 0.01),
+                field!(Number ior),
+            )
+        },
+        Parameter {
+            label: "Tint",
+            help: "Colours the reflection.",
+            ..of("specular.color", Kind::Color, field!(Color specular_color))
+        },
+        Parameter {
+            label: "Edge tint",
+            help: "Colours a metal's reflection towards the edge, strongest at 82° (F82 tint); white leaves it alone.",
+            applies: |material| {
+                let of_metal = !matches!(material.fresnel, Fresnel::None | Fresnel::Conductor) || transmits(material);
+                has_specular(material) && of_metal && material.metalness > 0.0
+            },
+            ..of("specular.edge_tint", Kind::Color, field!(Color edge_tint))
+        },
+        Parameter {
+            label: "Metal",
+            help: "Takes the index of refraction of a measured metal.",
+            applies: is_conductor,
+            ..of("specular.conductor", conductor_choices(), conductor())
+        },
+        Parameter {
+            label: "η",
+            symbol: "η",
+            help: "Real part of the metal's index of refraction for red, green and blue.",
+            applies: is_conductor,
+            ..of("specular.eta", Kind::Triple { range: [0.0, 20.0] }, eta())
+        },
+        Parameter {
+            label: "k",
+            symbol: "k",
+            help: "Imaginary part: how strongly the metal absorbs red, green and blue.",
+            applies: is_conductor,
+            ..of("specular.k", Kind::Triple { range: [0.0, 20.0] }, k())
+        },
+    ]
+}
+
+fn coat() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Weight",
+            help: "A layer of clear lacquer over everything else, by the geometric lobe.",
+            applies: |_| true,
+            ..of("coat.weight", unit_number(), field!(Number coat_weight))
+        },
+        Parameter {
+            label: "Roughness",
+            symbol: "R",
+            help: "How far the coat spreads its reflection; what is seen through it stays as sharp as it is.",
+            ..of("coat.roughness", unit_number(), field!(Number coat_roughness))
+        },
+        Parameter {
+            label: "Index of refraction",
+            symbol: "n",
+            help: "How strongly the coat reflects: lacquer 1.5, oil 1.4, at 1 nothing.",
+            ..of(
+                "coat.ior",
+                number([1.0, 4.0], [1.0, 2.5], "", 0.01),
+                field!(Number coat_ior),
+            )
+        },
+        Parameter {
+            label: "Colour",
+            help: "Colours what is seen through the coat.",
+            ..of("coat.color", Kind::Color, field!(Color coat_color))
+        },
+    ]
+}
+
+fn transmission() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Weight",
+            help: "How much of the base is clear instead of diffuse: glass, water, amber. The surface must be closed.",
+            applies: |material| material.metalness < 1.0,
+            ..of("transmission.weight", unit_number(), field!(Number transmission_weight))
+        },
+        Parameter {
+            label: "Colour",
+            help: "Colours what is seen through: at each passage through the surface or, where there is a depth, on the way inside.",
+            ..of("transmission.color", Kind::Color, field!(Color transmission_color))
+        },
+        Parameter {
+            label: "Depth",
+            help: "The way inside after which white light has the colour, in bounding radii of the model; at 0 the surface itself is tinted.",
+            ..of(
+                "transmission.depth",
+                number([0.0, 1000.0], [0.0, 2.0], "", 0.01),
+                field!(Number transmission_depth),
+            )
+        },
+        Parameter {
+            label: "Extra roughness",
+            symbol: "R",
+            help: "Added to the roughness of the reflection for what is seen through: at 0 both are equally rough.",
+            ..of(
+                "transmission.roughness",
+                number([-1.0, 1.0], [-1.0, 1.0], "", 0.01),
+                field!(Number transmission_roughness),
+            )
+        },
+    ]
+}
+
+fn emission() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Colour",
+            help: "Colour of the light that the surface gives off.",
+            applies: |material| material.emission_strength > 0.0,
+            ..of("emission.color", Kind::Color, field!(Color emission_color))
+        },
+        Parameter {
+            label: "Colour texture",
+            help: "Multiplies the emission by the model's texture.",
+            ..of("emission.color_texture", Kind::Toggle, texture!(emission))
+        },
+        Parameter {
+            label: "Strength",
+            help: "Radiance of the light that the surface gives off; at 1, white looks as bright as the furnace.",
+            applies: |_| true,
+            ..of(
+                "emission.strength",
+                number([0.0, 1e6], [0.0, 20.0], "", 0.1),
+                field!(Number emission_strength),
+            )
+        },
+    ]
+}
+
+fn geometry() -> Vec<Parameter> {
+    vec![
+        Parameter {
+            label: "Opacity",
+            help: "The share of light that the surface stops; the rest goes straight on, as if nothing were there.",
+            ..of("geometry.opacity", unit_number(), field!(Number opacity))
+        },
+        Parameter {
+            label: "Opacity texture",
+            help: "Multiplies the opacity by the alpha of the model's colour texture, cut off where the model says so.",
+            ..of("geometry.opacity_texture", Kind::Toggle, texture!(opacity))
+        },
+        Parameter {
+            label: "Normal strength",
+            help: "How steep the normal texture's bumps are; at 0 the surface is smooth, below 0 dents are bumps.",
+            applies: |material| material.textures.normal,
+            ..of(
+                "geometry.normal_strength",
+                number([-10.0, 10.0], [0.0, 2.0], "", 0.01),
+                field!(Number normal_strength),
+            )
+        },
+        Parameter {
+            label: "Normal texture",
+            help: "Bends the surface's normal by the model's texture.",
+            ..of("geometry.normal_texture", Kind::Toggle, texture!(normal))
+        },
+    ]
+}
+
+/// A parameter that still needs its words. The group is the key's first part.
+fn of(key: &'static str, kind: Kind, (get, set): (Get, Set)) -> Parameter {
+    let (group, applies): (_, fn(&MaterialSettings) -> bool) = match key.split_once('.') {
+        Some(("base", _)) => ("Base", |_| true),
+        Some(("specular", "weight")) => ("Specular", |_| true),
+        Some(("specular", _)) => ("Specular", has_specular),
+        Some(("coat", _)) => ("Coat", |material| material.coat_weight > 0.0),
+        Some(("transmission", _)) => ("Transmission", transmits),
+        Some(("geometry", _)) => ("Geometry", |_| true),
+        _ => ("Emission", |_| true),
+    };
+    Parameter {
+        key,
+        group,
+        label: "",
+        symbol: "",
+        help: "",
+        kind,
+        stage: Stage::Materials,
+        applies,
+        get,
+        set,
+    }
+}
+
+fn number(range: [f32; 2], soft_range: [f32; 2], unit: &'static str, step: f32) -> Kind {
+    Kind::Number {
+        range,
+        soft_range,
+        unit,
+        step,
+    }
+}
+
+fn unit_number() -> Kind {
+    number([0.0, 1.0], [0.0, 1.0], "", 0.01)
+}
+
+fn has_specular(material: &MaterialSettings) -> bool {
+    material.specular_weight > 0.0 || transmits(material)
+}
+
+fn transmits(material: &MaterialSettings) -> bool {
+    material.transmission_weight > 0.0 && material.metalness < 1.0
+}
+
+fn is_geometric(material: &MaterialSettings) -> bool {
+    has_specular(material) && material.lobe == Lobe::Geometric
+}
+
+fn is_conductor(material: &MaterialSettings) -> bool {
+    has_specular(material) && material.fresnel == Fresnel::Conductor
+}
+
+fn conductor_choices() -> Kind {
+    let choice = |conductor: Conductor| Choice {
+        name: conductor.name(),
+        label: conductor.name(),
+        help: match conductor {
+            Conductor::Custom => "η and k of your own.",
+            Conductor::Metal(_) => "η and k as measured.",
+        },
+    };
+    Kind::Choice(Conductor::all().map(choice).collect())
+}
+
+fn conductor() -> (Get, Set) {
+    (
+        |material| Value::Choice(material.conductor.name()),
+        |material, value| {
+            if let Value::Choice(name) = value {
+                material.set_conductor(Conductor::named(name));
+            }
+        },
+    )
+}
+
+fn eta() -> (Get, Set) {
+    (
+        |material| Value::Triple(material.eta),
+        |material, value| {
+            if let Value::Triple(eta) = value {
+                material.set_eta_and_k(eta, material.k);
+            }
+        },
+    )
+}
+
+fn k() -> (Get, Set) {
+    (
+        |material| Value::Triple(material.k),
+        |material, value| {
+            if let Value::Triple(k) = value {
+                material.set_eta_and_k(material.eta, k);
+            }
+        },
+    )
+}
+
+fn custom_curve() -> (Get, Set) {
+    (
+        |material| Value::Curve(material.custom_curve.points().to_vec()),
+        |material, value| {
+            if let Value::Curve(points) = value
+                && let Ok(curve) = CustomCurve::try_from(points)
+            {
+                material.custom_curve = curve;
+            }
+        },
+    )
+}

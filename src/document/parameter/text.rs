@@ -1,0 +1,219 @@
+//! Values as text and as JSON.
+
+use std::fmt::{Display, Write as _};
+use std::str::FromStr;
+
+use serde_json::Value as Json;
+
+use super::{Choice, Kind, Parameter, Value, keys};
+use crate::document::custom_curve::DISTANCE_MAX;
+use crate::optics::tone::linear_from_srgb;
+use crate::optics::vector::Vec3;
+
+impl Kind {
+    /// The value that a text says; `None` where it says none of this kind. Ranges are not looked at.
+    pub(super) fn parse(&self, text: &str) -> Option<Value> {
+        match self {
+            Kind::Number { .. } => parse_number(text).map(Value::Number),
+            Kind::Real { .. } => parse_number(text).map(Value::Real),
+            Kind::Count { .. } => text.parse().ok().map(Value::Count),
+            Kind::Place { .. } => parse_list(text).map(Value::Place),
+            Kind::Optional(_, word) if text == *word => Some(Value::Absent),
+            Kind::Optional(kind, _) => kind.parse(text),
+            Kind::Color => parse_color(text).ok().map(Value::Color),
+            Kind::Triple { .. } => parse_list(text).map(Value::Triple),
+            Kind::Choice(choices) => choose(choices, text),
+            Kind::Toggle => text.parse().ok().map(Value::Toggle),
+            Kind::Curve => parse_points(text).map(Value::Curve),
+        }
+    }
+
+    /// The value that a file says; `None` where it says none of this kind. Ranges are not looked at.
+    pub(super) fn value_from_json(&self, json: &Json) -> Option<Value> {
+        match (self, json) {
+            (Kind::Number { .. }, json) => json_number(json).map(Value::Number),
+            (Kind::Real { .. }, json) => json.as_f64().map(Value::Real),
+            (Kind::Count { .. }, json) => json.as_u64()?.try_into().ok().map(Value::Count),
+            (Kind::Place { .. }, Json::Array(place)) => {
+                let numbers: Option<Vec<f64>> = place.iter().map(Json::as_f64).collect();
+                numbers?.try_into().ok().map(Value::Place)
+            }
+            (Kind::Optional(..), Json::Null) => Some(Value::Absent),
+            (Kind::Optional(kind, _), json) => kind.value_from_json(json),
+            (Kind::Color, json) => json_numbers(json).map(Value::Color),
+            (Kind::Triple { .. }, json) => json_numbers(json).map(Value::Triple),
+            (Kind::Choice(choices), Json::String(name)) => choose(choices, name),
+            (Kind::Toggle, Json::Bool(on)) => Some(Value::Toggle(*on)),
+            (Kind::Curve, Json::Array(points)) => {
+                points.iter().map(json_numbers).collect::<Option<_>>().map(Value::Curve)
+            }
+            _ => None,
+        }
+    }
+
+    /// What it takes, in words.
+    pub(super) fn expected(&self) -> String {
+        let number = |low: &dyn Display, high: &dyn Display, unit: &str| {
+            let space = if unit.is_empty() { "" } else { " " };
+            format!("a number from {low} to {high}{space}{unit}")
+        };
+        match self {
+            Kind::Number {
+                range: [low, high],
+                unit,
+                ..
+            } => number(low, high, unit),
+            Kind::Real {
+                range: [low, high],
+                unit,
+            } => number(low, high, unit),
+            Kind::Count { range: [low, high] } => format!("a whole number from {low} to {high}"),
+            Kind::Place { range: [low, high] } => format!("x,y,z: three numbers, each from {low} to {high}"),
+            Kind::Optional(kind, word) => format!("{}, or {word}", kind.expected()),
+            Kind::Color => COLOR_EXPECTED.to_owned(),
+            Kind::Triple { range: [low, high] } => format!("r,g,b: three numbers, each from {low} to {high}"),
+            Kind::Choice(choices) => {
+                let names: Vec<_> = choices.iter().map(|choice| choice.name).collect();
+                format!("one of {}", names.join(", "))
+            }
+            Kind::Toggle => "true or false".to_owned(),
+            Kind::Curve => {
+                format!("points ξ:D,ξ:D,… such as 0:0,0.5:0.4,1:1, ξ from 0 to 1, D rising to at most {DISTANCE_MAX}")
+            }
+        }
+    }
+
+    /// The word for what is left to the program; empty where nothing can be.
+    pub(super) fn word_for_absent(&self) -> &'static str {
+        match self {
+            Kind::Optional(_, word) => word,
+            _ => "",
+        }
+    }
+}
+
+impl<T> Parameter<T> {
+    /// The value as it is written to files, exact.
+    pub fn json_from_value(&self, value: &Value) -> Json {
+        match value {
+            Value::Number(x) => json_from_number(*x),
+            Value::Real(x) => Json::from(*x),
+            Value::Count(n) => Json::from(*n),
+            Value::Place(place) => place.iter().copied().collect(),
+            Value::Absent => Json::Null,
+            Value::Color(triple) | Value::Triple(triple) => triple.iter().map(|x| json_from_number(*x)).collect(),
+            Value::Choice(name) => Json::from(*name),
+            Value::Toggle(on) => Json::from(*on),
+            Value::Curve(points) => {
+                let point = |point: &[f32; 2]| point.iter().map(|x| json_from_number(*x)).collect::<Json>();
+                points.iter().map(point).collect()
+            }
+        }
+    }
+}
+
+/// A finite number; f32 that overflows counts as none.
+pub(super) fn parse_number<N: FromStr + Into<f64> + Copy>(text: &str) -> Option<N> {
+    let number: Option<N> = text.trim().parse().ok();
+    number.filter(|x| (*x).into().is_finite())
+}
+
+/// Three numbers with commas between them.
+pub(super) fn parse_list<N: FromStr + Into<f64> + Copy>(text: &str) -> Option<[N; 3]> {
+    let numbers: Option<Vec<N>> = text.split(',').map(parse_number).collect();
+    numbers?.try_into().ok()
+}
+
+/// A text that is no colour.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0} is no colour; give {COLOR_EXPECTED}")]
+pub struct ColorError(String);
+
+pub(super) const COLOR_EXPECTED: &str = "#rrggbb (sRGB) or r,g,b (linear, each from 0 to 1)";
+
+/// Linear RGB, each in [0, 1], from `#rrggbb` (sRGB) or `r,g,b` (linear).
+///
+/// # Errors
+/// Says what would be right.
+pub fn parse_color(text: &str) -> Result<[f32; 3], ColorError> {
+    let color = parse_hex_color(text).or_else(|| parse_list(text));
+    let color = color.filter(|color| color.iter().all(|x| (0.0..=1.0).contains(x)));
+    color.ok_or_else(|| ColorError(shortened(text.to_owned())))
+}
+
+/// Linear RGB from `#rrggbb` in sRGB.
+fn parse_hex_color(text: &str) -> Option<[f32; 3]> {
+    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6)?;
+    // A sign would pass as part of a number.
+    let digits = Some(digits).filter(|digits| digits.bytes().all(|digit| digit.is_ascii_hexdigit()))?;
+    let byte = |i: usize| u8::from_str_radix(&digits[2 * i..2 * i + 2], 16).ok();
+    let srgb = [byte(0)?, byte(1)?, byte(2)?].map(|b| f64::from(b) / 255.0);
+    Some(linear_from_srgb(Vec3::<f64>::from_f64(srgb)).to_f32())
+}
+
+pub(super) fn parse_points(text: &str) -> Option<Vec<[f32; 2]>> {
+    let point = |text: &str| {
+        let (xi, distance) = text.split_once(':')?;
+        Some([parse_number(xi)?, parse_number(distance)?])
+    };
+    text.split(',').map(point).collect()
+}
+
+pub(super) fn choose(choices: &[Choice], name: &str) -> Option<Value> {
+    let choice = choices.iter().find(|choice| choice.name == name)?;
+    Some(Value::Choice(choice.name))
+}
+
+pub(super) fn json_number(json: &Json) -> Option<f32> {
+    json.as_f64().map(|x| x as f32).filter(|x| x.is_finite())
+}
+
+pub(super) fn json_numbers<const N: usize>(json: &Json) -> Option<[f32; N]> {
+    let numbers: Option<Vec<f32>> = json.as_array()?.iter().map(json_number).collect();
+    numbers?.try_into().ok()
+}
+
+/// The shortest number that reads back as the same f32.
+pub(super) fn json_from_number(x: f32) -> Json {
+    Json::from(x.to_string().parse().unwrap_or(f64::from(x)))
+}
+
+/// At most 60 characters of what a user gave, for messages.
+pub(super) fn shortened(text: String) -> String {
+    match text.char_indices().nth(60) {
+        None => text,
+        Some((end, _)) => {
+            let mut start = text[..end].to_owned();
+            let _ = write!(start, "…");
+            start
+        }
+    }
+}
+
+/// The key that was probably meant: nearest by edits, the group being left out or not.
+pub(crate) fn nearest_key(key: &str) -> Option<&'static str> {
+    let distance = |known: &str| {
+        let short = known.rsplit_once('.').map_or(known, |(_, short)| short);
+        edit_distance(key, known).min(edit_distance(key, short))
+    };
+    let near = keys()
+        .map(|known| (distance(known), known))
+        .min_by_key(|(edits, _)| *edits);
+    near.filter(|(edits, _)| 3 * edits <= key.chars().count())
+        .map(|(_, key)| key)
+}
+
+/// Fewest insertions, removals and replacements of characters that turn one text into the other.
+fn edit_distance(from: &str, to: &str) -> usize {
+    let mut row: Vec<usize> = (0..=to.chars().count()).collect();
+    for (i, a) in from.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, b) in to.chars().enumerate() {
+            let replaced = diagonal + usize::from(a != b);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row.last().copied().unwrap_or_default()
+}

@@ -1,0 +1,152 @@
+//! The effects that an engine can simulate, by name, and what was decided about each.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// The value of a constant that leaves a choice to each material.
+pub const ANY: u32 = u32::MAX;
+
+/// An override constant of the pipelines, generated into the shader module `scene/plan`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Constant {
+    /// Its name in WGSL.
+    pub name: &'static str,
+    /// Its value where nothing is left out: 1 for a flag, [`ANY`] for one of several.
+    pub general: u32,
+}
+
+macro_rules! general {
+    (flag) => {
+        1
+    };
+    (choice) => {
+        ANY
+    };
+}
+
+macro_rules! effects {
+    ($($effect:ident $name:literal $($kind:ident $constant:literal)?;)*) => {
+        /// An effect that costs time and that not every scene needs. `document::effect` says of each what it is, which
+        /// scenes call for it, and how it is taken out.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[allow(missing_docs, reason = "document::effect describes each")]
+        pub enum EffectId {
+            $($effect,)*
+        }
+
+        impl EffectId {
+            /// Every effect, in the order of the plan's table.
+            pub const ALL: &[Self] = &[$(Self::$effect),*];
+
+            /// Name on the command line, in files and reports.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$effect => $name,)*
+                }
+            }
+
+            /// What switches its code in the shaders; `None` where it has none that could be left out.
+            pub const fn constant(self) -> Option<Constant> {
+                match self {
+                    $($(Self::$effect => Some(Constant { name: $constant, general: general!($kind) }),)?)*
+                    #[allow(unreachable_patterns, reason = "every effect might have code of its own")]
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+effects! {
+    Environment "environment";
+    LightSampling "light-sampling" flag "PLAN_LIGHT_SAMPLING";
+    AreaLights "area-lights";
+    Emission "emission" flag "PLAN_EMISSION";
+    EmitterSampling "emitter-sampling" flag "PLAN_EMITTER_SAMPLING";
+    Background "background";
+    Ground "ground";
+    Interreflection "interreflection" flag "PLAN_INTERREFLECTION";
+    Base "base" flag "PLAN_BASE";
+    Specular "specular" flag "PLAN_SPECULAR";
+    Lobe "lobe" choice "PLAN_LOBE";
+    Curve "curve" choice "PLAN_CURVE";
+    Anisotropy "anisotropy" flag "PLAN_ANISOTROPY";
+    Horizon "horizon" choice "PLAN_HORIZON";
+    Fresnel "fresnel" choice "PLAN_FRESNEL";
+    EdgeTint "edge-tint" flag "PLAN_EDGE_TINT";
+    Coat "coat" flag "PLAN_COAT";
+    Transmission "transmission" flag "PLAN_TRANSMISSION";
+    Absorption "absorption" flag "PLAN_ABSORPTION";
+    ColorTexture "color-texture" flag "PLAN_COLOR_TEXTURES";
+    RoughnessTexture "roughness-texture" flag "PLAN_ROUGHNESS_TEXTURES";
+    RoughTables "rough-tables" flag "PLAN_ROUGH_TABLES";
+    NormalMap "normal-map" flag "PLAN_NORMAL_MAPS";
+    EmissionTexture "emission-texture" flag "PLAN_EMISSION_TEXTURES";
+    Alpha "alpha" flag "PLAN_ALPHA";
+    DepthOfField "depth-of-field" flag "PLAN_LENS";
+    FireflyClamp "firefly-clamp" flag "PLAN_FIREFLY_CLAMP";
+    AdaptiveSampling "adaptive-sampling";
+    Variance "variance";
+    PictureLayers "picture-layers";
+    Denoising "denoising";
+}
+
+impl fmt::Display for EffectId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A name that no effect has.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no effect is called {0}")]
+pub struct UnknownEffect(pub String);
+
+impl FromStr for EffectId {
+    type Err = UnknownEffect;
+
+    fn from_str(name: &str) -> Result<Self, UnknownEffect> {
+        let named = Self::ALL.iter().copied().find(|effect| effect.name() == name);
+        named.ok_or_else(|| UnknownEffect(name.to_owned()))
+    }
+}
+
+/// What is decided about an effect, and why.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct Decision {
+    /// It is simulated.
+    pub is_on: bool,
+    /// The value of its constant.
+    pub value: u32,
+    /// In words.
+    pub reason: String,
+}
+
+impl Decision {
+    /// Simulated.
+    pub fn on(reason: impl Into<String>) -> Self {
+        Self::which(1, reason)
+    }
+
+    /// Left out.
+    pub fn off(reason: impl Into<String>) -> Self {
+        Self {
+            is_on: false,
+            ..Self::which(0, reason)
+        }
+    }
+
+    /// Simulated, with a constant of this value.
+    pub fn which(value: u32, reason: impl Into<String>) -> Self {
+        Self {
+            is_on: true,
+            value,
+            reason: reason.into(),
+        }
+    }
+
+    /// On or off.
+    pub fn when(is_on: bool, reason: impl Into<String>) -> Self {
+        if is_on { Self::on(reason) } else { Self::off(reason) }
+    }
+}

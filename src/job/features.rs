@@ -1,0 +1,72 @@
+//! What the camera sees first at each pixel: albedo, normal, depth. For compositing and denoising.
+
+use super::film::Film;
+
+/// Means over some samples of each pixel; row by row from the top.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Features {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// The share of the light that the surface reflects or lets through, linear Rec. 709, premultiplied by the share of
+    /// the pixel that is covered: 0 where nothing is met. In a mirror, and behind clear glass, that of what is seen there.
+    pub albedo: Vec<[f32; 3]>,
+    /// Shading normal in the world, towards the viewer; shorter than 1 where normals differ or the pixel is not covered.
+    pub normal: Vec<[f32; 3]>,
+    /// Distance from the camera along its axis, in the model's units, over the covered part of the pixel; infinite where
+    /// nothing is met.
+    pub depth: Vec<f32>,
+}
+
+/// Samples of a pixel that tell what is seen first: the mean over more would hardly change.
+pub const GUIDE_SAMPLES: u32 = 64;
+
+/// Sums over a pixel's first samples of what they saw first, as both engines make them. Albedo and normal are those of
+/// the first surface that is not a mirror or clear glass; the depth is that of the first surface of all.
+#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct GuideSums {
+    /// Sum of the albedos, each times what mirrors and glass before it leave of the light.
+    pub albedo: [f32; 3],
+    /// How many samples met something.
+    pub hits: f32,
+    /// Sum of the shading normals in the world.
+    pub normal: [f32; 3],
+    /// Sum of the depths, in the geometry's units.
+    pub depth: f32,
+}
+
+impl GuideSums {
+    /// Adds what a sample saw.
+    pub fn add(&mut self, seen: &GuideSums) {
+        for i in 0..3 {
+            self.albedo[i] += seen.albedo[i];
+            self.normal[i] += seen.normal[i];
+        }
+        self.hits += seen.hits;
+        self.depth += seen.depth;
+    }
+}
+
+impl Features {
+    /// The means of a film's sums; `world_units_per_unit` is the geometry's.
+    pub fn of(film: &Film, world_units_per_unit: f64) -> Self {
+        let sums = || film.guides.iter().enumerate();
+        let mean = |pixel: usize, sum: [f32; 3]| {
+            let per_sample = 1.0 / film.guide_samples(pixel).max(1.0) as f32;
+            sum.map(|x| x * per_sample)
+        };
+        let depth = |sums: &GuideSums| match sums.hits {
+            hits if hits > 0.0 => (f64::from(sums.depth / hits) * world_units_per_unit) as f32,
+            _ => f32::INFINITY,
+        };
+        Self {
+            width: film.width,
+            height: film.height,
+            albedo: sums().map(|(pixel, sums)| mean(pixel, sums.albedo)).collect(),
+            normal: sums().map(|(pixel, sums)| mean(pixel, sums.normal)).collect(),
+            depth: film.guides.iter().map(depth).collect(),
+        }
+    }
+}

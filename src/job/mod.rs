@@ -1,0 +1,97 @@
+//! What an engine is handed, and what it hands back: the job (a document compiled to numbers, with the plan that says
+//! which effects it calls for), the film, tiles and their schedule, and what else is asked of an engine.
+
+pub mod effect;
+pub mod features;
+pub mod film;
+pub mod plan;
+pub mod precision;
+pub mod probe;
+pub mod sampling;
+pub mod scatter;
+pub mod tiles;
+
+use std::sync::Arc;
+
+use crate::optics::material::Material;
+use crate::optics::random::Sequence;
+use crate::scene::Geometry;
+use crate::scene::camera::Camera;
+use crate::scene::environment::Environment;
+use crate::scene::light::{LightChoice, Lights};
+use crate::scene::texture::Textures;
+
+use crate::named::named;
+use plan::Plan;
+
+/// Everything that a picture depends on. Cheap to clone.
+#[derive(Clone, Debug)]
+pub struct Job {
+    /// What rays meet.
+    pub geometry: Arc<Geometry>,
+    /// What they see far away.
+    pub environment: Arc<Environment>,
+    /// What of the geometry emits.
+    pub lights: Arc<Lights>,
+    /// The materials by slot: the model's, the ground's, the area lights'.
+    pub materials: Arc<Vec<Material<f32>>>,
+    /// What the materials look up.
+    pub textures: Arc<Textures>,
+    /// Custom curves and albedo tables; never empty.
+    pub tables: Arc<Vec<f32>>,
+    /// Camera, light and sampling.
+    pub settings: Settings,
+    /// Which effects are simulated.
+    pub plan: Plan,
+}
+
+/// The numbers of a job that are cheap to change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Width and height in pixels.
+    pub image_size: [u32; 2],
+    /// In the geometry's units.
+    pub camera: Camera<f64>,
+    /// What the camera sees where it meets nothing.
+    pub background: BackgroundKind,
+    /// Cosine and sine of the environment's rotation about +Y.
+    pub environment_rotation: [f64; 2],
+    /// Factor of the environment's radiance.
+    pub environment_strength: f64,
+    /// How one light sample is shared out.
+    pub light_choice: LightChoice,
+    /// Reflections a path may have.
+    pub bounces: u32,
+    /// The largest radiance that light keeps that was reflected twice or more; infinite where all is kept.
+    pub firefly_clamp: f64,
+    /// Random numbers.
+    pub sequence: Sequence,
+    /// How light is found.
+    pub strategy: Strategy,
+    /// Changes all random numbers.
+    pub seed: u32,
+}
+
+named! {
+    /// How light is found. All three converge to the same picture.
+    #[derive(Default)]
+    Strategy {
+        Lobe = 0, "lobe", "Lobe", "Sample the material's lobe and see what light it meets.";
+        Light = 1, "light", "Light", "Sample the light and see how the material reflects it.";
+        #[default]
+        Mis = 2, "mis", "Both (MIS)", "Sample both, each weighed by its density (Veach 1997).";
+    }
+}
+
+/// What the camera sees where it meets nothing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum BackgroundKind {
+    /// The environment.
+    Environment,
+    /// The environment, averaged around each direction; the sine of the largest angle.
+    Blurred(f64),
+    /// Nothing: alpha 0.
+    Transparent,
+    /// A linear colour.
+    Color([f32; 3]),
+}

@@ -1,0 +1,81 @@
+//! Choices that have a name in files and on the command line, a label in menus and a sentence of help.
+
+/// One of a closed list of choices.
+pub trait Named: Copy + PartialEq + Sized + 'static {
+    /// Every choice, in the order of the menus.
+    const ALL: &'static [Self];
+
+    /// Name in files and on the command line.
+    fn name(self) -> &'static str;
+
+    /// Name in the menus.
+    fn label(self) -> &'static str;
+
+    /// What it means, or when to choose it.
+    fn help(self) -> &'static str;
+
+    /// The number that the shaders know it by.
+    fn number(self) -> u32;
+
+    /// The choice of this name.
+    fn by_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|choice| choice.name() == name)
+    }
+}
+
+/// Declares an enum of choices, one line each: `Variant = number, "name", "Label", "Help.";`. The number is the one that
+/// the shaders know it by; it may be left out. In files a choice stands by its name.
+macro_rules! named {
+    ($(#[$doc:meta])* $type:ident {
+        $($(#[$attribute:meta])* $variant:ident $(= $index:literal)?, $name:literal, $label:literal, $help:literal;)*
+    }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+        #[repr(u32)]
+        pub enum $type {
+            $(#[doc = $help] #[serde(rename = $name)] $(#[$attribute])* $variant $(= $index)?,)*
+        }
+
+        impl $type {
+            /// Every one, in the order of the menus.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// Name in files and on the command line.
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name,)* }
+            }
+
+            /// Name in the menus.
+            pub const fn label(self) -> &'static str {
+                match self { $(Self::$variant => $label,)* }
+            }
+
+            /// What it means.
+            pub const fn help(self) -> &'static str {
+                match self { $(Self::$variant => $help,)* }
+            }
+        }
+
+        impl $crate::named::Named for $type {
+            const ALL: &'static [Self] = Self::ALL;
+
+            fn name(self) -> &'static str {
+                self.name()
+            }
+
+            fn label(self) -> &'static str {
+                self.label()
+            }
+
+            fn help(self) -> &'static str {
+                self.help()
+            }
+
+            fn number(self) -> u32 {
+                self as u32
+            }
+        }
+    };
+}
+
+pub(crate) use named;

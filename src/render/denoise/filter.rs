@@ -1,0 +1,267 @@
+//! Open Image Denoise's filter as a safe value: pictures in, a picture out.
+
+use std::ffi::{CStr, c_int, c_void};
+use std::ptr;
+use std::sync::Arc;
+
+use super::library::{BufferHandle, DeviceHandle, FilterHandle, Functions, Library, LibraryError, message};
+
+/// `OIDN_FORMAT_FLOAT3`.
+const FLOAT3: c_int = 3;
+/// `OIDN_QUALITY_FAST` and `OIDN_QUALITY_HIGH`.
+const QUALITY_FAST: c_int = 4;
+const QUALITY_HIGH: c_int = 6;
+/// Memory that the library is asked not to exceed, MB: larger pictures it cuts into tiles.
+const MEMORY_MB: c_int = 1500;
+/// Bytes of a pixel.
+const PIXEL_BYTES: usize = size_of::<[f32; 3]>();
+
+/// How carefully a picture is filtered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quality {
+    /// In about half the time.
+    Fast,
+    /// As well as the library can.
+    High,
+}
+
+// SAFETY: the library's handles may be used from any thread; each of these values is used from one at a time.
+unsafe impl Send for Device<'_> {}
+// SAFETY: what is called through a shared device (making buffers and filters, asking for errors, which the library keeps
+// by thread) the library guards itself.
+unsafe impl Sync for Device<'_> {}
+// SAFETY: as of the device.
+unsafe impl Send for Buffer<'_> {}
+// SAFETY: as of the device.
+unsafe impl Send for Filter<'_> {}
+
+/// A device of the library.
+pub(super) struct Device<'a> {
+    functions: &'a Functions,
+    handle: DeviceHandle,
+}
+
+impl<'a> Device<'a> {
+    /// The fastest there is.
+    pub(super) fn of(library: &'a Library) -> Result<Self, LibraryError> {
+        let functions = &library.functions;
+        // SAFETY: 0 is `OIDN_DEVICE_TYPE_DEFAULT`; a null handle is an answer.
+        let handle = unsafe { (functions.new_device)(0) };
+        let device = Self { functions, handle };
+        if !handle.is_null() {
+            // SAFETY: the handle is live, the name a C string. Threads bound to cores would get in our own's way.
+            unsafe {
+                (functions.set_device_bool)(handle, c"setAffinity".as_ptr(), false);
+                (functions.commit_device)(handle);
+            }
+        }
+        device.check()?;
+        Ok(device)
+    }
+
+    /// A parameter of the device.
+    pub(super) fn int(&self, name: &CStr) -> i32 {
+        // SAFETY: the handle is live.
+        unsafe { (self.functions.get_device_int)(self.handle, name.as_ptr()) }
+    }
+
+    /// The error of the calls since the last check. (With a null handle: why there is no device.)
+    fn check(&self) -> Result<(), LibraryError> {
+        let mut text = ptr::null();
+        // SAFETY: the message lives until the next error of this thread.
+        let (code, text) = unsafe {
+            let code = (self.functions.get_device_error)(self.handle, &raw mut text);
+            (code, message(text))
+        };
+        match (code, self.handle.is_null()) {
+            (0, false) => Ok(()),
+            (0, true) => Err(LibraryError::Device("there is no device for it".to_owned())),
+            _ => Err(LibraryError::Device(text)),
+        }
+    }
+}
+
+impl Drop for Device<'_> {
+    fn drop(&mut self) {
+        if !self.handle.is_null() {
+            // SAFETY: live, and nothing of the device is left: filters and buffers hold it by an `Arc`.
+            unsafe { (self.functions.release_device)(self.handle) };
+        }
+    }
+}
+
+/// A picture in the device's memory.
+struct Buffer<'a> {
+    device: Arc<Device<'a>>,
+    handle: BufferHandle,
+    pixels: usize,
+}
+
+impl<'a> Buffer<'a> {
+    fn new(device: &Arc<Device<'a>>, pixels: usize) -> Result<Self, LibraryError> {
+        // SAFETY: the device is live.
+        let handle = unsafe { (device.functions.new_buffer)(device.handle, pixels * PIXEL_BYTES) };
+        let buffer = Self {
+            device: device.clone(),
+            handle,
+            pixels,
+        };
+        device.check()?;
+        Ok(buffer)
+    }
+
+    fn write(&self, values: &[[f32; 3]]) {
+        assert_eq!(values.len(), self.pixels, "a picture of another size");
+        // SAFETY: as many bytes as the buffer has are read from the slice.
+        unsafe {
+            (self.device.functions.write_buffer)(self.handle, 0, size_of_val(values), values.as_ptr().cast::<c_void>());
+        }
+    }
+
+    fn read(&self) -> Vec<[f32; 3]> {
+        let mut values = vec![[0.0; 3]; self.pixels];
+        // SAFETY: as many bytes as the buffer has are written to the vector's elements.
+        unsafe {
+            let to = values.as_mut_ptr().cast::<c_void>();
+            (self.device.functions.read_buffer)(self.handle, 0, size_of_val(&values[..]), to);
+        }
+        values
+    }
+}
+
+impl Drop for Buffer<'_> {
+    fn drop(&mut self) {
+        if !self.handle.is_null() {
+            // SAFETY: live, and released once.
+            unsafe { (self.device.functions.release_buffer)(self.handle) };
+        }
+    }
+}
+
+/// What is seen at each pixel beside its light: what the filter tells edges and textures by.
+#[derive(Clone, Copy, Debug)]
+pub struct Guides<'a> {
+    /// Share of the light that is reflected or let through, [0, 1].
+    pub albedo: &'a [[f32; 3]],
+    /// Shading normal in the world, of length at most 1.
+    pub normal: &'a [[f32; 3]],
+}
+
+/// A filter for pictures of one size, with guides.
+pub(super) struct Filter<'a> {
+    device: Arc<Device<'a>>,
+    handle: FilterHandle,
+    size: [usize; 2],
+    quality: Quality,
+    color: Buffer<'a>,
+    albedo: Buffer<'a>,
+    normal: Buffer<'a>,
+    output: Buffer<'a>,
+    /// The scale that the filter was committed with.
+    input_scale: f32,
+}
+
+impl<'a> Filter<'a> {
+    /// A filter on this device.
+    pub(super) fn new(device: &Arc<Device<'a>>, size: [usize; 2], quality: Quality) -> Result<Self, LibraryError> {
+        let functions = device.functions;
+        let pixels = size[0] * size[1];
+        // SAFETY: the device is live, the name a C string.
+        let handle = unsafe { (functions.new_filter)(device.handle, c"RT".as_ptr()) };
+        let filter = Self {
+            device: device.clone(),
+            handle,
+            size,
+            quality,
+            color: Buffer::new(device, pixels)?,
+            albedo: Buffer::new(device, pixels)?,
+            normal: Buffer::new(device, pixels)?,
+            output: Buffer::new(device, pixels)?,
+            input_scale: 0.0,
+        };
+        device.check()?;
+        let level = match quality {
+            Quality::Fast => QUALITY_FAST,
+            Quality::High => QUALITY_HIGH,
+        };
+        filter.set_image(c"color", &filter.color);
+        filter.set_image(c"albedo", &filter.albedo);
+        filter.set_image(c"normal", &filter.normal);
+        filter.set_image(c"output", &filter.output);
+        // SAFETY: the filter is live, the names are C strings.
+        unsafe {
+            (functions.set_filter_bool)(handle, c"hdr".as_ptr(), true);
+            (functions.set_filter_int)(handle, c"quality".as_ptr(), level);
+            (functions.set_filter_int)(handle, c"maxMemoryMB".as_ptr(), MEMORY_MB);
+        }
+        device.check()?;
+        Ok(filter)
+    }
+
+    fn set_image(&self, name: &CStr, buffer: &Buffer<'_>) {
+        let [width, height] = self.size;
+        // SAFETY: the buffer has width × height pixels of this format and lives as long as the filter.
+        unsafe {
+            let set = self.device.functions.set_filter_image;
+            set(
+                self.handle,
+                name.as_ptr(),
+                buffer.handle,
+                FLOAT3,
+                width,
+                height,
+                0,
+                0,
+                0,
+            );
+        }
+    }
+
+    /// Whether it is one for pictures of this size and quality.
+    pub(super) fn fits(&self, size: [usize; 2], quality: Quality) -> bool {
+        (self.size, self.quality) == (size, quality)
+    }
+
+    /// By how many pixels parts of a picture must overlap that are filtered by themselves, and what their places must be
+    /// multiples of.
+    pub(super) fn overlap_and_alignment(&self) -> [usize; 2] {
+        let number = |name: &CStr| {
+            // SAFETY: the filter is live.
+            let value = unsafe { (self.device.functions.get_filter_int)(self.handle, name.as_ptr()) };
+            usize::try_from(value).unwrap_or(0)
+        };
+        [number(c"tileOverlap"), number(c"tileAlignment").max(1)]
+    }
+
+    /// Sets the guides of the pictures that follow.
+    pub(super) fn guide(&self, guides: Guides<'_>) {
+        self.albedo.write(guides.albedo);
+        self.normal.write(guides.normal);
+    }
+
+    /// A picture without its noise. `input_scale` brings its values to where the filter works best: middle grey to 0.18.
+    pub(super) fn run(&mut self, color: &[[f32; 3]], input_scale: f32) -> Result<Vec<[f32; 3]>, LibraryError> {
+        let functions = self.device.functions;
+        self.color.write(color);
+        // SAFETY: the filter and what it refers to are live.
+        unsafe {
+            if self.input_scale != input_scale {
+                (functions.set_filter_float)(self.handle, c"inputScale".as_ptr(), input_scale);
+                (functions.commit_filter)(self.handle);
+                self.input_scale = input_scale;
+            }
+            (functions.execute_filter)(self.handle);
+        }
+        self.device.check()?;
+        Ok(self.output.read())
+    }
+}
+
+impl Drop for Filter<'_> {
+    fn drop(&mut self) {
+        if !self.handle.is_null() {
+            // SAFETY: live, and released once; what it refers to is released after it.
+            unsafe { (self.device.functions.release_filter)(self.handle) };
+        }
+    }
+}

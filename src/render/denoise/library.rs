@@ -1,0 +1,249 @@
+//! Open Image Denoise, loaded at run time: found, checked, and its C functions bound. The only place that calls them is
+//! [`super::filter`].
+//!
+//! The library is looked for in the folder that [`FOLDER_VARIABLE`] names, and there alone where it is set; beside the
+//! executable; in the data folder, where `scripts/setup` puts it; then by the system's loader.
+
+use std::ffi::{CStr, OsStr, c_char, c_int, c_void};
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+/// The environment variable that names the folder of the library.
+pub const FOLDER_VARIABLE: &str = "GLOSSMITH_OIDN";
+
+/// The oldest version whose filters have all the qualities, major and minor number.
+const OLDEST: [i32; 2] = [2, 3];
+
+#[cfg(target_os = "windows")]
+const NAME: &str = "OpenImageDenoise.dll";
+#[cfg(target_os = "macos")]
+const NAME: &str = "libOpenImageDenoise.2.dylib";
+#[cfg(not(any(target_os = "windows", target_os = "macos")))]
+const NAME: &str = "libOpenImageDenoise.so.2";
+
+/// The beginnings of the names of what the library itself needs, in the order in which it is needed. Loaded first where
+/// they lie beside it: the loader does not look there by itself.
+const NEEDED: [&str; 2] = ["libtbb.so.12", "libOpenImageDenoise_core.so"];
+
+/// Why there is no denoiser.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum LibraryError {
+    /// It lies nowhere.
+    #[error(
+        "the denoiser Open Image Denoise 2 was not found: run `scripts/setup denoiser`, or name the folder of {NAME} by \
+         {FOLDER_VARIABLE}"
+    )]
+    Missing,
+    /// The folder that the user named does not have it.
+    #[error("{}: there is no {NAME} in this folder, which {FOLDER_VARIABLE} names", .0.display())]
+    NotInFolder(PathBuf),
+    /// The file can't be loaded.
+    #[error("{}: can't be loaded as the denoiser ({reason}); install it again by `scripts/setup denoiser`", path.display())]
+    Broken {
+        /// The file.
+        path: PathBuf,
+        /// What the loader said.
+        reason: String,
+    },
+    /// It can't be used.
+    #[error("{}: Open Image Denoise {found} is too old, {}.{} or newer is needed", path.display(), OLDEST[0], OLDEST[1])]
+    Old {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        found: String,
+    },
+    /// The library refuses to work here.
+    #[error("the denoiser can't be used here: {0}")]
+    Device(String),
+}
+
+/// The C library's handle of a device (`OIDNDevice`).
+pub(super) type DeviceHandle = *mut c_void;
+/// The C library's handle of a filter (`OIDNFilter`).
+pub(super) type FilterHandle = *mut c_void;
+/// The C library's handle of a buffer (`OIDNBuffer`).
+pub(super) type BufferHandle = *mut c_void;
+
+macro_rules! functions {
+    ($($field:ident = $symbol:literal: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
+        /// The C functions, by their names in `oidn.h` without `oidn`.
+        #[derive(Debug)]
+        pub(super) struct Functions {
+            $(pub(super) $field: unsafe extern "C" fn($($argument),*) $(-> $result)?,)*
+        }
+
+        impl Functions {
+            /// Binds all of them, or names the one that is missing.
+            fn bind(library: &libloading::Library) -> Result<Self, libloading::Error> {
+                // SAFETY: the signatures are those of `oidn.h` of version 2, whose major number is in the file's name.
+                unsafe { Ok(Self { $($field: *library.get($symbol)?,)* }) }
+            }
+        }
+    };
+}
+
+functions! {
+    new_device = b"oidnNewDevice\0": fn(c_int) -> DeviceHandle;
+    commit_device = b"oidnCommitDevice\0": fn(DeviceHandle);
+    release_device = b"oidnReleaseDevice\0": fn(DeviceHandle);
+    set_device_bool = b"oidnSetDeviceBool\0": fn(DeviceHandle, *const c_char, bool);
+    get_device_int = b"oidnGetDeviceInt\0": fn(DeviceHandle, *const c_char) -> c_int;
+    get_device_error = b"oidnGetDeviceError\0": fn(DeviceHandle, *mut *const c_char) -> c_int;
+    new_buffer = b"oidnNewBuffer\0": fn(DeviceHandle, usize) -> BufferHandle;
+    release_buffer = b"oidnReleaseBuffer\0": fn(BufferHandle);
+    write_buffer = b"oidnWriteBuffer\0": fn(BufferHandle, usize, usize, *const c_void);
+    read_buffer = b"oidnReadBuffer\0": fn(BufferHandle, usize, usize, *mut c_void);
+    new_filter = b"oidnNewFilter\0": fn(DeviceHandle, *const c_char) -> FilterHandle;
+    release_filter = b"oidnReleaseFilter\0": fn(FilterHandle);
+    set_filter_image = b"oidnSetFilterImage\0":
+        fn(FilterHandle, *const c_char, BufferHandle, c_int, usize, usize, usize, usize, usize);
+    set_filter_bool = b"oidnSetFilterBool\0": fn(FilterHandle, *const c_char, bool);
+    set_filter_int = b"oidnSetFilterInt\0": fn(FilterHandle, *const c_char, c_int);
+    get_filter_int = b"oidnGetFilterInt\0": fn(FilterHandle, *const c_char) -> c_int;
+    set_filter_float = b"oidnSetFilterFloat\0": fn(FilterHandle, *const c_char, f32);
+    commit_filter = b"oidnCommitFilter\0": fn(FilterHandle);
+    execute_filter = b"oidnExecuteFilter\0": fn(FilterHandle);
+}
+
+/// The loaded library. It stays loaded until the program ends: its threads do not like to be unloaded.
+#[derive(Debug)]
+pub struct Library {
+    pub(super) functions: Functions,
+    path: PathBuf,
+    version: [i32; 3],
+    device: &'static str,
+}
+
+impl Library {
+    /// The library, looked for at the first call.
+    ///
+    /// # Errors
+    /// [`LibraryError`], in one line that says what to do; the same one at each call.
+    pub fn get() -> Result<&'static Self, LibraryError> {
+        static LIBRARY: OnceLock<Result<Library, LibraryError>> = OnceLock::new();
+        LIBRARY.get_or_init(Self::find).as_ref().map_err(Clone::clone)
+    }
+
+    fn find() -> Result<Self, LibraryError> {
+        if let Some(folder) = std::env::var_os(FOLDER_VARIABLE).filter(|folder| !folder.is_empty()) {
+            let folder = PathBuf::from(folder);
+            return match folder.join(NAME) {
+                path if path.exists() => Self::load(&path),
+                _ => Err(LibraryError::NotInFolder(folder)),
+            };
+        }
+        let executable = std::env::current_exe().ok();
+        let beside = executable.as_deref().and_then(Path::parent).map(Path::to_owned);
+        for folder in [beside, data_folder()].into_iter().flatten() {
+            let path = folder.join(NAME);
+            if path.exists() {
+                return Self::load(&path);
+            }
+        }
+        // SAFETY: as in `load`.
+        match unsafe { libloading::Library::new(NAME) } {
+            Ok(loaded) => Self::bind(loaded, Path::new(NAME)),
+            Err(_) => Err(LibraryError::Missing),
+        }
+    }
+
+    /// Loads the file.
+    ///
+    /// # Errors
+    /// [`LibraryError`] naming it.
+    pub fn load(path: &Path) -> Result<Self, LibraryError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let open = |path: &Path| {
+            // SAFETY: a library's initialisers run. That of the file that the user installed as Open Image Denoise is
+            // trusted as the program itself is.
+            unsafe { libloading::Library::new(path) }.map_err(|error| LibraryError::Broken {
+                path: path.to_owned(),
+                reason: one_line(&error.to_string()),
+            })
+        };
+        for needed in NEEDED.iter().filter_map(|name| file_beginning_with(folder, name)) {
+            std::mem::forget(open(&needed)?);
+        }
+        Self::bind(open(path)?, path)
+    }
+
+    fn bind(loaded: libloading::Library, path: &Path) -> Result<Self, LibraryError> {
+        let functions = Functions::bind(&loaded).map_err(|error| LibraryError::Broken {
+            path: path.to_owned(),
+            reason: one_line(&error.to_string()),
+        })?;
+        std::mem::forget(loaded);
+        let mut library = Self {
+            functions,
+            path: path.to_owned(),
+            version: [0; 3],
+            device: "",
+        };
+        let [version, kind] = {
+            let device = super::filter::Device::of(&library)?;
+            [c"version", c"type"].map(|name| device.int(name))
+        };
+        library.version = [version / 10_000, version / 100 % 100, version % 100];
+        library.device = match kind {
+            1 => "CPU",
+            2 => "SYCL",
+            3 => "CUDA",
+            4 => "HIP",
+            5 => "Metal",
+            _ => "unknown device",
+        };
+        if library.version[..2] < OLDEST[..] {
+            return Err(LibraryError::Old {
+                path: library.path.clone(),
+                found: library.version_text(),
+            });
+        }
+        Ok(library)
+    }
+
+    /// As 2.5.1.
+    fn version_text(&self) -> String {
+        self.version.map(|number| number.to_string()).join(".")
+    }
+}
+
+impl std::fmt::Display for Library {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Open Image Denoise {} ({})", self.version_text(), self.device)
+    }
+}
+
+/// The folder in which `scripts/setup` puts the library.
+pub fn data_folder() -> Option<PathBuf> {
+    let folders = directories::ProjectDirs::from("", "", "glossmith")?;
+    Some(folders.data_local_dir().join("denoiser"))
+}
+
+/// The file of this folder, if any, whose name begins so.
+fn file_beginning_with(folder: &Path, beginning: &str) -> Option<PathBuf> {
+    let entries = std::fs::read_dir(folder).ok()?;
+    let names = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    let fits = |path: &PathBuf| {
+        path.file_name()
+            .and_then(OsStr::to_str)
+            .is_some_and(|name| name.starts_with(beginning))
+    };
+    names.filter(fits).min()
+}
+
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// A message of the library; empty where there is none.
+///
+/// # Safety
+/// `text` is null or a C string that lives at least as long as the call.
+pub(super) unsafe fn message(text: *const c_char) -> String {
+    if text.is_null() {
+        return String::new();
+    }
+    // SAFETY: as promised.
+    one_line(&unsafe { CStr::from_ptr(text) }.to_string_lossy())
+}

@@ -1,0 +1,155 @@
+//! Pictures without their noise, by Open Image Denoise where it is installed, with the error that is left.
+//!
+//! Both halves of the samples are denoised by themselves: the picture is their mean, and what they have in common and
+//! what not tells how far it is from the truth ([`crate::analysis::denoised`]).
+
+mod attendant;
+mod filter;
+mod library;
+mod picture;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+pub use attendant::Attendant;
+use filter::{Device, Filter};
+pub use filter::{Guides, Quality};
+pub use library::{FOLDER_VARIABLE, Library, LibraryError, data_folder};
+pub use picture::{Denoised, Noisy};
+
+use crate::analysis::denoised::{Colors, DenoisedHalves, Errors};
+use crate::document::Denoise;
+
+/// Pixels that are filtered at once: larger pictures in bands, so that the memory that it takes is bounded.
+const PIXELS_MAX: usize = 1 << 22;
+/// Makes denoised pictures, one at a time.
+pub struct Denoiser {
+    device: Arc<Device<'static>>,
+    filter: Option<Filter<'static>>,
+    pixels_max: usize,
+}
+
+impl Denoiser {
+    /// Opens the library's fastest device.
+    ///
+    /// # Errors
+    /// [`LibraryError`] in one line that says what to do.
+    pub fn open() -> Result<Self, LibraryError> {
+        let device = Arc::new(Device::of(Library::get()?)?);
+        Ok(Self {
+            device,
+            filter: None,
+            pixels_max: PIXELS_MAX,
+        })
+    }
+
+    /// The same, but pictures of more pixels than this are filtered in bands.
+    pub fn in_bands_of(self, pixels_max: usize) -> Self {
+        Self { pixels_max, ..self }
+    }
+
+    /// The picture without its noise; the same where nothing was rendered.
+    ///
+    /// # Errors
+    /// Where the library fails.
+    pub fn denoise(&mut self, noisy: &Noisy, how: Denoise) -> Result<Denoised, LibraryError> {
+        let begun = Instant::now();
+        let quality = match how {
+            Denoise::Off => return Ok(Denoised::untouched(noisy)),
+            Denoise::Fast => Quality::Fast,
+            Denoise::High | Denoise::Auto => Quality::High,
+        };
+        let present: Vec<&Colors> = noisy.halves.iter().flatten().collect();
+        if present.is_empty() || noisy.size().contains(&0) {
+            return Ok(Denoised::untouched(noisy));
+        }
+        let scale = picture::input_scale(present[0], noisy.size());
+        let mut clean = |color: &[[f32; 3]]| self.clean(color, noisy, quality, scale);
+        let mut done = Denoised::untouched(noisy);
+        let colors = match present[..] {
+            [even, odd] => {
+                let denoised = [clean(even)?, clean(odd)?];
+                let errors = Errors::of(&DenoisedHalves {
+                    noisy: [even, odd],
+                    denoised: [&denoised[0], &denoised[1]],
+                    width: noisy.size()[0],
+                });
+                let shares = (how == Denoise::Auto).then(|| errors.shares());
+                done.error = Some(errors.error(shares.as_deref()));
+                done.bias = Some(errors.bias(shares.as_deref()));
+                done.error_map = noisy.spread(&errors.map(shares.as_deref()));
+                noisy.mixed(&denoised, shares.as_deref())
+            }
+            _ => clean(present[0])?,
+        };
+        let alpha = noisy.alphas();
+        let alpha = if alpha.iter().any(|alpha| *alpha < 1.0) {
+            let grey: Colors = alpha.iter().map(|alpha| [*alpha; 3]).collect();
+            let clean = self.clean(&grey, noisy, quality, 1.0)?;
+            clean.iter().map(|[alpha, ..]| alpha.clamp(0.0, 1.0)).collect()
+        } else {
+            alpha
+        };
+        done.image = Arc::new(noisy.with(&colors, &alpha));
+        done.seconds = begun.elapsed().as_secs_f64();
+        Ok(done)
+    }
+
+    /// A picture without its noise, in bands where it is large.
+    fn clean(
+        &mut self,
+        color: &[[f32; 3]],
+        noisy: &Noisy,
+        quality: Quality,
+        scale: f32,
+    ) -> Result<Colors, LibraryError> {
+        let [width, height] = noisy.size();
+        if width * height <= self.pixels_max {
+            return self.clean_rows(color, noisy, quality, scale, 0..height);
+        }
+        let [overlap, alignment] = self.filter([width, 1], quality)?.overlap_and_alignment();
+        let rows = ((self.pixels_max / width).saturating_sub(2 * overlap) / alignment).max(1) * alignment;
+        let mut clean = Colors::with_capacity(color.len());
+        for first in (0..height).step_by(rows) {
+            let last = (first + rows).min(height);
+            // From an aligned row on, whatever the overlap.
+            let from = first.saturating_sub(overlap) / alignment * alignment;
+            let to = (last + overlap).min(height);
+            let band = self.clean_rows(color, noisy, quality, scale, from..to)?;
+            clean.extend_from_slice(&band[(first - from) * width..(last - from) * width]);
+        }
+        Ok(clean)
+    }
+
+    fn clean_rows(
+        &mut self,
+        color: &[[f32; 3]],
+        noisy: &Noisy,
+        quality: Quality,
+        scale: f32,
+        rows: std::ops::Range<usize>,
+    ) -> Result<Colors, LibraryError> {
+        let [width, _] = noisy.size();
+        let pixels = rows.start * width..rows.end * width;
+        let filter = self.filter([width, rows.len()], quality)?;
+        filter.guide(Guides {
+            albedo: &noisy.albedo[pixels.clone()],
+            normal: &noisy.normal[pixels.clone()],
+        });
+        let mut clean = filter.run(&color[pixels], scale)?;
+        // No picture of ours has such numbers; the filter promises nothing.
+        for value in clean.iter_mut().flatten() {
+            *value = if value.is_finite() { value.max(0.0) } else { 0.0 };
+        }
+        Ok(clean)
+    }
+
+    fn filter(&mut self, size: [usize; 2], quality: Quality) -> Result<&mut Filter<'static>, LibraryError> {
+        let kept = self.filter.take().filter(|filter| filter.fits(size, quality));
+        let filter = match kept {
+            Some(filter) => filter,
+            None => Filter::new(&self.device, size, quality)?,
+        };
+        Ok(self.filter.insert(filter))
+    }
+}

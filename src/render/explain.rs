@@ -1,0 +1,123 @@
+//! The account of one path: everything that made one sample of one pixel, in words and as JSON.
+//!
+//! The path is traced by the processor's integrator itself, told to a recorder: there is no second one.
+
+use serde::Serialize;
+
+use super::compile::slot_materials;
+use crate::cpu::integrator::{Integrator, is_sound};
+use crate::cpu::recorder::{Event, Source};
+use crate::document::{Document, Strategy};
+use crate::job::Job;
+use crate::optics::random::Sequence;
+use crate::scene::{Geometry, Model};
+
+mod words;
+
+/// Everything that made one sample of one pixel. Lengths and places are in the model's units; colours are linear RGB.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PathAccount {
+    /// Column and row from the top left.
+    pub pixel: [u32; 2],
+    /// Width and height of the picture.
+    pub image_size: [u32; 2],
+    /// Number of the sample in its pixel, from 0.
+    pub sample: u32,
+    /// The render's seed.
+    pub seed: u32,
+    /// Where random numbers come from.
+    pub sequence: Sequence,
+    /// How light is found.
+    pub strategy: Strategy,
+    /// Bounces that a path may have.
+    pub bounces: u32,
+    /// What each slot is, for the events' `slot`.
+    pub surfaces: Vec<String>,
+    /// What happened, in order.
+    pub events: Vec<Event>,
+    /// What the engine adds to the picture: to the bit the sum of the contributions in their order.
+    pub radiance: [f32; 3],
+    /// 0 where the path met nothing but a transparent background.
+    pub alpha: f32,
+    /// Rays traced.
+    pub rays: u32,
+    /// Luminance that limiting fireflies took.
+    pub clamped: f32,
+    /// True where the radiance is not finite or negative: such samples are left out of the picture.
+    pub is_dropped: bool,
+}
+
+/// The account of a sample of a pixel of a job that a document with this model compiled to.
+pub fn explain(document: &Document, model: &Model, job: &Job, pixel: [u32; 2], sample: u32) -> PathAccount {
+    let mut events = Vec::new();
+    let path = Integrator::<f32>::new(job).record_path(pixel, sample, &mut events);
+    events.iter_mut().for_each(|event| to_model_units(event, &job.geometry));
+    let settings = &job.settings;
+    PathAccount {
+        pixel,
+        image_size: settings.image_size,
+        sample,
+        seed: settings.seed,
+        sequence: settings.sequence,
+        strategy: settings.strategy,
+        bounces: settings.bounces,
+        surfaces: surfaces(document, model),
+        events,
+        radiance: path.radiance.to_f32(),
+        alpha: path.alpha,
+        rays: path.rays,
+        clamped: path.clamped,
+        is_dropped: !is_sound(path.radiance),
+    }
+}
+
+impl PathAccount {
+    /// What was added to the sample, in order.
+    pub fn contributions(&self) -> impl Iterator<Item = (Source, [f32; 3])> + '_ {
+        self.events.iter().filter_map(|event| match event {
+            Event::Contribution { source, added, .. } => Some((*source, *added)),
+            _ => None,
+        })
+    }
+
+    /// The sum of the contributions in their order.
+    pub fn sum(&self) -> [f32; 3] {
+        let mut sum = [0.0; 3];
+        for (_, added) in self.contributions() {
+            for (sum, added) in sum.iter_mut().zip(added) {
+                *sum += added;
+            }
+        }
+        sum
+    }
+}
+
+/// What each slot of a job is: the model's, then the ground and the area lights.
+fn surfaces(document: &Document, model: &Model) -> Vec<String> {
+    let materials = slot_materials(document, model.slots.len());
+    let lights = document.lighting.area_lights.len();
+    let name = |(slot, material): (usize, &crate::document::MaterialSettings)| match model.slots.get(slot) {
+        Some(of_model) => format!("slot {slot} ({}), material {}", of_model.name, material.name),
+        None if slot + lights < materials.len() => "the ground".to_owned(),
+        None => format!("area light {}", slot + lights - materials.len() + 1),
+    };
+    materials.iter().enumerate().map(name).collect()
+}
+
+/// Brings what is in the geometry's units to the model's.
+fn to_model_units(event: &mut Event, geometry: &Geometry) {
+    let place = |place: &mut [f32; 3]| {
+        let center = geometry.center_world.to_array();
+        *place = [0, 1, 2].map(|i| (center[i] + geometry.world_units_per_unit * f64::from(place[i])) as f32);
+    };
+    let length = |length: &mut f32| *length = (geometry.world_units_per_unit * f64::from(*length)) as f32;
+    match event {
+        Event::Camera { origin, .. } => place(origin),
+        Event::Passed { distance, .. } | Event::Absorption { distance, .. } => length(distance),
+        Event::Hit { distance, position, .. } => {
+            length(distance);
+            place(position);
+        }
+        _ => {}
+    }
+}

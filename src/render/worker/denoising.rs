@@ -1,0 +1,196 @@
+//! The denoiser's thread behind the worker's: takes what has been rendered, the latest wins, and gives pictures back.
+
+use std::sync::{Arc, Condvar, Mutex};
+use std::time::Duration;
+
+use super::lock;
+use crate::document::{Denoise, DenoiseWhen, Document};
+use crate::panics::caught;
+use crate::render::denoise::{Denoised, Denoiser, Noisy};
+use crate::render::priority::lower_thread_priority;
+use crate::render::session::Progress;
+
+/// By how much samples grow from one denoised picture to the next.
+const GROWTH: u32 = 2;
+/// Age of a picture up to which denoising may take all the time that it likes, and its share from then on.
+const YOUNG: Duration = Duration::from_secs(1);
+const SHARE: f64 = 0.2;
+
+/// A picture to be denoised.
+struct Request {
+    noisy: Noisy,
+    how: Denoise,
+    stage: u64,
+    samples_per_pixel: u32,
+}
+
+/// What came of it.
+pub(super) struct Outcome {
+    /// The picture, or why there is none.
+    pub(super) denoised: Result<Denoised, String>,
+    /// The samples that it was made of.
+    pub(super) noisy: Noisy,
+    /// How many a pixel.
+    pub(super) samples_per_pixel: u32,
+    stage: u64,
+}
+
+#[derive(Default)]
+struct Desk {
+    request: Option<Request>,
+    outcome: Option<Outcome>,
+    quits: bool,
+}
+
+/// Denoises beside the worker, which asks for pictures and collects them.
+pub(super) struct Denoising {
+    desk: Arc<(Mutex<Desk>, Condvar)>,
+    /// Counts what has been begun: what was asked for before is of no interest any more.
+    stage: u64,
+    /// Samples of the picture that was asked for last, of those that are not back yet.
+    pending_samples: Option<u32>,
+    /// Samples of the latest picture that was asked for in this stage; 0 before the first.
+    asked_samples: u32,
+    /// What the stage's pictures took, and what the latest took, seconds.
+    seconds: [f64; 2],
+    /// Why nothing can be denoised.
+    failure: Option<String>,
+}
+
+impl Denoising {
+    /// Starts the thread; `wake` is called when there is something to collect.
+    pub(super) fn spawn(wake: impl Fn() + Send + 'static) -> Self {
+        let desk = Arc::new((Mutex::new(Desk::default()), Condvar::new()));
+        let of_thread = desk.clone();
+        let spawned = std::thread::Builder::new().name("denoise".to_owned()).spawn(move || {
+            lower_thread_priority();
+            work(&of_thread, &wake);
+        });
+        Self {
+            desk,
+            stage: 0,
+            pending_samples: None,
+            asked_samples: 0,
+            seconds: [0.0; 2],
+            failure: spawned.err().map(|error| error.to_string()),
+        }
+    }
+
+    /// Another picture is begun: what is under way is of the one before.
+    pub(super) fn begin(&mut self) {
+        self.stage += 1;
+        self.pending_samples = None;
+        self.asked_samples = 0;
+        self.seconds[0] = 0.0;
+        lock(&self.desk.0).request = None;
+    }
+
+    /// Whether pictures of this document are shown denoised at this point of their render.
+    pub(super) fn shows(&self, document: &Document, progress: &Progress) -> bool {
+        let is_time = document.view.denoise_when == DenoiseWhen::Rendering || progress.is_done;
+        document.view.denoise != Denoise::Off && self.failure.is_none() && is_time
+    }
+
+    /// Whether a denoised picture is due: the first, then at twice the samples of the one before as long as that takes no
+    /// more than its share of the time, and the last.
+    pub(super) fn is_due(&self, progress: &Progress) -> bool {
+        let samples = progress.samples_per_pixel;
+        if samples <= self.asked_samples {
+            return false;
+        }
+        let age = progress.render_seconds;
+        let is_cheap = age < YOUNG.as_secs_f64() || self.seconds[0] + self.seconds[1] <= SHARE * age;
+        let is_free = self.pending_samples.is_none();
+        progress.is_done || self.asked_samples == 0 || (is_free && is_cheap && samples >= GROWTH * self.asked_samples)
+    }
+
+    /// Whether a picture is under way.
+    pub(super) fn is_pending(&self) -> bool {
+        self.pending_samples.is_some()
+    }
+
+    /// Whether there is something to collect.
+    pub(super) fn has_news(&self) -> bool {
+        lock(&self.desk.0).outcome.is_some()
+    }
+
+    /// Asks for a denoised picture, instead of any that is waiting.
+    pub(super) fn ask(&mut self, noisy: Noisy, how: Denoise, samples_per_pixel: u32) {
+        self.pending_samples = Some(samples_per_pixel);
+        self.asked_samples = samples_per_pixel;
+        lock(&self.desk.0).request = Some(Request {
+            noisy,
+            how,
+            stage: self.stage,
+            samples_per_pixel,
+        });
+        self.desk.1.notify_one();
+    }
+
+    /// The latest picture, where one of what is being rendered has been made. After a failure nothing is denoised any
+    /// more.
+    pub(super) fn collect(&mut self) -> Option<Outcome> {
+        let outcome = lock(&self.desk.0).outcome.take()?;
+        if let Err(why) = &outcome.denoised {
+            self.failure = Some(why.clone());
+        }
+        if outcome.stage != self.stage {
+            return None;
+        }
+        if self.pending_samples == Some(outcome.samples_per_pixel) {
+            self.pending_samples = None;
+        }
+        if let Ok(denoised) = &outcome.denoised {
+            self.seconds = [self.seconds[0] + denoised.seconds, denoised.seconds];
+        }
+        Some(outcome)
+    }
+}
+
+impl Drop for Denoising {
+    /// Tells the thread to end; it is not waited for, as it may be in the middle of a picture.
+    fn drop(&mut self) {
+        lock(&self.desk.0).quits = true;
+        self.desk.1.notify_one();
+    }
+}
+
+/// The thread's body.
+fn work((desk, asked): &(Mutex<Desk>, Condvar), wake: &dyn Fn()) {
+    let mut denoiser = None;
+    loop {
+        let mut desk_now = lock(desk);
+        let request = loop {
+            if desk_now.quits {
+                return;
+            }
+            match desk_now.request.take() {
+                Some(request) => break request,
+                None => {
+                    desk_now = asked.wait(desk_now).unwrap_or_else(std::sync::PoisonError::into_inner);
+                }
+            }
+        };
+        drop(desk_now);
+        let denoised = caught(|| denoise(&mut denoiser, &request)).flatten();
+        lock(desk).outcome = Some(Outcome {
+            denoised,
+            noisy: request.noisy,
+            samples_per_pixel: request.samples_per_pixel,
+            stage: request.stage,
+        });
+        wake();
+    }
+}
+
+fn denoise(denoiser: &mut Option<Denoiser>, request: &Request) -> Result<Denoised, String> {
+    let text = |error: crate::render::denoise::LibraryError| error.to_string();
+    let opened = match denoiser.take() {
+        Some(opened) => opened,
+        None => Denoiser::open().map_err(text)?,
+    };
+    denoiser
+        .insert(opened)
+        .denoise(&request.noisy, request.how)
+        .map_err(text)
+}

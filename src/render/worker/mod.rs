@@ -1,0 +1,379 @@
+//! A session on a thread of its own, so that the window never waits.
+//!
+//! The window submits documents, the latest wins; the worker publishes snapshots, the latest wins. What the two say to
+//! each other goes through two short locks. Work is cut into steps of [`STEP`], after each of which orders are read.
+
+mod denoising;
+mod stage;
+mod thread;
+
+use std::io;
+use std::path::PathBuf;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use super::assets::Assets;
+use super::convergence::Measurement;
+use super::display::{Scale, Shown};
+use super::engine::{EngineChoice, EngineInfo};
+use super::output::{Layers, Rendered};
+use super::priority::lower_thread_priority;
+use super::session::Progress;
+use crate::analysis::halves::Distance;
+use crate::document::Document;
+use crate::job::Job;
+use crate::job::film::Image;
+use crate::scene::environment::{Environment, EnvironmentSource};
+use crate::scene::{Model, ModelOptions, ModelSource};
+
+/// Longest that the worker does not look at its orders while rendering; and before the first picture, which is not to
+/// wait for the samples that come after it.
+const STEP: Duration = Duration::from_millis(20);
+const FIRST_STEP: Duration = Duration::from_millis(6);
+/// How long dropping a worker waits for its thread to end.
+const FAREWELL: Duration = Duration::from_secs(2);
+
+/// Renders on a thread of its own.
+pub struct Worker {
+    shared: Arc<Shared>,
+    assets: Assets,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// How a document is meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pace {
+    /// More changes follow at once, as while something is dragged: rendered at a resolution that keeps up, and at the
+    /// full one once nothing has come for 150 ms.
+    Moving,
+    /// This is it for now.
+    Still,
+}
+
+/// What the worker is doing.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Activity {
+    /// Opening the adapter and compiling what every picture needs.
+    #[default]
+    Starting,
+    /// Reading a file or computing a built-in.
+    Loading(String),
+    /// Building the hierarchy over the triangles, and what the engine wants to have made ready.
+    Preparing,
+    /// Rendering.
+    Rendering,
+    /// Everything asked for has been rendered.
+    Done,
+    /// Told to wait.
+    Paused,
+    /// There is nothing to render, as the document could not be.
+    Idle,
+}
+
+impl std::fmt::Display for Activity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Starting => f.write_str("starting the engine"),
+            Self::Loading(what) => write!(f, "loading {what}"),
+            Self::Preparing => f.write_str("preparing"),
+            Self::Rendering => f.write_str("rendering"),
+            Self::Done => f.write_str("done"),
+            Self::Paused => f.write_str("paused"),
+            Self::Idle => f.write_str("nothing to render"),
+        }
+    }
+}
+
+/// A picture to show.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Red, green, blue and alpha as the screen takes them, premultiplied in gamma space; row by row from the top.
+    pub rgba: Vec<u8>,
+    /// The linear picture that it shows.
+    pub image: Arc<Image>,
+    /// The mean of the samples: another one where the picture was denoised.
+    pub samples: Arc<Image>,
+    /// Differs from one picture to the next.
+    pub serial: u64,
+    /// The submission that it belongs to, see [`Worker::submit`].
+    pub revision: u64,
+    /// By how much width and height are smaller than asked for; 1 is the full resolution.
+    pub reduction: u32,
+    /// Samples a pixel in it.
+    pub samples_per_pixel: u32,
+    /// What `rgba` is a map of, with its colours' meaning; `None` for the picture itself.
+    pub map: Option<(Shown, Scale)>,
+    /// What it shows, with the size at the full resolution.
+    pub document: Arc<Document>,
+}
+
+impl Picture {
+    /// Whether its noise was taken out.
+    pub fn is_denoised(&self) -> bool {
+        !Arc::ptr_eq(&self.image, &self.samples)
+    }
+
+    /// As it is written to files.
+    pub fn rendered(&self) -> Rendered<'_> {
+        Rendered {
+            image: &self.samples,
+            denoised: self.is_denoised().then_some(&*self.image),
+        }
+    }
+}
+
+/// What is being rendered.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// The document as submitted.
+    pub document: Document,
+    /// What it compiled to.
+    pub job: Arc<Job>,
+    /// Its model.
+    pub model: Arc<Model>,
+}
+
+/// The state of the worker at some moment.
+#[derive(Clone, Debug, Default)]
+pub struct Snapshot {
+    /// The latest picture.
+    pub picture: Option<Arc<Picture>>,
+    /// What it shows.
+    pub scene: Option<Arc<Scene>>,
+    /// How far it has come.
+    pub progress: Progress,
+    /// The errors seen so far in it, oldest first.
+    pub history: Arc<Vec<Measurement>>,
+    /// Pixel samples a second.
+    pub samples_per_second: f64,
+    /// By how much the picture in progress is smaller than asked for.
+    pub reduction: u32,
+    /// What the worker is doing.
+    pub activity: Activity,
+    /// What renders; `None` while it is being opened.
+    pub engine: Option<EngineInfo>,
+    /// The error of the denoised picture.
+    pub denoised: Option<Distance>,
+    /// From the latest submission to its first picture.
+    pub first_picture: Option<Duration>,
+}
+
+/// How bad a message is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// For the record.
+    Info,
+    /// Something was mended or left out.
+    Warning,
+    /// Something was not done.
+    Error,
+}
+
+/// What the worker has to tell.
+#[derive(Clone, Debug)]
+pub enum Event {
+    /// Words for the user.
+    Message(Level, String),
+    /// A model that was asked for by [`Worker::open_model`]; the document has not been touched.
+    ModelOpened(ModelSource, ModelOptions, Arc<Model>),
+    /// An environment that was asked for by [`Worker::open_environment`].
+    EnvironmentOpened(EnvironmentSource, Arc<Environment>),
+    /// A file that could not be opened, and why.
+    OpenFailed(PathBuf, String),
+    /// What was asked for by [`Worker::make_layers`], for this file.
+    LayersMade(PathBuf, Box<Layers>),
+}
+
+/// What the window wants.
+#[derive(Debug, Default)]
+struct Orders {
+    submission: Option<Submission>,
+    models: Vec<(ModelSource, ModelOptions)>,
+    environments: Vec<EnvironmentSource>,
+    layers: Vec<PathBuf>,
+    engine: Option<EngineChoice>,
+    shown: Option<Shown>,
+    reload: bool,
+    restart: bool,
+    lose_device: bool,
+    quit: bool,
+}
+
+impl Orders {
+    fn is_empty(&self) -> bool {
+        self.submission.is_none()
+            && self.models.is_empty()
+            && self.environments.is_empty()
+            && self.layers.is_empty()
+            && self.engine.is_none()
+            && self.shown.is_none()
+            && !self.reload
+            && !self.restart
+            && !self.lose_device
+            && !self.quit
+    }
+}
+
+#[derive(Clone, Debug)]
+struct Submission {
+    document: Document,
+    pace: Pace,
+    revision: u64,
+    at: Instant,
+}
+
+#[derive(Default)]
+struct Shared {
+    orders: Mutex<OrderBook>,
+    ordered: Condvar,
+    snapshot: Mutex<Arc<Snapshot>>,
+    events: Mutex<Vec<Event>>,
+}
+
+#[derive(Default)]
+struct OrderBook {
+    orders: Orders,
+    is_paused: bool,
+    last_revision: u64,
+}
+
+impl Shared {
+    /// Has the thread look at what there is to do. It holds the lock while it decides to wait, so that no call is lost.
+    fn wake(&self) {
+        let _orders = lock(&self.orders);
+        self.ordered.notify_one();
+    }
+}
+
+/// What a panicking thread leaves behind a lock here is still whole: every write is a single assignment or push.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Worker {
+    /// Starts the thread, which opens the engine; `repaint` is called when there is something new to show.
+    ///
+    /// # Errors
+    /// If the system gives no thread.
+    pub fn spawn(choice: EngineChoice, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
+        Self::spawn_with(choice, Assets::default(), repaint)
+    }
+
+    /// Starts another one that shares models and environments with this one.
+    ///
+    /// # Errors
+    /// If the system gives no thread.
+    pub fn spawn_beside(&self, choice: EngineChoice, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
+        Self::spawn_with(choice, self.assets.clone(), repaint)
+    }
+
+    fn spawn_with(choice: EngineChoice, assets: Assets, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
+        let shared = Arc::new(Shared::default());
+        let (of_thread, its_assets) = (shared.clone(), assets.clone());
+        let thread = std::thread::Builder::new().name("render".to_owned()).spawn(move || {
+            lower_thread_priority();
+            thread::run(&of_thread, choice, its_assets, &repaint);
+        })?;
+        Ok(Self {
+            shared,
+            assets,
+            thread: Some(thread),
+        })
+    }
+
+    /// Hands in a document to render instead of the last one; returns its revision, which pictures of it bear.
+    pub fn submit(&self, document: &Document, pace: Pace) -> u64 {
+        let mut book = lock(&self.shared.orders);
+        book.last_revision += 1;
+        let revision = book.last_revision;
+        book.orders.submission = Some(Submission {
+            document: document.clone(),
+            pace,
+            revision,
+            at: Instant::now(),
+        });
+        self.shared.ordered.notify_one();
+        revision
+    }
+
+    /// Stops rendering until told otherwise; submissions are still taken and shown at their first sample.
+    pub fn pause(&self, is_paused: bool) {
+        lock(&self.shared.orders).is_paused = is_paused;
+        self.shared.ordered.notify_one();
+    }
+
+    /// Loads a model beside everything else; an [`Event`] tells how it went.
+    pub fn open_model(&self, source: ModelSource, options: ModelOptions) {
+        self.order(|orders| orders.models.push((source, options)));
+    }
+
+    /// Loads an environment beside everything else; an [`Event`] tells how it went.
+    pub fn open_environment(&self, source: EnvironmentSource) {
+        self.order(|orders| orders.environments.push(source));
+    }
+
+    /// Makes the picture's layers as soon as it has samples at its full resolution; an [`Event`] brings them, with the
+    /// file that they are for.
+    pub fn make_layers(&self, path: PathBuf) {
+        self.order(|orders| orders.layers.push(path));
+    }
+
+    /// Reads all files again.
+    pub fn reload(&self) {
+        self.order(|orders| orders.reload = true);
+    }
+
+    /// Renders the picture anew.
+    pub fn restart(&self) {
+        self.order(|orders| orders.restart = true);
+    }
+
+    /// Takes the GPU's device away, as a driver's reset does: for tests of what follows. Nothing on the processor.
+    pub fn lose_device(&self) {
+        self.order(|orders| orders.lose_device = true);
+    }
+
+    /// Goes on with another engine.
+    pub fn use_engine(&self, choice: EngineChoice) {
+        self.order(|orders| orders.engine = Some(choice));
+    }
+
+    /// Shows the picture or a map of its error or samples; what has been rendered stays.
+    pub fn show(&self, shown: Shown) {
+        self.order(|orders| orders.shown = Some(shown));
+    }
+
+    fn order(&self, change: impl FnOnce(&mut Orders)) {
+        change(&mut lock(&self.shared.orders).orders);
+        self.shared.ordered.notify_one();
+    }
+
+    /// The latest state.
+    pub fn snapshot(&self) -> Arc<Snapshot> {
+        lock(&self.shared.snapshot).clone()
+    }
+
+    /// What happened since this was last called.
+    pub fn take_events(&self) -> Vec<Event> {
+        std::mem::take(&mut *lock(&self.shared.events))
+    }
+}
+
+impl Drop for Worker {
+    /// Asks the thread to end, and leaves it behind where that takes long, as when it is reading a large file.
+    fn drop(&mut self) {
+        self.order(|orders| orders.quit = true);
+        let begun = Instant::now();
+        while let Some(thread) = &self.thread
+            && !thread.is_finished()
+            && begun.elapsed() < FAREWELL
+        {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+}

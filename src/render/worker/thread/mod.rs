@@ -1,0 +1,589 @@
+//! The worker's thread: takes orders, steps the session, publishes what comes of it.
+
+mod publish;
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::denoising::Denoising;
+use super::stage::Stage;
+use super::{Activity, Event, FIRST_STEP, Level, Orders, STEP, Scene, Shared, Snapshot, Submission, lock};
+use crate::document::{Change, Document};
+use crate::job::plan::Specialisation;
+use crate::panics::caught;
+use crate::render::assets::Assets;
+use crate::render::denoise::Denoised;
+use crate::render::display::Shown;
+use crate::render::engine::{EngineChoice, EngineKind};
+use crate::render::output::Layers;
+use crate::render::session::{Session, SessionError};
+use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
+use crate::scene::{ModelOptions, ModelSource};
+
+/// Shortest and longest time between two pictures of the same render, and between two words about its progress: without
+/// a GPU the window, which is drawn anew for either, takes its time from the renderer.
+const PUBLISH_INTERVAL: [Duration; 2] = [Duration::from_millis(100), Duration::from_millis(500)];
+/// The interval grows with this share of the render's age.
+const PUBLISH_SHARE: f64 = 0.1;
+/// Publishing takes at most one part in this many of the time.
+const PUBLISH_COST: u32 = 8;
+/// Weight of the latest measurement in the mean speed.
+const SPEED_WEIGHT: f64 = 0.1;
+
+/// The thread's body.
+pub(super) fn run(shared: &Arc<Shared>, choice: EngineChoice, assets: Assets, repaint: &dyn Fn()) {
+    let mut state = State::new(shared, repaint, assets);
+    state.open(choice);
+    while state.turn().is_some() {}
+}
+
+struct State<'a> {
+    shared: &'a Shared,
+    repaint: &'a dyn Fn(),
+    assets: Assets,
+    /// Files whose layers are to be made.
+    wanted_layers: Vec<PathBuf>,
+    session: Option<Session>,
+    snapshot: Snapshot,
+    stage: Option<Stage>,
+    /// When the stage's submission was taken.
+    taken_at: Instant,
+    /// Measured, to choose resolutions by; 0 before.
+    samples_per_second: f64,
+    published_at: Instant,
+    published_samples: u32,
+    publish_cost: Duration,
+    told_at: Instant,
+    serial: u64,
+    /// What of a render is shown.
+    shown: Shown,
+    denoising: Denoising,
+    /// The latest denoised picture of what is being rendered.
+    denoised: Option<Denoised>,
+}
+
+impl<'a> State<'a> {
+    fn new(shared: &'a Arc<Shared>, repaint: &'a dyn Fn(), assets: Assets) -> Self {
+        Self {
+            shared,
+            repaint,
+            assets,
+            wanted_layers: Vec::new(),
+            session: None,
+            snapshot: Snapshot::default(),
+            stage: None,
+            taken_at: Instant::now(),
+            samples_per_second: 0.0,
+            published_at: Instant::now(),
+            published_samples: 0,
+            publish_cost: Duration::ZERO,
+            told_at: Instant::now(),
+            serial: 0,
+            shown: Shown::default(),
+            denoising: Denoising::spawn({
+                let shared = shared.clone();
+                move || shared.wake()
+            }),
+            denoised: None,
+        }
+    }
+}
+
+impl State<'_> {
+    /// Orders, then a step; `None` when it is time to go.
+    fn turn(&mut self) -> Option<()> {
+        let (orders, is_paused) = self.await_orders();
+        if orders.quit {
+            return None;
+        }
+        if let Some(choice) = orders.engine {
+            self.open(choice);
+            self.restart();
+        }
+        if let Some(session) = self.session.as_ref().filter(|_| orders.lose_device) {
+            session.lose_device();
+        }
+        if orders.reload || orders.restart {
+            self.guarded(|state| {
+                let session = state.session()?;
+                if orders.reload {
+                    session.reload();
+                } else {
+                    session.forget();
+                }
+                Ok(())
+            });
+            self.restart();
+        }
+        if let Some(shown) = orders.shown {
+            self.shown = shown;
+            if self.stage.as_ref().is_some_and(|stage| stage.is_shown) {
+                self.guarded(Self::show_anew);
+            }
+        }
+        orders
+            .models
+            .into_iter()
+            .for_each(|(source, options)| self.load_model(source, options));
+        orders
+            .environments
+            .into_iter()
+            .for_each(|source| self.load_environment(source));
+        self.wanted_layers.extend(orders.layers);
+        self.collect_denoised();
+        if let Some(submission) = orders.submission {
+            self.take(submission);
+        } else if self.stage.as_ref().is_some_and(Stage::is_settled) {
+            self.settle();
+        }
+        if self.should_render(is_paused) {
+            self.guarded(Self::step);
+        } else {
+            self.rest(is_paused);
+        }
+        self.make_layers();
+        Some(())
+    }
+
+    /// Reads the orders; waits for some where there is nothing to render. A submission is left lying while the one
+    /// before it must still be shown.
+    fn await_orders(&self) -> (Orders, bool) {
+        let mut book = lock(&self.shared.orders);
+        loop {
+            let is_busy = self.should_render(book.is_paused);
+            let rest_left = self.stage.as_ref().and_then(Stage::rest_left);
+            let has_news = self.activity(book.is_paused) != self.snapshot.activity || self.denoising.has_news();
+            if is_busy || has_news || !book.orders.is_empty() || rest_left.is_some_and(|left| left.is_zero()) {
+                break;
+            }
+            let wait = rest_left.unwrap_or(Duration::from_secs(3600));
+            let waited = self.shared.ordered.wait_timeout(book, wait);
+            book = waited.unwrap_or_else(std::sync::PoisonError::into_inner).0;
+        }
+        let mut orders = std::mem::take(&mut book.orders);
+        let must_wait = self
+            .stage
+            .as_ref()
+            .is_some_and(|stage| !stage.may_be_replaced(self.taken_at));
+        if must_wait && self.should_render(book.is_paused) {
+            book.orders.submission = orders.submission.take();
+        }
+        (orders, book.is_paused)
+    }
+
+    /// Whether there is something to step: when paused, only what has not been shown at all.
+    fn should_render(&self, is_paused: bool) -> bool {
+        let (Some(stage), Some(session)) = (&self.stage, &self.session) else {
+            return false;
+        };
+        !session.progress().is_done && (!is_paused || !stage.is_shown)
+    }
+
+    /// What there is to do now that orders have been followed.
+    fn activity(&self, is_paused: bool) -> Activity {
+        match (&self.stage, &self.session) {
+            (Some(_), Some(_)) if self.denoising.is_pending() => Activity::Rendering,
+            (Some(_), Some(session)) if session.progress().is_done => Activity::Done,
+            (Some(_), Some(_)) if is_paused => Activity::Paused,
+            (Some(_), Some(_)) => Activity::Rendering,
+            _ => Activity::Idle,
+        }
+    }
+
+    /// What an order or the step before left to tell.
+    fn rest(&mut self, is_paused: bool) {
+        let activity = self.activity(is_paused);
+        let is_news = self.snapshot.activity != activity;
+        let is_unseen = self.stage.as_ref().is_some_and(|stage| !stage.is_shown);
+        if activity == Activity::Done && is_unseen && !self.denoising.is_pending() {
+            // Its time was over before its first sample.
+            self.guarded(Self::publish_picture);
+        }
+        if is_news {
+            self.tell(activity);
+        }
+    }
+
+    /// Makes the layers that were asked for, once the picture is there at its full resolution.
+    fn make_layers(&mut self) {
+        let is_full = self.stage.as_ref().is_some_and(|stage| stage.reduction == 1);
+        let has_samples = |session: &Session| session.progress().samples_per_pixel > 0;
+        if self.wanted_layers.is_empty() || !is_full || !self.session.as_ref().is_some_and(has_samples) {
+            return;
+        }
+        for path in std::mem::take(&mut self.wanted_layers) {
+            self.guarded(|state| {
+                let denoised = state.denoised.as_ref().map(|denoised| denoised.image.clone());
+                let layers = Layers {
+                    denoised,
+                    ..state.session()?.layers()?
+                };
+                lock(&state.shared.events).push(Event::LayersMade(path, Box::new(layers)));
+                (state.repaint)();
+                Ok(())
+            });
+        }
+    }
+
+    fn session(&mut self) -> Result<&mut Session, SessionError> {
+        let session = match self.session.take() {
+            Some(session) => session,
+            None => Session::open_with(EngineChoice::Cpu, self.assets.clone())?,
+        };
+        Ok(self.session.insert(session))
+    }
+
+    /// Opens an engine; where that fails the processor's.
+    fn open(&mut self, choice: EngineChoice) {
+        self.session = None;
+        self.snapshot.engine = None;
+        self.samples_per_second = 0.0;
+        self.tell(Activity::Starting);
+        let opened = caught(|| Session::open_fluid(choice, self.assets.clone()));
+        let why = match opened {
+            Ok(Ok(session)) => {
+                self.session = Some(session);
+                None
+            }
+            Ok(Err(error)) => Some(error.to_string()),
+            Err(panic) => Some(panic),
+        };
+        if let Some(why) = why {
+            self.say(Level::Error, format!("{why} (going on with the processor)"));
+            self.guarded(|state| state.session().map(|_| ()));
+        }
+        self.note_engine();
+    }
+
+    fn note_engine(&mut self) {
+        self.snapshot.engine = self.session.as_ref().map(|session| session.engine().clone());
+        if let Some(engine) = self.snapshot.engine.clone() {
+            self.say(Level::Info, format!("rendering with {engine}: {}", engine.reason));
+        }
+    }
+
+    /// Runs what may fail. Where the GPU does, or something panics, the processor takes over with the same document;
+    /// anything else is said and leaves what was there.
+    fn guarded(&mut self, work: impl FnOnce(&mut Self) -> Result<(), SessionError>) -> bool {
+        let why = match caught(|| work(self)) {
+            Ok(Ok(())) => return true,
+            Ok(Err(SessionError::Gpu(error))) => error.to_string(),
+            Ok(Err(error)) => {
+                self.say(Level::Error, error.to_string());
+                return false;
+            }
+            Err(panic) => panic,
+        };
+        let was_cpu = self
+            .snapshot
+            .engine
+            .as_ref()
+            .is_some_and(|engine| engine.kind == EngineKind::Cpu);
+        self.say(Level::Error, format!("the renderer failed: {why}"));
+        self.session = None;
+        if was_cpu {
+            // A mistake of ours: the same document would bring it about again.
+            self.stage = None;
+            return false;
+        }
+        self.say(Level::Warning, "going on with the processor".to_owned());
+        let opened = Session::open_with(EngineChoice::Cpu, self.assets.clone()).and_then(|mut session| {
+            if let Some(stage) = &self.stage {
+                session.submit(&stage.document())?;
+            }
+            Ok(session)
+        });
+        match opened {
+            Ok(session) => self.session = Some(session),
+            Err(error) => self.say(Level::Error, error.to_string()),
+        }
+        self.samples_per_second = 0.0;
+        self.note_engine();
+        false
+    }
+
+    fn load_model(&mut self, source: ModelSource, options: ModelOptions) {
+        self.tell(Activity::Loading(source.to_string()));
+        let path = PathBuf::from(source.to_string());
+        self.loaded(path, |state| {
+            let model = state.session()?.assets().model(&source, &options)?;
+            if let Some(summary) = model.report.summary() {
+                state.say(Level::Warning, summary);
+            }
+            Ok(Event::ModelOpened(source, options, model))
+        });
+    }
+
+    fn load_environment(&mut self, source: EnvironmentSource) {
+        self.tell(Activity::Loading(source.to_string()));
+        let path = PathBuf::from(source.to_string());
+        self.loaded(path, |state| {
+            let environment = state
+                .session()?
+                .assets()
+                .environment(&source, EnvironmentEncoding::default())?;
+            for warning in &environment.warnings {
+                state.say(Level::Warning, warning.clone());
+            }
+            Ok(Event::EnvironmentOpened(source, environment))
+        });
+    }
+
+    /// Tells how loading went; what is being rendered is not touched by a failure.
+    fn loaded(&mut self, path: PathBuf, work: impl FnOnce(&mut Self) -> Result<Event, SessionError>) {
+        let event = match caught(|| work(self)) {
+            Ok(Ok(event)) => event,
+            Ok(Err(error)) => Event::OpenFailed(path, error.to_string()),
+            Err(panic) => {
+                let why = format!("{}: reading it failed: {panic}", path.display());
+                Event::OpenFailed(path, why)
+            }
+        };
+        lock(&self.shared.events).push(event);
+        (self.repaint)();
+    }
+
+    /// The stage's document once more, as after a change of engine.
+    fn restart(&mut self) {
+        self.snapshot.scene = None;
+        if let Some(stage) = self.stage.take() {
+            self.take(stage.submission);
+        }
+    }
+
+    /// Starts on a submission.
+    fn take(&mut self, submission: Submission) {
+        if let Some(stage) = &mut self.stage {
+            let change = Change::between(&stage.submission.document, &submission.document);
+            if !change.restarts() {
+                stage.submission = submission;
+                self.guarded(|state| state.go_on(change));
+                return;
+            }
+        }
+        self.taken_at = Instant::now();
+        self.snapshot.first_picture = None;
+        let kernel = self.kernel();
+        let stage = Stage::first(submission, self.samples_per_second);
+        self.begin(stage.clone());
+        if kernel.is_some() && self.kernel() != kernel {
+            let cautious = Stage::cautious(stage.submission, self.samples_per_second);
+            if cautious.reduction > stage.reduction {
+                self.begin(cautious);
+            }
+        }
+    }
+
+    /// What the kernel is made for that renders, or is being compiled.
+    fn kernel(&self) -> Option<Specialisation> {
+        Some(self.session.as_ref()?.job()?.plan.specialisation())
+    }
+
+    /// What has been rendered counts, but is shown in another way or has another aim.
+    fn go_on(&mut self, change: Change) -> Result<(), SessionError> {
+        let Some(stage) = self.stage.clone() else { return Ok(()) };
+        self.session()?.submit(&stage.document())?;
+        let view = &stage.submission.document.view;
+        let shown = self.snapshot.picture.as_ref().map(|picture| &picture.document.view);
+        let denoises_alike =
+            shown.is_some_and(|old| (old.denoise, old.denoise_when) == (view.denoise, view.denoise_when));
+        if let Some(scene) = &self.snapshot.scene {
+            let document = stage.submission.document.clone();
+            self.snapshot.scene = Some(Arc::new(Scene {
+                document,
+                ..Scene::clone(scene)
+            }));
+        }
+        if !denoises_alike && stage.is_shown {
+            self.forget_denoised();
+            return self.publish_picture();
+        }
+        // Where nothing is left to render, the picture is the new submission's, too.
+        let is_done = self.session()?.progress().is_done;
+        if let Some(last) = self
+            .snapshot
+            .picture
+            .clone()
+            .filter(|_| stage.is_shown && (change.display || is_done))
+        {
+            self.publish(last.image.clone(), last.samples.clone(), last.samples_per_pixel)?;
+        }
+        Ok(())
+    }
+
+    /// From the small picture to the full one.
+    fn settle(&mut self) {
+        let Some(mut stage) = self.stage.clone() else { return };
+        stage.reduction = 1;
+        if !self.begin(stage)
+            && let Some(small) = &mut self.stage
+        {
+            // It would fail again: the small picture stays until something is changed.
+            small.is_final = true;
+        }
+    }
+
+    /// Hands a stage to the session. Where that fails, what was being rendered goes on.
+    fn begin(&mut self, stage: Stage) -> bool {
+        let document = stage.document();
+        let engine = self.snapshot.engine.clone();
+        let is_taken = self.guarded(|state| state.hand_over(&document))
+            // The GPU could not: the processor gets its chance.
+            || (self.snapshot.engine != engine && self.guarded(|state| state.hand_over(&document)));
+        if !is_taken {
+            return false;
+        }
+        let is_first_look = !stage.is_shown;
+        self.stage = Some(stage);
+        self.forget_denoised();
+        self.published_samples = 0;
+        self.published_at = Instant::now();
+        if is_first_look {
+            self.guarded(Self::note_scene);
+        }
+        true
+    }
+
+    fn hand_over(&mut self, document: &Document) -> Result<(), SessionError> {
+        if self.is_new_model(document) {
+            self.tell(Activity::Loading(document.model.to_string()));
+            self.session()?.assets().model(&document.model, &document.import)?;
+            self.tell(Activity::Preparing);
+        }
+        let environment = &document.lighting.environment;
+        if self.is_new_environment(environment) {
+            self.tell(Activity::Loading(environment.to_string()));
+            let encoding = document.lighting.environment_encoding;
+            self.session()?.assets().environment(environment, encoding)?;
+        }
+        self.session()?.submit(document)?;
+        Ok(())
+    }
+
+    fn is_new_model(&self, document: &Document) -> bool {
+        let known = self.snapshot.scene.as_ref().map(|scene| &scene.document);
+        known.is_none_or(|known| (&known.model, &known.import) != (&document.model, &document.import))
+    }
+
+    fn is_new_environment(&self, source: &EnvironmentSource) -> bool {
+        self.snapshot
+            .scene
+            .as_ref()
+            .is_none_or(|scene| scene.document.lighting.environment != *source)
+    }
+
+    fn note_scene(&mut self) -> Result<(), SessionError> {
+        let Some(document) = self.stage.as_ref().map(|stage| stage.submission.document.clone()) else {
+            return Ok(());
+        };
+        let session = self.session()?;
+        let model = session.assets().model(&document.model, &document.import)?;
+        if let Some(job) = session.job().cloned() {
+            self.snapshot.scene = Some(Arc::new(Scene { document, job, model }));
+        }
+        Ok(())
+    }
+
+    /// Renders a little, and publishes when that is due.
+    fn step(&mut self) -> Result<(), SessionError> {
+        let is_shown = self.stage.as_ref().is_none_or(|stage| stage.is_shown);
+        let progress = self.session()?.step(if is_shown { STEP } else { FIRST_STEP })?;
+        let Some(stage) = &self.stage else { return Ok(()) };
+        self.snapshot.progress = progress;
+        let history = self.session.as_ref().map(Session::history).unwrap_or_default();
+        if self.snapshot.history.as_slice() != history {
+            self.snapshot.history = Arc::new(history.to_vec());
+        }
+        self.snapshot.reduction = stage.reduction;
+        if progress.samples_per_pixel > 0 {
+            self.snapshot.samples_per_second = progress.samples_per_second;
+            // Averaged, so that resolutions do not flicker while something is dragged.
+            let weight = if self.samples_per_second > 0.0 {
+                SPEED_WEIGHT
+            } else {
+                1.0
+            };
+            self.samples_per_second += weight * (self.snapshot.samples_per_second - self.samples_per_second);
+        }
+        let age = self.published_at.elapsed();
+        let interval = Duration::from_secs_f64(PUBLISH_SHARE * progress.render_seconds)
+            .clamp(PUBLISH_INTERVAL[0], PUBLISH_INTERVAL[1])
+            .max(PUBLISH_COST * self.publish_cost);
+        if self.denoising.shows(&stage.submission.document, &progress) {
+            if self.denoising.is_due(&progress) {
+                self.publish_picture()?;
+            }
+            if self.told_at.elapsed() >= interval {
+                self.tell(Activity::Rendering);
+            }
+            return Ok(());
+        }
+        let is_first = self.published_samples == 0 && progress.samples_per_pixel > 0;
+        let is_fresh = progress.samples_per_pixel > self.published_samples;
+        if is_fresh && (is_first || progress.is_done || age >= interval) {
+            self.publish_picture()?;
+        }
+        if self.told_at.elapsed() >= interval || self.snapshot.activity != Activity::Rendering {
+            self.tell(Activity::Rendering);
+        }
+        Ok(())
+    }
+
+    /// Publishes the snapshot.
+    fn tell(&mut self, activity: Activity) {
+        self.snapshot.activity = activity;
+        self.told_at = Instant::now();
+        *lock(&self.shared.snapshot) = Arc::new(self.snapshot.clone());
+        (self.repaint)();
+    }
+
+    fn say(&self, level: Level, text: String) {
+        lock(&self.shared.events).push(Event::Message(level, text));
+        (self.repaint)();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::worker::{OrderBook, Pace};
+
+    #[test]
+    fn a_full_resolution_that_cannot_be_had_is_tried_once() {
+        let shared = Arc::new(Shared::default());
+        let mut state = State::new(&shared, &|| {}, Assets::default());
+        state.session = Some(Session::open(EngineChoice::Cpu).expect("the processor"));
+        // A small picture is shown of a document whose model has gone since.
+        let document = Document {
+            model: ModelSource::File("gone.glb".into()),
+            ..Document::default()
+        };
+        let submission = Submission {
+            document,
+            pace: Pace::Still,
+            revision: 1,
+            at: Instant::now(),
+        };
+        state.stage = Some(Stage {
+            reduction: 4,
+            is_shown: true,
+            ..Stage::first(submission, 0.0)
+        });
+        for _ in 0..5 {
+            // Something to do, so that no turn waits.
+            *lock(&shared.orders) = OrderBook {
+                orders: Orders {
+                    environments: vec![EnvironmentSource::Furnace],
+                    ..Orders::default()
+                },
+                ..OrderBook::default()
+            };
+            state.turn().expect("nobody told it to go");
+        }
+        let events = lock(&shared.events);
+        let is_failure =
+            |event: &&Event| matches!(event, Event::Message(Level::Error, text) if text.contains("gone.glb"));
+        assert_eq!(events.iter().filter(is_failure).count(), 1, "{events:?}");
+    }
+}

@@ -1,0 +1,192 @@
+//! The material extensions that the gltf crate does not know, as their JSON has them.
+
+use gltf::json::extensions::texture::TextureTransform;
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+use serde_json::{Map, Value as Json, json};
+
+/// A texture as an extension refers to it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct TextureInfo {
+    pub index: usize,
+    #[serde(default)]
+    pub tex_coord: u32,
+    #[serde(default)]
+    extensions: TextureExtensions,
+}
+
+#[derive(Clone, Debug, Default, Deserialize)]
+struct TextureExtensions {
+    #[serde(rename = "KHR_texture_transform")]
+    transform: Option<TextureTransform>,
+}
+
+impl TextureInfo {
+    /// Texture, set of coordinates and transform.
+    pub(super) fn reference(&self) -> (usize, u32, Option<TextureTransform>) {
+        (self.index, self.tex_coord, self.extensions.transform.clone())
+    }
+}
+
+/// KHR_materials_clearcoat.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Clearcoat {
+    pub clearcoat_factor: f32,
+    pub clearcoat_texture: Option<TextureInfo>,
+    pub clearcoat_roughness_factor: f32,
+    pub clearcoat_roughness_texture: Option<TextureInfo>,
+    pub clearcoat_normal_texture: Option<TextureInfo>,
+}
+
+/// KHR_materials_specular.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Specular {
+    pub specular_factor: f32,
+    pub specular_texture: Option<TextureInfo>,
+    pub specular_color_factor: [f32; 3],
+    pub specular_color_texture: Option<TextureInfo>,
+}
+
+impl Default for Specular {
+    fn default() -> Self {
+        Self {
+            specular_factor: 1.0,
+            specular_texture: None,
+            specular_color_factor: [1.0; 3],
+            specular_color_texture: None,
+        }
+    }
+}
+
+/// KHR_materials_anisotropy.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Anisotropy {
+    pub anisotropy_strength: f32,
+    pub anisotropy_rotation: f32,
+    pub anisotropy_texture: Option<TextureInfo>,
+}
+
+/// KHR_materials_transmission.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Transmission {
+    pub transmission_texture: Option<TextureInfo>,
+}
+
+/// KHR_materials_volume.
+#[derive(Debug, Default, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct Volume {
+    pub thickness_factor: f32,
+}
+
+/// KHR_materials_pbrSpecularGlossiness.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(rename_all = "camelCase", default)]
+pub(super) struct SpecularGlossiness {
+    pub diffuse_factor: [f32; 4],
+    pub diffuse_texture: Option<TextureInfo>,
+    pub specular_factor: [f32; 3],
+    pub glossiness_factor: f32,
+    pub specular_glossiness_texture: Option<TextureInfo>,
+}
+
+impl Default for SpecularGlossiness {
+    fn default() -> Self {
+        Self {
+            diffuse_factor: [1.0; 4],
+            diffuse_texture: None,
+            specular_factor: [1.0; 3],
+            glossiness_factor: 1.0,
+            specular_glossiness_texture: None,
+        }
+    }
+}
+
+/// An extension of a material; none where the material has none, or where it is not as it should be.
+pub(super) fn extension<T: DeserializeOwned>(material: &Json, name: &str) -> Option<T> {
+    T::deserialize(material.get("extensions")?.get(name)?).ok()
+}
+
+/// A number or list of an extension, and the key under which a material keeps it.
+struct Kept {
+    extension: &'static str,
+    /// The number without which nothing of it shows.
+    weight: &'static str,
+    values: &'static [(&'static str, &'static str)],
+    /// What it is called in the report.
+    what: &'static str,
+}
+
+/// What the renderer cannot show yet.
+const KEPT: [Kept; 4] = [
+    Kept {
+        extension: "KHR_materials_sheen",
+        weight: "sheenColorFactor",
+        values: &[
+            ("sheenColorFactor", "sheen.color"),
+            ("sheenRoughnessFactor", "sheen.roughness"),
+        ],
+        what: "sheen",
+    },
+    Kept {
+        extension: "KHR_materials_iridescence",
+        weight: "iridescenceFactor",
+        values: &[
+            ("iridescenceFactor", "iridescence.weight"),
+            ("iridescenceIor", "iridescence.ior"),
+            ("iridescenceThicknessMinimum", "iridescence.thickness_min_nm"),
+            ("iridescenceThicknessMaximum", "iridescence.thickness_nm"),
+        ],
+        what: "iridescence",
+    },
+    Kept {
+        extension: "KHR_materials_dispersion",
+        weight: "dispersion",
+        values: &[("dispersion", "transmission.dispersion")],
+        what: "dispersion",
+    },
+    Kept {
+        extension: "KHR_materials_diffuse_transmission",
+        weight: "diffuseTransmissionFactor",
+        values: &[
+            ("diffuseTransmissionFactor", "diffuse_transmission.weight"),
+            ("diffuseTransmissionColorFactor", "diffuse_transmission.color"),
+        ],
+        what: "diffuse transmission",
+    },
+];
+
+/// What a material has that the renderer cannot show yet: values under the keys of a material's file, and what to call
+/// each.
+pub(super) fn kept(material: &Json) -> (Map<String, Json>, Vec<&'static str>) {
+    let (mut values, mut names) = (Map::new(), Vec::new());
+    for kept in &KEPT {
+        let Some(extension) = material.get("extensions").and_then(|all| all.get(kept.extension)) else {
+            continue;
+        };
+        let has_texture = extension
+            .as_object()
+            .is_some_and(|all| all.keys().any(|key| key.ends_with("Texture")));
+        let weight = extension.get(kept.weight).unwrap_or(&Json::Null);
+        if *weight == Json::Null || [json!(0), json!(0.0), json!([0, 0, 0]), json!([0.0, 0.0, 0.0])].contains(weight) {
+            continue;
+        }
+        let is_plain =
+            |value: &&Json| value.is_number() || value.as_array().is_some_and(|list| list.iter().all(Json::is_number));
+        for (of_file, key) in kept.values {
+            if let Some(value) = extension.get(*of_file).filter(is_plain) {
+                values.insert((*key).to_owned(), value.clone());
+            }
+        }
+        names.push(kept.what);
+        if has_texture {
+            names.push("textures of what is not shown");
+        }
+    }
+    (values, names)
+}

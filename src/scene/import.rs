@@ -1,0 +1,157 @@
+//! Models from files, folders and archives: which reader, and what all of them have in common.
+
+use std::path::Path;
+
+use super::files::Files;
+use super::geometry::Framing;
+use super::model::{Filter, Model, ModelError, ModelOptions, SlotPicture, TextureRef, Wrap};
+use super::picture::decode_bytes;
+use super::report::Fate;
+use super::texture::scaled_to;
+use super::{gltf, obj, ply, stl};
+
+/// Endings of the model files that can be read, without their dots.
+pub const MODEL_ENDINGS: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "zip"];
+
+/// Endings of models in the order in which they are looked for in folders and archives.
+const PREFERRED: [&str; 5] = ["gltf", "glb", "obj", "ply", "stl"];
+
+/// Loads the model in a file, a folder or an archive.
+pub(super) fn load(path: &Path, options: &ModelOptions) -> Result<Model, ModelError> {
+    let mut model = if path.is_dir() {
+        load_inside(path, Files::Folder(path.to_owned()), options)?
+    } else if ending(path) == "zip" {
+        let files = Files::in_archive(path).map_err(|source| ModelError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        load_inside(path, files, options)?
+    } else {
+        let bytes = std::fs::read(path).map_err(|source| ModelError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        load_file(path, Files::beside(path), bytes, options)?
+    };
+    let stem = if path.is_dir() {
+        path.file_name()
+    } else {
+        path.file_stem()
+    };
+    model.name = stem.map_or_else(|| "model".into(), |stem| stem.to_string_lossy().into_owned());
+    finish(&mut model);
+    Ok(model)
+}
+
+/// Lower-case ending of a file's name, without its dot.
+fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
+/// Whether a file's ending is that of a model.
+pub fn is_model(path: &Path) -> bool {
+    MODEL_ENDINGS.contains(&ending(path).as_str())
+}
+
+/// Loads the model among files: of the first format that there is, the file that is nearest to the top.
+fn load_inside(path: &Path, files: Files, options: &ModelOptions) -> Result<Model, ModelError> {
+    let read = |source| ModelError::Read {
+        path: path.to_owned(),
+        source,
+    };
+    let names = files.names().map_err(read)?;
+    let of_format = |wanted: &&str| {
+        let mut found: Vec<&String> = names
+            .iter()
+            .filter(|name| ending(Path::new(name)) == *wanted && !name.starts_with("__MACOSX/"))
+            .collect();
+        found.sort_by_key(|name| name.matches('/').count());
+        found.into_iter().next().cloned()
+    };
+    let name = PREFERRED.iter().find_map(of_format);
+    let name = name.ok_or_else(|| ModelError::NoModelInside { path: path.to_owned() })?;
+    let bytes = files.read(&name).map_err(read)?;
+    let others = names
+        .iter()
+        .filter(|other| **other != name && is_model(Path::new(other)))
+        .count();
+    let mut model = load_file(&path.join(&name), files.seen_from(&name), bytes, options)?;
+    model.report.note(Fate::Used, "the model file", &name);
+    model.report.count(Fate::Ignored, "other models beside it", "", others);
+    Ok(model)
+}
+
+/// Loads the contents of a file by its ending.
+fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) -> Result<Model, ModelError> {
+    let model = match ending(path).as_str() {
+        "obj" => obj::load(path, &files, &bytes, options)?,
+        "ply" => ply::load(path, &bytes)?,
+        "stl" => stl::load(path, &bytes)?,
+        // Whatever a glTF file is called: its first bytes tell.
+        _ => gltf::load(path, files, bytes, options)?,
+    };
+    if model.mesh.triangles.is_empty() {
+        return Err(ModelError::NoTriangles { path: path.to_owned() });
+    }
+    Ok(model)
+}
+
+/// Gives slots the pictures that were chosen for them, in the first set of texture coordinates.
+pub(super) fn put_pictures(model: &mut Model, options: &ModelOptions) {
+    for SlotPicture { slot, file } in &options.pictures {
+        let name = file.display().to_string();
+        let picture = std::fs::read(file)
+            .map_err(|error| error.to_string())
+            .and_then(|bytes| decode_bytes(name.clone(), &bytes));
+        match (picture, model.slots.get_mut(*slot)) {
+            (Ok(picture), Some(slot)) => {
+                let (picture, _) = scaled_to(picture, options.texture_side_max, true);
+                slot.base_color = [1.0; 3];
+                slot.base_color_texture = Some(TextureRef {
+                    texture: model.textures.len(),
+                    uv_set: 0,
+                    texture_from_mesh_uv: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+                    wrap: [Wrap::Repeat; 2],
+                    filter: Filter::Linear,
+                });
+                model.textures.push(picture);
+                model.report.note(Fate::Used, "pictures of your own", &name);
+            }
+            (Err(reason), _) => model
+                .report
+                .note(Fate::Missing, format!("a picture of your own ({reason})"), &name),
+            (Ok(_), None) => model
+                .report
+                .note(Fate::Ignored, "a picture for a slot that is not there", &name),
+        }
+    }
+}
+
+/// What all formats have in common: lengths in bounding radii, and a word about triangles that cannot be shown.
+fn finish(model: &mut Model) {
+    let framing = Framing::of(&model.mesh);
+    let radius = framing.world_units_per_unit as f32;
+    for slot in &mut model.slots {
+        slot.attenuation_distance /= radius;
+    }
+    (model.center, model.radius) = (framing.center_world.to_array(), framing.world_units_per_unit);
+    let all = model.mesh.triangles.len();
+    let no_area = all - framing.dropped_not_finite - framing.usable.len();
+    let (lights, cameras) = (model.lights.len(), model.cameras.len());
+    let report = &mut model.report;
+    report.count(
+        Fate::Approximated,
+        "lights, as small squares that look at the model",
+        "",
+        lights,
+    );
+    report.count(Fate::Used, "cameras, as bookmarks", "", cameras);
+    report.count(Fate::Used, "triangles", "", framing.usable.len());
+    report.count(Fate::Ignored, "triangles without area", "", no_area);
+    report.count(
+        Fate::Ignored,
+        "triangles with a corner that is not finite",
+        "",
+        framing.dropped_not_finite,
+    );
+}

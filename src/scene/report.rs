@@ -1,0 +1,153 @@
+//! What became of the parts of a file that was loaded: used, approximated, ignored or missing.
+
+use serde::Serialize;
+
+/// Most names that are kept of one entry.
+const NAMES_MAX: usize = 20;
+
+/// What became of a part of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Fate {
+    /// Shown as the file says.
+    Used,
+    /// Shown in another way than the file says.
+    Approximated,
+    /// There, and not shown.
+    Ignored,
+    /// The file refers to it, and it is not there or cannot be read.
+    Missing,
+}
+
+impl Fate {
+    /// Every fate, the best first.
+    pub const ALL: &[Self] = &[Self::Used, Self::Approximated, Self::Ignored, Self::Missing];
+
+    /// In words: "used", "approximated", …
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Used => "used",
+            Self::Approximated => "approximated",
+            Self::Ignored => "ignored",
+            Self::Missing => "missing",
+        }
+    }
+}
+
+/// One kind of thing in a file, and what became of it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Entry {
+    /// What became of it.
+    pub fate: Fate,
+    /// What it is, and what is shown instead.
+    pub what: String,
+    /// How often.
+    pub count: usize,
+    /// The objects, materials or files concerned, each once, the first twenty of them.
+    pub names: Vec<String>,
+}
+
+/// What became of the parts of a file.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct ImportReport {
+    /// One entry for each kind of thing, in the order in which they were met.
+    pub entries: Vec<Entry>,
+}
+
+impl ImportReport {
+    /// Counts one thing. `name` is the object, material or file that it belongs to; none where it is the file itself.
+    pub fn note(&mut self, fate: Fate, what: impl Into<String>, name: &str) {
+        self.count(fate, what, name, 1);
+    }
+
+    /// Counts several things of one kind; none leave no entry.
+    pub fn count(&mut self, fate: Fate, what: impl Into<String>, name: &str, count: usize) {
+        if count == 0 {
+            return;
+        }
+        let what = what.into();
+        let known = self
+            .entries
+            .iter()
+            .position(|entry| entry.fate == fate && entry.what == what);
+        let place = known.unwrap_or_else(|| {
+            self.entries.push(Entry {
+                fate,
+                what,
+                count: 0,
+                names: Vec::new(),
+            });
+            self.entries.len() - 1
+        });
+        let entry = &mut self.entries[place];
+        entry.count += count;
+        let is_new = !name.is_empty() && !entry.names.iter().any(|known| known == name);
+        if is_new && entry.names.len() < NAMES_MAX {
+            entry.names.push(name.to_owned());
+        }
+    }
+
+    /// Takes another report's entries over.
+    pub fn append(&mut self, other: Self) {
+        for entry in other.entries {
+            self.count(entry.fate, entry.what.as_str(), "", entry.count);
+            for name in &entry.names {
+                self.name(entry.fate, &entry.what, name);
+            }
+        }
+    }
+
+    fn name(&mut self, fate: Fate, what: &str, name: &str) {
+        let mut entries = self.entries.iter_mut();
+        if let Some(entry) = entries.find(|entry| entry.fate == fate && entry.what == what)
+            && entry.names.len() < NAMES_MAX
+            && !entry.names.iter().any(|known| known == name)
+        {
+            entry.names.push(name.to_owned());
+        }
+    }
+
+    /// The entries with this fate.
+    pub fn of(&self, fate: Fate) -> impl Iterator<Item = &Entry> {
+        self.entries.iter().filter(move |entry| entry.fate == fate)
+    }
+
+    /// Whether everything is shown as the file says.
+    pub fn is_clean(&self) -> bool {
+        self.entries.iter().all(|entry| entry.fate == Fate::Used)
+    }
+
+    /// Everything that is not shown as the file says, one line each.
+    pub fn lines(&self) -> Vec<String> {
+        let entries = self.entries.iter().filter(|entry| entry.fate != Fate::Used);
+        entries.map(Entry::line).collect()
+    }
+
+    /// One line about everything that is not shown as the file says; none where there is no such thing.
+    pub fn summary(&self) -> Option<String> {
+        let count = |fate: Fate| match self.of(fate).map(|entry| entry.count).sum::<usize>() {
+            0 => None,
+            count => Some(format!("{count} {}", fate.label())),
+        };
+        let counts: Vec<String> = Fate::ALL[1..].iter().rev().filter_map(|fate| count(*fate)).collect();
+        let worst = Fate::ALL[1..].iter().rev().find_map(|fate| self.of(*fate).next())?;
+        Some(format!("{} ({})", counts.join(", "), worst.line()))
+    }
+}
+
+impl Entry {
+    /// The entry in one line: fate, what, how often, where.
+    pub fn line(&self) -> String {
+        let mut line = format!("{}: {}", self.fate.label(), self.what);
+        if self.count > 1 {
+            line.push_str(&format!(" (× {})", self.count));
+        }
+        if let [first, rest @ ..] = self.names.as_slice() {
+            line.push_str(&format!(", in {first}"));
+            if !rest.is_empty() {
+                line.push_str(&format!(" and {} more", rest.len()));
+            }
+        }
+        line
+    }
+}

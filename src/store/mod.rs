@@ -1,0 +1,14 @@
+//! What is kept in files: projects, presets and the user's folder of them, pictures with a document inside, copies of
+//! unsaved documents, pinned states.
+
+pub mod file;
+pub mod library;
+pub mod picture;
+pub mod preset;
+pub mod project;
+pub mod recovery;
+pub mod snapshots;
+
+pub use file::{FileError, Loaded};
+pub use preset::{PRESETS, load_material, material_by_name, save_material};
+pub use project::{load_document, save_document};

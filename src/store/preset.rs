@@ -1,0 +1,254 @@
+//! Materials in JSON files, and the ones that come with the program.
+//!
+//! `{"glossmith": 1, "name": "Gold", "material": {"base.color": [1, 0.8, 0.3], "specular.lobe": "geometric", …}}`: inside
+//! "material" the keys of [`PARAMETERS`]; those left out have their defaults. What this version does not know is kept
+//! and written back.
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use serde_json::{Map, Value as Json, json};
+
+use super::file::{self, FileError, Loaded};
+use crate::document::parameter::nearest_key;
+use crate::document::{MaterialSettings, PARAMETERS, ParameterError};
+
+/// The version of the format.
+pub const VERSION: u64 = 1;
+/// The key of the version, by which such a file is known.
+pub const MARK: &str = "glossmith";
+
+/// Turns an object of version n, at index n, into one of version n + 1.
+const MIGRATIONS: [fn(&mut Map<String, Json>); VERSION as usize] = [migrate_0];
+
+macro_rules! shipped {
+    ($($file:literal)*) => { &[$(include_str!(concat!("../../assets/presets/", $file, ".json")),)*] };
+}
+
+/// The files of the shipped materials, in the order of the menus.
+pub const SHIPPED: &[&str] = shipped! {
+    "porcelain" "lambert-white" "plastic-blue" "rubber" "satin-black" "car-paint-red" "pearl"
+    "glass" "frosted-glass" "bottle-glass" "amber"
+    "chrome" "silver" "aluminium" "brushed-steel" "gold" "copper"
+};
+
+/// The shipped materials, in the order of the menus.
+pub static PRESETS: LazyLock<Vec<MaterialSettings>> = LazyLock::new(|| {
+    let parse = |text: &&str| parse_material(Path::new("assets/presets"), text.as_bytes());
+    let parsed = SHIPPED
+        .iter()
+        .map(|text| parse(text).expect("shipped materials are valid").value);
+    parsed.collect()
+});
+
+/// A material's name as it is written on the command line: lower case, hyphens for spaces.
+pub fn command_line_name(name: &str) -> String {
+    name.trim().to_lowercase().replace([' ', '_'], "-")
+}
+
+/// The shipped material of that name, in upper or lower case, with spaces or hyphens.
+pub fn material_by_name(name: &str) -> Option<&'static MaterialSettings> {
+    let wanted = command_line_name(name);
+    PRESETS
+        .iter()
+        .find(|material| command_line_name(&material.name) == wanted)
+}
+
+/// The shipped material of that name, else the material in the file of that name.
+///
+/// # Errors
+/// What is wrong with the file; the names that there are if there is no such file.
+pub fn find(name_or_path: &str) -> Result<Loaded<MaterialSettings>, FileError> {
+    if let Some(material) = material_by_name(name_or_path) {
+        return Ok(Loaded {
+            value: material.clone(),
+            warnings: Vec::new(),
+        });
+    }
+    let path = Path::new(name_or_path);
+    let is_path = path.extension().is_some() || path.components().count() > 1;
+    if !is_path && !path.exists() {
+        let known: Vec<_> = PRESETS
+            .iter()
+            .map(|material| command_line_name(&material.name))
+            .collect();
+        return Err(FileError::UnknownMaterial {
+            name: name_or_path.to_owned(),
+            known: known.join(", "),
+        });
+    }
+    load_material(path)
+}
+
+/// The material in a file.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn load_material(path: &Path) -> Result<Loaded<MaterialSettings>, FileError> {
+    parse_material(path, &file::read(path)?)
+}
+
+/// The material in a file's contents. `path` is only named in messages.
+///
+/// # Errors
+/// What is wrong with the contents.
+pub fn parse_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettings>, FileError> {
+    let mut object = file::object(path, bytes)?;
+    let version = file::version(path, &object, MARK)?.unwrap_or(0);
+    let mut warnings = Vec::new();
+    if version > VERSION {
+        warnings.push(format!(
+            "{}: written by a newer Glossmith (format {version}, this one knows {VERSION}); what is new has no effect",
+            path.display()
+        ));
+    }
+    for migrate in MIGRATIONS.iter().skip(version as usize) {
+        migrate(&mut object);
+    }
+    if !object.contains_key("material") {
+        return Err(FileError::WrongKind {
+            path: path.to_owned(),
+            expected: "material",
+            mark: MARK,
+        });
+    }
+    let material = MaterialSettings::try_from(object).map_err(|error| FileError::Content {
+        path: path.to_owned(),
+        reason: error.to_string(),
+    })?;
+    warnings.extend(unknown_keys(&material).map(|warning| format!("{}: {warning}", path.display())));
+    Ok(Loaded {
+        value: material,
+        warnings,
+    })
+}
+
+/// Files without a number, as people write them by hand: parameters may stand beside the name, with or without their
+/// group where one group only has them ("roughness").
+fn migrate_0(object: &mut Map<String, Json>) {
+    let mut material = match object.remove("material") {
+        Some(Json::Object(material)) => material,
+        // Left for the reader to refuse.
+        Some(other) => {
+            object.insert("material".to_owned(), other);
+            return;
+        }
+        None => Map::new(),
+    };
+    for key in object.keys().cloned().collect::<Vec<_>>() {
+        let is_meant = |known: &str| known == key || known.split_once('.').is_some_and(|(_, short)| short == key);
+        // Groups that came after version 0 are never meant.
+        let mut meant = PARAMETERS
+            .iter()
+            .map(|parameter| parameter.key)
+            .filter(|known| is_meant(known) && !is_newer(known));
+        if let (Some(known), None) = (meant.next(), meant.next())
+            && let Some(value) = object.remove(&key)
+        {
+            material.insert(known.to_owned(), value);
+        }
+    }
+    if !material.is_empty() {
+        object.insert("material".to_owned(), Json::Object(material));
+        object.insert(MARK.to_owned(), json!(1));
+    }
+}
+
+/// True of parameters that came after version 0.
+fn is_newer(key: &str) -> bool {
+    let groups = ["transmission.", "coat.", "geometry."];
+    groups.iter().any(|group| key.starts_with(group)) || key == "base.weight" || key.ends_with("_texture")
+}
+
+/// Groups of keys that come with a model's materials and are kept although nothing shows them yet.
+const KEPT: [&str; 4] = [
+    "sheen.",
+    "iridescence.",
+    "diffuse_transmission.",
+    "transmission.dispersion",
+];
+
+/// A sentence for each key of "material" that has no effect.
+pub(super) fn unknown_keys(material: &MaterialSettings) -> impl Iterator<Item = String> + '_ {
+    let is_kept = |key: &&String| KEPT.iter().any(|kept| key.starts_with(kept));
+    material.extra.keys().filter(move |key| !is_kept(key)).map(|key| {
+        let hint = nearest_key(key).map_or_else(String::new, |near| format!("; did you mean {near}?"));
+        format!("{key} is no parameter and has no effect{hint}")
+    })
+}
+
+/// Saves a material, replacing the file at once.
+///
+/// # Errors
+/// [`FileError::Write`]; the old file is then untouched.
+pub fn save_material(path: &Path, material: &MaterialSettings) -> Result<(), FileError> {
+    file::save_atomically(path, material_text(material).as_bytes())
+}
+
+/// The contents of a material's file.
+pub fn material_text(material: &MaterialSettings) -> String {
+    let mut object = Map::new();
+    object.insert(MARK.to_owned(), json!(VERSION));
+    object.extend(Map::from(material.clone()));
+    file::text(&object)
+}
+
+/// What makes an object no material.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum MaterialError {
+    /// A parameter's value.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// The name is no text.
+    #[error("\"name\" must be text; put it in quotation marks")]
+    Name,
+    /// "material" is no object.
+    #[error("\"material\" must be an object; write {{\"specular.roughness\": 0.3}} or the like")]
+    Material,
+}
+
+/// From `{"name": …, "material": {…}}`.
+impl TryFrom<Map<String, Json>> for MaterialSettings {
+    type Error = MaterialError;
+    fn try_from(mut object: Map<String, Json>) -> Result<Self, MaterialError> {
+        let mut material = Self::default();
+        match object.shift_remove("name") {
+            Some(Json::String(name)) => material.name = name,
+            Some(_) => return Err(MaterialError::Name),
+            None => {}
+        }
+        let mut values = match object.shift_remove("material") {
+            Some(Json::Object(values)) => values,
+            Some(_) => return Err(MaterialError::Material),
+            None => Map::new(),
+        };
+        for parameter in PARAMETERS.iter() {
+            if let Some(json) = values.shift_remove(parameter.key) {
+                parameter.set(&mut material, parameter.value_from_json(&json)?)?;
+            }
+        }
+        object.shift_remove(MARK);
+        material.extra = values;
+        material.file_extra = object;
+        Ok(material)
+    }
+}
+
+/// To `{"name": …, "material": {…}}`.
+impl From<MaterialSettings> for Map<String, Json> {
+    fn from(material: MaterialSettings) -> Self {
+        let mut values = Map::new();
+        for parameter in PARAMETERS.iter() {
+            values.insert(
+                parameter.key.to_owned(),
+                parameter.json_from_value(&parameter.get(&material)),
+            );
+        }
+        values.extend(material.extra);
+        let mut object = Map::new();
+        object.insert("name".to_owned(), Json::from(material.name));
+        object.insert("material".to_owned(), Json::Object(values));
+        object.extend(material.file_extra);
+        object
+    }
+}

@@ -1,0 +1,178 @@
+//! Whole documents in JSON files: `{"glossmith-document": 1, "model": "teapot", "materials": […], …}`. What is left out
+//! has its default; what this version does not know is kept and written back. Files inside the project's folder are
+//! named relative to it, so that the folder can be moved.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value as Json, json};
+
+use super::file::{self, FileError, Loaded};
+use super::preset;
+use crate::document::Document;
+use crate::scene::ModelSource;
+use crate::scene::environment::EnvironmentSource;
+
+/// The version of the format.
+pub const VERSION: u64 = 1;
+/// The key of the version, by which such a file is known.
+pub const MARK: &str = "glossmith-document";
+
+/// The document in a project file.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn load_document(path: &Path) -> Result<Loaded<Document>, FileError> {
+    parse_document(path, &file::read(path)?)
+}
+
+/// The document in a project file's contents. Relative file names are relative to `path`'s folder.
+///
+/// # Errors
+/// What is wrong with the contents.
+pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, FileError> {
+    let object = file::object(path, bytes)?;
+    let version = file::version(path, &object, MARK)?.ok_or_else(|| FileError::WrongKind {
+        path: path.to_owned(),
+        expected: "project",
+        mark: MARK,
+    })?;
+    let content = |reason: String| FileError::Content {
+        path: path.to_owned(),
+        reason,
+    };
+    let mut document = document_from_json(&object).map_err(|reason| content(format!("{reason}; correct it there")))?;
+    document.check().map_err(|error| content(error.to_string()))?;
+    document.extra = unknown_part(&object, &known_part(&document).map_err(content)?);
+    document.extra.shift_remove(MARK);
+    map_paths(&mut document, |named| folder(path).join(named));
+    let mut warnings = Vec::new();
+    if version > VERSION {
+        warnings.push(format!(
+            "{}: written by a newer Glossmith (format {version}, this one knows {VERSION}); what is new has no effect",
+            path.display()
+        ));
+    }
+    for material in &document.materials {
+        let unknown = preset::unknown_keys(material);
+        warnings.extend(unknown.map(|warning| format!("{}: {}: {warning}", path.display(), material.name)));
+    }
+    Ok(Loaded {
+        value: document,
+        warnings,
+    })
+}
+
+/// Reads one part after the other before the whole, so that the message can say which one is wrong.
+fn document_from_json(object: &Map<String, Json>) -> Result<Document, String> {
+    for (part, json) in object {
+        let mut only = Map::new();
+        only.insert(part.clone(), json.clone());
+        serde_json::from_value::<Document>(Json::Object(only)).map_err(|error| format!("\"{part}\": {error}"))?;
+    }
+    serde_json::from_value(Json::Object(object.clone())).map_err(|error| error.to_string())
+}
+
+/// Saves a document, replacing the file at once.
+///
+/// # Errors
+/// [`FileError::Write`]; the old file is then untouched.
+pub fn save_document(path: &Path, document: &Document) -> Result<(), FileError> {
+    file::save_atomically(path, document_text(path, document)?.as_bytes())
+}
+
+/// The contents of a document's file at `path`.
+///
+/// # Errors
+/// [`FileError::Content`] for file names that are no Unicode.
+pub fn document_text(path: &Path, document: &Document) -> Result<String, FileError> {
+    let mut document = document.clone();
+    let folder = absolute(folder(path));
+    map_paths(&mut document, |named| {
+        let named = absolute(named);
+        named.strip_prefix(&folder).map(Path::to_owned).unwrap_or(named)
+    });
+    let content = |reason: String| FileError::Content {
+        path: path.to_owned(),
+        reason,
+    };
+    // The environment's path refuses by itself.
+    if let ModelSource::File(model) = &document.model
+        && model.to_str().is_none()
+    {
+        return Err(content(format!(
+            "{} is not named in Unicode; rename the file",
+            model.display()
+        )));
+    }
+    let known = known_part(&document).map_err(content)?;
+    let mut object = Map::new();
+    object.insert(MARK.to_owned(), json!(VERSION));
+    object.extend(known);
+    add_unknown(&mut object, &document.extra);
+    Ok(file::text(&object))
+}
+
+/// The document as JSON, `extra` left out. By way of text, so that an f32 is written with no more digits than it has.
+fn known_part(document: &Document) -> Result<Map<String, Json>, String> {
+    let text = serde_json::to_string(document).map_err(|error| format!("{error}; rename the file"))?;
+    serde_json::from_str(&text).map_err(|error| error.to_string())
+}
+
+/// What `object` has that `known` lacks, objects inside it searched too. Materials keep what they do not know themselves.
+fn unknown_part(object: &Map<String, Json>, known: &Map<String, Json>) -> Map<String, Json> {
+    let mut unknown = Map::new();
+    for (key, value) in object {
+        match (value, known.get(key)) {
+            (_, None) => {
+                unknown.insert(key.clone(), value.clone());
+            }
+            (Json::Object(inner), Some(Json::Object(known))) => {
+                let inner = unknown_part(inner, known);
+                if !inner.is_empty() {
+                    unknown.insert(key.clone(), Json::Object(inner));
+                }
+            }
+            _ => {}
+        }
+    }
+    unknown
+}
+
+fn add_unknown(object: &mut Map<String, Json>, unknown: &Map<String, Json>) {
+    for (key, value) in unknown {
+        match (object.get_mut(key), value) {
+            (None, _) => {
+                object.insert(key.clone(), value.clone());
+            }
+            (Some(Json::Object(known)), Json::Object(inner)) => add_unknown(known, inner),
+            // Known by now: what the document says counts.
+            _ => {}
+        }
+    }
+}
+
+fn map_paths(document: &mut Document, map: impl Fn(&Path) -> PathBuf) {
+    if let ModelSource::File(path) = &mut document.model {
+        *path = map(path);
+    }
+    if let EnvironmentSource::File(path) = &mut document.lighting.environment {
+        *path = map(path);
+    }
+    for picture in &mut document.import.pictures {
+        picture.file = map(&picture.file);
+    }
+}
+
+fn folder(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+/// The path from the root, nothing looked up; as it is where the current folder is gone.
+fn absolute(path: &Path) -> PathBuf {
+    let path = if path.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        path
+    };
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}

@@ -1,0 +1,309 @@
+//! Unsaved documents put aside, so that a crash loses little of them.
+//!
+//! Every window has a file of its own in one folder, and holds a lock on another beside it for as long as it lives. The
+//! system lets go of the lock however the window ends: a file that is not locked was left by a crash. The files are
+//! project files with one more key, so that they can be opened by hand, too. A window that panicked has written a report
+//! beside its file; reports stay when what was put aside goes, the latest few of them.
+
+use std::fs::{self, File, OpenOptions};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use serde_json::{Value as Json, json};
+
+use super::file::FileError;
+use super::project;
+use crate::document::Document;
+
+/// The key of what is kept beside the document.
+const KEY: &str = "glossmith-recovery";
+/// The file that is locked while others are made, looked for and removed.
+const GUARD: &str = "folder.lock";
+
+/// The name of the line of a report that says what the panic said.
+pub const MESSAGE: &str = "Message";
+/// Most reports that are kept.
+const REPORTS: usize = 8;
+
+/// A file for an unsaved document. While this lives nobody else takes the file.
+#[derive(Debug)]
+pub struct Slot {
+    path: PathBuf,
+    /// Locked.
+    _lock: File,
+}
+
+/// What a panic wrote.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// The text file.
+    pub path: PathBuf,
+    /// What the latest panic in it said.
+    pub message: String,
+}
+
+/// What a crash left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recovered {
+    /// The document as it was last put aside.
+    pub document: Document,
+    /// The file that it had been opened from or saved to.
+    pub project: Option<PathBuf>,
+    /// When it was put aside.
+    pub at: SystemTime,
+    /// What the user should know, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+impl Slot {
+    /// A new file in the folder, which is made where it is not there; nothing is written to it yet.
+    ///
+    /// # Errors
+    /// [`FileError::Write`] where the folder can't be written or locked.
+    pub fn open(folder: &Path) -> Result<Self, FileError> {
+        let _guard = guard(folder)?;
+        let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let mut nanoseconds = since_1970.as_nanos();
+        loop {
+            let path = folder.join(format!("{}-{nanoseconds}.json", std::process::id()));
+            let lock_path = lock_path(&path);
+            match OpenOptions::new().write(true).create_new(true).open(&lock_path) {
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => nanoseconds += 1,
+                Err(error) => return Err(cannot_write(&lock_path)(error)),
+                Ok(lock) => {
+                    lock.lock().map_err(cannot_write(&lock_path))?;
+                    return Ok(Self { path, _lock: lock });
+                }
+            }
+        }
+    }
+
+    /// The file.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Puts a document aside instead of the last one; `project` is the file that it belongs to.
+    ///
+    /// # Errors
+    /// [`FileError`] where it can't be written; the last one is then still there.
+    pub fn save(&self, document: &Document, project: Option<&Path>) -> Result<(), FileError> {
+        put_aside(&self.path, document, project)
+    }
+
+    /// Whether something was put aside.
+    pub fn has_document(&self) -> bool {
+        self.path.exists()
+    }
+
+    /// The report of a panic, where there was one.
+    pub fn report(&self) -> Option<Report> {
+        let path = report_path(&self.path);
+        let text = String::from_utf8_lossy(&fs::read(&path).ok()?).into_owned();
+        let messages = text
+            .lines()
+            .filter_map(|line| line.strip_prefix(MESSAGE)?.strip_prefix(": "));
+        let message = messages.last().unwrap_or_default().to_owned();
+        Some(Report { path, message })
+    }
+
+    /// What is in the file.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    pub fn load(&self) -> Result<Recovered, FileError> {
+        let at = fs::metadata(&self.path).and_then(|metadata| metadata.modified());
+        let loaded = project::load_document(&self.path)?;
+        let mut document = loaded.value;
+        let beside = document.extra.shift_remove(KEY).unwrap_or_default();
+        Ok(Recovered {
+            project: beside.get("project").and_then(Json::as_str).map(PathBuf::from),
+            at: at.unwrap_or_else(|_| SystemTime::now()),
+            document,
+            warnings: loaded.warnings,
+        })
+    }
+
+    /// Removes what was put aside: it has been saved, or is not wanted any more. The slot can go on being used.
+    ///
+    /// # Errors
+    /// [`FileError::Write`] where the system doesn't let it.
+    pub fn clear(&self) -> Result<(), FileError> {
+        match fs::remove_file(&self.path) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => Err(cannot_write(&self.path)(error)),
+            _ => Ok(()),
+        }
+    }
+
+    /// Removes the file and all that belongs to it.
+    ///
+    /// # Errors
+    /// [`FileError::Write`] where the system doesn't let it.
+    pub fn remove(self) -> Result<(), FileError> {
+        let folder = self.path.parent().unwrap_or(Path::new("."));
+        let _guard = guard(folder)?;
+        self.clear()?;
+        let lock_path = lock_path(&self.path);
+        fs::remove_file(&lock_path).map_err(cannot_write(&lock_path))
+    }
+}
+
+/// Takes over what crashes left in the folder, the newest first; what another window has taken stays with that one.
+///
+/// # Errors
+/// [`FileError::Write`] where the folder can't be read, written or locked.
+pub fn leftovers(folder: &Path) -> Result<Vec<Slot>, FileError> {
+    let _guard = guard(folder)?;
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).map_err(cannot_write(folder))?.flatten() {
+        let path = entry.path();
+        if path.file_name() == Some(GUARD.as_ref()) || path.extension() != Some("lock".as_ref()) {
+            continue;
+        }
+        let Ok(lock) = OpenOptions::new().write(true).open(&path) else {
+            continue;
+        };
+        if lock.try_lock().is_err() {
+            continue;
+        }
+        let document = path.with_extension("json");
+        let modified = |path: &Path| fs::metadata(path).and_then(|metadata| metadata.modified());
+        match modified(&document).or_else(|_| modified(&report_path(&document))) {
+            Ok(at) => found.push((
+                at,
+                Slot {
+                    path: document,
+                    _lock: lock,
+                },
+            )),
+            // Left by a window that had nothing unsaved; where it can't be removed it does no harm.
+            Err(_) => drop(fs::remove_file(&path)),
+        }
+    }
+    found.sort_by_key(|(at, _)| std::cmp::Reverse(*at));
+    remove_old_reports(folder);
+    Ok(found.into_iter().map(|(_, slot)| slot).collect())
+}
+
+/// Writes a document to the file of a [`Slot`]; `project` is the file that it belongs to.
+///
+/// # Errors
+/// [`FileError`] where it can't be written; what was there is then still there.
+pub fn put_aside(path: &Path, document: &Document, project: Option<&Path>) -> Result<(), FileError> {
+    let mut document = document.clone();
+    let project = project.and_then(Path::to_str);
+    document.extra.insert(KEY.to_owned(), json!({ "project": project }));
+    project::save_document(path, &document)
+}
+
+/// The report that belongs to the file of a [`Slot`].
+pub fn report_path(path: &Path) -> PathBuf {
+    path.with_extension("txt")
+}
+
+/// Leaves the latest reports, and those that belong to what was put aside.
+fn remove_old_reports(folder: &Path) {
+    let entries = fs::read_dir(folder)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|entry| entry.path());
+    let is_old = |path: &PathBuf| path.extension() == Some("txt".as_ref()) && !lock_path(path).exists();
+    let mut reports: Vec<PathBuf> = entries.filter(is_old).collect();
+    reports.sort_by_key(|path| std::cmp::Reverse(fs::metadata(path).and_then(|metadata| metadata.modified()).ok()));
+    for path in reports.iter().skip(REPORTS) {
+        // Where it can't be removed it does no harm.
+        let _ = fs::remove_file(path);
+    }
+}
+
+fn lock_path(path: &Path) -> PathBuf {
+    path.with_extension("lock")
+}
+
+/// Keeps other windows from the folder until it is dropped: between making a file and locking it there is a moment.
+fn guard(folder: &Path) -> Result<File, FileError> {
+    let path = folder.join(GUARD);
+    let lock = || {
+        fs::create_dir_all(folder)?;
+        let file = OpenOptions::new()
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(&path)?;
+        file.lock()?;
+        Ok(file)
+    };
+    lock().map_err(cannot_write(&path))
+}
+
+fn cannot_write(path: &Path) -> impl FnOnce(io::Error) -> FileError {
+    let path = path.to_owned();
+    move |source| FileError::Write { path, source }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edited() -> Document {
+        Document {
+            ground: true,
+            ..Document::default()
+        }
+    }
+
+    #[test]
+    fn what_a_crash_left_comes_back_whole_and_once() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let slot = Slot::open(folder.path()).expect("a slot");
+        slot.save(&edited(), Some(Path::new("projects/pot.json")))
+            .expect("saved");
+        assert_eq!(leftovers(folder.path()).expect("listed").len(), 0, "its window lives");
+        drop(slot);
+        let found = leftovers(folder.path()).expect("listed");
+        assert_eq!(found.len(), 1);
+        let recovered = found[0].load().expect("whole");
+        assert_eq!(recovered.document, edited());
+        assert_eq!(recovered.project.as_deref(), Some(Path::new("projects/pot.json")));
+        assert_eq!(leftovers(folder.path()).expect("listed").len(), 0, "it is taken");
+        for slot in found {
+            slot.remove().expect("removed");
+        }
+        assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 1, "the guard");
+    }
+
+    #[test]
+    fn two_windows_do_not_touch_each_other() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let [a, b] = [0, 1].map(|_| Slot::open(folder.path()).expect("a slot"));
+        assert_ne!(a.path(), b.path());
+        a.save(&edited(), None).expect("saved");
+        b.save(&Document::default(), None).expect("saved");
+        b.remove().expect("removed");
+        assert_eq!(a.load().expect("still there").document, edited());
+    }
+
+    #[test]
+    fn a_window_with_nothing_unsaved_leaves_nothing_to_offer() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let slot = Slot::open(folder.path()).expect("a slot");
+        slot.save(&edited(), None).expect("saved");
+        slot.clear().expect("removed");
+        slot.clear().expect("twice is no error");
+        drop(slot);
+        assert_eq!(leftovers(folder.path()).expect("listed").len(), 0);
+        assert_eq!(fs::read_dir(folder.path()).expect("listed").count(), 1, "the guard");
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_made_is_an_error() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let file = folder.path().join("file");
+        fs::write(&file, "no folder").expect("a temporary file");
+        let error = Slot::open(&file.join("recovery")).expect_err("a file is no folder");
+        assert!(error.to_string().contains("recovery"), "{error}");
+        assert!(leftovers(&file.join("recovery")).is_err());
+    }
+}

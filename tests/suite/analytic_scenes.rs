@@ -1,0 +1,507 @@
+//! The table of scenes whose picture is known in closed form. The camera looks along one ray, nearly: every pixel has the
+//! same value.
+
+use std::f64::consts::PI;
+
+use glam::{DVec3, Vec2};
+use glossmith::analysis::quadrature::{gauss_legendre, integrate, integrate_hemisphere};
+use glossmith::document::{AreaLight, Background, Document, MaterialSettings, Strategy, assign};
+use glossmith::optics::curve::Curve;
+use glossmith::optics::frame::frame_from_normal;
+use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate};
+use glossmith::optics::random::Sequence;
+use glossmith::optics::vector::vec3;
+use glossmith::render::Assets;
+use glossmith::scene::environment::{Environment, EnvironmentSource};
+use glossmith::scene::mesh::Mesh;
+use glossmith::scene::{Model, ModelSource, Slot, Texture, TextureRef, Wrap};
+
+use crate::lights::{corners, irradiance};
+use crate::renders::document;
+
+/// A row of the table.
+pub struct Case {
+    pub name: String,
+    pub document: Document,
+    model: Option<Model>,
+    environment: Option<Environment>,
+    /// Linear RGB.
+    pub expected: [f64; 3],
+    /// Those that find the light with an honest variance; the first one is tried in every way.
+    pub strategies: &'static [Strategy],
+    /// Samples a pixel of a picture of 16 × 16.
+    samples: u32,
+    /// Takes so many samples that it is tried once, by the processor.
+    pub is_dear: bool,
+}
+
+const ALL: &[Strategy] = &[Strategy::Mis, Strategy::Lobe, Strategy::Light];
+const BY_LOBE: &[Strategy] = &[Strategy::Lobe, Strategy::Mis];
+const BY_LIGHT: &[Strategy] = &[Strategy::Mis, Strategy::Light];
+const MIS: &[Strategy] = &[Strategy::Mis];
+const LOBE: &[Strategy] = &[Strategy::Lobe];
+
+const MATT: [&str; 3] = ["base.metalness=0", "specular.weight=0", "base.weight=1"];
+const MIRROR: [&str; 3] = ["base.metalness=1", "specular.roughness=0", "specular.fresnel=none"];
+const CLEAR: [&str; 3] = ["base.metalness=0", "transmission.weight=1", "specular.roughness=0"];
+
+impl Case {
+    /// A square seen from straight above in an environment of radiance 1.
+    fn new(name: impl Into<String>, assignments: &[&[&str]], expected: [f64; 3]) -> Self {
+        let mut document = document(ModelSource::Plane, EnvironmentSource::Furnace, &assignments.concat());
+        document.lighting.background = Background::Transparent;
+        document.render.sequence = Sequence::Sobol;
+        let mut case = Self {
+            name: name.into(),
+            document,
+            model: None,
+            environment: None,
+            expected,
+            strategies: ALL,
+            samples: 64,
+            is_dear: false,
+        };
+        case.look([0.0, 3.0, 0.0], [0.0; 3]);
+        case
+    }
+
+    fn look(&mut self, from: [f64; 3], at: [f64; 3]) {
+        let camera = &mut self.document.camera;
+        (camera.position, camera.target, camera.fov_deg) = (Some(from), Some(at), 0.1);
+    }
+
+    fn seen(mut self, from: [f64; 3], at: [f64; 3]) -> Self {
+        self.look(from, at);
+        self
+    }
+
+    fn by(mut self, strategies: &'static [Strategy], samples: u32) -> Self {
+        (self.strategies, self.samples) = (strategies, samples);
+        self
+    }
+
+    fn dear(mut self) -> Self {
+        self.is_dear = true;
+        self
+    }
+
+    /// Samples a pixel; where lights are drawn, too, the lobe alone finds them by chance.
+    pub fn samples_of(&self, strategy: Strategy) -> u32 {
+        let is_by_chance = strategy == Strategy::Lobe && self.strategies == ALL;
+        self.samples * if is_by_chance { 8 } else { 1 }
+    }
+
+    fn of(mut self, mesh: Mesh) -> Self {
+        let slots = 1 + mesh.slots.iter().max().copied().unwrap_or(0) as usize;
+        self.model = Some(Model {
+            name: self.name.clone(),
+            mesh,
+            slots: vec![Slot::neutral("part"); slots],
+            ..Model::default()
+        });
+        self.document.model = ModelSource::File(self.name.clone().into());
+        self
+    }
+
+    fn under(mut self, environment: Environment) -> Self {
+        self.document.lighting.environment = EnvironmentSource::File(self.name.clone().into());
+        self.environment = Some(environment);
+        self
+    }
+
+    fn in_the_dark(mut self) -> Self {
+        self.document.lighting.strength = 0.0;
+        self
+    }
+
+    fn with(mut self, change: impl FnOnce(&mut Document)) -> Self {
+        change(&mut self.document);
+        self
+    }
+
+    /// Makes what the document names available.
+    pub fn keep(&self, assets: &Assets) {
+        if let Some(model) = &self.model {
+            assets.keep_model(self.document.model.clone(), model.clone());
+        }
+        if let Some(environment) = &self.environment {
+            assets.keep_environment(self.document.lighting.environment.clone(), environment.clone());
+        }
+    }
+}
+
+/// A rectangle of two triangles that faces `half_v` × `half_u`.
+fn add_rectangle(mesh: &mut Mesh, center: DVec3, half_u: DVec3, half_v: DVec3, slot: u32) {
+    let normal = half_v.cross(half_u).normalize().as_vec3();
+    let tangent = half_u.normalize().as_vec3().extend(1.0);
+    let [a, b, c, d] = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)]
+        .map(|(u, v)| mesh.push_vertex(center + u * half_u + v * half_v, normal, Vec2::ZERO, tangent));
+    mesh.push_triangle([a, b, c], slot);
+    mesh.push_triangle([a, c, d], slot);
+}
+
+/// The six faces of a box, facing outwards or inwards.
+fn add_box(mesh: &mut Mesh, center: DVec3, half: DVec3, faces_inwards: bool) {
+    for axis in 0..3 {
+        for side in [-1.0, 1.0] {
+            let along = |axis: usize| DVec3::AXES[axis % 3] * half[axis % 3];
+            let (u, v) = (along(axis + 2), along(axis + 1) * side);
+            let (u, v) = if faces_inwards { (v, u) } else { (u, v) };
+            add_rectangle(mesh, center + side * along(axis), u, v, 0);
+        }
+    }
+}
+
+fn slab(thickness: f64, middles: &[f64]) -> Mesh {
+    let mut mesh = Mesh::default();
+    for &middle in middles {
+        add_box(
+            &mut mesh,
+            middle * DVec3::Y,
+            DVec3::new(1.0, 0.5 * thickness, 1.0),
+            false,
+        );
+    }
+    mesh
+}
+
+/// Every case.
+pub fn cases() -> Vec<Case> {
+    let mut cases = Vec::new();
+    cases.extend(planes());
+    cases.extend(skies());
+    cases.extend(lights());
+    cases.extend(rooms());
+    cases.extend(glass());
+    cases.extend(lobes());
+    cases.extend(lens());
+    cases.extend(tilts());
+    cases
+}
+
+/// Matt, coated and clamped surfaces that see the environment alone.
+fn planes() -> Vec<Case> {
+    let colored = ["base.color=0.6,0.3,0.1"];
+    let coated = ["base.color=1,1,1", "coat.weight=0.5", "coat.color=0.2,0.5,0.8"];
+    // What the coat reflects of this view is lost to what is below it: seen from above by an ior of 1.5, 4 %.
+    let coat = |share: f64| [0.2, 0.5, 0.8].map(|color| share + (1.0 - share) * (0.5 + 0.5 * color));
+    vec![
+        Case::new("matt plane", &[&MATT, &colored], [1.2, 0.6, 0.2]).with(|document| document.lighting.strength = 2.0),
+        Case::new(
+            "half a coat that only colours",
+            &[&MATT, &coated, &["coat.ior=1"]],
+            coat(0.0),
+        ),
+        Case::new(
+            "half a smooth coat",
+            &[&MATT, &coated, &["coat.ior=1.5", "coat.roughness=0"]],
+            coat(0.02),
+        )
+        .by(ALL, 256),
+    ]
+}
+
+/// A map of 16 × 8 texels.
+fn map(radiance: impl Fn(u32, u32) -> f32) -> Environment {
+    let texels = (0..128)
+        .map(|i| [radiance(i % 16, i / 16); 3])
+        .map(|[r, g, b]| [r, g, b, 1.0]);
+    Environment::from_texels("map", 16, 8, texels.collect()).unwrap()
+}
+
+/// The irradiance of a horizontal plane under one row of such a map of radiance 1, all around: its bilinear tent.
+fn row_irradiance(row: f64) -> f64 {
+    let rule = gauss_legendre(16);
+    let tent = |v: f64| (1.0 - (8.0 * v - row - 0.5).abs()).max(0.0);
+    let part = |from: f64| {
+        integrate(&rule, from / 8.0, (from + 1.0) / 8.0, |v| {
+            tent(v) * (PI * v).cos() * (PI * v).sin() * PI
+        })
+    };
+    2.0 * PI * (part(row - 0.5) + part(row + 0.5))
+}
+
+fn skies() -> Vec<Case> {
+    let white = ["base.color=0.8,0.8,0.8"];
+    let reflected = |irradiance: f64| [0.8 / PI * irradiance; 3];
+    vec![
+        Case::new(
+            "plane under one texel",
+            &[&MATT, &white],
+            reflected(50.0 * row_irradiance(1.0) / 16.0),
+        )
+        .under(map(|x, y| if (x, y) == (5, 1) { 50.0 } else { 0.0 }))
+        .by(BY_LIGHT, 3072),
+        Case::new("plane under a ring", &[&MATT, &white], reflected(row_irradiance(2.0)))
+            .under(map(|_, y| if y == 2 { 1.0 } else { 0.0 }))
+            .by(ALL, 1280),
+    ]
+}
+
+/// The radiance of a horizontal surface of albedo 0.8 under a rectangle of radiance 5.
+fn lit(place: DVec3, rectangle: &[DVec3; 4]) -> [f64; 3] {
+    [5.0 * 0.8 / PI * irradiance(place, DVec3::Y, rectangle); 3]
+}
+
+fn lights() -> Vec<Case> {
+    let white = ["base.color=0.8,0.8,0.8"];
+    let above = |distance: f64, width: f64, height: f64| AreaLight {
+        yaw_deg: 0.0,
+        pitch_deg: 90.0,
+        distance,
+        width,
+        height,
+        strength: 5.0,
+        ..AreaLight::default()
+    };
+    // The square's bounding radius is √2: light and place in its units.
+    let mut cases = Vec::new();
+    for (name, light, strategies, samples) in [
+        ("small light", above(1.2, 0.8, 0.5), BY_LIGHT, 256),
+        ("large light", above(1.2, 3.0, 3.0), ALL, 512),
+        ("far light", above(700.0, 300.0, 500.0), BY_LIGHT, 256),
+    ] {
+        let case = Case::new(name, &[&MATT, &white], lit(DVec3::ZERO, &corners(&light)));
+        let case = case
+            .in_the_dark()
+            .with(|document| document.lighting.area_lights = vec![light]);
+        cases.push(case.seen([4.0, 3.0, 0.0], [0.0; 3]).by(strategies, samples));
+    }
+    cases.extend(backs(above(0.25, 0.6, 0.6)));
+    cases
+}
+
+/// Area lights and emitters shine to both sides.
+fn backs(light: AreaLight) -> Vec<Case> {
+    let white = ["base.color=0.8,0.8,0.8"];
+    let (unit_u, unit_v) = (DVec3::X, DVec3::Z);
+    // What keeps the middle of the model where the light looks at: black, and small.
+    let mut floor = Mesh::default();
+    add_rectangle(&mut floor, -DVec3::Y, unit_u, unit_v, 0);
+    add_rectangle(&mut floor, DVec3::Y, 0.01 * unit_u, 0.01 * unit_v, 1);
+    let radius = 3.0_f64.sqrt();
+    let below = AreaLight {
+        pitch_deg: -90.0,
+        ..light
+    };
+    let seen_from_floor = corners(&below).map(|corner| corner * radius);
+    let back_lit = Case::new(
+        "lit by a light's back",
+        &[&MATT, &white],
+        lit(-DVec3::Y, &seen_from_floor),
+    )
+    .of(floor.clone())
+    .in_the_dark()
+    .with(|document| {
+        document.materials.push(MaterialSettings::diffuse("black", [0.0; 3]));
+        document.lighting.area_lights = vec![below];
+    })
+    .seen([3.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
+    let back_seen = Case::new("a light's back", &[&MATT, &white], [5.0; 3])
+        .of(floor)
+        .in_the_dark()
+        .with(|document| document.lighting.area_lights = vec![below])
+        .seen([0.3, -0.9, 0.0], [0.0, -0.25 * radius, 0.0]);
+    let mut under_emitter = Mesh::default();
+    add_rectangle(&mut under_emitter, DVec3::ZERO, unit_u, unit_v, 0);
+    // Faces upwards, away from the floor.
+    add_rectangle(&mut under_emitter, 0.8 * DVec3::Y, 0.4 * unit_u, 0.4 * unit_v, 1);
+    let emitter = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let emitter = emitter.map(|(u, v)| DVec3::new(0.4 * u, 0.8, 0.4 * v));
+    let under = Case::new("lit by an emitter's back", &[&MATT, &white], lit(DVec3::ZERO, &emitter))
+        .of(under_emitter)
+        .in_the_dark()
+        .with(|document| {
+            let mut shining = MaterialSettings::diffuse("shining", [0.0; 3]);
+            assign(&mut shining, "emission.strength=5").unwrap();
+            assign(&mut shining, "specular.weight=0").unwrap();
+            document.materials.push(shining);
+        })
+        .seen([4.0, 3.0, 0.0], [0.0; 3]);
+    vec![
+        back_lit.by(BY_LIGHT, 256),
+        back_seen.by(ALL, 4),
+        under.by(BY_LIGHT, 256),
+    ]
+}
+
+/// A closed room, seen from within.
+pub fn room() -> Mesh {
+    let mut mesh = Mesh::default();
+    add_box(&mut mesh, DVec3::ZERO, DVec3::ONE, true);
+    mesh
+}
+
+/// Closed rooms whose walls shine: every path meets the same light at every bounce, so that the picture is a geometric
+/// series. From the fourth bounce on Russian roulette decides.
+fn rooms() -> Vec<Case> {
+    let inside = |case: Case| case.of(room()).in_the_dark().seen([0.3, 0.2, 0.1], [-0.4, 0.1, 0.9]);
+    let series = |albedo: f64| (1.0 - albedo.powi(65)) / (1.0 - albedo);
+    let shining = ["emission.color=1,1,1", "emission.strength=1"];
+    let matt = Case::new(
+        "matt room",
+        &[&MATT, &shining, &["base.color=0.6,0.4,0.2"]],
+        [0.6, 0.4, 0.2].map(series),
+    );
+    let white = Case::new(
+        "white room",
+        &[&MATT, &shining, &["base.color=0.8,0.8,0.8"]],
+        [series(0.8); 3],
+    );
+    let metal = Case::new(
+        "metal room",
+        &[
+            &["base.metalness=1", "specular.fresnel=none", "specular.roughness=0.4"],
+            &shining,
+            &["specular.color=0.6,0.4,0.2"],
+        ],
+        [0.6, 0.4, 0.2].map(series),
+    );
+    // Reflected once nothing is taken, twice and three times half of 1 is left.
+    let clamped = Case::new(
+        "room with fireflies limited",
+        &[&MATT, &shining, &["base.color=0.8,0.8,0.8"]],
+        [1.0 + 0.8 + 0.5 + 0.5; 3],
+    )
+    .with(|document| {
+        document.render.bounces = 3;
+        document.render.firefly_clamp = Some(0.5);
+    });
+    vec![
+        inside(matt).by(BY_LOBE, 1024),
+        inside(white).by(LOBE, 3072).dear(),
+        inside(metal).by(BY_LOBE, 1024).dear(),
+        inside(clamped).by(LOBE, 4),
+    ]
+}
+
+/// Slabs seen along their normal.
+fn glass() -> Vec<Case> {
+    const THICKNESS: f64 = 0.4;
+    let radius = (2.0 + 0.25 * THICKNESS * THICKNESS).sqrt();
+    let colors = [0.9, 0.6, 0.3];
+    let mut cases = Vec::new();
+    for (ior, depth, samples) in [(1.0, 0.2, 16), (1.5, 0.2, 2048), (4.0, 0.3, 2048)] {
+        let reflected = f64::powi((ior - 1.0) / (ior + 1.0), 2);
+        // Reflections between front and back add up to a geometric series.
+        let expected = colors.map(|color: f64| {
+            let passed = color.powf(THICKNESS / radius / depth);
+            reflected + (1.0 - reflected).powi(2) * passed / (1.0 - reflected * passed)
+        });
+        let (ior, depth) = (format!("specular.ior={ior}"), format!("transmission.depth={depth}"));
+        let tinted = ["transmission.color=0.9,0.6,0.3", &ior, &depth];
+        let case = Case::new(format!("slab of {ior}"), &[&CLEAR, &tinted], expected);
+        cases.push(case.of(slab(THICKNESS, &[0.0])).by(MIS, samples));
+    }
+    // Four faces, each of which reflects 36 %: light from above is reflected, from below there is none.
+    let one = 0.36;
+    let stack = 4.0 * one / (1.0 + 3.0 * one);
+    let panes = Case::new("two panes", &[&CLEAR, &["specular.ior=4"]], [stack; 3]);
+    let panes = panes
+        .of(slab(0.1, &[-0.4, 0.4]))
+        .under(map(|_, y| if y < 4 { 1.0 } else { 0.0 }));
+    cases.push(panes.by(MIS, 3072).dear());
+    cases
+}
+
+/// Each lobe's albedo at 50 degrees, by quadrature.
+fn lobes() -> Vec<Case> {
+    const ROUGHNESS: f64 = 0.6;
+    let (sin, cos) = 50.0_f64.to_radians().sin_cos();
+    let frame = frame_from_normal(vec3(0.0, 0.0, 1.0));
+    let case = |lobe: &Lobe| {
+        let shape = LobeShape {
+            lobe: *lobe,
+            curve: Curve::Smooth,
+            horizon: Horizon::Absorb,
+            roughness: ROUGHNESS,
+            anisotropy: 0.0,
+            eta: 0.0,
+            table: &[],
+        };
+        let wo = vec3(sin, 0.0, cos);
+        let albedo = integrate_hemisphere(200, |wi| lobe_evaluate(&shape, &frame, frame.normal, wo, wi)[0]);
+        let name = format!("specular.lobe={}", lobe.name());
+        let assignments = [
+            &name,
+            "specular.roughness=0.6",
+            "specular.fresnel=none",
+            "specular.horizon=absorb",
+            "specular.curve=smooth",
+        ];
+        Case::new(format!("lobe {}", lobe.name()), &[&assignments], [albedo; 3])
+            .seen([3.0 * sin, 3.0 * cos, 0.0], [0.0; 3])
+            .by(MIS, 1024)
+    };
+    Lobe::ALL.iter().map(case).collect()
+}
+
+/// A square that shines in the middle of its circle of confusion, in models of two scales: the share of the lens that sees
+/// it.
+fn lens() -> Vec<Case> {
+    const HALF: f64 = 0.1;
+    const BLUR: f64 = 0.16;
+    let case = |scale: f64| {
+        let expected = (2.0 * HALF).powi(2) / (PI * BLUR * BLUR);
+        let mut mesh = Mesh::default();
+        let half = HALF * scale;
+        add_rectangle(&mut mesh, DVec3::ZERO, half * DVec3::X, half * DVec3::Z, 0);
+        let shining = ["base.color=0,0,0", "emission.color=1,1,1", "emission.strength=1"];
+        Case::new(
+            format!("out of focus at scale {scale}"),
+            &[&MATT, &shining],
+            [expected; 3],
+        )
+        .of(mesh)
+        .in_the_dark()
+        .with(|document| {
+            // Twice as far as what is sharp, a place is as blurred as the lens is wide.
+            document.camera.focus_distance = Some(2.0 * scale);
+            document.camera.aperture = BLUR / (HALF * 2.0_f64.sqrt());
+        })
+        .seen([0.0, 4.0 * scale, 0.0], [0.0; 3])
+        .by(MIS, 4096)
+    };
+    vec![case(1.0), case(37.0)]
+}
+
+/// A mirror whose normals a texture tilts, under radiance 1.5 + x: the strength scales the slope.
+fn tilts() -> Vec<Case> {
+    let texel = |i: u32| {
+        let (u, v) = ((f64::from(i % 512) + 0.5) / 512.0, (f64::from(i / 512) + 0.5) / 256.0);
+        let x = (PI * v).sin() * (2.0 * PI * u).sin();
+        [(1.5 + x) as f32, 1.5, 1.5, 1.0]
+    };
+    let map = Environment::from_texels("slope", 512, 256, (0..512 * 256).map(texel).collect()).unwrap();
+    let mut model = glossmith::scene::load(&ModelSource::Plane).unwrap();
+    let codes = [204_u8, 128, 230];
+    model.textures = vec![Texture {
+        name: "tilt".to_owned(),
+        width: 2,
+        height: 2,
+        rgba8: [codes[0], codes[1], codes[2], 255].repeat(4),
+    }];
+    model.slots[0].normal_texture = Some(TextureRef {
+        texture: 0,
+        uv_set: 0,
+        texture_from_mesh_uv: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+        wrap: [Wrap::Repeat; 2],
+        filter: Default::default(),
+    });
+    let [x, across, up] = codes.map(|code| f64::from(code) / 127.5 - 1.0);
+    let case = |strength: f64| {
+        let normal = DVec3::new(strength * x, up, -strength * across).normalize();
+        let mirrored = 2.0 * normal.y * normal - DVec3::Y;
+        let set = format!("geometry.normal_strength={strength}");
+        let mut case = Case::new(
+            format!("normals tilted by {strength}"),
+            &[&MIRROR, &[&set]],
+            [1.5 + mirrored.x, 1.5, 1.5],
+        );
+        case.model = Some(model.clone());
+        case.document.model = ModelSource::File("tilted".into());
+        case.document.materials[0].textures.normal = true;
+        case.under(map.clone()).by(MIS, 4)
+    };
+    [0.0, 0.5, 1.0].map(case).into()
+}

@@ -1,0 +1,472 @@
+//! Denoised pictures: what they keep, what is told of them, and what happens where there is no denoiser.
+
+use std::path::Path;
+use std::process::Command;
+use std::sync::Arc;
+
+use glossmith::analysis::halves::Halves;
+use glossmith::document::{Background, Denoise, DenoiseWhen, Document};
+use glossmith::job::features::GuideSums;
+use glossmith::job::film::{Film, Image};
+use glossmith::render::denoise::{Denoised, Denoiser, Library, LibraryError, Noisy};
+use glossmith::render::worker::{Event, Level, Pace, Picture, Worker};
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+
+use super::cli_support::{Workplace, read_exr};
+use super::renders::render;
+use super::support::Random;
+use super::worker::small_document;
+
+fn denoiser() -> Denoiser {
+    Denoiser::open().unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A film of some samples a pixel: `seen` gives a pixel's albedo and true colour, which the samples scatter around by
+/// `noise` times themselves.
+fn film(size: [u32; 2], samples: u32, noise: f32, seen: impl Fn(u32, u32) -> [[f32; 3]; 2]) -> Film {
+    let mut film = Film::new(size[0], size[1]);
+    let mut random = Random::new(5);
+    for pixel in 0..(size[0] * size[1]) as usize {
+        let [albedo, color] = seen(pixel as u32 % size[0], pixel as u32 / size[0]);
+        for sample in 0..samples {
+            let factor = 1.0 + noise * (2.0 * random.unit() - 1.0);
+            let [r, g, b] = color.map(|x| f64::from(factor * x));
+            film.add(pixel, sample, [r, g, b, 1.0]);
+            film.guides[pixel].add(&GuideSums {
+                albedo,
+                hits: 1.0,
+                normal: [0.0, 0.0, 1.0],
+                depth: 1.0,
+            });
+        }
+    }
+    film
+}
+
+fn denoised(film: &Film, how: Denoise) -> Denoised {
+    denoiser().denoise(&Noisy::of(film, None), how).unwrap()
+}
+
+fn brightest(image: &Image) -> f32 {
+    image
+        .pixels
+        .iter()
+        .flat_map(|pixel| pixel[..3].to_vec())
+        .fold(0.0, f32::max)
+}
+
+#[test]
+fn one_colour_black_and_one_pixel_stay_what_they_are() {
+    let grey = denoised(&film([32, 24], 2, 0.0, |_, _| [[0.5; 3], [0.25; 3]]), Denoise::High);
+    for pixel in &grey.image.pixels {
+        assert!(pixel[..3].iter().all(|x| (x - 0.25).abs() < 0.01), "{pixel:?}");
+    }
+    let told = grey.error.unwrap();
+    assert!(told.value < 0.02, "{told:?}");
+    let black = denoised(&film([16, 16], 2, 0.0, |_, _| [[0.0; 3]; 2]), Denoise::Auto);
+    assert!(brightest(&black.image) < 1e-4);
+    assert!(black.error.unwrap().value.is_finite());
+    let one = denoised(&film([1, 1], 4, 0.0, |_, _| [[0.5; 3], [2.0; 3]]), Denoise::Fast);
+    assert!((one.image.pixels[0][0] - 2.0).abs() < 0.5, "{:?}", one.image.pixels);
+    // Nothing has been rendered: nothing is done.
+    let empty = denoised(&Film::new(4, 4), Denoise::High);
+    assert_eq!((brightest(&empty.image), empty.error), (0.0, None));
+}
+
+#[test]
+fn a_sun_in_one_pixel_keeps_the_rest_as_it_is() {
+    let sunny = film([48, 48], 4, 0.3, |x, y| {
+        let color = if (x, y) == (24, 24) { 1e6 } else { 0.2 };
+        [[0.5; 3], [color; 3]]
+    });
+    let done = denoised(&sunny, Denoise::High);
+    assert!(done.image.pixels.iter().flatten().all(|x| x.is_finite()));
+    for y in 0..48 {
+        for x in (0..48).filter(|x: &usize| x.abs_diff(24) > 12) {
+            let value = done.image.pixels[y * 48 + x][0];
+            assert!((value - 0.2).abs() < 0.06, "{x} {y}: {value}");
+        }
+    }
+}
+
+/// A checker of single pixels under 50 % of noise: it stays, because the albedo shows it.
+#[test]
+fn a_fine_texture_is_not_eaten() {
+    let shade = |x: u32, y: u32| if (x + y).is_multiple_of(2) { 0.8_f32 } else { 0.2 };
+    let textured = film([64, 64], 4, 0.5, |x, y| [[shade(x, y); 3], [shade(x, y); 3]]);
+    let done = denoised(&textured, Denoise::High);
+    let contrast = |image: &Image| {
+        let mut sums = [0.0_f32; 2];
+        for (pixel, color) in image.pixels.iter().enumerate() {
+            sums[(pixel % 64 + pixel / 64) % 2] += color[0];
+        }
+        (sums[0] - sums[1]) / (sums[0] + sums[1])
+    };
+    let error = |image: &Image| {
+        let squares = image.pixels.iter().enumerate().map(|(pixel, color)| {
+            let truth = shade(pixel as u32 % 64, pixel as u32 / 64);
+            f64::from(color[0] - truth).powi(2)
+        });
+        squares.sum::<f64>().sqrt()
+    };
+    assert!(
+        (contrast(&done.image) / 0.6 - 1.0).abs() < 0.08,
+        "{}",
+        contrast(&done.image)
+    );
+    let noisy = error(&textured.image());
+    assert!(error(&done.image) < 0.4 * noisy, "{} {noisy}", error(&done.image));
+}
+
+#[test]
+fn a_picture_in_bands_has_no_seams() {
+    let size = [64, 900];
+    let ramp = film(size, 2, 0.6, |x, y| [[0.5; 3], [0.1 + 0.002 * (x + y) as f32; 3]]);
+    let noisy = Noisy::of(&ramp, None);
+    let whole = denoiser().denoise(&noisy, Denoise::High).unwrap().image;
+    let banded = denoiser()
+        .in_bands_of(64 * 600)
+        .denoise(&noisy, Denoise::High)
+        .unwrap()
+        .image;
+    let mean = whole.pixels.iter().map(|pixel| f64::from(pixel[0])).sum::<f64>() / whole.pixels.len() as f64;
+    for (row, (a, b)) in whole.pixels.chunks(64).zip(banded.pixels.chunks(64)).enumerate() {
+        let difference: f64 = std::iter::zip(a, b).map(|(a, b)| f64::from(a[0] - b[0]).abs()).sum();
+        assert!(difference / 64.0 < 0.01 * mean, "row {row}: {difference}");
+    }
+    assert_ne!(whole, banded, "it was cut");
+}
+
+fn studio(model: ModelSource) -> Document {
+    let mut document = Document {
+        model,
+        ..Document::default()
+    };
+    (document.render.width, document.render.height) = (64, 64);
+    document
+}
+
+/// Root mean square error over the mean luminance, the reference's own noise taken out.
+fn true_error(image: &Image, reference: &Halves) -> f64 {
+    let luminance = |[r, g, b, _]: &[f32; 4]| 0.2126 * f64::from(*r) + 0.7152 * f64::from(*g) + 0.0722 * f64::from(*b);
+    let luminances: Vec<f64> = image.pixels.iter().map(luminance).collect();
+    reference.error_of(&luminances).value
+}
+
+/// The told error of denoised pictures of twelve renders is the true one in the mean, and lies in the band; the mixture is
+/// no worse than the samples nor than the denoised picture by much; both are better than the samples.
+#[test]
+fn the_error_told_of_a_denoised_picture_is_the_true_one() {
+    const RENDERS: u32 = 12;
+    let mut document = studio(ModelSource::Sphere);
+    document.ground = true;
+    (document.render.samples, document.render.seed) = (2048, 77);
+    let reference = Halves::of(&render(EngineChoice::Cpu, &document));
+    document.render.samples = 16;
+    let mut denoiser = denoiser();
+    let (mut squares, mut inside) = ([0.0; 4], 0);
+    for seed in 0..RENDERS {
+        document.render.seed = seed;
+        let noisy = Noisy::of(&render(EngineChoice::Cpu, &document), None);
+        let high = denoiser.denoise(&noisy, Denoise::High).unwrap();
+        let auto = denoiser.denoise(&noisy, Denoise::Auto).unwrap();
+        let [samples, truth, mixed] =
+            [&noisy.image, &high.image, &auto.image].map(|image| true_error(image, &reference));
+        let told = high.error.unwrap();
+        inside += u32::from((told.low..=told.high).contains(&truth));
+        std::iter::zip(&mut squares, [samples, truth, told.value, mixed]).for_each(|(sum, x)| *sum += x * x);
+    }
+    let [samples, truth, told, mixed] = squares.map(|sum: f64| (sum / f64::from(RENDERS)).sqrt());
+    println!("samples {samples:.4}, denoised {truth:.4}, told {told:.4}, mixed {mixed:.4}, inside {inside}");
+    assert!(truth < 0.7 * samples, "{truth} {samples}");
+    assert!((told / truth - 1.0).abs() < 0.2, "{told} {truth}");
+    assert!(inside >= RENDERS - 2, "{inside} of {RENDERS}");
+    assert!(
+        mixed < 1.02 * samples && mixed < 1.05 * truth,
+        "{mixed} {samples} {truth}"
+    );
+}
+
+/// In a mirror the guides are those of what is seen there, on either engine.
+#[test]
+fn guides_follow_mirrors_and_are_alike_on_both_engines() {
+    let mut document = studio(ModelSource::Sphere);
+    document.ground = true;
+    for assignment in [
+        "specular.lobe=ggx",
+        "specular.roughness=0",
+        "specular.fresnel=none",
+        "base.metalness=1",
+    ] {
+        glossmith::document::assign(&mut document.materials[0], assignment).unwrap();
+    }
+    document.lighting.ground_color = [0.1, 0.5, 0.9];
+    document.render.samples = 16;
+    let [cpu, gpu] = [EngineChoice::Cpu, EngineChoice::Gpu].map(|engine| render(engine, &document));
+    // Low on the ball: what is seen is the ground.
+    let place = 44 * 64 + 32;
+    let [r, g, b] = cpu.guides[place].albedo.map(|sum| sum / cpu.guides[place].hits);
+    assert!(
+        (r - 0.1).abs() < 0.02 && (g - 0.5).abs() < 0.02 && (b - 0.9).abs() < 0.02,
+        "{r} {g} {b}"
+    );
+    assert!(
+        cpu.guides[place].normal[1] > 15.0,
+        "the ground's: {:?}",
+        cpu.guides[place]
+    );
+    let numbers = |film: &Film| -> Vec<f64> {
+        let of = |s: &GuideSums| [&s.albedo[..], &s.normal[..], &[s.hits]].concat();
+        film.guides.iter().flat_map(of).map(f64::from).collect()
+    };
+    let (a, b) = (numbers(&cpu), numbers(&gpu));
+    let difference: f64 = std::iter::zip(&a, &b).map(|(a, b)| (a - b).abs()).sum();
+    assert!(
+        difference < 2e-3 * a.iter().map(|a| a.abs()).sum::<f64>(),
+        "{difference}"
+    );
+}
+
+/// Guides are those of the first 64 samples, and the same however many follow.
+#[test]
+fn guides_are_of_the_first_samples_only() {
+    let mut document = small_document();
+    let guides = |document: &Document| render(EngineChoice::Cpu, document).guides;
+    document.render.samples = 64;
+    let first = guides(&document);
+    document.render.samples = 80;
+    assert_eq!(guides(&document), first);
+    assert!(first.iter().any(|sums| sums.hits == 64.0));
+}
+
+#[test]
+fn a_denoised_picture_stands_beside_the_samples_and_its_error_in_the_report() {
+    let place = Workplace::new();
+    let plain = place.picture("--model sphere --samples 8");
+    let report = place.report("--model sphere --samples 8 --denoise high");
+    let number = |key: &str| report[key].as_f64().unwrap_or_else(|| panic!("{key}: {report}"));
+    assert_eq!(report["denoised"], "high");
+    assert!(number("denoise_seconds") > 0.0);
+    assert!(number("denoised_error_low") <= number("denoised_error"));
+    assert!(number("denoised_error") <= number("denoised_error_high"));
+    assert!(number("denoised_error_high") < 2.0 * number("noise"), "{report}");
+    assert!(report["effects"].as_array().unwrap().contains(&"denoising".into()));
+    let quick = place.path("quick.exr");
+    assert!(read_exr(&quick) == plain, "the samples are untouched");
+    let channels = channel_names(&quick);
+    for name in ["denoised.R", "denoised.G", "denoised.B", "R", "A"] {
+        assert!(channels.contains(&name.to_owned()), "{channels:?}");
+    }
+    place.done("render --engine cpu --size 24x24 --samples 4 --aovs --denoise fast --output layers.exr");
+    let channels = channel_names(&place.path("layers.exr"));
+    assert!(
+        channels.contains(&"denoised.G".to_owned()) && channels.contains(&"albedo.G".to_owned()),
+        "{channels:?}"
+    );
+    let off = place.report("--model sphere");
+    assert!(off["denoised"].is_null() && off["denoised_error"].is_null(), "{off}");
+}
+
+fn channel_names(path: &Path) -> Vec<String> {
+    let meta = exr::meta::MetaData::read_from_file(path, false).unwrap();
+    meta.headers[0]
+        .channels
+        .list
+        .iter()
+        .map(|channel| channel.name.to_string())
+        .collect()
+}
+
+#[test]
+fn rendering_stops_where_the_denoised_picture_is_as_exact_as_was_asked_for() {
+    let place = Workplace::new();
+    let of = |denoise: &str| {
+        place.report(&format!(
+            "--size 48x48 --noise 0.05 --samples 100000 --min-samples 2 --denoise {denoise}"
+        ))
+    };
+    let (plain, auto) = (of("off"), of("auto"));
+    assert_eq!(
+        (&plain["stopped_by"], &auto["stopped_by"]),
+        (&"noise".into(), &"noise".into())
+    );
+    assert!(auto["denoised_error"].as_f64().unwrap() <= 0.055, "{auto}");
+    let samples = |report: &serde_json::Value| report["mean_samples_per_pixel"].as_f64().unwrap();
+    assert!(samples(&auto) < 0.7 * samples(&plain), "{auto} {plain}");
+}
+
+/// Missing, broken, incomplete and old libraries: one line that says what to do, and the picture without.
+#[test]
+fn a_library_that_cannot_be_used_is_told_in_a_line() {
+    let place = Workplace::new();
+    let folder = |name: &str| {
+        let folder = place.path(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        folder
+    };
+    let library = "libOpenImageDenoise.so.2";
+    folder("empty");
+    std::fs::write(folder("broken").join(library), b"not a library").unwrap();
+    compile("int nothing;", &folder("incomplete").join(library));
+    compile(OLD_LIBRARY, &folder("old").join(library));
+    let cases = [
+        ("empty", "there is no libOpenImageDenoise.so.2"),
+        ("broken", "can't be loaded as the denoiser"),
+        ("incomplete", "oidnNewDevice"),
+        ("old", "Open Image Denoise 2.1.0 is too old"),
+    ];
+    for (name, words) in cases {
+        let output = Command::new(env!("CARGO_BIN_EXE_glossmith"))
+            .args("render --engine cpu --size 8x8 --samples 2 --denoise fast --report r.json --output a.png".split(' '))
+            .current_dir(place.path("."))
+            .env("GLOSSMITH_OIDN", place.path(name))
+            .env_remove("RUST_LOG")
+            .output()
+            .unwrap();
+        let text = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{name}: {text}");
+        let told: Vec<_> = text.lines().filter(|line| line.contains("not denoised")).collect();
+        assert_eq!(told.len(), 1, "{name}: {text}");
+        assert!(
+            told[0].contains(words) && told[0].contains(&*place.path(name).to_string_lossy()),
+            "{text}"
+        );
+        assert!(place.read("r.json").contains("\"denoised\": null"), "{name}");
+    }
+}
+
+fn compile(source: &str, to: &Path) {
+    let file = to.with_extension("c");
+    std::fs::write(&file, source).unwrap();
+    let status = Command::new("cc")
+        .args(["-shared", "-fPIC", "-w", "-o"])
+        .arg(to)
+        .arg(&file)
+        .status()
+        .unwrap();
+    assert!(status.success(), "cc, which building needs, too");
+}
+
+/// All functions, and a device of version 2.1.0.
+const OLD_LIBRARY: &str = "
+    static int thing;
+    void *oidnNewDevice(int kind) { return &thing; }
+    int oidnGetDeviceInt(void *device, const char *name) { return name[0] == 'v' ? 20100 : 1; }
+    int oidnGetDeviceError(void *device, const char **text) { return 0; }
+    void oidnCommitDevice() {} void oidnReleaseDevice() {} void oidnSetDeviceBool() {}
+    void oidnNewBuffer() {} void oidnReleaseBuffer() {} void oidnWriteBuffer() {} void oidnReadBuffer() {}
+    void oidnNewFilter() {} void oidnReleaseFilter() {} void oidnSetFilterImage() {} void oidnSetFilterBool() {}
+    void oidnSetFilterInt() {} void oidnGetFilterInt() {} void oidnSetFilterFloat() {} void oidnCommitFilter() {}
+    void oidnExecuteFilter() {}
+";
+
+#[test]
+fn the_library_tells_its_version_and_device() {
+    let text = Library::get().unwrap_or_else(|error| panic!("{error}")).to_string();
+    assert!(
+        text.starts_with("Open Image Denoise 2.") && text.ends_with("(CPU)"),
+        "{text}"
+    );
+    let missing = Library::load(Path::new("/nowhere/libOpenImageDenoise.so.2")).unwrap_err();
+    assert!(matches!(missing, LibraryError::Broken { .. }), "{missing}");
+}
+
+/// A region of 8 × 8 pixels on a transparent background: denoised within, nothing without.
+#[test]
+fn a_region_alone_is_denoised() {
+    let mut document = small_document();
+    document.lighting.background = Background::Transparent;
+    document.render.samples = 4;
+    document.render.region = Some([0.45, 0.4, 0.55, 0.6]);
+    let film = render(EngineChoice::Cpu, &document);
+    let noisy = Noisy::of(&film, document.render.region);
+    let done = denoiser().denoise(&noisy, Denoise::High).unwrap();
+    for (pixel, statistics) in film.statistics.iter().enumerate() {
+        let is_rendered = statistics[1] > 0.0;
+        let value = done.image.pixels[pixel];
+        assert_eq!(is_rendered, value != [0.0; 4], "{pixel}: {value:?}");
+        assert!(value.iter().all(|x| x.is_finite() && *x >= 0.0) && value[3] <= 1.0);
+    }
+    assert!(done.error.is_some());
+}
+
+/// All pictures that a worker shows until the last one.
+fn pictures(worker: &Worker, revision: u64) -> Vec<Arc<Picture>> {
+    let mut seen: Vec<Arc<Picture>> = Vec::new();
+    let begun = std::time::Instant::now();
+    loop {
+        let snapshot = worker.snapshot();
+        if let Some(picture) = snapshot.picture.clone().filter(|picture| picture.revision == revision)
+            && seen.last().is_none_or(|last| last.serial != picture.serial)
+        {
+            seen.push(picture);
+        }
+        let is_last = |picture: &Arc<Picture>| picture.samples_per_pixel == picture.document.render.samples;
+        if snapshot.activity == glossmith::render::worker::Activity::Done && seen.last().is_some_and(is_last) {
+            return seen;
+        }
+        assert!(
+            begun.elapsed().as_secs() < 120,
+            "waited in vain: {:?}",
+            snapshot.activity
+        );
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+}
+
+#[test]
+fn the_window_s_pictures_are_denoised_from_the_first_to_the_last() {
+    let worker = Worker::spawn(EngineChoice::Cpu, || {}).unwrap();
+    let mut document = small_document();
+    document.render.samples = 40;
+    document.view.denoise = Denoise::High;
+    let seen = pictures(&worker, worker.submit(&document, Pace::Still));
+    assert!(seen.iter().all(|picture| picture.is_denoised()), "none is noisy");
+    let counts: Vec<u32> = seen.iter().map(|picture| picture.samples_per_pixel).collect();
+    assert!(counts.is_sorted() && *counts.last().unwrap() == 40, "{counts:?}");
+    assert!(worker.snapshot().denoised.is_some_and(|told| told.value > 0.0));
+    // Another way of showing it renders nothing again.
+    document.view.denoise = Denoise::Off;
+    let seconds = worker.snapshot().progress.render_seconds;
+    let plain = pictures(&worker, worker.submit(&document, Pace::Still));
+    assert!(!plain.last().unwrap().is_denoised());
+    assert!(worker.snapshot().denoised.is_none());
+    document.view.denoise = Denoise::Fast;
+    let again = pictures(&worker, worker.submit(&document, Pace::Still));
+    assert!(again.last().unwrap().is_denoised());
+    assert_eq!(worker.snapshot().progress.render_seconds, seconds);
+    // At the end: the picture before is noisy.
+    (document.view.denoise_when, document.render.seed) = (DenoiseWhen::End, 9);
+    document.render.samples = 400;
+    let seen = pictures(&worker, worker.submit(&document, Pace::Still));
+    let (last, before) = seen.split_last().unwrap();
+    assert!(last.is_denoised() && before.iter().all(|picture| !picture.is_denoised()));
+}
+
+/// Edits come faster than pictures are denoised: what is shown in the end is the last one, and no picture bears another's
+/// revision.
+#[test]
+fn edits_while_the_denoiser_is_busy_end_in_the_last_one() {
+    let worker = Worker::spawn(EngineChoice::Cpu, || {}).unwrap();
+    let mut document = small_document();
+    document.view.denoise = Denoise::High;
+    let mut revision = 0;
+    for seed in 0..12 {
+        document.render.seed = seed;
+        revision = worker.submit(&document, Pace::Moving);
+        std::thread::sleep(std::time::Duration::from_millis(3));
+    }
+    let seen = pictures(&worker, revision);
+    let last = seen.last().unwrap();
+    assert!(last.is_denoised() && last.document.render.seed == 11);
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(&document).unwrap();
+    while !session.step(std::time::Duration::from_millis(20)).unwrap().is_done {}
+    assert_eq!(*last.samples, session.image().unwrap());
+    let complaints = worker
+        .take_events()
+        .into_iter()
+        .filter(|event| matches!(event, Event::Message(Level::Error, _)));
+    assert_eq!(complaints.count(), 0);
+}

@@ -1,0 +1,299 @@
+//! Environments in other shapes than a lat-long map of rows from the top: orders of pixels, old run lengths, cube maps,
+//! tiles, pictures for screens, pictures too large to keep.
+
+use std::path::Path;
+
+use exr::prelude::{Blocks, Encoding, Image, Layer, LayerAttributes, LineOrder, SpecificChannels, Vec2, WritableImage};
+use glossmith::optics::vector::vec3;
+use glossmith::scene::environment::{
+    Environment, EnvironmentEncoding, EnvironmentSource, environment_radiance, load, load_encoded,
+};
+use image::{DynamicImage, ImageBuffer, Rgb};
+use tempfile::TempDir;
+
+fn load_file(path: &Path) -> Environment {
+    load(&EnvironmentSource::File(path.to_owned())).expect("loads")
+}
+
+/// RGBE of a picture of 6 × 3 whose texel (x, y) is [x + 10, y + 20, 9] in 1/256.
+fn texel(x: usize, y: usize) -> [u8; 4] {
+    [x as u8 + 10, y as u8 + 20, 9, 128]
+}
+
+fn assert_is_that_picture(environment: &Environment, what: &str) {
+    assert_eq!((environment.width, environment.height), (6, 3), "{what}");
+    for (index, found) in environment.texels.iter().enumerate() {
+        let [r, g, b, _] = texel(index % 6, index / 6).map(|code| f32::from(code) / 256.0);
+        assert_eq!(*found, [r, g, b, 1.0], "{what}, texel {index}");
+    }
+}
+
+#[test]
+fn hdr_pixels_may_be_in_any_of_eight_orders() {
+    let folder = TempDir::new().unwrap();
+    let (width, height) = (6, 3);
+    for (x_sign, y_sign, by_columns) in (0..8).map(|i| (i & 1 == 0, i & 2 == 0, i & 4 == 0)) {
+        let sign = |is_plus: bool| if is_plus { '+' } else { '-' };
+        let (x_name, y_name) = (
+            format!("{}X {width}", sign(x_sign)),
+            format!("{}Y {height}", sign(y_sign)),
+        );
+        let column = |i: usize| if x_sign { i } else { width - 1 - i };
+        let row = |i: usize| if y_sign { height - 1 - i } else { i };
+        let (size, pixels): (String, Vec<u8>) = if by_columns {
+            let places = (0..width).flat_map(|x| (0..height).map(move |y| (x, y)));
+            (
+                format!("{x_name} {y_name}"),
+                places.flat_map(|(x, y)| texel(column(x), row(y))).collect(),
+            )
+        } else {
+            let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+            (
+                format!("{y_name} {x_name}"),
+                places.flat_map(|(x, y)| texel(column(x), row(y))).collect(),
+            )
+        };
+        let mut bytes = format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n{size}\n").into_bytes();
+        bytes.extend(pixels);
+        let path = folder.path().join("order.hdr");
+        std::fs::write(&path, bytes).unwrap();
+        assert_is_that_picture(&load_file(&path), &size);
+    }
+}
+
+#[test]
+fn old_run_lengths_and_xyz_are_read() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("old.hdr");
+    // A pixel, then five more like it: (1, 1, 1, 5); and a run longer than a byte holds, in two parts: 256 + 3.
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 266\n".to_vec();
+    bytes.extend([7, 9, 11, 129, 1, 1, 1, 5, 20, 30, 40, 130, 1, 1, 1, 3, 1, 1, 1, 1]);
+    std::fs::write(&path, &bytes).unwrap();
+    let environment = load_file(&path);
+    assert_eq!(environment.texels[5], [7.0 / 128.0, 9.0 / 128.0, 11.0 / 128.0, 1.0]);
+    assert_eq!(environment.texels[6][0], 20.0 / 64.0);
+    assert_eq!(environment.texels[265], environment.texels[6]);
+
+    // The white of D65 in XYZ is white.
+    let mut bytes = b"#?RADIANCE\nFORMAT=32-bit_rle_xyze\n\n-Y 1 +X 1\n".to_vec();
+    bytes.extend([195, 205, 223, 128]);
+    std::fs::write(&path, &bytes).unwrap();
+    let [r, g, b, _] = load_file(&path).texels[0];
+    let white = 205.0 / 256.0;
+    assert!(
+        [r, g, b].iter().all(|channel| (channel - white).abs() < 0.01),
+        "{r} {g} {b}"
+    );
+}
+
+/// The colours of the faces +X, −X, +Y, −Y, +Z, −Z of OpenGL's order.
+const FACES: [[f32; 3]; 6] = [
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 1.0, 0.0],
+    [0.0, 1.0, 1.0],
+    [1.0, 0.0, 1.0],
+];
+
+/// Ahead, to the right, above and so on of somebody who looks along +Z of our world, whose right is −X.
+fn assert_is_that_cube(environment: &Environment, what: &str) {
+    let looks = [
+        ([-1.0, 0.0, 0.0], 0),
+        ([1.0, 0.0, 0.0], 1),
+        ([0.0, 1.0, 0.0], 2),
+        ([0.0, -1.0, 0.0], 3),
+        ([0.0, 0.0, 1.0], 4),
+        ([0.0, 0.0, -1.0], 5),
+    ];
+    for ([x, y, z], face) in looks {
+        let found = environment_radiance(environment, vec3::<f64>(x, y, z)).to_f32();
+        for channel in 0..3 {
+            let difference = (found[channel] - FACES[face][channel]).abs();
+            assert!(difference < 0.02, "{what}, face {face}: {found:?}");
+        }
+    }
+}
+
+/// A picture of faces of `side` texels at these places.
+fn cube_picture(side: u32, size: [u32; 2], places: [[u32; 2]; 6]) -> DynamicImage {
+    let picture = ImageBuffer::from_fn(size[0] * side, size[1] * side, |x, y| {
+        let face = places.iter().position(|place| *place == [x / side, y / side]);
+        Rgb(face.map_or([0; 3], |face| FACES[face].map(|channel| (255.0 * channel) as u8)))
+    });
+    DynamicImage::ImageRgb8(picture)
+}
+
+#[test]
+fn cube_maps_are_unfolded() {
+    let folder = TempDir::new().unwrap();
+    let strip = [0, 1, 2, 3, 4, 5];
+    let shapes = [
+        ("strip.png", [6, 1], strip.map(|face| [face, 0])),
+        ("column.png", [1, 6], strip.map(|face| [0, face])),
+        ("cross.png", [4, 3], [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [3, 1]]),
+        ("tall.png", [3, 4], [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [1, 3]]),
+    ];
+    for (name, size, places) in shapes {
+        let path = folder.path().join(name);
+        cube_picture(8, size, places).save(&path).unwrap();
+        let environment = load_file(&path);
+        assert_eq!((environment.width, environment.height), (32, 16), "{name}");
+        assert_is_that_cube(&environment, name);
+    }
+    // Six files in a folder.
+    let faces = folder.path().join("faces");
+    std::fs::create_dir(&faces).unwrap();
+    for (face, name) in ["px", "nx", "py", "ny", "pz", "nz"].into_iter().enumerate() {
+        let color = FACES[face].map(|channel| (255.0 * channel) as u8);
+        let picture = ImageBuffer::from_pixel(8, 8, Rgb(color));
+        picture.save(faces.join(format!("sky_{name}.png"))).unwrap();
+    }
+    assert_is_that_cube(&load_file(&faces), "six files");
+    // A panorama of a cross's shape, with something in its corners, stays a panorama.
+    let path = folder.path().join("odd.png");
+    let picture = ImageBuffer::from_fn(32, 24, |x, y| Rgb([(8 * x) as u8, (8 * y) as u8, 77u8]));
+    picture.save(&path).unwrap();
+    assert_eq!(load_file(&path).width, 32);
+}
+
+#[test]
+fn pictures_for_screens_are_decoded_or_taken_as_light() {
+    let folder = TempDir::new().unwrap();
+    let color = [188u8, 128, 55];
+    let deep = color.map(|code| u16::from(code) * 257);
+    let shallow = DynamicImage::ImageRgb8(ImageBuffer::from_pixel(16, 8, Rgb(color)));
+    let deep = DynamicImage::ImageRgb16(ImageBuffer::from_pixel(16, 8, Rgb(deep)));
+    let display = |code: u8| (f64::from(code) / 255.0 + 0.055) / 1.055;
+    for (name, picture, tolerance) in [
+        ("a.png", &shallow, 1e-5),
+        ("deep.png", &deep, 1e-5),
+        ("a.tiff", &shallow, 1e-5),
+        ("deep.tif", &deep, 1e-5),
+        ("a.webp", &shallow, 1e-5),
+        ("a.jpg", &shallow, 0.03),
+    ] {
+        let path = folder.path().join(name);
+        picture.save(&path).unwrap();
+        let shown = load_file(&path);
+        let source = EnvironmentSource::File(path.clone());
+        let linear = load_encoded(&source, EnvironmentEncoding::Linear).unwrap();
+        for channel in 0..3 {
+            let code = color[channel];
+            let expected = [display(code).powf(2.4), f64::from(code) / 255.0];
+            let found = [&shown, &linear].map(|map| f64::from(map.texels[37][channel]));
+            for (found, expected) in found.into_iter().zip(expected) {
+                assert!(
+                    (found - expected).abs() < tolerance,
+                    "{name}: {found} instead of {expected}"
+                );
+            }
+        }
+        assert!(
+            shown.warnings.join("").contains("screens"),
+            "{name}: {:?}",
+            shown.warnings
+        );
+        assert!(linear.warnings.is_empty(), "{name}: {:?}", linear.warnings);
+    }
+}
+
+#[test]
+fn pictures_too_large_to_keep_are_made_smaller() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("wide.png");
+    // Stripes of one texel, and an odd width that halving does not divide.
+    let picture = ImageBuffer::from_fn(8195, 2, |x, _| Rgb([if x % 2 == 0 { 255u8 } else { 0 }; 3]));
+    picture.save(&path).unwrap();
+    let source = EnvironmentSource::File(path);
+    let environment = load_encoded(&source, EnvironmentEncoding::Linear).unwrap();
+    assert_eq!((environment.width, environment.height), (4098, 1));
+    assert_eq!((environment.texels[0][0], environment.texels[4097][1]), (0.5, 1.0));
+    let warnings = environment.warnings.join(" ");
+    assert!(
+        warnings.contains("8195 × 2") && warnings.contains("4098 × 1"),
+        "{warnings}"
+    );
+}
+
+#[test]
+fn tiled_exr_files_are_read_with_their_cube_or_their_levels() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("tiles.exr");
+    let size = Vec2(40, 20);
+    let value = |place: Vec2<usize>| (place.x() as f32, place.y() as f32, 0.25);
+    let encoding = Encoding {
+        blocks: Blocks::Tiles(Vec2(16, 16)),
+        line_order: LineOrder::Increasing,
+        ..Encoding::SMALL_LOSSLESS
+    };
+    let layer = Layer::new(size, LayerAttributes::default(), encoding, SpecificChannels::rgb(value));
+    Image::from_layer(layer).write().to_file(&path).unwrap();
+    let environment = load_file(&path);
+    assert_eq!((environment.width, environment.height), (40, 20));
+    for (index, texel) in environment.texels.iter().enumerate() {
+        assert_eq!(*texel, [(index % 40) as f32, (index / 40) as f32, 0.25, 1.0]);
+    }
+}
+
+/// An attribute of an EXR header.
+fn attribute(name: &str, kind: &str, value: &[u8]) -> Vec<u8> {
+    let size = (value.len() as i32).to_le_bytes();
+    [name.as_bytes(), b"\0", kind.as_bytes(), b"\0", &size, value].concat()
+}
+
+#[test]
+fn coarse_chroma_is_spread_over_the_luminance() {
+    let (width, height) = (8_usize, 4_usize);
+    let numbers = |values: &[i32]| values.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
+    let channel = |name: &str, step: i32| [name.as_bytes(), b"\0", &numbers(&[1, 0, step, step])].concat();
+    let window = numbers(&[0, 0, width as i32 - 1, height as i32 - 1]);
+    let float = |x: f32| x.to_le_bytes();
+    let channels = [channel("BY", 2), channel("RY", 2), channel("Y", 1), vec![0]].concat();
+    let mut bytes = [
+        vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0],
+        attribute("channels", "chlist", &channels),
+        attribute("compression", "compression", &[0]),
+        attribute("dataWindow", "box2i", &window),
+        attribute("displayWindow", "box2i", &window),
+        attribute("lineOrder", "lineOrder", &[0]),
+        attribute("pixelAspectRatio", "float", &float(1.0)),
+        attribute("screenWindowCenter", "v2f", &[float(0.0), float(0.0)].concat()),
+        attribute("screenWindowWidth", "float", &float(1.0)),
+        vec![0],
+        vec![0; 8 * height],
+    ]
+    .concat();
+    let half = |x: f32| exr::prelude::f16::from_f32(x).to_le_bytes();
+    for row in 0..height {
+        let mut line: Vec<u8> = Vec::new();
+        if row % 2 == 0 {
+            // BY, then RY: −0.5 on the left, 0.5 on the right.
+            line.extend((0..width / 2).flat_map(|_| half(-0.5)));
+            line.extend((0..width / 2).flat_map(|x| half(if x < 2 { -0.5 } else { 0.5 })));
+        }
+        line.extend((0..width).flat_map(|x| half(1.0 + x as f32)));
+        bytes.extend(numbers(&[row as i32, line.len() as i32]));
+        bytes.extend(line);
+    }
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("chroma.exr");
+    std::fs::write(&path, &bytes).unwrap();
+    let environment = load_file(&path);
+    for (index, [red, green, blue, _]) in environment.texels.iter().enumerate() {
+        let (x, luminance) = (index % width, (1 + index % width) as f32);
+        // Between the third and the fifth column the chroma is interpolated.
+        let ry = [-0.5, -0.5, -0.5, 0.0, 0.5, 0.5, 0.5, 0.5][x];
+        assert_eq!(
+            (*red, *blue),
+            ((1.0 + ry) * luminance, 0.5 * luminance),
+            "texel {index}"
+        );
+        let sum = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+        assert!((sum - luminance).abs() < 1e-5, "texel {index}: {sum}");
+    }
+    for length in (0..bytes.len()).step_by(7) {
+        std::fs::write(&path, &bytes[..length]).unwrap();
+        assert!(load(&EnvironmentSource::File(path.clone())).is_err(), "{length} bytes");
+    }
+}

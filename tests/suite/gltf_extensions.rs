@@ -1,0 +1,614 @@
+//! What glTF's extensions add: compressed meshes, instances, poses, variants, materials, lights and cameras.
+
+use draco_gltf::{
+    ComponentType, CompressionOptions, DracoPrimitiveEncoding, PackedAttribute, PackedGeometry, PackedIndices,
+    PrimitiveMode,
+};
+use glam::DVec3;
+use glossmith::document::of_model::materials_of;
+use glossmith::document::{Document, ImportLobe};
+use glossmith::scene::{Fate, LightKind, Model, ModelOptions, ModelSource, load_with};
+use serde_json::{Value, json};
+
+use super::gltf_builder::{Buffer, Folder, SQUARE, glb, png, square};
+
+fn load(document: &Value, buffer: &Buffer, options: &ModelOptions) -> Model {
+    let folder = Folder::new();
+    let path = folder.path("model.glb");
+    std::fs::write(&path, glb(document, &buffer.bytes)).unwrap();
+    load_with(&ModelSource::File(path), options).expect("loads")
+}
+
+fn load_plain(document: &Value, buffer: &Buffer) -> Model {
+    load(document, buffer, &ModelOptions::default())
+}
+
+/// A wavy sheet of 16 × 16 vertices.
+fn sheet() -> (Vec<[f32; 3]>, Vec<u16>) {
+    let place = |i: usize| {
+        let (x, y) = ((i % 16) as f32, (i / 16) as f32);
+        [x, y, (0.7 * x).sin() + (0.4 * y).cos()]
+    };
+    let corners = |i: u16| {
+        let first = 16 * (i / 15) + i % 15;
+        [first, first + 1, first + 17, first, first + 17, first + 16]
+    };
+    ((0..256).map(place).collect(), (0..225).flat_map(corners).collect())
+}
+
+/// The corners of all triangles in an order that does not depend on that of vertices and triangles.
+fn corners(model: &Model) -> Vec<[i64; 3]> {
+    let mut corners: Vec<[i64; 3]> = (0..model.mesh.triangles.len())
+        .map(|triangle| {
+            let sum: DVec3 = model.mesh.corners(triangle).into_iter().sum();
+            (sum * 100.0).round().to_array().map(|x| x as i64)
+        })
+        .collect();
+    corners.sort_unstable();
+    corners
+}
+
+#[test]
+fn draco_meshes_are_those_that_were_compressed() {
+    let (positions, indices) = sheet();
+    let mut buffer = Buffer::default();
+    let (plain_positions, plain_indices) = (buffer.floats(&positions), buffer.indices(&indices));
+    let primitive = json!({"attributes": {"POSITION": plain_positions}, "indices": plain_indices});
+    let plain = load_plain(&buffer.document(json!([primitive])), &buffer);
+
+    let bytes = |values: &[[f32; 3]]| {
+        values
+            .iter()
+            .flatten()
+            .flat_map(|x| x.to_le_bytes())
+            .collect::<Vec<u8>>()
+    };
+    let attribute = PackedAttribute::new("POSITION", 256, 3, ComponentType::F32, false, bytes(&positions)).unwrap();
+    let order = indices.iter().flat_map(|index| index.to_le_bytes()).collect();
+    let order = PackedIndices::new(indices.len(), ComponentType::U16, order).unwrap();
+    let geometry = PackedGeometry::new(PrimitiveMode::Triangles, vec![attribute], Some(order)).unwrap();
+    let encoded = DracoPrimitiveEncoding::encode(&geometry, &CompressionOptions::default()).unwrap();
+    let mut buffer = Buffer::default();
+    let view = buffer.view(encoded.bytes());
+    let extension: Value = serde_json::from_slice(&encoded.extension(view).to_json().to_vec()).unwrap();
+    let count = encoded.accessors()[0].count();
+    buffer.accessors.push(json!({
+        "componentType": 5126, "count": count, "type": "VEC3", "min": [0, 0, -2], "max": [15, 15, 2],
+    }));
+    buffer
+        .accessors
+        .push(json!({"componentType": 5125, "count": encoded.index_count(), "type": "SCALAR"}));
+    let mut document = buffer.document(json!([{
+        "attributes": {"POSITION": 0}, "indices": 1, "extensions": {"KHR_draco_mesh_compression": extension},
+    }]));
+    document["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
+    let draco = load_plain(&document, &buffer);
+    assert_eq!(draco.mesh.triangles.len(), 450);
+    // 11 bits for a width of 15: each coordinate of a sum of three is off by at most 3 · 15 / 2^12.
+    for (found, expected) in corners(&draco).iter().zip(corners(&plain)) {
+        let distance = (0..3).map(|i| (found[i] - expected[i]).abs()).max().unwrap();
+        assert!(distance <= 3, "{found:?} instead of {expected:?}");
+    }
+    assert!(draco.report.is_clean(), "{:?}", draco.report);
+
+    // A stream cut short is left out, and blamed.
+    document["bufferViews"][view]["byteLength"] = json!(encoded.bytes().len() / 2);
+    let error = Folder::new()
+        .load_glb(&document, &buffer)
+        .expect_err("no triangles left")
+        .to_string();
+    assert!(error.contains("Draco"), "{error}");
+}
+
+/// Vertices in meshoptimizer's format, version 0, nothing of them predicted away: `vertexcodec.cpp`.
+fn meshopt_vertices(bytes: &[u8], stride: usize) -> Vec<u8> {
+    let mut encoded = vec![0xa0];
+    let mut last = bytes[..stride].to_vec();
+    let block = (8192 / stride / 16 * 16).min(256);
+    for block in bytes.chunks(block * stride) {
+        for k in 0..stride {
+            let mut deltas: Vec<u8> = Vec::new();
+            for vertex in block.chunks(stride) {
+                let delta = vertex[k].wrapping_sub(last[k]);
+                deltas.push((delta << 1) ^ ((delta as i8) >> 7) as u8);
+                last[k] = vertex[k];
+            }
+            deltas.resize(deltas.len().next_multiple_of(16), 0);
+            // Two bits a group: 3 for eight bits a byte.
+            encoded.extend(vec![0xff; (deltas.len() / 16).div_ceil(4)]);
+            encoded.extend(deltas);
+        }
+    }
+    encoded.extend(vec![0; 32_usize.saturating_sub(stride)]);
+    encoded.extend(&bytes[..stride]);
+    encoded
+}
+
+/// Indices in meshoptimizer's sequence format, version 1, against one baseline: `indexcodec.cpp`.
+fn meshopt_sequence(indices: &[u16]) -> Vec<u8> {
+    let mut encoded = vec![0xd1];
+    let mut last = 0_u32;
+    for index in indices.iter().map(|index| u32::from(*index)) {
+        let delta = index.wrapping_sub(last);
+        let mut value = ((delta << 1) ^ ((delta as i32) >> 31) as u32) << 1;
+        while value > 127 {
+            encoded.push((value & 127) as u8 | 128);
+            value >>= 7;
+        }
+        encoded.push(value as u8);
+        last = index;
+    }
+    encoded.extend([0; 4]);
+    encoded
+}
+
+#[test]
+fn meshopt_meshes_are_those_that_were_compressed() {
+    let (positions, indices) = sheet();
+    let mut buffer = Buffer::default();
+    let (plain_positions, plain_indices) = (buffer.floats(&positions), buffer.indices(&indices));
+    let primitive = json!({"attributes": {"POSITION": plain_positions}, "indices": plain_indices});
+    let plain = load_plain(&buffer.document(json!([primitive])), &buffer);
+    let bytes: Vec<u8> = positions.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    for extension in ["EXT_meshopt_compression", "KHR_meshopt_compression"] {
+        let mut buffer = Buffer::default();
+        let streams = [meshopt_vertices(&bytes, 12), meshopt_sequence(&indices)];
+        let views = streams.each_ref().map(|stream| buffer.view(stream));
+        let source = |view: usize, count: usize, stride: usize, mode: &str| {
+            json!({extension: {
+                "buffer": 0, "byteOffset": buffer.views[view]["byteOffset"], "byteLength": streams[view].len(),
+                "byteStride": stride, "count": count, "mode": mode,
+            }})
+        };
+        let mut document = buffer.document(json!([{"attributes": {"POSITION": 0}, "indices": 1}]));
+        document["buffers"] = json!([
+            {"byteLength": buffer.bytes.len()},
+            {"byteLength": 6000, "extensions": {extension: {"fallback": true}}},
+        ]);
+        document["bufferViews"] = json!([
+            {"buffer": 1, "byteLength": 3072, "byteStride": 12, "extensions": source(views[0], 256, 12, "ATTRIBUTES")},
+            {"buffer": 1, "byteOffset": 3072, "byteLength": 2700, "extensions": source(views[1], 1350, 2, "INDICES")},
+        ]);
+        document["accessors"] = json!([
+            {"bufferView": 0, "componentType": 5126, "count": 256, "type": "VEC3", "min": [0, 0, -2], "max": [15, 15, 2]},
+            {"bufferView": 1, "componentType": 5123, "count": 1350, "type": "SCALAR"},
+        ]);
+        document["extensionsRequired"] = json!([extension]);
+        document["extensionsUsed"] = json!([extension]);
+        let model = load_plain(&document, &buffer);
+        assert_eq!(model.mesh, plain.mesh, "{extension}");
+        assert!(model.report.is_clean(), "{:?}", model.report);
+    }
+}
+
+#[test]
+fn instances_are_put_where_they_are_said_to_be() {
+    let (mut buffer, _) = square();
+    let translations = buffer.floats(&[[0.0, 0.0, 0.0], [5.0, 0.0, 0.0], [0.0, 7.0, 0.0]]);
+    let scales = buffer.floats(&[[1.0, 1.0, 1.0], [2.0, 2.0, 2.0], [1.0, 1.0, 1.0]]);
+    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3});
+    let mut document = buffer.document(json!([primitive]));
+    document["nodes"] = json!([{"mesh": 0, "translation": [0, 0, 1], "extensions": {
+        "EXT_mesh_gpu_instancing": {"attributes": {"TRANSLATION": translations, "SCALE": scales}},
+    }}]);
+    document["extensionsUsed"] = json!(["EXT_mesh_gpu_instancing"]);
+    let model = load_plain(&document, &buffer);
+    assert_eq!(model.mesh.triangles.len(), 6);
+    assert_eq!(model.mesh.positions[4 + 2], DVec3::new(7.0, 2.0, 1.0));
+    assert_eq!(model.mesh.positions[8 + 2], DVec3::new(1.0, 8.0, 1.0));
+    assert!(model.report.is_clean(), "{:?}", model.report);
+}
+
+/// A square with a morph target that lifts it, on two joints of which an animation turns the second.
+fn puppet() -> (Buffer, Value) {
+    let (mut buffer, _) = square();
+    let lift = buffer.floats(&[[0.0, 0.0, 2.0]; 4]);
+    let joints = buffer.view(&[0u8, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0]);
+    buffer
+        .accessors
+        .push(json!({"bufferView": joints, "componentType": 5121, "count": 4, "type": "VEC4"}));
+    let joints = buffer.accessors.len() - 1;
+    let weights = buffer.floats(&[[1.0f32, 0.0, 0.0, 0.0]; 4]);
+    let times = buffer.floats(&[[1.0], [3.0]]);
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let turns = buffer.floats(&[[0.0, 0.0, 0.0, 1.0], [0.0, half, 0.0, half]]);
+    let moves = buffer.floats(&[[0.0, 0.0, 0.0], [0.0, 10.0, 0.0]]);
+    let mixes = buffer.floats(&[[0.0], [1.0]]);
+    let mut document = buffer.document(json!([{
+        "attributes": {"POSITION": 0, "NORMAL": 1, "JOINTS_0": joints, "WEIGHTS_0": weights}, "indices": 3,
+        "targets": [{"POSITION": lift}],
+    }]));
+    document["meshes"][0]["weights"] = json!([0.5]);
+    document["nodes"] = json!([
+        {"mesh": 0, "skin": 0, "translation": [99, 99, 99]}, {"children": [2]}, {"name": "Arm"},
+    ]);
+    document["scenes"] = json!([{"nodes": [0, 1]}]);
+    document["skins"] = json!([{"joints": [1, 2]}]);
+    document["animations"] = json!([{
+        "samplers": [
+            {"input": times, "output": turns}, {"input": times, "output": moves, "interpolation": "STEP"},
+            {"input": times, "output": mixes},
+        ],
+        "channels": [
+            {"sampler": 0, "target": {"node": 2, "path": "rotation"}},
+            {"sampler": 1, "target": {"node": 2, "path": "translation"}},
+            {"sampler": 2, "target": {"node": 0, "path": "weights"}},
+        ],
+    }]);
+    (buffer, document)
+}
+
+#[test]
+fn skins_and_morph_targets_follow_the_pose() {
+    let (buffer, document) = puppet();
+    let at = |time_s: Option<f32>| {
+        let options = ModelOptions {
+            time_s,
+            ..ModelOptions::default()
+        };
+        load(&document, &buffer, &options)
+    };
+    let near = |found: DVec3, expected: [f64; 3]| {
+        assert!(
+            found.distance(DVec3::from_array(expected)) < 1e-6,
+            "{found} is not {expected:?}"
+        );
+    };
+    let rest = at(None);
+    // Skinned meshes stand where their joints are, not where their node is.
+    near(rest.mesh.positions[1], [1.0, 0.0, 1.0]);
+    near(rest.mesh.positions[2], [1.0, 1.0, 1.0]);
+    assert_eq!(rest.duration_s, 3.0);
+    // Before the first key, between both, after the last.
+    near(at(Some(0.0)).mesh.positions[2], [1.0, 1.0, 0.0]);
+    let middle = at(Some(2.0)).mesh;
+    let diagonal = std::f64::consts::FRAC_1_SQRT_2;
+    near(middle.positions[1], [1.0, 0.0, 1.0]);
+    near(middle.positions[2], [2.0 * diagonal, 1.0, 0.0]);
+    near(middle.normals[2].as_dvec3(), [diagonal, 0.0, diagonal]);
+    near(at(Some(9.0)).mesh.positions[2], [2.0, 11.0, -1.0]);
+    assert!(rest.report.is_clean(), "{:?}", rest.report);
+}
+
+#[test]
+fn scenes_and_variants_can_be_chosen() {
+    let (buffer, mut document) = square();
+    document["materials"] = json!([{"name": "Red"}, {"name": "Blue"}]);
+    let primitive = &mut document["meshes"][0]["primitives"][0];
+    primitive["material"] = json!(0);
+    let mapping = json!([{"material": 1, "variants": [1]}, {"material": 0, "variants": [0]}]);
+    primitive["extensions"] = json!({"KHR_materials_variants": {"mappings": mapping}});
+    document["extensions"] = json!({"KHR_materials_variants": {"variants": [{"name": "day"}, {"name": "night"}]}});
+    document["nodes"] = json!([{"mesh": 0}, {"mesh": 0, "translation": [50, 0, 0]}]);
+    document["scenes"] = json!([{"nodes": [0], "name": "here"}, {"nodes": [0, 1]}]);
+    let of = |variant: Option<&str>, scene| {
+        let options = ModelOptions {
+            scene,
+            variant: variant.map(str::to_owned),
+            ..ModelOptions::default()
+        };
+        load(&document, &buffer, &options)
+    };
+    let plain = of(None, None);
+    assert_eq!((plain.slots[0].name.as_str(), plain.mesh.triangles.len()), ("Red", 2));
+    assert_eq!(
+        (plain.variants.join(" "), plain.scenes.join(" ")),
+        ("day night".into(), "here scene 1".into())
+    );
+    assert_eq!(of(Some("night"), None).slots[0].name, "Blue");
+    assert_eq!(of(None, Some(1)).mesh.triangles.len(), 4);
+    let unknown = of(Some("dusk"), None);
+    assert_eq!(unknown.slots[0].name, "Red");
+    assert!(
+        unknown
+            .report
+            .of(Fate::Missing)
+            .any(|entry| entry.what.contains("dusk")),
+        "{:?}",
+        unknown.report
+    );
+}
+
+/// The slot of a material on a square, with a picture of two texels as texture 0.
+fn slot_of(material: &Value) -> Model {
+    let (mut buffer, _) = square();
+    let picture = buffer.view(&png());
+    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 0});
+    let mut document = buffer.document(json!([primitive]));
+    document["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"] = json!([material]);
+    load_plain(&document, &buffer)
+}
+
+fn says(model: &Model, fate: Fate, words: &str) {
+    let found = model.report.of(fate).any(|entry| entry.what.contains(words));
+    assert!(found, "nothing {} says {words}: {:?}", fate.label(), model.report);
+}
+
+#[test]
+fn material_extensions_reach_the_slots() {
+    let texture = json!({"index": 0});
+    let model = slot_of(&json!({"extensions": {
+        "KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [0.25, 2.0, 1.0]},
+        "KHR_materials_clearcoat": {
+            "clearcoatFactor": 0.5, "clearcoatTexture": texture, "clearcoatRoughnessFactor": 1.0,
+            "clearcoatRoughnessTexture": texture, "clearcoatNormalTexture": texture,
+        },
+        "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": 0.5},
+        "KHR_materials_ior": {"ior": 6.0},
+    }}));
+    let slot = &model.slots[0];
+    assert_eq!((slot.specular, slot.specular_color), (0.5, [0.25, 1.0, 1.0]));
+    assert_eq!(
+        (slot.anisotropy, slot.anisotropy_rotation_rad, slot.ior),
+        (0.75, 0.5, 4.0)
+    );
+    // Both texels of the picture are (10, 20, 30).
+    assert!((slot.coat - 0.5 * 10.0 / 255.0).abs() < 1e-6, "{}", slot.coat);
+    assert!(
+        (slot.coat_roughness - 20.0 / 255.0).abs() < 1e-6,
+        "{}",
+        slot.coat_roughness
+    );
+    says(&model, Fate::Approximated, "an index of refraction of 6, taken as 4");
+    says(&model, Fate::Approximated, "specular colour above 1");
+    says(&model, Fate::Approximated, "a coat texture, by its mean");
+    says(&model, Fate::Ignored, "a coat normal texture");
+    let material = &materials_of(&model, ImportLobe::Ggx)[0];
+    assert_eq!(
+        (material.specular_weight, material.specular_color),
+        (0.5, [0.25, 1.0, 1.0])
+    );
+    assert_eq!(
+        (material.anisotropy, material.rotation_deg, material.ior),
+        (0.75, 0.5_f32.to_degrees(), 4.0)
+    );
+}
+
+#[test]
+fn unlit_materials_shine_and_reflect_nothing() {
+    let model = slot_of(&json!({
+        "pbrMetallicRoughness": {"baseColorFactor": [0.25, 0.5, 0.75, 1.0], "baseColorTexture": {"index": 0}},
+        "extensions": {"KHR_materials_unlit": {}},
+    }));
+    let slot = &model.slots[0];
+    assert_eq!(
+        (slot.emission, slot.base_color, slot.specular),
+        ([0.25, 0.5, 0.75], [0.0; 3], 0.0)
+    );
+    assert!(slot.emissive_texture.is_some());
+}
+
+#[test]
+fn specular_glossiness_becomes_metalness_and_roughness() {
+    let of = |diffuse: [f32; 3], specular: [f32; 3]| {
+        let [r, g, b] = diffuse;
+        let workflow = json!({"diffuseFactor": [r, g, b, 0.5], "specularFactor": specular, "glossinessFactor": 0.75});
+        slot_of(&json!({"extensions": {"KHR_materials_pbrSpecularGlossiness": workflow}})).slots[0].clone()
+    };
+    let plastic = of([0.2, 0.4, 0.6], [0.04; 3]);
+    assert_eq!(
+        (plastic.metalness, plastic.roughness, plastic.opacity),
+        (0.0, 0.25, 0.5)
+    );
+    for (found, expected) in plastic.base_color.iter().zip([0.2, 0.4, 0.6]) {
+        assert!((found - expected).abs() < 1e-6, "{:?}", plastic.base_color);
+    }
+    let gold = of([0.0; 3], [1.0, 0.75, 0.25]);
+    assert!((gold.metalness - 1.0).abs() < 1e-6, "{}", gold.metalness);
+    for (found, expected) in gold.base_color.iter().zip([1.0, 0.75, 0.25]) {
+        assert!((found - expected).abs() < 1e-5, "{:?}", gold.base_color);
+    }
+    // With textures, texel by texel: (10, 20, 30) is dark and reflects little.
+    let texture = json!({"index": 0});
+    let workflow = json!({"diffuseTexture": texture, "specularFactor": [0.04, 0.04, 0.04], "glossinessFactor": 0.5});
+    let model = slot_of(&json!({"extensions": {"KHR_materials_pbrSpecularGlossiness": workflow}}));
+    let names: Vec<&str> = model.textures.iter().map(|texture| texture.name.as_str()).collect();
+    assert_eq!(model.textures.len(), 3, "{names:?}");
+    let slot = &model.slots[0];
+    let color = &model.textures[slot.base_color_texture.unwrap().texture];
+    let surface = &model.textures[slot.metallic_roughness_texture.unwrap().texture];
+    assert_eq!(color.rgba8, [10, 20, 30, 255, 10, 20, 30, 128]);
+    assert_eq!(surface.rgba8[..4], [255, 128, 0, 255]);
+}
+
+#[test]
+fn what_cannot_be_shown_yet_is_kept_in_the_material() {
+    let model = slot_of(&json!({"extensions": {
+        "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.25, 1.0], "sheenRoughnessFactor": 0.5},
+        "KHR_materials_iridescence": {"iridescenceFactor": 1.0, "iridescenceThicknessMaximum": 350},
+        "KHR_materials_dispersion": {"dispersion": 0.0},
+        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25},
+    }}));
+    says(&model, Fate::Ignored, "sheen, kept in the material");
+    says(&model, Fate::Ignored, "iridescence, kept in the material");
+    assert!(
+        !model
+            .report
+            .entries
+            .iter()
+            .any(|entry| entry.what.contains("dispersion")),
+        "there is none"
+    );
+    let material = materials_of(&model, ImportLobe::Geometric).remove(0);
+    let folder = Folder::new();
+    let path = folder.path("kept.json");
+    glossmith::store::save_material(&path, &material).unwrap();
+    let read = glossmith::store::load_material(&path).unwrap();
+    assert_eq!(
+        (read.value.extra.clone(), read.warnings),
+        (material.extra, Vec::<String>::new())
+    );
+    assert_eq!(read.value.extra["sheen.color"], json!([0.5, 0.25, 1.0]));
+    assert_eq!(read.value.extra["iridescence.thickness_nm"], json!(350));
+    assert_eq!(read.value.extra["diffuse_transmission.weight"], json!(0.25));
+}
+
+#[test]
+fn pictures_may_be_webp_and_are_scaled_to_the_chosen_size() {
+    let mut webp = std::io::Cursor::new(Vec::new());
+    let picture = image::RgbaImage::from_fn(64, 32, |x, _| image::Rgba([if x < 32 { 200 } else { 0 }, 9, 8, 255]));
+    picture.write_to(&mut webp, image::ImageFormat::WebP).expect("encodes");
+    let (mut buffer, _) = square();
+    let view = buffer.view(&webp.into_inner());
+    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 0});
+    let mut document = buffer.document(json!([primitive]));
+    document["images"] = json!([{"bufferView": view, "mimeType": "image/webp", "name": "leaf"}]);
+    document["textures"] = json!([{"extensions": {"EXT_texture_webp": {"source": 0}}}]);
+    document["materials"] = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+    document["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    let model = load_plain(&document, &buffer);
+    assert_eq!(
+        (model.textures[0].width, &model.textures[0].rgba8[..4]),
+        (64, &[200, 9, 8, 255][..])
+    );
+    assert!(model.report.is_clean(), "{:?}", model.report);
+    let options = ModelOptions {
+        texture_side_max: 16,
+        ..ModelOptions::default()
+    };
+    let small = load(&document, &buffer, &options);
+    assert_eq!((small.textures[0].width, small.textures[0].height), (16, 8));
+    says(&small, Fate::Approximated, "64 × 32, used at 16 × 8");
+}
+
+#[test]
+fn ktx2_pictures_of_plain_bytes_are_read() {
+    let ktx2 = |format: u32, size: [u32; 2], texels: &[u8]| {
+        let mut bytes = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
+        // Format, size of a number, width, height, depth, layers, faces, levels, compression.
+        let numbers = [format, 1, size[0], size[1], 0, 0, 1, 1, 0];
+        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        bytes.resize(80, 0);
+        let level = [104, texels.len() as u64, texels.len() as u64];
+        bytes.extend(level.iter().flat_map(|number| number.to_le_bytes()));
+        bytes.extend(texels);
+        bytes
+    };
+    let of = |picture: &[u8]| {
+        let (mut buffer, _) = square();
+        let view = buffer.view(picture);
+        let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 3, "material": 0});
+        let mut document = buffer.document(json!([primitive]));
+        document["images"] = json!([{"bufferView": view, "mimeType": "image/ktx2"}]);
+        document["textures"] = json!([{"extensions": {"KHR_texture_basisu": {"source": 0}}}]);
+        document["materials"] = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+        load_plain(&document, &buffer)
+    };
+    let rgb = of(&ktx2(29, [2, 1], &[1, 2, 3, 4, 5, 6]));
+    assert_eq!(rgb.textures[0].rgba8, [1, 2, 3, 255, 4, 5, 6, 255]);
+    let bgra = of(&ktx2(44, [1, 2], &[1, 2, 3, 4, 5, 6, 7, 8]));
+    assert_eq!(bgra.textures[0].rgba8, [3, 2, 1, 4, 7, 6, 5, 8]);
+    // Too few bytes, a format of floats, Basis Universal that is none.
+    for broken in [
+        ktx2(37, [2, 2], &[0; 12]),
+        ktx2(109, [1, 1], &[0; 16]),
+        ktx2(0, [4, 4], &[0; 16]),
+    ] {
+        let grey = of(&broken);
+        says(&grey, Fate::Missing, "a texture, grey instead");
+        assert_eq!((grey.textures.len(), grey.slots[0].base_color), (0, [0.5; 3]));
+    }
+}
+
+#[test]
+fn cameras_become_bookmarks_and_lights_small_squares() {
+    let (buffer, mut document) = square();
+    document["cameras"] = json!([{"type": "perspective", "name": "Front", "perspective": {"yfov": 0.5, "znear": 0.1}}]);
+    document["extensions"] = json!({"KHR_lights_punctual": {"lights": [
+        {"type": "point", "intensity": 2.0, "color": [1.0, 0.5, 0.0]}, {"type": "directional", "intensity": 3.0},
+    ]}});
+    document["extensionsUsed"] = json!(["KHR_lights_punctual"]);
+    document["scenes"][0]["nodes"] = json!([0, 1, 2, 3]);
+    let light = |index: usize| json!({"KHR_lights_punctual": {"light": index}});
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    document["nodes"] = json!([
+        {"mesh": 0},
+        {"camera": 0, "translation": [0.5, 0.5, 4.0]},
+        {"extensions": light(0), "translation": [0.5, 0.5, 2.0], "name": "Bulb"},
+        // Looks down.
+        {"extensions": light(1), "rotation": [-half, 0.0, 0.0, half]},
+    ]);
+    let model = load_plain(&document, &buffer);
+    assert_eq!(
+        (model.lights[0].kind, model.lights[1].kind),
+        (LightKind::Point, LightKind::Directional)
+    );
+    let mut opened = Document::default();
+    opened.add_lights_and_cameras(&model);
+    opened.add_lights_and_cameras(&model);
+    let [camera] = &opened.bookmarks[..] else {
+        panic!("{:?}", opened.bookmarks)
+    };
+    assert_eq!(
+        (camera.name.as_str(), camera.camera.position),
+        ("Front", Some([0.5, 0.5, 4.0]))
+    );
+    assert_eq!(camera.camera.target, Some([0.5, 0.5, 0.0]));
+    assert!((camera.camera.fov_deg - 0.5_f64.to_degrees()).abs() < 1e-4);
+    let [bulb, sun] = &opened.lighting.area_lights[..] else {
+        panic!("{:?}", opened.lighting.area_lights)
+    };
+    // The square of side 1 has the bounding radius √½.
+    let radius = f64::from(half);
+    assert!(
+        (bulb.distance - 2.0 / radius).abs() < 1e-5 && bulb.yaw_deg.abs() < 1e-6,
+        "{bulb:?}"
+    );
+    let intensity = f64::from(bulb.strength) * (bulb.width * radius).powi(2);
+    assert!(
+        (intensity - 2.0).abs() < 1e-4 && bulb.color == [1.0, 0.5, 0.0],
+        "{intensity}, {bulb:?}"
+    );
+    let irradiance = f64::from(sun.strength) * (sun.width / sun.distance).powi(2);
+    assert!(
+        (irradiance - 3.0).abs() < 1e-4 && (sun.pitch_deg - 90.0).abs() < 1e-3,
+        "{irradiance}, {sun:?}"
+    );
+    opened.check().expect("in range");
+}
+
+#[test]
+fn normal_textures_get_the_tangents_of_mikktspace() {
+    // A strip of two squares, the texture of the right one mirrored about their common edge.
+    let mut buffer = Buffer::default();
+    let positions: Vec<[f32; 3]> = (0..6).map(|i| [(i % 3) as f32, (i / 3) as f32, 0.0]).collect();
+    let uvs: Vec<[f32; 2]> = (0..6).map(|i| [[0.0, 1.0, 0.0][i % 3], 1.0 - (i / 3) as f32]).collect();
+    let (positions, uvs) = (buffer.floats(&positions), buffer.floats(&uvs));
+    let normals = buffer.floats(&[[0.0, 0.0, 1.0]; 6]);
+    let indices = buffer.indices(&[0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]);
+    let picture = buffer.view(&png());
+    let attributes = json!({"POSITION": positions, "NORMAL": normals, "TEXCOORD_0": uvs});
+    let mut document = buffer.document(json!([{"attributes": attributes, "indices": indices, "material": 0}]));
+    document["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"] = json!([{"normalTexture": {"index": 0}}]);
+    let mesh = load_plain(&document, &buffer).mesh;
+    assert_eq!(
+        mesh.positions.len(),
+        8,
+        "the two vertices of the common edge are there twice"
+    );
+    for triangle in 0..4 {
+        let sign = if triangle < 2 { 1.0 } else { -1.0 };
+        for vertex in mesh.triangles[triangle] {
+            let tangent = mesh.tangents[vertex as usize];
+            assert_eq!(tangent.to_array(), [sign, 0.0, 0.0, sign], "triangle {triangle}");
+        }
+    }
+}
+
+#[test]
+fn accessors_without_a_view_are_zeros() {
+    let mut buffer = Buffer::default();
+    let positions = buffer.floats(&SQUARE);
+    buffer
+        .accessors
+        .push(json!({"componentType": 5126, "count": 4, "type": "VEC3"}));
+    let primitive = json!({"attributes": {"POSITION": positions, "NORMAL": 1}, "mode": 6});
+    let model = load_plain(&buffer.document(json!([primitive])), &buffer);
+    // Normals of no length are taken from the triangles, and told.
+    assert!(model.mesh.normals.iter().all(|normal| *normal == glam::Vec3::Z));
+    says(&model, Fate::Approximated, "normals without a length");
+}

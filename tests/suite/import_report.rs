@@ -1,0 +1,148 @@
+//! What the user is told about a file that was opened, and the pictures that follow from what is chosen of it.
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::actions::{Action, Command};
+use glossmith::document::of_model::materials_of;
+use glossmith::document::{Document, ImportLobe};
+use glossmith::render::EngineChoice;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::{Model, ModelOptions, ModelSource, load};
+use serde_json::{Value, json};
+
+use super::cli_support::Workplace;
+use super::gltf_builder::{Buffer, Folder, glb, square};
+use super::renders::render;
+use super::ui::{editor, request, see_label, wait};
+
+/// A square in two variants, one with a texture that is not there.
+fn variants() -> (Buffer, Value) {
+    let (buffer, mut document) = square();
+    document["images"] = json!([{"uri": "gone.png", "name": "bark"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"] = json!([
+        {"name": "Day", "pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}},
+        {"name": "Night", "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0.5, 1], "metallicFactor": 0}},
+    ]);
+    let primitive = &mut document["meshes"][0]["primitives"][0];
+    primitive["material"] = json!(0);
+    let mapping = json!([{"material": 1, "variants": [0]}]);
+    primitive["extensions"] = json!({"KHR_materials_variants": {"mappings": mapping}});
+    document["extensions"] = json!({"KHR_materials_variants": {"variants": [{"name": "night"}]}});
+    (buffer, document)
+}
+
+#[test]
+fn the_command_line_tells_one_line_and_writes_the_rest() {
+    let place = Workplace::new();
+    let (buffer, document) = variants();
+    place.write("tree.glb", &glb(&document, &buffer.bytes));
+    let render = "render --engine cpu --size 8x8 --samples 1 --output a.exr --model tree.glb --import-report told.json";
+    let run = place.done(render);
+    let told: Vec<&str> = run.stderr.lines().filter(|line| line.contains("tree.glb")).collect();
+    assert_eq!(told.len(), 1, "{}", run.stderr);
+    assert!(told[0].contains("1 missing") && told[0].contains("bark"), "{told:?}");
+    let report: Value = serde_json::from_str(&place.read("told.json")).unwrap();
+    let entries = report["entries"].as_array().unwrap();
+    let missing: Vec<&Value> = entries.iter().filter(|entry| entry["fate"] == "missing").collect();
+    assert_eq!(
+        (missing.len(), &missing[0]["names"], &missing[0]["count"]),
+        (1, &json!(["bark"]), &json!(1))
+    );
+    let triangles = entries
+        .iter()
+        .find(|entry| entry["what"] == "triangles")
+        .expect("counted");
+    assert_eq!((&triangles["count"], &triangles["fate"]), (&json!(2), &json!("used")));
+    assert_eq!(report["variants"], json!(["night"]));
+    // The variant has no such texture.
+    let run = place.done(&format!("{render} --variant night"));
+    assert!(!run.stderr.contains("tree.glb"), "{}", run.stderr);
+    place.refused(2, "render --model tree.glb --time-of-pose -1", &["-1"]);
+}
+
+#[test]
+fn the_sheet_tells_what_became_of_the_file_and_changes_the_variant() {
+    let folder = Folder::new();
+    let path = folder.path("tree.glb");
+    let (buffer, document) = variants();
+    std::fs::write(&path, glb(&document, &buffer.bytes)).unwrap();
+    let mut harness = editor();
+    request(&mut harness, Action::Open(path.clone()));
+    wait(&mut harness, "the model", |app| {
+        app.document().model == ModelSource::File(path.clone())
+    });
+    request(&mut harness, Action::Do(Command::ModelFile));
+    see_label(&mut harness, "Missing");
+    assert!(
+        harness.query_by_label_contains("bark").is_some(),
+        "the texture is named"
+    );
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Variant")
+        .click_accesskit();
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "night").click_accesskit();
+    wait(&mut harness, "the variant", |app| {
+        app.document().import.variant.as_deref() == Some("night")
+    });
+    assert_eq!(harness.state().document().materials[0].name, "Night");
+}
+
+/// The picture of a model seen from the front in even light, as an engine draws it.
+fn front(model: &Model, source: &ModelSource, choice: EngineChoice) -> Vec<[f64; 3]> {
+    let mut document = Document {
+        model: source.clone(),
+        import: ModelOptions::default(),
+        materials: materials_of(model, ImportLobe::Ggx),
+        ..Document::default()
+    };
+    for material in &mut document.materials {
+        material.specular_weight = 0.0;
+    }
+    document.lighting.environment = EnvironmentSource::Furnace;
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
+    (document.render.width, document.render.height, document.render.samples) = (16, 16, 16);
+    let image = render(choice, &document).image();
+    let color = |pixel: &[f32; 4]| [pixel[0], pixel[1], pixel[2]].map(f64::from);
+    image.pixels.iter().map(color).collect()
+}
+
+#[test]
+fn colours_at_vertices_are_seen_by_both_engines() {
+    let (mut buffer, _) = square();
+    let colors = buffer.floats(&[
+        [1.0f32, 0.0, 0.25],
+        [0.0, 1.0, 0.25],
+        [0.0, 1.0, 0.25],
+        [1.0, 0.0, 0.25],
+    ]);
+    let primitive = json!({
+        "attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2, "COLOR_0": colors}, "indices": 3, "material": 0,
+    });
+    let mut document = buffer.document(json!([primitive]));
+    document["materials"] = json!([{"pbrMetallicRoughness": {"metallicFactor": 0, "baseColorFactor": [1, 0.5, 1, 1]}}]);
+    let folder = Folder::new();
+    let path = folder.path("paint.glb");
+    std::fs::write(&path, glb(&document, &buffer.bytes)).unwrap();
+    let source = ModelSource::File(path);
+    let model = load(&source).unwrap();
+    for choice in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let pixels = front(&model, &source, choice);
+        // Across the middle row the red falls from 1 to 0 as the green grows from 0 to a half; blue stays.
+        for column in 5..11 {
+            let [red, green, blue] = pixels[8 * 16 + column];
+            let place = 1.0 - red;
+            assert!(
+                (green - 0.5 * place).abs() < 0.02,
+                "{choice:?}, column {column}: {red} {green}"
+            );
+            assert!((blue - 0.25).abs() < 0.01, "{choice:?}, column {column}: {blue}");
+        }
+        let [left, right] = [5, 10].map(|column| pixels[8 * 16 + column][0]);
+        assert!(
+            left > right + 0.3,
+            "{choice:?}: {left} on the left, {right} on the right"
+        );
+    }
+}

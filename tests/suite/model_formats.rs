@@ -1,0 +1,194 @@
+//! Models in other formats than glTF: OBJ with its materials, PLY, STL; folders and archives.
+
+use std::io::Write;
+
+use glam::{DVec3, Vec2, Vec3};
+use glossmith::scene::{Fate, Model, ModelSource, load};
+
+use super::gltf_builder::{Folder, glb, png, square};
+
+const OBJ: &str = "mtllib paint.mtl\no Plate\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+                   usemtl Paint\nf 1/1 2/2 3/3 4/4\nusemtl Bare\nf 1 3 4\n";
+const MTL: &str = "newmtl Paint\nKd 0.5 0.25 1\nKs 0.5 0.5 0.5\nNs 30\nmap_Kd -s 1 1 1 Textures\\Wood.PNG\nd 0.75\nKe 1 2 3\n\
+                   newmtl Bare\nKd 0 0 0\nPm 1\nPr 0.25\nmap_Kd gone.png\n";
+
+#[test]
+fn obj_files_come_with_their_materials() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("Paint.mtl"), MTL).unwrap();
+    // Another name by its case, and not in the folder that is named.
+    std::fs::write(folder.path("wood.png"), png()).unwrap();
+    let model = folder.load("plate.obj", OBJ.as_bytes()).expect("loads");
+    assert_eq!((model.name.as_str(), model.mesh.triangles.len()), ("plate", 3));
+    assert_eq!(model.mesh.positions[2], DVec3::new(1.0, 1.0, 0.0));
+    // v grows downwards here.
+    assert_eq!(model.mesh.uvs[0], Vec2::new(0.0, 1.0));
+    assert!(model.mesh.normals.iter().all(|normal| *normal == Vec3::Z));
+    let [paint, bare] = &model.slots[..] else {
+        panic!("{:?}", model.slots)
+    };
+    assert_eq!(
+        (paint.name.as_str(), paint.base_color, paint.opacity),
+        ("Paint", [0.5, 0.25, 1.0], 0.75)
+    );
+    assert_eq!(
+        (paint.emission, paint.metalness, paint.roughness),
+        ([1.0, 2.0, 3.0], 0.0, 0.5)
+    );
+    assert_eq!(model.textures[paint.base_color_texture.expect("wood").texture].width, 2);
+    assert_eq!(
+        (bare.metalness, bare.roughness, bare.base_color_texture),
+        (1.0, 0.25, None)
+    );
+    let missing: Vec<_> = model.report.of(Fate::Missing).collect();
+    assert_eq!(
+        (missing.len(), missing[0].names[0].as_str()),
+        (1, "gone.png"),
+        "{missing:?}"
+    );
+
+    std::fs::remove_file(folder.path("Paint.mtl")).unwrap();
+    let grey = folder
+        .load("plate.obj", OBJ.as_bytes())
+        .expect("a missing library stops nothing");
+    assert!(
+        grey.report.of(Fate::Missing).any(|entry| entry.names == ["paint.mtl"]),
+        "{:?}",
+        grey.report
+    );
+    let error = folder
+        .load("broken.obj", b"v 0 0 0\nf 1 2 3\n")
+        .expect_err("no such vertices")
+        .to_string();
+    assert!(error.contains("broken.obj") && error.contains(';'), "{error}");
+}
+
+fn ply_header(format: &str) -> String {
+    format!(
+        "ply\nformat {format} 1.0\ncomment a square\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+         property uchar red\nproperty uchar green\nproperty uchar blue\nelement face 1\n\
+         property list uchar int vertex_indices\nend_header\n"
+    )
+}
+
+fn assert_colored_square(model: &Model) {
+    assert_eq!(
+        (model.mesh.triangles.len(), model.mesh.positions[2]),
+        (2, DVec3::new(1.0, 1.0, 0.0))
+    );
+    assert!(model.mesh.normals.iter().all(|normal| *normal == Vec3::Z));
+    assert!(
+        model.slots[0].has_vertex_colors && model.report.is_clean(),
+        "{:?}",
+        model.report
+    );
+    let [red, green, blue, _] = model.mesh.colors[1];
+    // 188 is the sRGB code of a half.
+    assert!(
+        (red - 0.503).abs() < 1e-3 && green == 0.0 && blue == 1.0,
+        "{red} {green} {blue}"
+    );
+}
+
+#[test]
+fn ply_files_may_be_text_or_bytes() {
+    let folder = Folder::new();
+    let places = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
+    let mut text = ply_header("ascii");
+    for [x, y, z] in places {
+        text.push_str(&format!("{x} {y} {z} 188 0 255\n"));
+    }
+    text.push_str("4 0 1 2 3\n");
+    assert_colored_square(&folder.load("square.ply", text.as_bytes()).expect("loads"));
+    for (format, is_little) in [("binary_little_endian", true), ("binary_big_endian", false)] {
+        let mut bytes = ply_header(format).into_bytes();
+        for place in places {
+            let order = |x: f32| if is_little { x.to_le_bytes() } else { x.to_be_bytes() };
+            bytes.extend(place.into_iter().flat_map(order));
+            bytes.extend([188, 0, 255]);
+        }
+        bytes.push(4);
+        let order = |x: i32| if is_little { x.to_le_bytes() } else { x.to_be_bytes() };
+        bytes.extend((0..4).flat_map(order));
+        assert_colored_square(&folder.load("square.ply", &bytes).expect("loads"));
+        assert!(folder.load("cut.ply", &bytes[..bytes.len() - 3]).is_err(), "{format}");
+    }
+}
+
+#[test]
+fn stl_files_may_be_text_or_bytes() {
+    let folder = Folder::new();
+    let text = "solid one\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 5\nendloop\nendfacet\nendsolid one\n";
+    let mut bytes = vec![0; 80];
+    bytes.extend(1u32.to_le_bytes());
+    let numbers = [[0.0f32, 0.0, 1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 5.0]];
+    bytes.extend(numbers.iter().flatten().flat_map(|x| x.to_le_bytes()));
+    bytes.extend([0, 0]);
+    for contents in [text.as_bytes(), &bytes] {
+        let model = folder.load("one.stl", contents).expect("loads");
+        // Z up becomes Y up.
+        assert_eq!(
+            model.mesh.corners(0),
+            [DVec3::ZERO, DVec3::X, DVec3::new(0.0, 5.0, -1.0)]
+        );
+    }
+}
+
+#[test]
+fn folders_and_archives_are_searched_for_a_model() {
+    let folder = Folder::new();
+    let (buffer, mut document) = square();
+    document["buffers"][0]["uri"] = serde_json::json!("../data/square.bin");
+    let archive = folder.path("pack.zip");
+    let mut writer = zip::ZipWriter::new(std::fs::File::create(&archive).unwrap());
+    let files = [
+        ("pack/readme.txt", b"Dear reader".as_slice()),
+        ("pack/model/square.gltf", document.to_string().as_bytes()),
+        ("pack/data/square.bin", &buffer.bytes),
+        ("__MACOSX/pack/model/._square.gltf", b"junk"),
+    ]
+    .map(|(name, bytes)| (name, bytes.to_vec()));
+    for (name, bytes) in &files {
+        writer
+            .start_file(*name, zip::write::SimpleFileOptions::default())
+            .unwrap();
+        writer.write_all(bytes).unwrap();
+    }
+    writer.finish().unwrap();
+    let model = load(&ModelSource::File(archive.clone())).expect("loads");
+    assert_eq!((model.name.as_str(), model.mesh.triangles.len()), ("pack", 2));
+    assert!(
+        model
+            .report
+            .of(Fate::Used)
+            .any(|entry| entry.names == ["pack/model/square.gltf"])
+    );
+
+    let inside = folder.path("things");
+    std::fs::create_dir(&inside).unwrap();
+    std::fs::write(inside.join("b.stl"), "solid nothing").unwrap();
+    let (buffer, document) = square();
+    std::fs::write(inside.join("a.glb"), glb(&document, &buffer.bytes)).unwrap();
+    let model = load(&ModelSource::File(inside)).expect("loads");
+    assert_eq!((model.name.as_str(), model.mesh.triangles.len()), ("things", 2));
+    assert!(
+        model
+            .report
+            .of(Fate::Ignored)
+            .any(|entry| entry.what.contains("other models"))
+    );
+
+    let empty = folder.path("empty.zip");
+    zip::ZipWriter::new(std::fs::File::create(&empty).unwrap())
+        .finish()
+        .unwrap();
+    let error = load(&ModelSource::File(empty)).expect_err("no model").to_string();
+    assert!(error.contains("empty.zip") && error.contains("no model"), "{error}");
+    // Cut short.
+    let bytes = std::fs::read(&archive).unwrap();
+    let error = folder
+        .load("cut.zip", &bytes[..bytes.len() / 2])
+        .expect_err("damaged")
+        .to_string();
+    assert!(error.contains("cut.zip"), "{error}");
+}

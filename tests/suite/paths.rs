@@ -1,0 +1,246 @@
+//! Paths one by one: their accounts add up to what the engine adds, and no random number serves twice.
+
+use std::collections::HashSet;
+use std::time::Duration;
+
+use glossmith::cpu::integrator::Integrator;
+use glossmith::cpu::recorder::{Event, Purpose};
+use glossmith::document::effect::EffectSwitches;
+use glossmith::document::{AreaLight, Document, Strategy};
+use glossmith::optics::random::Sequence;
+use glossmith::render::explain::explain;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::{Model, ModelSource, Slot};
+
+use crate::analytic_scenes::room;
+use crate::random_documents::random_document;
+use crate::renders::document;
+use crate::support::Random;
+
+/// A document and the model that it names, where that is not built in.
+pub struct Scene {
+    pub name: &'static str,
+    pub document: Document,
+    pub model: Option<Model>,
+}
+
+fn scene(name: &'static str, model: ModelSource, light: EnvironmentSource, assignments: &[&str]) -> Scene {
+    let mut document = document(model, light, assignments);
+    (document.render.width, document.render.height) = (32, 32);
+    document.render.samples = 1;
+    Scene {
+        name,
+        document,
+        model: None,
+    }
+}
+
+fn lit(document: &mut Document) {
+    document.lighting.area_lights = vec![AreaLight {
+        width: 1.5,
+        height: 1.5,
+        strength: 6.0,
+        ..AreaLight::default()
+    }];
+}
+
+/// Scenes in which paths do everything there is to do.
+pub fn scenes() -> Vec<Scene> {
+    let tinted = [
+        "base.metalness=0",
+        "transmission.weight=0.8",
+        "transmission.color=0.8,0.5,0.3",
+        "transmission.depth=1",
+        "specular.roughness=0.4",
+        "specular.ior=1.8",
+    ];
+    let mut glass = scene("glass", ModelSource::Sphere, EnvironmentSource::Studio, &tinted);
+    glass.document.ground = true;
+    lit(&mut glass.document);
+    let coated = [
+        "base.metalness=0.4",
+        "specular.roughness=0.5",
+        "coat.weight=0.7",
+        "coat.roughness=0.4",
+        "coat.color=0.9,0.7,0.5",
+    ];
+    let mut coat = scene("coat", ModelSource::Shaderball, EnvironmentSource::Sky, &coated);
+    coat.document.ground = true;
+    coat.document.camera.aperture = 0.1;
+    let mut holes = scene(
+        "holes",
+        ModelSource::Shaderball,
+        EnvironmentSource::Studio,
+        &["geometry.opacity=0.6", "base.metalness=0", "specular.roughness=0.6"],
+    );
+    holes.document.lighting.background_blur_deg = 20.0;
+    lit(&mut holes.document);
+    let shining = [
+        "base.metalness=0.3",
+        "base.color=0.9,0.7,0.5",
+        "specular.roughness=0.7",
+        "emission.strength=1",
+    ];
+    let mut closed = scene(
+        "room",
+        ModelSource::File("room".into()),
+        EnvironmentSource::Studio,
+        &shining,
+    );
+    closed.document.camera.position = Some([0.3, 0.2, 0.1]);
+    closed.document.camera.target = Some([-0.4, 0.1, 0.9]);
+    closed.document.camera.fov_deg = 60.0;
+    closed.model = Some(Model {
+        name: "room".to_owned(),
+        mesh: room(),
+        slots: vec![Slot::neutral("walls")],
+        ..Model::default()
+    });
+    vec![glass, coat, holes, closed]
+}
+
+/// A session of the processor with this scene submitted.
+fn submitted(scene: &Scene, document: &Document) -> Session {
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    if let Some(model) = &scene.model {
+        session.assets().keep_model(document.model.clone(), model.clone());
+    }
+    session.submit(document).unwrap();
+    session
+}
+
+/// Where fireflies are limited.
+const LIMIT: f32 = 0.5;
+
+#[test]
+fn an_account_adds_up_to_what_the_engine_adds() {
+    for scene in scenes() {
+        for strategy in Strategy::ALL {
+            let mut document = scene.document.clone();
+            (document.render.samples, document.render.strategy) = (2, *strategy);
+            document.render.firefly_clamp = Some(LIMIT);
+            let mut session = submitted(&scene, &document);
+            while !session.step(Duration::from_secs(1)).unwrap().is_done {}
+            let (job, film) = (session.job().unwrap().clone(), session.film().unwrap().clone());
+            let model = session.assets().model(&document.model, &document.import).unwrap();
+            for index in (0..film.color.len()).step_by(7) {
+                let pixel = [index as u32 % film.width, index as u32 / film.width];
+                let accounts = [0, 1].map(|sample| explain(&document, &model, &job, pixel, sample));
+                for account in &accounts {
+                    assert_eq!(account.sum(), account.radiance, "{}: {account}", scene.name);
+                    let fault = unlimited(&account.events);
+                    assert!(fault.is_none(), "{}: {fault:?}\n{account}", scene.name);
+                }
+                let [even, odd] = accounts.map(|account| account.radiance.map(f64::from));
+                let sum = [0, 1, 2].map(|i| even[i] + odd[i]);
+                assert_eq!(sum, film.color[index][..3], "{} {strategy:?} {pixel:?}", scene.name);
+            }
+        }
+    }
+}
+
+/// A contribution of a path whose reflections are not those of the bounce that it is found at, or that is not limited.
+fn unlimited(events: &[Event]) -> Option<&Event> {
+    let (mut bounce_here, mut reflections_here) = (0, 0);
+    events.iter().find(|event| match event {
+        Event::Hit { bounce, .. } => {
+            (bounce_here, reflections_here) = (*bounce, *bounce);
+            false
+        }
+        // Towards a light, or on the way on, it is reflected here.
+        Event::Light { .. } | Event::Scattered { .. } => {
+            reflections_here = bounce_here + 1;
+            false
+        }
+        Event::Contribution { reflections, added, .. } => {
+            let is_limited = *reflections <= 1 || added.iter().all(|x| *x <= LIMIT * 1.000_01);
+            *reflections != reflections_here || !is_limited
+        }
+        _ => false,
+    })
+}
+
+/// What is wrong with the numbers of a path: one that is drawn twice, or an event that was not given its own.
+fn misdrawn(events: &[Event]) -> Option<String> {
+    let mut drawn = HashSet::new();
+    let mut fresh: Vec<(Purpose, f32)> = Vec::new();
+    for event in events {
+        let count = |purpose| fresh.iter().filter(|(of, _)| *of == purpose).count();
+        let wanted = match event {
+            Event::Number {
+                dimension,
+                half,
+                value,
+                purpose,
+            } => {
+                if !drawn.insert((*dimension, *half)) {
+                    return Some(format!(
+                        "number {half} of pair {dimension} is drawn again, for {purpose:?}"
+                    ));
+                }
+                fresh.push((*purpose, *value));
+                continue;
+            }
+            Event::Camera { .. } => count(Purpose::Pixel) == 2,
+            Event::Light { .. } => count(Purpose::Light) == 3,
+            Event::Scattered { .. } => count(Purpose::Lobe) == 3 && count(Purpose::Layer) == 1,
+            Event::Roulette { number, .. } => fresh == [(Purpose::Roulette, *number)],
+            _ => continue,
+        };
+        if !wanted {
+            return Some(format!("{event:?} was given {fresh:?}"));
+        }
+        fresh.clear();
+    }
+    None
+}
+
+#[test]
+fn no_number_of_a_path_is_drawn_twice() {
+    let mut met = HashSet::new();
+    let mut random = Random::new(3);
+    let random_scenes = (0..40).map(|_| Scene {
+        name: "random",
+        document: random_document(&mut random),
+        model: None,
+    });
+    for mut scene in scenes().into_iter().chain(random_scenes) {
+        scene.document.render.effects = EffectSwitches::all_on();
+        for sequence in Sequence::ALL {
+            scene.document.render.sequence = *sequence;
+            let session = submitted(&scene, &scene.document);
+            let job = session.job().unwrap();
+            let integrator = Integrator::<f32>::new(job);
+            let [width, height] = job.settings.image_size;
+            for index in (0..width * height).step_by(5) {
+                let mut events = Vec::new();
+                integrator.record_path([index % width, index / width], index % 3, &mut events);
+                let fault = misdrawn(&events);
+                assert!(fault.is_none(), "{}, {sequence:?}: {fault:?}\n{events:#?}", scene.name);
+                met.extend(events.iter().filter_map(|event| match event {
+                    Event::Number { purpose, .. } => Some(*purpose),
+                    _ => None,
+                }));
+            }
+        }
+    }
+    assert_eq!(met.len(), 9, "of nine purposes only {met:?} were met");
+}
+
+#[test]
+fn numbers_that_are_drawn_twice_are_found() {
+    let number = |dimension, purpose| Event::Number {
+        dimension,
+        half: 0,
+        value: 0.5,
+        purpose,
+    };
+    assert!(misdrawn(&[number(3, Purpose::Lobe), number(4, Purpose::Layer)]).is_none());
+    assert!(misdrawn(&[number(3, Purpose::Lobe), number(3, Purpose::Light)]).is_some());
+    let roulette = Event::Roulette {
+        survival: 0.5,
+        number: 0.25,
+    };
+    assert!(misdrawn(&[number(3, Purpose::Roulette), roulette]).is_some());
+}
