@@ -14,13 +14,11 @@ use crate::scene::model::ModelError;
 use crate::scene::report::{Fate, ImportReport};
 
 /// Extensions that change nothing here or are understood.
-const UNDERSTOOD: [&str; 31] = [
+const UNDERSTOOD: [&str; 29] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
     "FB_ngon_encoding",
-    "KHR_accessor_float64",
-    "KHR_animation_pointer",
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
