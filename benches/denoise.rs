@@ -121,8 +121,7 @@ fn finish(session: &mut Session, document: &Document) -> Result<Film, Failure> {
 
 /// Relative error against a reference, whose own noise is taken out; squared.
 fn squared_error(image: &Image, reference: &Halves) -> f64 {
-    let luminance = |[r, g, b, _]: &[f32; 4]| 0.2126 * f64::from(*r) + 0.7152 * f64::from(*g) + 0.0722 * f64::from(*b);
-    let luminances: Vec<f64> = image.pixels.iter().map(luminance).collect();
+    let luminances = image.luminance();
     let n = luminances.len() as f64;
     let products = luminances
         .iter()

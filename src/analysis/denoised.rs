@@ -263,3 +263,89 @@ fn interpolated(grid: TileGrid, tiles: &[f64]) -> Vec<f32> {
     };
     (0..grid.height).flat_map(of_row).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::random::{Sequence, random_pair, random_state};
+
+    const SIDE: usize = 64;
+
+    /// Two halves of a picture of luminance 1 whose noise is `noise(pixel)`, and what a filter makes of them that averages
+    /// 3 × 3 pixels and adds `bias(pixel)`.
+    fn halves(noise: &dyn Fn(usize) -> f64, bias: &dyn Fn(usize) -> f64, seed: u32) -> [[Colors; 2]; 2] {
+        let half = |number: u32| -> Vec<f64> {
+            let value = |pixel: usize| {
+                let state = random_state(pixel as u32, number, seed, 0, Sequence::Independent);
+                let [xi, _]: [f64; 2] = random_pair(state, 0);
+                1.0 + noise(pixel) * 12.0_f64.sqrt() * (xi - 0.5)
+            };
+            (0..SIDE * SIDE).map(value).collect()
+        };
+        let grey = |values: &[f64]| -> Colors { values.iter().map(|value| [*value as f32; 3]).collect() };
+        let filtered = |values: &[f64]| -> Colors {
+            let sums = box_sums(values, SIDE, 1);
+            let means = sums.iter().enumerate().map(|(pixel, [sum, count])| sum / count + bias(pixel));
+            grey(&means.collect::<Vec<_>>())
+        };
+        let both = [half(0), half(1)];
+        [both.each_ref().map(|half| grey(half)), both.each_ref().map(|half| filtered(half))]
+    }
+
+    fn errors(halves: &[[Colors; 2]; 2]) -> Errors {
+        let [noisy, denoised] = halves;
+        Errors::of(&DenoisedHalves {
+            noisy: [&noisy[0], &noisy[1]],
+            denoised: [&denoised[0], &denoised[1]],
+            width: SIDE,
+        })
+    }
+
+    /// The squared error of the mean of two pictures, mixed with that of two others.
+    fn squared_error(halves: &[[Colors; 2]; 2], shares: &[f32]) -> f64 {
+        let [noisy, denoised] = halves;
+        let of_pixel = |pixel: usize| {
+            let mean = |pair: &[Colors; 2]| 0.5 * f64::from(pair[0][pixel][0] + pair[1][pixel][0]);
+            let (x, clean) = (mean(noisy), mean(denoised));
+            (clean + f64::from(shares[pixel]) * (x - clean) - 1.0).powi(2)
+        };
+        (0..SIDE * SIDE).map(of_pixel).sum::<f64>() / (SIDE * SIDE) as f64
+    }
+
+    #[test]
+    fn error_and_bias_are_the_true_ones() {
+        let (mut inside, mut told, mut truth, mut biases) = (0, 0.0, 0.0, 0.0);
+        const RENDERS: u32 = 60;
+        for seed in 0..RENDERS {
+            let halves = halves(&|pixel| if pixel % SIDE < 32 { 0.1 } else { 0.6 }, &|_| 0.05, seed);
+            let errors = errors(&halves);
+            let found = errors.error(None);
+            let true_error = squared_error(&halves, &vec![0.0; SIDE * SIDE]).sqrt() / 1.05;
+            inside += u32::from((found.low..=found.high).contains(&true_error));
+            told += found.value.powi(2);
+            truth += true_error.powi(2);
+            biases += errors.bias(None).value.powi(2) / f64::from(RENDERS);
+        }
+        assert!((told / truth - 1.0).abs() < 0.05, "{told} {truth}");
+        assert!(inside >= RENDERS - 6, "{inside} of {RENDERS}");
+        assert!((biases.sqrt() / (0.05 / 1.05) - 1.0).abs() < 0.1, "{}", biases.sqrt());
+    }
+
+    #[test]
+    fn the_mixture_takes_samples_where_they_are_better_and_has_no_seams() {
+        // Left a filter without bias, right one that is far worse than the samples.
+        let halves = halves(&|_| 0.1, &|pixel| if pixel % SIDE < 32 { 0.0 } else { 0.5 }, 3);
+        let errors = errors(&halves);
+        let shares = errors.shares();
+        for row in shares.chunks(SIDE) {
+            assert!(row[..8].iter().all(|share| *share < 0.15), "{:?}", &row[..8]);
+            assert!(row[56..].iter().all(|share| *share > 0.9), "{:?}", &row[56..]);
+            assert!(row.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 0.12), "{row:?}");
+        }
+        let mixed = squared_error(&halves, &shares);
+        assert!(mixed < 0.6 * squared_error(&halves, &vec![0.0; SIDE * SIDE]));
+        assert!(mixed < squared_error(&halves, &vec![1.0; SIDE * SIDE]));
+        let found = errors.error(Some(&shares));
+        assert!((found.low..=found.high).contains(&(mixed.sqrt() / 1.25)), "{found:?} {mixed}");
+    }
+}

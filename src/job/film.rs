@@ -205,6 +205,14 @@ impl Film {
     }
 }
 
+impl Image {
+    /// The luminance of each pixel.
+    pub fn luminance(&self) -> Vec<f64> {
+        let of_pixel = |pixel: &[f32; 4]| luminance_of(pixel.map(f64::from));
+        self.pixels.iter().map(of_pixel).collect()
+    }
+}
+
 /// A linear picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {

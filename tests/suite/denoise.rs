@@ -149,9 +149,7 @@ fn studio(model: ModelSource) -> Document {
 
 /// Root mean square error over the mean luminance, the reference's own noise taken out.
 fn true_error(image: &Image, reference: &Halves) -> f64 {
-    let luminance = |[r, g, b, _]: &[f32; 4]| 0.2126 * f64::from(*r) + 0.7152 * f64::from(*g) + 0.0722 * f64::from(*b);
-    let luminances: Vec<f64> = image.pixels.iter().map(luminance).collect();
-    reference.error_of(&luminances).value
+    reference.error_of(&image.luminance()).value
 }
 
 /// The told error of denoised pictures of twelve renders is the true one in the mean, and lies in the band; the mixture is
@@ -469,4 +467,29 @@ fn edits_while_the_denoiser_is_busy_end_in_the_last_one() {
         .into_iter()
         .filter(|event| matches!(event, Event::Message(Level::Error, _)));
     assert_eq!(complaints.count(), 0);
+}
+
+/// What would be done to get the library is said beforehand, and a no is kept to.
+#[cfg(target_os = "linux")]
+#[test]
+fn setup_says_what_it_would_take_and_keeps_to_a_no() {
+    let place = Workplace::new();
+    let data = place.path("data");
+    let setup = |purpose: &str| {
+        let output = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/setup"))
+            .args([purpose, "--dry-run"])
+            .env("XDG_DATA_HOME", &data)
+            .env_remove("GLOSSMITH_OIDN")
+            .output()
+            .unwrap();
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let asked = setup("denoiser");
+    // Silent where the system has the library.
+    let is_wanted = |text: &str| text.contains("Open Image Denoise");
+    assert!(asked.is_empty() || (is_wanted(&asked) && !data.join("glossmith/denoiser").exists()), "{asked}");
+    std::fs::create_dir_all(data.join("glossmith")).unwrap();
+    std::fs::write(data.join("glossmith/denoiser-declined"), "").unwrap();
+    assert!(!is_wanted(&setup("run")));
+    assert_eq!(setup("denoiser"), asked, "asked for by name it is offered again");
 }

@@ -5,6 +5,7 @@ use egui::{Modifiers, Pos2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
+use glossmith::document::Denoise;
 use glossmith::document::effect::Switch;
 use glossmith::job::effect::EffectId;
 use glossmith::render::display::Shown;
@@ -164,4 +165,27 @@ fn ctrl_shift_and_a_click_explain_the_pixel() {
     harness.get_by_label("Close").click_accesskit();
     harness.run_steps(2);
     assert!(harness.query_by_label("One path").is_none());
+}
+
+/// *Denoise* beside the exposure: the picture changes without being rendered again, and the status bar tells what error is
+/// left; undo brings the noise back.
+#[test]
+fn noise_is_taken_out_and_the_error_that_is_left_is_told() {
+    let mut harness = editor();
+    settle(&mut harness);
+    let noisy = picture(&harness);
+    let seconds = harness.state().snapshot().progress.render_seconds;
+    harness.state_mut().reveal(Pane::Camera);
+    harness.run_steps(2);
+    choose(&mut harness, "Denoise", "High quality");
+    assert_eq!(harness.state().document().view.denoise, Denoise::High);
+    assert_ne!(picture(&harness), noisy);
+    let snapshot = harness.state().snapshot();
+    assert_eq!(snapshot.progress.render_seconds, seconds, "nothing is rendered again");
+    let told = snapshot.denoised.expect("there are two halves").value;
+    assert!(told > 0.0);
+    assert!(harness.query_by_label_contains("denoised ").is_some(), "the status bar");
+    undo(&mut harness);
+    assert_eq!(picture(&harness), noisy);
+    assert!(harness.query_by_label_contains("denoised ").is_none());
 }

@@ -6,7 +6,7 @@ use super::folder::Folder;
 use super::{Bar, CacheArguments, CommonArguments, digits, make_folder};
 use crate::plot::line_plot_file;
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
-use crate::render::study::{ConvergencePoint, ConvergenceReport, convergence};
+use crate::render::study::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
 
 /// Longest time for the reference where none is given, seconds; the same quickly.
 const REFERENCE_SECONDS: f64 = 60.0;
@@ -98,13 +98,26 @@ fn plot(report: &ConvergenceReport) -> LinePlot {
     };
     let last = seen.last().copied().copied();
     let law = |point: &ConvergencePoint| last.map_or(0.0, |last| last.noise * (last.seconds / point.seconds).sqrt());
-    let lines = vec![
+    let of_denoised = |value: &dyn Fn(&DenoisedPoint) -> f64| -> Vec<[f64; 2]> {
+        let points = report.denoised.iter();
+        points.map(|point| [point.seconds, 100.0 * value(point)]).collect()
+    };
+    let denoised = |name: &str, value: &dyn Fn(&DenoisedPoint) -> f64| Series {
+        points: of_denoised(value),
+        ..series(name, 3, &|point| point.noise)
+    };
+    let mut lines = vec![
         series("error", 0, &|point| point.noise),
         series("95 % band", 6, &|point| point.noise_low),
         series("", 6, &|point| point.noise_high),
         series("by the spread", 1, &|point| point.noise_from_spread),
         series("1/√t", 2, &law),
     ];
+    if !report.denoised.is_empty() {
+        lines.push(denoised("denoised", &|point| point.error));
+        lines.push(denoised("", &|point| point.error_low));
+        lines.push(denoised("", &|point| point.error_high));
+    }
     let values = |axis: usize| {
         lines
             .iter()

@@ -12,7 +12,7 @@ use serde::{Serialize, Serializer};
 
 use super::effect::{EFFECTS, Effect, EffectSwitches, Switch, without_what_is_off};
 use super::match_look::{lobe_of_material, matched_lobe_and_curve};
-use super::{Document, RenderSettings, Strategy, ViewSettings};
+use super::{Denoise, Document, RenderSettings, Strategy, ViewSettings};
 use crate::job::effect::EffectId;
 use crate::job::plan::Plan;
 use crate::optics::curve::Curve;
@@ -45,6 +45,8 @@ pub enum Setting {
     Bounces(u32),
     /// Whether samples go where the error is.
     Adaptive(bool),
+    /// How noise is taken out.
+    Denoise(Denoise),
     /// An effect is taken out, or its code runs whether it is needed or not.
     Effect(EffectId, Switch),
     /// Shading in f64, on the processor.
@@ -97,6 +99,12 @@ pub static GROUPS: &[Group] = &[
         members: |_| [true, false].map(Setting::Adaptive).to_vec(),
     },
     Group {
+        name: "denoise",
+        label: "Denoising",
+        help: "The noise as it is or taken out, each way that there is; what is then wrong by bias is told.",
+        members: |_| Denoise::ALL.iter().map(|how| Setting::Denoise(*how)).collect(),
+    },
+    Group {
         name: "bounces",
         label: "Bounces",
         help: "Longest path, from 1 to 16 reflections.",
@@ -132,8 +140,9 @@ pub static GROUPS: &[Group] = &[
         help: "The scene without one of the effects that it calls for.",
         members: |plan| {
             let removable = plan.table().filter(|(effect, decision)| {
-                // Adaptive sampling is a kind of its own.
-                decision.is_on && Effect::of(*effect).remove.is_some() && *effect != EffectId::AdaptiveSampling
+                // These are kinds of their own.
+                let is_own_kind = matches!(*effect, EffectId::AdaptiveSampling | EffectId::Denoising);
+                decision.is_on && Effect::of(*effect).remove.is_some() && !is_own_kind
             });
             removable
                 .map(|(effect, _)| Setting::Effect(effect, Switch::Off))
@@ -159,6 +168,7 @@ impl Setting {
             Setting::ExactFresnel(false) => document.materials.iter_mut().for_each(with_schlick),
             Setting::Bounces(bounces) => document.render.bounces = bounces,
             Setting::Adaptive(adaptive) => document.render.adaptive = Some(adaptive),
+            Setting::Denoise(how) => document.view.denoise = how,
             Setting::Effect(effect, switch) => document.render.effects.set(effect, switch),
             Setting::Double => {}
         }
@@ -176,6 +186,7 @@ impl Setting {
             Setting::Bounces(bounces) => format!("{bounces} bounces"),
             Setting::Adaptive(true) => "Adaptive".to_owned(),
             Setting::Adaptive(false) => "Even".to_owned(),
+            Setting::Denoise(how) => format!("Denoising: {}", how.label().to_lowercase()),
             Setting::Effect(effect, switch) => {
                 let label = Effect::of(effect).label;
                 match switch {
@@ -299,6 +310,7 @@ impl fmt::Display for Setting {
             Setting::ExactFresnel(is_exact) => write!(f, "fresnel={}", if *is_exact { "exact" } else { "schlick" }),
             Setting::Bounces(bounces) => write!(f, "bounces={bounces}"),
             Setting::Adaptive(is_on) => write!(f, "adaptive={}", if *is_on { "on" } else { "off" }),
+            Setting::Denoise(how) => write!(f, "denoise={}", how.name()),
             Setting::Effect(effect, switch) => write!(f, "effect={}{effect}", sign(*switch)),
             Setting::Double => f.write_str("numbers=f64"),
         }
@@ -358,6 +370,7 @@ impl FromStr for Setting {
                 "off" => Ok(Setting::Adaptive(false)),
                 _ => Err(wrong("on or off".to_owned())),
             },
+            "denoise" => entry!(Denoise).map(Setting::Denoise),
             "effect" => effect(value).ok_or_else(|| wrong(effects_expected())),
             "numbers" => match value {
                 "f64" => Ok(Setting::Double),

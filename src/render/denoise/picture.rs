@@ -16,6 +16,9 @@ const LUMINANCE_MIN: f64 = 1e-8;
 /// Side of the squares whose mean luminances are averaged for it, pixels.
 const KEY_SIDE: usize = 16;
 
+/// Share of the pixels without a sample in a half up to which that half counts.
+const MISSING_SHARE: f64 = 0.01;
+
 /// What of a film is denoised: everything that the denoiser needs of it, to take to another thread.
 #[derive(Clone, Debug)]
 pub struct Noisy {
@@ -36,11 +39,17 @@ impl Noisy {
         let pixels = pixels_of(rect, film.width as usize);
         let features = Features::of(film, 1.0);
         let half = |number: usize| -> Option<Colors> {
+            let missing = pixels.iter().filter(|pixel| film.halves(**pixel)[number].samples < 1.0);
+            if missing.count() as f64 > MISSING_SHARE * pixels.len() as f64 {
+                return None;
+            }
             let mean = |pixel: &usize| {
-                let half = film.halves(*pixel)[number];
-                (half.samples > 0.0).then(|| half.color.map(|sum| (sum / half.samples).max(0.0) as f32))
+                let halves = film.halves(*pixel);
+                // Where all of a half's samples were dropped, the other half stands in.
+                let half = [halves[number], halves[1 - number]].into_iter().find(|half| half.samples > 0.0);
+                half.map_or([0.0; 3], |half| half.color.map(|sum| (sum / half.samples).max(0.0) as f32))
             };
-            pixels.par_iter().map(mean).collect()
+            Some(pixels.par_iter().map(mean).collect())
         };
         let chosen = |values: &[[f32; 3]]| pixels.iter().map(|pixel| values[*pixel]).collect();
         Self {

@@ -8,10 +8,13 @@ use super::references::{Effort, ReferenceCache};
 use super::{Machine, Steps, StudyError, Watch, warmed};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
+use crate::render::denoise::Attendant;
 use crate::render::{EngineChoice, Precision, Session, StopReason};
 
 /// The reference is this many times as exact as the picture, where the time suffices.
 const REFERENCE_GAIN: f64 = 4.0;
+/// By how much samples grow from one denoised picture to the next.
+const DENOISED_GROWTH: f64 = 1.5;
 /// How long to render before looking whether to go on.
 const STEP: Duration = Duration::from_millis(100);
 
@@ -32,6 +35,21 @@ pub struct ConvergencePoint {
     pub noise_from_spread: f64,
 }
 
+/// The error of the denoised picture at some time.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DenoisedPoint {
+    /// The engine's own time until then and that of denoising this picture, seconds.
+    pub seconds: f64,
+    /// Samples a pixel until then, in the mean.
+    pub samples_per_pixel: f64,
+    /// Relative error as told, bias included.
+    pub error: f64,
+    /// The lower end of its 95 % band.
+    pub error_low: f64,
+    /// The upper end.
+    pub error_high: f64,
+}
+
 /// Error against time.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConvergenceReport {
@@ -45,6 +63,8 @@ pub struct ConvergenceReport {
     pub stopped_by: Option<StopReason>,
     /// The errors seen, oldest first.
     pub points: Vec<ConvergencePoint>,
+    /// Those of the denoised picture, where it is denoised.
+    pub denoised: Vec<DenoisedPoint>,
     /// Slope of the error over the time, both as logarithms: −0.5 for independent samples. `None` with fewer than two
     /// points.
     pub slope: Option<f64>,
@@ -66,8 +86,16 @@ pub fn convergence(
     let mut steps = Steps::new(watch, 2.0);
     let mut session = Session::open(engine)?;
     warmed(&mut session, document)?;
+    let mut attendant = Attendant::new(document);
+    let (mut denoised, mut next_samples) = (Vec::new(), 2.0);
     let progress = loop {
-        let progress = session.step(STEP)?;
+        session.step(STEP)?;
+        let seen = session.progress();
+        if seen.mean_samples >= next_samples || seen.is_done {
+            next_samples = DENOISED_GROWTH * seen.mean_samples;
+            denoised.extend(denoised_point(&mut attendant, &mut session)?);
+        }
+        let progress = session.progress();
         steps.tell("Rendering", progress.share_done(document.render.time_s))?;
         if progress.is_done {
             break progress;
@@ -99,8 +127,21 @@ pub fn convergence(
         stopped_by: progress.stopped_by,
         slope: slope(&points),
         points,
+        denoised,
         true_error: reference.halves.error_of(&luminances),
     })
+}
+
+fn denoised_point(attendant: &mut Attendant, session: &mut Session) -> Result<Option<DenoisedPoint>, StudyError> {
+    let progress = session.progress();
+    let Some(denoised) = attendant.finish(session)? else { return Ok(None) };
+    Ok(denoised.error.map(|told| DenoisedPoint {
+        seconds: progress.engine_seconds + denoised.seconds,
+        samples_per_pixel: progress.mean_samples,
+        error: told.value,
+        error_low: told.low,
+        error_high: told.high,
+    }))
 }
 
 /// Least squares over the logarithms.

@@ -18,6 +18,7 @@ use crate::job::plan::Plan;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
 use crate::optics::random::Sequence;
+use crate::render::denoise::Attendant;
 use crate::render::{EngineChoice, Session};
 
 /// Samples a pixel that either side has at least: two in either half.
@@ -169,7 +170,8 @@ pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_
         entries.push(entry(&document, rival, [&mut with, &mut without], options, &mut steps)?);
         steps.finish(1.0);
     }
-    let times: Vec<f64> = entries.iter().map(|entry| entry.ms_with).collect();
+    let is_of_samples = |entry: &&Entry| entry.name != EffectId::Denoising.name();
+    let times: Vec<f64> = entries.iter().filter(is_of_samples).map(|entry| entry.ms_with).collect();
     Ok(Ledger {
         machine: Machine::of(with.engine()),
         width: document.render.width,
@@ -291,6 +293,9 @@ fn entry(
     options: &LedgerOptions,
     steps: &mut Steps<'_, '_>,
 ) -> Result<Entry, StudyError> {
+    if rival.name == EffectId::Denoising.name() {
+        return denoising(document, rival, with, options);
+    }
     warmed(with, document)?;
     warmed(without, &rival.document)?;
     let mut times = [const { Vec::new() }; 2];
@@ -333,6 +338,53 @@ fn entry(
         words: String::new(),
     };
     entry.words = words(&entry);
+    Ok(entry)
+}
+
+/// The line of the denoiser, which adds to a picture, not to a sample: the time of one picture; what it leaves of the
+/// squared error of the samples so far; its bias.
+fn denoising(
+    document: &Document,
+    rival: Rival,
+    session: &mut Session,
+    options: &LedgerOptions,
+) -> Result<Entry, StudyError> {
+    let mut attendant = Attendant::new(document);
+    warmed(session, document)?;
+    let mut times = Vec::new();
+    let (mut last, mut noise) = (None, 0.0);
+    for _ in 0..options.turns {
+        while session.progress().mean_samples < SAMPLES_MIN {
+            session.step(options.slice)?;
+        }
+        last = attendant.finish(session)?;
+        times.extend(last.as_ref().map(|denoised| 1e3 * denoised.seconds));
+        noise = crate::analysis::noise::noise(session.film()?).map_or(0.0, |noise| noise.relative);
+    }
+    let told = last.as_ref().and_then(|denoised| denoised.error).unwrap_or_default();
+    let share = (told.value / noise).powi(2) - 1.0;
+    let mut entry = Entry {
+        name: rival.name,
+        label: rival.label,
+        instead: rival.instead,
+        kind: rival.kind,
+        ms_with: median(&times),
+        ms_without: 0.0,
+        ms: median(&times),
+        ms_quartiles: [quantile(&times, 0.25), quantile(&times, 0.75)],
+        share_of_frame: 1.0,
+        noise_share: if share.is_finite() { share } else { 0.0 },
+        picture_change: last.and_then(|denoised| denoised.bias).unwrap_or_default(),
+        is_picture_kept: false,
+        words: String::new(),
+    };
+    entry.words = format!(
+        "{} ms a picture; of the squared error of {:.0} samples a pixel {} % is left; bias {} %",
+        digits(entry.ms),
+        session.progress().mean_samples,
+        digits(100.0 * (1.0 + entry.noise_share)),
+        digits(100.0 * entry.picture_change.value),
+    );
     Ok(entry)
 }
 

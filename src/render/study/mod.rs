@@ -17,7 +17,7 @@ use super::session::{Session, SessionError};
 use crate::document::Document;
 use crate::store::FileError;
 
-pub use convergence::{ConvergencePoint, ConvergenceReport, convergence};
+pub use convergence::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
 
 /// Samples a pixel where time or noise ends a render.
 const UNLIMITED: u32 = u32::MAX;

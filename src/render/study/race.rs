@@ -17,6 +17,7 @@ use crate::document::Document;
 use crate::document::technique::{Technique, converged, most_accurate};
 use crate::job::film::Image;
 use crate::render::assets::Assets;
+use crate::render::denoise::{Attendant, Denoised};
 use crate::render::{EngineChoice, EngineKind, Precision, Session};
 
 /// References are this many times as exact as the noise to reach, where the time suffices.
@@ -92,11 +93,13 @@ pub struct Runner {
     pub told_noise: f64,
     /// Its relative error against its own reference.
     pub error: Distance,
-    /// Engine time to the race's noise, seconds: the error falls with the root of the time.
+    /// Engine time to the race's noise, seconds: the error falls with the root of the time. (That of a denoised picture
+    /// falls more slowly: where it was reached in the race the time is told too long, else too short.)
     pub time_to_noise: f64,
     /// The noise was not reached in the race: the time is extrapolated.
     pub is_extrapolated: bool,
-    /// Relative distance of what it converges to from the most accurate setting's picture.
+    /// Relative distance of what it converges to from the most accurate setting's picture; of a denoised picture the
+    /// denoiser's bias at the race's end.
     pub bias: Distance,
     /// It converges to the most accurate setting's picture by its nature: the bias is 0 and not measured.
     pub is_unbiased: bool,
@@ -151,6 +154,19 @@ struct Lane {
     technique: Technique,
     document: Document,
     session: Session,
+    attendant: Attendant,
+}
+
+impl Lane {
+    /// Its picture as it is shown, and the denoised one where it is denoised.
+    fn picture(&mut self) -> Result<(Arc<Image>, Option<Denoised>), StudyError> {
+        let denoised = self.attendant.finish(&mut self.session)?;
+        let image = match &denoised {
+            Some(denoised) => denoised.image.clone(),
+            None => Arc::new(self.session.image()?),
+        };
+        Ok((image, denoised))
+    }
 }
 
 /// Runs a race. `watch` is told how far it has come, and may stop it.
@@ -174,8 +190,10 @@ pub fn race(document: &Document, options: &RaceOptions, watch: &mut Watch<'_>) -
         let share = (runner.error.value / equal_error.max(f64::MIN_POSITIVE)).powi(2);
         let samples = (runner.samples_per_pixel * share).max(SAMPLES_MIN);
         rerun(lane, samples, &mut |done| steps.tell(what.clone(), done))?;
-        runner.equal_error = lane.session.image()?;
-        runner.equal_error_seconds = lane.session.progress().engine_seconds;
+        let (image, denoised) = lane.picture()?;
+        let denoise_seconds = denoised.map_or(0.0, |denoised| denoised.seconds);
+        runner.equal_error = Image::clone(&image);
+        runner.equal_error_seconds = lane.session.progress().engine_seconds + denoise_seconds;
         steps.finish(1.0);
     }
     mark_front(&mut runners);
@@ -211,6 +229,7 @@ fn lanes(document: &Document, options: &RaceOptions, assets: &Assets) -> Result<
         session.set_precision(precision(technique));
         lanes.push(Lane {
             technique: technique.clone(),
+            attendant: Attendant::new(&changed),
             document: changed,
             session,
         });
@@ -344,30 +363,32 @@ fn runner(
     options: &RaceOptions,
 ) -> Result<Runner, StudyError> {
     let progress = lane.session.progress();
-    let film = lane.session.film()?;
-    let (equal_time, luminances) = (film.image(), film.luminance());
-    let told = crate::analysis::noise::noise(film);
-    let error = own.reference.halves.error_of(&luminances);
-    let is_unbiased = Arc::ptr_eq(own, best);
-    let bias = if is_unbiased {
-        Default::default()
-    } else {
-        own.reference.halves.distance(&best.reference.halves)
+    let told = crate::analysis::noise::noise(lane.session.film()?);
+    let (equal_time, denoised) = lane.picture()?;
+    let error = own.reference.halves.error_of(&equal_time.luminance());
+    let denoised_bias = denoised.as_ref().and_then(|denoised| denoised.bias);
+    let is_unbiased = Arc::ptr_eq(own, best) && denoised.is_none();
+    let bias = match denoised_bias {
+        _ if is_unbiased => Distance::default(),
+        Some(bias) => bias,
+        None => own.reference.halves.distance(&best.reference.halves),
     };
+    let denoised_error = denoised.as_ref().and_then(|denoised| denoised.error);
+    let seconds = progress.engine_seconds + denoised.as_ref().map_or(0.0, |denoised| denoised.seconds);
     Ok(Runner {
         label: lane.technique.label(),
         technique: lane.technique.clone(),
-        seconds: progress.engine_seconds,
+        seconds,
         samples_per_pixel: progress.mean_samples,
-        told_noise: told.map_or(0.0, |noise| noise.relative),
+        told_noise: denoised_error.map_or(told.map_or(0.0, |noise| noise.relative), |error| error.value),
         error,
-        time_to_noise: progress.engine_seconds * (error.value / options.noise).powi(2),
+        time_to_noise: seconds * (error.value / options.noise).powi(2),
         is_extrapolated: error.value > options.noise,
         bias,
         is_unbiased,
         reference_noise: own.reference.noise,
         is_on_front: false,
-        equal_time,
+        equal_time: Image::clone(&equal_time),
         equal_error: Image::default(),
         equal_error_seconds: 0.0,
     })
