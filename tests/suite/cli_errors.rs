@@ -17,14 +17,15 @@ fn bad_models_are_refused() {
     place.write("cut.glb", &whole[..whole.len() * 2 / 3]);
     place.write("text.glb", b"This is a shopping list: milk, bread, two lemons.\n");
     place.write("empty.glb", b"");
-    document["extensionsRequired"] = serde_json::json!(["KHR_draco_mesh_compression"]);
+    document["extensionsRequired"] = serde_json::json!(["ACME_mesh"]);
     document["extensionsUsed"] = document["extensionsRequired"].clone();
-    place.write("draco.glb", &glb(&document, &buffer.bytes));
+    document["scenes"] = serde_json::json!([{"nodes": []}]);
+    place.write("acme.glb", &glb(&document, &buffer.bytes));
     for (file, words) in [
         ("cut.glb", ["cut short", "download the file again"]),
         ("text.glb", ["not a glTF 2.0 file", "export the model as .glb"]),
         ("empty.glb", ["not a glTF 2.0 file", "export the model as .glb"]),
-        ("draco.glb", ["KHR_draco_mesh_compression", "not supported"]),
+        ("acme.glb", ["ACME_mesh", "not supported"]),
         ("missing.glb", ["cannot read", "check the path"]),
     ] {
         place.refused(1, &format!("{QUICK} --model {file}"), &[file, words[0], words[1]]);

@@ -74,10 +74,8 @@ fn the_sheet_tells_what_became_of_the_file_and_changes_the_variant() {
     });
     request(&mut harness, Action::Do(Command::ModelFile));
     see_label(&mut harness, "Missing");
-    assert!(
-        harness.query_by_label_contains("bark").is_some(),
-        "the texture is named"
-    );
+    let named = harness.query_all_by_label_contains("bark").count();
+    assert!(named > 0, "the texture is named");
     harness
         .get_by_role_and_label(Role::ComboBox, "Variant")
         .click_accesskit();
