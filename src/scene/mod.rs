@@ -28,6 +28,7 @@ pub mod texture;
 mod traverse;
 
 pub use geometry::{Geometry, Vertex};
+pub use gltf::kept_keys;
 pub use import::{MODEL_ENDINGS, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
 pub use model::{

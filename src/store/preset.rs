@@ -12,6 +12,7 @@ use serde_json::{Map, Value as Json, json};
 use super::file::{self, FileError, Loaded};
 use crate::document::parameter::nearest_key;
 use crate::document::{MaterialSettings, PARAMETERS, ParameterError};
+use crate::scene::kept_keys;
 
 /// The version of the format.
 pub const VERSION: u64 = 1;
@@ -160,17 +161,10 @@ fn is_newer(key: &str) -> bool {
     groups.iter().any(|group| key.starts_with(group)) || key == "base.weight" || key.ends_with("_texture")
 }
 
-/// Groups of keys that come with a model's materials and are kept although nothing shows them yet.
-const KEPT: [&str; 4] = [
-    "sheen.",
-    "iridescence.",
-    "diffuse_transmission.",
-    "transmission.dispersion",
-];
-
 /// A sentence for each key of "material" that has no effect.
 pub(super) fn unknown_keys(material: &MaterialSettings) -> impl Iterator<Item = String> + '_ {
-    let is_kept = |key: &&String| KEPT.iter().any(|kept| key.starts_with(kept));
+    // Comes with a model's materials, for when it can be shown.
+    let is_kept = |key: &&String| kept_keys().any(|kept| kept == key.as_str());
     material.extra.keys().filter(move |key| !is_kept(key)).map(|key| {
         let hint = nearest_key(key).map_or_else(String::new, |near| format!("; did you mean {near}?"));
         format!("{key} is no parameter and has no effect{hint}")

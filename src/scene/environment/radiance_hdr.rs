@@ -76,7 +76,7 @@ impl Header {
         let layout = Layout::parse(&resolution).ok_or_else(|| damaged(&format!("the resolution '{resolution}'")))?;
         let text = String::from_utf8_lossy(&bytes[..end]);
         let values = |key: &'static str| text.lines().filter_map(move |line| line.trim().strip_prefix(key));
-        let format = values("FORMAT=").last().map_or("32-bit_rle_rgbe", str::trim);
+        let format = values("FORMAT=").next_back().map_or("32-bit_rle_rgbe", str::trim);
         let is_xyz = format == "32-bit_rle_xyze";
         if !is_xyz && format != "32-bit_rle_rgbe" {
             return Err(EnvironmentError::Unsupported {

@@ -161,6 +161,11 @@ const KEPT: [Kept; 4] = [
     },
 ];
 
+/// The keys of a material's file under which it keeps what the renderer cannot show yet.
+pub fn kept_keys() -> impl Iterator<Item = &'static str> {
+    KEPT.iter().flat_map(|kept| kept.values.iter().map(|(_, key)| *key))
+}
+
 /// What a material has that the renderer cannot show yet: values under the keys of a material's file, and what to call
 /// each.
 pub(super) fn kept(material: &Json) -> (Map<String, Json>, Vec<&'static str>) {

@@ -20,6 +20,8 @@ use std::path::Path;
 
 use glam::DMat4;
 
+pub use self::material_extensions::kept_keys;
+
 use self::container::Document;
 use self::material::Materials;
 use self::nodes::MeshNode;
