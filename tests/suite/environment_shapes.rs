@@ -178,8 +178,7 @@ fn pictures_for_screens_are_decoded_or_taken_as_light() {
         let shown = load_file(&path);
         let source = EnvironmentSource::File(path.clone());
         let linear = load_encoded(&source, EnvironmentEncoding::Linear).unwrap();
-        for channel in 0..3 {
-            let code = color[channel];
+        for (channel, code) in color.into_iter().enumerate() {
             let expected = [display(code).powf(2.4), f64::from(code) / 255.0];
             let found = [&shown, &linear].map(|map| f64::from(map.texels[37][channel]));
             for (found, expected) in found.into_iter().zip(expected) {
