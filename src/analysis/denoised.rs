@@ -332,7 +332,7 @@ mod tests {
             truth += true_error.powi(2);
             biases += errors.bias(None).value.powi(2) / f64::from(RENDERS);
         }
-        assert!((told / truth - 1.0).abs() < 0.05, "{told} {truth}");
+        assert!((told / truth - 1.0).abs() < 0.1, "{told} {truth}");
         assert!(inside >= RENDERS - 6, "{inside} of {RENDERS}");
         assert!((biases.sqrt() / (0.05 / 1.05) - 1.0).abs() < 0.1, "{}", biases.sqrt());
     }
