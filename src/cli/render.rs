@@ -362,7 +362,8 @@ fn step_to_end(
     let bar = bar("{bar:40} {msg}, {eta} left", BAR_STEPS as u64)?;
     let mut attendant = Attendant::new(document);
     loop {
-        let stepped = session.step(STEP).map(|_| ());
+        let budget = attendant.budget(&session.progress(), STEP);
+        let stepped = session.step(budget).map(|_| ());
         or_fall_back(stepped, session, engine, document)?;
         attendant.attend(session, &session.progress())?;
         let progress = session.progress();

@@ -90,7 +90,7 @@ pub fn render(
             center_world = job.geometry.center_world.to_array();
         }
         loop {
-            session.step(STEP)?;
+            session.step(attendant.budget(&session.progress(), STEP))?;
             attendant.attend(session, &session.progress())?;
             let progress = session.progress();
             let by_samples = f64::from(progress.samples_per_pixel) / f64::from(progress.samples_wanted.max(1));

@@ -46,8 +46,12 @@ impl Noisy {
             let mean = |pixel: &usize| {
                 let halves = film.halves(*pixel);
                 // Where all of a half's samples were dropped, the other half stands in.
-                let half = [halves[number], halves[1 - number]].into_iter().find(|half| half.samples > 0.0);
-                half.map_or([0.0; 3], |half| half.color.map(|sum| (sum / half.samples).max(0.0) as f32))
+                let half = [halves[number], halves[1 - number]]
+                    .into_iter()
+                    .find(|half| half.samples > 0.0);
+                half.map_or([0.0; 3], |half| {
+                    half.color.map(|sum| (sum / half.samples).max(0.0) as f32)
+                })
             };
             Some(pixels.par_iter().map(mean).collect())
         };

@@ -134,7 +134,9 @@ pub fn convergence(
 
 fn denoised_point(attendant: &mut Attendant, session: &mut Session) -> Result<Option<DenoisedPoint>, StudyError> {
     let progress = session.progress();
-    let Some(denoised) = attendant.finish(session)? else { return Ok(None) };
+    let Some(denoised) = attendant.finish(session)? else {
+        return Ok(None);
+    };
     Ok(denoised.error.map(|told| DenoisedPoint {
         seconds: progress.engine_seconds + denoised.seconds,
         samples_per_pixel: progress.mean_samples,

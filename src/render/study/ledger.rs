@@ -171,7 +171,11 @@ pub fn ledger(document: &Document, options: &LedgerOptions, watch: &mut Watch<'_
         steps.finish(1.0);
     }
     let is_of_samples = |entry: &&Entry| entry.name != EffectId::Denoising.name();
-    let times: Vec<f64> = entries.iter().filter(is_of_samples).map(|entry| entry.ms_with).collect();
+    let times: Vec<f64> = entries
+        .iter()
+        .filter(is_of_samples)
+        .map(|entry| entry.ms_with)
+        .collect();
     Ok(Ledger {
         machine: Machine::of(with.engine()),
         width: document.render.width,
