@@ -102,7 +102,7 @@ fn ledger_and_clock(engine: EngineChoice, sessions: &mut [Session; 2]) -> Result
         }
         let [with_ms, without_ms] = milliseconds.map(median);
         println!(
-            "| {name} | {:.2} | {:.2} | {:.1} % |",
+            "| {effect} | {:.2} | {:.2} | {:.1} % |",
             entry.ms,
             with_ms - without_ms,
             100.0 * (entry.ms - (with_ms - without_ms)).abs() / with_ms

@@ -11,8 +11,11 @@ use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::random::Sequence;
 use crate::scene::camera::PixelFilter;
 
-/// The modules that no file holds, by the names that `#import` knows them by, each with what writes it.
-pub const GENERATED: &[(&str, fn() -> String)] = &[
+/// A module that no file holds: the name that `#import` knows it by, and what writes it.
+pub type Generated = (&'static str, fn() -> String);
+
+/// Every module that no file holds.
+pub const GENERATED: &[Generated] = &[
     ("optics/lobe/registry", lobe_registry),
     ("optics/choices", optics_choices),
     ("scene/choices", scene_choices),

@@ -101,10 +101,10 @@ impl Slot {
     pub fn report(&self) -> Option<Report> {
         let path = report_path(&self.path);
         let text = String::from_utf8_lossy(&fs::read(&path).ok()?).into_owned();
-        let messages = text
+        let mut messages = text
             .lines()
             .filter_map(|line| line.strip_prefix(MESSAGE)?.strip_prefix(": "));
-        let message = messages.last().unwrap_or_default().to_owned();
+        let message = messages.next_back().unwrap_or_default().to_owned();
         Some(Report { path, message })
     }
 

@@ -98,6 +98,11 @@ fn the_report_has_its_keys_and_their_types() {
         "clamped_energy",
         "effects",
         "seed",
+        "denoised",
+        "denoise_seconds",
+        "denoised_error",
+        "denoised_error_low",
+        "denoised_error_high",
     ];
     assert_eq!(keys, expected);
     assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
