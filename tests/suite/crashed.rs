@@ -1,6 +1,6 @@
 //! A panic leaves the unsaved document and a report, and the next start says so.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -22,11 +22,10 @@ const LOST: f32 = 0.43;
 #[test]
 #[ignore = "the child of the tests below: edits, and panics"]
 fn edits_and_panics() {
-    let data = std::env::var_os(DATA).expect("only the tests below start this");
+    let data = PathBuf::from(std::env::var_os(DATA).expect("only the tests below start this"));
     report_panics();
-    // Nothing is put aside but by the panic.
     let mut harness = editor_of(Options {
-        data: Some(data.into()),
+        data: Some(data.clone()),
         autosave_interval: Some(Duration::from_secs(3600)),
         ..options()
     });
@@ -34,6 +33,7 @@ fn edits_and_panics() {
     request(&mut harness, Action::Do(Choice::ToggleTheme));
     // The first edit is put aside at once, the second one an hour later.
     edit(&mut harness, 0.9);
+    wait(&mut harness, "the first copy", |_| holds_a_copy(&data));
     edit(&mut harness, LOST);
     if std::env::var(PLACE).as_deref() == Ok("window") {
         panic!("the window breaks on purpose");
@@ -47,6 +47,13 @@ fn edits_and_panics() {
     });
     // The power goes: nothing is closed as it should be.
     std::process::abort();
+}
+
+/// Whether a document has been put aside.
+fn holds_a_copy(data: &Path) -> bool {
+    let entries = std::fs::read_dir(data.join("recovery")).into_iter().flatten();
+    let mut paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+    paths.any(|path| path.extension().is_some_and(|ending| ending == "json"))
 }
 
 /// Runs the child to its end.

@@ -1,7 +1,7 @@
 //! What calls for an effect: for each of the registry the least that does, one channel and one place at a time.
 
 use glossmith::document::effect::{EFFECTS, EffectSwitches, Switch};
-use glossmith::document::{AreaLight, Background, Document, MaterialSettings, Strategy, TextureUse};
+use glossmith::document::{AreaLight, Background, Denoise, Document, MaterialSettings, Strategy, TextureUse};
 use glossmith::job::effect::{ANY, EffectId};
 use glossmith::job::plan::Plan;
 use glossmith::optics::curve::Curve;
@@ -260,6 +260,7 @@ fn calls_for(effect: &str) -> Calls {
                 |d, _| d.render.noise = Some(1e-3),
             ],
         ),
+        "denoising" => (metal, &[|d, _| d.view.denoise = Denoise::Fast]),
         // Always there.
         "variance" => (metal, &[]),
         // Only where layers are written, which no document says.

@@ -23,7 +23,8 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         return;
     };
     let progress = &desk.snapshot.progress;
-    words(ui, last, progress);
+    // Their number changes by itself.
+    widgets::comes_and_goes(ui, |ui| words(ui, last, progress));
     plot(ui, history, progress.noise_wanted);
     widgets::note(
         ui,

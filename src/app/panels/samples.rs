@@ -366,7 +366,7 @@ fn angle_plot(ui: &mut Ui, report: &SampleReport) {
         .allow_boxed_zoom(false)
         .show_background(false)
         .x_axis_label("α: angle to the mirror direction, degrees")
-        .legend(Legend::default())
+        .legend(Legend::default().follow_insertion_order(true))
         .include_y(0.0)
         .include_x(0.0)
         .default_x_bounds(0.0, last)
@@ -374,13 +374,12 @@ fn angle_plot(ui: &mut Ui, report: &SampleReport) {
             plot_ui.set_plot_bounds_x(0.0..=last);
             plot_ui.bar_chart(BarChart::new("drawn", bars).color(accent.gamma_multiply(0.45)));
             let analytic = degrees(&report.angle.analytic);
-            if !analytic.is_empty() {
-                plot_ui.line(
-                    Line::new("density", PlotPoints::from(analytic))
-                        .color(accent)
-                        .width(2.0),
-                );
-            }
+            // Empty for a mirror: what stands below it in the legend stays where it is.
+            plot_ui.line(
+                Line::new("density", PlotPoints::from(analytic))
+                    .color(accent)
+                    .width(2.0),
+            );
             let greys = [visuals.strong_text_color(), visuals.weak_text_color()];
             for (other, color) in report.angle.others.iter().zip(greys) {
                 let name = format!("{} {:.2}", other.lobe.label(), other.nearest.roughness);
