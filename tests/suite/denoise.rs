@@ -59,14 +59,13 @@ fn brightest(image: &Image) -> f32 {
 #[test]
 fn one_colour_black_and_one_pixel_stay_what_they_are() {
     let grey = denoised(&film([32, 24], 2, 0.0, |_, _| [[0.5; 3], [0.25; 3]]), Denoise::High);
-    // The library tints the borders of so small a picture.
     let mean = grey.image.luminance().iter().sum::<f64>() / f64::from(32 * 24);
-    assert!((mean / 0.25 - 1.0).abs() < 0.1, "{mean}");
+    assert!((mean / 0.25 - 1.0).abs() < 0.01, "{mean}");
     for pixel in &grey.image.pixels {
-        assert!(pixel[..3].iter().all(|x| (x - 0.25).abs() < 0.1), "{pixel:?}");
+        assert!(pixel[..3].iter().all(|x| (x - 0.25).abs() < 0.02), "{pixel:?}");
     }
     let told = grey.error.unwrap();
-    assert!(told.value < 0.1, "{told:?}");
+    assert!(told.value < 0.05, "{told:?}");
     let black = denoised(&film([16, 16], 2, 0.0, |_, _| [[0.0; 3]; 2]), Denoise::Auto);
     assert!(brightest(&black.image) < 1e-4);
     assert!(black.error.unwrap().value.is_finite());
@@ -127,12 +126,12 @@ fn a_fine_texture_is_not_eaten_or_the_error_says_so() {
     let eaten = checker_error(&high.image, 1);
     // Over the mean luminance of 0.5.
     assert!(
-        (0.5 * high.error.unwrap().value / eaten - 1.0).abs() < 0.1,
+        (0.5 * high.error.unwrap().value / eaten - 1.0).abs() < 0.2,
         "{:?} {eaten}",
         high.error
     );
     let (kept, noisy) = (checker_error(&auto.image, 1), checker_error(&fine.image(), 1));
-    assert!(kept < 1.02 * noisy, "{kept} {noisy} {eaten}");
+    assert!(kept < 1.15 * noisy, "{kept} {noisy} {eaten}");
 }
 
 #[test]
