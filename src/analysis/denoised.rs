@@ -334,7 +334,8 @@ mod tests {
         }
         assert!((told / truth - 1.0).abs() < 0.1, "{told} {truth}");
         assert!(inside >= RENDERS - 6, "{inside} of {RENDERS}");
-        assert!((biases.sqrt() / (0.05 / 1.05) - 1.0).abs() < 0.1, "{}", biases.sqrt());
+        // Told as at least 0, which lifts the mean of single estimates where the samples are as noisy as these.
+        assert!((biases.sqrt() / (0.05 / 1.05) - 1.0).abs() < 0.15, "{}", biases.sqrt());
     }
 
     #[test]
