@@ -1,10 +1,9 @@
-//! What denoised pictures are worth: how true the error is that is told of them, and how soon they are clean.
+//! What denoised pictures are worth: how true the error is that is told of them.
 //!
-//! `cargo bench --bench denoise [-- quick] [truth] [edit]`: over scenes and numbers of samples the true errors of the
-//! samples' mean, the denoised picture and the mixture of both, against a long render; the told error over the true one
-//! and how often the latter lies in the band (`truth`). The seconds from an edit to a picture whose relMSE is below
-//! 0.003, without and with each quality (`edit`). `quick` does the same small; the beginning of a scene's name takes that
-//! scene alone. The processor's engine.
+//! `cargo bench --bench denoise [-- quick]`: over scenes and numbers of samples the true errors of the samples' mean, the
+//! denoised picture and the mixture of both, against a long render; the told error over the true one and how often the
+//! latter lies in the band. `quick` does the same small; the beginning of a scene's name takes that scene alone. The
+//! processor's engine.
 
 use std::time::{Duration, Instant};
 

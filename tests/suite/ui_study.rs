@@ -7,7 +7,7 @@ use glossmith::app::layout::Pane;
 use glossmith::document::{Document, Strategy};
 use glossmith::scene::ModelSource;
 
-use super::ui::{editor_of, options, request, see, see_label, settle, undo, wait};
+use super::ui::{Editor, editor_of, options, request, see, see_label, settle, undo, wait};
 use super::worker::small_document;
 
 fn sphere() -> Document {
@@ -52,8 +52,8 @@ fn a_race_is_run_and_its_winner_taken() {
     assert_eq!(harness.state().document().render.strategy, Strategy::Mis);
 }
 
-#[test]
-fn a_race_can_be_stopped() {
+/// A window in which a race runs, so many seconds for each technique.
+fn racing(seconds: f64) -> Editor {
     let mut harness = editor_of(glossmith::app::Options {
         document: Some(sphere()),
         ..options()
@@ -63,10 +63,16 @@ fn a_race_can_be_stopped() {
     harness.run_steps(2);
     harness
         .get_by_role_and_label(Role::SpinButton, "Time of each")
-        .set_value_accesskit(300.0);
+        .set_value_accesskit(seconds);
     harness.run_steps(2);
     harness.get_by_label("Run the race").click_accesskit();
     harness.run_steps(3);
+    harness
+}
+
+#[test]
+fn a_race_can_be_stopped() {
+    let mut harness = racing(300.0);
     harness.get_by_label("Stop").click_accesskit();
     see_label(&mut harness, "Run the race");
     // The viewport renders again.
@@ -77,19 +83,7 @@ fn a_race_can_be_stopped() {
 #[test]
 fn a_study_that_ends_behind_another_panel_lets_the_viewport_go_on() {
     for is_maximised in [false, true] {
-        let mut harness = editor_of(glossmith::app::Options {
-            document: Some(sphere()),
-            ..options()
-        });
-        settle(&mut harness);
-        harness.state_mut().reveal(Pane::Race);
-        harness.run_steps(2);
-        harness
-            .get_by_role_and_label(Role::SpinButton, "Time of each")
-            .set_value_accesskit(0.02);
-        harness.run_steps(2);
-        harness.get_by_label("Run the race").click_accesskit();
-        harness.run_steps(3);
+        let mut harness = racing(0.02);
         if is_maximised {
             request(&mut harness, Action::Do(Command::Maximise));
         } else {
