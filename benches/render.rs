@@ -60,7 +60,7 @@ fn measure(choice: EngineChoice, strategy: Strategy) -> Result<(String, f64, f64
     let film = session.film()?;
     Ok((
         name,
-        film.rays.iter().sum::<f64>() / seconds,
+        film.total_rays() as f64 / seconds,
         film.samples() as f64 / seconds,
     ))
 }

@@ -174,7 +174,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var leaves = false;
     var seen = GuideSums();
     // Nothing but mirrors and clear glass so far.
-    var looks = sample < GUIDE_SAMPLES;
+    var looks = PLAN_GUIDES == 1u && sample < GUIDE_SAMPLES;
     for (var bounce = 0u; ; bounce++) {
         var hit = Hit(0.0, NO_HIT, 0.0, 0.0);
         if !leaves {
@@ -292,7 +292,7 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     if PLAN_FIREFLY_CLAMP == 1u {
         statistics[index].clamped += sums.clamped;
     }
-    if tile.first_sample < GUIDE_SAMPLES {
+    if PLAN_GUIDES == 1u && tile.first_sample < GUIDE_SAMPLES {
         guide_sums[index].albedo += guides.albedo;
         guide_sums[index].hits += guides.hits;
         guide_sums[index].normal += guides.normal;

@@ -4,7 +4,7 @@
 //! σ² the variance of one sample, cost its rays. So a tile rests while it has more than its part, not when some error of
 //! its own is reached: that would give dark smooth tiles as few samples as they need, but noisy ones too many.
 
-use super::noise::{TileError, half_difference_variances, tile_errors};
+use super::noise::{TileError, half_difference_variance, tile_errors};
 use crate::job::film::Film;
 use crate::job::tiles::TileGrid;
 
@@ -35,10 +35,7 @@ pub struct Round {
 /// The samples a pixel that each tile is to have next, from what it has: never less, and somewhere more unless that tile
 /// has `samples_max`.
 pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
-    let grid = TileGrid {
-        width: film.width,
-        height: film.height,
-    };
+    let grid = film.grid();
     let errors = tile_errors(film);
     let is_rendered = |tile: usize| grid.is_rendered(tile, round.region);
     let tiles: Vec<Tile> = (0..grid.tiles())
@@ -70,10 +67,18 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
     let mut factor = growing(growth_max);
     if let Some(noise) = round.noise {
         let pixels = all(&|_| 1.0);
-        let part = film.of_pixels(|pixel| is_rendered(grid.of_pixel(pixel)));
-        let luminance = part.luminance().iter().filter(|y| y.is_finite()).sum::<f64>() / pixels;
+        let rendered = (0..grid.tiles()).filter(|tile| is_rendered(*tile));
+        let rendered: Vec<usize> = rendered.flat_map(|tile| grid.pixels_of(tile)).collect();
+        let sum = |of: &dyn Fn(usize) -> f64| {
+            rendered
+                .iter()
+                .map(|pixel| of(*pixel))
+                .filter(|x| x.is_finite())
+                .sum::<f64>()
+        };
+        let luminance = sum(&|pixel| film.luminance_of(pixel)) / pixels;
         // The tiles' variances, averaged as they are, need not add up to what decides about the end.
-        let seen: f64 = half_difference_variances(&part).iter().filter(|v| v.is_finite()).sum();
+        let seen = sum(&|pixel| half_difference_variance(&film.halves(pixel)));
         let told = all(&|tile| tile.variance / tile.samples);
         let allowed = pixels * (noise * luminance).powi(2) * if seen > 0.0 { told / seen } else { 1.0 };
         let enough = bisect(bracket, |factor| {
@@ -155,7 +160,7 @@ mod tests {
                 let [x, _]: [f64; 2] = random_pair(state, 0);
                 let y = 1.0 + sigma(tile) * 12.0_f64.sqrt() * (x - 0.5);
                 film.add(pixel, sample, [y, y, y, 1.0]);
-                film.rays[pixel] += rays(tile);
+                film.costs[tile].rays += rays(tile);
             }
         }
         film

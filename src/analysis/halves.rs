@@ -40,8 +40,8 @@ impl Distance {
 impl Halves {
     /// The halves of a film.
     pub fn of(film: &Film) -> Self {
-        let means = |pixel| film.halves(pixel).map(|half| half.luminance / half.samples);
-        let (even, odd) = (0..film.color.len()).map(|pixel| means(pixel).into()).unzip();
+        let means = |pixel| film.halves(pixel).map(|half| half.luminance() / half.samples);
+        let (even, odd) = (0..film.pixel_count()).map(|pixel| means(pixel).into()).unzip();
         Self { even, odd }
     }
 

@@ -7,6 +7,8 @@
 //! numbers, is the cross-check: it agrees for independent numbers and overstates the error of Sobol's.
 //! docs/MATHEMATICS.md, section 8, tells the whole.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use crate::job::film::{Film, HalfSums};
@@ -37,96 +39,174 @@ pub struct Noise {
     pub mean_luminance: f64,
 }
 
-/// Variance of the mean luminance of each pixel from the difference of its halves: unbiased, with one degree of freedom
-/// each. NaN where a half has no sample.
+/// Variance of the mean luminance of a pixel from the difference of its halves: unbiased, with one degree of freedom. NaN
+/// where a half has no sample.
+pub fn half_difference_variance([even, odd]: &[HalfSums; 2]) -> f64 {
+    if odd.samples < 1.0 || even.samples < 1.0 {
+        return f64::NAN;
+    }
+    let difference = even.luminance() / even.samples - odd.luminance() / odd.samples;
+    difference * difference * even.samples * odd.samples / (even.samples + odd.samples).powi(2)
+}
+
+/// The same of each pixel.
 pub fn half_difference_variances(film: &Film) -> Vec<f64> {
-    let of_pixel = |pixel: usize| {
-        let [even, odd] = film.halves(pixel);
-        if odd.samples < 1.0 || even.samples < 1.0 {
-            return f64::NAN;
-        }
-        let difference = even.luminance / even.samples - odd.luminance / odd.samples;
-        difference * difference * even.samples * odd.samples / (even.samples + odd.samples).powi(2)
-    };
-    (0..film.color.len()).into_par_iter().map(of_pixel).collect()
+    let of_pixel = |pixel: usize| half_difference_variance(&film.halves(pixel));
+    (0..film.pixel_count()).into_par_iter().map(of_pixel).collect()
 }
 
 /// The relative error of a picture; `None` before there are samples in both halves. A picture without light has none.
 pub fn noise(film: &Film) -> Option<Noise> {
-    let variances = half_difference_variances(film);
-    let measured = variances.iter().filter(|v| !v.is_nan()).count() as f64;
-    if measured < MEASURED_SHARE * variances.len() as f64 || variances.is_empty() {
+    let bands: Vec<Sums> = bands(film.grid())
+        .into_par_iter()
+        .map(|rows| Sums::of(&Band::of(film, rows)))
+        .collect();
+    let sums = bands.iter().fold(Sums::default(), Sums::with);
+    let pixels = film.pixel_count() as f64;
+    if sums.measured < MEASURED_SHARE * pixels || pixels == 0.0 {
         return None;
     }
-    let sum_of = |values: &[f64]| values.iter().filter(|v| v.is_finite()).sum::<f64>();
-    let mean_luminance = sum_of(&film.luminance()) / variances.len() as f64;
-    let sum = sum_of(&variances);
+    let mean_luminance = sums.luminance / pixels;
     let relative = |sum: f64| {
         if sum > 0.0 {
-            (sum / measured).sqrt() / mean_luminance
+            (sum / sums.measured).sqrt() / mean_luminance
         } else {
             0.0
         }
     };
-    let freedom = (sum * sum / sum_of_squared_variances(film, &variances)).max(2.0);
+    let freedom = (sums.variance * sums.variance / sums.squared_variance()).max(2.0);
     let factor = (BAND / (freedom - 1.0).sqrt()).exp();
-    let value = relative(sum);
+    let value = relative(sums.variance);
     Some(Noise {
         relative: value,
         low: value / factor,
         high: value * factor,
-        from_spread: relative(sum_of(&film.variance_of_mean())),
+        from_spread: relative(sums.spread),
         mean_luminance,
     })
 }
 
-/// Σ V² over the pixels. The product of the two halves' own spreads is right in the mean, as the halves are independent;
-/// the gain of the sequence around the pixel makes variances of means of them. But where most pixels have not yet met
-/// what their variance comes from, that product is nearly always far below its expectation. So the sum is no less than
-/// that from the means around each pixel, to which its neighbours' hits count, too; and no less than that from the half
-/// differences over their kurtosis: where a few pixels' rare hits make up the error, this sees them.
-fn sum_of_squared_variances(film: &Film, variances: &[f64]) -> f64 {
-    let width = film.width as usize;
-    let gains = gains(film, variances, width);
-    let product = |pixel: usize| -> f64 {
-        let [even, odd] = film.halves(pixel);
-        if even.samples < 2.0 || odd.samples < 2.0 {
-            // Too few for spreads: a normal distribution's fourth moment is three times its squared variance.
-            return if variances[pixel].is_nan() {
-                0.0
-            } else {
-                variances[pixel].powi(2) / 3.0
-            };
-        }
-        let spread = |half: HalfSums| {
-            let squared_sum = half.luminance * half.luminance;
-            ((half.luminance_squared - squared_sum / half.samples) / (half.samples - 1.0)).max(0.0)
-        };
-        spread(even) * spread(odd) * (gains[pixel] / (even.samples + odd.samples)).powi(2)
-    };
-    let of_pixels: f64 = (0..variances.len()).into_par_iter().map(product).sum();
-    let of_neighbours: f64 = box_sums(variances, width, MAP_RADIUS)
-        .par_iter()
-        .map(|[sum, count]| (sum / count.max(1.0)).powi(2))
-        .sum();
-    let of_differences = variances
-        .iter()
-        .filter(|v| v.is_finite())
-        .map(|v| v * v / KURTOSIS)
-        .sum();
-    of_pixels.max(of_neighbours).max(of_differences).max(f64::MIN_POSITIVE)
+/// Some rows of a picture. Pictures are gone through in these, so that what is kept of each pixel is bounded.
+struct Band<'a> {
+    film: &'a Film,
+    /// The pixels of the band.
+    pixels: Range<usize>,
+    /// Of each of them: the variance of its mean from its halves' difference, the sum and the number of these around it, and
+    /// the variance of its mean from its samples' spread.
+    halves: Vec<f64>,
+    around: Vec<[f64; 2]>,
+    spread: Vec<f64>,
+    /// What the sequence gains around each: the variance of means by the halves' difference over that by the samples'
+    /// spread; 1 for independent numbers, below where the sequence gains; 0 where there is no spread.
+    gains: Vec<f64>,
 }
 
-/// Around each pixel the variance of means by the halves' difference over that by the samples' spread: 1 for independent
-/// numbers, below where the sequence gains; 0 where there is no spread.
-fn gains(film: &Film, variances: &[f64], width: usize) -> Vec<f64> {
-    let spread: Vec<f64> = film.variance_of_mean().into_iter().map(finite_or_nan).collect();
-    let halves = box_sums(variances, width, MAP_RADIUS);
-    let around = box_sums(&spread, width, MAP_RADIUS);
-    let gain = |(halves, around): (&[f64; 2], &[f64; 2])| {
-        if around[0] > 0.0 { halves[0] / around[0] } else { 0.0 }
-    };
-    halves.iter().zip(&around).map(gain).collect()
+/// Rows of a band.
+const BAND_ROWS: usize = 64;
+
+/// The rows of the bands of a picture.
+pub(super) fn bands(grid: TileGrid) -> Vec<Range<usize>> {
+    let height = if grid.width == 0 { 0 } else { grid.height as usize };
+    let band = |first: usize| first..(first + BAND_ROWS).min(height);
+    (0..height).step_by(BAND_ROWS).map(band).collect()
+}
+
+impl<'a> Band<'a> {
+    fn of(film: &'a Film, rows: Range<usize>) -> Self {
+        let width = film.width as usize;
+        // With what lies above and below, of which its means are made, too.
+        let first = rows.start.saturating_sub(MAP_RADIUS);
+        let last = (rows.end + MAP_RADIUS).min(film.height as usize);
+        let wider = || first * width..last * width;
+        let halves: Vec<f64> = wider()
+            .map(|pixel| half_difference_variance(&film.halves(pixel)))
+            .collect();
+        let spread: Vec<f64> = wider()
+            .map(|pixel| finite_or_nan(film.variance_of_mean_at(pixel)))
+            .collect();
+        let own = (rows.start - first) * width..(rows.end - first) * width;
+        let sums = |values: &[f64]| box_sums(values, width, MAP_RADIUS)[own.clone()].to_vec();
+        let (around, spread_around) = (sums(&halves), sums(&spread));
+        let gain = |(halves, spread): (&[f64; 2], &[f64; 2])| {
+            if spread[0] > 0.0 { halves[0] / spread[0] } else { 0.0 }
+        };
+        Self {
+            film,
+            pixels: rows.start * width..rows.end * width,
+            gains: around.iter().zip(&spread_around).map(gain).collect(),
+            around,
+            halves: halves[own.clone()].to_vec(),
+            spread: spread[own].to_vec(),
+        }
+    }
+
+    /// What is expected of a pixel's squared variance: the product of the two halves' own spreads is right in the mean, as
+    /// the halves are independent; the gain of the sequence around the pixel makes variances of means of them.
+    fn squared_variance(&self, place: usize) -> f64 {
+        let [even, odd] = self.film.halves(self.pixels.start + place);
+        if even.samples < 2.0 || odd.samples < 2.0 {
+            // Too few for spreads: a normal distribution's fourth moment is three times its squared variance.
+            let variance = self.halves[place];
+            return if variance.is_nan() { 0.0 } else { variance.powi(2) / 3.0 };
+        }
+        even.spread() * odd.spread() * (self.gains[place] / (even.samples + odd.samples)).powi(2)
+    }
+}
+
+/// Sums over the pixels of a picture.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    /// How many have samples in both halves.
+    measured: f64,
+    luminance: f64,
+    /// Variances by the halves' differences, and by the samples' spread.
+    variance: f64,
+    spread: f64,
+    /// Squared variances in three ways, see [`Sums::squared_variance`].
+    of_pixels: f64,
+    of_neighbours: f64,
+    of_differences: f64,
+}
+
+impl Sums {
+    fn of(band: &Band<'_>) -> Self {
+        let finite = |values: &mut dyn Iterator<Item = f64>| values.filter(|value| value.is_finite()).sum::<f64>();
+        let places = || 0..band.pixels.len();
+        Self {
+            measured: band.halves.iter().filter(|variance| !variance.is_nan()).count() as f64,
+            luminance: finite(&mut band.pixels.clone().map(|pixel| band.film.luminance_of(pixel))),
+            variance: finite(&mut band.halves.iter().copied()),
+            spread: finite(&mut band.spread.iter().copied()),
+            of_pixels: places().map(|place| band.squared_variance(place)).sum(),
+            of_neighbours: band
+                .around
+                .iter()
+                .map(|[sum, count]| (sum / count.max(1.0)).powi(2))
+                .sum(),
+            of_differences: finite(&mut band.halves.iter().map(|variance| variance * variance / KURTOSIS)),
+        }
+    }
+
+    fn with(self, other: &Self) -> Self {
+        Self {
+            measured: self.measured + other.measured,
+            luminance: self.luminance + other.luminance,
+            variance: self.variance + other.variance,
+            spread: self.spread + other.spread,
+            of_pixels: self.of_pixels + other.of_pixels,
+            of_neighbours: self.of_neighbours + other.of_neighbours,
+            of_differences: self.of_differences + other.of_differences,
+        }
+    }
+
+    /// Σ V² over the pixels, from their own spreads. But where most pixels have not yet met what their variance comes from,
+    /// that is nearly always far below its expectation. So it is no less than from the means around each pixel, to which
+    /// its neighbours' hits count, too; and no less than from the half differences over their kurtosis: where a few
+    /// pixels' rare hits make up the error, this sees them.
+    fn squared_variance(&self) -> f64 {
+        let sums = [self.of_pixels, self.of_neighbours, self.of_differences];
+        sums.into_iter().fold(f64::MIN_POSITIVE, f64::max)
+    }
 }
 
 /// For each pixel sum and number of the numbers in the square around it; NaN counts as missing.
@@ -152,15 +232,18 @@ pub(super) fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64;
 /// picture's relative error. From the samples' spread, times what the sequence gains around the pixel. 0 where nothing
 /// is known.
 pub fn relative_errors(film: &Film) -> Vec<f32> {
-    let width = film.width as usize;
-    let luminances = film.luminance();
-    let mean = luminances.iter().filter(|y| y.is_finite()).sum::<f64>() / luminances.len().max(1) as f64;
-    let gains = gains(film, &half_difference_variances(film), width);
-    let error = |(variance, gain): (f64, &f64)| {
+    let pixels = film.pixel_count();
+    let luminances = (0..pixels).map(|pixel| film.luminance_of(pixel));
+    let mean = luminances.filter(|y| y.is_finite()).sum::<f64>() / pixels.max(1) as f64;
+    let error = move |(variance, gain): (f64, f64)| {
         let error = (variance * gain).sqrt() / mean;
         if error.is_finite() { error as f32 } else { 0.0 }
     };
-    film.variance_of_mean().into_iter().zip(&gains).map(error).collect()
+    let of_band = |rows| {
+        let band = Band::of(film, rows);
+        band.spread.into_iter().zip(band.gains).map(error)
+    };
+    bands(film.grid()).into_par_iter().flat_map_iter(of_band).collect()
 }
 
 fn finite_or_nan(value: f64) -> f64 {
@@ -179,35 +262,59 @@ pub struct TileError {
 /// Errors of all tiles. The spread of a tile's samples is well known; what the sequence gains is averaged over its
 /// neighbours, too.
 pub fn tile_errors(film: &Film) -> Vec<TileError> {
-    let grid = TileGrid {
-        width: film.width,
-        height: film.height,
-    };
-    // Spread and half differences, for one sample each; samples; rays; pixels.
-    let mut sums = vec![[0.0; 5]; grid.tiles()];
-    let (halves, spread) = (half_difference_variances(film), film.variance_of_mean());
-    for (pixel, [_, n]) in film.statistics.iter().enumerate() {
-        let known = halves[pixel].is_finite() && spread[pixel].is_finite();
-        let values = if known {
-            [spread[pixel] * n, halves[pixel] * n, *n, film.rays[pixel], 1.0]
-        } else {
-            [0.0; 5]
-        };
-        let sum = &mut sums[grid.of_pixel(pixel)];
-        sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += value);
-    }
+    let grid = film.grid();
+    let sums: Vec<TileSums> = (0..grid.tiles())
+        .into_par_iter()
+        .map(|tile| TileSums::of(film, tile))
+        .collect();
     let of_tile = |tile: usize| {
-        let [spread, _, samples, rays, pixels] = sums[tile];
+        let TileSums {
+            spread,
+            samples,
+            pixels,
+            ..
+        } = sums[tile];
         let around = grid.around(tile).fold([0.0; 2], |[spread, halves], near| {
-            [spread + sums[near][0], halves + sums[near][1]]
+            [spread + sums[near].spread, halves + sums[near].halves]
         });
         let gain = if around[0] > 0.0 { around[1] / around[0] } else { 0.0 };
         TileError {
             sample_variance: gain * spread / f64::max(pixels, 1.0),
-            rays: rays / f64::max(samples, 1.0),
+            rays: film.costs[tile].rays / f64::max(samples, 1.0),
         }
     };
     (0..grid.tiles()).map(of_tile).collect()
+}
+
+/// Sums over the pixels of a tile.
+#[derive(Clone, Copy, Default)]
+struct TileSums {
+    samples: f64,
+    /// How many pixels' error is known, and their variances by the samples' spread and by the halves' differences, for one
+    /// sample each.
+    pixels: f64,
+    spread: f64,
+    halves: f64,
+}
+
+impl TileSums {
+    fn of(film: &Film, tile: usize) -> Self {
+        let mut sums = Self::default();
+        for pixel in film.grid().pixels_of(tile) {
+            let n = film.samples_of(pixel);
+            let (halves, spread) = (
+                half_difference_variance(&film.halves(pixel)),
+                film.variance_of_mean_at(pixel),
+            );
+            sums.samples += n;
+            if halves.is_finite() && spread.is_finite() {
+                sums.spread += spread * n;
+                sums.halves += halves * n;
+                sums.pixels += 1.0;
+            }
+        }
+        sums
+    }
 }
 
 #[cfg(test)]
@@ -230,7 +337,8 @@ mod tests {
                 let [xi, _]: [f64; 2] = random_pair(state, 0);
                 let x = deviation(pixel, xi);
                 film.add(pixel, sample, [1.0 + x, 1.0 + x, 1.0 + x, 1.0]);
-                film.rays[pixel] += 1.0;
+                let tile = film.grid().of_pixel(pixel);
+                film.costs[tile].rays += 1.0;
                 sum += x;
             }
             squared_error += (sum / f64::from(samples)).powi(2);

@@ -11,9 +11,6 @@ use crate::document::{AreaLight, AreaLightShape, Background, Document, Parameter
 use crate::render::output::{OutputError, format_of};
 use crate::scene::environment::EnvironmentEncoding;
 
-/// Pixels that a picture may have: with 64 bytes each a render stays below 9 GB.
-const PIXELS_MAX: u64 = 1 << 27;
-
 /// A parser for a number in a range; it refuses NaN.
 pub(super) fn number_in(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {
     move |text| {
@@ -100,10 +97,6 @@ pub(super) fn size(text: &str) -> Result<[u32; 2], String> {
     let sides = text.split_once(['x', 'X']);
     let size: Option<[u32; 2]> = sides.and_then(|(width, height)| Some([side(width)?, side(height)?]));
     match size {
-        Some([width, height]) if u64::from(width) * u64::from(height) > PIXELS_MAX => Err(format!(
-            "that is more than {} million pixels; render it in parts or smaller",
-            PIXELS_MAX / 1_000_000
-        )),
         Some(size) => Ok(size),
         None => Err(format!(
             "give a width and a height from {} to {}, such as 640x480",

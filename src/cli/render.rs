@@ -125,7 +125,8 @@ pub struct SceneArguments {
     /// Pixel filter: box (to compare with other renderers) or gaussian (smoother edges).
     #[arg(long, default_value = "gaussian", value_name = "box|gaussian", value_parser = names::choice::<PixelFilter>)]
     filter: PixelFilter,
-    /// Width and height in pixels.
+    /// Width and height in pixels. A picture takes some 100 bytes of memory a pixel, 130 more where it is denoised; one that
+    /// does not fit the memory is refused before it is begun.
     #[arg(long, default_value = "512x512", value_name = "WxH", value_parser = parse::size)]
     size: [u32; 2],
     /// Render this part of the picture only, the rest staying transparent: shares of width and height.
@@ -296,6 +297,9 @@ fn render(
     begun: Instant,
     targets: &Targets<'_>,
 ) -> anyhow::Result<()> {
+    if targets.has_layers {
+        session.keep_guides("layers of the picture are written");
+    }
     let submitted = session.submit(document).map(|_| ());
     or_fall_back(submitted, &mut session, engine, document)?;
     eprintln!("{} ({})", session.engine(), session.engine().reason);
@@ -327,7 +331,7 @@ fn render(
         std::fs::write(path, text + "\n")
             .with_context(|| format!("{}: the report could not be written", path.display()))?;
     }
-    let dropped = session.film()?.dropped;
+    let dropped = session.film()?.dropped();
     if dropped > 0 {
         eprintln!("{dropped} samples were left out because they were not finite");
     }
@@ -433,7 +437,7 @@ fn json_report(
     }
     let film = session.film()?;
     let seconds = progress.render_seconds.max(1e-9);
-    let samples = film.samples() + film.dropped;
+    let samples = film.samples() + film.dropped();
     let rays = film.total_rays();
     Ok(serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
@@ -454,7 +458,7 @@ fn json_report(
         "samples_per_second": samples as f64 / seconds,
         "rays": rays,
         "rays_per_second": rays as f64 / seconds,
-        "dropped_samples": film.dropped,
+        "dropped_samples": film.dropped(),
         "clamped_energy": film.clamped_share(),
         "effects": effects,
         "seed": document.render.seed,

@@ -7,15 +7,14 @@ pub mod recorder;
 pub mod sampling;
 pub mod scatter;
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
 use crate::job::Job;
-use crate::job::features::GUIDE_SAMPLES;
 use crate::job::film::Film;
-use crate::job::tiles::{Schedule, SliceLimits, TileGrid, Work};
+use crate::job::tiles::{Schedule, SliceLimits, Work};
 use crate::optics::real::Real;
 use integrator::{Integrator, is_sound};
 
@@ -24,11 +23,7 @@ use integrator::{Integrator, is_sound};
 pub struct CpuEngine {
     job: Option<Arc<Job>>,
     schedule: Schedule,
-    /// The sums of each tile, so that no two cores write to the same memory; of no size before its first sample.
-    tiles: Vec<Film>,
-    /// All of them in one, made when asked for.
     film: Film,
-    is_film_made: bool,
     /// Pixel samples a second, to cut work to a budget; 0 before the first slice.
     samples_per_second: f64,
 }
@@ -43,9 +38,9 @@ impl CpuEngine {
     pub fn submit(&mut self, job: Arc<Job>) {
         let [width, height] = job.settings.image_size;
         self.schedule = Schedule::new(width, height);
-        self.tiles = vec![Film::default(); self.schedule.grid().tiles()];
-        self.film = Film::new(width, height);
-        self.is_film_made = true;
+        // The old one goes first: two would take twice the memory.
+        self.film = Film::default();
+        self.film = Film::of(&job);
         self.job = Some(job);
     }
 
@@ -56,7 +51,7 @@ impl CpuEngine {
 
     /// The same with shading in `T`; rays meet the geometry in f32 in either case.
     pub fn step_in<T: Real>(&mut self, budget: Duration, samples: u32) {
-        let goals = vec![samples; self.tiles.len()];
+        let goals = vec![samples; self.schedule.grid().tiles()];
         self.step_towards::<T>(budget, &goals);
     }
 
@@ -89,27 +84,22 @@ impl CpuEngine {
         }
     }
 
-    /// Renders tiles, in the order of their numbers.
+    /// Renders tiles. Each is copied out of the film and back, which takes a thousandth of the time, so that no two cores
+    /// write to the same memory.
     fn render<T: Real>(&mut self, integrator: &Integrator<'_, T>, works: &[Work]) {
         let grid = self.schedule.grid();
-        let mut works = works.iter().peekable();
-        let with_sums = |(tile, sums)| works.next_if(|work| work.tile == tile).map(|work| (work, sums));
-        let jobs: Vec<_> = self.tiles.iter_mut().enumerate().filter_map(with_sums).collect();
-        jobs.into_par_iter()
-            .for_each(|(work, sums)| render_tile(integrator, grid, work, sums));
-        self.is_film_made = false;
+        let film = Mutex::new(&mut self.film);
+        let film = || film.lock().unwrap_or_else(PoisonError::into_inner);
+        works.par_iter().for_each(|work| {
+            let origin = grid.origin(work.tile);
+            let mut sums = film().part(origin, grid.size(work.tile));
+            render_tile(integrator, origin, work, &mut sums);
+            film().place(origin, &sums);
+        });
     }
 
     /// What has been accumulated.
-    pub fn film(&mut self) -> &Film {
-        if !self.is_film_made {
-            let grid = self.schedule.grid();
-            (self.film.dropped, self.film.clamped) = (0, 0.0);
-            for (tile, sums) in self.tiles.iter().enumerate() {
-                self.film.place(grid.origin(tile), sums);
-            }
-            self.is_film_made = true;
-        }
+    pub fn film(&self) -> &Film {
         &self.film
     }
 
@@ -119,8 +109,7 @@ impl CpuEngine {
     }
 
     /// What has been rendered, for another engine to go on with.
-    pub fn hand_over(mut self) -> (Film, Schedule) {
-        self.film();
+    pub fn hand_over(self) -> (Film, Schedule) {
         (self.film, self.schedule)
     }
 
@@ -130,28 +119,28 @@ impl CpuEngine {
     }
 }
 
-fn render_tile<T: Real>(integrator: &Integrator<'_, T>, grid: TileGrid, work: &Work, sums: &mut Film) {
-    let origin = grid.origin(work.tile);
-    if sums.color.is_empty() {
-        let [width, height] = grid.size(work.tile);
-        *sums = Film::new(width, height);
-    }
-    for pixel in 0..sums.color.len() {
+/// Adds a tile's samples to its sums.
+fn render_tile<T: Real>(integrator: &Integrator<'_, T>, origin: [u32; 2], work: &Work, sums: &mut Film) {
+    let mut costs = sums.costs[0];
+    for pixel in 0..sums.pixel_count() {
         let place = [pixel as u32 % sums.width, pixel as u32 / sums.width];
         let place = [origin[0] + place[0], origin[1] + place[1]];
+        let mut halves = sums.halves(pixel);
         for sample in work.first_sample..work.first_sample + work.count {
             let path = integrator.trace_path(place, sample);
-            sums.rays[pixel] += f64::from(path.rays);
-            if is_sound(path.radiance) {
-                let [r, g, b] = path.radiance.to_f64();
-                sums.add(pixel, sample, [r, g, b, path.alpha.to_f64()]);
-                sums.clamped += path.clamped.to_f64();
-                if sample < GUIDE_SAMPLES {
-                    sums.guides[pixel].add(&path.seen);
-                }
-            } else {
-                sums.dropped += 1;
+            costs.rays += f64::from(path.rays);
+            if !is_sound(path.radiance) {
+                costs.dropped += 1;
+                continue;
+            }
+            halves[sample as usize % 2].add(path.radiance.to_f64());
+            sums.add_coverage(pixel, path.alpha.to_f64());
+            costs.clamped += path.clamped.to_f64();
+            if let Some(guides) = sums.guides.get_mut(pixel) {
+                guides.add(&path.seen);
             }
         }
+        sums.set_halves(pixel, &halves);
     }
+    sums.costs[0] = costs;
 }

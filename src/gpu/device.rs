@@ -1,5 +1,6 @@
 //! The GPU: which adapter, and what it says when it fails.
 
+use std::ops::Range;
 use std::sync::{Arc, Mutex};
 
 use pollster::block_on;
@@ -219,12 +220,20 @@ impl GpuDevice {
         })
     }
 
-    /// The contents of buffers, as one kind of plain value each; waits for the device.
+    /// The contents of a buffer of one kind of plain value; waits for the device.
     ///
     /// # Errors
     /// If the device failed.
     pub fn read<A: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, count: usize) -> Result<Vec<A>, GpuError> {
-        let size = (count * size_of::<A>()) as u64;
+        self.read_part(buffer, 0..count)
+    }
+
+    /// The same of some of the values.
+    ///
+    /// # Errors
+    /// If the device failed.
+    pub fn read_part<A: bytemuck::Pod>(&self, buffer: &wgpu::Buffer, part: Range<usize>) -> Result<Vec<A>, GpuError> {
+        let [first, size] = [part.start, part.len()].map(|count| (count * size_of::<A>()) as u64);
         let staging = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("read back"),
             size,
@@ -232,7 +241,7 @@ impl GpuDevice {
             mapped_at_creation: false,
         });
         let mut encoder = self.device.create_command_encoder(&Default::default());
-        encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
+        encoder.copy_buffer_to_buffer(buffer, first, &staging, 0, size);
         self.queue.submit([encoder.finish()]);
         // The outcome shows in get_mapped_range below.
         staging.map_async(wgpu::MapMode::Read, .., |_| {});

@@ -11,7 +11,7 @@ use super::resources::{DISPATCH_TILES, Resources};
 use super::timer::Timer;
 use crate::job::Job;
 use crate::job::features::GuideSums;
-use crate::job::film::Film;
+use crate::job::film::{Film, HalfSums, luminance};
 use crate::job::plan::Specialisation;
 use crate::job::tiles::{Schedule, SliceLimits, Work};
 
@@ -19,6 +19,8 @@ use crate::job::tiles::{Schedule, SliceLimits, Work};
 const SLICE: Duration = Duration::from_millis(30);
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
+/// Pixels that the host reads at once: what it needs for that is bounded.
+const READ_PIXELS: usize = 1 << 19;
 
 /// Renders on a GPU.
 #[derive(Debug)]
@@ -91,8 +93,10 @@ impl GpuEngine {
         {
             self.samples_per_second = 0.0;
         }
+        // The old one goes first: two would take twice the memory.
+        self.film = Film::default();
+        self.film = Film::of(&job);
         self.resources = Some(Resources::new(&self.gpu, &self.pipelines.bindings, job, old)?);
-        self.film = Film::new(width, height);
         self.schedule = Schedule::new(width, height);
         (self.unflushed, self.is_flushed, self.gpu_seconds) = (0, true, 0.0);
         Ok(())
@@ -200,26 +204,20 @@ impl GpuEngine {
         let Some(resources) = self.resources.as_ref().filter(|_| !self.is_flushed) else {
             return Ok(());
         };
-        let pixels = self.film.color.len();
-        let colors: Vec<PixelColors> = self.gpu.read(&resources.sums[0], pixels)?;
-        let statistics: Vec<PixelStatistics> = self.gpu.read(&resources.sums[1], pixels)?;
-        let guides: Vec<GuideSums> = self.gpu.read(&resources.sums[2], pixels)?;
-        for (pixel, colors) in colors.iter().enumerate() {
-            add(&mut self.film.color[pixel], &colors.all);
-            add(&mut self.film.odd_color[pixel], &colors.odd);
-            self.film.odd_statistics[pixel][1] += f64::from(colors.odd_kept);
-        }
-        for (pixel, sums) in statistics.iter().enumerate() {
-            let of_all = &mut self.film.statistics[pixel];
-            of_all[0] += f64::from(sums.luminance_squared);
-            of_all[1] += f64::from(sums.kept);
-            self.film.odd_statistics[pixel][0] += f64::from(sums.odd_luminance_squared);
-            self.film.rays[pixel] += f64::from(sums.rays);
-            self.film.dropped += sums.dropped as u64;
-            self.film.clamped += f64::from(sums.clamped);
-        }
-        for (sums, seen) in self.film.guides.iter_mut().zip(&guides) {
-            sums.add(seen);
+        let pixels = self.film.pixel_count();
+        for first in (0..pixels).step_by(READ_PIXELS) {
+            let part = first..(first + READ_PIXELS).min(pixels);
+            let colors: Vec<PixelColors> = self.gpu.read_part(&resources.sums[0], part.clone())?;
+            let statistics: Vec<PixelStatistics> = self.gpu.read_part(&resources.sums[1], part.clone())?;
+            for (pixel, (colors, statistics)) in part.clone().zip(colors.iter().zip(&statistics)) {
+                take_over(&mut self.film, pixel, colors, statistics);
+            }
+            if self.film.extras().guides {
+                let guides: Vec<GuideSums> = self.gpu.read_part(&resources.sums[2], part.clone())?;
+                for (sums, seen) in self.film.guides[part].iter_mut().zip(&guides) {
+                    sums.add(seen);
+                }
+            }
         }
         resources.clear_sums(&self.gpu);
         (self.unflushed, self.is_flushed) = (0, true);
@@ -251,9 +249,36 @@ impl GpuEngine {
     }
 }
 
-fn add(sums: &mut [f64], values: &[f32]) {
-    for (sum, value) in sums.iter_mut().zip(values) {
-        *sum += f64::from(*value);
+/// Adds what the GPU summed of a pixel to the film.
+fn take_over(film: &mut Film, pixel: usize, colors: &PixelColors, statistics: &PixelStatistics) {
+    let [red, green, blue, coverage] = colors.all.map(f64::from);
+    let odd = half(
+        colors.odd.map(f64::from),
+        statistics.odd_luminance_squared.into(),
+        colors.odd_kept.into(),
+    );
+    let even = half(
+        [red - odd.color[0], green - odd.color[1], blue - odd.color[2]],
+        f64::from(statistics.luminance_squared) - f64::from(statistics.odd_luminance_squared),
+        f64::from(statistics.kept) - odd.samples,
+    );
+    let [kept_even, kept_odd] = film.halves(pixel);
+    film.set_halves(pixel, &[kept_even.with(&even), kept_odd.with(&odd)]);
+    film.add_coverage(pixel, coverage);
+    let tile = film.grid().of_pixel(pixel);
+    let costs = &mut film.costs[tile];
+    costs.rays += f64::from(statistics.rays);
+    costs.dropped += statistics.dropped as u64;
+    costs.clamped += f64::from(statistics.clamped);
+}
+
+/// A half's sums from those of its squares. Rounding may take the deviations below 0; further on it averages out.
+fn half(color: [f64; 3], luminance_squared: f64, samples: f64) -> HalfSums {
+    let y = luminance(color);
+    HalfSums {
+        color,
+        squared_deviations: luminance_squared - y * y / samples.max(1.0),
+        samples,
     }
 }
 

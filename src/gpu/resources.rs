@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::device::{GpuDevice, GpuError};
 use super::layout::{self, Globals, PixelColors, PixelStatistics, Tile};
 use crate::job::Job;
+use crate::job::effect::EffectId;
 use crate::job::features::GuideSums;
 use crate::scene::Geometry;
 use crate::scene::environment::Environment;
@@ -73,12 +74,21 @@ impl Resources {
             ],
         };
         let bytes_of = |size: usize| pixels(&job) * size as u64;
-        let sums = match old.filter(|old| pixels(&old.job) == pixels(&job)) {
+        let has_guides = |job: &Job| job.plan.has(EffectId::Guides);
+        let layout = |job: &Job| (pixels(job), has_guides(job));
+        let sums = match old.filter(|old| layout(&old.job) == layout(&job)) {
             Some(old) => old.sums.clone(),
             None => [
                 gpu.empty_storage("the picture", bytes_of(size_of::<PixelColors>()))?,
                 gpu.empty_storage("the picture", bytes_of(size_of::<PixelStatistics>()))?,
-                gpu.empty_storage("the picture", bytes_of(size_of::<GuideSums>()))?,
+                gpu.empty_storage(
+                    "the picture",
+                    if has_guides(&job) {
+                        bytes_of(size_of::<GuideSums>())
+                    } else {
+                        0
+                    },
+                )?,
             ],
         };
         clear(gpu, &sums);

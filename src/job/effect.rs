@@ -88,6 +88,7 @@ effects! {
     AdaptiveSampling "adaptive-sampling";
     Variance "variance";
     PictureLayers "picture-layers";
+    Guides "guides" flag "PLAN_GUIDES";
     Denoising "denoising";
 }
 

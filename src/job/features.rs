@@ -50,9 +50,10 @@ impl GuideSums {
 }
 
 impl Features {
-    /// The means of a film's sums; `world_units_per_unit` is the geometry's.
+    /// The means of a film's sums; `world_units_per_unit` is the geometry's. Nothing is seen where the film keeps none.
     pub fn of(film: &Film, world_units_per_unit: f64) -> Self {
-        let sums = || film.guides.iter().enumerate();
+        let nothing = GuideSums::default();
+        let sums = || (0..film.pixel_count()).map(|pixel| (pixel, film.guides.get(pixel).unwrap_or(&nothing)));
         let mean = |pixel: usize, sum: [f32; 3]| {
             let per_sample = 1.0 / film.guide_samples(pixel).max(1.0) as f32;
             sum.map(|x| x * per_sample)
@@ -66,7 +67,7 @@ impl Features {
             height: film.height,
             albedo: sums().map(|(pixel, sums)| mean(pixel, sums.albedo)).collect(),
             normal: sums().map(|(pixel, sums)| mean(pixel, sums.normal)).collect(),
-            depth: film.guides.iter().map(depth).collect(),
+            depth: sums().map(|(_, sums)| depth(sums)).collect(),
         }
     }
 }

@@ -2,41 +2,47 @@
 
 use rayon::prelude::*;
 
+use super::effect::EffectId;
 use super::features::{GUIDE_SAMPLES, GuideSums};
+use super::tiles::TileGrid;
+use super::{BackgroundKind, Job};
 
-/// Sums over the samples of each pixel, in f64: they do not stall after millions of samples.
+/// Sums over the samples of each pixel. Colors are summed in f64, so that they do not stall after millions of samples.
+/// 64 bytes a pixel and 24 a tile, and what else of [`Extras`] is called for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Film {
     /// Width in pixels.
     pub width: u32,
     /// Height in pixels.
     pub height: u32,
-    /// Sums of linear red, green, blue and of the coverage, row by row from the top.
-    pub color: Vec<[f64; 4]>,
-    /// Sum of the squared luminance, and the number of samples in the sums.
-    pub statistics: Vec<[f64; 2]>,
-    /// Sums of red, green and blue of the odd ones among these samples: one of two independent halves, see
-    /// [`crate::optics::random::path_state`].
-    pub odd_color: Vec<[f64; 3]>,
-    /// Sum of the squared luminance, and the number, of the odd samples.
-    pub odd_statistics: Vec<[f64; 2]>,
-    /// What the first [`GUIDE_SAMPLES`] samples saw first.
+    /// Sums of each pixel, row by row from the top.
+    pixels: Vec<[KeptHalf; 2]>,
+    /// Sums of the coverage; empty where every pixel is covered.
+    coverage: Vec<f64>,
+    /// What the first [`GUIDE_SAMPLES`] samples of each pixel saw first; empty where nobody asks.
     pub guides: Vec<GuideSums>,
-    /// Rays traced for each pixel: what it cost.
-    pub rays: Vec<f64>,
+    /// What each tile cost, and what was taken from it.
+    pub costs: Vec<TileCosts>,
+}
+
+/// What a film keeps beside color and spread: only what is called for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    /// Coverage, 8 bytes a pixel: the background is transparent.
+    pub coverage: bool,
+    /// What is seen first, 32 bytes a pixel: for layers and the denoiser.
+    pub guides: bool,
+}
+
+/// Sums over the samples of all pixels of a tile.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TileCosts {
+    /// Rays traced.
+    pub rays: f64,
+    /// Luminance that limiting fireflies took.
+    pub clamped: f64,
     /// Samples left out because they were not finite or negative.
     pub dropped: u64,
-    /// Luminance that limiting fireflies took from all samples together.
-    pub clamped: f64,
-}
-
-/// Luminance of linear Rec. 709.
-pub fn luminance([red, green, blue]: [f64; 3]) -> f64 {
-    0.2126 * red + 0.7152 * green + 0.0722 * blue
-}
-
-fn luminance_of([red, green, blue, _]: [f64; 4]) -> f64 {
-    luminance([red, green, blue])
 }
 
 /// Sums over one of the two independent halves of a pixel's samples.
@@ -44,141 +50,318 @@ fn luminance_of([red, green, blue, _]: [f64; 4]) -> f64 {
 pub struct HalfSums {
     /// Linear red, green and blue.
     pub color: [f64; 3],
-    /// The luminance.
-    pub luminance: f64,
-    /// Its square.
-    pub luminance_squared: f64,
+    /// Squared deviations of the luminance from its mean.
+    pub squared_deviations: f64,
     /// How many samples there are.
     pub samples: f64,
 }
 
+/// The same as a film keeps them. Squared deviations lose nothing by cancellation, as squares less the mean's would, and
+/// tell a spread: for that, f32 is precise enough.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct KeptHalf {
+    color: [f64; 3],
+    squared_deviations: f32,
+    samples: u32,
+}
+
+const _: () = assert!(size_of::<[KeptHalf; 2]>() == 64);
+
+/// Luminance of linear Rec. 709.
+pub fn luminance([red, green, blue]: [f64; 3]) -> f64 {
+    0.2126 * red + 0.7152 * green + 0.0722 * blue
+}
+
+impl HalfSums {
+    /// Sum of the luminance.
+    pub fn luminance(&self) -> f64 {
+        luminance(self.color)
+    }
+
+    /// Adds a sample (Welford 1962).
+    pub fn add(&mut self, color: [f64; 3]) {
+        let y = luminance(color);
+        let before = self.luminance() / self.samples.max(1.0);
+        self.samples += 1.0;
+        self.color = added(self.color, color);
+        let after = self.luminance() / self.samples;
+        self.squared_deviations += ((y - before) * (y - after)).max(0.0);
+    }
+
+    /// Both together (Chan, Golub and LeVeque 1983).
+    pub fn with(&self, other: &Self) -> Self {
+        let samples = self.samples + other.samples;
+        let between = if self.samples > 0.0 && other.samples > 0.0 {
+            let difference = self.luminance() / self.samples - other.luminance() / other.samples;
+            difference * difference * self.samples * other.samples / samples
+        } else {
+            0.0
+        };
+        Self {
+            color: added(self.color, other.color),
+            squared_deviations: self.squared_deviations + other.squared_deviations + between,
+            samples,
+        }
+    }
+
+    /// Variance of a sample's luminance, unbiased where the samples are independent; NaN below two.
+    pub fn spread(&self) -> f64 {
+        if self.samples < 2.0 {
+            return f64::NAN;
+        }
+        self.squared_deviations.max(0.0) / (self.samples - 1.0)
+    }
+}
+
+fn added(mut sum: [f64; 3], color: [f64; 3]) -> [f64; 3] {
+    sum.iter_mut().zip(color).for_each(|(sum, x)| *sum += x);
+    sum
+}
+
+impl KeptHalf {
+    fn sums(&self) -> HalfSums {
+        HalfSums {
+            color: self.color,
+            squared_deviations: f64::from(self.squared_deviations),
+            samples: f64::from(self.samples),
+        }
+    }
+
+    fn of(sums: &HalfSums) -> Self {
+        Self {
+            color: sums.color,
+            squared_deviations: sums.squared_deviations.min(f64::from(f32::MAX)) as f32,
+            samples: sums.samples as u32,
+        }
+    }
+}
+
+impl Extras {
+    /// What a job calls for.
+    pub fn of(job: &Job) -> Self {
+        Self {
+            coverage: job.settings.background == BackgroundKind::Transparent,
+            guides: job.plan.has(EffectId::Guides),
+        }
+    }
+
+    /// Bytes of a film for each pixel.
+    pub fn pixel_bytes(self) -> u64 {
+        let extra = |is_kept: bool, size: usize| if is_kept { size } else { 0 };
+        let tile = size_of::<TileCosts>().div_ceil(64);
+        let coverage = extra(self.coverage, size_of::<f64>());
+        (size_of::<[KeptHalf; 2]>() + tile + coverage + extra(self.guides, size_of::<GuideSums>())) as u64
+    }
+}
+
 impl Film {
-    /// An empty film.
+    /// An empty film without extras.
     pub fn new(width: u32, height: u32) -> Self {
+        Self::keeping(width, height, Extras::default())
+    }
+
+    /// An empty film.
+    pub fn keeping(width: u32, height: u32, extras: Extras) -> Self {
         let pixels = width as usize * height as usize;
+        let kept = |is_kept: bool| if is_kept { pixels } else { 0 };
         Self {
             width,
             height,
-            color: vec![[0.0; 4]; pixels],
-            statistics: vec![[0.0; 2]; pixels],
-            odd_color: vec![[0.0; 3]; pixels],
-            odd_statistics: vec![[0.0; 2]; pixels],
-            guides: vec![GuideSums::default(); pixels],
-            rays: vec![0.0; pixels],
-            dropped: 0,
-            clamped: 0.0,
+            pixels: vec![Default::default(); pixels],
+            coverage: vec![0.0; kept(extras.coverage)],
+            guides: vec![GuideSums::default(); kept(extras.guides)],
+            costs: vec![TileCosts::default(); TileGrid { width, height }.tiles()],
         }
+    }
+
+    /// An empty film for a job.
+    pub fn of(job: &Job) -> Self {
+        let [width, height] = job.settings.image_size;
+        Self::keeping(width, height, Extras::of(job))
+    }
+
+    /// What is kept beside color and spread.
+    pub fn extras(&self) -> Extras {
+        Extras {
+            coverage: !self.coverage.is_empty(),
+            guides: !self.guides.is_empty(),
+        }
+    }
+
+    /// How many pixels there are.
+    pub fn pixel_count(&self) -> usize {
+        self.pixels.len()
+    }
+
+    /// The tiles of the picture.
+    pub fn grid(&self) -> TileGrid {
+        TileGrid {
+            width: self.width,
+            height: self.height,
+        }
+    }
+
+    /// Adds sample number `sample` of a pixel: linear color with coverage.
+    pub fn add(&mut self, pixel: usize, sample: u32, color: [f64; 4]) {
+        let mut halves = self.halves(pixel);
+        let [red, green, blue, coverage] = color;
+        halves[sample as usize % 2].add([red, green, blue]);
+        self.set_halves(pixel, &halves);
+        self.add_coverage(pixel, coverage);
+    }
+
+    /// Adds to the sum of a pixel's coverage, where that is kept.
+    pub fn add_coverage(&mut self, pixel: usize, coverage: f64) {
+        if let Some(sum) = self.coverage.get_mut(pixel) {
+            *sum += coverage;
+        }
+    }
+
+    /// The two halves of a pixel's samples: the even ones and the odd ones, see [`crate::optics::random::path_state`].
+    pub fn halves(&self, pixel: usize) -> [HalfSums; 2] {
+        self.pixels[pixel].each_ref().map(KeptHalf::sums)
+    }
+
+    /// Puts other sums in their place.
+    pub fn set_halves(&mut self, pixel: usize, halves: &[HalfSums; 2]) {
+        self.pixels[pixel] = halves.each_ref().map(KeptHalf::of);
+    }
+
+    /// Sums over all samples of a pixel.
+    pub fn sums(&self, pixel: usize) -> HalfSums {
+        both(&self.pixels[pixel])
+    }
+
+    /// Sums of linear red, green, blue and of the coverage.
+    pub fn color(&self, pixel: usize) -> [f64; 4] {
+        let HalfSums { color, samples, .. } = self.sums(pixel);
+        let [red, green, blue] = color;
+        [red, green, blue, self.coverage.get(pixel).copied().unwrap_or(samples)]
+    }
+
+    /// The same of each pixel.
+    pub fn colors(&self) -> impl Iterator<Item = [f64; 4]> {
+        (0..self.pixels.len()).map(|pixel| self.color(pixel))
+    }
+
+    /// The mean of a pixel's colors and its coverage; black where there is no sample yet.
+    pub fn mean(&self, pixel: usize) -> [f64; 4] {
+        let samples = self.samples_of(pixel).max(1.0);
+        self.color(pixel).map(|sum| sum / samples)
+    }
+
+    /// How many samples are in a pixel's sums.
+    pub fn samples_of(&self, pixel: usize) -> f64 {
+        let [even, odd] = &self.pixels[pixel];
+        f64::from(even.samples) + f64::from(odd.samples)
+    }
+
+    /// How many of a pixel's samples are in the sums of what they saw first.
+    pub fn guide_samples(&self, pixel: usize) -> f64 {
+        self.samples_of(pixel).min(f64::from(GUIDE_SAMPLES))
+    }
+
+    /// A rectangle of it, from `origin`, which is that of a tile.
+    pub fn part(&self, origin: [u32; 2], size: [u32; 2]) -> Film {
+        let mut part = Film::keeping(size[0], size[1], self.extras());
+        let grid = self.grid();
+        for tile in 0..part.costs.len() {
+            let [x, y] = part.grid().origin(tile);
+            part.costs[tile] = self.costs[grid.at([origin[0] + x, origin[1] + y])];
+        }
+        for row in 0..size[1] as usize {
+            let to = row * size[0] as usize..(row + 1) * size[0] as usize;
+            let from = (origin[1] as usize + row) * self.width as usize + origin[0] as usize;
+            let from = from..from + size[0] as usize;
+            part.pixels[to.clone()].copy_from_slice(&self.pixels[from.clone()]);
+            copy_kept(&mut part.coverage, to.clone(), &self.coverage, from.clone());
+            copy_kept(&mut part.guides, to, &self.guides, from);
+        }
+        part
+    }
+
+    /// Copies such a part back to its place.
+    pub fn place(&mut self, origin: [u32; 2], part: &Film) {
+        let grid = self.grid();
+        for (tile, costs) in part.costs.iter().enumerate() {
+            let [x, y] = part.grid().origin(tile);
+            self.costs[grid.at([origin[0] + x, origin[1] + y])] = *costs;
+        }
+        let width = part.width as usize;
+        for row in 0..part.height as usize {
+            let from = row * width..(row + 1) * width;
+            let to = (origin[1] as usize + row) * self.width as usize + origin[0] as usize;
+            let to = to..to + width;
+            self.pixels[to.clone()].copy_from_slice(&part.pixels[from.clone()]);
+            copy_kept(&mut self.coverage, to.clone(), &part.coverage, from.clone());
+            copy_kept(&mut self.guides, to, &part.guides, from);
+        }
+    }
+
+    /// The chosen pixels alone, in a row, without what their tiles cost.
+    pub fn of_pixels(&self, is_chosen: impl Fn(usize) -> bool) -> Film {
+        let chosen: Vec<usize> = (0..self.pixels.len()).filter(|&pixel| is_chosen(pixel)).collect();
+        let mut film = Film::keeping(chosen.len() as u32, 1, self.extras());
+        for (to, from) in chosen.into_iter().enumerate() {
+            film.pixels[to] = self.pixels[from];
+            copy_kept(&mut film.coverage, to..to + 1, &self.coverage, from..from + 1);
+            copy_kept(&mut film.guides, to..to + 1, &self.guides, from..from + 1);
+        }
+        film
+    }
+
+    /// Rays traced for all pixels together.
+    pub fn total_rays(&self) -> u64 {
+        self.costs.iter().map(|costs| costs.rays).sum::<f64>() as u64
+    }
+
+    /// Samples left out because they were not finite or negative.
+    pub fn dropped(&self) -> u64 {
+        self.costs.iter().map(|costs| costs.dropped).sum()
+    }
+
+    /// Luminance that limiting fireflies took from all samples together.
+    pub fn clamped(&self) -> f64 {
+        self.costs.iter().map(|costs| costs.clamped).sum()
     }
 
     /// The part of the picture's energy, in [0, 1], that limiting fireflies took.
     pub fn clamped_share(&self) -> f64 {
-        let kept: f64 = self.color.iter().map(|sum| luminance_of(*sum)).sum();
-        if self.clamped > 0.0 {
-            self.clamped / (self.clamped + kept)
+        let clamped = self.clamped();
+        if clamped > 0.0 {
+            let kept: f64 = self.pixels.iter().map(|pixel| both(pixel).luminance()).sum();
+            clamped / (clamped + kept)
         } else {
             0.0
         }
     }
 
-    /// Adds sample number `sample` of a pixel: linear colour with coverage.
-    pub fn add(&mut self, pixel: usize, sample: u32, color: [f64; 4]) {
-        let luminance = luminance_of(color);
-        for (sum, x) in self.color[pixel].iter_mut().zip(color) {
-            *sum += x;
-        }
-        self.statistics[pixel][0] += luminance * luminance;
-        self.statistics[pixel][1] += 1.0;
-        if sample % 2 == 1 {
-            for (sum, x) in self.odd_color[pixel].iter_mut().zip(color) {
-                *sum += x;
-            }
-            self.odd_statistics[pixel][0] += luminance * luminance;
-            self.odd_statistics[pixel][1] += 1.0;
-        }
-    }
-
-    /// The two halves of a pixel's samples: the even ones and the odd ones.
-    pub fn halves(&self, pixel: usize) -> [HalfSums; 2] {
-        let [red, green, blue, _] = self.color[pixel];
-        let ([all_squared, all_samples], odd) = (self.statistics[pixel], self.odd_color[pixel]);
-        let [odd_squared, odd_samples] = self.odd_statistics[pixel];
-        let half = |color: [f64; 3], luminance_squared: f64, samples: f64| HalfSums {
-            color,
-            luminance: luminance(color),
-            luminance_squared,
-            samples,
-        };
-        let even = [red - odd[0], green - odd[1], blue - odd[2]];
-        [
-            half(even, all_squared - odd_squared, all_samples - odd_samples),
-            half(odd, odd_squared, odd_samples),
-        ]
-    }
-
-    /// How many of a pixel's samples are in the sums of what they saw first.
-    pub fn guide_samples(&self, pixel: usize) -> f64 {
-        self.statistics[pixel][1].min(f64::from(GUIDE_SAMPLES))
-    }
-
-    /// Copies a smaller film into this one, its top left pixel to `origin`; what was dropped or taken adds up.
-    pub fn place(&mut self, origin: [u32; 2], tile: &Film) {
-        let width = tile.width as usize;
-        for row in 0..tile.height as usize {
-            let to = (origin[1] as usize + row) * self.width as usize + origin[0] as usize;
-            let (to, from) = (to..to + width, row * width..(row + 1) * width);
-            self.color[to.clone()].copy_from_slice(&tile.color[from.clone()]);
-            self.statistics[to.clone()].copy_from_slice(&tile.statistics[from.clone()]);
-            self.odd_color[to.clone()].copy_from_slice(&tile.odd_color[from.clone()]);
-            self.odd_statistics[to.clone()].copy_from_slice(&tile.odd_statistics[from.clone()]);
-            self.guides[to.clone()].copy_from_slice(&tile.guides[from.clone()]);
-            self.rays[to].copy_from_slice(&tile.rays[from]);
-        }
-        self.dropped += tile.dropped;
-        self.clamped += tile.clamped;
-    }
-
-    /// The chosen pixels alone, in a row.
-    pub fn of_pixels(&self, is_chosen: impl Fn(usize) -> bool) -> Film {
-        let chosen: Vec<usize> = (0..self.color.len()).filter(|&pixel| is_chosen(pixel)).collect();
-        Film {
-            width: chosen.len() as u32,
-            height: 1,
-            color: chosen.iter().map(|&pixel| self.color[pixel]).collect(),
-            statistics: chosen.iter().map(|&pixel| self.statistics[pixel]).collect(),
-            odd_color: chosen.iter().map(|&pixel| self.odd_color[pixel]).collect(),
-            odd_statistics: chosen.iter().map(|&pixel| self.odd_statistics[pixel]).collect(),
-            guides: chosen.iter().map(|&pixel| self.guides[pixel]).collect(),
-            rays: chosen.iter().map(|&pixel| self.rays[pixel]).collect(),
-            dropped: self.dropped,
-            clamped: self.clamped,
-        }
-    }
-
-    /// Rays traced for all pixels together.
-    pub fn total_rays(&self) -> u64 {
-        self.rays.iter().sum::<f64>() as u64
-    }
-
     /// Samples in the sums of all pixels together.
     pub fn samples(&self) -> u64 {
-        self.statistics.iter().map(|s| s[1]).sum::<f64>() as u64
+        let of_half = |half: &KeptHalf| u64::from(half.samples);
+        self.pixels.iter().flatten().map(of_half).sum()
     }
 
     /// The mean picture: linear Rec. 709, alpha premultiplied; black where there is no sample yet.
     pub fn image(&self) -> Image {
-        let pixels = self.color.iter().zip(&self.statistics);
-        let mean = |(sum, s): (&[f64; 4], &[f64; 2])| sum.map(|x| if s[1] > 0.0 { (x / s[1]) as f32 } else { 0.0 });
+        let mean = |pixel| self.mean(pixel).map(|x| x as f32);
         Image {
             width: self.width,
             height: self.height,
-            pixels: pixels.map(mean).collect(),
+            pixels: (0..self.pixels.len()).into_par_iter().map(mean).collect(),
         }
+    }
+
+    /// Mean luminance of a pixel; NaN where there is no sample.
+    pub fn luminance_of(&self, pixel: usize) -> f64 {
+        let sums = self.sums(pixel);
+        sums.luminance() / sums.samples
     }
 
     /// Mean luminance of each pixel; NaN where there is no sample.
     pub fn luminance(&self) -> Vec<f64> {
-        let mean = |(sum, s): (&[f64; 4], &[f64; 2])| luminance_of(*sum) / s[1];
-        self.color.par_iter().zip(&self.statistics).map(mean).collect()
+        let of_pixel = |pixel| self.luminance_of(pixel);
+        (0..self.pixels.len()).into_par_iter().map(of_pixel).collect()
     }
 
     /// By how many standard deviations the luminance summed over the whole picture differs from that of another render
@@ -190,25 +373,38 @@ impl Film {
         (a - b) / (variance + (1e-4 * a).powi(2)).sqrt()
     }
 
-    /// Variance of the mean luminance of each pixel as if its samples were independent, from the running sums; infinite
-    /// below two samples. Unbiased for independent numbers, too large for Sobol's: see `analysis::noise`.
+    /// Variance of the mean luminance of each pixel as if its samples were independent; infinite below two samples.
+    /// Unbiased for independent numbers, too large for Sobol's: see `analysis::noise`.
     pub fn variance_of_mean(&self) -> Vec<f64> {
-        let of_pixel = |(sum, s): (&[f64; 4], &[f64; 2])| {
-            let n = s[1];
-            if n < 2.0 {
-                return f64::INFINITY;
-            }
-            let mean = luminance_of(*sum) / n;
-            ((s[0] / n - mean * mean) / (n - 1.0)).max(0.0)
-        };
-        self.color.par_iter().zip(&self.statistics).map(of_pixel).collect()
+        let of_pixel = |pixel| self.variance_of_mean_at(pixel);
+        (0..self.pixels.len()).into_par_iter().map(of_pixel).collect()
+    }
+
+    /// The same of one pixel.
+    pub fn variance_of_mean_at(&self, pixel: usize) -> f64 {
+        let sums = self.sums(pixel);
+        if sums.samples < 2.0 {
+            return f64::INFINITY;
+        }
+        sums.spread() / sums.samples
+    }
+}
+
+fn both([even, odd]: &[KeptHalf; 2]) -> HalfSums {
+    even.sums().with(&odd.sums())
+}
+
+/// Copies values where they are kept.
+fn copy_kept<T: Copy>(to: &mut [T], to_range: std::ops::Range<usize>, from: &[T], from_range: std::ops::Range<usize>) {
+    if let (Some(to), Some(from)) = (to.get_mut(to_range), from.get(from_range)) {
+        to.copy_from_slice(from);
     }
 }
 
 impl Image {
     /// The luminance of each pixel.
     pub fn luminance(&self) -> Vec<f64> {
-        let of_pixel = |pixel: &[f32; 4]| luminance_of(pixel.map(f64::from));
+        let of_pixel = |[red, green, blue, _]: &[f32; 4]| luminance([*red, *green, *blue].map(f64::from));
         self.pixels.iter().map(of_pixel).collect()
     }
 }
@@ -222,4 +418,93 @@ pub struct Image {
     pub height: u32,
     /// Linear Rec. 709 red, green, blue, premultiplied by the alpha that follows; row by row from the top.
     pub pixels: Vec<[f32; 4]>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Samples of a mean that is far larger than their spread.
+    fn values(count: u32) -> impl Iterator<Item = f64> {
+        (0..count).map(|i| 1000.0 + f64::from(i * 7919 % 101) / 101.0)
+    }
+
+    fn variance(count: u32) -> f64 {
+        let mean = values(count).sum::<f64>() / f64::from(count);
+        values(count).map(|y| (y - mean).powi(2)).sum::<f64>() / f64::from(count - 1)
+    }
+
+    #[test]
+    fn small_spreads_of_large_values_are_told_and_do_not_stall() {
+        // As the engines add them: in passes of some thousand, rounded at the end of each.
+        const SAMPLES: u32 = 4_000_000;
+        let mut film = Film::new(1, 1);
+        let mut all = values(SAMPLES).enumerate().peekable();
+        while all.peek().is_some() {
+            let mut halves = film.halves(0);
+            for (sample, y) in all.by_ref().take(5000) {
+                halves[sample % 2].add([y; 3]);
+            }
+            film.set_halves(0, &halves);
+        }
+        let found = film.sums(0).spread();
+        assert!((found / variance(SAMPLES) - 1.0).abs() < 1e-4, "{found}");
+        for half in film.halves(0) {
+            assert_eq!(half.samples, f64::from(SAMPLES / 2));
+            assert!((half.spread() / variance(SAMPLES) - 1.0).abs() < 1e-4, "{half:?}");
+        }
+        let mut one_by_one = Film::new(1, 1);
+        values(1000)
+            .enumerate()
+            .for_each(|(sample, y)| one_by_one.add(0, sample as u32, [y, y, y, 1.0]));
+        let found = one_by_one.variance_of_mean_at(0) * 1000.0;
+        assert!((found / variance(1000) - 1.0).abs() < 1e-4, "{found}");
+    }
+
+    #[test]
+    fn a_plain_film_takes_64_bytes_a_pixel_and_keeps_only_what_is_called_for() {
+        assert_eq!(Extras::default().pixel_bytes(), 64 + 1);
+        let all = Extras {
+            coverage: true,
+            guides: true,
+        };
+        assert_eq!(all.pixel_bytes(), 64 + 1 + 8 + 32);
+        let mut plain = Film::new(2, 1);
+        assert_eq!(plain.extras(), Extras::default());
+        plain.add(0, 0, [1.0, 2.0, 3.0, 0.5]);
+        assert_eq!(plain.image().pixels, [[1.0, 2.0, 3.0, 1.0], [0.0; 4]]);
+        let mut film = Film::keeping(2, 1, all);
+        assert_eq!(film.extras(), all);
+        film.add(0, 0, [1.0, 2.0, 3.0, 0.5]);
+        film.add(0, 1, [1.0, 2.0, 3.0, 0.0]);
+        assert_eq!(film.image().pixels, [[1.0, 2.0, 3.0, 0.25], [0.0; 4]]);
+    }
+
+    #[test]
+    fn parts_come_back_to_their_place() {
+        let mut film = Film::keeping(
+            21,
+            19,
+            Extras {
+                coverage: true,
+                guides: true,
+            },
+        );
+        for pixel in 0..film.pixel_count() {
+            film.add(pixel, pixel as u32, [pixel as f64, 1.0, 2.0, 0.5]);
+            film.guides[pixel].hits = pixel as f32;
+        }
+        for (tile, costs) in film.costs.iter_mut().enumerate() {
+            costs.rays = tile as f64;
+        }
+        let mut copy = Film::keeping(21, 19, film.extras());
+        for tile in 0..film.grid().tiles() {
+            let origin = film.grid().origin(tile);
+            copy.place(origin, &film.part(origin, film.grid().size(tile)));
+        }
+        assert_eq!(copy, film);
+        let mut whole = Film::keeping(21, 19, film.extras());
+        whole.place([0, 0], &film.part([0, 0], [21, 19]));
+        assert_eq!(whole, film);
+    }
 }

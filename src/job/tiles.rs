@@ -39,7 +39,14 @@ impl TileGrid {
         [(self.width - x).min(TILE_SIDE), (self.height - y).min(TILE_SIDE)]
     }
 
-    /// Pixels of a tile.
+    /// The numbers of a tile's pixels.
+    pub fn pixels_of(self, tile: usize) -> impl Iterator<Item = usize> {
+        let ([left, top], [columns, rows]) = (self.origin(tile), self.size(tile));
+        let row = move |y: u32| (left..left + columns).map(move |x| y as usize * self.width as usize + x as usize);
+        (top..top + rows).flat_map(row)
+    }
+
+    /// How many pixels a tile has.
     pub fn pixels(self, tile: usize) -> u64 {
         let [width, height] = self.size(tile);
         u64::from(width) * u64::from(height)
@@ -55,6 +62,11 @@ impl TileGrid {
     pub fn of_pixel(self, pixel: usize) -> usize {
         let (width, side) = (self.width as usize, TILE_SIDE as usize);
         pixel / width / side * self.columns() + pixel % width / side
+    }
+
+    /// The tile of a pixel, by its column and row.
+    pub fn at(self, [x, y]: [u32; 2]) -> usize {
+        (y / TILE_SIDE) as usize * self.columns() + (x / TILE_SIDE) as usize
     }
 
     /// Whether a tile has pixels in a part of the picture: left, top, right, bottom as shares of width and height.

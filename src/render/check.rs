@@ -400,7 +400,7 @@ fn pictures(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
     };
     let dropped = [&mis, &lobe, &light, &processor]
         .iter()
-        .map(|film| film.dropped)
+        .map(|film| film.dropped())
         .sum::<u64>() as f64;
     Ok(vec![
         compare(

@@ -119,7 +119,9 @@ pub fn map(film: &Film, shown: Shown) -> Option<(Vec<u8>, Scale)> {
         Shown::Picture | Shown::Precision => return None,
         Shown::Error => return Some(map_of_errors(&relative_errors(film))),
         Shown::Samples => {
-            let counts: Vec<f32> = film.statistics.iter().map(|[_, n]| *n as f32).collect();
+            let counts: Vec<f32> = (0..film.pixel_count())
+                .map(|pixel| film.samples_of(pixel) as f32)
+                .collect();
             let high = f64::from(counts.iter().copied().fold(0.0, f32::max)).max(1.0);
             let scale = Scale {
                 low: 0.0,

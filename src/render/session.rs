@@ -7,7 +7,8 @@ use super::assets::Assets;
 use super::compile::Compiler;
 use super::convergence::{Convergence, Measurement, fewest_samples, mean_samples};
 use super::denoise::Noisy;
-use super::engine::{Engine, EngineChoice, EngineInfo, Precision, cpu};
+use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision, cpu};
+use super::memory;
 use super::output::Layers;
 use super::workshop::Workshop;
 use crate::analysis::halves::Distance;
@@ -16,6 +17,7 @@ use crate::document::change::Change;
 use crate::document::{Denoise, Document};
 use crate::gpu::GpuError;
 use crate::job::Job;
+use crate::job::effect::{Decision, EffectId};
 use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::scene::ModelError;
@@ -33,6 +35,9 @@ pub enum SessionError {
     /// The GPU can't be used.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// The picture does not fit the memory; nothing has been begun.
+    #[error(transparent)]
+    TooLarge(#[from] memory::TooLarge),
 }
 
 /// What ended a render.
@@ -125,6 +130,10 @@ pub struct Session {
     workshop: Option<Workshop>,
     precision: Precision,
     denoised: Option<Distance>,
+    /// Why guides are kept whatever the document says.
+    guides_wanted: Option<&'static str>,
+    /// Bytes that a picture may take; `None` is what is free.
+    memory_limit: Option<u64>,
 }
 
 impl Session {
@@ -159,6 +168,8 @@ impl Session {
             workshop: None,
             precision: Precision::default(),
             denoised: None,
+            guides_wanted: None,
+            memory_limit: memory::limit(),
         }
     }
 
@@ -218,6 +229,17 @@ impl Session {
         self.forget();
     }
 
+    /// Keeps what is seen first from the next submission on, also where nothing is denoised: layers are going to be asked
+    /// for, or may be. `why` is the plan's reason.
+    pub fn keep_guides(&mut self, why: &'static str) {
+        self.guides_wanted = Some(why);
+    }
+
+    /// Refuses pictures that take more memory, in place of those that take more than is free.
+    pub fn limit_memory(&mut self, bytes: u64) {
+        self.memory_limit = Some(bytes);
+    }
+
     /// Models and environments, loaded and kept.
     pub fn assets(&self) -> &Assets {
         &self.assets
@@ -250,11 +272,18 @@ impl Session {
             None => Change::everything(),
         };
         if change.restarts() || change.target {
-            let job = Arc::new(self.compiler.compile(document, &self.assets)?);
-            if change.restarts() {
+            let mut job = self.compiler.compile(document, &self.assets)?;
+            if let Some(why) = self.guides_wanted {
+                job.plan = job.plan.with(EffectId::Guides, Decision::on(why));
+            }
+            let job = Arc::new(job);
+            // With another aim only, the engine goes on with what it has: its kernel is the same. But a film that was begun
+            // without guides can't have them any more.
+            let has_guides = |job: &Arc<Job>| job.plan.has(EffectId::Guides);
+            if change.restarts() || (has_guides(&job) && !self.job.as_ref().is_some_and(has_guides)) {
+                self.check_memory(&job)?;
                 self.start(job.clone())?;
             }
-            // With another aim only, the engine goes on with what it has: its kernel is the same.
             self.job = Some(job);
         }
         self.document = Some(document.clone());
@@ -263,6 +292,17 @@ impl Session {
             self.convergence.goals.clear();
         }
         Ok(change)
+    }
+
+    /// Refuses what does not fit, so that the old picture goes on.
+    fn check_memory(&self, job: &Job) -> Result<(), SessionError> {
+        let is_software_gpu = self.info.kind == EngineKind::Gpu && self.info.is_software;
+        // A film takes memory from its first sample on, and goes when another is begun.
+        let is_in_use = self.engine.schedule().pixel_samples() > 0;
+        let old = self.job.as_deref().filter(|_| is_in_use);
+        let held = old.map_or(0, |old| memory::needed(old, is_software_gpu));
+        let allowed = self.memory_limit.unwrap_or_else(|| memory::free(held));
+        Ok(memory::check(job, is_software_gpu, allowed)?)
     }
 
     /// Has the engine begin anew.
@@ -425,11 +465,11 @@ impl Session {
             image: film.image(),
             denoised: None,
             features: Features::of(film, units),
-            samples: film.statistics.iter().map(|statistics| statistics[1] as f32).collect(),
-            variance: film
-                .variance_of_mean()
-                .into_iter()
-                .map(|variance| variance as f32)
+            samples: (0..film.pixel_count())
+                .map(|pixel| film.samples_of(pixel) as f32)
+                .collect(),
+            variance: (0..film.pixel_count())
+                .map(|pixel| film.variance_of_mean_at(pixel) as f32)
                 .collect(),
         })
     }

@@ -110,7 +110,7 @@ pub fn render(
                 break;
             }
         }
-        outcome.dropped += session.film()?.dropped;
+        outcome.dropped += session.film()?.dropped();
         let denoised = attendant.finish(session)?;
         let rendered = Rendered {
             image: &session.image()?,

@@ -55,15 +55,10 @@ fn mean(session: &mut Session, case: &Case, run: Run) -> [[f64; 2]; 3] {
     session.submit(&document).unwrap();
     while !session.step(Duration::from_secs(1)).unwrap().is_done {}
     let film = session.film().unwrap();
-    assert_eq!(film.dropped, 0, "{}", case.name);
-    let pixels = film.color.len() as f64;
+    assert_eq!(film.dropped(), 0, "{}", case.name);
+    let pixels = film.pixel_count() as f64;
     [0, 1, 2].map(|channel| {
-        let values = || {
-            film.color
-                .iter()
-                .zip(&film.statistics)
-                .map(move |(sum, s)| sum[channel] / s[1])
-        };
+        let values = || (0..film.pixel_count()).map(|pixel| film.mean(pixel)[channel]);
         let mean = values().sum::<f64>() / pixels;
         let variance = values().map(|value| (value - mean).powi(2)).sum::<f64>() / (pixels - 1.0);
         [mean, (variance / pixels).sqrt()]

@@ -140,11 +140,11 @@ fn a_coat_over_white_is_white_in_the_furnace() {
             let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &all);
             document.lighting.background = glossmith::document::Background::Transparent;
             let film = render(choice, &document);
-            let alpha: f64 = film.color.iter().map(|color| color[3]).sum();
-            let value = film.color.iter().map(|color| color[1]).sum::<f64>() / alpha;
+            let alpha: f64 = film.colors().map(|color| color[3]).sum();
+            let value = film.colors().map(|color| color[1]).sum::<f64>() / alpha;
             println!("{choice:?} {assignments:?} {value}");
             assert!((value - 1.0).abs() < 4e-3, "{choice:?}, {assignments:?}: {value}");
-            assert_eq!(film.dropped, 0);
+            assert_eq!(film.dropped(), 0);
         }
     }
 }
@@ -168,7 +168,7 @@ fn strategies_agree_on_a_coat() {
     document.render.samples = 2048;
     (document.render.width, document.render.height) = (32, 32);
     let cpu = render(EngineChoice::Cpu, &document);
-    assert_eq!(cpu.dropped, 0);
+    assert_eq!(cpu.dropped(), 0);
     for strategy in [Strategy::Lobe, Strategy::Light] {
         let other = render(EngineChoice::Cpu, &with_strategy(&document, strategy, 9));
         assert_same_picture(&cpu, &other, &format!("{strategy:?}"));

@@ -160,11 +160,13 @@ fn film(session: &mut Session, document: &Document) -> Film {
 }
 
 fn assert_sound(film: &Film, what: &str) {
-    let sums = film.color.iter().flatten().chain(film.statistics.iter().flatten());
-    for sum in sums {
-        assert!(sum.is_finite() && *sum >= 0.0, "{what}: a sum of {sum}");
+    for pixel in 0..film.pixel_count() {
+        let variance = film.sums(pixel).squared_deviations;
+        for sum in film.color(pixel).into_iter().chain([variance]) {
+            assert!(sum.is_finite() && sum >= 0.0, "{what}: a sum of {sum}");
+        }
     }
-    assert_eq!(film.dropped, 0, "{what}: samples dropped");
+    assert_eq!(film.dropped(), 0, "{what}: samples dropped");
 }
 
 /// The same document where nothing emits and light of 1 comes from everywhere.

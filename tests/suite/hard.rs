@@ -120,7 +120,7 @@ fn shipped_scenes_drop_no_sample() {
             }
             session.submit(&document).unwrap();
             while !session.step(Duration::from_secs(1)).unwrap().is_done {}
-            assert_eq!(session.film().unwrap().dropped, 0, "{engine:?} {}", material.name);
+            assert_eq!(session.film().unwrap().dropped(), 0, "{engine:?} {}", material.name);
         }
     }
 }

@@ -265,7 +265,7 @@ fn strategies_agree_on_what_emits() {
     for (name, document) in lit_scenes() {
         let with = |strategy, seed| with_strategy(&document, strategy, seed);
         let mis = render(EngineChoice::Cpu, &document);
-        assert_eq!(mis.dropped, 0);
+        assert_eq!(mis.dropped(), 0);
         let others = [
             ("light", render(EngineChoice::Cpu, &with(Strategy::Light, 1))),
             ("lobe", render(EngineChoice::Cpu, &with(Strategy::Lobe, 2))),

@@ -178,9 +178,15 @@ fn a_render_stops_at_the_error_asked_for() {
         }
         let mean = errors.iter().sum::<f64>() / f64::from(RENDERS);
         assert!((mean / NOISE - 1.0).abs() < 0.06, "{choice:?}, {adaptive}: {errors:?}");
-        let has_uneven = films[0].statistics.iter().any(|[_, n]| *n != films[0].statistics[0][1]);
+        let counts = counts(&films[0]);
+        let has_uneven = counts.iter().any(|n| *n != counts[0]);
         assert_eq!(has_uneven, adaptive);
     }
+}
+
+/// The samples of each pixel.
+fn counts(film: &Film) -> Vec<f64> {
+    (0..film.pixel_count()).map(|pixel| film.samples_of(pixel)).collect()
 }
 
 /// Steps until the render ends; none goes on for ever.
@@ -194,8 +200,7 @@ fn samples_at_the_end(session: &mut Session, document: &Document) -> (Vec<f64>, 
             session.progress()
         );
     }
-    let samples = session.film().unwrap().statistics.iter().map(|[_, n]| *n).collect();
-    (samples, session.progress().stopped_by)
+    (counts(session.film().unwrap()), session.progress().stopped_by)
 }
 
 /// Of a part of the picture the error of that part counts, and nothing else is rendered.
@@ -244,7 +249,7 @@ fn the_least_samples_may_be_raised() {
 /// Means of the luminances of several films, each film counting alike, with the variances of these means.
 fn mean_and_variance(films: &[Film]) -> (Vec<f64>, Vec<f64>) {
     let count = films.len() as f64;
-    let mut sums = vec![(0.0, 0.0); films[0].color.len()];
+    let mut sums = vec![(0.0, 0.0); films[0].pixel_count()];
     for film in films {
         let pixels = film.luminance().into_iter().zip(film.variance_of_mean());
         for (sum, (mean, variance)) in sums.iter_mut().zip(pixels) {
@@ -268,7 +273,7 @@ fn an_adaptive_picture_is_the_plain_one() {
         document.render.samples = if adaptive { 160 } else { 64 };
         renders(&mut session, &document, 10)
     });
-    let counts: Vec<f64> = adaptive[0].statistics.iter().map(|[_, n]| *n).collect();
+    let counts = counts(&adaptive[0]);
     let (least, most) = counts
         .iter()
         .fold((f64::MAX, 0.0_f64), |(a, b), n| (a.min(*n), b.max(*n)));
@@ -302,7 +307,7 @@ fn the_first_of_the_limits_counts_and_a_new_one_goes_on() {
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
     let film = finish(&mut session, &document);
     assert_eq!(session.progress().stopped_by, Some(StopReason::Samples));
-    assert!(film.statistics.iter().all(|[_, n]| *n == 4.0));
+    assert!(counts(&film).iter().all(|n| *n == 4.0));
     document.render.samples = u32::MAX;
     document.render.time_s = Some(1e-3);
     finish(&mut session, &document);
@@ -312,7 +317,7 @@ fn the_first_of_the_limits_counts_and_a_new_one_goes_on() {
     let film = finish(&mut session, &document);
     assert_eq!(session.progress().stopped_by, Some(StopReason::Noise));
     // However coarse the aim, not before the least number of samples; and what was there has been kept.
-    assert!(film.statistics.iter().all(|[_, n]| *n >= 16.0), "{:?}", film.statistics);
+    assert!(counts(&film).iter().all(|n| *n >= 16.0), "{:?}", counts(&film));
     assert!(session.history().len() > 2 && session.progress().noise.unwrap().relative < 0.2);
     let seconds = session.progress().render_seconds;
     document.render.noise = Some(0.05);

@@ -70,20 +70,21 @@ impl Pair {
     /// Compares a document's pictures.
     pub fn compare(&mut self, document: &Document) -> Apart {
         let [cpu, gpu] = self.films(document);
-        assert_eq!((cpu.dropped, gpu.dropped), (0, 0));
-        let pixels = cpu.color.len();
-        let total: f64 = cpu.color.iter().flat_map(|color| &color[..3]).sum();
+        assert_eq!((cpu.dropped(), gpu.dropped()), (0, 0));
+        let pixels = cpu.pixel_count();
+        let sum = |film: &Film| -> f64 { (0..pixels).map(|i| film.color(i)[..3].iter().sum::<f64>()).sum() };
+        let total = sum(&cpu);
         let mean = total / (3 * pixels) as f64;
         let difference = |i: usize| {
-            let channels = cpu.color[i].iter().zip(&gpu.color[i]);
-            let relative = channels.map(|(a, b)| (a - b).abs() / a.max(*b).max(mean).max(1e-12));
+            let channels = cpu.color(i).into_iter().zip(gpu.color(i));
+            let relative = channels.map(|(a, b)| (a - b).abs() / a.max(b).max(mean).max(1e-12));
             relative.fold(0.0, f64::max)
         };
         let off: Vec<f64> = (0..pixels).map(difference).collect();
         let worst = (0..pixels)
             .max_by(|a, b| off[*a].total_cmp(&off[*b]))
             .unwrap_or_default() as u32;
-        let other: f64 = gpu.color.iter().flat_map(|color| &color[..3]).sum();
+        let other = sum(&gpu);
         Apart {
             pixels: off.iter().filter(|off| **off > SAME).count() as f64 / pixels as f64,
             whole: (other / total - 1.0).abs(),
@@ -120,7 +121,7 @@ impl Pair {
         for bounces in 1..=document.render.bounces {
             for count in 1..=samples.min(4) {
                 (document.render.bounces, document.render.samples) = (bounces, count);
-                let [cpu, gpu] = self.films(&document).map(|film| film.color[index]);
+                let [cpu, gpu] = self.films(&document).map(|film| film.color(index));
                 let is_same = cpu
                     .iter()
                     .zip(&gpu)

@@ -124,7 +124,7 @@ fn an_account_adds_up_to_what_the_engine_adds() {
             while !session.step(Duration::from_secs(1)).unwrap().is_done {}
             let (job, film) = (session.job().unwrap().clone(), session.film().unwrap().clone());
             let model = session.assets().model(&document.model, &document.import).unwrap();
-            for index in (0..film.color.len()).step_by(7) {
+            for index in (0..film.pixel_count()).step_by(7) {
                 let pixel = [index as u32 % film.width, index as u32 / film.width];
                 let accounts = [0, 1].map(|sample| explain(&document, &model, &job, pixel, sample));
                 for account in &accounts {
@@ -134,7 +134,7 @@ fn an_account_adds_up_to_what_the_engine_adds() {
                 }
                 let [even, odd] = accounts.map(|account| account.radiance.map(f64::from));
                 let sum = [0, 1, 2].map(|i| even[i] + odd[i]);
-                assert_eq!(sum, film.color[index][..3], "{} {strategy:?} {pixel:?}", scene.name);
+                assert_eq!(sum, film.color(index)[..3], "{} {strategy:?} {pixel:?}", scene.name);
             }
         }
     }

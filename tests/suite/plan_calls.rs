@@ -260,7 +260,7 @@ fn calls_for(effect: &str) -> Calls {
                 |d, _| d.render.noise = Some(1e-3),
             ],
         ),
-        "denoising" => (metal, &[|d, _| d.view.denoise = Denoise::Fast]),
+        "denoising" | "guides" => (metal, &[|d, _| d.view.denoise = Denoise::Fast]),
         // Always there.
         "variance" => (metal, &[]),
         // Only where layers are written, which no document says.

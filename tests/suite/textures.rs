@@ -312,7 +312,7 @@ fn alpha_is_a_share_or_a_cut() {
                 let (left, top) = (16 * (quarter % 2) + 4, 16 * (quarter / 2) + 4);
                 let places = (0..64).map(|i| (top + i / 8) * 32 + left + i % 8);
                 let sums = places
-                    .map(|place| film.color[place])
+                    .map(|place| film.color(place))
                     .fold([0.0; 2], |sum, c| [sum[0] + c[0], sum[1] + c[3]]);
                 let [emitted, alpha] = sums.map(|sum| sum / (64.0 * 64.0));
                 // 4096 samples.
@@ -365,15 +365,15 @@ fn textured_white_is_white_in_the_furnace() {
                 document.camera.yaw_deg = yaw_deg;
                 document.lighting.background = Background::Transparent;
                 let film = render(choice, &document);
-                let alpha: f64 = film.color.iter().map(|color| color[3]).sum();
-                let value = film.color.iter().map(|color| color[1]).sum::<f64>() / alpha;
+                let alpha: f64 = film.colors().map(|color| color[3]).sum();
+                let value = film.colors().map(|color| color[1]).sum::<f64>() / alpha;
                 println!("{choice:?} {metallic} {yaw_deg} {value}");
                 // What folding at the geometric surface takes from the angles that the tables suppose is lost.
                 assert!(
                     (0.96..1.004).contains(&value),
                     "{choice:?} {metallic} {yaw_deg}: {value}"
                 );
-                assert_eq!(film.dropped, 0);
+                assert_eq!(film.dropped(), 0);
             }
         }
     }
@@ -403,7 +403,7 @@ fn strategies_agree_on_textures() {
     let mut document = all_at_once(&folder);
     document.materials[0].opacity = 0.8;
     let cpu = render(EngineChoice::Cpu, &document);
-    assert_eq!(cpu.dropped, 0);
+    assert_eq!(cpu.dropped(), 0);
     for strategy in [Strategy::Lobe, Strategy::Light] {
         let other = render(EngineChoice::Cpu, &with_strategy(&document, strategy, 9));
         assert_same_picture(&cpu, &other, &format!("{strategy:?}"));

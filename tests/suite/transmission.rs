@@ -26,8 +26,8 @@ fn glass(light: EnvironmentSource, assignments: &[&str]) -> Document {
 
 /// Mean colour of what the camera sees of the model.
 fn mean(film: &Film) -> [f64; 3] {
-    let alpha: f64 = film.color.iter().map(|color| color[3]).sum();
-    [0, 1, 2].map(|i| film.color.iter().map(|color| color[i]).sum::<f64>() / alpha)
+    let alpha: f64 = film.colors().map(|color| color[3]).sum();
+    [0, 1, 2].map(|i| film.colors().map(|color| color[i]).sum::<f64>() / alpha)
 }
 
 /// What goes in comes out: a surface that absorbs nothing can't be seen where light is equally bright from everywhere.
@@ -73,7 +73,7 @@ fn what_absorbs_nothing_is_white_in_the_furnace() {
             ],
         ] {
             let film = render(choice, &glass(EnvironmentSource::Furnace, assignments));
-            assert_eq!(film.dropped, 0);
+            assert_eq!(film.dropped(), 0);
             for value in mean(&film) {
                 assert!((value - 1.0).abs() < 3e-3, "{choice:?}, {assignments:?}: {value}");
             }

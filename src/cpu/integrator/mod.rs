@@ -71,6 +71,8 @@ pub struct Integrator<'a, T> {
     samples_environment: bool,
     samples_emitters: bool,
     is_interreflecting: bool,
+    /// Samples of a pixel that tell what they see first.
+    guide_samples: u32,
     /// Where fireflies are limited.
     firefly_clamp: Option<T>,
 }
@@ -100,6 +102,11 @@ impl<'a, T: Real> Integrator<'a, T> {
                 && samples_light
                 && choice.density_per_luminance > 0.0,
             is_interreflecting: job.plan.has(EffectId::Interreflection),
+            guide_samples: if job.plan.has(EffectId::Guides) {
+                GUIDE_SAMPLES
+            } else {
+                0
+            },
             firefly_clamp: job
                 .plan
                 .has(EffectId::FireflyClamp)
@@ -116,7 +123,7 @@ impl<'a, T: Real> Integrator<'a, T> {
     pub fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<T> {
         let settings = self.settings;
         let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        let mut path = Path::new(state, sample < GUIDE_SAMPLES, recorder);
+        let mut path = Path::new(state, sample < self.guide_samples, recorder);
         let mut ray = self.first_ray(pixel, &mut path);
         for bounce in 0.. {
             let mut met = None;

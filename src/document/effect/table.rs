@@ -349,6 +349,17 @@ pub static EFFECTS: &[Effect] = &[
         remove: None,
     },
     Effect {
+        id: EffectId::Guides,
+        label: "Guides",
+        help: "Albedo, normal and distance of what each pixel sees first, from its first 64 samples: for the denoiser and for \
+               layers.",
+        decide: |facts| match facts.document.view.denoise {
+            Denoise::Off => Decision::off("neither layers nor a denoised picture are made"),
+            _ => Decision::on("the denoiser is led by them"),
+        },
+        remove: None,
+    },
+    Effect {
         id: EffectId::Denoising,
         label: "Denoising",
         help: "The picture's noise is taken out, led by the albedo and the normal of what is seen.",

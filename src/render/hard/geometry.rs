@@ -322,7 +322,7 @@ pub(super) const CASES: &[HardCase] = &[
             let film = stage.film(&document)?;
             let image = film.image();
             let mean = image.pixels.iter().map(|p| f64::from(p[1])).sum::<f64>() / image.pixels.len() as f64;
-            Ok((mean - 1.0).abs() + film.dropped as f64)
+            Ok((mean - 1.0).abs() + film.dropped() as f64)
         },
     },
 ];
@@ -354,7 +354,7 @@ fn difference(a: &Film, b: &Film) -> f64 {
         size += a;
     }
     let value = apart / size;
-    if value.is_nan() || b.dropped > 0 {
+    if value.is_nan() || b.dropped() > 0 {
         f64::INFINITY
     } else {
         value
@@ -371,5 +371,5 @@ fn furnace(stage: &mut Stage, model: ModelSource) -> Result<f64, HardError> {
     material.anisotropy = 1.0;
     let film = stage.film(&document)?;
     let off = |pixel: &[f32; 4]| f64::from((pixel[1] - 1.0).abs());
-    Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped as f64)
+    Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped() as f64)
 }

@@ -36,7 +36,7 @@ pub(super) const CASES: &[HardCase] = &[
             let pixels = film.luminance();
             let mean = pixels.iter().sum::<f64>() / pixels.len() as f64;
             let variance = film.variance_of_mean().iter().sum::<f64>() / (pixels.len() as f64).powi(2);
-            Ok((mean - expected).abs() / (variance + (1e-4 * expected).powi(2)).sqrt() + film.dropped as f64)
+            Ok((mean - expected).abs() / (variance + (1e-4 * expected).powi(2)).sqrt() + film.dropped() as f64)
         },
     },
     HardCase {
@@ -51,8 +51,8 @@ pub(super) const CASES: &[HardCase] = &[
         find: |stage| {
             let light = stage.environment("black.exr", [16, 8], |_, _| [0.0; 3])?;
             let film = stage.film(&document(ModelSource::Sphere, light, 16, 4))?;
-            let largest = film.color.iter().map(|c| c[0].abs().max(c[1].abs()).max(c[2].abs()));
-            Ok(largest.fold(0.0, f64::max) + film.dropped as f64)
+            let largest = film.colors().map(|c| c[0].abs().max(c[1].abs()).max(c[2].abs()));
+            Ok(largest.fold(0.0, f64::max) + film.dropped() as f64)
         },
     },
     HardCase {
@@ -75,7 +75,7 @@ pub(super) const CASES: &[HardCase] = &[
                     .map(|i| f64::from((pixel[i] / color[i] - 1.0).abs()))
                     .fold(0.0, f64::max)
             };
-            Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped as f64)
+            Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped() as f64)
         },
     },
     HardCase {
@@ -131,8 +131,8 @@ pub(super) const CASES: &[HardCase] = &[
                 .iter()
                 .filter(|words| !warnings.iter().any(|line| line.contains(*words)));
             let film = stage.film(&document(ModelSource::Sphere, light, 16, 8))?;
-            let unsound = film.color.iter().flatten().filter(|x| !(x.is_finite() && **x >= 0.0));
-            Ok((untold.count() + unsound.count()) as f64 + film.dropped as f64)
+            let unsound = film.colors().flatten().filter(|x| !(x.is_finite() && *x >= 0.0));
+            Ok((untold.count() + unsound.count()) as f64 + film.dropped() as f64)
         },
     },
     HardCase {
@@ -150,7 +150,7 @@ pub(super) const CASES: &[HardCase] = &[
             document.materials[0].fresnel = crate::optics::fresnel::Fresnel::None;
             let film = stage.film(&document)?;
             let off = |pixel: &[f32; 4]| f64::from((pixel[1] / 1e6 - 1.0).abs());
-            Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped as f64)
+            Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped() as f64)
         },
     },
 ];
@@ -204,5 +204,5 @@ fn background_error(stage: &mut Stage, document: &Document, environment: &Enviro
             worst = worst.max((f64::from(*found) / expected - 1.0).abs());
         }
     }
-    Ok(worst + film.dropped as f64)
+    Ok(worst + film.dropped() as f64)
 }

@@ -162,7 +162,7 @@ fn white_box(stage: &mut Stage, mut material: MaterialSettings) -> Result<f64, H
         let film = stage.film(&document)?;
         let pixels = film.luminance();
         let mean = pixels.iter().sum::<f64>() / pixels.len() as f64;
-        worst = worst.max((mean - 1.0).abs() + film.dropped as f64);
+        worst = worst.max((mean - 1.0).abs() + film.dropped() as f64);
     }
     Ok(worst)
 }

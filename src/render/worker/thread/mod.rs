@@ -63,6 +63,12 @@ struct State<'a> {
     denoised: Option<Denoised>,
 }
 
+/// A session for the window, where a denoised picture or layers may be wanted of what is there already.
+fn for_window(mut session: Session) -> Session {
+    session.keep_guides("the window keeps them: denoising may be switched on and layers saved at any time");
+    session
+}
+
 impl<'a> State<'a> {
     fn new(shared: &'a Arc<Shared>, repaint: &'a dyn Fn(), assets: Assets) -> Self {
         Self {
@@ -229,7 +235,7 @@ impl State<'_> {
     fn session(&mut self) -> Result<&mut Session, SessionError> {
         let session = match self.session.take() {
             Some(session) => session,
-            None => Session::open_with(EngineChoice::Cpu, self.assets.clone())?,
+            None => for_window(Session::open_with(EngineChoice::Cpu, self.assets.clone())?),
         };
         Ok(self.session.insert(session))
     }
@@ -243,7 +249,7 @@ impl State<'_> {
         let opened = caught(|| Session::open_fluid(choice, self.assets.clone()));
         let why = match opened {
             Ok(Ok(session)) => {
-                self.session = Some(session);
+                self.session = Some(for_window(session));
                 None
             }
             Ok(Err(error)) => Some(error.to_string()),
@@ -288,12 +294,14 @@ impl State<'_> {
             return false;
         }
         self.say(Level::Warning, "going on with the processor".to_owned());
-        let opened = Session::open_with(EngineChoice::Cpu, self.assets.clone()).and_then(|mut session| {
-            if let Some(stage) = &self.stage {
-                session.submit(&stage.document())?;
-            }
-            Ok(session)
-        });
+        let opened = Session::open_with(EngineChoice::Cpu, self.assets.clone())
+            .map(for_window)
+            .and_then(|mut session| {
+                if let Some(stage) = &self.stage {
+                    session.submit(&stage.document())?;
+                }
+                Ok(session)
+            });
         match opened {
             Ok(session) => self.session = Some(session),
             Err(error) => self.say(Level::Error, error.to_string()),

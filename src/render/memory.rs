@@ -1,0 +1,100 @@
+//! Whether a picture fits the memory there is, asked before it is begun.
+
+use sysinfo::{MemoryRefreshKind, RefreshKind, System};
+
+use crate::job::Job;
+use crate::job::effect::EffectId;
+use crate::job::film::Extras;
+
+/// The environment variable that says how much memory a picture may take, in MiB, whatever there is.
+pub const LIMIT_VARIABLE: &str = "GLOSSMITH_MEMORY";
+
+/// Bytes a pixel beside the film: the mean picture, what of it is shown, and what is written to a file.
+const PICTURE_BYTES: u64 = 16 + 4 + 12;
+/// And where it is denoised: both halves, guides and results.
+const DENOISED_BYTES: u64 = 160;
+/// And where the GPU's memory is the processor's: the sums since they were last taken over.
+const SOFTWARE_GPU_BYTES: u64 = 56;
+/// The share of the free memory that a picture may take: the rest of the program and other programs live on.
+const SHARE: f64 = 0.9;
+
+/// A picture that is too large.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "a picture of {width} x {height} pixels takes {needed_mib} MiB of memory, and {allowed_mib} MiB are free for it. \
+     Make it smaller (at most about {side} x {side}), or close other programs{remedy}"
+)]
+pub struct TooLarge {
+    width: u32,
+    height: u32,
+    needed_mib: u64,
+    allowed_mib: u64,
+    /// The side of the largest square picture that fits.
+    side: u64,
+    remedy: &'static str,
+}
+
+/// Refuses a job whose picture takes more than what is `allowed`; `is_software_gpu` says that the processor's memory is
+/// the GPU's, too.
+///
+/// # Errors
+/// [`TooLarge`], with the remedy.
+pub(super) fn check(job: &Job, is_software_gpu: bool, allowed: u64) -> Result<(), TooLarge> {
+    let needed = needed(job, is_software_gpu);
+    if needed <= allowed {
+        return Ok(());
+    }
+    let [width, height] = job.settings.image_size;
+    let pixels = u64::from(width) * u64::from(height);
+    Err(TooLarge {
+        width,
+        height,
+        needed_mib: needed.div_ceil(1 << 20),
+        allowed_mib: allowed >> 20,
+        side: (allowed / (needed / pixels.max(1)).max(1)).isqrt(),
+        remedy: if job.plan.has(EffectId::Denoising) {
+            ", or switch denoising off"
+        } else {
+            ""
+        },
+    })
+}
+
+/// The bytes that a job's picture takes until it is shown and written.
+pub(super) fn needed(job: &Job, is_software_gpu: bool) -> u64 {
+    let given = |is_given: bool, bytes: u64| if is_given { bytes } else { 0 };
+    let extras = Extras::of(job);
+    let guides = extras.pixel_bytes()
+        - Extras {
+            guides: false,
+            ..extras
+        }
+        .pixel_bytes();
+    let [width, height] = job.settings.image_size;
+    let bytes = extras.pixel_bytes()
+        + PICTURE_BYTES
+        + given(job.plan.has(EffectId::Denoising), DENOISED_BYTES)
+        + given(is_software_gpu, SOFTWARE_GPU_BYTES + guides);
+    u64::from(width) * u64::from(height) * bytes
+}
+
+/// The bytes that [`LIMIT_VARIABLE`] names.
+pub(super) fn limit() -> Option<u64> {
+    let mib: u64 = std::env::var(LIMIT_VARIABLE).ok()?.trim().parse().ok()?;
+    Some(mib.saturating_mul(1 << 20))
+}
+
+/// The bytes that a picture may take where none are named. `held` is what goes when it is begun.
+pub(super) fn free(held: u64) -> u64 {
+    let ram = MemoryRefreshKind::nothing().with_ram();
+    let Ok(system) = System::new_with_specifics(RefreshKind::nothing().with_memory(ram)) else {
+        return u64::MAX;
+    };
+    // A container may have less than the machine.
+    let of_container = system.cgroup_limits().map_or(u64::MAX, |limits| limits.free_memory);
+    match system.available_memory().min(of_container) {
+        // The system does not say.
+        0 => u64::MAX,
+        free => (SHARE * free.saturating_add(held) as f64) as u64,
+    }
+}
