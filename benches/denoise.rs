@@ -1,17 +1,25 @@
-//! What denoised pictures are worth: how true the error is that is told of them.
+//! What denoised pictures are worth, and what they cost.
 //!
-//! `cargo bench --bench denoise [-- quick]`: over scenes and numbers of samples the true errors of the samples' mean, the
-//! denoised picture and the mixture of both, against a long render; the told error over the true one and how often the
-//! latter lies in the band. `quick` does the same small; the beginning of a scene's name takes that scene alone. The
-//! processor's engine.
+//! `cargo bench --bench denoise [-- PART… quick]`, all parts without one:
+//!
+//! - `told`: over scenes and numbers of samples the true errors of the samples' mean, the denoised picture and the mixture of
+//!   both, against a long render; the told error over the true one and how often the latter lies in the band.
+//! - `edit`: seconds from an edit to a picture below a relative mean squared error of 0.003, in the worker behind the
+//!   window, without denoiser and with either quality.
+//! - `cost`: what the guides take of the samples, and what denoising while rendering takes after the first second.
+//!
+//! `quick` does the same small; the beginning of a scene's name takes that scene alone; `side=`, `renders=`, `reference=`,
+//! `samples=` change the extent. The processor's engine.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use glossmith::analysis::halves::Distance;
-use glossmith::analysis::halves::Halves;
+use glossmith::analysis::error::RELATIVE_FLOOR;
+use glossmith::analysis::halves::{Distance, Halves};
 use glossmith::document::{Denoise, Document, assign};
-use glossmith::job::film::{Film, Image};
+use glossmith::job::film::{Film, HalfSums, Image};
 use glossmith::render::denoise::{Denoiser, Noisy};
+use glossmith::render::worker::{Pace, Picture, Worker};
 use glossmith::render::{EngineChoice, Session};
 
 type Failure = Box<dyn std::error::Error>;
@@ -60,13 +68,26 @@ fn main() -> Result<(), Failure> {
     {
         scenes.retain(|(name, _)| name.starts_with(only));
     }
-    truth(&mut session, &mut denoiser, &scenes, &extent, most)
+    let is_wanted = |part: &str| has(part) || !["told", "edit", "cost"].iter().any(|other| has(other));
+    if is_wanted("cost") {
+        guides_cost(&mut session, &scenes, has("quick"))?;
+        denoising_cost(&scenes)?;
+    }
+    if is_wanted("edit") {
+        edits(&mut session, &scenes, has("quick"))?;
+    }
+    if is_wanted("told") {
+        truth(&mut session, &mut denoiser, &scenes, &extent, most)?;
+    }
+    Ok(())
 }
 
 /// The five materials of the comparison with other renderers, and the default scene on a ground.
 fn scenes() -> Result<Vec<(&'static str, Document)>, Failure> {
     let of = |assignments: &[&str]| -> Result<Document, Failure> {
         let mut document = Document::default();
+        // Guides are kept where a denoised picture is wanted.
+        document.view.denoise = Denoise::High;
         for assignment in assignments {
             assign(&mut document.materials[0], assignment)?;
         }
@@ -133,8 +154,10 @@ fn squared_error(image: &Image, reference: &Halves) -> f64 {
 /// The film with all samples in one half: denoised at once, as if there were no other.
 fn undivided(film: &Film) -> Film {
     let mut film = film.clone();
-    film.odd_color.fill([0.0; 3]);
-    film.odd_statistics.fill([0.0; 2]);
+    for pixel in 0..film.pixel_count() {
+        let all = film.sums(pixel);
+        film.set_halves(pixel, &[all, HalfSums::default()]);
+    }
     film
 }
 
@@ -216,4 +239,165 @@ fn truth(
         }
     }
     Ok(())
+}
+
+/// Time of samples with guides over that without, in pairs that take turns: the median and the quartiles.
+fn guides_cost(session: &mut Session, scenes: &[(&str, Document)], is_quick: bool) -> Result<(), Failure> {
+    let (side, pairs) = if is_quick { (128, 6) } else { (256, 24) };
+    println!("## Guides, {side} x {side}, {pairs} pairs of renders of 16 samples");
+    println!("| scene | time with over time without | quartiles |");
+    for (name, document) in scenes {
+        let mut document = document.clone();
+        (document.render.width, document.render.height, document.render.samples) = (side, side, 16);
+        let mut seconds = |denoise: Denoise, seed: u32| -> Result<f64, Failure> {
+            (document.view.denoise, document.render.seed) = (denoise, seed);
+            session.forget();
+            session.submit(&document)?;
+            let begun = Instant::now();
+            while !session.step(Duration::from_secs(10))?.is_done {}
+            Ok(begun.elapsed().as_secs_f64())
+        };
+        let mut ratios = Vec::new();
+        for pair in 0..pairs {
+            let order = if pair % 2 == 0 {
+                [Denoise::High, Denoise::Off]
+            } else {
+                [Denoise::Off, Denoise::High]
+            };
+            let [first, second] = [seconds(order[0], pair)?, seconds(order[1], pair)?];
+            ratios.push(if pair % 2 == 0 { first / second } else { second / first });
+        }
+        ratios.sort_by(f64::total_cmp);
+        let at = |share: f64| ratios[(share * ratios.len() as f64) as usize];
+        println!("| {name} | {:.3} | {:.3} to {:.3} |", at(0.5), at(0.25), at(0.75));
+    }
+    Ok(())
+}
+
+/// Samples that a worker makes between the first and the sixth second, denoising over not denoising.
+fn denoising_cost(scenes: &[(&str, Document)]) -> Result<(), Failure> {
+    println!("## Denoising while rendering, 512 x 512: samples from the first second to the sixth, of those without");
+    println!("| scene | fast | high | auto |");
+    for (name, document) in scenes {
+        let mut document = document.clone();
+        (document.render.width, document.render.height) = (512, 512);
+        document.render.samples = 1_000_000;
+        let mut samples = |denoise: Denoise| -> Result<f64, Failure> {
+            document.view.denoise = denoise;
+            let worker = Worker::spawn(EngineChoice::Cpu, || {})?;
+            worker.submit(&document, Pace::Still);
+            let mut first = None;
+            loop {
+                std::thread::sleep(Duration::from_millis(5));
+                let progress = worker.snapshot().progress;
+                let first = *match progress.render_seconds {
+                    seconds if seconds < 1.0 => continue,
+                    seconds => first.get_or_insert((seconds, progress.mean_samples, Instant::now())),
+                };
+                if first.2.elapsed().as_secs_f64() >= 5.0 {
+                    return Ok((progress.mean_samples - first.1) / first.2.elapsed().as_secs_f64());
+                }
+            }
+        };
+        // Twice without, before and after: the machine may do something else.
+        let before = samples(Denoise::Off)?;
+        let with = [Denoise::Fast, Denoise::High, Denoise::Auto].map(&mut samples);
+        let without = (before + samples(Denoise::Off)?) / 2.0;
+        let [fast, high, auto] = with.map(|with| with.map_or(f64::NAN, |with| with / without));
+        println!("| {name} | {fast:.2} | {high:.2} | {auto:.2} |");
+    }
+    Ok(())
+}
+
+/// The picture that is good enough.
+const CLEAN: f64 = 0.003;
+/// Seconds after which an edit is given up.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Relative mean squared error against a reference, whose noise is taken out by its halves.
+fn relative_error(image: &Image, reference: &Film) -> f64 {
+    let of_pixel = |pixel: usize| -> f64 {
+        let [even, odd] = reference
+            .halves(pixel)
+            .map(|half| half.color.map(|sum| sum / half.samples));
+        let of_channel = |c: usize| {
+            let x = f64::from(image.pixels[pixel][c]);
+            let mean = 0.5 * (even[c] + odd[c]);
+            (x - even[c]) * (x - odd[c]) / (mean * mean + RELATIVE_FLOOR)
+        };
+        (0..3).map(of_channel).sum()
+    };
+    (0..image.pixels.len()).map(of_pixel).sum::<f64>() / (3 * image.pixels.len()) as f64
+}
+
+/// Seconds from an edit of the material to the first full picture below [`CLEAN`], in the worker behind the window.
+fn edits(session: &mut Session, scenes: &[(&str, Document)], is_quick: bool) -> Result<(), Failure> {
+    let (side, reference_samples) = if is_quick { (128, 64) } else { (512, 256) };
+    println!("## From an edit to a relative mean squared error of {CLEAN}, {side} x {side}, s (samples a pixel)");
+    println!("| scene | without | fast | high | first picture denoised (high): s, error |");
+    for (name, document) in scenes {
+        let mut document = document.clone();
+        (document.render.width, document.render.height) = (side, side);
+        (document.render.samples, document.render.seed) = (reference_samples, u32::MAX);
+        document.view.denoise = Denoise::Off;
+        let reference = finish(session, &document)?;
+        (document.render.samples, document.render.seed) = (100_000, 1);
+        let mut first = None;
+        let mut clean = |denoise: Denoise| -> Result<String, Failure> {
+            document.view.denoise = denoise;
+            let worker = Worker::spawn(EngineChoice::Cpu, || {})?;
+            // Another look before, which has been shown when the edit comes.
+            let mut before = document.clone();
+            before.materials[0].roughness *= 0.8;
+            before.materials[0].base_color = [0.5; 3];
+            before.render.samples = 4;
+            let revision = worker.submit(&before, Pace::Still);
+            await_picture(&worker, revision, |picture| picture.samples_per_pixel >= 4)?;
+            let begun = Instant::now();
+            let revision = worker.submit(&document, Pace::Still);
+            let mut seen = None;
+            let good = await_picture(&worker, revision, |picture| {
+                let error = relative_error(&picture.image, &reference);
+                seen.get_or_insert((begun.elapsed().as_secs_f64(), error));
+                error < CLEAN
+            });
+            if denoise == Denoise::High {
+                first = seen;
+            }
+            Ok(match good {
+                Ok((at, picture)) => {
+                    let seconds = at.duration_since(begun).as_secs_f64();
+                    format!("{seconds:.2} ({})", picture.samples_per_pixel)
+                }
+                Err(_) => "not reached".to_owned(),
+            })
+        };
+        let [off, fast, high] = [clean(Denoise::Off)?, clean(Denoise::Fast)?, clean(Denoise::High)?];
+        let (seconds, error) = first.unwrap_or((f64::NAN, f64::NAN));
+        println!("| {name} | {off} | {fast} | {high} | {seconds:.2}, {error:.4} |");
+    }
+    Ok(())
+}
+
+/// The first picture at full resolution that is good enough, and when it was there.
+fn await_picture(
+    worker: &Worker,
+    revision: u64,
+    mut is_good: impl FnMut(&Picture) -> bool,
+) -> Result<(Instant, Arc<Picture>), Failure> {
+    let (begun, mut last) = (Instant::now(), 0);
+    while begun.elapsed() < PATIENCE {
+        let shown = worker.snapshot().picture.clone();
+        let at = Instant::now();
+        let news =
+            shown.filter(|picture| (picture.revision, picture.reduction) == (revision, 1) && picture.serial != last);
+        if let Some(picture) = news {
+            last = picture.serial;
+            if is_good(&picture) {
+                return Ok((at, picture));
+            }
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    Err("no picture is good enough".into())
 }

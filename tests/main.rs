@@ -25,6 +25,8 @@ mod compare;
 mod crashed;
 #[path = "suite/denoise.rs"]
 mod denoise;
+#[path = "suite/denoise_cases.rs"]
+mod denoise_cases;
 #[path = "suite/density.rs"]
 mod density;
 #[path = "suite/desktop.rs"]
@@ -73,6 +75,8 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/memory.rs"]
+mod memory;
 #[path = "suite/model_formats.rs"]
 mod model_formats;
 #[path = "suite/monkey.rs"]

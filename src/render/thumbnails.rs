@@ -9,20 +9,21 @@ use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use super::background::{Background, Desk};
+use super::denoise::{Attendant, Library};
 use super::display::display;
 use super::{EngineChoice, Session, SessionError, picture_cache};
-use crate::document::{Document, MaterialSettings, RenderSettings};
+use crate::document::{Denoise, Document, MaterialSettings, RenderSettings, ViewSettings};
 use crate::scene::ModelSource;
 use crate::store::preset::material_text;
 
 /// Columns and rows of a thumbnail.
 pub const SIDE: u32 = 64;
-/// Samples a pixel: noise is below what is seen at this size.
+/// Samples a pixel: noise is below what is seen at this size, and nothing of it is left where it is denoised.
 const SAMPLES: u32 = 24;
 /// How long to render before looking whether something else is wanted.
 const STEP: Duration = Duration::from_millis(30);
 /// To be raised where thumbnails of the same material come out otherwise than before.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// A picture: red, green, blue and alpha of 8 bits, alpha not premultiplied; [`SIDE`] × [`SIDE`] pixels from the top.
 pub type Thumbnail = Arc<Vec<u8>>;
@@ -52,7 +53,7 @@ pub fn spawn_thumbnails(
     hold: Arc<AtomicBool>,
     repaint: impl Fn() + Send + 'static,
 ) -> io::Result<ThumbnailWorker> {
-    let mut session: Option<Session> = None;
+    let mut studio: Option<Studio> = None;
     let mut made: HashMap<u64, Thumbnail> = HashMap::new();
     Background::spawn("thumbnails", repaint, move |materials, desk| {
         for material in materials {
@@ -61,7 +62,7 @@ pub fn spawn_thumbnails(
                 continue;
             }
             let path = folder.join(format!("{key:016x}.png"));
-            let picture = picture_cache::kept_or_made(&path, [SIDE; 2], || make(&mut session, &material, &hold, desk));
+            let picture = picture_cache::kept_or_made(&path, [SIDE; 2], || make(&mut studio, &material, &hold, desk));
             match picture {
                 Ok(Some(pixels)) => {
                     made.insert(key, Arc::new(pixels));
@@ -85,13 +86,28 @@ fn document(material: &MaterialSettings) -> Document {
             samples: SAMPLES,
             ..RenderSettings::default()
         },
+        view: ViewSettings {
+            // Where there is no denoiser nothing is said of it: nobody asked for one.
+            denoise: if Library::get().is_ok() {
+                Denoise::High
+            } else {
+                Denoise::Off
+            },
+            ..ViewSettings::default()
+        },
         ..Document::default()
     }
 }
 
+/// What thumbnails are made with.
+struct Studio {
+    session: Session,
+    attendant: Attendant,
+}
+
 /// `None` where something else is wanted by now.
 fn make<A>(
-    session: &mut Option<Session>,
+    studio: &mut Option<Studio>,
     material: &MaterialSettings,
     hold: &AtomicBool,
     desk: &Desk<'_, Vec<MaterialSettings>, A>,
@@ -99,18 +115,26 @@ fn make<A>(
     if !desk.may_go_on(hold) {
         return Ok(None);
     }
-    let session = match session {
-        Some(session) => session,
-        None => session.insert(Session::open(EngineChoice::Cpu)?),
-    };
     let document = document(material);
+    let Studio { session, attendant } = match studio {
+        Some(studio) => studio,
+        None => studio.insert(Studio {
+            session: Session::open(EngineChoice::Cpu)?,
+            attendant: Attendant::new(&document),
+        }),
+    };
     session.submit(&document)?;
     while !session.step(STEP)?.is_done {
         if !desk.may_go_on(hold) {
             return Ok(None);
         }
     }
-    Ok(Some(display(&session.image()?, &document.view)))
+    let denoised = attendant.finish(session)?;
+    let image = match denoised {
+        Some(denoised) => denoised.image,
+        None => Arc::new(session.image()?),
+    };
+    Ok(Some(display(&image, &document.view)))
 }
 
 #[cfg(test)]

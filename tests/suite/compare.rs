@@ -11,13 +11,14 @@ use glossmith::app::actions::{Action, Command};
 use glossmith::app::compare::Rival;
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options, Resolution};
-use glossmith::document::Document;
 use glossmith::document::match_look::{Target, lobe_of_material, match_look};
+use glossmith::document::{Denoise, Document};
 use glossmith::optics::lobe::Lobe;
 use glossmith::render::worker::{Activity, Picture};
 use glossmith::store::PRESETS;
 
-use super::ui::{Editor, editor, editor_of, options, request, see, settle, wait};
+use super::ui::{Editor, editor, editor_of, editor_with, options, request, see, settle, wait};
+use super::ui_scene;
 use super::worker::small_document;
 
 /// Waits until B, too, is finished and both have been compared.
@@ -127,6 +128,37 @@ fn a_and_b_have_the_same_random_numbers() {
     wait(&mut harness, "a difference", |app| {
         app.rms_difference().is_some_and(|rms| rms > 0.01)
     });
+}
+
+/// Both halves of a comparison come denoised, as the document asks, and a snapshot keeps what is shown.
+#[test]
+fn a_and_b_are_denoised_alike() {
+    let mut document = small_document();
+    document.view.denoise = Denoise::High;
+    let mut harness = editor_with(document, Vec::new());
+    settle(&mut harness);
+    let gold = PRESETS.iter().find(|preset| preset.name == "Gold").expect("shipped");
+    request(
+        &mut harness,
+        Action::CompareWith(Rival::Material(Box::new(gold.clone()))),
+    );
+    settle_both(&mut harness, "B", |b| b.materials[0] == *gold);
+    let is_denoised = |harness: &Editor| {
+        let snapshots = [harness.state().snapshot(), harness.state().rival_snapshot().expect("B")];
+        snapshots.map(|snapshot| snapshot.picture.as_ref().is_some_and(|picture| picture.is_denoised()))
+    };
+    assert_eq!(is_denoised(&harness), [true, true]);
+    harness.state_mut().reveal(Pane::Camera);
+    harness.run_steps(2);
+    ui_scene::choose(&mut harness, "Denoise", "Off");
+    settle_both(&mut harness, "B as it is", |b| b.view.denoise == Denoise::Off);
+    wait(&mut harness, "A as it is", move |app| {
+        app.snapshot()
+            .picture
+            .as_ref()
+            .is_some_and(|picture| !picture.is_denoised())
+    });
+    assert_eq!(is_denoised(&harness), [false, false]);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use glossmith::analysis::halves::Halves;
 use glossmith::document::{Background, Denoise, DenoiseWhen, Document};
 use glossmith::job::features::GuideSums;
-use glossmith::job::film::{Film, Image};
+use glossmith::job::film::{Extras, Film, Image};
 use glossmith::render::denoise::{Denoised, Denoiser, Library, LibraryError, Noisy};
 use glossmith::render::worker::{Event, Level, Pace, Picture, Worker};
 use glossmith::render::{EngineChoice, Session};
@@ -25,7 +25,11 @@ fn denoiser() -> Denoiser {
 /// A film of some samples a pixel: `seen` gives a pixel's albedo and true colour, which the samples scatter around by
 /// `noise` times themselves.
 fn film(size: [u32; 2], samples: u32, noise: f32, seen: impl Fn(u32, u32) -> [[f32; 3]; 2]) -> Film {
-    let mut film = Film::new(size[0], size[1]);
+    let extras = Extras {
+        guides: true,
+        ..Extras::default()
+    };
+    let mut film = Film::keeping(size[0], size[1], extras);
     let mut random = Random::new(5);
     for pixel in 0..(size[0] * size[1]) as usize {
         let [albedo, color] = seen(pixel as u32 % size[0], pixel as u32 / size[0]);
@@ -120,18 +124,20 @@ fn a_fine_texture_is_not_eaten_or_the_error_says_so() {
     let coarse = textured(4, 4);
     let done = denoised(&coarse, Denoise::High);
     let (clean, noisy) = (checker_error(&done.image, 4), checker_error(&coarse.image(), 4));
-    assert!(clean < 0.95 * noisy, "{clean} {noisy}");
-    let fine = textured(1, 64);
-    let [high, auto] = [Denoise::High, Denoise::Auto].map(|how| denoised(&fine, how));
-    let eaten = checker_error(&high.image, 1);
-    // Over the mean luminance of 0.5.
-    assert!(
-        (0.5 * high.error.unwrap().value / eaten - 1.0).abs() < 0.2,
-        "{:?} {eaten}",
-        high.error
-    );
-    let (kept, noisy) = (checker_error(&auto.image, 1), checker_error(&fine.image(), 1));
-    assert!(kept < 1.15 * noisy, "{kept} {noisy} {eaten}");
+    // Nearer to the truth than the samples beyond doubt: by three standard errors of a root mean square over so many pixels.
+    let doubt = 3.0 / (2.0 * coarse.pixel_count() as f64).sqrt();
+    assert!(clean < (1.0 - doubt) * noisy, "{clean} {noisy}");
+    for samples in [4, 16, 64, 256] {
+        let fine = textured(1, samples);
+        let [high, auto] = [Denoise::High, Denoise::Auto].map(|how| denoised(&fine, how));
+        let eaten = checker_error(&high.image, 1);
+        // Over the mean luminance of 0.5.
+        let told = 0.5 * high.error.unwrap().value;
+        assert!((told / eaten - 1.0).abs() < 0.2, "{samples}: {told} {eaten}");
+        let (kept, noisy) = (checker_error(&auto.image, 1), checker_error(&fine.image(), 1));
+        println!("{samples} samples: noise {noisy:.4}, eaten {eaten:.4}, mixed {kept:.4}");
+        assert!(kept < 1.02 * noisy, "{samples}: {kept} {noisy} {eaten}");
+    }
 }
 
 #[test]
@@ -145,22 +151,20 @@ fn a_picture_in_bands_has_no_seams() {
         .denoise(&noisy, Denoise::High)
         .unwrap()
         .image;
-    let mean = whole.pixels.iter().map(|pixel| f64::from(pixel[0])).sum::<f64>() / whole.pixels.len() as f64;
-    let rows = std::iter::zip(whole.pixels.chunks(64), banded.pixels.chunks(64));
-    let difference = |(a, b): (&[[f32; 4]], &[[f32; 4]])| {
-        let sum: f64 = std::iter::zip(a, b).map(|(a, b)| f64::from(a[0] - b[0]).abs()).sum();
-        sum / 64.0 / mean
-    };
-    let differences: Vec<f64> = rows.map(difference).collect();
-    assert!(
-        differences.iter().all(|difference| *difference < 0.08),
-        "{differences:?}"
-    );
-    assert!(
-        differences.iter().sum::<f64>() < 0.01 * differences.len() as f64,
-        "{differences:?}"
-    );
-    assert_ne!(whole, banded, "it was cut");
+    // What the picture is wrong by, anyhow. Bands that do not overlap by what the library says change rows by more than that;
+    // with it, by nothing but rounding.
+    let truth = |pixel: usize| 0.1 + 0.002 * (pixel % 64 + pixel / 64) as f64;
+    let rms = |squares: &mut dyn Iterator<Item = f64>| (squares.sum::<f64>() / (64.0 * 900.0)).sqrt();
+    let red = |image: &Image, pixel: usize| f64::from(image.pixels[pixel][0]);
+    let error = rms(&mut (0..64 * 900).map(|pixel| (red(&whole, pixel) - truth(pixel)).powi(2)));
+    for y in 0..900 {
+        let row = (64 * y..64 * (y + 1)).map(|pixel| (red(&whole, pixel) - red(&banded, pixel)).abs());
+        let change = row.sum::<f64>() / 64.0;
+        assert!(
+            change < 0.01 * error,
+            "row {y} changes by {change}, of an error of {error}"
+        );
+    }
 }
 
 fn studio(model: ModelSource) -> Document {
@@ -184,6 +188,7 @@ fn the_error_told_of_a_denoised_picture_is_the_true_one() {
     const RENDERS: u32 = 12;
     let mut document = studio(ModelSource::Sphere);
     document.ground = true;
+    document.view.denoise = Denoise::High;
     (document.render.samples, document.render.seed) = (2048, 77);
     let reference = Halves::of(&render(EngineChoice::Cpu, &document));
     document.render.samples = 16;
@@ -226,6 +231,7 @@ fn guides_follow_mirrors_and_are_alike_on_both_engines() {
     }
     document.lighting.ground_color = [0.1, 0.5, 0.9];
     document.render.samples = 16;
+    document.view.denoise = Denoise::High;
     let [cpu, gpu] = [EngineChoice::Cpu, EngineChoice::Gpu].map(|engine| render(engine, &document));
     // Low on the ball: what is seen is the ground.
     let place = 44 * 64 + 32;
@@ -255,6 +261,11 @@ fn guides_follow_mirrors_and_are_alike_on_both_engines() {
 #[test]
 fn guides_are_of_the_first_samples_only() {
     let mut document = small_document();
+    assert!(
+        render(EngineChoice::Cpu, &document).guides.is_empty(),
+        "nobody asks for them"
+    );
+    document.view.denoise = Denoise::High;
     let guides = |document: &Document| render(EngineChoice::Cpu, document).guides;
     document.render.samples = 64;
     let first = guides(&document);
@@ -397,13 +408,14 @@ fn the_library_tells_its_version_and_device() {
 fn a_region_alone_is_denoised() {
     let mut document = small_document();
     document.lighting.background = Background::Transparent;
+    document.view.denoise = Denoise::High;
     document.render.samples = 4;
     document.render.region = Some([0.45, 0.4, 0.55, 0.6]);
     let film = render(EngineChoice::Cpu, &document);
     let noisy = Noisy::of(&film, document.render.region);
     let done = denoiser().denoise(&noisy, Denoise::High).unwrap();
-    for (pixel, statistics) in film.statistics.iter().enumerate() {
-        let is_rendered = statistics[1] > 0.0;
+    for pixel in 0..film.pixel_count() {
+        let is_rendered = film.samples_of(pixel) > 0.0;
         let value = done.image.pixels[pixel];
         assert_eq!(is_rendered, value != [0.0; 4], "{pixel}: {value:?}");
         assert!(value.iter().all(|x| x.is_finite() && *x >= 0.0) && value[3] <= 1.0);

@@ -14,7 +14,7 @@ use glossmith::scene::ModelSource;
 use super::ui::{Editor, editor, editor_of, options, picture, request, see_label, settle, undo};
 use super::worker::small_document;
 
-fn choose(harness: &mut Editor, menu: &str, item: &str) {
+pub(super) fn choose(harness: &mut Editor, menu: &str, item: &str) {
     harness.get_by_role_and_label(Role::ComboBox, menu).click_accesskit();
     harness.run_steps(2);
     harness.get_by_role_and_label(Role::Button, item).click_accesskit();

@@ -228,6 +228,9 @@ impl<'a> Filter<'a> {
     /// By how many pixels parts of a picture must overlap that are filtered by themselves, and what their places must be
     /// multiples of.
     pub(super) fn overlap_and_alignment(&self) -> [usize; 2] {
+        // The library knows both only of filters that are committed.
+        // SAFETY: the filter is live.
+        unsafe { (self.device.functions.commit_filter)(self.handle) };
         let number = |name: &CStr| {
             // SAFETY: the filter is live.
             let value = unsafe { (self.device.functions.get_filter_int)(self.handle, name.as_ptr()) };

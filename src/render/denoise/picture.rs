@@ -8,7 +8,6 @@ use crate::analysis::denoised::Colors;
 use crate::analysis::halves::Distance;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image, luminance};
-use crate::job::tiles::TileGrid;
 
 /// What middle grey is brought to before filtering, and the darkest luminance that counts.
 const KEY: f64 = 0.18;
@@ -142,10 +141,7 @@ impl Denoised {
 
 /// The smallest rectangle of pixels around all tiles that are rendered: left, top, width, height.
 fn rendered_rect(film: &Film, region: Option<[f64; 4]>) -> [usize; 4] {
-    let grid = TileGrid {
-        width: film.width,
-        height: film.height,
-    };
+    let grid = film.grid();
     let (mut low, mut high) = ([u32::MAX; 2], [0_u32; 2]);
     for tile in (0..grid.tiles()).filter(|tile| grid.is_rendered(*tile, region)) {
         let (origin, size) = (grid.origin(tile), grid.size(tile));
