@@ -13,6 +13,8 @@ mod cli_errors;
 mod cli_pictures;
 #[path = "suite/cli_render.rs"]
 mod cli_render;
+#[path = "suite/cli_saved.rs"]
+mod cli_saved;
 #[path = "suite/cli_scatter.rs"]
 mod cli_scatter;
 #[path = "suite/cli_support.rs"]

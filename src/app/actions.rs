@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
-use super::compare::Rival;
-use super::layout::Pane;
-use super::library::Change;
-use super::snapshots::PinChange;
+use crate::app::pane::Pane;
+use crate::app::services::compare::Rival;
+use crate::app::services::library::Change;
+use crate::app::services::snapshots::PinChange;
 use crate::document::ImportLobe;
 use crate::document::MaterialSettings;
 use crate::render::EngineChoice;
@@ -196,6 +196,12 @@ pub(super) fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option
     let mut free = free.chain([(Command::Redo, KeyboardShortcut::new(CTRL, Key::Y))]);
     ctx.input_mut(|input| free.find(|(_, shortcut)| input.consume_shortcut(shortcut)))
         .map(|(command, _)| command)
+}
+
+/// What is chosen by the keyboard closes the menu as well, for which egui waits for a click.
+pub(super) fn do_and_close(ui: &egui::Ui, actions: &mut Vec<Action>, action: Action) {
+    actions.push(action);
+    ui.close();
 }
 
 #[cfg(test)]

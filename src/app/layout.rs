@@ -5,89 +5,13 @@ use egui_tiles::{
     Behavior, Container, Linear, LinearDir, ResizeState, SimplificationOptions, TabState, Tabs, TileId, Tiles, Tree,
     UiResponse,
 };
-use serde::{Deserialize, Serialize};
 
-use super::panels::{self, Desk};
-use super::theme;
-use super::viewport::Viewport;
-
-/// A panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Pane {
-    /// The picture.
-    Viewport,
-    /// The material's parameters.
-    Material,
-    /// The geometric lobe's curve.
-    Curve,
-    /// What the lobe draws.
-    Samples,
-    /// The lobe itself.
-    Lobe,
-    /// Error against time.
-    Convergence,
-    /// Environment, background, ground.
-    Lighting,
-    /// Camera, view and render settings.
-    Camera,
-    /// Materials to start from.
-    Presets,
-    /// Pinned states.
-    Snapshots,
-    /// What was said.
-    Log,
-    /// The proof on this machine.
-    Check,
-    /// What is simulated, why, and what it costs.
-    Effects,
-    /// Techniques against each other.
-    Race,
-}
-
-impl Pane {
-    /// All of them.
-    pub const ALL: [Self; 14] = [
-        Self::Viewport,
-        Self::Material,
-        Self::Curve,
-        Self::Samples,
-        Self::Lobe,
-        Self::Convergence,
-        Self::Lighting,
-        Self::Camera,
-        Self::Presets,
-        Self::Snapshots,
-        Self::Log,
-        Self::Check,
-        Self::Effects,
-        Self::Race,
-    ];
-
-    /// What it is called.
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Viewport => "Viewport",
-            Self::Material => "Material",
-            Self::Curve => "Curve",
-            Self::Samples => "Samples",
-            Self::Lobe => "Lobe",
-            Self::Convergence => "Convergence",
-            Self::Lighting => "Light",
-            Self::Camera => "Camera & picture",
-            Self::Presets => "Presets",
-            Self::Snapshots => "Snapshots",
-            Self::Log => "Log",
-            Self::Check => "Check",
-            Self::Effects => "Effects",
-            Self::Race => "Race",
-        }
-    }
-
-    /// What bringing it to the front is called.
-    pub(super) fn command(self) -> String {
-        format!("Show {}", self.title().to_lowercase())
-    }
-}
+use crate::app::desk::Desk;
+use crate::app::kit::theme;
+use crate::app::pane::Home;
+pub use crate::app::pane::Pane;
+use crate::app::panels::Panels;
+use crate::app::viewport::Viewport;
 
 /// Shares of the window's width.
 const LEFT_SHARE: f32 = 0.19;
@@ -96,25 +20,17 @@ const RIGHT_SHARE: f32 = 0.25;
 /// The layout at first: presets over light and camera on the left, the picture, the material over its plots on the right.
 pub(super) fn default_layout() -> Tree<Pane> {
     let mut tiles = Tiles::default();
-    let mut pane = |pane| tiles.insert_pane(pane);
-    let (viewport, material) = (pane(Pane::Viewport), pane(Pane::Material));
-    let upper_left = [Pane::Presets, Pane::Snapshots, Pane::Log, Pane::Check]
-        .map(&mut pane)
-        .to_vec();
-    let lower_left = [Pane::Lighting, Pane::Camera, Pane::Effects, Pane::Race]
-        .map(&mut pane)
-        .to_vec();
-    let lower_right = [Pane::Curve, Pane::Samples, Pane::Lobe, Pane::Convergence].map(&mut pane);
-    let upper_left = tiles.insert_tab_tile(upper_left);
-    let lower_left = tiles.insert_tab_tile(lower_left);
-    let left = tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [upper_left, lower_left], 0.42));
-    let upper_right = tiles.insert_tab_tile(vec![material]);
-    let lower_right = tiles.insert_tab_tile(lower_right.to_vec());
-    let right = tiles.insert_container(Linear::new_binary(
-        LinearDir::Vertical,
-        [upper_right, lower_right],
-        0.56,
-    ));
+    let mut tabs = |home: Home| {
+        let panes: Vec<TileId> = panes_of(home).map(|pane| tiles.insert_pane(pane)).collect();
+        tiles.insert_tab_tile(panes)
+    };
+    let [upper_left, lower_left, upper_right, lower_right] =
+        [Home::UpperLeft, Home::LowerLeft, Home::UpperRight, Home::LowerRight].map(&mut tabs);
+    let viewport = tiles.insert_pane(Pane::Viewport);
+    let mut over =
+        |upper, lower, share| tiles.insert_container(Linear::new_binary(LinearDir::Vertical, [upper, lower], share));
+    let left = over(upper_left, lower_left, 0.42);
+    let right = over(upper_right, lower_right, 0.56);
     let mut across = Linear::new(LinearDir::Horizontal, vec![left, viewport, right]);
     across.shares.set_share(left, LEFT_SHARE);
     across.shares.set_share(viewport, 1.0 - LEFT_SHARE - RIGHT_SHARE);
@@ -123,9 +39,28 @@ pub(super) fn default_layout() -> Tree<Pane> {
     Tree::new(egui::Id::unique("panels"), root, tiles)
 }
 
-/// Whether every panel is in a layout that was read from disk: one of an older version may lack some.
-pub(super) fn is_complete(tree: &Tree<Pane>) -> bool {
-    Pane::ALL.iter().all(|pane| tree.tiles.find_pane(pane).is_some())
+/// The panels that are docked in one place at first.
+fn panes_of(home: Home) -> impl Iterator<Item = Pane> {
+    Pane::ALL.into_iter().filter(move |pane| pane.home() == Some(home))
+}
+
+/// Puts the panels that a layout lacks beside those that they are docked with at first: one that was read from disk may
+/// be of a version that did not have them yet. `None` where the picture is missing.
+pub(super) fn complete(mut tree: Tree<Pane>) -> Option<Tree<Pane>> {
+    viewport_tile(&tree)?;
+    for pane in Pane::ALL {
+        if tree.tiles.find_pane(&pane).is_some() {
+            continue;
+        }
+        let neighbors = panes_of(pane.home()?);
+        let tabs = neighbors
+            .filter_map(|neighbor| tree.tiles.parent_of(tree.tiles.find_pane(&neighbor)?))
+            .next()
+            .or(tree.root())?;
+        let tile = tree.tiles.insert_pane(pane);
+        tree.move_tile_to_container(tile, tabs, usize::MAX, false);
+    }
+    Some(tree)
 }
 
 /// Brings a panel to the front.
@@ -136,6 +71,7 @@ pub(super) fn reveal(tree: &mut Tree<Pane>, pane: Pane) {
 /// Shows panes.
 pub(super) struct Panes<'a, 'd> {
     pub(super) desk: &'a mut Desk<'d>,
+    pub(super) panels: &'a mut Panels,
     pub(super) viewport: &'a mut Viewport,
 }
 
@@ -151,22 +87,7 @@ impl Behavior<Pane> for Panes<'_, '_> {
             .auto_shrink(false)
             .show(ui, |ui| {
                 let frame = egui::Frame::new().inner_margin(theme::PANEL_MARGIN);
-                frame.show(ui, |ui| match pane {
-                    Pane::Material => panels::material::show(ui, self.desk),
-                    Pane::Curve => panels::curve::show(ui, self.desk),
-                    Pane::Samples => panels::samples::show(ui, self.desk),
-                    Pane::Lobe => panels::lobe::show(ui, self.desk),
-                    Pane::Convergence => panels::convergence::show(ui, self.desk),
-                    Pane::Lighting => panels::lighting::show(ui, self.desk),
-                    Pane::Camera => panels::camera::show(ui, self.desk),
-                    Pane::Presets => panels::presets::show(ui, self.desk),
-                    Pane::Snapshots => panels::snapshots::show(ui, self.desk),
-                    Pane::Log => panels::log::show(ui, self.desk),
-                    Pane::Check => panels::check::show(ui, self.desk),
-                    Pane::Effects => panels::effects::show(ui, self.desk),
-                    Pane::Race => panels::race::show(ui, self.desk),
-                    Pane::Viewport => {}
-                });
+                frame.show(ui, |ui| self.panels.show(*pane, ui, self.desk));
             });
         UiResponse::None
     }
@@ -239,5 +160,35 @@ pub(super) fn set_maximised(tree: &mut Tree<Pane>, is_maximised: bool) {
     };
     for tile in others.into_iter().filter(|tile| Some(*tile) != viewport) {
         tree.set_visible(tile, !is_maximised);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A layout that was saved before there were some of the panels keeps its shape and gets them.
+    #[test]
+    fn a_saved_layout_gets_the_panels_that_it_lacks() {
+        let mut tree = default_layout();
+        for pane in [Pane::Race, Pane::Material, Pane::Convergence] {
+            let tile = tree.tiles.find_pane(&pane).expect("it is there");
+            tree.remove_recursively(tile);
+        }
+        let whole = complete(tree).expect("the viewport is there");
+        for pane in Pane::ALL {
+            assert!(whole.tiles.find_pane(&pane).is_some(), "{pane:?}");
+        }
+        let beside = |pane: &Pane| whole.tiles.parent_of(whole.tiles.find_pane(pane)?);
+        assert_eq!(beside(&Pane::Race), beside(&Pane::Effects));
+        assert_eq!(beside(&Pane::Convergence), beside(&Pane::Curve));
+    }
+
+    #[test]
+    fn a_layout_without_the_picture_is_none() {
+        let mut tree = default_layout();
+        let tile = viewport_tile(&tree).expect("it is there");
+        tree.remove_recursively(tile);
+        assert!(complete(tree).is_none());
     }
 }

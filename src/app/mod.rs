@@ -5,35 +5,17 @@
 //! differs from the one last submitted is submitted.
 
 pub mod actions;
-mod autosave;
-mod commands;
-pub mod compare;
-mod crash;
-mod dialogs;
-mod disk;
-mod edits;
-mod environments;
-mod files;
-mod icons;
-mod import_sheet;
+mod desk;
+mod handlers;
+mod kit;
 pub mod layout;
-pub mod library;
-mod menu;
-mod orbit;
-mod palette;
+mod pane;
 mod panels;
-mod recent;
-mod recovery_sheet;
+mod services;
 mod settings;
-pub mod snapshots;
-pub mod status;
-mod take_picture;
-mod theme;
-mod turntable_sheet;
-mod unsaved;
+mod sheets;
+mod study;
 mod viewport;
-mod widgets;
-mod window_picture;
 
 use std::io;
 use std::path::PathBuf;
@@ -43,24 +25,30 @@ use std::time::{Duration, Instant};
 use egui::Ui;
 use egui_tiles::Tree;
 
-use actions::{Action, Command};
-use autosave::{Autosave, Leftover};
-pub use crash::report_panics;
-use dialogs::Dialogs;
-use edits::Edits;
+use actions::Action;
+pub use desk::Resolution;
+use desk::{Desk, Shared};
+use kit::theme;
 use layout::Pane;
-use menu::Sheet;
-pub use panels::Resolution;
-use panels::{Desk, PanelState};
-use recent::Recent;
-use status::FrameMeter;
-use turntable_sheet::TurntableSheet;
-use unsaved::Unsaved;
+use panels::Panels;
+use services::autosave::{self, Autosave, Leftover};
+pub use services::crash::report_panics;
+use services::edits::Edits;
+use services::recent::Recent;
+pub use services::{compare, library, snapshots};
+use services::{environments, messages};
+use sheets::dialogs::Dialogs;
+use sheets::menu::{self, Sheet};
+use sheets::status::{self, FrameMeter};
+use sheets::turntable::TurntableSheet;
+use sheets::unsaved::Unsaved;
 use viewport::Viewport;
 
 use crate::document::of_model::materials_of;
 use crate::document::{Change, Document, MaterialSettings};
 use crate::render::EngineChoice;
+use crate::render::display::Shown;
+use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelOptions, ModelSource, SlotPicture};
@@ -133,14 +121,15 @@ pub struct App {
     queue: Vec<Action>,
     /// Files given at the start that are still being loaded: rendering waits for them.
     awaited: usize,
-    panels: PanelState,
+    shared: Shared,
+    panels: Panels,
     layout: Tree<Pane>,
     is_maximised: bool,
     viewport: Viewport,
     dialogs: Dialogs,
     sheet: Sheet,
     turntable: TurntableSheet,
-    files: files::Files,
+    files: handlers::files::Files,
     autosave: Autosave,
     /// What crashes left and the user has not decided about.
     leftovers: Vec<Leftover>,
@@ -178,23 +167,35 @@ impl App {
             revision: 0,
             queue: Vec::new(),
             awaited: 0,
-            panels: PanelState {
-                race: panels::race::RaceState::new(options.cache.as_ref().map(|cache| cache.join("references"))),
-                resolution: options.resolution.unwrap_or(kept.resolution),
+            shared: Shared {
+                slot: 0,
+                slots_of: Vec::new(),
+                messages: Vec::new(),
+                environments,
+                recent: Recent::new(kept.recent),
                 import_lobe: kept.import_lobe,
+                resolution: options.resolution.unwrap_or(kept.resolution),
+                shown: Shown::default(),
+                view_angle_deg: desk::VIEW_ANGLE_DEG,
+                measured: None,
+                picks_focus: false,
+                is_paused: false,
+                is_measuring: false,
+                references: options.cache.as_ref().map_or_else(ReferenceCache::none, |cache| {
+                    ReferenceCache::at(cache.join("references"))
+                }),
                 library,
                 snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
-                recent: Recent::new(kept.recent),
-                environments,
-                ..PanelState::default()
+                compare: compare::Compare::default(),
             },
+            panels: Panels::default(),
             layout: kept.layout.unwrap_or_else(layout::default_layout),
             is_maximised: false,
             viewport: Viewport::default(),
             dialogs: options.typed_paths.map(Dialogs::typed).unwrap_or_default(),
             sheet: Sheet::None,
             turntable: TurntableSheet::default(),
-            files: files::Files::new(creation.egui_ctx.clone())?,
+            files: handlers::files::Files::new(creation.egui_ctx.clone())?,
             autosave: match options.data {
                 Some(data) => {
                     let interval = options.autosave_interval.unwrap_or(autosave::INTERVAL);
@@ -252,11 +253,11 @@ impl App {
 
     /// What was said so far, oldest first.
     pub fn messages(&self) -> Vec<String> {
-        self.panels.log.iter().map(|entry| entry.text.clone()).collect()
+        self.shared.messages.iter().map(|entry| entry.text.clone()).collect()
     }
 
     fn say(&mut self, level: Level, text: impl Into<String>) {
-        panels::log::add(&mut self.panels.log, level, text.into());
+        messages::add(&mut self.shared.messages, level, text.into());
     }
 
     fn take_events(&mut self, ctx: &egui::Context) {
@@ -276,7 +277,7 @@ impl App {
                 Event::ModelOpened(source, options, model) => {
                     if let ModelSource::File(path) = &source {
                         self.say(Level::Info, format!("opened {}", path.display()));
-                        self.panels.recent.add(path);
+                        self.shared.recent.add(path);
                     }
                     self.adopt_model(source, options, &model);
                     self.count_as_start(is_start);
@@ -284,7 +285,7 @@ impl App {
                 Event::EnvironmentOpened(source, _) => {
                     if let EnvironmentSource::File(path) = &source {
                         self.say(Level::Info, format!("opened {}", path.display()));
-                        self.panels.recent.add(path);
+                        self.shared.recent.add(path);
                     }
                     self.document.lighting.environment = source;
                     self.edits.note("Change the environment", "");
@@ -306,13 +307,13 @@ impl App {
         let is_shown_anew = self.document.model == source && self.document.import != options;
         let edited = self.desk_material();
         let before = std::mem::take(&mut self.document.materials);
-        self.document.materials = materials_of(model, self.panels.import_lobe);
+        self.document.materials = materials_of(model, self.shared.import_lobe);
         if is_shown_anew {
             self.keep_edits(before, &options);
         } else if !is_file && let Some(first) = self.document.materials.first_mut() {
             *first = edited;
         }
-        self.panels.slot = 0;
+        self.shared.slot = 0;
         self.document.model = source;
         self.document.import = options;
         if !is_shown_anew {
@@ -342,7 +343,7 @@ impl App {
     fn desk_material(&self) -> MaterialSettings {
         let materials = &self.document.materials;
         materials
-            .get(self.panels.slot)
+            .get(self.shared.slot)
             .or(materials.last())
             .cloned()
             .unwrap_or_default()
@@ -359,10 +360,10 @@ impl App {
             return;
         }
         let mut wanted = self.document.clone();
-        match self.viewport.fill_size(self.panels.resolution) {
+        match self.viewport.fill_size(self.shared.resolution) {
             Some(size) => self.set_size(&mut wanted, size),
             // The first frame has not been laid out: the size would be wrong.
-            None if self.panels.resolution != Resolution::Document => return,
+            None if self.shared.resolution != Resolution::Document => return,
             None => {}
         }
         let change = self
@@ -377,7 +378,7 @@ impl App {
         }
         self.revision = self.worker.submit(&wanted, pace);
         self.submitted = Some(wanted);
-        self.submitted_resolution = self.panels.resolution;
+        self.submitted_resolution = self.shared.resolution;
         self.submitted_at = Instant::now();
     }
 
@@ -387,7 +388,7 @@ impl App {
         (wanted.render.width, wanted.render.height) = (width, height);
         let Some(old) = &self.submitted else { return };
         let old_size = (old.render.width, old.render.height);
-        if old_size == (width, height) || self.submitted_resolution != self.panels.resolution {
+        if old_size == (width, height) || self.submitted_resolution != self.shared.resolution {
             return;
         }
         let snapshot = self.worker.snapshot();
@@ -404,7 +405,7 @@ impl App {
     fn hold_thumbnails(&self, ctx: &egui::Context) {
         let has_picture = self.worker.snapshot().picture.is_some();
         let is_changing = ctx.input(|input| input.pointer.any_down()) || self.edits.is_in_flow();
-        self.panels.library.hold(!has_picture || is_changing);
+        self.shared.library.hold(!has_picture || is_changing);
         if is_changing {
             ctx.request_repaint_after(MOVING);
         }
@@ -423,8 +424,8 @@ impl App {
                 menu::bar(
                     ui,
                     &self.edits,
-                    &mut self.panels.recent,
-                    self.panels.import_lobe,
+                    &mut self.shared.recent,
+                    self.shared.import_lobe,
                     actions,
                 );
             });
@@ -442,10 +443,12 @@ impl App {
                 snapshot: &snapshot,
                 edits: &mut self.edits,
                 actions,
-                state: &mut self.panels,
+                shared: &mut self.shared,
             };
+            self.panels.tick(&mut desk);
             let mut panes = layout::Panes {
                 desk: &mut desk,
+                panels: &mut self.panels,
                 viewport: &mut self.viewport,
             };
             self.layout.ui(&mut panes, ui);
@@ -514,9 +517,6 @@ impl eframe::App for App {
         self.take_events(&ctx);
         self.picture_window(&ctx);
         let mut actions = std::mem::take(&mut self.queue);
-        if self.panels.study_ended() && self.panels.is_paused {
-            actions.push(Action::Do(Command::Pause));
-        }
         if !self.is_covered() {
             actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
         }
@@ -553,9 +553,9 @@ impl eframe::App for App {
         let kept = settings::Kept {
             theme: self.theme,
             layout: Some(layout),
-            resolution: self.panels.resolution,
-            import_lobe: self.panels.import_lobe,
-            recent: self.panels.recent.paths().to_vec(),
+            resolution: self.shared.resolution,
+            import_lobe: self.shared.import_lobe,
+            recent: self.shared.recent.paths().to_vec(),
         };
         kept.save(storage);
     }

@@ -7,8 +7,8 @@ use egui::ThemePreference;
 use egui_tiles::Tree;
 use serde::{Deserialize, Serialize};
 
-use super::layout::{self, Pane};
-use super::panels::Resolution;
+use crate::app::desk::Resolution;
+use crate::app::layout::{self, Pane};
 use crate::document::ImportLobe;
 
 /// Under which the window's state is stored.
@@ -96,7 +96,7 @@ impl Kept {
             .storage
             .and_then(|storage| eframe::get_value(storage, KEY))
             .unwrap_or_default();
-        kept.layout = kept.layout.filter(layout::is_complete);
+        kept.layout = kept.layout.and_then(layout::complete);
         kept
     }
 

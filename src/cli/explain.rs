@@ -6,7 +6,7 @@ use anyhow::{Context, bail};
 use clap::Args;
 
 use super::parse;
-use super::render::SceneArguments;
+use super::scene::SceneArguments;
 use crate::render::explain::{PathAccount, explain};
 use crate::render::{EngineChoice, Session};
 

@@ -13,6 +13,8 @@ mod parse;
 mod plan;
 mod render;
 mod scatter;
+mod scene;
+mod settings;
 mod shell;
 mod study;
 mod turntable;

@@ -37,11 +37,6 @@ pub(super) fn numbers_in<const N: usize>(
     }
 }
 
-/// The places and targets of the camera.
-pub(super) fn place(text: &str) -> Result<[f64; 3], String> {
-    numbers_in([range::COORDINATE, range::COORDINATE, range::COORDINATE])(text)
-}
-
 /// The part of a picture: left, top, right, bottom as shares of it.
 pub(super) fn region(text: &str) -> Result<[f64; 4], String> {
     let sides = numbers_in([range::REGION, range::REGION, range::REGION, range::REGION])(text)?;
@@ -164,14 +159,5 @@ pub(super) fn environment_encoding(text: &str) -> Result<EnvironmentEncoding, St
         "display" => Ok(EnvironmentEncoding::Display),
         "linear" => Ok(EnvironmentEncoding::Linear),
         other => Err(format!("{other} is neither display nor linear")),
-    }
-}
-
-/// `on` or `off`.
-pub(super) fn on_or_off(text: &str) -> Result<bool, String> {
-    match text {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        other => Err(format!("{other} is neither on nor off")),
     }
 }

@@ -6,7 +6,7 @@ use anyhow::Context;
 use clap::Args;
 
 use super::parse;
-use super::render::SceneArguments;
+use super::scene::SceneArguments;
 use crate::job::effect::{Decision, EffectId};
 use crate::job::plan::Plan;
 use crate::render::{EngineChoice, Session};

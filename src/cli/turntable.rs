@@ -7,7 +7,8 @@ use anyhow::Context;
 use clap::Args;
 
 use super::names;
-use super::render::{SceneArguments, bar};
+use super::render::bar;
+use super::scene::SceneArguments;
 use crate::document::turntable::Turn;
 use crate::render::Session;
 use crate::render::turntable::{Turntable, frame_path, render};

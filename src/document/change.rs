@@ -58,8 +58,6 @@ impl Change {
         let (light, other_light) = (&old.lighting, &new.lighting);
         let (lights, other_lights) = (&light.area_lights, &other_light.area_lights);
         let (render, other) = (&old.render, &new.render);
-        self.display |= old.view.denoise_when != new.view.denoise_when;
-        self.target |= old.view.denoise != new.view.denoise;
         self.environment |= (&light.environment, light.environment_encoding)
             != (&other_light.environment, other_light.environment_encoding);
         self.lighting |= light.background != other_light.background;

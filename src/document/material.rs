@@ -88,7 +88,7 @@ pub struct MaterialSettings {
 impl Default for MaterialSettings {
     fn default() -> Self {
         let mut material = Self {
-            name: "material".to_owned(),
+            name: "Plain".to_owned(),
             base_weight: 1.0,
             base_color: [0.8; 3],
             metalness: 1.0,

@@ -126,6 +126,7 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
 #[test]
 fn wrong_arguments_are_refused() {
     let place = Workplace::new();
+    place.refused(1, "render nowhere.json", &["nowhere.json", "check the path"]);
     for (arguments, words) in [
         ("--output p.jpg", ["p.jpg", ".png, .exr or .hdr"]),
         ("--output picture", ["picture", ".png, .exr or .hdr"]),
@@ -150,7 +151,7 @@ fn wrong_arguments_are_refused() {
         ("--noise nan", ["--noise", "0.00001 to 1"]),
         ("--noise 2%", ["--noise", "0.00001 to 1"]),
         ("--min-samples 1", ["--min-samples", "2"]),
-        ("--adaptive maybe", ["--adaptive", "neither on nor off"]),
+        ("--adaptive maybe", ["--adaptive", "on or off, or auto"]),
         ("--bounces 65", ["--bounces", "64"]),
         ("--fov nan", ["--fov", "0.1 to 170"]),
         ("--fov 180", ["--fov", "0.1 to 170"]),
@@ -163,8 +164,8 @@ fn wrong_arguments_are_refused() {
         ("--camera-orbit nan,0", ["--camera-orbit", "give a number"]),
         ("--camera-orbit 10", ["--camera-orbit", "2 numbers"]),
         ("--camera-orbit 0,91", ["--camera-orbit", "-90 to 90"]),
-        ("--camera-target 0,0,inf", ["--camera-target", "give a number"]),
-        ("--camera-position 1,2", ["--camera-position", "3 numbers"]),
+        ("--camera-target 0,0,inf", ["--camera-target", "three numbers"]),
+        ("--camera-position 1,2", ["--camera-position", "three numbers"]),
         ("--camera-distance 0", ["--camera-distance", "give a number"]),
         (
             "--camera-position 1,2,3 --camera-orbit 1,2",
@@ -181,6 +182,12 @@ fn wrong_arguments_are_refused() {
         ("--sequence halton", ["--sequence", "sobol"]),
         ("--engine abacus", ["--engine", "auto, gpu or cpu"]),
         ("--seed -1", ["--seed", "-1"]),
+        ("--ground=perhaps", ["--ground", "on or off"]),
+        (
+            "--camera-position 1,2,3 --camera-distance 2",
+            ["--camera-position", "--camera-distance"],
+        ),
+        ("--firefly-clamp 0", ["--firefly-clamp", "or off"]),
     ] {
         place.refused(2, &format!("render {arguments}"), &words);
     }

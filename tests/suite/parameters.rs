@@ -7,18 +7,13 @@ use glossmith::store::preset;
 /// Values of a kind: both ends and something between, every choice.
 fn values_of(kind: &Kind) -> Vec<Value> {
     match kind {
-        Kind::Number {
-            range: [low, high],
-            soft_range,
-            ..
-        } => {
-            let between = soft_range[0] + 0.317 * (soft_range[1] - soft_range[0]);
-            [*low, between, *high].map(Value::Number).to_vec()
+        Kind::Number { range: [low, high], .. } => {
+            [*low, low + 0.317 * (high - low), *high].map(Value::Number).to_vec()
         }
         Kind::Real { range: [low, high], .. } => [*low, low + 0.317 * (high - low), *high].map(Value::Real).to_vec(),
         Kind::Count { range: [low, high] } => [*low, low + (high - low) / 3, *high].map(Value::Count).to_vec(),
         Kind::Place { range: [low, high] } => vec![Value::Place([*low, *high, 0.1])],
-        Kind::Optional(kind, _) => values_of(kind).into_iter().chain([Value::Absent]).collect(),
+        Kind::Optional { kind, .. } => values_of(kind).into_iter().chain([Value::Absent]).collect(),
         Kind::Color => vec![Value::Color([0.0, 1.0, 0.123_456_7]), Value::Color([0.9; 3])],
         Kind::Triple { range: [low, high] } => {
             vec![Value::Triple([*low, *high, 0.765_432_1]), Value::Triple([*low; 3])]
@@ -51,7 +46,7 @@ fn invalid_texts(kind: &Kind) -> Vec<String> {
         }
         Kind::Count { .. } => &["-1", "1.5", "4294967296", "many", ""],
         Kind::Place { .. } => &["1", "1,2", "1,2,x", "1,2,3,4", "NaN,0,0", "1e10,0,0"],
-        Kind::Optional(kind, _) => return invalid_texts(kind),
+        Kind::Optional { kind, .. } => return invalid_texts(kind),
         Kind::Color => &[
             "#12345", "#+1+2+3", "#äöü", "1,1", "1,1,1,1", "-0.1,0,0", "1.1,0,0", "red", "NaN,0,0", "",
         ],
@@ -100,20 +95,22 @@ fn every_parameter_is_described_and_its_default_is_in_range() {
             parameter.key
         );
         assert_eq!(parameter.check(&parameter.default_value()), Ok(()), "{}", parameter.key);
-        if let Kind::Number {
-            range,
-            soft_range,
-            step,
-            ..
-        } = &parameter.kind
-        {
-            assert!(range[0] <= soft_range[0] && soft_range[0] < soft_range[1] && soft_range[1] <= range[1]);
-            assert!(
-                *step > 0.0 && *step < soft_range[1] - soft_range[0],
-                "{}",
-                parameter.key
-            );
-        }
+        bar_lies_in_range(parameter);
+    }
+}
+
+/// The bar of a row spans a part of what its number may be.
+fn bar_lies_in_range<T>(parameter: &Parameter<T>) {
+    let range = match &parameter.kind {
+        Kind::Number { range, .. } => range.map(f64::from),
+        Kind::Real { range, .. } => *range,
+        Kind::Count { range } => range.map(f64::from),
+        _ => return,
+    };
+    if let Some(bar) = parameter.row.bar {
+        let key = parameter.key;
+        assert!(range[0] <= bar[0] && bar[0] < bar[1] && bar[1] <= range[1], "{key}");
+        assert!(parameter.row.step > 0.0, "{key}");
     }
 }
 
@@ -179,6 +176,7 @@ fn every_setting_is_set_by_its_key_checked_and_called_a_change_of_its_stage() {
             "{key} is a material's, too"
         );
         assert_eq!(setting.check(&setting.default_value()), Ok(()), "{key}");
+        bar_lies_in_range(setting);
         for value in valid_values(setting) {
             let mut document = Document::default();
             document

@@ -1,6 +1,6 @@
 //! Documents with some of everything, in range: for the tests of plans, and for the benchmark that takes more of them.
 
-use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, Strategy, Value};
+use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, Parameter, Strategy, Value};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::PRESETS;
@@ -59,12 +59,12 @@ fn color(random: &mut Random) -> [f32; 3] {
     })
 }
 
-fn value(random: &mut Random, kind: &Kind, present: &Value) -> Value {
-    match kind {
-        Kind::Number {
-            soft_range: [low, high],
-            ..
-        } => Value::Number(number(random, *low, *high)),
+fn value(random: &mut Random, parameter: &Parameter, present: &Value) -> Value {
+    match &parameter.kind {
+        Kind::Number { range, .. } => {
+            let [low, high] = parameter.row.bar.map_or(*range, |bar| bar.map(|end| end as f32));
+            Value::Number(number(random, low, high))
+        }
         Kind::Color => Value::Color(color(random)),
         Kind::Triple { range: [low, high] } => Value::Triple([0; 3].map(|_| range(random, *low, high.min(5.0)))),
         Kind::Choice(choices) => Value::Choice(choices[random.below(choices.len())].name),
@@ -89,7 +89,7 @@ pub fn random_document(random: &mut Random) -> Document {
     let mut material = PRESETS[random.below(PRESETS.len())].clone();
     for parameter in PARAMETERS.iter() {
         if random.below(4) == 0 {
-            let value = value(random, &parameter.kind, &parameter.get(&material));
+            let value = value(random, parameter, &parameter.get(&material));
             // Soft ranges lie within what is taken.
             parameter.set(&mut material, value).expect("in range");
         }

@@ -103,8 +103,115 @@ fn every_folder_has_its_place_in_the_order() {
     }
 }
 
+/// The parts of the window, each after those that it may use.
+const LAYERS_OF_APP: &[&[&str]] = &[
+    &["kit"],
+    &["services"],
+    &["pane"],
+    &["actions"],
+    &["desk"],
+    &["study"],
+    &["panels", "viewport", "sheets"],
+    &["layout"],
+    &["settings"],
+];
+
+/// The parts of the window that a file of it names, other than in comments: `crate::app::part` from anywhere, and
+/// `super::part` from files that stand directly in the folder or are the root of a part.
+fn used_of_app(text: &str, is_near: bool) -> BTreeSet<String> {
+    let code: Vec<&str> = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .collect();
+    let code = code.join("\n");
+    let far = code.split("crate::app::").skip(1);
+    let near = code.split("super::").skip(1).filter(|_| is_near);
+    let first = |path: &str| {
+        path.split(|c: char| !c.is_alphanumeric() && c != '_')
+            .next()
+            .unwrap_or("")
+            .to_owned()
+    };
+    far.chain(near).map(first).collect()
+}
+
+#[test]
+fn the_window_is_built_in_layers() {
+    let app = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app");
+    let mut wrong = Vec::new();
+    for (height, parts) in LAYERS_OF_APP.iter().enumerate() {
+        for part in *parts {
+            let mut files = Vec::new();
+            if app.join(part).is_dir() {
+                sources(&app.join(part), &mut files);
+            } else {
+                files.push(app.join(part).with_extension("rs"));
+            }
+            for file in files {
+                let is_near = file.parent() == Some(&app) || file.ends_with("mod.rs");
+                let used = used_of_app(&fs::read_to_string(&file).unwrap(), is_near);
+                let may = |name: &String| {
+                    let is_below = LAYERS_OF_APP[..height]
+                        .iter()
+                        .any(|layer| layer.contains(&name.as_str()));
+                    is_below || name == part
+                };
+                let is_part = |name: &&String| {
+                    ["App", "handlers"].contains(&name.as_str())
+                        || LAYERS_OF_APP.iter().any(|layer| layer.contains(&name.as_str()))
+                };
+                let beyond = used.iter().filter(is_part).filter(|name| !may(name));
+                wrong.extend(beyond.map(|name| format!("{} uses {name}", file.display())));
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "against the layers of src/app:\n{}", wrong.join("\n"));
+}
+
+/// Panels know the desk, never each other.
+#[test]
+fn panels_keep_to_themselves() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/app/panels");
+    let name_of = |path: &Path| path.file_stem().unwrap().to_str().unwrap().to_owned();
+    let panels: Vec<PathBuf> = fs::read_dir(&folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    let names: BTreeSet<String> = panels.iter().map(|path| name_of(path)).collect();
+    let mut wrong = Vec::new();
+    for panel in panels.iter().filter(|path| !path.ends_with("mod.rs")) {
+        let mut files = Vec::new();
+        if panel.is_dir() {
+            sources(panel, &mut files);
+        } else {
+            files.push(panel.clone());
+        }
+        for file in files {
+            let text = fs::read_to_string(&file).unwrap();
+            // In the root of a panel `super` is all panels; in its parts it is the panel.
+            let is_root = file.parent() == Some(&folder) || file.ends_with("mod.rs");
+            let paths = text.split("super::").skip(1).filter(|_| is_root);
+            let paths = paths.chain(text.split("panels::").skip(1));
+            let other = paths
+                .map(|path| {
+                    path.split(|c: char| !c.is_alphanumeric() && c != '_')
+                        .next()
+                        .unwrap_or("")
+                        .to_owned()
+                })
+                .filter(|name| names.contains(name) && *name != name_of(panel));
+            wrong.extend(other.map(|name| format!("{} uses {name}", file.display())));
+        }
+    }
+    assert!(wrong.is_empty(), "panels that know each other:\n{}", wrong.join("\n"));
+}
+
 #[test]
 fn the_reader_of_paths_sees_a_use_and_no_comment() {
     let text = "use crate::app::Editor;\n// crate::cli\n    let x = crate::store::file::read(crate::gpu::open());\n";
     assert_eq!(used(text), BTreeSet::from(["app", "gpu", "store"]));
+    let text = "use crate::app::desk::Desk;\n// super::kit\nuse super::panels::Panels;\n";
+    let names = |is_near| used_of_app(text, is_near).into_iter().collect::<Vec<_>>();
+    assert_eq!(names(true), ["desk", "panels"]);
+    assert_eq!(names(false), ["desk"]);
 }

@@ -1,36 +1,40 @@
 //! Error against time: how exact the picture is, and what more would cost.
 
-use std::ops::RangeInclusive;
-
 use egui::{Color32, Ui};
-use egui_plot::{GridInput, GridMark, HLine, Line, LineStyle, Plot, PlotPoints, Points};
+use egui_plot::{HLine, Line, LineStyle, PlotPoints, Points};
 
-use super::Desk;
-use crate::app::status::percent;
-use crate::app::{theme, widgets};
+use super::Panel;
+use crate::app::desk::Desk;
+use crate::app::kit::charts::log_log;
+use crate::app::kit::words::{duration, percent, percent_short};
+use crate::app::kit::{theme, widgets};
 use crate::document::RenderSettings;
 use crate::render::{Measurement, Progress};
 
-/// The share of an axis at either end in which there are no labels: half of a label's height in a low chart.
-const LABEL_GAP: f64 = 0.05;
 /// The errors that are aimed at where the document names none.
 const STEPS: [f64; 10] = [0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005];
 
-pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let history = &desk.snapshot.history;
-    let Some(last) = history.last() else {
-        widgets::note(ui, unknown(&desk.document.render));
-        return;
-    };
-    let progress = &desk.snapshot.progress;
-    // Their number changes by itself.
-    widgets::comes_and_goes(ui, |ui| words(ui, last, progress));
-    plot(ui, history, progress.noise_wanted);
-    widgets::note(
-        ui,
-        "Dots: the estimated relative error against the engine's own time, thin lines its 95 % band, dashed the law \
-         1/√t through the last one.",
-    );
+/// Error against time.
+#[derive(Default)]
+pub(super) struct ConvergencePanel;
+
+impl Panel for ConvergencePanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let history = &desk.snapshot.history;
+        let Some(last) = history.last() else {
+            widgets::note(ui, unknown(&desk.document.render));
+            return;
+        };
+        let progress = &desk.snapshot.progress;
+        // Their number changes by itself.
+        widgets::comes_and_goes(ui, |ui| words(ui, last, progress));
+        plot(ui, history, progress.noise_wanted);
+        widgets::note(
+            ui,
+            "Dots: the estimated relative error against the engine's own time, thin lines its 95 % band, dashed the law \
+             1/√t through the last one.",
+        );
+    }
 }
 
 /// When the error is known for the first time.
@@ -76,22 +80,6 @@ fn outlook(last: &Measurement, wanted: Option<f64>) -> Option<String> {
     Some(format!("{name} in {} more", duration(seconds)))
 }
 
-fn percent_short(share: f64) -> String {
-    // Fifteen digits hide what the hundredfold adds to a decimal number.
-    format!("{} %", (share * 1e10).round() / 1e8)
-}
-
-/// A time in words, two digits.
-pub(super) fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 0.0995 => format!("{:.0} ms", 1e3 * s),
-        s if s < 9.95 => format!("{s:.1} s"),
-        s if s < 100.0 => format!("{s:.0} s"),
-        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
-}
-
 fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
     let visible: Vec<&Measurement> = history
         .iter()
@@ -133,50 +121,6 @@ fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
     shown.response.accessible_name("Error against time");
 }
 
-/// A plot that stands still, of logarithms to base 10: seconds to the right, shares upwards.
-pub(super) fn log_log(name: &str, height: f32, margin: [f32; 2]) -> Plot<'static> {
-    Plot::new(name)
-        .height(height)
-        .allow_drag(false)
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .show_background(false)
-        .x_grid_spacer(decades)
-        .y_grid_spacer(decades)
-        .x_axis_formatter(|mark: GridMark, range: &RangeInclusive<f64>| {
-            label_within(mark.value, range, || duration(10.0_f64.powf(mark.value)))
-        })
-        .y_axis_formatter(|mark: GridMark, range: &RangeInclusive<f64>| {
-            label_within(mark.value, range, || percent_short(10.0_f64.powf(mark.value)))
-        })
-        .set_margin_fraction(margin.into())
-}
-
-/// A mark's label, unless it is so near an end of the axis that it would be drawn over what stands beside the chart.
-fn label_within(value: f64, range: &RangeInclusive<f64>, label: impl FnOnce() -> String) -> String {
-    let gap = LABEL_GAP * (range.end() - range.start());
-    if (range.start() + gap..=range.end() - gap).contains(&value) {
-        label()
-    } else {
-        String::new()
-    }
-}
-
-/// A line for each power of ten, fainter ones for its 2 and 5: those that lie in the chart, as labels of others would be
-/// drawn beside it.
-fn decades(input: GridInput) -> Vec<GridMark> {
-    let (low, high) = input.bounds;
-    let (first, last) = (low.floor() as i32, high.ceil() as i32);
-    let marks = (first..=last).flat_map(|decade| {
-        [(1.0_f64, 1.0), (2.0, 0.3), (5.0, 0.3)].map(|(digit, step_size)| GridMark {
-            value: f64::from(decade) + digit.log10(),
-            step_size,
-        })
-    });
-    marks.filter(|mark| (low..=high).contains(&mark.value)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -193,23 +137,6 @@ mod tests {
                 from_spread: relative,
                 mean_luminance: 1.0,
             },
-        }
-    }
-
-    #[test]
-    fn labels_stay_within_their_chart() {
-        for bounds in [(-1.7, 0.4), (0.05, 0.2), (-3.0, 3.0)] {
-            let marks = decades(GridInput {
-                bounds,
-                base_step_size: 1.0,
-            });
-            let range = bounds.0..=bounds.1;
-            for mark in &marks {
-                assert!(range.contains(&mark.value), "{mark:?} beside {bounds:?}");
-            }
-            let label = |value| label_within(value, &range, || "label".to_owned());
-            assert_eq!(label(0.5 * (bounds.0 + bounds.1)), "label");
-            assert_eq!([label(bounds.0), label(bounds.1)], ["", ""]);
         }
     }
 

@@ -3,10 +3,11 @@
 use egui::{Key, Modifiers, Pos2, Ui, Vec2b};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints, PlotUi, Points};
 
-use super::Desk;
-use crate::app::icons::{self, Icon};
-use crate::app::theme;
-use crate::app::widgets::{self, Name, NumberStyle};
+use super::Panel;
+use crate::app::desk::Desk;
+use crate::app::kit::icons::{self, Icon};
+use crate::app::kit::theme;
+use crate::app::kit::widgets::{self, Name, NumberStyle};
 use crate::document::custom_curve::{CustomCurve, DISTANCE_MAX, DISTANCE_MIN, POINTS_MAX, XI_STEP_MIN};
 use crate::optics::curve::{Curve, curve_density, curve_distance, curve_distance_max};
 use crate::optics::lobe::Lobe;
@@ -24,66 +25,61 @@ const FINE_STEPS: usize = 1000;
 /// What ctrl snaps to.
 const SNAP: f64 = 0.05;
 
-/// What the editor remembers.
-#[derive(Clone, Debug, Default)]
-pub(in crate::app) struct CurveState {
+/// The geometric lobe's curve, to look at and to draw.
+#[derive(Default)]
+pub(super) struct CurvePanel {
     dragged: Option<usize>,
     selected: Option<usize>,
     /// The curve as this panel left it.
     left: CustomCurve,
 }
 
-pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let before = desk.material();
-    if before.lobe != Lobe::Geometric {
-        widgets::note(
-            ui,
-            "Only the geometric lobe has a curve: choose it in the material panel.",
-        );
-        return;
-    }
-    let mut material = before.clone();
-    head(ui, desk, &mut material);
-    // Only now: the head may just have made the curve a custom one, which is looked up in its table.
-    let table = if material.curve == Curve::Custom {
-        material.custom_curve.table()
-    } else {
-        Vec::new()
-    };
-    let mut points: Vec<[f64; 2]> = material
-        .custom_curve
-        .points()
-        .iter()
-        .map(|point| point.map(f64::from))
-        .collect();
-    let is_custom = material.curve == Curve::Custom;
-    let state = &mut desk.state.curve;
-    if state.left != material.custom_curve {
-        // Something else changed it, such as undo during a drag: which points there are now, the drag does not know.
-        (state.dragged, state.selected) = (None, None);
-    }
-    quantile_plot(
-        ui,
-        &mut desk.state.curve,
-        material.curve,
-        &table,
-        is_custom.then_some(&mut points),
-    );
-    if is_custom {
-        selected_point(ui, &mut desk.state.curve, &mut points);
-        let drawn = points.iter().map(|point| point.map(|x| x as f32)).collect::<Vec<_>>();
-        if drawn != material.custom_curve.points()
-            && let Ok(curve) = CustomCurve::try_from(drawn)
-        {
-            material.custom_curve = curve;
-            desk.edits.note("Draw the curve", "custom curve");
+impl Panel for CurvePanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let before = desk.material();
+        if before.lobe != Lobe::Geometric {
+            widgets::note(
+                ui,
+                "Only the geometric lobe has a curve: choose it in the material panel.",
+            );
+            return;
         }
-    }
-    desk.state.curve.left.clone_from(&material.custom_curve);
-    distance_plot(ui, material.curve, &table);
-    horizon(ui, material.roughness, curve_distance_max(material.curve, &table));
-    if material != before {
-        desk.set_material(material);
+        let mut material = before.clone();
+        head(ui, desk, &mut material);
+        // Only now: the head may just have made the curve a custom one, which is looked up in its table.
+        let table = if material.curve == Curve::Custom {
+            material.custom_curve.table()
+        } else {
+            Vec::new()
+        };
+        let mut points: Vec<[f64; 2]> = material
+            .custom_curve
+            .points()
+            .iter()
+            .map(|point| point.map(f64::from))
+            .collect();
+        let is_custom = material.curve == Curve::Custom;
+        if self.left != material.custom_curve {
+            // Something else changed it, such as undo during a drag: which points there are now, the drag does not know.
+            (self.dragged, self.selected) = (None, None);
+        }
+        quantile_plot(ui, self, material.curve, &table, is_custom.then_some(&mut points));
+        if is_custom {
+            selected_point(ui, self, &mut points);
+            let drawn = points.iter().map(|point| point.map(|x| x as f32)).collect::<Vec<_>>();
+            if drawn != material.custom_curve.points()
+                && let Ok(curve) = CustomCurve::try_from(drawn)
+            {
+                material.custom_curve = curve;
+                desk.edits.note("Draw the curve", "custom curve");
+            }
+        }
+        self.left.clone_from(&material.custom_curve);
+        distance_plot(ui, material.curve, &table);
+        horizon(ui, material.roughness, curve_distance_max(material.curve, &table));
+        if material != before {
+            desk.set_material(material);
+        }
     }
 }
 
@@ -163,7 +159,7 @@ fn plot_height(ui: &Ui) -> f32 {
 }
 
 /// D over ξ; the points of a custom curve are dragged, double-clicked into being and away.
-fn quantile_plot(ui: &mut Ui, state: &mut CurveState, curve: Curve, table: &[f32], points: Option<&mut Vec<[f64; 2]>>) {
+fn quantile_plot(ui: &mut Ui, state: &mut CurvePanel, curve: Curve, table: &[f32], points: Option<&mut Vec<[f64; 2]>>) {
     let accent = theme::accent(ui.visuals().dark_mode);
     let line: Vec<[f64; 2]> = (0..=STEPS)
         .map(|i| i as f64 / STEPS as f64)
@@ -200,7 +196,7 @@ fn quantile_plot(ui: &mut Ui, state: &mut CurveState, curve: Curve, table: &[f32
     });
 }
 
-fn draw_points(plot_ui: &mut PlotUi<'_>, state: &CurveState, points: &[[f64; 2]], color: egui::Color32) {
+fn draw_points(plot_ui: &mut PlotUi<'_>, state: &CurvePanel, points: &[[f64; 2]], color: egui::Color32) {
     plot_ui.points(
         Points::new("points", PlotPoints::from(points.to_vec()))
             .radius(4.5)
@@ -216,7 +212,7 @@ fn draw_points(plot_ui: &mut PlotUi<'_>, state: &CurveState, points: &[[f64; 2]]
     }
 }
 
-fn edit(plot_ui: &PlotUi<'_>, state: &mut CurveState, points: &mut Vec<[f64; 2]>) {
+fn edit(plot_ui: &PlotUi<'_>, state: &mut CurvePanel, points: &mut Vec<[f64; 2]>) {
     let response = plot_ui.response();
     let Some(pointer) = response.interact_pointer_pos() else {
         state.dragged = None;
@@ -290,7 +286,7 @@ fn place(points: &mut [[f64; 2]], index: usize, to: [f64; 2]) {
     points[index][1] = to[1].clamp(least, high[1].max(least));
 }
 
-fn insert(points: &mut Vec<[f64; 2]>, point: [f64; 2], state: &mut CurveState) {
+fn insert(points: &mut Vec<[f64; 2]>, point: [f64; 2], state: &mut CurvePanel) {
     let index = points.partition_point(|[xi, _]| *xi < point[0]);
     let step = f64::from(XI_STEP_MIN);
     let is_inside = index > 0 && index < points.len();
@@ -303,7 +299,7 @@ fn insert(points: &mut Vec<[f64; 2]>, point: [f64; 2], state: &mut CurveState) {
 }
 
 /// The selected point in numbers.
-fn selected_point(ui: &mut Ui, state: &mut CurveState, points: &mut Vec<[f64; 2]>) {
+fn selected_point(ui: &mut Ui, state: &mut CurvePanel, points: &mut Vec<[f64; 2]>) {
     let Some(index) = state.selected.filter(|index| *index < points.len()) else {
         widgets::note(
             ui,
@@ -424,7 +420,7 @@ mod tests {
             .iter()
             .map(|p| p.map(f64::from))
             .collect();
-        let mut state = CurveState::default();
+        let mut state = CurvePanel::default();
         let places = [
             [-1.0, -1.0],
             [2.0, 50.0],

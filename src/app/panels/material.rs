@@ -4,54 +4,61 @@ use std::sync::Arc;
 
 use egui::Ui;
 
-use super::Desk;
+use super::Panel;
 use crate::app::actions::{Action, Command};
-use crate::app::icons::{self, Icon};
-use crate::app::theme;
-use crate::app::widgets::{self, Name, NumberStyle};
-use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter, Value};
+use crate::app::desk::Desk;
+use crate::app::kit::icons::{self, Icon};
+use crate::app::kit::widgets;
+use crate::app::kit::{parameter_row, theme};
+use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter};
 use crate::scene::{AlphaMode, Model, Texture};
 
-pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    widgets::comes_and_goes(ui, |ui| slots(ui, desk));
-    let before = desk.material();
-    let mut material = before.clone();
-    name(ui, desk, &mut material);
-    ui.add_space(theme::GAP);
-    let mut groups: Vec<&'static str> = Vec::new();
-    let textures = textures(desk);
-    let is_shown = |parameter: &&Parameter| match parameter.kind {
-        // A texture's switch stands beside its picture, where the model has one.
-        Kind::Toggle => textures.iter().any(|(key, _)| *key == parameter.key),
-        _ => (parameter.applies)(&before),
-    };
-    for parameter in PARAMETERS.iter() {
-        if !groups.contains(&parameter.group) {
-            groups.push(parameter.group);
-        }
-    }
-    for group in groups {
-        let parameters = || PARAMETERS.iter().filter(|parameter| parameter.group == group);
-        let mut rows = |ui: &mut Ui| {
-            for parameter in parameters() {
-                widgets::comes_and_goes(ui, |ui| {
-                    if is_shown(&parameter) {
-                        let picture = textures.iter().find(|(key, _)| *key == parameter.key);
-                        let picture = picture.map(|(_, picture)| picture.as_ref());
-                        show_parameter(ui, desk, parameter, picture, &mut material);
-                    }
-                });
-            }
+/// The parameters of the selected material.
+#[derive(Default)]
+pub(super) struct MaterialPanel;
+
+impl Panel for MaterialPanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        widgets::comes_and_goes(ui, |ui| slots(ui, desk));
+        let before = desk.material();
+        let mut material = before.clone();
+        name(ui, desk, &mut material);
+        ui.add_space(theme::GAP);
+        let mut groups: Vec<&'static str> = Vec::new();
+        let textures = textures(desk);
+        let is_shown = |parameter: &&Parameter| match parameter.kind {
+            // A texture's switch stands beside its picture, where the model has one.
+            Kind::Toggle => textures.iter().any(|(key, _)| *key == parameter.key),
+            _ => (parameter.applies)(&before),
         };
-        // A group of textures comes with the model's pictures, above others that stay.
-        widgets::comes_and_goes(ui, |ui| {
-            if parameters().any(|parameter| is_shown(&parameter)) {
-                widgets::group(ui, group, &mut rows);
+        for parameter in PARAMETERS.iter() {
+            if !groups.contains(&parameter.group) {
+                groups.push(parameter.group);
             }
-        });
-    }
-    if material != before {
-        desk.set_material(material);
+        }
+        for group in groups {
+            let parameters = || PARAMETERS.iter().filter(|parameter| parameter.group == group);
+            let mut rows = |ui: &mut Ui| {
+                for parameter in parameters() {
+                    widgets::comes_and_goes(ui, |ui| {
+                        if is_shown(&parameter) {
+                            let picture = textures.iter().find(|(key, _)| *key == parameter.key);
+                            let picture = picture.map(|(_, picture)| picture.as_ref());
+                            show_parameter(ui, desk, parameter, picture, &mut material);
+                        }
+                    });
+                }
+            };
+            // A group of textures comes with the model's pictures, above others that stay.
+            widgets::comes_and_goes(ui, |ui| {
+                if parameters().any(|parameter| is_shown(&parameter)) {
+                    widgets::group(ui, group, &mut rows);
+                }
+            });
+        }
+        if material != before {
+            desk.set_material(material);
+        }
     }
 }
 
@@ -61,8 +68,8 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
     let Some(count) = desk.scene().map(|scene| scene.model.slots.len()) else {
         return;
     };
-    if desk.state.slot >= count.max(1) {
-        desk.state.slot = 0;
+    if desk.shared.slot >= count.max(1) {
+        desk.shared.slot = 0;
     }
     if count < 2 {
         return;
@@ -79,7 +86,7 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
                 name.clone()
             };
             let width = egui::vec2(ui.available_width(), theme::ROW_HEIGHT);
-            let item = egui::Button::selectable(slot == desk.state.slot, label).min_size(width);
+            let item = egui::Button::selectable(slot == desk.shared.slot, label).min_size(width);
             if ui.add(item).clicked() {
                 desk.actions.push(Action::SelectSlot(slot));
             }
@@ -110,7 +117,7 @@ fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
 /// The pictures of the selected slot, by the keys of the parameters that switch them.
 fn textures(desk: &Desk<'_>) -> Vec<(&'static str, Arc<SlotPicture>)> {
     let Some(scene) = desk.scene() else { return Vec::new() };
-    let Some(slot) = scene.model.slots.get(desk.state.slot) else {
+    let Some(slot) = scene.model.slots.get(desk.shared.slot) else {
         return Vec::new();
     };
     let opacity = slot.base_color_texture.filter(|_| slot.alpha_mode != AlphaMode::Opaque);
@@ -175,11 +182,7 @@ fn small_copy(picture: &Texture) -> egui::ColorImage {
     egui::ColorImage::new([width as usize, height as usize], pixels.collect())
 }
 
-/// What a parameter's row is called for screen readers, tests and the palette.
-pub(in crate::app) fn full_name(parameter: &Parameter) -> String {
-    format!("{} {}", parameter.group, parameter.label.to_lowercase())
-}
-
+/// The row of a parameter, with the picture that its switch stands for.
 fn show_parameter(
     ui: &mut Ui,
     desk: &mut Desk<'_>,
@@ -187,69 +190,14 @@ fn show_parameter(
     picture: Option<&SlotPicture>,
     material: &mut MaterialSettings,
 ) {
-    let full = full_name(parameter);
-    let name = Name {
-        full: &full,
-        label: parameter.label,
-        symbol: parameter.symbol,
-        help: parameter.help,
-    };
     let mut value = parameter.get(material);
-    let response = widgets::row(ui, name, |ui| {
-        let response = control(ui, parameter, &full, &mut value);
+    let is_other = parameter_row::show(ui, parameter, &mut value, |ui| {
         if let Some(picture) = picture {
             picture.show(ui);
         }
-        response
     });
-    if response.reset {
-        value = parameter.default_value();
-    }
-    // A control may leave the range behind for a moment, as a picker does: such a value is not taken.
-    if (response.changed || response.reset) && parameter.set(material, value).is_ok() {
-        desk.edits
-            .note(full.clone(), format!("{}/{}", desk.state.slot, parameter.key));
-    }
-}
-
-fn control(ui: &mut Ui, parameter: &Parameter, full: &str, value: &mut Value) -> egui::Response {
-    match (&parameter.kind, value) {
-        (
-            Kind::Number {
-                range,
-                soft_range,
-                unit,
-                step,
-            },
-            Value::Number(number),
-        ) => {
-            let style = NumberStyle {
-                range: f64::from(range[0])..=f64::from(range[1]),
-                bar: Some(soft_range.map(f64::from)),
-                unit,
-                speed: f64::from(*step),
-                decimals: if *step >= 1.0 { 1 } else { 3 },
-            };
-            widgets::number(ui, number, &style)
-        }
-        (Kind::Color, Value::Color(linear)) => {
-            let response = widgets::color(ui, full, linear);
-            *linear = linear.map(|x| x.clamp(0.0, 1.0));
-            response
-        }
-        (Kind::Triple { range }, Value::Triple(values)) => {
-            widgets::triple(ui, full, values, f64::from(range[0])..=f64::from(range[1]))
-        }
-        (Kind::Choice(choices), Value::Choice(name)) => {
-            let choices: Vec<_> = choices
-                .iter()
-                .map(|choice| (choice.name, choice.label, choice.help))
-                .collect();
-            widgets::choice(ui, parameter.key, name, &choices)
-        }
-        (Kind::Toggle, Value::Toggle(is_on)) => ui.checkbox(is_on, ""),
-        (Kind::Curve, Value::Curve(points)) => ui.label(format!("{} points", points.len())),
-        // A registry test keeps kinds and values together.
-        _ => ui.label("not shown"),
+    if is_other && parameter.set(material, value).is_ok() {
+        let key = format!("{}/{}", desk.shared.slot, parameter.key);
+        desk.edits.note(parameter.full_name(), key);
     }
 }

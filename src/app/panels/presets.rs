@@ -2,37 +2,47 @@
 
 use egui::{Response, TextureHandle, Ui, Vec2, vec2};
 
-use super::Desk;
+use super::Panel;
 use crate::app::actions::{Action, Command};
-use crate::app::library::{Change, Library, Shown};
-use crate::app::theme;
-use crate::app::widgets::{self, PictureRow};
+use crate::app::desk::Desk;
+use crate::app::kit::theme;
+use crate::app::kit::widgets::{self, PictureRow};
+use crate::app::services::library::{Change, Library, Shown};
 use crate::document::MaterialSettings;
 use crate::store::PRESETS;
 
 /// Side of a material's picture, points.
 const PICTURE: f32 = 36.0;
 
-pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let search = egui::TextEdit::singleline(&mut desk.state.preset_search)
-        .hint_text("Search")
-        .desired_width(f32::INFINITY)
-        .margin(vec2(6.0, 4.0));
-    ui.add(search).accessible_name("Search presets");
-    ui.add_space(0.5 * theme::GAP);
-    desk.state.library.make_pictures(ui.ctx());
-    widgets::comes_and_goes(ui, |ui| entries(ui, desk));
-    ui.add_space(theme::GAP);
-    widgets::comes_and_goes(ui, |ui| restoring(ui, desk));
-    let save = ui.button(Command::SaveToMyPresets.label());
-    if save.on_hover_text(Command::SaveToMyPresets.help()).clicked() {
-        desk.act(Command::SaveToMyPresets);
+/// The materials to start from.
+#[derive(Default)]
+pub(super) struct PresetsPanel {
+    /// What is searched for.
+    search: String,
+}
+
+impl Panel for PresetsPanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let search = egui::TextEdit::singleline(&mut self.search)
+            .hint_text("Search")
+            .desired_width(f32::INFINITY)
+            .margin(vec2(6.0, 4.0));
+        ui.add(search).accessible_name("Search presets");
+        ui.add_space(0.5 * theme::GAP);
+        desk.shared.library.make_pictures(ui.ctx());
+        widgets::comes_and_goes(ui, |ui| entries(ui, desk, &self.search));
+        ui.add_space(theme::GAP);
+        widgets::comes_and_goes(ui, |ui| restoring(ui, desk));
+        let save = ui.button(Command::SaveToMyPresets.label());
+        if save.on_hover_text(Command::SaveToMyPresets.help()).clicked() {
+            desk.act(Command::SaveToMyPresets);
+        }
     }
 }
 
 /// The button that brings back what was deleted last.
 fn restoring(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let removed = desk.state.library.removed.as_ref();
+    let removed = desk.shared.library.removed.as_ref();
     if let Some(name) = removed.and_then(|removed| removed.path().file_stem())
         && ui.button(format!("Restore {}", name.to_string_lossy())).clicked()
     {
@@ -41,8 +51,8 @@ fn restoring(ui: &mut Ui, desk: &mut Desk<'_>) {
 }
 
 /// The materials whose names have what is searched for.
-fn entries(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let wanted = desk.state.preset_search.to_lowercase();
+fn entries(ui: &mut Ui, desk: &mut Desk<'_>, search: &str) {
+    let wanted = search.to_lowercase();
     let current = desk.material();
     let mut found = false;
     for (index, material) in PRESETS.iter().enumerate() {
@@ -50,12 +60,12 @@ fn entries(ui: &mut Ui, desk: &mut Desk<'_>) {
             continue;
         }
         found = true;
-        let picture = desk.state.library.shipped_picture(index);
+        let picture = desk.shared.library.shipped_picture(index);
         if entry(ui, material, picture, *material == current).clicked() {
             desk.actions.push(Action::UseMaterial(Box::new(material.clone())));
         }
     }
-    let library = &mut desk.state.library;
+    let library = &mut desk.shared.library;
     let own: Vec<Shown> = std::mem::take(&mut library.own);
     let is_wanted = |shown: &&Shown| shown.entry.name().to_lowercase().contains(&wanted);
     for (at, shown) in own.iter().filter(is_wanted).enumerate() {

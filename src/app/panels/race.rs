@@ -1,24 +1,24 @@
 //! The race: techniques against each other on this view, and the one that is worth its time.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
 use egui::{ColorImage, TextureHandle, TextureOptions, Ui};
 use egui_plot::{Line, PlotPoint, PlotPoints, PlotResponse, Points, Text};
 
-use super::Desk;
-use super::convergence::{duration, log_log};
-use super::study::{StudyWorker, engine};
-use crate::app::status::percent;
-use crate::app::widgets::{self, Name, NumberStyle};
-use crate::app::{theme, widgets::RowResponse};
+use super::Panel;
+use crate::app::actions::Command;
+use crate::app::desk::Desk;
+use crate::app::kit::charts::log_log;
+use crate::app::kit::widgets::{self, Name, NumberStyle};
+use crate::app::kit::words::{duration, percent};
+use crate::app::kit::{theme, widgets::RowResponse};
+use crate::app::study::{StudyWorker, engine, small_document};
+use crate::document::ViewSettings;
 use crate::document::technique::{GROUPS, Technique};
-use crate::document::{Document, ViewSettings};
 use crate::job::plan::Plan;
 use crate::render::display::display;
 use crate::render::study::race::{Race, RaceOptions, Runner, race};
-use crate::render::study::references::ReferenceCache;
 
 /// Longest side of the raced picture, pixels.
 const SIDE_MAX: u32 = 160;
@@ -31,12 +31,11 @@ const CHOSEN: [&str; 3] = ["strategy", "bounces", "fresnel"];
 /// References are rendered up to so many times as long as each one races.
 const REFERENCE_TIMES: f64 = 4.0;
 
-/// What the panel remembers.
-pub(in crate::app) struct RaceState {
+/// Techniques against each other on this view.
+pub(super) struct RacePanel {
     worker: StudyWorker<Race>,
     chosen: Vec<&'static str>,
     seconds: f64,
-    cache: ReferenceCache,
     shows_equal_error: bool,
     pictured: Option<Pictured>,
 }
@@ -48,86 +47,63 @@ struct Pictured {
     equal_error: Vec<TextureHandle>,
 }
 
-impl Default for RaceState {
+impl Default for RacePanel {
     fn default() -> Self {
-        Self::new(None)
-    }
-}
-
-impl RaceState {
-    /// `cache` is the folder that converged pictures are kept in.
-    pub(in crate::app) fn new(cache: Option<PathBuf>) -> Self {
         Self {
             worker: StudyWorker::default(),
             chosen: CHOSEN.to_vec(),
             seconds: 2.0,
-            cache: cache.map_or_else(ReferenceCache::none, ReferenceCache::at),
             shows_equal_error: false,
             pictured: None,
         }
     }
+}
 
-    /// Whether a race is being run.
-    pub(super) fn is_running(&self) -> bool {
-        self.worker.is_running()
+impl Panel for RacePanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let state = self;
+        choices(ui, state);
+        let help = "Renders this view with each of them by turns, and measures what is left of noise and bias.";
+        let (chosen, seconds, cache) = (state.chosen.clone(), state.seconds, desk.shared.references.clone());
+        state.worker.controls(ui, desk, "Run the race", help, |desk| {
+            let document = small_document(desk, SIDE_MAX);
+            let plan = desk
+                .snapshot
+                .scene
+                .as_ref()
+                .map_or_else(Plan::general, |scene| scene.job.plan.clone());
+            let groups = GROUPS.iter().filter(|group| chosen.contains(&group.name));
+            let options = RaceOptions {
+                seconds,
+                slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
+                reference_seconds: REFERENCE_TIMES * seconds,
+                cache,
+                ..RaceOptions::new(engine(desk), groups.flat_map(|group| group.members(&plan)).collect())
+            };
+            Box::new(move |watch| race(&document, &options, watch))
+        });
+        match state.worker.found() {
+            None => widgets::note(
+                ui,
+                "Which settings are worth their time on this view: how soon each reaches a noise of 2 %, and how far it \
+                 stays from the most accurate picture.",
+            ),
+            Some(found) => outcome(ui, desk, state, &found),
+        }
     }
 
-    /// See [`StudyWorker::lets_renderer_go`].
-    pub(super) fn lets_renderer_go(&mut self) -> bool {
-        self.worker.lets_renderer_go()
+    fn tick(&mut self, desk: &mut Desk<'_>) {
+        self.worker.tick(desk);
     }
 
-    /// Races when the panel is shown next.
-    pub(in crate::app) fn wish(&mut self) {
-        self.worker.wish();
+    fn hear(&mut self, command: Command) {
+        if command == Command::Race {
+            self.worker.wish();
+        }
     }
 }
 
-pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let mut state = std::mem::take(&mut desk.state.race);
-    choices(ui, &mut state);
-    let help = "Renders this view with each of them by turns, and measures what is left of noise and bias.";
-    let (chosen, seconds, cache) = (state.chosen.clone(), state.seconds, state.cache.clone());
-    state.worker.controls(ui, desk, "Run the race", help, |desk| {
-        let document = small_document(desk, SIDE_MAX);
-        let plan = desk
-            .snapshot
-            .scene
-            .as_ref()
-            .map_or_else(Plan::general, |scene| scene.job.plan.clone());
-        let groups = GROUPS.iter().filter(|group| chosen.contains(&group.name));
-        let options = RaceOptions {
-            seconds,
-            slice: Duration::from_secs_f64((seconds / 20.0).clamp(0.005, 0.25)),
-            reference_seconds: REFERENCE_TIMES * seconds,
-            cache,
-            ..RaceOptions::new(engine(desk), groups.flat_map(|group| group.members(&plan)).collect())
-        };
-        Box::new(move |watch| race(&document, &options, watch))
-    });
-    match state.worker.found() {
-        None => widgets::note(
-            ui,
-            "Which settings are worth their time on this view: how soon each reaches a noise of 2 %, and how far it \
-             stays from the most accurate picture.",
-        ),
-        Some(found) => outcome(ui, desk, &mut state, &found),
-    }
-    desk.state.race = state;
-}
-
-/// The document as it is rendered, so small that a race is short.
-pub(super) fn small_document(desk: &Desk<'_>, side_max: u32) -> Document {
-    let mut document = desk.document.clone();
-    let size = desk.snapshot.scene.as_ref().map(|scene| scene.job.settings.image_size);
-    let [width, height] = size.unwrap_or([document.render.width, document.render.height]);
-    let scale = f64::from(side_max) / f64::from(width.max(height).max(side_max));
-    let side = |length: u32| ((f64::from(length) * scale).round() as u32).max(1);
-    (document.render.width, document.render.height) = (side(width), side(height));
-    document
-}
-
-fn choices(ui: &mut Ui, state: &mut RaceState) {
+fn choices(ui: &mut Ui, state: &mut RacePanel) {
     for group in GROUPS {
         let mut is_chosen = state.chosen.contains(&group.name);
         if ui
@@ -151,11 +127,11 @@ fn choices(ui: &mut Ui, state: &mut RaceState) {
     let name = Name::new("Time of each", "Time of each", "How long each of them renders.");
     let RowResponse { reset, .. } = widgets::row(ui, name, |ui| widgets::number(ui, &mut state.seconds, &style));
     if reset {
-        state.seconds = RaceState::default().seconds;
+        state.seconds = RacePanel::default().seconds;
     }
 }
 
-fn outcome(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut RaceState, race: &Arc<Race>) {
+fn outcome(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut RacePanel, race: &Arc<Race>) {
     let mut taken = chart(ui, race);
     widgets::note(
         ui,
@@ -290,7 +266,7 @@ fn bias(runner: &Runner) -> String {
 }
 
 /// The small pictures of equal time or of equal error.
-fn pictures(ui: &mut Ui, desk: &Desk<'_>, state: &mut RaceState, race: &Arc<Race>) {
+fn pictures(ui: &mut Ui, desk: &Desk<'_>, state: &mut RacePanel, race: &Arc<Race>) {
     ui.horizontal(|ui| {
         ui.selectable_value(&mut state.shows_equal_error, false, "Equal time");
         ui.selectable_value(&mut state.shows_equal_error, true, "Equal error");

@@ -5,10 +5,11 @@ use std::sync::Arc;
 use egui::{Color32, ColorImage, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions, Ui, Vec2, pos2, vec2};
 use egui_plot::{Bar, BarChart, Legend, Line, Plot, PlotPoints};
 
-use super::Desk;
-use crate::app::status::short_number;
-use crate::app::theme;
-use crate::app::widgets::{self, Name, NumberStyle};
+use super::Panel;
+use crate::app::desk::Desk;
+use crate::app::kit::theme;
+use crate::app::kit::widgets::{self, Name};
+use crate::app::kit::words::short_number;
 use crate::job::scatter::ScatterRequest;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::vector::Vec3;
@@ -52,12 +53,11 @@ const COUNTS: [(u32, &str, &str); 4] = [
     (1_000_000, "1 M", ""),
 ];
 
-/// What the panel remembers.
+/// The samples that the engine draws of the lobe, as a cloud or against the angle.
 #[derive(Default)]
-pub(in crate::app) struct SampleState {
+pub(super) struct SamplesPanel {
     worker: Option<SampleWorker>,
     asked: Option<SampleQuery>,
-    pub(in crate::app) view_angle_deg: Option<f32>,
     count: Option<u32>,
     look: Look,
     compare: bool,
@@ -74,59 +74,50 @@ struct Drawn {
     texture: TextureHandle,
 }
 
-/// The angle between view and normal at first.
-const VIEW_ANGLE_DEG: f32 = 45.0;
-
-pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let Some(query) = query(desk) else {
-        widgets::note(ui, "The engine is being opened.");
-        return;
-    };
-    controls(ui, &mut desk.state.samples);
-    let state = &mut desk.state.samples;
-    if state.worker.is_none() {
-        let ctx = ui.ctx().clone();
-        state.worker = spawn_samples(move || ctx.request_repaint()).ok();
-    }
-    let Some(worker) = &state.worker else {
-        widgets::note(ui, "The system gives no thread to draw samples on.");
-        return;
-    };
-    if state.asked.as_ref() != Some(&query) {
-        worker.ask(query.clone());
-        state.asked = Some(query);
-    }
-    widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
-    match worker.latest() {
-        None if worker.is_busy() => {
-            ui.add(egui::Spinner::new());
+impl Panel for SamplesPanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let Some(query) = query(self, desk) else {
+            widgets::note(ui, "The engine is being opened.");
+            return;
+        };
+        controls(ui, desk, self);
+        let state = self;
+        if state.worker.is_none() {
+            let ctx = ui.ctx().clone();
+            state.worker = spawn_samples(move || ctx.request_repaint()).ok();
         }
-        None => {}
-        Some(Err(why)) => {
-            ui.colored_label(ui.visuals().error_fg_color, why);
+        let Some(worker) = &state.worker else {
+            widgets::note(ui, "The system gives no thread to draw samples on.");
+            return;
+        };
+        if state.asked.as_ref() != Some(&query) {
+            worker.ask(query.clone());
+            state.asked = Some(query);
         }
-        Some(Ok(report)) => {
-            if state.look == Look::Angle {
-                angle_plot(ui, &report);
-            } else {
-                cloud(ui, state, &report);
+        widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
+        match worker.latest() {
+            None if worker.is_busy() => {
+                ui.add(egui::Spinner::new());
             }
-            numbers(ui, &report);
+            None => {}
+            Some(Err(why)) => {
+                ui.colored_label(ui.visuals().error_fg_color, why);
+            }
+            Some(Ok(report)) => {
+                if state.look == Look::Angle {
+                    angle_plot(ui, &report);
+                } else {
+                    cloud(ui, state, &report);
+                }
+                numbers(ui, &report);
+            }
         }
-    }
-}
-
-impl SampleState {
-    /// The angle between view and normal, degrees.
-    pub(super) fn view_angle_deg(&self) -> f32 {
-        self.view_angle_deg.unwrap_or(VIEW_ANGLE_DEG)
     }
 }
 
 /// What the plots are of: the selected material's specular lobe.
-fn query(desk: &Desk<'_>) -> Option<SampleQuery> {
+fn query(state: &SamplesPanel, desk: &Desk<'_>) -> Option<SampleQuery> {
     let engine = desk.snapshot.engine.as_ref()?;
-    let state = &desk.state.samples;
     let material = desk.material();
     let is_custom = material.lobe == Lobe::Geometric && material.curve == crate::optics::curve::Curve::Custom;
     let request = ScatterRequest {
@@ -145,7 +136,7 @@ fn query(desk: &Desk<'_>) -> Option<SampleQuery> {
         } else {
             Vec::new()
         },
-        view_angle_deg: state.view_angle_deg(),
+        view_angle_deg: desk.shared.view_angle_deg,
         count: state.count.unwrap_or(COUNTS[1].0),
         seed: desk.document.render.seed,
     };
@@ -156,7 +147,7 @@ fn query(desk: &Desk<'_>) -> Option<SampleQuery> {
     })
 }
 
-fn controls(ui: &mut Ui, state: &mut SampleState) {
+fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut SamplesPanel) {
     ui.horizontal_wrapped(|ui| {
         for (look, label, help) in LOOKS {
             if ui
@@ -168,7 +159,7 @@ fn controls(ui: &mut Ui, state: &mut SampleState) {
             }
         }
     });
-    view_angle_row(ui, state);
+    desk.view_angle_row(ui);
     let mut count = state.count.unwrap_or(COUNTS[1].0);
     let name = Name::new("Samples drawn", "Samples", "How many are drawn for the plot.");
     if widgets::row(ui, name, |ui| widgets::choice(ui, "sample count", &mut count, &COUNTS)).changed {
@@ -181,31 +172,6 @@ fn controls(ui: &mut Ui, state: &mut SampleState) {
         });
     }
     ui.add_space(4.0);
-}
-
-/// The angle that the plots of samples and lobes share.
-pub(super) fn view_angle_row(ui: &mut Ui, state: &mut SampleState) {
-    let mut view_angle_deg = state.view_angle_deg();
-    let style = NumberStyle {
-        range: 0.0..=89.9,
-        bar: Some([0.0, 89.9]),
-        unit: "°",
-        speed: 0.5,
-        decimals: 1,
-    };
-    let name = Name {
-        full: "Samples view angle",
-        label: "View angle",
-        symbol: "θ",
-        help: "Between the view and the normal. A click in the viewport takes the angle of the place there.",
-    };
-    let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut view_angle_deg, &style));
-    if response.changed {
-        state.view_angle_deg = Some(view_angle_deg);
-    }
-    if response.reset {
-        state.view_angle_deg = None;
-    }
 }
 
 /// Where a direction lies in a view, in [−1, 1]² (x to the right, y up).
@@ -221,7 +187,7 @@ fn project(look: Look, direction: Vec3<f32>, mirror: Vec3<f32>) -> [f32; 2] {
     }
 }
 
-fn cloud(ui: &mut Ui, state: &mut SampleState, report: &Arc<SampleReport>) {
+fn cloud(ui: &mut Ui, state: &mut SamplesPanel, report: &Arc<SampleReport>) {
     let side = ui.available_width().min(420.0);
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(side), Sense::hover());
     response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "The samples"));

@@ -2,48 +2,55 @@
 
 use egui::{Rect, Sense, Ui, vec2};
 
-use super::Desk;
+use super::Panel;
 use crate::app::actions::{Action, Command};
-use crate::app::compare::Rival;
-use crate::app::snapshots::PinChange;
-use crate::app::{theme, widgets};
+use crate::app::desk::Desk;
+use crate::app::kit::{theme, widgets};
+use crate::app::services::compare::Rival;
+use crate::app::services::snapshots::PinChange;
 
 /// Width and height of a picture's place, points.
 const PLACE: egui::Vec2 = vec2(112.0, 74.0);
 
-pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
-    ui.horizontal_wrapped(|ui| {
-        let pin = ui.button(Command::Pin.label());
-        if pin.on_hover_text(Command::Pin.help()).clicked() {
-            desk.act(Command::Pin);
+/// The pinned states.
+#[derive(Default)]
+pub(super) struct SnapshotsPanel;
+
+impl Panel for SnapshotsPanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        ui.horizontal_wrapped(|ui| {
+            let pin = ui.button(Command::Pin.label());
+            if pin.on_hover_text(Command::Pin.help()).clicked() {
+                desk.act(Command::Pin);
+            }
+            let removed = desk.shared.snapshots.removed.as_ref();
+            let name = removed.and_then(|removed| removed.path().file_stem());
+            if let Some(name) = name
+                && ui.button(format!("Restore {}", name.to_string_lossy())).clicked()
+            {
+                desk.actions.push(Action::ChangeSnapshots(PinChange::Restore));
+            }
+        });
+        ui.add_space(theme::GAP);
+        renaming(ui, desk);
+        if desk.shared.snapshots.pinned.is_empty() {
+            widgets::note(
+                ui,
+                "P pins material, light and camera as they are, to come back to and to compare with.",
+            );
+            return;
         }
-        let removed = desk.state.snapshots.removed.as_ref();
-        let name = removed.and_then(|removed| removed.path().file_stem());
-        if let Some(name) = name
-            && ui.button(format!("Restore {}", name.to_string_lossy())).clicked()
-        {
-            desk.actions.push(Action::ChangeSnapshots(PinChange::Restore));
-        }
-    });
-    ui.add_space(theme::GAP);
-    renaming(ui, desk);
-    if desk.state.snapshots.pinned.is_empty() {
-        widgets::note(
-            ui,
-            "P pins material, light and camera as they are, to come back to and to compare with.",
-        );
-        return;
+        ui.horizontal_wrapped(|ui| {
+            for index in 0..desk.shared.snapshots.pinned.len() {
+                entry(ui, desk, index);
+            }
+        });
     }
-    ui.horizontal_wrapped(|ui| {
-        for index in 0..desk.state.snapshots.pinned.len() {
-            entry(ui, desk, index);
-        }
-    });
 }
 
 /// The field for the new name of the one that is being renamed.
 fn renaming(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let Some((path, name)) = &mut desk.state.snapshots.renaming else {
+    let Some((path, name)) = &mut desk.shared.snapshots.renaming else {
         return;
     };
     let chosen = widgets::name_field(ui, name);
@@ -51,12 +58,12 @@ fn renaming(ui: &mut Ui, desk: &mut Desk<'_>) {
     if let Some(chosen) = chosen {
         let rename = |name| Action::ChangeSnapshots(PinChange::Rename(path.clone(), name));
         desk.actions.extend(chosen.map(rename));
-        desk.state.snapshots.renaming = None;
+        desk.shared.snapshots.renaming = None;
     }
 }
 
 fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
-    let pinned = &desk.state.snapshots.pinned[index];
+    let pinned = &desk.shared.snapshots.pinned[index];
     let (name, path) = (pinned.name.clone(), pinned.path.clone());
     let materials = pinned.document.materials.clone();
     let size = pinned.size.map(|side| side as f32);
@@ -79,7 +86,7 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
     let share = place.size() / (scale * vec2(size[0], size[1]));
     let middle = Rect::from_center_size(egui::pos2(0.5, 0.5), share);
     let ctx = ui.ctx().clone();
-    if let Some(picture) = desk.state.snapshots.picture(&ctx, index) {
+    if let Some(picture) = desk.shared.snapshots.picture(&ctx, index) {
         egui::Image::new(picture)
             .uv(middle)
             .corner_radius(3.0)
@@ -118,6 +125,6 @@ fn entry(ui: &mut Ui, desk: &mut Desk<'_>, index: usize) {
         desk.actions.push(Action::UseSnapshot(path.clone()));
     }
     if is_renaming {
-        desk.state.snapshots.renaming = Some((path, name));
+        desk.shared.snapshots.renaming = Some((path, name));
     }
 }

@@ -7,11 +7,11 @@ use egui::{Align, Align2, Color32, CursorIcon, Key, Layout, Rect, Response, Sens
 use super::{Shown, Viewport, placed};
 use crate::analysis::difference::diverging;
 use crate::app::actions::{Action, Command};
-use crate::app::compare::{Compared, Rival, View};
-use crate::app::icons::{self, Icon};
-use crate::app::panels::Desk;
-use crate::app::theme;
-use crate::app::widgets::{self, NumberStyle};
+use crate::app::desk::Desk;
+use crate::app::kit::icons::{self, Icon};
+use crate::app::kit::theme;
+use crate::app::kit::widgets::{self, NumberStyle};
+use crate::app::services::compare::{Compared, Rival, View};
 use crate::optics::lobe::Lobe;
 use crate::render::worker::Picture;
 use crate::store::PRESETS;
@@ -46,19 +46,19 @@ fn halves(area: Rect) -> [Rect; 2] {
 impl Viewport {
     /// Shows A, `a`, and B where there is a picture of it; returns where what the pointer is over is shown.
     pub(super) fn compared(&mut self, ui: &mut Ui, area: Rect, a: &Picture, desk: &mut Desk<'_>) -> Rect {
-        let resolution = desk.state.resolution;
-        let place = placed(area_of_a(area, desk.state.compare.view), a, resolution);
-        let Some(b) = desk.state.compare.picture() else {
+        let resolution = desk.shared.resolution;
+        let place = placed(area_of_a(area, desk.shared.compare.view), a, resolution);
+        let Some(b) = desk.shared.compare.picture() else {
             self.picture.paint(ui, place, place, a, 0);
             label(ui, place, Align2::RIGHT_TOP, "B …");
             return place;
         };
-        let generation = desk.state.compare.generation;
+        let generation = desk.shared.compare.generation;
         let [name_a, name_b] = desk.compared_names();
         let [name_a, name_b] = [format!("A  {name_a}"), format!("B  {name_b}")];
-        match desk.state.compare.view {
+        match desk.shared.compare.view {
             View::Wipe => {
-                let x = egui::lerp(place.x_range(), desk.state.compare.divider);
+                let x = egui::lerp(place.x_range(), desk.shared.compare.divider);
                 let (left, right) = (place.with_max_x(x), place.with_min_x(x));
                 self.picture.paint(ui, left, place, a, 0);
                 self.rival.paint(ui, right, place, &b, generation);
@@ -77,7 +77,7 @@ impl Viewport {
                     return right_place;
                 }
             }
-            View::Difference => match desk.state.compare.compared() {
+            View::Difference => match desk.shared.compare.compared() {
                 Some(compared) => {
                     self.difference.paint_difference(ui, place, &compared, generation);
                     legend(ui, place, &compared);
@@ -85,7 +85,7 @@ impl Viewport {
                 None => self.picture.paint(ui, place, place, a, 0),
             },
             View::Flicker => {
-                let hz = f64::from(desk.state.compare.flicker_hz.max(0.1));
+                let hz = f64::from(desk.shared.compare.flicker_hz.max(0.1));
                 let turns = ui.input(|input| input.time) * hz;
                 ui.ctx()
                     .request_repaint_after(Duration::from_secs_f64((1.0 - turns.fract()) / hz));
@@ -103,7 +103,7 @@ impl Viewport {
 
     /// The divider over the picture. To be shown after what turns the camera, so that it is before that.
     pub(super) fn divider(ui: &mut Ui, place: Rect, desk: &mut Desk<'_>) {
-        let compare = &mut desk.state.compare;
+        let compare = &mut desk.shared.compare;
         let x = egui::lerp(place.x_range(), compare.divider);
         let rect = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, place.y_range());
         let response = ui.interact(rect, ui.scope_id().with("divider"), Sense::drag());
@@ -238,7 +238,7 @@ fn contestants(ui: &mut Ui, desk: &mut Desk<'_>) {
     ui.add(egui::Label::new(desk.material().name).truncate());
     ui.weak("B");
     rivals(ui, desk);
-    let why = desk.state.compare.match_error(&desk.material());
+    let why = desk.shared.compare.match_error(&desk.material());
     widgets::comes_and_goes(ui, |ui| {
         if let Some(why) = why {
             let color = ui.visuals().warn_fg_color;
@@ -260,11 +260,11 @@ fn contestants(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 fn rivals(ui: &mut Ui, desk: &mut Desk<'_>) {
     let material = desk.material();
-    let current = desk.state.compare.rival.clone();
+    let current = desk.shared.compare.rival.clone();
     let mut chosen = None;
     let combo = egui::ComboBox::from_id_salt("rival")
         .width(190.0)
-        .selected_text(desk.state.compare.name(&material));
+        .selected_text(desk.shared.compare.name(&material));
     let shown = combo.show_ui(ui, |ui| {
         let mut entry = |ui: &mut Ui, text: &str, rival: Rival| {
             if ui.selectable_label(current == rival, text).clicked() {
@@ -276,7 +276,7 @@ fn rivals(ui: &mut Ui, desk: &mut Desk<'_>) {
         for lobe in Lobe::ALL.iter().filter(|lobe| **lobe != material.lobe) {
             entry(ui, lobe.label(), Rival::Lobe(*lobe));
         }
-        let pinned = &desk.state.snapshots.pinned;
+        let pinned = &desk.shared.snapshots.pinned;
         if !pinned.is_empty() {
             widgets::note(ui, "Snapshots");
         }
@@ -288,7 +288,7 @@ fn rivals(ui: &mut Ui, desk: &mut Desk<'_>) {
             );
         }
         widgets::note(ui, "Presets");
-        let own = desk.state.library.own.iter();
+        let own = desk.shared.library.own.iter();
         let own = own.filter_map(|shown| shown.entry.material.as_ref().ok());
         for preset in own.chain(PRESETS.iter()) {
             entry(ui, &preset.name, Rival::Material(Box::new(preset.clone())));
@@ -302,7 +302,7 @@ fn rivals(ui: &mut Ui, desk: &mut Desk<'_>) {
 }
 
 fn views(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let compare = &mut desk.state.compare;
+    let compare = &mut desk.shared.compare;
     for (view, label, help) in View::ALL {
         let response = ui.selectable_label(compare.view == view, label).on_hover_text(help);
         if response.clicked() {

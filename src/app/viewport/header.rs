@@ -2,12 +2,11 @@
 
 use egui::{Align, Layout, Rect, Ui, UiBuilder, vec2};
 
-use crate::app::actions::{Action, Command};
-use crate::app::icons::{self, Icon};
-use crate::app::menu::do_and_close;
-use crate::app::panels::{Desk, camera, lighting};
-use crate::app::widgets;
-use crate::optics::tone::ToneCurve;
+use crate::app::actions::{Action, Command, do_and_close};
+use crate::app::desk::{Desk, RESOLUTIONS};
+use crate::app::kit::icons::{self, Icon};
+use crate::app::kit::widgets;
+use crate::app::services::environments;
 use crate::render::display::Shown;
 use crate::scene::ModelSource;
 
@@ -76,9 +75,9 @@ fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
     let current = desk.document.lighting.environment.clone();
     let combo = egui::ComboBox::from_id_salt("environment")
         .width(120.0)
-        .selected_text(lighting::environment_label(&current));
+        .selected_text(environments::environment_label(&current));
     let shown = combo.show_ui(ui, |ui| {
-        for (label, help, source) in &lighting::BUILT_IN {
+        for (label, help, source) in &environments::BUILT_IN {
             if ui
                 .selectable_label(current == *source, *label)
                 .on_hover_text(*help)
@@ -100,7 +99,7 @@ fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
 
 /// Added from the right.
 fn shown(ui: &mut Ui, desk: &mut Desk<'_>, has_tone_map: bool) {
-    let is_paused = desk.state.is_paused;
+    let is_paused = desk.shared.is_paused;
     let (icon, help) = if is_paused {
         (Icon::Play, "Go on (space)")
     } else {
@@ -110,55 +109,37 @@ fn shown(ui: &mut Ui, desk: &mut Desk<'_>, has_tone_map: bool) {
         desk.act(Command::Pause);
     }
     sized(ui, 84.0, |ui| {
-        let response = widgets::choice(ui, "header shown", &mut desk.state.shown, &Shown::ALL);
+        let response = widgets::choice(ui, "header shown", &mut desk.shared.shown, &Shown::ALL);
         if response.changed() {
-            desk.actions.push(Action::Show(desk.state.shown));
+            desk.actions.push(Action::Show(desk.shared.shown));
         }
         response
             .accessible_name("Viewport shows")
             .on_hover_text("Picture, error, samples or precision");
     });
-    let compares = ui.selectable_label(desk.state.compare.is_on, "A | B");
+    let compares = ui.selectable_label(desk.shared.compare.is_on, "A | B");
     let compares = compares.on_hover_text("Compare with another material or lobe (C)");
     if compares.clicked() {
         desk.act(Command::Compare);
     }
     compares.accessible_name("Compare");
     sized(ui, 104.0, |ui| {
-        let response = widgets::choice(ui, "header size", &mut desk.state.resolution, &camera::RESOLUTIONS);
+        let response = widgets::choice(ui, "header size", &mut desk.shared.resolution, &RESOLUTIONS);
         response
             .accessible_name("Resolution")
             .on_hover_text("Size of the picture");
     });
     sized(ui, 76.0, |ui| {
-        let response = widgets::number(ui, &mut desk.document.view.exposure_ev, &camera::exposure_style());
-        if response.double_clicked() {
-            desk.document.view.exposure_ev = 0.0;
-        }
-        if response.changed() || response.double_clicked() {
-            desk.edits.note("Exposure", "Exposure");
-        }
-        response
-            .accessible_name("Viewport exposure")
-            .on_hover_text("Exposure in stops");
+        desk.setting_control(ui, "view.exposure", "Viewport exposure")
     });
-    if !has_tone_map {
-        return;
+    if has_tone_map {
+        sized(ui, TONE_MAP, |ui| {
+            desk.setting_control(ui, "view.tone_map", "Viewport tone map")
+        });
     }
-    sized(ui, TONE_MAP, |ui| {
-        let choices: Vec<_> = ToneCurve::ALL
-            .iter()
-            .map(|curve| (*curve, curve.label(), curve.help()))
-            .collect();
-        let response = widgets::choice(ui, "header tone map", &mut desk.document.view.tone_map, &choices);
-        if response.changed() {
-            desk.edits.note("Tone map", "Tone map");
-        }
-        response.accessible_name("Viewport tone map").on_hover_text("Tone map");
-    });
 }
 
 pub(super) fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
     let layout = Layout::left_to_right(Align::Center);
-    ui.allocate_ui_with_layout(vec2(width, crate::app::theme::ROW_HEIGHT), layout, add);
+    ui.allocate_ui_with_layout(vec2(width, crate::app::kit::theme::ROW_HEIGHT), layout, add);
 }

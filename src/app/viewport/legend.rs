@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, Rect, TextStyle, Ui, pos2, vec2};
 
-use crate::app::status::percent;
+use crate::app::kit::words::percent;
 use crate::plot::scale_color;
 use crate::render::display::{Scale, Shown};
 

@@ -7,6 +7,7 @@
 mod compare;
 mod header;
 mod legend;
+mod orbit;
 mod precision;
 mod region;
 
@@ -15,11 +16,13 @@ use egui::{
     Vec2, pos2, vec2,
 };
 
-use super::compare::View;
-use super::icons::{self, Icon};
-use super::orbit::Orbit;
-use super::panels::{Desk, Resolution};
-use super::theme;
+use orbit::Orbit;
+
+use super::actions::Action;
+use super::desk::{Desk, Resolution};
+use super::kit::icons::{self, Icon};
+use super::kit::theme;
+use super::services::compare::View;
 use crate::optics::material::Material;
 use crate::render::display;
 use crate::render::worker::{Level, Picture, Scene};
@@ -135,12 +138,12 @@ impl Viewport {
         let is_dark = ui.visuals().dark_mode;
         ui.painter().rect_filled(whole, 0.0, theme::surround(is_dark));
         let bar = Rect::from_min_size(whole.min, vec2(whole.width(), theme::BAR_HEIGHT));
-        let is_compared = desk.state.compare.is_on;
+        let is_compared = desk.shared.compare.is_on;
         let below = if is_compared { compare::BAR_HEIGHT } else { 0.0 };
         let compare_bar = Rect::from_min_size(bar.left_bottom(), vec2(whole.width(), below));
         let area = Rect::from_min_max(compare_bar.left_bottom(), whole.max);
         self.area = Some(if is_compared {
-            compare::area_of_a(area, desk.state.compare.view)
+            compare::area_of_a(area, desk.shared.compare.view)
         } else {
             area
         });
@@ -159,16 +162,16 @@ impl Viewport {
             let place = if is_compared {
                 self.compared(ui, area, picture, desk)
             } else {
-                let place = placed(area, picture, desk.state.resolution);
+                let place = placed(area, picture, desk.shared.resolution);
                 self.picture.paint(ui, place, place, picture, 0);
                 if let Some(scene) = &desk.snapshot.scene
-                    && desk.state.shown == display::Shown::Precision
+                    && desk.shared.shown == display::Shown::Precision
                 {
                     self.precision.show(ui, area, place, &scene.job);
                 }
                 place
             };
-            if is_compared && desk.state.compare.view == View::Wipe {
+            if is_compared && desk.shared.compare.view == View::Wipe {
                 Self::divider(ui, place, desk);
             }
             if let Some((shown, scale)) = picture.map {
@@ -225,7 +228,7 @@ impl Viewport {
         let is_dropped_on = ui.input(|input| !input.raw.dropped_files.is_empty());
         let under_pointer = response.hover_pos().filter(|_| is_dropped_on);
         if let Some(slot) = under_pointer.and_then(|at| hit_at(pixel_at(at, place, scene)?, scene)?.slot) {
-            desk.actions.push(super::actions::Action::SelectSlot(slot));
+            desk.actions.push(Action::SelectSlot(slot));
         }
         self.keys(ui, response, &mut orbit, desk);
         orbit.write(&before, &mut desk.document.camera);
@@ -247,20 +250,20 @@ impl Viewport {
         if modifiers.command && modifiers.shift {
             let last = desk.snapshot.progress.samples_per_pixel.saturating_sub(1);
             let pixel = pixel.map(|share| share as u32);
-            desk.actions.push(super::actions::Action::Explain(pixel, last));
+            desk.actions.push(Action::Explain(pixel, last));
             return;
         }
         let Some(hit) = hit_at(pixel, scene) else { return };
-        let picks_focus = desk.state.picks_focus || modifiers.command;
+        let picks_focus = desk.shared.picks_focus || modifiers.command;
         if picks_focus && desk.document.camera.aperture > 0.0 {
             desk.document.camera.focus_distance = Some(hit.depth);
-            desk.state.picks_focus = false;
+            desk.shared.picks_focus = false;
             desk.edits.note("Focus", "");
             return;
         }
-        desk.state.samples.view_angle_deg = Some(hit.view_angle_deg);
+        desk.shared.view_angle_deg = hit.view_angle_deg;
         if let Some(slot) = hit.slot {
-            desk.actions.push(super::actions::Action::SelectSlot(slot));
+            desk.actions.push(Action::SelectSlot(slot));
         }
     }
 
@@ -397,11 +400,11 @@ fn waiting(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
 
 /// The latest warnings and errors, until they are old or closed.
 fn messages(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
-    for entry in &mut desk.state.log {
+    for entry in &mut desk.shared.messages {
         entry.is_open &= entry.at.elapsed().as_secs_f32() < MESSAGE_SECONDS;
     }
-    let open: Vec<usize> = (0..desk.state.log.len())
-        .filter(|i| desk.state.log[*i].is_open)
+    let open: Vec<usize> = (0..desk.shared.messages.len())
+        .filter(|i| desk.shared.messages[*i].is_open)
         .collect();
     if open.is_empty() {
         return;
@@ -419,8 +422,9 @@ fn messages(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
     );
     for index in open.into_iter().rev().take(3) {
         // Named, as others may come above it while it is being closed.
-        let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("message", desk.state.log[index].number)));
-        let entry = &mut desk.state.log[index];
+        let builder =
+            egui::UiBuilder::new().scope_id(egui::Id::unique(("message", desk.shared.messages[index].number)));
+        let entry = &mut desk.shared.messages[index];
         let color = match entry.level {
             Level::Error => inside.visuals().error_fg_color,
             _ => inside.visuals().warn_fg_color,

@@ -5,9 +5,9 @@ use egui::{
 };
 
 use crate::app::actions::Command;
-use crate::app::icons::{self, Icon};
-use crate::app::panels::Desk;
-use crate::app::theme;
+use crate::app::desk::Desk;
+use crate::app::kit::icons::{self, Icon};
+use crate::app::kit::theme;
 
 /// A rectangle with a side shorter than this was a click, points.
 const SIDE_MIN: f32 = 6.0;

@@ -13,7 +13,8 @@ use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use indicatif::ProgressBar;
 
-use super::render::{SceneArguments, bar};
+use super::render::bar;
+use super::scene::SceneArguments;
 use crate::document::Document;
 use crate::render::study::StudyProgress;
 use crate::render::study::references::ReferenceCache;

@@ -49,12 +49,8 @@ pub enum Kind {
     Number {
         /// Least and largest value that it takes.
         range: [f32; 2],
-        /// What a slider spans.
-        soft_range: [f32; 2],
         /// Unit, or empty.
         unit: &'static str,
-        /// What an arrow key changes it by.
-        step: f32,
     },
     /// A number in double precision.
     Real {
@@ -73,8 +69,15 @@ pub enum Kind {
         /// Least and largest value that each takes.
         range: [f64; 2],
     },
-    /// What may be left to the program, which is written as this word.
-    Optional(Box<Kind>, &'static str),
+    /// What may be left to the program.
+    Optional {
+        /// What it takes otherwise.
+        kind: Box<Kind>,
+        /// How "left to the program" is written.
+        word: &'static str,
+        /// What it is once switched on; `None` where only the scene can tell.
+        at_first: Option<Value>,
+    },
     /// Linear RGB, each in [0, 1].
     Color,
     /// A number for each colour channel.
@@ -99,6 +102,19 @@ pub struct Choice {
     pub label: &'static str,
     /// When to choose it.
     pub help: &'static str,
+}
+
+/// How a panel shows and edits a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowStyle {
+    /// What its bar spans; `None`: it has no bar.
+    pub bar: Option<[f64; 2]>,
+    /// Change per point of dragging where there is no bar.
+    pub step: f64,
+    /// Most digits behind the point.
+    pub decimals: usize,
+    /// True where a share is shown in per cent.
+    pub is_percent: bool,
 }
 
 /// What a change of a parameter calls for. See [`super::Change`].
@@ -141,12 +157,18 @@ pub struct Parameter<T: 'static = MaterialSettings> {
     pub group: &'static str,
     /// Name in panels.
     pub label: &'static str,
+    /// Name in the whole window, in the history and in the palette; empty where group and label say it.
+    pub name: &'static str,
+    /// Name of its option on the command line, where it has one.
+    pub flag: Option<&'static str>,
     /// The paper's symbol, or the usual one; empty where there is none.
     pub symbol: &'static str,
     /// What it does to the picture.
     pub help: &'static str,
     /// What it takes.
     pub kind: Kind,
+    /// How a panel edits it where it is a number.
+    pub row: RowStyle,
     /// What a change of it calls for.
     pub stage: Stage,
     /// True where the parameter has an effect.
@@ -261,6 +283,14 @@ fn within<N: PartialOrd + Copy>([low, high]: [N; 2], value: N) -> bool {
 }
 
 impl<T> Parameter<T> {
+    /// What it is called in the whole window, for the history, the palette, screen readers and tests.
+    pub fn full_name(&self) -> String {
+        match self.name {
+            "" => format!("{} {}", self.group, self.label.to_lowercase()),
+            name => name.to_owned(),
+        }
+    }
+
     /// The value that something has.
     pub fn get(&self, of: &T) -> Value {
         (self.get)(of)
@@ -282,8 +312,8 @@ impl<T> Parameter<T> {
     /// [`ParameterError::Invalid`] where it does not.
     pub fn check(&self, value: &Value) -> Result<(), ParameterError> {
         let kind = match (&self.kind, value) {
-            (Kind::Optional(..), Value::Absent) => return Ok(()),
-            (Kind::Optional(kind, _), _) => kind,
+            (Kind::Optional { .. }, Value::Absent) => return Ok(()),
+            (Kind::Optional { kind, .. }, _) => kind,
             (kind, _) => kind,
         };
         let is_valid = match (kind, value) {
@@ -310,8 +340,8 @@ impl<T> Parameter<T> {
         }
     }
 
-    /// The value written as on the command line: a number, `#rrggbb` (sRGB), `r,g,b` (linear), a name, `true`,
-    /// `false`, or `ξ:D,ξ:D,…`.
+    /// The value written as on the command line: a number, `#rrggbb` (sRGB), `r,g,b` (linear), a name, `on`,
+    /// `off` (or `true`, `false`), or `ξ:D,ξ:D,…`.
     ///
     /// # Errors
     /// [`ParameterError::Invalid`], which says what the parameter takes.
@@ -335,7 +365,7 @@ impl<T> Parameter<T> {
             Value::Absent => self.kind.word_for_absent().to_owned(),
             Value::Color([r, g, b]) | Value::Triple([r, g, b]) => format!("{r},{g},{b}"),
             Value::Choice(name) => (*name).to_owned(),
-            Value::Toggle(on) => on.to_string(),
+            Value::Toggle(on) => if *on { "on" } else { "off" }.to_owned(),
             Value::Curve(points) => {
                 let points: Vec<_> = points.iter().map(|[xi, distance]| format!("{xi}:{distance}")).collect();
                 points.join(",")

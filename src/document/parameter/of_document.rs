@@ -3,8 +3,8 @@
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
-use super::{Kind, Parameter, Stage, Value, choices};
-use crate::document::{Denoise, Document, PixelFilter, Strategy, range};
+use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
+use crate::document::{Background, Denoise, DenoiseWhen, Document, PixelFilter, Strategy, range};
 use crate::named::Named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
@@ -71,11 +71,16 @@ pub static SETTINGS: LazyLock<Vec<Parameter<Document>>> = LazyLock::new(|| {
 fn lighting() -> Vec<Parameter<Document>> {
     use Stage::{Geometry, Lighting, Materials};
     vec![
-        of("scene.ground", Geometry, "Ground", "A plane under the model.", Kind::Toggle, field!(Toggle ground)),
-        of("lighting.rotation", Lighting, "Rotation", "Turns the environment about the vertical axis, anticlockwise seen from above.", single(range::ROTATION_DEG, "°"), field!(Number lighting.rotation_deg)),
-        of("lighting.strength", Lighting, "Strength", "Factor of the environment's radiance.", single(range::STRENGTH, ""), field!(Number lighting.strength)),
-        of("lighting.background_blur", Lighting, "Background blur", "Blurs the environment where the camera sees it, over this angle; light and reflections stay sharp.", single(range::BACKGROUND_BLUR_DEG, "°"), field!(Number lighting.background_blur_deg)),
-        of("lighting.ground_color", Materials, "Ground colour", "Albedo of the ground.", Kind::Color, field!(Color lighting.ground_color)),
+        of("lighting.rotation", Lighting, "Rotation", "Turns the environment about the vertical axis, anticlockwise seen from above. In the viewport: drag with shift.", single(range::ROTATION_DEG, "°"), field!(Number lighting.rotation_deg))
+            .named("Environment rotation").flag("environment-rotation").bar(-180.0, 180.0).decimals(1),
+        of("lighting.strength", Lighting, "Strength", "Factor of the environment's radiance.", single(range::STRENGTH, ""), field!(Number lighting.strength))
+            .named("Environment strength").flag("environment-strength").bar(0.0, 4.0),
+        of("lighting.background_blur", Lighting, "Blur", "Blurs the environment where the camera sees it, over this angle; light and reflections stay sharp.", single(range::BACKGROUND_BLUR_DEG, "°"), field!(Number lighting.background_blur_deg))
+            .named("Background blur").group("Background").flag("background-blur").bar(0.0, 45.0).decimals(1).applies(|document| document.lighting.background == Background::Environment),
+        of("scene.ground", Geometry, "Ground plane", "A matt plane under the model that catches its shadow.", Kind::Toggle, field!(Toggle ground))
+            .named("Ground").group("Ground").flag("ground"),
+        of("lighting.ground_color", Materials, "Colour", "Albedo of the ground.", Kind::Color, field!(Color lighting.ground_color))
+            .named("Ground colour").group("Ground").flag("ground-color").applies(|document| document.ground),
     ]
 }
 
@@ -83,14 +88,22 @@ fn lighting() -> Vec<Parameter<Document>> {
 fn camera() -> Vec<Parameter<Document>> {
     use Stage::Camera;
     vec![
-        of("camera.target", Camera, "Target", "What the camera looks at; auto: the centre of the model.", auto(place()), optional!(Place camera.target)),
-        of("camera.yaw", Camera, "Yaw", "Azimuth of the camera around its target.", real(range::YAW_DEG, "°"), field!(Real camera.yaw_deg)),
-        of("camera.pitch", Camera, "Pitch", "Height of the camera above the target's horizon.", real(range::PITCH_DEG, "°"), field!(Real camera.pitch_deg)),
-        of("camera.distance", Camera, "Distance", "Distance from the target in scene units; auto: the model fills the picture.", auto(real(range::DISTANCE, "")), optional!(Real camera.distance)),
-        of("camera.position", Camera, "Position", "Where the camera is; replaces yaw, pitch and distance unless auto.", auto(place()), optional!(Place camera.position)),
-        of("camera.fov", Camera, "Field of view", "Vertical field of view.", real(range::FOV_DEG, "°"), field!(Real camera.fov_deg)),
-        of("camera.aperture", Camera, "Aperture", "Radius of the lens in bounding radii of the model; 0 is a pinhole, with which everything is sharp.", real(range::APERTURE, ""), field!(Real camera.aperture)),
-        of("camera.focus_distance", Camera, "Focus distance", "How far away things are sharp, in scene units; auto: at the target.", auto(real(range::DISTANCE, "")), optional!(Real camera.focus_distance)),
+        of("camera.fov", Camera, "Field of view", "Vertical angle of the picture; small is a telephoto lens.", real(range::FOV_DEG, "°"), field!(Real camera.fov_deg))
+            .named("Field of view").flag("fov").bar(5.0, 120.0).decimals(1),
+        of("camera.yaw", Camera, "Yaw", "Turns the camera about the vertical axis. In the viewport: drag.", real(range::YAW_DEG, "°"), field!(Real camera.yaw_deg))
+            .named("Yaw").bar(-180.0, 180.0).decimals(1),
+        of("camera.pitch", Camera, "Pitch", "Height of the camera above the target's horizon. In the viewport: drag.", real(range::PITCH_DEG, "°"), field!(Real camera.pitch_deg))
+            .named("Pitch").bar(-90.0, 90.0).decimals(1),
+        of("camera.distance", Camera, "Distance", "Distance from the target in scene units; auto: the model fills the picture.", auto(real(range::DISTANCE, "")), optional!(Real camera.distance))
+            .named("Distance").flag("camera-distance"),
+        of("camera.target", Camera, "Target", "What the camera looks at; auto: the centre of the model.", auto(place()), optional!(Place camera.target))
+            .named("Target").flag("camera-target"),
+        of("camera.position", Camera, "Position", "Where the camera is; replaces yaw, pitch and distance unless auto.", auto(place()), optional!(Place camera.position))
+            .named("Position").flag("camera-position"),
+        of("camera.aperture", Camera, "Aperture", "Radius of the lens in bounding radii of the model; at 0 it is a pinhole, with which everything is sharp.", real(range::APERTURE, ""), field!(Real camera.aperture))
+            .named("Aperture").flag("aperture").bar(0.0, 0.2).decimals(4),
+        of("camera.focus_distance", Camera, "Focus", "How far away things are sharp, in scene units; auto: at the target. In the viewport: click with ctrl.", auto(real(range::DISTANCE, "")), optional!(Real camera.focus_distance))
+            .named("Focus distance").flag("focus-distance").decimals(4).applies(|document| document.camera.aperture > 0.0),
     ]
 }
 
@@ -98,10 +111,16 @@ fn camera() -> Vec<Parameter<Document>> {
 fn view() -> Vec<Parameter<Document>> {
     use Stage::Display;
     vec![
-        of("view.tone_map", Display, "Tone map", "How radiance beyond what a screen can show is brought into its range.", choices::<ToneCurve>(), choice!(view.tone_map)),
-        of("view.exposure", Display, "Exposure", "Brightness in stops: +1 doubles it.", single(range::EXPOSURE_EV, "EV"), field!(Number view.exposure_ev)),
-        of("view.auto_exposure", Display, "Automatic exposure", "Brings the picture's mean brightness to middle grey; the exposure is added.", Kind::Toggle, field!(Toggle view.auto_exposure)),
-        of("view.denoise", Display, "Denoise", "How the picture's noise is taken out.", choices::<Denoise>(), choice!(view.denoise)),
+        of("view.tone_map", Display, "Tone map", "How radiance beyond what a screen can show is brought into its range.", choices::<ToneCurve>(), choice!(view.tone_map))
+            .named("Tone map").flag("tone-map"),
+        of("view.exposure", Display, "Exposure", "Brightness in stops: +1 doubles it.", single(range::EXPOSURE_EV, "EV"), field!(Number view.exposure_ev))
+            .named("Exposure").flag("exposure").bar(-6.0, 6.0).decimals(2),
+        of("view.auto_exposure", Display, "Automatic", "Brings the picture's mean brightness to middle grey; the exposure is added to that.", Kind::Toggle, field!(Toggle view.auto_exposure))
+            .named("Automatic exposure").flag("auto-exposure"),
+        of("view.denoise", Stage::Goal, "Denoise", "Takes the picture's noise out with Open Image Denoise, led by what is seen, and tells how far it then is from the truth. With auto a noise to reach is that of the denoised picture.", choices::<Denoise>(), choice!(view.denoise))
+            .named("Denoise").flag("denoise"),
+        of("view.denoise_when", Display, "When", "When the window takes the noise out: from the first sample on, or once all has been rendered.", choices::<DenoiseWhen>(), choice!(view.denoise_when))
+            .named("Denoise when").applies(|document| document.view.denoise != Denoise::Off),
     ]
 }
 
@@ -109,14 +128,22 @@ fn view() -> Vec<Parameter<Document>> {
 fn sampling() -> Vec<Parameter<Document>> {
     use Stage::{Sampling, Size};
     vec![
-        of("render.width", Size, "Width", "Columns of pixels.", count(range::SIZE), field!(Count render.width)),
-        of("render.height", Size, "Height", "Rows of pixels.", count(range::SIZE), field!(Count render.height)),
-        of("render.filter", Sampling, "Pixel filter", "How samples are spread over a pixel and its neighbours.", choices::<PixelFilter>(), choice!(render.filter)),
-        of("render.bounces", Sampling, "Bounces", "Reflections that a path may have.", count(range::BOUNCES), field!(Count render.bounces)),
-        of("render.firefly_clamp", Sampling, "Firefly clamp", "Limits the radiance of light that was reflected twice or more; the energy that this takes is told.", off(single(range::FIREFLY_CLAMP, "")), optional!(Number render.firefly_clamp)),
-        of("render.sequence", Sampling, "Random numbers", "Which random numbers are drawn.", choices::<Sequence>(), choice!(render.sequence)),
-        of("render.strategy", Sampling, "Light sampling", "How light is found: by sampling the lobe, the light, or both weighed against each other.", choices::<Strategy>(), choice!(render.strategy)),
-        of("render.seed", Sampling, "Seed", "Changes all random numbers.", Kind::Count { range: [0, u32::MAX] }, field!(Count render.seed)),
+        of("render.width", Size, "Width", "Columns of pixels.", count(range::SIZE), field!(Count render.width))
+            .named("Width").group("Picture size"),
+        of("render.height", Size, "Height", "Rows of pixels.", count(range::SIZE), field!(Count render.height))
+            .named("Height").group("Picture size"),
+        of("render.bounces", Sampling, "Bounces", "Reflections that a path may have.", count(range::BOUNCES), field!(Count render.bounces))
+            .named("Bounces").group("Sampling").flag("bounces").bar(1.0, 64.0),
+        of("render.strategy", Sampling, "Light sampling", "How light is found: by sampling the lobe, the light, or both weighed against each other. All converge to the same picture.", choices::<Strategy>(), choice!(render.strategy))
+            .named("Light sampling").group("Sampling").flag("strategy"),
+        of("render.sequence", Sampling, "Sequence", "The random numbers that are drawn.", choices::<Sequence>(), choice!(render.sequence))
+            .named("Sequence").group("Sampling").flag("sequence"),
+        of("render.filter", Sampling, "Pixel filter", "How samples are spread over a pixel and its neighbours.", choices::<PixelFilter>(), choice!(render.filter))
+            .named("Pixel filter").group("Sampling").flag("filter"),
+        of("render.firefly_clamp", Sampling, "Firefly clamp", "Limits the radiance of light that was reflected twice or more; the energy that this takes is told (clamped_energy in the report).", off(single(range::FIREFLY_CLAMP, ""), Value::Number(10.0)), optional!(Number render.firefly_clamp))
+            .named("Firefly clamp").group("Sampling").flag("firefly-clamp"),
+        of("render.seed", Sampling, "Seed", "Which of the possible pictures' noise: changes all random numbers.", Kind::Count { range: [0, u32::MAX] }, field!(Count render.seed))
+            .named("Seed").group("Sampling").flag("seed"),
     ]
 }
 
@@ -124,11 +151,16 @@ fn sampling() -> Vec<Parameter<Document>> {
 fn stopping() -> Vec<Parameter<Document>> {
     use Stage::Goal;
     vec![
-        of("render.samples", Goal, "Samples", "Samples a pixel after which rendering stops.", count(range::SAMPLES), field!(Count render.samples)),
-        of("render.time", Goal, "Time", "Render time after which rendering stops earlier.", off(real(range::TIME_S, "s")), optional!(Real render.time_s)),
-        of("render.noise", Goal, "Noise", "Relative error of the picture at which rendering stops earlier; 0.01 is 1 %.", off(real(range::NOISE, "")), optional!(Real render.noise)),
-        of("render.min_samples", Goal, "Least samples", "Samples that each pixel has before its error is believed, so that small lights are not missed.", count(range::MIN_SAMPLES), field!(Count render.min_samples)),
-        of("render.adaptive", Goal, "Adaptive", "Whether samples go where the error is; auto: where a noise is to be reached.", auto(Kind::Toggle), optional!(Toggle render.adaptive)),
+        of("render.samples", Goal, "Samples", "Samples a pixel after which rendering stops: noise halves with four times as many. With adaptive sampling the most of a pixel.", count(range::SAMPLES), field!(Count render.samples))
+            .named("Samples").group("Picture").flag("samples"),
+        of("render.time", Goal, "Time limit", "Stops rendering after this time.", off(real(range::TIME_S, "s"), Value::Real(60.0)), optional!(Real render.time_s))
+            .named("Time limit").group("Picture").flag("time"),
+        of("render.noise", Goal, "Noise limit", "Stops rendering at this relative error of the picture (standard error of a pixel, root mean square over the picture, over its mean luminance); 0.01 is 1 %.", off(real(range::NOISE, ""), Value::Real(0.01)), optional!(Real render.noise))
+            .named("Noise limit").group("Accuracy").flag("noise").percent(),
+        of("render.min_samples", Goal, "At least", "Samples that each pixel has before its error is believed, so that small lights are not missed.", count(range::MIN_SAMPLES), field!(Count render.min_samples))
+            .named("Minimum samples").group("Accuracy").flag("min-samples"),
+        of("render.adaptive", Goal, "Adaptive", "Whether samples go where the error is, or evenly over the picture; auto: where a noise is to be reached.", auto(Kind::Toggle), optional!(Toggle render.adaptive))
+            .named("Adaptive sampling").group("Accuracy").flag("adaptive"),
     ]
 }
 
@@ -141,19 +173,25 @@ fn of(
     (get, set): Accessors,
 ) -> Parameter<Document> {
     let group = match key.split('.').next() {
-        Some("scene") => "Scene",
-        Some("lighting") => "Lighting",
+        Some("lighting") => "Environment",
         Some("camera") => "Camera",
-        Some("view") => "View",
-        _ => "Render",
+        _ => "View",
     };
     Parameter {
         key,
         group,
         label,
+        name: "",
+        flag: None,
         symbol: "",
         help,
         kind,
+        row: RowStyle {
+            bar: None,
+            step: 1.0,
+            decimals: 3,
+            is_percent: false,
+        },
         stage,
         applies: |_| true,
         get,
@@ -161,31 +199,66 @@ fn of(
     }
 }
 
+/// What a line of the tables above may add.
+impl Parameter<Document> {
+    fn named(mut self, name: &'static str) -> Self {
+        self.name = name;
+        self
+    }
+
+    fn group(mut self, group: &'static str) -> Self {
+        self.group = group;
+        self
+    }
+
+    fn flag(mut self, flag: &'static str) -> Self {
+        self.flag = Some(flag);
+        self
+    }
+
+    fn applies(mut self, applies: fn(&Document) -> bool) -> Self {
+        self.applies = applies;
+        self
+    }
+
+    fn bar(mut self, low: f64, high: f64) -> Self {
+        self.row.bar = Some([low, high]);
+        self
+    }
+
+    fn decimals(mut self, decimals: usize) -> Self {
+        self.row.decimals = decimals;
+        self
+    }
+
+    /// A share that panels show in per cent.
+    fn percent(mut self) -> Self {
+        self.row = RowStyle {
+            step: 0.01,
+            is_percent: true,
+            ..self.row
+        };
+        self
+    }
+}
+
 fn real(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
     let (low, high) = range.into_inner();
-    Kind::Real {
-        range: [low, high],
-        unit,
-    }
+    let range = [low, high];
+    Kind::Real { range, unit }
 }
 
 /// A number in single precision.
 fn single(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
     let (low, high) = range.into_inner();
     let range = [low as f32, high as f32];
-    Kind::Number {
-        range,
-        soft_range: range,
-        unit,
-        step: 0.01,
-    }
+    Kind::Number { range, unit }
 }
 
 fn count(range: RangeInclusive<f64>) -> Kind {
     let (low, high) = range.into_inner();
-    Kind::Count {
-        range: [low as u32, high as u32],
-    }
+    let range = [low as u32, high as u32];
+    Kind::Count { range }
 }
 
 fn place() -> Kind {
@@ -195,10 +268,18 @@ fn place() -> Kind {
 
 /// What the program chooses where it is not given.
 fn auto(kind: Kind) -> Kind {
-    Kind::Optional(Box::new(kind), "auto")
+    Kind::Optional {
+        kind: Box::new(kind),
+        word: "auto",
+        at_first: None,
+    }
 }
 
 /// What is left out where it is not given.
-fn off(kind: Kind) -> Kind {
-    Kind::Optional(Box::new(kind), "off")
+fn off(kind: Kind, at_first: Value) -> Kind {
+    Kind::Optional {
+        kind: Box::new(kind),
+        word: "off",
+        at_first: Some(at_first),
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::{Choice, Kind, Parameter, Stage, Value, choices};
+use super::{Choice, Kind, Parameter, RowStyle, Stage, Value, choices};
 use crate::document::custom_curve::CustomCurve;
 use crate::document::{Conductor, MaterialSettings};
 use crate::named::Named;
@@ -138,9 +138,10 @@ fn specular_shape() -> Vec<Parameter> {
             symbol: "R_x, R_y",
             help: "Stretches the highlight along the surface's tangent, below 0 across it: brushed metal, hair, satin.",
             applies: |material| has_specular(material) && material.lobe.is_anisotropic(),
+            row: bar(-1.0, 1.0),
             ..of(
                 "specular.anisotropy",
-                number([-1.0, 1.0], [-1.0, 1.0], "", 0.01),
+                number([-1.0, 1.0], ""),
                 field!(Number anisotropy),
             )
         },
@@ -148,9 +149,13 @@ fn specular_shape() -> Vec<Parameter> {
             label: "Rotation",
             help: "Turns the direction of the stretch about the normal, anticlockwise seen from outside.",
             applies: |material| has_specular(material) && material.lobe.is_anisotropic() && material.anisotropy != 0.0,
+            row: RowStyle {
+                decimals: 1,
+                ..bar(-180.0, 180.0)
+            },
             ..of(
                 "specular.rotation",
-                number([-360.0, 360.0], [-180.0, 180.0], "°", 1.0),
+                number([-360.0, 360.0], "°"),
                 field!(Number rotation_deg),
             )
         },
@@ -183,11 +188,8 @@ fn specular_fresnel() -> Vec<Parameter> {
                 let of_dielectric = matches!(material.fresnel, Fresnel::Schlick | Fresnel::Dielectric);
                 has_specular(material) && of_dielectric && material.metalness < 1.0
             },
-            ..of(
-                "specular.ior",
-                number([1.0, 4.0], [1.0, 2.5], "", 0.01),
-                field!(Number ior),
-            )
+            row: bar(1.0, 2.5),
+            ..of("specular.ior", number([1.0, 4.0], ""), field!(Number ior))
         },
         Parameter {
             label: "Tint",
@@ -244,11 +246,8 @@ fn coat() -> Vec<Parameter> {
             label: "Index of refraction",
             symbol: "n",
             help: "How strongly the coat reflects: lacquer 1.5, oil 1.4, at 1 nothing.",
-            ..of(
-                "coat.ior",
-                number([1.0, 4.0], [1.0, 2.5], "", 0.01),
-                field!(Number coat_ior),
-            )
+            row: bar(1.0, 2.5),
+            ..of("coat.ior", number([1.0, 4.0], ""), field!(Number coat_ior))
         },
         Parameter {
             label: "Colour",
@@ -274,9 +273,10 @@ fn transmission() -> Vec<Parameter> {
         Parameter {
             label: "Depth",
             help: "The way inside after which white light has the colour, in bounding radii of the model; at 0 the surface itself is tinted.",
+            row: bar(0.0, 2.0),
             ..of(
                 "transmission.depth",
-                number([0.0, 1000.0], [0.0, 2.0], "", 0.01),
+                number([0.0, 1000.0], ""),
                 field!(Number transmission_depth),
             )
         },
@@ -284,9 +284,10 @@ fn transmission() -> Vec<Parameter> {
             label: "Extra roughness",
             symbol: "R",
             help: "Added to the roughness of the reflection for what is seen through: at 0 both are equally rough.",
+            row: bar(-1.0, 1.0),
             ..of(
                 "transmission.roughness",
-                number([-1.0, 1.0], [-1.0, 1.0], "", 0.01),
+                number([-1.0, 1.0], ""),
                 field!(Number transmission_roughness),
             )
         },
@@ -310,9 +311,10 @@ fn emission() -> Vec<Parameter> {
             label: "Strength",
             help: "Radiance of the light that the surface gives off; at 1, white looks as bright as the furnace.",
             applies: |_| true,
+            row: bar(0.0, 20.0),
             ..of(
                 "emission.strength",
-                number([0.0, 1e6], [0.0, 20.0], "", 0.1),
+                number([0.0, 1e6], ""),
                 field!(Number emission_strength),
             )
         },
@@ -335,9 +337,10 @@ fn geometry() -> Vec<Parameter> {
             label: "Normal strength",
             help: "How steep the normal texture's bumps are; at 0 the surface is smooth, below 0 dents are bumps.",
             applies: |material| material.textures.normal,
+            row: bar(0.0, 2.0),
             ..of(
                 "geometry.normal_strength",
-                number([-10.0, 10.0], [0.0, 2.0], "", 0.01),
+                number([-10.0, 10.0], ""),
                 field!(Number normal_strength),
             )
         },
@@ -364,9 +367,12 @@ fn of(key: &'static str, kind: Kind, (get, set): (Get, Set)) -> Parameter {
         key,
         group,
         label: "",
+        name: "",
+        flag: None,
         symbol: "",
         help: "",
         kind,
+        row: bar(0.0, 1.0),
         stage: Stage::Materials,
         applies,
         get,
@@ -374,17 +380,22 @@ fn of(key: &'static str, kind: Kind, (get, set): (Get, Set)) -> Parameter {
     }
 }
 
-fn number(range: [f32; 2], soft_range: [f32; 2], unit: &'static str, step: f32) -> Kind {
-    Kind::Number {
-        range,
-        soft_range,
-        unit,
-        step,
-    }
+fn number(range: [f32; 2], unit: &'static str) -> Kind {
+    Kind::Number { range, unit }
 }
 
 fn unit_number() -> Kind {
-    number([0.0, 1.0], [0.0, 1.0], "", 0.01)
+    number([0.0, 1.0], "")
+}
+
+/// A bar from `low` to `high`, with three decimals.
+fn bar(low: f64, high: f64) -> RowStyle {
+    RowStyle {
+        bar: Some([low, high]),
+        step: 0.01,
+        decimals: 3,
+        is_percent: false,
+    }
 }
 
 fn has_specular(material: &MaterialSettings) -> bool {

@@ -18,12 +18,16 @@ impl Kind {
             Kind::Real { .. } => parse_number(text).map(Value::Real),
             Kind::Count { .. } => text.parse().ok().map(Value::Count),
             Kind::Place { .. } => parse_list(text).map(Value::Place),
-            Kind::Optional(_, word) if text == *word => Some(Value::Absent),
-            Kind::Optional(kind, _) => kind.parse(text),
+            Kind::Optional { word, .. } if text == *word => Some(Value::Absent),
+            Kind::Optional { kind, .. } => kind.parse(text),
             Kind::Color => parse_color(text).ok().map(Value::Color),
             Kind::Triple { .. } => parse_list(text).map(Value::Triple),
             Kind::Choice(choices) => choose(choices, text),
-            Kind::Toggle => text.parse().ok().map(Value::Toggle),
+            Kind::Toggle => match text {
+                "true" | "on" => Some(Value::Toggle(true)),
+                "false" | "off" => Some(Value::Toggle(false)),
+                _ => None,
+            },
             Kind::Curve => parse_points(text).map(Value::Curve),
         }
     }
@@ -38,8 +42,8 @@ impl Kind {
                 let numbers: Option<Vec<f64>> = place.iter().map(Json::as_f64).collect();
                 numbers?.try_into().ok().map(Value::Place)
             }
-            (Kind::Optional(..), Json::Null) => Some(Value::Absent),
-            (Kind::Optional(kind, _), json) => kind.value_from_json(json),
+            (Kind::Optional { .. }, Json::Null) => Some(Value::Absent),
+            (Kind::Optional { kind, .. }, json) => kind.value_from_json(json),
             (Kind::Color, json) => json_numbers(json).map(Value::Color),
             (Kind::Triple { .. }, json) => json_numbers(json).map(Value::Triple),
             (Kind::Choice(choices), Json::String(name)) => choose(choices, name),
@@ -61,7 +65,6 @@ impl Kind {
             Kind::Number {
                 range: [low, high],
                 unit,
-                ..
             } => number(low, high, unit),
             Kind::Real {
                 range: [low, high],
@@ -69,24 +72,45 @@ impl Kind {
             } => number(low, high, unit),
             Kind::Count { range: [low, high] } => format!("a whole number from {low} to {high}"),
             Kind::Place { range: [low, high] } => format!("x,y,z: three numbers, each from {low} to {high}"),
-            Kind::Optional(kind, word) => format!("{}, or {word}", kind.expected()),
+            Kind::Optional { kind, word, .. } => format!("{}, or {word}", kind.expected()),
             Kind::Color => COLOR_EXPECTED.to_owned(),
             Kind::Triple { range: [low, high] } => format!("r,g,b: three numbers, each from {low} to {high}"),
             Kind::Choice(choices) => {
                 let names: Vec<_> = choices.iter().map(|choice| choice.name).collect();
                 format!("one of {}", names.join(", "))
             }
-            Kind::Toggle => "true or false".to_owned(),
+            Kind::Toggle => "on or off".to_owned(),
             Kind::Curve => {
                 format!("points ξ:D,ξ:D,… such as 0:0,0.5:0.4,1:1, ξ from 0 to 1, D rising to at most {DISTANCE_MAX}")
             }
         }
     }
 
+    /// What stands for its values in the help of the command line.
+    pub fn placeholder(&self) -> String {
+        let of_unit = |unit: &str| match unit {
+            "°" => "DEG".to_owned(),
+            "s" => "SECONDS".to_owned(),
+            "" => "X".to_owned(),
+            unit => unit.to_owned(),
+        };
+        match self {
+            Kind::Number { unit, .. } | Kind::Real { unit, .. } => of_unit(unit),
+            Kind::Count { .. } => "N".to_owned(),
+            Kind::Place { .. } => "X,Y,Z".to_owned(),
+            Kind::Optional { kind, word, .. } => format!("{}|{word}", kind.placeholder()),
+            Kind::Color => "#RRGGBB".to_owned(),
+            Kind::Triple { .. } => "R,G,B".to_owned(),
+            Kind::Choice(choices) => choices.iter().map(|choice| choice.name).collect::<Vec<_>>().join("|"),
+            Kind::Toggle => "on|off".to_owned(),
+            Kind::Curve => "ξ:D,…".to_owned(),
+        }
+    }
+
     /// The word for what is left to the program; empty where nothing can be.
     pub(super) fn word_for_absent(&self) -> &'static str {
         match self {
-            Kind::Optional(_, word) => word,
+            Kind::Optional { word, .. } => word,
             _ => "",
         }
     }

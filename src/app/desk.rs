@@ -1,0 +1,230 @@
+//! What the parts of the window work on: the document, the renderer's state, a queue of actions, and what they share.
+
+use std::path::PathBuf;
+
+use egui::Ui;
+use serde::{Deserialize, Serialize};
+
+use crate::app::actions::{Action, Command};
+use crate::app::kit::parameter_row;
+use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
+use crate::app::services::compare::Compare;
+use crate::app::services::edits::Edits;
+use crate::app::services::environments::Environments;
+use crate::app::services::library::Library;
+use crate::app::services::messages::Entry;
+use crate::app::services::recent::Recent;
+use crate::app::services::snapshots::Snapshots;
+use crate::document::{Document, ImportLobe, MaterialSettings, Parameter, SETTINGS, setting};
+use crate::render::display::Shown;
+use crate::render::study::references::ReferenceCache;
+use crate::render::worker::{Scene, Snapshot};
+use crate::scene::ModelSource;
+
+/// What panels work on.
+pub(super) struct Desk<'a> {
+    pub(super) document: &'a mut Document,
+    pub(super) snapshot: &'a Snapshot,
+    pub(super) edits: &'a mut Edits,
+    pub(super) actions: &'a mut Vec<Action>,
+    pub(super) shared: &'a mut Shared,
+}
+
+/// What the parts of the window share that is no part of the document: what is selected and shown, and the services.
+pub(super) struct Shared {
+    /// The material slot that is edited.
+    pub(super) slot: usize,
+    /// The slots that were selected of other models, for when undo or redo brings them back.
+    pub(super) slots_of: Vec<(ModelSource, usize)>,
+    /// What was said, oldest first.
+    pub(super) messages: Vec<Entry>,
+    /// Small pictures of environments.
+    pub(super) environments: Environments,
+    /// The files opened and saved last.
+    pub(super) recent: Recent,
+    /// The lobe of the materials of models that are opened.
+    pub(super) import_lobe: ImportLobe,
+    /// How large the picture is.
+    pub(super) resolution: Resolution,
+    /// What of the render the viewport shows.
+    pub(super) shown: Shown,
+    /// The angle between view and normal in the plots of lobes and their samples, degrees.
+    pub(super) view_angle_deg: f32,
+    /// The file of a measured material, to compare lobes with.
+    pub(super) measured: Option<PathBuf>,
+    /// The next click in the viewport says what is sharp.
+    pub(super) picks_focus: bool,
+    /// Rendering was stopped by hand.
+    pub(super) is_paused: bool,
+    /// A study measures, for which the viewport's renderer rests.
+    pub(super) is_measuring: bool,
+    /// Converged pictures to measure against.
+    pub(super) references: ReferenceCache,
+    /// The materials to choose from.
+    pub(super) library: Library,
+    /// The pinned states.
+    pub(super) snapshots: Snapshots,
+    /// The comparison of the document with something else.
+    pub(super) compare: Compare,
+}
+
+/// The angle between view and normal at first, degrees.
+pub(super) const VIEW_ANGLE_DEG: f32 = 45.0;
+
+/// How large the picture is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Resolution {
+    /// It fills the viewport: with the screen's pixels on a hardware GPU, else with one a point.
+    #[default]
+    Auto,
+    /// It fills the viewport with the screen's pixels.
+    Native,
+    /// It fills the viewport with half as many pixels each way.
+    Half,
+    /// Width and height as in the document, shown with its own shape.
+    Document,
+}
+
+/// The sizes of the picture to choose from: (value, label, help).
+pub(super) const RESOLUTIONS: [(Resolution, &str, &str); 4] = [
+    (
+        Resolution::Auto,
+        "Fill",
+        "Fills the viewport: with the screen's pixels on a GPU, with fewer on the processor.",
+    ),
+    (
+        Resolution::Native,
+        "Fill, native",
+        "Fills the viewport with the screen's own pixels.",
+    ),
+    (
+        Resolution::Half,
+        "Fill, half",
+        "Fills the viewport with half as many pixels each way.",
+    ),
+    (
+        Resolution::Document,
+        "Picture size",
+        "Width and height as set below, whatever the viewport's shape.",
+    ),
+];
+
+/// The group of the settings that only count where the viewport has the picture's size.
+pub(super) const PICTURE_SIZE: &str = "Picture size";
+
+impl Desk<'_> {
+    pub(super) fn act(&mut self, command: Command) {
+        self.actions.push(Action::Do(command));
+    }
+
+    /// The scene being rendered, where it is of the document's model.
+    pub(super) fn scene(&self) -> Option<&Scene> {
+        self.snapshot
+            .scene
+            .as_deref()
+            .filter(|scene| scene.document.model == self.document.model)
+    }
+
+    /// The material of the selected slot.
+    pub(super) fn material(&self) -> MaterialSettings {
+        let materials = &self.document.materials;
+        materials
+            .get(self.shared.slot)
+            .or(materials.last())
+            .cloned()
+            .unwrap_or_default()
+    }
+
+    /// Replaces the material of the selected slot; slots before it keep what they show.
+    pub(super) fn set_material(&mut self, material: MaterialSettings) {
+        let materials = &mut self.document.materials;
+        let last = materials.last().cloned().unwrap_or_default();
+        if materials.len() <= self.shared.slot {
+            materials.resize(self.shared.slot + 1, last);
+        }
+        materials[self.shared.slot] = material;
+    }
+
+    /// The rows of a group of settings, those that have an effect.
+    pub(super) fn settings(&mut self, ui: &mut Ui, group: &str) {
+        for setting in SETTINGS.iter().filter(|setting| setting.group == group) {
+            widgets::comes_and_goes(ui, |ui| {
+                if parameter_row::has_row(setting) && (setting.applies)(self.document) {
+                    self.setting(ui, setting);
+                }
+            });
+        }
+    }
+
+    /// The row of a setting.
+    fn setting(&mut self, ui: &mut Ui, setting: &'static Parameter<Document>) {
+        let mut value = setting.get(self.document);
+        if parameter_row::show(ui, setting, &mut value, |_| {}) && setting.set(self.document, value).is_ok() {
+            self.edits.note(setting.full_name(), setting.key);
+        }
+    }
+
+    /// The control of the setting of this key without its row, under a name of its own; a double click resets it.
+    pub(super) fn setting_control(&mut self, ui: &mut Ui, key: &str, name: &str) {
+        let Some(setting) = setting(key) else { return };
+        let mut value = setting.get(self.document);
+        let response = parameter_row::control(ui, setting, name, &mut value);
+        if response.double_clicked() {
+            value = setting.default_value();
+        }
+        let is_other = response.changed() || response.double_clicked();
+        if is_other && setting.set(self.document, value).is_ok() {
+            self.edits.note(setting.full_name(), setting.key);
+        }
+        response.accessible_name(name).on_hover_text(setting.help);
+    }
+
+    /// Notes an edit of a setting, and resets it where that was asked for.
+    pub(super) fn edited<T: PartialEq + Clone>(
+        &mut self,
+        response: RowResponse,
+        label: &'static str,
+        field: impl Fn(&mut Document) -> &mut T,
+    ) {
+        if response.reset {
+            let default = field(&mut Document::default()).clone();
+            *field(self.document) = default;
+        }
+        if response.changed || response.reset {
+            self.edits.note(label, label);
+        }
+    }
+
+    /// The row of the angle that the plots of lobes and their samples share.
+    pub(super) fn view_angle_row(&mut self, ui: &mut Ui) {
+        let style = NumberStyle {
+            range: 0.0..=89.9,
+            bar: Some([0.0, 89.9]),
+            unit: "°",
+            speed: 0.5,
+            decimals: 1,
+        };
+        let name = Name {
+            full: "Samples view angle",
+            label: "View angle",
+            symbol: "θ",
+            help: "Between the view and the normal. A click in the viewport takes the angle of the place there.",
+        };
+        let angle = &mut self.shared.view_angle_deg;
+        if widgets::row(ui, name, |ui| widgets::number(ui, angle, &style)).reset {
+            self.shared.view_angle_deg = VIEW_ANGLE_DEG;
+        }
+    }
+
+    /// What A and B are called.
+    pub(super) fn compared_names(&self) -> [String; 2] {
+        let material = self.material();
+        let name = format!(
+            "{}, {} R {:.3}",
+            material.name,
+            material.lobe.label(),
+            material.roughness
+        );
+        [name, self.shared.compare.name(&material)]
+    }
+}

@@ -1,0 +1,219 @@
+//! What actions and commands do.
+
+use crate::app::App;
+use crate::app::actions::{Action, Command};
+use crate::app::desk::{PICTURE_SIZE, Resolution};
+use crate::app::kit::widgets;
+use crate::app::layout::{self, Pane};
+use crate::app::services::{library, snapshots};
+use crate::app::sheets::menu::Sheet;
+use crate::app::sheets::palette;
+use crate::document::{CameraSettings, Document, MaterialSettings, parameter, setting};
+use crate::render::explain::explain;
+use crate::scene::ModelOptions;
+use crate::scene::camera::framing_distance;
+
+impl App {
+    pub(in crate::app) fn apply(&mut self, ctx: &egui::Context, action: Action) {
+        self.autosave.witness.note(format!("{action:?}"));
+        match action {
+            Action::Do(command) => self.command(ctx, command),
+            Action::Open(path) => {
+                self.open(path);
+            }
+            Action::Drop(path) => self.drop_file(path),
+            Action::Paste(text) => self.paste(&text),
+            Action::UseModel(source) => self.worker.open_model(source, ModelOptions::default()),
+            Action::ImportModel(source, options) => self.worker.open_model(source, options),
+            Action::UseEnvironment(source) => self.worker.open_environment(source),
+            Action::ImportAs(lobe) => self.shared.import_lobe = lobe,
+            Action::UseMaterial(material) => self.use_material(*material),
+            Action::SelectSlot(slot) => {
+                self.shared.slot = slot;
+                self.edits.seal();
+            }
+            Action::Explain(pixel, sample) => self.explain(pixel, sample),
+            Action::ChangeLibrary(change) => self.change_library(change),
+            Action::ChangeSnapshots(change) => self.change_snapshots(change),
+            Action::UseSnapshot(path) => self.use_snapshot(&path),
+            Action::CompareWith(rival) => self.compare_with(rival),
+            Action::LookFrom(yaw_deg, pitch_deg) => {
+                let camera = &mut self.document.camera;
+                (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
+                self.edits.note("Look from a side", "");
+            }
+            Action::Reveal(pane) => self.reveal(pane),
+            Action::Edit(key) => self.edit_parameter(ctx, key),
+            Action::UseEngine(choice) => self.worker.use_engine(choice),
+            Action::Show(shown) => {
+                self.shared.shown = shown;
+                self.worker.show(shown);
+            }
+        }
+    }
+
+    /// Lays the account of a path of the picture in progress over the window.
+    fn explain(&mut self, pixel: [u32; 2], sample: u32) {
+        if let Some(scene) = &self.worker.snapshot().scene {
+            let account = explain(&scene.document, &scene.model, &scene.job, pixel, sample);
+            self.sheet = Sheet::Path {
+                text: account.to_string(),
+            };
+        }
+    }
+
+    /// Brings the parameter's row to the front and gives it the keys.
+    fn edit_parameter(&mut self, ctx: &egui::Context, key: &str) {
+        if let Ok(parameter) = parameter(key) {
+            self.reveal(Pane::Material);
+            widgets::wish_focus(ctx, parameter.group, parameter.full_name());
+        } else if let Some(setting) = setting(key) {
+            let is_light = key.starts_with("lighting.") || key == "scene.ground";
+            self.reveal(if is_light { Pane::Lighting } else { Pane::Camera });
+            let mut group = setting.group;
+            if group == PICTURE_SIZE {
+                // Rows that are shown where the viewport has the picture's size.
+                self.shared.resolution = Resolution::Document;
+                group = "Picture";
+            }
+            widgets::wish_focus(ctx, group, setting.full_name());
+        }
+    }
+
+    fn command(&mut self, ctx: &egui::Context, command: Command) {
+        log::debug!("{}", command.label());
+        match command {
+            Command::Undo => {
+                let document = self.edits.undo();
+                self.step_to(document);
+            }
+            Command::Redo => {
+                let document = self.edits.redo();
+                self.step_to(document);
+            }
+            Command::ResetMaterial => {
+                let name = self.desk_material().name;
+                let default = MaterialSettings::default();
+                self.use_material(MaterialSettings { name, ..default });
+            }
+            Command::ResetCamera => {
+                self.document.camera = CameraSettings::default();
+                self.edits.note("Reset the camera", "");
+            }
+            Command::FrameAll => {
+                let camera = &mut self.document.camera;
+                (camera.target, camera.distance, camera.position) = (None, None, None);
+                self.edits.note("Frame all", "");
+            }
+            Command::FrameSelected => self.frame_selected(),
+            Command::Maximise => {
+                self.is_maximised = !self.is_maximised;
+                layout::set_maximised(&mut self.layout, self.is_maximised);
+            }
+            Command::ToggleTheme => {
+                let is_dark = ctx.theme() == egui::Theme::Dark;
+                self.theme = if is_dark {
+                    egui::ThemePreference::Light
+                } else {
+                    egui::ThemePreference::Dark
+                };
+                ctx.set_theme(self.theme);
+            }
+            Command::Region => self.viewport.draw_region(),
+            Command::ClearRegion => {
+                self.document.render.region = None;
+                self.edits.note("Clear the render region", "");
+            }
+            Command::ResetLayout => {
+                self.layout = layout::default_layout();
+                self.is_maximised = false;
+            }
+            Command::Pause => {
+                self.shared.is_paused = !self.shared.is_paused;
+                self.worker.pause(self.shared.is_paused);
+            }
+            Command::Reload => {
+                self.worker.reload();
+                self.restart_rival();
+            }
+            Command::Restart => {
+                self.worker.restart();
+                self.restart_rival();
+                // With the viewport's size, where the picture had been kept at another.
+                self.submitted = None;
+            }
+            Command::Compare => self.toggle_compare(),
+            Command::SwapCompared => self.swap_compared(),
+            Command::TakeCompared => self.take_compared(),
+            Command::Pin => {
+                self.change_snapshots(snapshots::PinChange::Add);
+                // The panels stay hidden where they are.
+                layout::reveal(&mut self.layout, Pane::Snapshots);
+            }
+            Command::Measure => {
+                self.panels.hear(command);
+                self.reveal(Pane::Effects);
+            }
+            Command::Race => {
+                self.panels.hear(command);
+                self.reveal(Pane::Race);
+            }
+            Command::Turntable => self.open_turntable(),
+            Command::Palette => {
+                palette::focus(ctx);
+                self.sheet = Sheet::Palette {
+                    search: String::new(),
+                    selected: 0,
+                };
+            }
+            Command::Shortcuts => self.sheet = Sheet::Shortcuts,
+            Command::ModelFile => self.sheet = Sheet::ModelFile,
+            Command::About => self.sheet = Sheet::About,
+            Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::SaveToMyPresets => self.change_library(library::Change::Add),
+            of_files => self.file_command(ctx, of_files),
+        }
+    }
+
+    /// Goes to another step of the history. Where that has another model, the slot is the one that was selected of it last.
+    fn step_to(&mut self, document: Option<Document>) {
+        let Some(document) = document else { return };
+        if document.model != self.document.model {
+            let left = std::mem::replace(&mut self.document.model, document.model.clone());
+            self.shared.slots_of.retain(|(model, _)| *model != left);
+            self.shared.slots_of.push((left, self.shared.slot));
+            let known = self.shared.slots_of.iter().find(|(model, _)| *model == document.model);
+            self.shared.slot = known.map_or(0, |(_, slot)| *slot);
+        }
+        self.document = document;
+    }
+
+    pub(in crate::app) fn use_material(&mut self, material: MaterialSettings) {
+        let label = format!("Use {}", material.name);
+        let slot = self.shared.slot;
+        let materials = &mut self.document.materials;
+        if materials.len() <= slot {
+            let last = materials.last().cloned().unwrap_or_default();
+            materials.resize(slot + 1, last);
+        }
+        materials[slot] = material;
+        self.edits.note(label, "");
+    }
+
+    /// Looks at the surfaces of the selected slot from where the camera is.
+    fn frame_selected(&mut self) {
+        let snapshot = self.worker.snapshot();
+        let Some(scene) = &snapshot.scene else { return };
+        let geometry = &scene.job.geometry;
+        let Some((center, radius)) = geometry.sphere_around(self.shared.slot as u32) else {
+            return;
+        };
+        let size = scene.job.settings.image_size.map(f64::from);
+        let camera = &mut self.document.camera;
+        let distance = framing_distance(camera.fov_deg, size[0] / size[1].max(1.0)) * radius;
+        camera.target = Some(geometry.world_from_units(center).to_array());
+        camera.distance = Some(distance * geometry.world_units_per_unit);
+        camera.position = None;
+        self.edits.note("Frame selected", "");
+    }
+}

@@ -1,0 +1,383 @@
+//! Opening and saving: projects, materials, pictures. The window never waits for them.
+
+use std::path::{Path, PathBuf};
+
+use crate::app::App;
+use crate::app::actions::Command;
+use crate::app::handlers::take_picture::Destination;
+use crate::app::services::disk::{Disk, Done, Task, words};
+use crate::app::services::edits::Edits;
+use crate::app::sheets::dialogs::Purpose;
+use crate::app::sheets::unsaved::Then;
+use crate::document::Document;
+use crate::render::worker::Level;
+use crate::scene::environment::{ENDINGS, EnvironmentSource};
+use crate::scene::{ModelOptions, ModelSource, SlotPicture, is_model};
+use crate::store::file::Opened;
+use crate::store::{FileError, Loaded, file, preset, save_document, save_material};
+
+/// The project's file, and the thread that reads and writes.
+pub(in crate::app) struct Files {
+    pub(in crate::app) disk: Disk,
+    pub(in crate::app) project: Option<PathBuf>,
+    /// A picture that was dropped on the window and may hold a document.
+    pub(in crate::app) dropped: Option<PathBuf>,
+    /// Where the next whole picture goes.
+    pub(in crate::app) wanted_pictures: Vec<Destination>,
+}
+
+impl Files {
+    pub(in crate::app) fn new(ctx: egui::Context) -> std::io::Result<Self> {
+        Ok(Self {
+            disk: Disk::new(ctx)?,
+            project: None,
+            dropped: None,
+            wanted_pictures: Vec::new(),
+        })
+    }
+
+    /// What to call the project.
+    pub(in crate::app) fn project_name(&self) -> String {
+        let stem = self.project.as_ref().and_then(|path| path.file_stem());
+        stem.map_or_else(|| "untitled".to_owned(), |stem| stem.to_string_lossy().into_owned())
+    }
+
+    /// Whether something is still to be written.
+    pub(in crate::app) fn is_saving(&self) -> bool {
+        self.disk.is_writing() || !self.wanted_pictures.is_empty()
+    }
+
+    /// Whether a material or a project that was opened has not been read yet.
+    pub(in crate::app) fn is_reading(&self) -> bool {
+        self.disk.is_reading()
+    }
+}
+
+/// What a file's ending says that it is.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum FileKind {
+    Model,
+    Environment,
+    Document,
+    Unknown,
+}
+
+fn kind_of(path: &Path) -> FileKind {
+    let ending = path
+        .extension()
+        .and_then(|ending| ending.to_str())
+        .unwrap_or_default()
+        .to_ascii_lowercase();
+    match ending.as_str() {
+        _ if is_model(path) || path.is_dir() => FileKind::Model,
+        "json" | "png" => FileKind::Document,
+        ending if ENDINGS.contains(&ending) => FileKind::Environment,
+        _ => FileKind::Unknown,
+    }
+}
+
+impl App {
+    /// Opens a file by its ending, beside the window; true where it is of a kind that can be opened.
+    pub(in crate::app) fn open(&mut self, path: PathBuf) -> bool {
+        match kind_of(&path) {
+            FileKind::Model => self.worker.open_model(ModelSource::File(path), ModelOptions::default()),
+            FileKind::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
+            FileKind::Document => self.files.disk.open(move || {
+                let opened = file::open(&path);
+                Done::Read(path, opened)
+            }),
+            FileKind::Unknown => {
+                let text = "opened are models (.glb, .gltf, .obj, .ply, .stl, .zip), environments (.hdr, .exr, .jpg, \
+                            .tif, .webp), materials and projects (.json), and pictures saved here (.png)";
+                self.say(
+                    Level::Error,
+                    format!("{}: not a kind of file that can be opened; {text}", path.display()),
+                );
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Takes a file that was dropped: a picture for the selected material, anything else is opened.
+    pub(in crate::app) fn drop_file(&mut self, path: PathBuf) {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let is_picture =
+            !["hdr", "exr", "pic", "rgbe", "png"].contains(&ending.as_str()) && ENDINGS.contains(&ending.as_str());
+        if is_picture {
+            self.paint(path);
+        } else {
+            // A .png may hold a document: that is looked for first.
+            self.files.dropped = (ending == "png").then(|| path.clone());
+            self.open(path);
+        }
+    }
+
+    /// Makes a picture the base colour of the selected material.
+    fn paint(&mut self, file: PathBuf) {
+        let slot = self.shared.slot;
+        let mut options = self.document.import.clone();
+        options.pictures.retain(|picture| picture.slot != slot);
+        options.pictures.push(SlotPicture { slot, file });
+        self.worker.open_model(self.document.model.clone(), options);
+    }
+
+    /// Opens the file whose name was pasted.
+    pub(in crate::app) fn paste(&mut self, text: &str) {
+        let name = text.strip_prefix("file://").unwrap_or(text);
+        let path = PathBuf::from(name);
+        if text.contains("://") && !text.starts_with("file://") {
+            self.say(
+                Level::Error,
+                format!("{text}: web addresses are not opened; save the file and open it here"),
+            );
+        } else if path.exists() {
+            self.drop_file(path);
+        } else {
+            let shown: String = text.chars().take(80).collect();
+            self.say(Level::Warning, format!("pasted text is no file's name: {shown}"));
+        }
+    }
+
+    /// Takes what has been read and written.
+    pub(in crate::app) fn take_files(&mut self, ctx: &egui::Context) {
+        let mut has_failed = false;
+        for done in self.files.disk.take_done() {
+            match done {
+                Done::Read(path, opened) => self.take_opened(ctx, path, opened),
+                Done::SavedProject(path, document, saved) => {
+                    has_failed |= saved.is_err();
+                    if saved.is_ok() {
+                        self.edits.mark_value_saved(&document);
+                        self.shared.recent.add(&path);
+                        self.files.project = Some(path.clone());
+                    }
+                    self.say_saved(&path, saved.map_err(|error| error.to_string()));
+                }
+                Done::Listed(listed) => self.take_library(listed),
+                Done::ChangedLibrary(changed) => {
+                    has_failed |= changed.is_err();
+                    self.take_library(changed);
+                }
+                Done::ListedPins(listed) => self.take_snapshots(listed),
+                Done::ChangedPins(changed) => {
+                    has_failed |= changed.is_err();
+                    self.take_snapshots(changed);
+                }
+                Done::Wrote(result) => {
+                    has_failed |= result.is_err();
+                    let (level, text) = words(result);
+                    self.say(level, text);
+                }
+                Done::Broke(task, why) => {
+                    has_failed |= task == Task::Write;
+                    self.awaited = self.awaited.saturating_sub(usize::from(task == Task::Open));
+                    self.say(
+                        Level::Error,
+                        format!("reading or writing a file failed by an internal error: {why}"),
+                    );
+                }
+            }
+        }
+        self.go_on_after_save(ctx, has_failed);
+    }
+
+    fn take_opened(&mut self, ctx: &egui::Context, path: PathBuf, opened: Result<Opened, FileError>) {
+        let is_at_start = self.awaited > 0;
+        match opened {
+            Ok(Opened::Material(loaded)) => {
+                let is_saved = self.edits.is_saved(&self.document);
+                self.use_material(loaded.value);
+                self.say_all(loaded.warnings);
+                self.shared.recent.add(&path);
+                self.count_as_start(is_at_start && is_saved);
+            }
+            Ok(Opened::Picture(loaded)) => {
+                let is_saved = self.edits.is_saved(&self.document);
+                self.adopt_picture(*loaded, &path);
+                self.count_as_start(is_at_start && is_saved);
+            }
+            Ok(Opened::Document(loaded)) => {
+                let is_saved = self.edits.is_saved(&self.document);
+                self.unless_unsaved(ctx, Then::Adopt(loaded, path));
+                if is_at_start && is_saved {
+                    self.edits = Edits::new(self.document.clone());
+                }
+            }
+            Err(FileError::NoDocument { path }) if self.files.dropped.take_if(|dropped| *dropped == path).is_some() => {
+                self.paint(path);
+            }
+            Err(error) => self.say(Level::Error, error.to_string()),
+        }
+        self.awaited = self.awaited.saturating_sub(1);
+    }
+
+    /// Files given at the start are where editing begins, not edits that could be lost or taken back; a project's changes
+    /// are.
+    pub(in crate::app) fn count_as_start(&mut self, is_start: bool) {
+        self.edits.record(&self.document, false);
+        if is_start && self.files.project.is_none() {
+            self.edits = Edits::new(self.document.clone());
+        }
+    }
+
+    /// Goes on with a project that has been read.
+    pub(in crate::app) fn adopt_project(&mut self, loaded: Loaded<Document>, path: PathBuf) {
+        self.say_all(loaded.warnings);
+        self.shared.recent.add(&path);
+        self.document = loaded.value;
+        self.shared.slot = 0;
+        self.files.project = Some(path);
+        self.edits.note(format!("Open {}", self.files.project_name()), "");
+        self.edits.record(&self.document, false);
+        self.edits.mark_saved();
+    }
+
+    /// Goes on with the document in a picture: an edit like others, so that saving does not replace the picture.
+    fn adopt_picture(&mut self, loaded: Loaded<Document>, path: &Path) {
+        self.say_all(loaded.warnings);
+        self.shared.recent.add(path);
+        self.document = loaded.value;
+        self.shared.slot = 0;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        self.edits.note(format!("Open {name}"), "");
+    }
+
+    /// Goes on with the default document.
+    pub(in crate::app) fn start_anew(&mut self) {
+        self.document = Document::default();
+        self.shared.slot = 0;
+        self.files.project = None;
+        self.edits.note("New", "");
+        self.edits.record(&self.document, false);
+        self.edits.mark_saved();
+    }
+
+    fn say_all(&mut self, warnings: Vec<String>) {
+        for warning in warnings {
+            self.say(Level::Warning, warning);
+        }
+    }
+
+    /// The commands of the file menu.
+    pub(in crate::app) fn file_command(&mut self, ctx: &egui::Context, command: Command) {
+        let material_file = || format!("{}.json", preset::command_line_name(&self.desk_material().name));
+        let ask = match command {
+            Command::New => {
+                self.unless_unsaved(ctx, Then::New);
+                return;
+            }
+            Command::CopyPicture => {
+                self.want_picture(Destination::Clipboard);
+                return;
+            }
+            Command::Save => match self.files.project.clone() {
+                Some(path) => {
+                    self.save_project(path);
+                    return;
+                }
+                None => (Purpose::SaveProject, "untitled.json".to_owned()),
+            },
+            Command::SaveAs => (Purpose::SaveProject, format!("{}.json", self.files.project_name())),
+            Command::Open => (Purpose::Open, String::new()),
+            Command::OpenModel => (Purpose::OpenModel, String::new()),
+            Command::OpenEnvironment => (Purpose::OpenEnvironment, String::new()),
+            Command::OpenMaterial => (Purpose::OpenMaterial, String::new()),
+            Command::OpenMeasured => (Purpose::OpenMeasured, String::new()),
+            Command::SaveMaterial => (Purpose::SaveMaterial, material_file()),
+            Command::SaveLayers => (Purpose::SaveLayers, format!("{}.exr", self.files.project_name())),
+            Command::SaveWindow => (Purpose::SaveWindow, "glossmith-window.png".to_owned()),
+            Command::SavePicture => (Purpose::SavePicture, format!("{}.png", self.files.project_name())),
+            // The others are done where this is called.
+            _ => return,
+        };
+        self.dialogs.ask(ask.0, ask.1, ctx);
+    }
+
+    /// A file was chosen in a dialog.
+    pub(in crate::app) fn chosen(&mut self, purpose: Purpose, path: PathBuf) {
+        match purpose {
+            Purpose::Open | Purpose::OpenModel | Purpose::OpenEnvironment | Purpose::OpenMaterial => {
+                self.open(path);
+            }
+            Purpose::OpenMeasured => self.shared.measured = Some(path),
+            // The ending says what is saved: a picture has the document inside, too.
+            Purpose::SaveProject if is_picture(&path) => self.want_picture(Destination::File(path)),
+            Purpose::SaveProject => self.save_project(as_json(path)),
+            Purpose::SaveMaterial => self.save_material(as_json(path)),
+            Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
+            Purpose::SaveWindow => self.window_picture = Some(path.with_extension("png")),
+            Purpose::SavePicture => self.want_picture(Destination::File(with_ending(path, "png"))),
+        }
+    }
+
+    fn save_project(&mut self, path: PathBuf) {
+        let document = Box::new(self.document.clone());
+        self.files.disk.write(move || {
+            let saved = save_document(&path, &document);
+            Done::SavedProject(path, document, saved)
+        });
+    }
+
+    fn save_material(&mut self, path: PathBuf) {
+        let material = self.desk_material();
+        self.files.disk.write(move || {
+            let saved = save_material(&path, &material).map_err(|error| error.to_string());
+            Done::Wrote(saved.map(|()| format!("saved {}", path.display())))
+        });
+    }
+
+    fn say_saved(&mut self, path: &Path, saved: Result<(), String>) {
+        match saved {
+            Ok(()) => self.say(Level::Info, format!("saved {}", path.display())),
+            Err(error) => self.say(Level::Error, error),
+        }
+    }
+}
+
+/// Whether a file of this name is a picture.
+fn is_picture(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    ["png", "exr", "hdr"].contains(&ending.to_ascii_lowercase().as_str())
+}
+
+/// The path with the ending of what is written as JSON, after any other that it has: that would say something else.
+fn as_json(path: PathBuf) -> PathBuf {
+    if path
+        .extension()
+        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
+    {
+        return path;
+    }
+    let mut name = path.into_os_string();
+    name.push(".json");
+    name.into()
+}
+
+/// The path, with an ending where it has none.
+fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
+    if path.extension().is_some() {
+        path
+    } else {
+        path.with_extension(ending)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_saved_as_json_is_called_so() {
+        for (typed, named) in [
+            ("a.json", "a.json"),
+            ("a.JSON", "a.JSON"),
+            ("a", "a.json"),
+            ("a.2", "a.2.json"),
+            ("a.png", "a.png.json"),
+        ] {
+            assert_eq!(as_json(typed.into()), PathBuf::from(named));
+        }
+        assert!(is_picture(Path::new("001.PNG")) && !is_picture(Path::new("001")));
+    }
+}

@@ -1,0 +1,12 @@
+//! What the window does about actions, commands, files and answers: the methods of the editor, by what they concern.
+
+mod commands;
+mod compare;
+pub(super) mod files;
+mod library;
+mod recovery;
+mod snapshots;
+mod take_picture;
+mod turntable;
+mod unsaved;
+mod window_picture;

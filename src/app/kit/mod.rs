@@ -1,0 +1,8 @@
+//! What everything in the window is drawn with: theme, rows and controls, icons, charts, numbers in words.
+
+pub(super) mod charts;
+pub(super) mod icons;
+pub(super) mod parameter_row;
+pub(super) mod theme;
+pub(super) mod widgets;
+pub(super) mod words;

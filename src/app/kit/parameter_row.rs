@@ -1,0 +1,144 @@
+//! The row of a parameter, of a material or of a document: the control that suits its kind.
+
+use egui::{Response, Ui};
+
+use crate::app::kit::widgets::{self, Name, NumberStyle};
+use crate::document::parameter::RowStyle;
+use crate::document::{Kind, Parameter, Value};
+
+/// Whether a parameter can be edited in a row; what depends on the scene has controls of its own.
+pub(in crate::app) fn has_row<T>(parameter: &Parameter<T>) -> bool {
+    match &parameter.kind {
+        Kind::Curve | Kind::Place { .. } => false,
+        Kind::Optional { kind, at_first, .. } => at_first.is_some() || matches!(**kind, Kind::Toggle),
+        _ => true,
+    }
+}
+
+/// Shows a parameter's row, with `beside` behind its control; true where `value` is another afterwards, which may be out
+/// of the parameter's range for a moment, as a picker's is.
+pub(in crate::app) fn show<T: Default>(
+    ui: &mut Ui,
+    parameter: &Parameter<T>,
+    value: &mut Value,
+    beside: impl FnOnce(&mut Ui),
+) -> bool {
+    let full = parameter.full_name();
+    let name = Name {
+        full: &full,
+        label: parameter.label,
+        symbol: parameter.symbol,
+        help: parameter.help,
+    };
+    let response = widgets::row(ui, name, |ui| {
+        let response = control(ui, parameter, &full, value);
+        beside(ui);
+        response
+    });
+    if response.reset {
+        *value = parameter.default_value();
+    }
+    response.changed || response.reset
+}
+
+/// The control of a parameter, under a name that is unique in the window.
+pub(in crate::app) fn control<T>(ui: &mut Ui, parameter: &Parameter<T>, name: &str, value: &mut Value) -> Response {
+    of_kind(ui, &parameter.kind, &parameter.row, name, value)
+}
+
+fn of_kind(ui: &mut Ui, kind: &Kind, row: &RowStyle, full: &str, value: &mut Value) -> Response {
+    match (kind, value) {
+        (Kind::Number { range, unit }, Value::Number(x)) => number(ui, x, range.map(f64::from), unit, row),
+        (Kind::Real { range, unit }, Value::Real(x)) => number(ui, x, *range, unit, row),
+        (Kind::Count { range }, Value::Count(n)) => {
+            let whole = RowStyle { decimals: 0, ..*row };
+            number(ui, n, range.map(f64::from), "", &whole)
+        }
+        (Kind::Color, Value::Color(linear)) => {
+            let response = widgets::color(ui, full, linear);
+            *linear = linear.map(|x| x.clamp(0.0, 1.0));
+            response
+        }
+        (Kind::Triple { range }, Value::Triple(values)) => {
+            widgets::triple(ui, full, values, f64::from(range[0])..=f64::from(range[1]))
+        }
+        (Kind::Choice(choices), Value::Choice(name)) => {
+            let choices: Vec<_> = choices
+                .iter()
+                .map(|choice| (choice.name, choice.label, choice.help))
+                .collect();
+            widgets::choice(ui, full, name, &choices)
+        }
+        (Kind::Toggle, Value::Toggle(is_on)) => ui.checkbox(is_on, ""),
+        (Kind::Optional { kind, .. }, value) if matches!(**kind, Kind::Toggle) => {
+            let choices = [
+                (Value::Absent, "Automatic", "As the program sees fit."),
+                (Value::Toggle(true), "On", ""),
+                (Value::Toggle(false), "Off", ""),
+            ];
+            widgets::choice(ui, full, value, &choices)
+        }
+        (
+            Kind::Optional {
+                kind,
+                at_first: Some(at_first),
+                ..
+            },
+            value,
+        ) => optional(ui, kind, row, full, value, at_first),
+        (Kind::Curve, Value::Curve(points)) => ui.label(format!("{} points", points.len())),
+        // A test of the tables keeps kinds and values together.
+        _ => ui.label("not shown"),
+    }
+}
+
+/// A switch and, where it is on, the value beside it.
+fn optional(ui: &mut Ui, kind: &Kind, row: &RowStyle, full: &str, value: &mut Value, at_first: &Value) -> Response {
+    let mut is_on = *value != Value::Absent;
+    let mut switch = ui.checkbox(&mut is_on, "");
+    if switch.changed() {
+        *value = if is_on { at_first.clone() } else { Value::Absent };
+    }
+    if *value != Value::Absent
+        && of_kind(ui, kind, row, full, value)
+            .accessible_name(format!("{full} value"))
+            .changed()
+    {
+        switch.mark_changed();
+    }
+    switch
+}
+
+fn number<N: egui::emath::Numeric>(
+    ui: &mut Ui,
+    value: &mut N,
+    [low, high]: [f64; 2],
+    unit: &str,
+    row: &RowStyle,
+) -> Response {
+    let space = if unit.is_empty() || unit == "°" { "" } else { " " };
+    let unit = format!("{space}{unit}");
+    if !row.is_percent {
+        let style = NumberStyle {
+            range: low..=high,
+            bar: row.bar,
+            unit: &unit,
+            speed: row.step,
+            decimals: row.decimals,
+        };
+        return widgets::number(ui, value, &style);
+    }
+    let style = NumberStyle {
+        range: 100.0 * low..=100.0 * high,
+        bar: row.bar.map(|bar| bar.map(|end| 100.0 * end)),
+        unit: " %",
+        speed: row.step,
+        decimals: row.decimals,
+    };
+    let mut percent = 100.0 * value.to_f64();
+    let response = widgets::number(ui, &mut percent, &style);
+    if response.changed() {
+        *value = N::from_f64((0.01 * percent).clamp(low, high));
+    }
+    response
+}

@@ -1,0 +1,552 @@
+//! The rows that panels are made of: a label, which explains and resets, and a control, which is named after it.
+
+use std::ops::RangeInclusive;
+
+use egui::text::LayoutJob;
+use egui::{
+    Align, Color32, DragValue, Layout, Rect, Response, RichText, Sense, Shape, TextFormat, TextStyle, TextureHandle,
+    Ui, UiBuilder, Vec2,
+};
+
+use crate::app::kit::theme::{self, ROW_HEIGHT};
+use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
+use crate::optics::vector::vec3;
+
+/// The share of a row that its label takes.
+const LABEL_SHARE: f32 = 0.40;
+/// The least width of a label, points.
+const LABEL_MIN: f32 = 84.0;
+/// Width of a colour's hexadecimal field, points.
+const HEX_WIDTH: f32 = 68.0;
+
+/// What a row is called and explains.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::app) struct Name<'a> {
+    /// The name for screen readers and tests; unique in the window.
+    pub(in crate::app) full: &'a str,
+    /// The label.
+    pub(in crate::app) label: &'a str,
+    /// A symbol behind it, or empty.
+    pub(in crate::app) symbol: &'a str,
+    /// What it does to the picture.
+    pub(in crate::app) help: &'a str,
+}
+
+impl<'a> Name<'a> {
+    /// Without a symbol.
+    pub(in crate::app) fn new(full: &'a str, label: &'a str, help: &'a str) -> Self {
+        Self {
+            full,
+            label,
+            symbol: "",
+            help,
+        }
+    }
+}
+
+/// What happened to a row.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::app) struct RowResponse {
+    /// Its value was changed by the control.
+    pub(in crate::app) changed: bool,
+    /// It is to go back to its default.
+    pub(in crate::app) reset: bool,
+}
+
+/// A row that is to have the keys as soon as it is shown.
+#[derive(Clone)]
+struct Wish {
+    group: &'static str,
+    row: String,
+    /// Its control, once it has been seen. It is given the keys before it is shown again: what is typed then replaces all
+    /// of a number.
+    control: Option<egui::Id>,
+    frame: u64,
+}
+
+/// How many frames a wish stands: a panel that was brought to the front is there with the next.
+const WISH_FRAMES: u64 = 4;
+
+fn wish_id() -> egui::Id {
+    egui::Id::unique("wished focus")
+}
+
+fn wish(ui: &Ui) -> Option<Wish> {
+    let frame = ui.ctx().cumulative_frame_nr();
+    let wish: Option<Wish> = ui.data(|data| data.get_temp(wish_id()));
+    wish.filter(|wish| frame <= wish.frame + WISH_FRAMES)
+}
+
+/// Gives the row of this name (see [`Name::full`]) the keys, and opens its group.
+pub(in crate::app) fn wish_focus(ctx: &egui::Context, group: &'static str, row: String) {
+    let wish = Wish {
+        group,
+        row,
+        control: None,
+        frame: ctx.cumulative_frame_nr(),
+    };
+    ctx.data_mut(|data| data.insert_temp(wish_id(), wish));
+    ctx.request_repaint();
+}
+
+/// Gives the row's control the keys where that was wished for and it has been seen; true where it is still to be seen.
+fn fulfil_wish(ui: &Ui, row: &str) -> bool {
+    let Some(wish) = wish(ui).filter(|wish| wish.row == row) else {
+        return false;
+    };
+    if let Some(control) = wish.control {
+        ui.data_mut(|data| data.remove::<Wish>(wish_id()));
+        ui.memory_mut(|memory| memory.request_focus(control));
+        log::debug!("the keys go to {row}");
+    }
+    wish.control.is_none()
+}
+
+fn note_wished(ui: &Ui, control: &Response) {
+    if let Some(mut wish) = wish(ui) {
+        wish.control = Some(control.id);
+        ui.data_mut(|data| data.insert_temp(wish_id(), wish));
+    }
+    control.scroll_to_me(Some(Align::Center));
+    ui.ctx().request_repaint();
+}
+
+/// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
+pub(in crate::app) fn row(ui: &mut Ui, name: Name<'_>, control: impl FnOnce(&mut Ui) -> Response) -> RowResponse {
+    ui.horizontal(|ui| {
+        let is_wished = fulfil_wish(ui, name.full);
+        let label_width = (ui.available_width() * LABEL_SHARE).max(LABEL_MIN);
+        let label = row_label(ui, name, label_width);
+        let width = ui.available_width().max(40.0);
+        let layout = Layout::left_to_right(Align::Center);
+        let control = ui
+            .allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, control)
+            .inner;
+        let changed = control.changed();
+        let control = control.accessible_name(name.full);
+        if is_wished {
+            note_wished(ui, &control);
+        }
+        if !name.help.is_empty() {
+            control.on_hover_text(name.help);
+        }
+        let mut reset = label.double_clicked();
+        label.context_menu(|ui| {
+            if ui.button("Reset to default").clicked() {
+                reset = true;
+                ui.close();
+            }
+        });
+        RowResponse { changed, reset }
+    })
+    .inner
+}
+
+fn row_label(ui: &mut Ui, name: Name<'_>, width: f32) -> Response {
+    let mut job = LayoutJob::default();
+    let font = TextStyle::Body.resolve(ui.style());
+    let format = |color: Color32| TextFormat::simple(font.clone(), color);
+    job.append(name.label, 0.0, format(ui.visuals().text_color()));
+    if !name.symbol.is_empty() && name.symbol != name.label {
+        job.append(name.symbol, 6.0, format(ui.visuals().weak_text_color()));
+    }
+    let layout = Layout::left_to_right(Align::Center);
+    // Not a stop of the tab key: a press of a key on it would do nothing.
+    let label = egui::Label::new(job).truncate().selectable(false).sense(Sense::CLICK);
+    let response = ui.allocate_ui_with_layout(Vec2::new(width, ROW_HEIGHT), layout, |ui| {
+        ui.set_min_width(width);
+        ui.add(label)
+    });
+    let help = if name.help.is_empty() { name.label } else { name.help };
+    response.inner.on_hover_ui(|ui| {
+        ui.set_max_width(ui.spacing().tooltip_width);
+        ui.label(help);
+        ui.label(RichText::new("Double-click to reset").weak().small());
+    })
+}
+
+/// How a number is edited.
+#[derive(Clone, Debug)]
+pub(in crate::app) struct NumberStyle<'a> {
+    /// The values that it may take.
+    pub(in crate::app) range: RangeInclusive<f64>,
+    /// What the bar spans; `None` for no bar.
+    pub(in crate::app) bar: Option<[f64; 2]>,
+    /// Unit behind the number, with its space where one belongs.
+    pub(in crate::app) unit: &'a str,
+    /// Change per point of dragging where there is no bar.
+    pub(in crate::app) speed: f64,
+    /// Most digits behind the point.
+    pub(in crate::app) decimals: usize,
+}
+
+/// A number as a bar to drag (with shift: finely) or to type into.
+pub(in crate::app) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style: &NumberStyle<'_>) -> Response {
+    let size = Vec2::new(ui.available_width(), ROW_HEIGHT);
+    let rect = Rect::from_min_size(ui.next_widget_position() - Vec2::new(0.0, 0.5 * size.y), size);
+    let background = ui.painter().add(Shape::Noop);
+    let speed = style
+        .bar
+        .map_or(style.speed, |[low, high]| (high - low) / f64::from(size.x.max(40.0)));
+    let fills = ui.visuals().widgets.clone();
+    let span = style.bar.map(|[low, high]| {
+        let share = |value: f64| ((value - low) / (high - low)).clamp(0.0, 1.0) as f32;
+        // Signed numbers fill from zero.
+        [share(0.0_f64.clamp(low, high)), share(value.to_f64())]
+    });
+    let response = ui
+        .scope(|ui| {
+            let widgets = &mut ui.visuals_mut().widgets;
+            for state in [&mut widgets.inactive, &mut widgets.hovered, &mut widgets.active] {
+                state.weak_bg_fill = Color32::TRANSPARENT;
+            }
+            let drag = DragValue::new(value)
+                .range(style.range.clone())
+                .speed(speed)
+                .custom_formatter(|value, _| trimmed(value, style.decimals))
+                .suffix(style.unit.to_owned());
+            ui.add_sized(size, drag)
+        })
+        .inner;
+    let rect = if response.rect.is_positive() {
+        response.rect
+    } else {
+        rect
+    };
+    let state = if response.is_pointer_button_down_on() || response.has_focus() {
+        &fills.active
+    } else if response.hovered() {
+        &fills.hovered
+    } else {
+        &fills.inactive
+    };
+    let mut shapes = vec![Shape::rect_filled(rect, state.corner_radius, state.weak_bg_fill)];
+    if let Some([from, to]) = span {
+        let x = |share: f32| egui::lerp(rect.x_range(), share);
+        let filled = Rect::from_x_y_ranges(x(from.min(to))..=x(from.max(to)), rect.y_range());
+        let color = theme::accent(ui.visuals().dark_mode).gamma_multiply(if response.hovered() { 0.62 } else { 0.5 });
+        shapes.push(bar(rect, filled, color, state.corner_radius));
+    }
+    ui.painter().set(background, Shape::Vec(shapes));
+    response
+}
+
+/// A number with at most so many decimals, zeros at its end left out as far as two.
+fn trimmed(value: f64, decimals: usize) -> String {
+    let mut text = format!("{value:.decimals$}");
+    let least = text.len().saturating_sub(decimals.saturating_sub(2));
+    while decimals > 2 && text.len() > least && text.ends_with('0') {
+        text.pop();
+    }
+    if text.trim_start_matches(['-', '0', '.']).is_empty() {
+        text.trim_start_matches('-').to_owned()
+    } else {
+        text
+    }
+}
+
+/// The filled part of a field.
+fn bar(field: Rect, filled: Rect, color: Color32, radius: egui::CornerRadius) -> Shape {
+    let right = if filled.right() >= field.right() - 1.0 {
+        radius.ne
+    } else {
+        0
+    };
+    let left = if filled.left() <= field.left() + 1.0 && filled.width() >= 3.0 {
+        radius.nw
+    } else {
+        0
+    };
+    let corners = egui::CornerRadius {
+        nw: left,
+        sw: left,
+        ne: right,
+        se: right,
+    };
+    Shape::rect_filled(filled, corners, color)
+}
+
+/// A linear colour: a swatch that opens a picker, and its sRGB code to type.
+pub(in crate::app) fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response {
+    let spacing = ui.spacing().item_spacing.x;
+    let swatch_width = (ui.available_width() - HEX_WIDTH - spacing).max(30.0);
+    let swatch = ui
+        .scope(|ui| {
+            ui.spacing_mut().interact_size.x = swatch_width;
+            ui.color_edit_button_rgb(linear)
+        })
+        .inner;
+    // A colour like the panel's would not be seen as a field.
+    let line = ui.visuals().widgets.noninteractive.bg_stroke;
+    let radius = ui.visuals().widgets.inactive.corner_radius;
+    ui.painter()
+        .rect_stroke(swatch.rect, radius, line, egui::StrokeKind::Inside);
+    show_focus(ui, &swatch);
+    let mut response = swatch.clone();
+    if hex_field(ui, name, linear) {
+        response.mark_changed();
+    }
+    response
+}
+
+fn hex_field(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> bool {
+    let id = ui.make_persistent_id((name, "hex"));
+    let shown = hex_of(*linear);
+    let typed: Option<String> = ui.data(|data| data.get_temp(id));
+    let mut text = typed.unwrap_or_else(|| shown.clone());
+    let field = egui::TextEdit::singleline(&mut text)
+        .id(id.with("field"))
+        .font(TextStyle::Monospace)
+        .desired_width(HEX_WIDTH)
+        .margin(Vec2::new(4.0, 3.0));
+    let response = ui.add(field).accessible_name(format!("{name}, sRGB code"));
+    if response.has_focus() {
+        ui.data_mut(|data| data.insert_temp(id, text.clone()));
+    } else {
+        ui.data_mut(|data| data.remove::<String>(id));
+    }
+    let parsed = response.changed().then(|| linear_of(&text)).flatten();
+    if let Some(parsed) = parsed.filter(|parsed| hex_of(*parsed) != shown) {
+        *linear = parsed;
+        return true;
+    }
+    false
+}
+
+/// `#rrggbb` in sRGB.
+pub(in crate::app) fn hex_of(linear: [f32; 3]) -> String {
+    let [r, g, b] = srgb_of(linear);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// The sRGB bytes of a linear colour.
+pub(in crate::app) fn srgb_of([r, g, b]: [f32; 3]) -> [u8; 3] {
+    let encoded = srgb_from_linear(vec3(r, g, b)).to_f32();
+    encoded.map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8)
+}
+
+fn linear_of(text: &str) -> Option<[f32; 3]> {
+    let digits = text.trim().trim_start_matches('#');
+    if digits.len() != 6 || !digits.bytes().all(|digit| digit.is_ascii_hexdigit()) {
+        return None;
+    }
+    let byte = |i: usize| u8::from_str_radix(&digits[2 * i..2 * i + 2], 16).ok();
+    let [r, g, b] = [byte(0)?, byte(1)?, byte(2)?].map(|byte| f32::from(byte) / 255.0);
+    Some(linear_from_srgb(vec3(r, g, b)).to_f32())
+}
+
+/// Three numbers side by side.
+pub(in crate::app) fn triple(ui: &mut Ui, name: &str, values: &mut [f32; 3], range: RangeInclusive<f64>) -> Response {
+    let spacing = ui.spacing().item_spacing.x;
+    let width = ((ui.available_width() - 2.0 * spacing) / 3.0).max(30.0);
+    let mut whole: Option<Response> = None;
+    for (value, channel) in values.iter_mut().zip(["red", "green", "blue"]) {
+        let drag = DragValue::new(value).range(range.clone()).speed(0.01).max_decimals(3);
+        let response = ui
+            .add_sized(Vec2::new(width, ROW_HEIGHT), drag)
+            .accessible_name(format!("{name}, {channel}"));
+        whole = Some(match whole {
+            Some(whole) => whole.union(response),
+            None => response,
+        });
+    }
+    whole.unwrap_or_else(|| ui.label(""))
+}
+
+/// One of several: (value, label, help).
+pub(in crate::app) fn choice<T: PartialEq + Clone>(
+    ui: &mut Ui,
+    id: &str,
+    value: &mut T,
+    choices: &[(T, &str, &str)],
+) -> Response {
+    let current = choices.iter().find(|(choice, ..)| choice == value);
+    let mut changed = false;
+    let width = ui.available_width();
+    let shown = egui::ComboBox::from_id_salt(id)
+        .width(width)
+        .truncate()
+        .selected_text(current.map_or("", |(_, label, _)| *label).to_owned())
+        .show_ui(ui, |ui| {
+            for (choice, label, help) in choices {
+                let item = ui.selectable_label(choice == value, *label);
+                let item = if help.is_empty() {
+                    item
+                } else {
+                    item.on_hover_text(*help)
+                };
+                if item.clicked() {
+                    // By the keyboard, too, which egui alone would leave it open for.
+                    ui.close();
+                    changed |= choice != value;
+                    *value = choice.clone();
+                }
+            }
+        });
+    let mut response = shown.response;
+    changed |= step_by_keys(ui, &response, value, choices);
+    if changed {
+        response.mark_changed();
+    }
+    response
+}
+
+/// Up and down choose the neighbour, as in other programs.
+fn step_by_keys<T: PartialEq + Clone>(
+    ui: &Ui,
+    response: &Response,
+    value: &mut T,
+    choices: &[(T, &str, &str)],
+) -> bool {
+    if !response.has_focus() {
+        return false;
+    }
+    let filter = egui::EventFilter {
+        vertical_arrows: true,
+        ..Default::default()
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
+    let pressed = |key| ui.input_mut(|input| input.count_and_consume_key(egui::Modifiers::NONE, key));
+    let (down, up) = (pressed(egui::Key::ArrowDown), pressed(egui::Key::ArrowUp));
+    let at = choices.iter().position(|(choice, ..)| choice == value).unwrap_or(0);
+    let wanted = (at + down).saturating_sub(up).min(choices.len().saturating_sub(1));
+    let Some((choice, ..)) = choices.get(wanted).filter(|_| wanted != at) else {
+        return false;
+    };
+    *value = choice.clone();
+    true
+}
+
+/// The heading of a group of rows, which opens and closes it.
+pub(in crate::app) fn group(ui: &mut Ui, title: &str, body: impl FnOnce(&mut Ui)) {
+    let header = RichText::new(title).strong();
+    let shown = egui::CollapsingHeader::new(header)
+        .id_salt(title)
+        .default_open(true)
+        .open(wish(ui).is_some_and(|wish| wish.group == title).then_some(true))
+        .show_unindented(ui, |ui| {
+            ui.add_space(2.0);
+            body(ui);
+            ui.add_space(theme::GAP);
+        });
+    show_focus(ui, &shown.header_response);
+}
+
+/// A frame around what has the keys, where egui draws it as if it had not.
+fn show_focus(ui: &Ui, response: &Response) {
+    if response.has_focus() {
+        let stroke = egui::Stroke::new(1.0, theme::accent(ui.visuals().dark_mode));
+        ui.painter()
+            .rect_stroke(response.rect, 3.0, stroke, egui::StrokeKind::Inside);
+    }
+}
+
+/// Content that comes, goes and changes by itself, as what other threads answer does, above controls that stay. egui
+/// tells controls apart by their order: without this those below would be others once it came, and a click, a drag or
+/// the keys that one of them had would be lost.
+pub(in crate::app) fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {
+    let mut inside = ui.new_child(UiBuilder::new());
+    let result = content(&mut inside);
+    let taken = inside.min_rect();
+    if taken.height() > 0.0 {
+        ui.advance_cursor_after_rect(taken);
+    } else {
+        // Nothing takes no space, not even that between two widgets, but counts as one as well.
+        ui.skip_ahead_auto_ids(1);
+    }
+    result
+}
+
+/// A picture with a name beside it, to choose.
+pub(in crate::app) struct PictureRow<'a> {
+    pub(in crate::app) name: &'a str,
+    /// `None` until it is there.
+    pub(in crate::app) picture: Option<&'a TextureHandle>,
+    /// Of the picture, points.
+    pub(in crate::app) size: Vec2,
+    /// Stands in for the picture.
+    pub(in crate::app) color: Color32,
+    pub(in crate::app) is_current: bool,
+}
+
+impl PictureRow<'_> {
+    pub(in crate::app) fn show(&self, ui: &mut Ui) -> Response {
+        let size = Vec2::new(ui.available_width(), self.size.y + 4.0);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, self.is_current, self.name));
+        let visuals = ui.style().interact_selectable(&response, self.is_current);
+        if self.is_current || response.hovered() || response.has_focus() {
+            ui.painter()
+                .rect_filled(rect, visuals.corner_radius, visuals.weak_bg_fill);
+        }
+        let place = Rect::from_min_size(rect.left_top() + Vec2::new(4.0, 2.0), self.size);
+        match self.picture {
+            Some(picture) => egui::Image::new(picture).corner_radius(3.0).paint_at(ui, place),
+            None => {
+                let line = ui.visuals().widgets.noninteractive.bg_stroke;
+                ui.painter()
+                    .rect(place, 3.0, self.color, line, egui::StrokeKind::Inside);
+            }
+        }
+        let font = TextStyle::Body.resolve(ui.style());
+        let mut job = LayoutJob::simple_singleline(self.name.to_owned(), font, visuals.text_color());
+        let left = place.right() + 10.0;
+        job.wrap = egui::text::TextWrapping::truncate_at_width((rect.right() - left - 4.0).max(1.0));
+        let galley = ui.painter().layout_job(job);
+        let at = egui::pos2(left, rect.center().y - 0.5 * galley.size().y);
+        ui.painter().galley(at, galley, visuals.text_color());
+        response
+    }
+}
+
+/// A field for a new name, which has the keys. `Some(None)`: left as it was.
+pub(in crate::app) fn name_field(ui: &mut Ui, name: &mut String) -> Option<Option<String>> {
+    let field = ui
+        .add(egui::TextEdit::singleline(name).desired_width(f32::INFINITY))
+        .accessible_name("New name");
+    if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
+        return Some(None);
+    }
+    if field.lost_focus() {
+        let name = name.trim().to_owned();
+        return Some((!name.is_empty()).then_some(name));
+    }
+    field.request_focus();
+    None
+}
+
+/// Why work beside the window came to nothing, where it did.
+pub(in crate::app) fn failure(ui: &mut Ui, why: Option<String>) {
+    if let Some(why) = why {
+        ui.add(egui::Label::new(RichText::new(why).color(ui.visuals().error_fg_color)).wrap());
+    }
+}
+
+/// A note in weak text.
+pub(in crate::app) fn note(ui: &mut Ui, text: impl Into<String>) {
+    ui.label(RichText::new(text).weak());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_lose_zeros_but_not_digits() {
+        assert_eq!(trimmed(0.3, 3), "0.30");
+        assert_eq!(trimmed(0.305, 3), "0.305");
+        assert_eq!(trimmed(-0.0001, 3), "0.00");
+        assert_eq!(trimmed(12.0, 0), "12");
+        assert_eq!(trimmed(100.0, 0), "100");
+        assert_eq!(trimmed(-4.5, 1), "-4.5");
+    }
+
+    #[test]
+    fn colours_come_back_from_their_codes() {
+        for code in ["#000000", "#ffffff", "#c8a060", "#010203"] {
+            assert_eq!(linear_of(code).map(hex_of).as_deref(), Some(code));
+        }
+        assert_eq!(linear_of("#12345"), None);
+        assert_eq!(linear_of("#+23456"), None);
+    }
+}

@@ -1,0 +1,70 @@
+//! Numbers in words.
+
+/// A time in words, two digits.
+pub(in crate::app) fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 0.0995 => format!("{:.0} ms", 1e3 * s),
+        s if s < 9.95 => format!("{s:.1} s"),
+        s if s < 100.0 => format!("{s:.0} s"),
+        s if s < 6000.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// A share in per cent with as many digits as it has.
+pub(in crate::app) fn percent_short(share: f64) -> String {
+    // Fifteen digits hide what the hundredfold adds to a decimal number.
+    format!("{} %", (share * 1e10).round() / 1e8)
+}
+
+/// Less than this is not told apart from nothing, percent.
+const PERCENT_MIN: f64 = 0.0001;
+
+/// A share as a percentage with three digits.
+pub(in crate::app) fn percent(share: f64) -> String {
+    let value = 100.0 * share;
+    if value > 0.0 && value < PERCENT_MIN {
+        return format!("< {PERCENT_MIN} %");
+    }
+    let decimals = match value {
+        v if v >= 100.0 => 0,
+        v if v >= 10.0 => 1,
+        v if v >= 1.0 || v == 0.0 => 2,
+        v if v >= 0.1 => 3,
+        _ => 4,
+    };
+    format!("{value:.decimals$} %")
+}
+
+/// A number with three digits and a prefix.
+pub(in crate::app) fn short_number(value: f64) -> String {
+    let (scaled, prefix) = match value {
+        v if v >= 1e9 => (v / 1e9, " G"),
+        v if v >= 1e6 => (v / 1e6, " M"),
+        v if v >= 1e3 => (v / 1e3, " k"),
+        v => (v, ""),
+    };
+    let decimals = match scaled {
+        s if s >= 100.0 || prefix.is_empty() => 0,
+        s if s >= 10.0 => 1,
+        _ => 2,
+    };
+    format!("{scaled:.decimals$}{prefix}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_three_digits() {
+        assert_eq!(short_number(0.0), "0");
+        assert_eq!(short_number(999.0), "999");
+        assert_eq!(short_number(1234.0), "1.23 k");
+        assert_eq!(short_number(45_670_000.0), "45.7 M");
+        assert_eq!(short_number(3.21e11), "321 G");
+        let percents = [0.0, 2e-9, 0.000_412, 0.0123, 0.5, 2.0].map(percent);
+        let expected = ["0.00 %", "< 0.0001 %", "0.0412 %", "1.23 %", "50.0 %", "200 %"];
+        assert_eq!(percents, expected);
+    }
+}

@@ -1,0 +1,150 @@
+//! Camera, view and render settings.
+
+mod region;
+
+use egui::Ui;
+
+use super::Panel;
+use crate::app::actions::{Action, Command};
+use crate::app::desk::{Desk, PICTURE_SIZE, RESOLUTIONS, Resolution};
+use crate::app::kit::icons::{self, Icon};
+use crate::app::kit::widgets::{self, Name, NumberStyle};
+use crate::document::{Bookmark, range};
+
+/// Camera, view and render settings.
+#[derive(Default)]
+pub(super) struct CameraPanel;
+
+impl Panel for CameraPanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        widgets::group(ui, "Camera", |ui| camera(ui, desk));
+        widgets::group(ui, "Bookmarks", |ui| bookmarks(ui, desk));
+        widgets::group(ui, "View", |ui| desk.settings(ui, "View"));
+        widgets::group(ui, "Picture", |ui| picture(ui, desk));
+        widgets::group(ui, "Accuracy", |ui| desk.settings(ui, "Accuracy"));
+        widgets::group(ui, "Sampling", |ui| desk.settings(ui, "Sampling"));
+    }
+}
+
+fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
+    desk.settings(ui, "Camera");
+    widgets::comes_and_goes(ui, |ui| focus(ui, desk));
+    ui.horizontal_wrapped(|ui| {
+        if ui.button("Frame all").on_hover_text(Command::FrameAll.help()).clicked() {
+            desk.act(Command::FrameAll);
+        }
+        for (label, yaw_deg, pitch_deg) in [("Front", 0.0, 0.0), ("Side", 90.0, 0.0), ("Top", 0.0, 90.0)] {
+            if ui.button(label).clicked() {
+                desk.actions.push(Action::LookFrom(yaw_deg, pitch_deg));
+            }
+        }
+        let help = Command::FrameSelected.help();
+        if ui.button("Frame selected").on_hover_text(help).clicked() {
+            desk.act(Command::FrameSelected);
+        }
+    });
+}
+
+/// The focus distance: until it is given, that of the target, which only the scene can tell.
+fn focus(ui: &mut Ui, desk: &mut Desk<'_>) {
+    if desk.document.camera.aperture == 0.0 {
+        desk.shared.picks_focus = false;
+        return;
+    }
+    let at_target = desk.scene().map_or(1.0, |scene| {
+        scene.job.settings.camera.focus_distance * scene.job.geometry.world_units_per_unit
+    });
+    let style = NumberStyle {
+        range: range::DISTANCE,
+        bar: None,
+        unit: "",
+        speed: 0.005 * at_target,
+        decimals: 4,
+    };
+    let mut distance = desk.document.camera.focus_distance.unwrap_or(at_target);
+    let name = Name::new(
+        "Focus distance",
+        "Focus",
+        "How far away things are sharp, in the model's units; at first at the camera's target. In the viewport: \
+         click with ctrl.",
+    );
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut distance, &style));
+    if response.changed {
+        desk.document.camera.focus_distance = Some(distance);
+    }
+    desk.edited(response, "Focus distance", |document| {
+        &mut document.camera.focus_distance
+    });
+    let toggle = ui.toggle_value(&mut desk.shared.picks_focus, "Pick focus");
+    toggle.on_hover_text("The next click in the viewport says what is sharp.");
+}
+
+fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let mut bookmarks = desk.document.bookmarks.clone();
+    let mut removed = None;
+    for (index, bookmark) in bookmarks.iter_mut().enumerate() {
+        ui.horizontal(|ui| {
+            let is_here = bookmark.camera == desk.document.camera;
+            let name = format!("Camera bookmark {}", index + 1);
+            if ui
+                .selectable_label(is_here, "Go")
+                .on_hover_text("Looks from there.")
+                .clicked()
+            {
+                desk.document.camera = bookmark.camera;
+                desk.edits.note("Go to bookmark", "");
+            }
+            let width = (ui.available_width() - 72.0).max(40.0);
+            let field = egui::TextEdit::singleline(&mut bookmark.name).desired_width(width);
+            if ui.add(field).accessible_name(name.as_str()).changed() {
+                desk.edits.note("Rename bookmark", name.clone());
+            }
+            if ui
+                .button("Set")
+                .on_hover_text("Replaces it by the present camera.")
+                .clicked()
+            {
+                bookmark.camera = desk.document.camera;
+                desk.edits.note("Set bookmark", "");
+            }
+            let remove = format!("Remove {}", name.to_lowercase());
+            if icons::button(ui, Icon::Close, &remove, "Remove this bookmark").clicked() {
+                removed = Some(index);
+            }
+        });
+    }
+    if let Some(index) = removed {
+        bookmarks.remove(index);
+        desk.edits.note("Remove bookmark", "");
+    }
+    if ui
+        .button("Add bookmark")
+        .on_hover_text("Remembers the camera with the project.")
+        .clicked()
+    {
+        bookmarks.push(Bookmark {
+            name: format!("View {}", bookmarks.len() + 1),
+            camera: desk.document.camera,
+        });
+        desk.edits.note("Add bookmark", "");
+    }
+    desk.document.bookmarks = bookmarks;
+}
+
+/// What the viewport renders and what is saved, and when rendering ends.
+fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let name = Name::new("Picture size", "Size", "What the viewport renders, and what is saved.");
+    let response = widgets::row(ui, name, |ui| {
+        widgets::choice(ui, "size", &mut desk.shared.resolution, &RESOLUTIONS)
+    });
+    if response.reset {
+        desk.shared.resolution = Resolution::default();
+    }
+    widgets::comes_and_goes(ui, |ui| {
+        if desk.shared.resolution == Resolution::Document {
+            desk.settings(ui, PICTURE_SIZE);
+        }
+    });
+    widgets::comes_and_goes(ui, |ui| region::show(ui, desk));
+    desk.settings(ui, "Picture");
+}

@@ -1,0 +1,51 @@
+//! The part of the picture that is rendered, by numbers.
+
+use egui::Ui;
+
+use crate::app::desk::Desk;
+use crate::app::kit::widgets::{self, Name, NumberStyle};
+
+/// What the switch begins with: the middle of the picture.
+const AT_FIRST: [f64; 4] = [0.25, 0.25, 0.75, 0.75];
+/// The least width and height, shares of the picture.
+const LEAST: f64 = 0.01;
+
+pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let mut is_on = desk.document.render.region.is_some();
+    let help = "Renders a part of the picture only. In the viewport: B, then drag a rectangle; escape takes it away.";
+    let name = Name::new("Render region", "Region", help);
+    let response = widgets::row(ui, name, |ui| ui.checkbox(&mut is_on, ""));
+    if response.changed {
+        desk.document.render.region = is_on.then_some(AT_FIRST);
+    }
+    desk.edited(response, "Render region", |document| &mut document.render.region);
+    let Some(mut region) = desk.document.render.region else {
+        return;
+    };
+    let sides = [
+        ("Region left", "Left", 0.0..=region[2] - LEAST),
+        ("Region top", "Top", 0.0..=region[3] - LEAST),
+        ("Region right", "Right", region[0] + LEAST..=1.0),
+        ("Region bottom", "Bottom", region[1] + LEAST..=1.0),
+    ];
+    for (side, (full, label, range)) in region.iter_mut().zip(sides) {
+        let mut percent = 100.0 * *side;
+        let style = NumberStyle {
+            range: 100.0 * range.start()..=100.0 * range.end(),
+            bar: Some([0.0, 100.0]),
+            unit: " %",
+            speed: 0.5,
+            decimals: 1,
+        };
+        let name = Name::new(
+            full,
+            label,
+            "Share of the picture's width or height, from its left or upper edge.",
+        );
+        if widgets::row(ui, name, |ui| widgets::number(ui, &mut percent, &style)).changed {
+            *side = (0.01 * percent).clamp(0.0, 1.0);
+            desk.edits.note("Render region", full);
+        }
+    }
+    desk.document.render.region = Some(region);
+}

@@ -1,0 +1,90 @@
+//! The ledger: what each effect and each setting in force costs, in plain words.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use egui::{RichText, Ui};
+
+use crate::app::desk::Desk;
+use crate::app::kit::widgets;
+use crate::app::study::{StudyWorker, engine, small_document};
+use crate::document::{Change, Document};
+use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
+
+/// Longest side of the picture that is measured on, pixels: what is true of the parts is true of the whole.
+const SIDE_MAX: u32 = 256;
+
+/// What the panel remembers.
+#[derive(Default)]
+pub(super) struct LedgerState {
+    worker: StudyWorker<Ledger>,
+    /// What it was asked about last.
+    asked: Option<Document>,
+    /// How long a turn lasts, where it is not the usual time.
+    pub(super) slice: Option<Duration>,
+}
+
+impl LedgerState {
+    /// Measures when the panel is shown next.
+    pub(super) fn wish(&mut self) {
+        self.worker.wish();
+    }
+
+    /// See [`StudyWorker::tick`].
+    pub(super) fn tick(&mut self, desk: &mut Desk<'_>) {
+        self.worker.tick(desk);
+    }
+
+    /// What was measured last.
+    pub(super) fn found(&self) -> Option<Arc<Ledger>> {
+        self.worker.found()
+    }
+}
+
+/// The button that measures, and how far it is.
+pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState, found: Option<&Ledger>) {
+    let help = "What each effect and setting costs in time, and does to noise and picture: renders this scene with and \
+                without each of them, in turns.";
+    let LedgerState { worker, asked, slice } = state;
+    worker.controls(ui, desk, "Measure what it costs", help, |desk| {
+        *asked = Some(desk.document.clone());
+        let document = small_document(desk, SIDE_MAX);
+        let mut options = LedgerOptions::new(engine(desk));
+        options.slice = slice.unwrap_or(options.slice);
+        Box::new(move |watch| ledger(&document, &options, watch))
+    });
+    let is_old = |asked: &Document| Change::between(asked, desk.document).restarts();
+    widgets::comes_and_goes(ui, |ui| {
+        if found.is_some() && asked.as_ref().is_some_and(is_old) {
+            widgets::note(ui, "Measured before the last changes.");
+        }
+    });
+}
+
+/// All lines of it.
+pub(super) fn show(ui: &mut Ui, found: &Ledger) {
+    widgets::group(ui, "Ledger", |ui| {
+        ui.label(format!("{:.2} ms for one sample of every pixel", found.ms_per_sample));
+        found.entries.iter().for_each(|entry| line(ui, entry));
+        let size = format!("Measured at {} × {} pixels.", found.width, found.height);
+        widgets::note(ui, size);
+    });
+}
+
+fn line(ui: &mut Ui, entry: &Entry) {
+    let help = format!(
+        "{:.3} ms of {:.3} ms a sample of every pixel ({:.1} % of the frame); half of the turns lie between {:.3} and \
+         {:.3} ms.\nNoise: {:+.0} %. Picture: {:.3} % ({:.3} to {:.3}).",
+        entry.ms,
+        entry.ms_with,
+        100.0 * entry.share_of_frame,
+        entry.ms_quartiles[0],
+        entry.ms_quartiles[1],
+        100.0 * entry.noise_share,
+        100.0 * entry.picture_change.value,
+        100.0 * entry.picture_change.low,
+        100.0 * entry.picture_change.high,
+    );
+    ui.add(egui::Label::new(RichText::new(&entry.words)).wrap())
+        .on_hover_text(help);
+}

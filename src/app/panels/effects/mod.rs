@@ -1,0 +1,144 @@
+//! Which effects are simulated, why, and what the user decides against the plan.
+
+mod ledger;
+
+use egui::{Align, Color32, Layout, RichText, Sense, Ui, vec2};
+
+use ledger::LedgerState;
+
+use super::Panel;
+use crate::app::actions::Command;
+use crate::app::desk::Desk;
+use crate::app::kit::theme;
+use crate::app::kit::widgets;
+use crate::app::kit::words::duration;
+use crate::document::effect::{Effect, EffectSwitches, Switch};
+use crate::job::effect::Decision;
+use crate::render::study::ledger::Entry;
+
+/// Radius of the mark before an effect, points.
+const MARK_RADIUS: f32 = 3.5;
+
+/// What is simulated, why, and what it costs.
+#[derive(Default)]
+pub(super) struct EffectsPanel {
+    ledger: LedgerState,
+}
+
+impl Panel for EffectsPanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let Some(job) = desk.snapshot.scene.as_ref().map(|scene| scene.job.clone()) else {
+            widgets::note(ui, "Nothing is rendered yet.");
+            return;
+        };
+        let plan = &job.plan;
+        let count = plan.table().count();
+        let found = self.ledger.found();
+        let gain = found.as_ref().and_then(|ledger| ledger.kernel_gain());
+        let gain = gain.map_or_else(String::new, |gain| format!(", {gain:.1} × as fast as the general one"));
+        let mut help =
+            "An effect that the scene does not call for costs nothing: the kernel is compiled without it.".to_owned();
+        if let Some(seconds) = desk.snapshot.progress.kernel_seconds {
+            help += &format!(
+                "\nThe last one took {} to compile, while the processor drew.",
+                duration(seconds)
+            );
+        }
+        ui.label(format!(
+            "{} of {count} effects are simulated; the kernel leaves out {}{gain}.",
+            plan.effects().len(),
+            plan.left_out()
+        ))
+        .on_hover_text(help);
+        ledger::controls(ui, desk, &mut self.ledger, found.as_deref());
+        let switches = desk.document.render.effects;
+        if switches != EffectSwitches::default() && ui.button("All automatic").clicked() {
+            desk.document.render.effects = EffectSwitches::default();
+            desk.edits.note("All effects automatic", "");
+        }
+        ui.add_space(theme::GAP);
+        for (effect, decision) in plan.table() {
+            let entry = found.as_ref().and_then(|ledger| ledger.effect(effect.name()));
+            row(ui, desk, Effect::of(effect), decision, entry.filter(|_| decision.is_on));
+        }
+        if let Some(found) = &found {
+            ui.add_space(theme::GAP);
+            ledger::show(ui, found);
+        }
+    }
+
+    fn tick(&mut self, desk: &mut Desk<'_>) {
+        self.ledger.tick(desk);
+    }
+
+    fn hear(&mut self, command: Command) {
+        if command == Command::Measure {
+            self.ledger.wish();
+        }
+    }
+}
+
+/// An effect with what the ledger says of it.
+fn row(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect, decision: &Decision, entry: Option<&Entry>) {
+    ui.horizontal(|ui| {
+        mark(ui, decision.is_on);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            switch(ui, desk, effect);
+            let label = egui::Label::new(effect.label).wrap();
+            let rest = ui.available_size();
+            let layout = Layout::left_to_right(Align::Center);
+            let shown = ui.allocate_ui_with_layout(rest, layout, |ui| ui.add(label));
+            shown.inner.on_hover_text(effect.help);
+        });
+    });
+    ui.horizontal(|ui| {
+        ui.add_space(4.0 * MARK_RADIUS);
+        let cost = entry.map_or_else(String::new, |entry| format!(" · {}", entry.time_words()));
+        let text = RichText::new(format!("{}{cost}", decision.reason)).weak().small();
+        ui.add(egui::Label::new(text).wrap());
+    });
+}
+
+/// Filled where the effect is simulated.
+fn mark(ui: &mut Ui, is_on: bool) {
+    let size = vec2(2.0 * MARK_RADIUS, ui.spacing().interact_size.y);
+    let (place, response) = ui.allocate_exact_size(size, Sense::hover());
+    let color = if is_on {
+        ui.visuals().selection.bg_fill
+    } else {
+        Color32::TRANSPARENT
+    };
+    let stroke = egui::Stroke::new(1.0, ui.visuals().weak_text_color());
+    ui.painter().circle(place.center(), MARK_RADIUS, color, stroke);
+    response.on_hover_text(if is_on { "Simulated" } else { "Left out" });
+}
+
+fn switch(ui: &mut Ui, desk: &mut Desk<'_>, effect: &Effect) {
+    let current = desk.document.render.effects.get(effect.id);
+    let mut chosen = current;
+    let menu = egui::ComboBox::from_id_salt(effect.name())
+        .width(64.0)
+        .selected_text(current.label());
+    let shown = menu.show_ui(ui, |ui| {
+        for &switch in Switch::ALL {
+            let why_not = match switch {
+                Switch::On => "It has no code that could run where it is not called for.",
+                _ => "Nothing can be rendered without it.",
+            };
+            ui.add_enabled_ui(effect.can_be(switch), |ui| {
+                let item = ui.selectable_value(&mut chosen, switch, switch.label());
+                if item.clicked() {
+                    ui.close();
+                }
+                item.on_hover_text(switch.help()).on_disabled_hover_text(why_not);
+            });
+        }
+    });
+    shown
+        .response
+        .accessible_name(format!("{}: auto, on or off", effect.label));
+    if chosen != current {
+        desk.document.render.effects.set(effect.id, chosen);
+        desk.edits.note(format!("Switch {}", effect.label.to_lowercase()), "");
+    }
+}

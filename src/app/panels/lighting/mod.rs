@@ -1,0 +1,159 @@
+//! Environment, area lights, background and ground.
+
+mod area_lights;
+
+use egui::{Ui, vec2};
+
+use super::Panel;
+use crate::app::actions::{Action, Command};
+use crate::app::desk::Desk;
+use crate::app::kit::theme;
+use crate::app::kit::widgets::{self, Name, PictureRow};
+use crate::app::services::environments::{BUILT_IN, environment_label};
+use crate::document::Background;
+use crate::scene::environment::EnvironmentSource;
+
+/// Size of an environment's picture in the list, points.
+const PICTURE: egui::Vec2 = vec2(48.0, 24.0);
+/// Most files in the list.
+const FILES_MAX: usize = 6;
+
+/// Environment, area lights, background and ground.
+#[derive(Default)]
+pub(super) struct LightingPanel;
+
+impl Panel for LightingPanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        widgets::group(ui, "Environment", |ui| {
+            widgets::comes_and_goes(ui, |ui| current(ui, desk));
+            sources(ui, desk);
+            desk.settings(ui, "Environment");
+        });
+        widgets::group(ui, "Area lights", |ui| area_lights::show(ui, desk));
+        widgets::group(ui, "Background", |ui| background(ui, desk));
+        widgets::group(ui, "Ground", |ui| desk.settings(ui, "Ground"));
+    }
+}
+
+/// The environment in use, as large as the panel lets it be.
+fn current(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let Some(scene) = desk.snapshot.scene.clone() else {
+        return;
+    };
+    let source = &scene.document.lighting.environment;
+    let width = ui.available_width();
+    let size = vec2(width, 0.5 * width);
+    let (place, response) = ui.allocate_exact_size(size, egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "The environment"));
+    match desk.shared.environments.picture(source) {
+        Some(picture) => egui::Image::new(picture).corner_radius(3.0).paint_at(ui, place),
+        None => _ = ui.painter().rect_filled(place, 3.0, ui.visuals().extreme_bg_color),
+    }
+    let environment = &scene.job.environment;
+    let [width, height] = [environment.width, environment.height];
+    response.on_hover_text(format!("{}, {width} × {height}", environment.name));
+}
+
+/// All there are to choose from: those that come with the program, and files, the one in use and those opened last.
+fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let current = desk.document.lighting.environment.clone();
+    let mut sources: Vec<EnvironmentSource> = BUILT_IN.iter().map(|(.., source)| source.clone()).collect();
+    for source in std::iter::once(current).chain(desk.shared.recent.environments()) {
+        if !sources.contains(&source) && sources.len() < BUILT_IN.len() + FILES_MAX {
+            sources.push(source);
+        }
+    }
+    let scene = desk.snapshot.scene.clone();
+    let loaded = scene
+        .as_ref()
+        .map(|scene| (&scene.document.lighting.environment, &scene.job.environment));
+    desk.shared.environments.make_pictures(ui.ctx(), &sources, loaded);
+    ui.add_space(2.0);
+    widgets::comes_and_goes(ui, |ui| rows(ui, desk, &sources));
+    ui.add_space(2.0);
+    if ui
+        .button("Open a file…")
+        .on_hover_text(Command::OpenEnvironment.help())
+        .clicked()
+    {
+        desk.act(Command::OpenEnvironment);
+    }
+    ui.add_space(0.5 * theme::GAP);
+}
+
+fn rows(ui: &mut Ui, desk: &mut Desk<'_>, sources: &[EnvironmentSource]) {
+    let current = desk.document.lighting.environment.clone();
+    for source in sources {
+        let is_current = *source == current;
+        let environments = &desk.shared.environments;
+        let row = PictureRow {
+            name: &environment_label(source),
+            picture: environments.picture(source),
+            size: PICTURE,
+            color: ui.visuals().extreme_bg_color,
+            is_current,
+        };
+        let help = match (source, BUILT_IN.iter().find(|(.., of)| of == source)) {
+            (EnvironmentSource::File(path), _) if environments.is_missing(source) => {
+                format!("{}: not there any more, or not to be read", path.display())
+            }
+            (EnvironmentSource::File(path), _) => path.display().to_string(),
+            (_, built_in) => built_in.map_or_else(String::new, |(_, help, _)| (*help).to_owned()),
+        };
+        if row.show(ui).on_hover_text(help).clicked() && !is_current {
+            desk.actions.push(Action::UseEnvironment(source.clone()));
+        }
+    }
+}
+
+fn background(ui: &mut Ui, desk: &mut Desk<'_>) {
+    #[derive(Clone, Copy, PartialEq)]
+    enum Kind {
+        Environment,
+        Transparent,
+        Color,
+    }
+    let choices = [
+        (Kind::Environment, "Environment", "The environment itself."),
+        (
+            Kind::Transparent,
+            "Transparent",
+            "Nothing: the picture's opacity is 0 there.",
+        ),
+        (
+            Kind::Color,
+            "Colour",
+            "One colour, whatever the light; reflections still show the environment.",
+        ),
+    ];
+    let mut kind = match desk.document.lighting.background {
+        Background::Environment => Kind::Environment,
+        Background::Transparent => Kind::Transparent,
+        Background::Color(_) => Kind::Color,
+    };
+    let name = Name::new("Background", "Shows", "What is seen beside the model.");
+    let response = widgets::row(ui, name, |ui| widgets::choice(ui, "background", &mut kind, &choices));
+    if response.changed {
+        desk.document.lighting.background = match kind {
+            Kind::Environment => Background::Environment,
+            Kind::Transparent => Background::Transparent,
+            Kind::Color => Background::Color([0.18; 3]),
+        };
+    }
+    desk.edited(response, "Background", |document| &mut document.lighting.background);
+    desk.settings(ui, "Background");
+    if let Background::Color(color) = &mut desk.document.lighting.background {
+        let name = Name::new(
+            "Background colour",
+            "Colour",
+            "Linear: exposure and tone map apply to it, too.",
+        );
+        let response = widgets::row(ui, name, |ui| widgets::color(ui, "Background colour", color));
+        if response.reset {
+            *color = [0.18; 3];
+        }
+        if response.changed || response.reset {
+            desk.edits.note("Background colour", "Background colour");
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! "Match look": gives the material the lobe that comes closest to another one's or to a measured material's.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use egui::Ui;
+
+use super::line_plot::line_plot;
+use crate::analysis::fit::Merl;
+use crate::analysis::lobe_model::LobeModel;
+use crate::app::actions::{Action, Command};
+use crate::app::desk::Desk;
+use crate::app::kit::widgets;
+use crate::document::match_look::{LookMatch, Target, VIEW_ANGLE_MAX_DEG, comparison, match_look};
+use crate::optics::lobe::Lobe;
+use crate::plot::lobe_view::LinePlot;
+use crate::render::background::Background;
+
+/// What to match.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Source {
+    Lobe(LobeModel),
+    File(PathBuf),
+}
+
+#[derive(Clone, PartialEq)]
+struct Query {
+    source: Source,
+    lobe: Lobe,
+    view_angle_deg: f64,
+}
+
+/// What was found, with target and candidates as a plot.
+struct Matched {
+    query: Query,
+    found: LookMatch,
+    plot: LinePlot,
+}
+
+type Answer = Result<Arc<Matched>, String>;
+
+/// What the panel remembers.
+#[derive(Default)]
+pub(super) struct MatchState {
+    worker: Option<Background<Query, Answer>>,
+}
+
+/// The button, and what came of it.
+pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, source: Option<Source>) {
+    let Some(source) = source else {
+        if ui.button("Choose a measured material…").clicked() {
+            desk.act(Command::OpenMeasured);
+        }
+        return;
+    };
+    if let Source::File(path) = &source {
+        ui.weak(path.file_name().unwrap_or_default().to_string_lossy());
+    }
+    let material = desk.material();
+    let query = Query {
+        source,
+        lobe: if material.lobe == Lobe::Lambert {
+            Lobe::Geometric
+        } else {
+            material.lobe
+        },
+        view_angle_deg: f64::from(desk.shared.view_angle_deg).min(VIEW_ANGLE_MAX_DEG),
+    };
+    if state.worker.is_none() {
+        let ctx = ui.ctx().clone();
+        let work = |query: Query, desk: &crate::render::background::Desk<'_, Query, Answer>| desk.publish(find(query));
+        state.worker = Background::spawn("match look", move || ctx.request_repaint(), work).ok();
+    }
+    let Some(worker) = &state.worker else {
+        widgets::note(ui, "The system gives no thread to compute on.");
+        return;
+    };
+    let is_busy = worker.is_busy();
+    ui.horizontal(|ui| {
+        let help = "Looks for the roughness, and for the geometric lobe also the curve, that come closest to it at \
+                    this view angle.";
+        let button = ui.add_enabled(!is_busy, egui::Button::new("Match look"));
+        if button.on_hover_text(help).clicked() {
+            worker.ask(query.clone());
+        }
+        if is_busy {
+            ui.add(egui::Spinner::new().size(12.0));
+        }
+    });
+    widgets::failure(ui, worker.failure());
+    match worker.latest() {
+        None => {}
+        Some(Err(why)) => {
+            ui.colored_label(ui.visuals().error_fg_color, why);
+        }
+        Some(Ok(matched)) => result(ui, desk, &matched, matched.query == query),
+    }
+}
+
+fn result(ui: &mut Ui, desk: &mut Desk<'_>, matched: &Matched, is_current: bool) {
+    let found = &matched.found;
+    egui::Grid::new("residuals").num_columns(3).show(ui, |ui| {
+        let rows = [
+            ("Before", &found.before),
+            ("Roughness matched", &found.nearest),
+            ("Curve too", &found.after),
+        ];
+        let count = if found.curve.is_some() { 3 } else { 2 };
+        for (label, candidate) in rows.into_iter().take(count) {
+            ui.label(label);
+            ui.label(format!("R {:.3}", candidate.model.roughness));
+            ui.label(format!("{:.1} % apart", 100.0 * candidate.total_variation))
+                .on_hover_text("Total variation distance: the share of the highlight that lies elsewhere");
+            ui.end_row();
+        }
+    });
+    ui.weak(format!("{}, view {}°", found.target, found.view_angle_deg));
+    line_plot(ui, "match look", &matched.plot);
+    let help = if is_current {
+        "Gives the selected material this lobe. Undo takes it back."
+    } else {
+        "Found for other settings than the present ones; match again for these."
+    };
+    if ui.button("Use it").on_hover_text(help).clicked() {
+        let mut material = desk.material();
+        found.apply(&mut material);
+        desk.actions.push(Action::UseMaterial(Box::new(material)));
+    }
+}
+
+fn find(query: Query) -> Answer {
+    let target = match &query.source {
+        Source::Lobe(model) => Target::Lobe(model.clone()),
+        Source::File(path) => Target::Measured {
+            name: path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+            merl: Arc::new(Merl::load(path).map_err(|error| error.to_string())?),
+        },
+    };
+    let found = match_look(&target, query.lobe, query.view_angle_deg).map_err(|error| error.to_string())?;
+    let plot = comparison(&target, &found).map_err(|error| error.to_string())?;
+    Ok(Arc::new(Matched { query, found, plot }))
+}

@@ -1,0 +1,247 @@
+//! The selected material's lobe as slices, bodies, maps and curves, beside another lobe or a measured material, to which
+//! it can be matched.
+
+mod line_plot;
+mod matching;
+
+use std::sync::Arc;
+
+use egui::{ColorImage, TextureHandle, TextureOptions, Ui};
+
+use line_plot::line_plot;
+use matching::MatchState;
+
+use super::Panel;
+use crate::analysis::lobe_model::LobeModel;
+use crate::app::desk::Desk;
+use crate::app::kit::widgets::{self, Name, NumberStyle};
+use crate::document::match_look::lobe_of_material;
+use crate::optics::curve::Curve;
+use crate::optics::lobe::Lobe;
+use crate::plot::lobe_view::{LinePlot, LobeView, MapPlot, SolidPlot, ViewKind, lobe_view};
+use crate::plot::lobe_view_picture;
+use crate::render::background::Background;
+
+/// Pictures are drawn this much larger than they are shown on a screen of one pixel a point.
+const ZOOM: f64 = 1.5;
+
+/// What the lobe is compared with.
+#[derive(Clone, Debug, Default, PartialEq)]
+enum Other {
+    #[default]
+    Nothing,
+    Lobe(Lobe),
+    Measured,
+}
+
+/// The selected material's lobe, beside another one.
+#[derive(Default)]
+pub(super) struct LobePanel {
+    worker: Option<Background<Query, Arc<Shown>>>,
+    asked: Option<Query>,
+    kind: Option<ViewKind>,
+    other: Other,
+    other_roughness: Option<f32>,
+    pictures: Vec<TextureHandle>,
+    pictured: Option<Arc<Shown>>,
+    matching: MatchState,
+}
+
+#[derive(Clone, PartialEq)]
+struct Query {
+    kind: ViewKind,
+    lobes: Vec<LobeModel>,
+    view_angle_deg: f64,
+    is_dark: bool,
+}
+
+/// What came of a query.
+enum Shown {
+    Lines(LinePlot),
+    Pictures(Vec<ColorImage>),
+}
+
+impl Panel for LobePanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let kind = self.kind.unwrap_or(ViewKind::Polar);
+        controls(ui, desk, self, kind);
+        let material = lobe_of_material(&desk.material());
+        if !material.has_density() {
+            widgets::note(ui, "A mirror has no lobe: give the material some roughness.");
+            return;
+        }
+        if !kind.shows(material.lobe) {
+            widgets::note(
+                ui,
+                "Only the geometric lobe has a distance D: choose it as the material's lobe, or another view.",
+            );
+            return;
+        }
+        let other = other_lobe(self, desk);
+        let view_angle_deg = f64::from(desk.shared.view_angle_deg);
+        let query = Query {
+            kind,
+            lobes: [Some(material), other.clone()].into_iter().flatten().collect(),
+            view_angle_deg,
+            is_dark: ui.visuals().dark_mode,
+        };
+        widgets::comes_and_goes(ui, |ui| view(ui, self, query));
+        if self.other != Other::Nothing {
+            ui.add_space(crate::app::kit::theme::GAP);
+            let target = match self.other {
+                Other::Measured => desk.shared.measured.clone().map(matching::Source::File),
+                _ => other.map(matching::Source::Lobe),
+            };
+            matching::show(ui, desk, &mut self.matching, target);
+        }
+    }
+}
+
+/// The lobe compared with, where there is one.
+fn other_lobe(panel: &LobePanel, desk: &Desk<'_>) -> Option<LobeModel> {
+    let Other::Lobe(lobe) = panel.other else {
+        return None;
+    };
+    let roughness = panel.other_roughness.unwrap_or(desk.material().roughness);
+    let model = LobeModel::new(lobe, f64::from((roughness * 1e3).round()) / 1e3, Curve::Smooth);
+    model.has_density().then_some(model)
+}
+
+fn controls(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut LobePanel, mut kind: ViewKind) {
+    let kinds: Vec<_> = ViewKind::ALL.iter().map(|k| (*k, k.label(), k.help())).collect();
+    let name = Name::new("Lobe view", "View", "What of the lobe is shown.");
+    if widgets::row(ui, name, |ui| widgets::choice(ui, "lobe view", &mut kind, &kinds)).changed {
+        panel.kind = Some(kind);
+    }
+    if kind.is_of_view() && !kind.is_against_angle() {
+        desk.view_angle_row(ui);
+    }
+    let mut others = vec![(Other::Nothing, "Nothing", "")];
+    let lobes = Lobe::ALL.iter().filter(|lobe| **lobe != Lobe::Lambert);
+    others.extend(lobes.map(|lobe| (Other::Lobe(*lobe), lobe.label(), lobe.help())));
+    others.push((
+        Other::Measured,
+        "Measured…",
+        "A material of the MERL database (.binary).",
+    ));
+    let name = Name::new(
+        "Compare the lobe",
+        "Compare with",
+        "What is drawn beside the material's lobe.",
+    );
+    let mut other = panel.other.clone();
+    if widgets::row(ui, name, |ui| widgets::choice(ui, "other lobe", &mut other, &others)).changed {
+        if other == Other::Measured {
+            desk.act(crate::app::actions::Command::OpenMeasured);
+        }
+        panel.other = other;
+    }
+    if matches!(panel.other, Other::Lobe(_)) {
+        let mut roughness = panel.other_roughness.unwrap_or(desk.material().roughness);
+        let style = NumberStyle {
+            range: 0.0..=1.0,
+            bar: Some([0.0, 1.0]),
+            unit: "",
+            speed: 0.005,
+            decimals: 3,
+        };
+        let name = Name::new(
+            "Other roughness",
+            "Its roughness",
+            "Follows the material's until it is changed.",
+        );
+        let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut roughness, &style));
+        if response.changed {
+            panel.other_roughness = Some(roughness);
+        }
+        if response.reset {
+            panel.other_roughness = None;
+        }
+    }
+    ui.add_space(4.0);
+}
+
+fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
+    if state.worker.is_none() {
+        let ctx = ui.ctx().clone();
+        let repaint = move || ctx.request_repaint();
+        state.worker = Background::spawn("lobe view", repaint, |query, desk| {
+            desk.publish(Arc::new(compute(&query)))
+        })
+        .ok();
+    }
+    let Some(worker) = &state.worker else {
+        widgets::note(ui, "The system gives no thread to compute on.");
+        return;
+    };
+    if state.asked.as_ref() != Some(&query) {
+        worker.ask(query.clone());
+        state.asked = Some(query);
+    }
+    widgets::failure(ui, worker.failure());
+    let Some(shown) = worker.latest() else {
+        if worker.is_busy() {
+            ui.add(egui::Spinner::new());
+        }
+        return;
+    };
+    match &*shown {
+        Shown::Lines(plot) => line_plot(ui, "lobe view", plot),
+        Shown::Pictures(images) => {
+            if !state
+                .pictured
+                .as_ref()
+                .is_some_and(|pictured| Arc::ptr_eq(pictured, &shown))
+            {
+                let load = |image: &ColorImage| {
+                    ui.ctx()
+                        .load_texture("lobe view", image.clone(), TextureOptions::LINEAR)
+                };
+                state.pictures = images.iter().map(load).collect();
+                state.pictured = Some(shown.clone());
+            }
+            for texture in &state.pictures {
+                ui.add(egui::Image::new(texture).max_width(ui.available_width()));
+            }
+        }
+    }
+}
+
+fn compute(query: &Query) -> Shown {
+    let angles_deg = if query.kind.is_against_angle() {
+        query.kind.view_angles_deg()
+    } else {
+        vec![query.view_angle_deg]
+    };
+    // One figure a lobe, under each other, on a common scale: the panel is narrow.
+    let figures: Vec<LobeView> = match lobe_view(query.kind, &query.lobes, &angles_deg) {
+        LobeView::Lines(plot) => return Shown::Lines(plot),
+        LobeView::Maps(MapPlot { title, range, maps }) => maps
+            .into_iter()
+            .map(|map| {
+                LobeView::Maps(MapPlot {
+                    title: title.clone(),
+                    range,
+                    maps: vec![map],
+                })
+            })
+            .collect(),
+        LobeView::Solids(SolidPlot { title, solids }) => solids
+            .into_iter()
+            .map(|solid| {
+                LobeView::Solids(SolidPlot {
+                    title: title.clone(),
+                    solids: vec![solid],
+                })
+            })
+            .collect(),
+    };
+    let pictures = figures
+        .iter()
+        .filter_map(|figure| lobe_view_picture(figure, ZOOM, query.is_dark));
+    let image = |picture: image::RgbImage| {
+        let size = [picture.width() as usize, picture.height() as usize];
+        ColorImage::from_rgb(size, picture.as_raw())
+    };
+    Shown::Pictures(pictures.map(image).collect())
+}

@@ -1,0 +1,288 @@
+//! A and B: the document, and the same scene seen by the same camera with the same random numbers in another material.
+//! B has a renderer of its own for as long as the two are compared, which shares models and environments with A's.
+
+use std::sync::Arc;
+
+use crate::analysis::difference::difference;
+use crate::analysis::lobe_model::LobeModel;
+use crate::document::match_look::{lobe_of_material, matched_lobe};
+use crate::document::{Document, MaterialSettings};
+use crate::optics::lobe::Lobe;
+use crate::render::EngineKind;
+use crate::render::background::{self, Background};
+use crate::render::worker::{Picture, Snapshot, Worker};
+
+/// What B is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Rival {
+    /// The selected material with another lobe, its roughness chosen so that the look is nearest.
+    Lobe(Lobe),
+    /// Another material in the selected slot.
+    Material(Box<MaterialSettings>),
+    /// All materials of another document, and what to call them.
+    Materials(String, Vec<MaterialSettings>),
+}
+
+/// How A and B are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum View {
+    /// A left of a divider, B right of it.
+    #[default]
+    Wipe,
+    /// One beside the other.
+    SideBySide,
+    /// B less A.
+    Difference,
+    /// One after the other.
+    Flicker,
+}
+
+impl View {
+    /// All of them, with their names and what they show.
+    pub(in crate::app) const ALL: [(Self, &'static str, &'static str); 4] = [
+        (
+            Self::Wipe,
+            "Wipe",
+            "A left of the divider, B right of it. Drag the divider.",
+        ),
+        (Self::SideBySide, "Side by side", "One beside the other."),
+        (
+            Self::Difference,
+            "Difference",
+            "Luminance of B less that of A, in linear light.",
+        ),
+        (Self::Flicker, "Flicker", "One after the other in the same place."),
+    ];
+}
+
+/// A lobe to match, and with which.
+#[derive(Clone, PartialEq)]
+struct MatchQuery {
+    model: LobeModel,
+    lobe: Lobe,
+}
+
+#[derive(Clone)]
+struct Matched {
+    query: MatchQuery,
+    found: Result<LobeModel, String>,
+}
+
+/// Two pictures to compare, and the scale that was chosen.
+#[derive(Clone)]
+struct DifferenceQuery {
+    a: Arc<Picture>,
+    b: Arc<Picture>,
+    scale: Option<f32>,
+}
+
+/// How two pictures differ.
+pub(in crate::app) struct Compared {
+    /// Columns and rows.
+    pub(in crate::app) size: [usize; 2],
+    /// The picture of the difference.
+    pub(in crate::app) rgba: Vec<u8>,
+    /// Its full colours, in radiance.
+    pub(in crate::app) scale: f32,
+    /// Root mean square relative difference.
+    pub(in crate::app) rms: f64,
+    /// Samples a pixel of A and B.
+    pub(in crate::app) samples: [u32; 2],
+    /// Differs from one to the next.
+    pub(in crate::app) serial: u64,
+}
+
+/// The comparison; B is only rendered while it is on.
+pub(in crate::app) struct Compare {
+    pub(in crate::app) is_on: bool,
+    pub(in crate::app) view: View,
+    pub(in crate::app) rival: Rival,
+    /// Where the divider is, as a share of the picture's width.
+    pub(in crate::app) divider: f32,
+    /// Changes a second.
+    pub(in crate::app) flicker_hz: f32,
+    /// The difference with the full colour; `None` is automatic.
+    pub(in crate::app) scale: Option<f32>,
+    pub(in crate::app) renderer: Option<Renderer>,
+    matching: Option<Background<MatchQuery, Matched>>,
+    asked_match: Option<MatchQuery>,
+    differing: Option<Background<DifferenceQuery, Arc<Compared>>>,
+    asked_difference: Option<([u64; 3], Option<f32>)>,
+    /// Counts B's renderers: serials begin anew with each.
+    pub(in crate::app) generation: u64,
+}
+
+/// B's.
+pub(in crate::app) struct Renderer {
+    pub(in crate::app) worker: Worker,
+    pub(in crate::app) engine: EngineKind,
+    pub(in crate::app) submitted: Option<Document>,
+    pub(in crate::app) is_paused: bool,
+}
+
+impl Default for Compare {
+    fn default() -> Self {
+        Self {
+            is_on: false,
+            view: View::default(),
+            rival: Rival::Lobe(Lobe::Ggx),
+            divider: 0.5,
+            flicker_hz: 2.0,
+            scale: None,
+            renderer: None,
+            matching: None,
+            asked_match: None,
+            differing: None,
+            asked_difference: None,
+            generation: 0,
+        }
+    }
+}
+
+impl Compare {
+    /// The state of B's renderer; `None` where there is none yet.
+    pub(in crate::app) fn snapshot(&self) -> Option<Arc<Snapshot>> {
+        Some(self.renderer.as_ref()?.worker.snapshot())
+    }
+
+    /// B's latest picture.
+    pub(in crate::app) fn picture(&self) -> Option<Arc<Picture>> {
+        self.snapshot()?.picture.clone()
+    }
+
+    /// How the latest pictures differ.
+    pub(in crate::app) fn compared(&self) -> Option<Arc<Compared>> {
+        self.differing.as_ref()?.latest()
+    }
+
+    /// What B is called.
+    pub(in crate::app) fn name(&self, material: &MaterialSettings) -> String {
+        match &self.rival {
+            Rival::Lobe(lobe) => match self.matched(material, *lobe) {
+                Some(Ok(model)) => format!("{}, R {:.3}", lobe.label(), model.roughness),
+                _ => lobe.label().to_owned(),
+            },
+            Rival::Material(material) => material.name.clone(),
+            Rival::Materials(name, _) => name.clone(),
+        }
+    }
+
+    /// Why the look could not be matched.
+    pub(in crate::app) fn match_error(&self, material: &MaterialSettings) -> Option<String> {
+        match &self.rival {
+            Rival::Lobe(lobe) => self.matched(material, *lobe)?.err(),
+            _ => None,
+        }
+    }
+
+    /// The lobe that was found for this material; the last one while another is looked for.
+    fn matched(&self, material: &MaterialSettings, lobe: Lobe) -> Option<Result<LobeModel, String>> {
+        let matched = self.matching.as_ref()?.latest()?;
+        let is_same = matched.query.lobe == lobe && matched.query.model.lobe == material.lobe;
+        is_same.then_some(matched.found)
+    }
+
+    /// The document with B's materials.
+    pub(in crate::app) fn rival_document(&self, document: &Document, slot: usize) -> Document {
+        let mut rival = document.clone();
+        let materials = &mut rival.materials;
+        let last = materials.last().cloned().unwrap_or_default();
+        if materials.len() <= slot {
+            materials.resize(slot + 1, last);
+        }
+        match &self.rival {
+            Rival::Lobe(lobe) => {
+                let material = &mut materials[slot];
+                let matched = self.matched(material, *lobe);
+                material.lobe = *lobe;
+                if let Some(Ok(model)) = matched {
+                    material.roughness = model.roughness as f32;
+                    material.horizon = model.horizon;
+                    material.curve = model.curve;
+                    material.anisotropy = 0.0;
+                }
+            }
+            Rival::Material(material) => materials[slot] = MaterialSettings::clone(material),
+            Rival::Materials(_, all) => *materials = all.clone(),
+        }
+        rival
+    }
+
+    /// Looks for the roughness of another lobe, where B is one.
+    pub(in crate::app) fn match_look(&mut self, ctx: &egui::Context, material: &MaterialSettings) {
+        let Rival::Lobe(lobe) = self.rival else { return };
+        let mut model = lobe_of_material(material);
+        // Another name is not another look.
+        model.name.clear();
+        let query = MatchQuery { model, lobe };
+        if self.asked_match.as_ref() == Some(&query) {
+            return;
+        }
+        if self.matching.is_none() {
+            let work = |query: MatchQuery, desk: &background::Desk<'_, MatchQuery, Matched>| {
+                let found = matched_lobe(&query.model, query.lobe).map_err(|error| error.to_string());
+                desk.publish(Matched { query, found });
+            };
+            let ctx = ctx.clone();
+            // Without a thread B keeps A's roughness.
+            self.matching = Background::spawn("match lobes", move || ctx.request_repaint(), work).ok();
+        }
+        if let Some(matching) = &self.matching {
+            matching.ask(query.clone());
+        }
+        self.asked_match = Some(query);
+    }
+
+    /// Asks how the pictures differ, where they are new and alike in size.
+    pub(in crate::app) fn take_difference(&mut self, ctx: &egui::Context, a: Option<&Arc<Picture>>) {
+        let (Some(a), Some(b)) = (a, self.picture()) else {
+            return;
+        };
+        if (a.width, a.height, a.reduction) != (b.width, b.height, b.reduction) {
+            return;
+        }
+        let asked = ([a.serial, b.serial, self.generation], self.scale);
+        if self.asked_difference == Some(asked) {
+            return;
+        }
+        if self.differing.is_none() {
+            let mut serial = 0;
+            let work = move |query: DifferenceQuery, desk: &background::Desk<'_, DifferenceQuery, Arc<Compared>>| {
+                let Some(found) = difference(&query.a.image, &query.b.image) else {
+                    return;
+                };
+                let scale = query.scale.unwrap_or_else(|| found.automatic_scale());
+                serial += 1;
+                desk.publish(Arc::new(Compared {
+                    size: [found.width as usize, found.height as usize],
+                    rgba: found.rgba(scale),
+                    scale,
+                    rms: found.rms_relative,
+                    samples: [query.a.samples_per_pixel, query.b.samples_per_pixel],
+                    serial,
+                }));
+            };
+            let ctx = ctx.clone();
+            self.differing = Background::spawn("difference", move || ctx.request_repaint(), work).ok();
+        }
+        if let Some(differing) = &self.differing {
+            differing.ask(DifferenceQuery {
+                a: a.clone(),
+                b,
+                scale: self.scale,
+            });
+        }
+        self.asked_difference = Some(asked);
+    }
+
+    /// Ends B's renderer, beside the window: its thread may have to finish a step.
+    pub(in crate::app) fn stop(&mut self) {
+        if let Some(renderer) = self.renderer.take() {
+            // Without a thread it ends here.
+            let _ = std::thread::Builder::new()
+                .name("farewell".to_owned())
+                .spawn(move || drop(renderer));
+        }
+        (self.asked_difference, self.differing) = (None, None);
+    }
+}

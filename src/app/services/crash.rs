@@ -1,0 +1,193 @@
+//! What a panic leaves: the copy of the unsaved document, and a report of what happened.
+//!
+//! Every window has a witness that knows its document as the last frame left it, and what was done before. A hook writes
+//! both when any thread panics, before the thread unwinds: the next start offers them.
+
+use std::collections::VecDeque;
+use std::fmt::Write as _;
+use std::fs::OpenOptions;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError, Weak};
+use std::thread::ThreadId;
+
+use crate::document::Document;
+use crate::panics;
+use crate::store::recovery;
+
+/// Most that a report tells of what was done.
+const DEEDS: usize = 40;
+/// Longest line about one of them, characters.
+const DEED_LENGTH: usize = 160;
+
+/// The witnesses of all windows.
+static WITNESSES: Mutex<Vec<Weak<Mutex<Known>>>> = Mutex::new(Vec::new());
+
+/// What a window tells in case that something panics.
+#[derive(Clone)]
+pub(in crate::app) struct Witness(Arc<Mutex<Known>>);
+
+struct Known {
+    /// The document where it is unsaved, and the file that it belongs to.
+    unsaved: Option<(Document, Option<PathBuf>)>,
+    /// Where the copy goes; a report stands beside it. `None` where nothing is put aside.
+    copy: Option<PathBuf>,
+    /// What renders.
+    engine: String,
+    /// What was done last, with how often in a row; the latest last.
+    deeds: VecDeque<(String, u32)>,
+    /// What is to be said in the window.
+    told: Vec<String>,
+    /// Whose panic ends the window.
+    window: ThreadId,
+}
+
+impl Default for Witness {
+    fn default() -> Self {
+        let known = Arc::new(Mutex::new(Known {
+            unsaved: None,
+            copy: None,
+            engine: "none yet".to_owned(),
+            deeds: VecDeque::new(),
+            told: Vec::new(),
+            window: std::thread::current().id(),
+        }));
+        let mut all = WITNESSES.lock().unwrap_or_else(PoisonError::into_inner);
+        all.retain(|witness| witness.strong_count() > 0);
+        all.push(Arc::downgrade(&known));
+        Self(known)
+    }
+}
+
+impl Witness {
+    fn known(&self) -> MutexGuard<'_, Known> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Takes the document as the frame left it.
+    pub(in crate::app) fn see(&self, document: &Document, project: Option<&Path>, is_saved: bool) {
+        let known = &mut *self.known();
+        let is_known = |(kept, of): &(Document, Option<PathBuf>)| kept == document && of.as_deref() == project;
+        if is_saved {
+            known.unsaved = None;
+        } else if !known.unsaved.as_ref().is_some_and(is_known) {
+            known.unsaved = Some((document.clone(), project.map(Path::to_owned)));
+        }
+    }
+
+    /// Where copies go, once there is such a place.
+    pub(in crate::app) fn put_copies_at(&self, path: &Path) {
+        self.known().copy = Some(path.to_owned());
+    }
+
+    /// What renders.
+    pub(in crate::app) fn see_engine(&self, engine: &str) {
+        let known = &mut *self.known();
+        if known.engine != engine {
+            engine.clone_into(&mut known.engine);
+        }
+    }
+
+    /// Takes note of something that was done.
+    pub(in crate::app) fn note(&self, deed: impl Into<String>) {
+        let deed: String = deed.into().chars().take(DEED_LENGTH).collect();
+        let deeds = &mut self.known().deeds;
+        match deeds.back_mut() {
+            Some((last, count)) if *last == deed => *count += 1,
+            _ => deeds.push_back((deed, 1)),
+        }
+        if deeds.len() > DEEDS {
+            deeds.pop_front();
+        }
+    }
+
+    /// What is to be said of panics in threads beside the window's.
+    pub(in crate::app) fn take_told(&self) -> Vec<String> {
+        std::mem::take(&mut self.known().told)
+    }
+}
+
+/// Has panics of any thread put unsaved documents aside and write a report, from now on. To be called once.
+pub fn report_panics() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !panics::is_contained() {
+            let all = WITNESSES.try_lock().map_or_else(|_| Vec::new(), |all| all.clone());
+            all.iter()
+                .filter_map(Weak::upgrade)
+                .for_each(|known| testify(&known, panic));
+        }
+        usual(panic);
+    }));
+}
+
+fn testify(known: &Mutex<Known>, panic: &std::panic::PanicHookInfo<'_>) {
+    let mut known = match known.try_lock() {
+        Ok(known) => known,
+        Err(TryLockError::Poisoned(known)) => known.into_inner(),
+        // The very thread that holds it panics: there is nothing to be had.
+        Err(TryLockError::WouldBlock) => return,
+    };
+    let Some(copy) = known.copy.clone() else { return };
+    let mut failures = Vec::new();
+    if let Some((document, project)) = &known.unsaved
+        && let Err(error) = recovery::put_aside(&copy, document, project.as_deref())
+    {
+        failures.push(error.to_string());
+    }
+    let report = recovery::report_path(&copy);
+    let text = report_text(&known, panic, &failures);
+    let mut options = OpenOptions::new();
+    let file = options.create(true).append(true).open(&report);
+    let written = file.and_then(|mut file| file.write_all(text.as_bytes()).and_then(|()| file.sync_all()));
+    let thread = std::thread::current();
+    if thread.id() != known.window {
+        let place = match written {
+            Ok(()) => format!("{} tells more", report.display()),
+            Err(error) => format!("no report could be written: {error}"),
+        };
+        let name = thread.name().unwrap_or("a thread without a name").to_owned();
+        let what = panics::message(panic.payload());
+        known
+            .told
+            .push(format!("an internal error in \"{name}\": {what}; {place}"));
+    }
+}
+
+/// The report; [`recovery::Slot::report`] finds the line of the message.
+fn report_text(known: &Known, panic: &std::panic::PanicHookInfo<'_>, failures: &[String]) -> String {
+    let thread = std::thread::current();
+    let mut text = String::new();
+    let mut line = |name: &str, value: &dyn std::fmt::Display| {
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{name}: {value}");
+    };
+    line("Glossmith", &env!("CARGO_PKG_VERSION"));
+    line(
+        "System",
+        &format_args!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+    );
+    line("Engine", &known.engine);
+    line("Thread", &thread.name().unwrap_or("without a name"));
+    line(recovery::MESSAGE, &panics::message(panic.payload()).replace('\n', " "));
+    if let Some(place) = panic.location() {
+        line("Place", place);
+    }
+    for failure in failures {
+        line("The document could not be put aside", failure);
+    }
+    line("Done last", &"");
+    for (deed, count) in &known.deeds {
+        let times = if *count > 1 {
+            format!(" × {count}")
+        } else {
+            String::new()
+        };
+        line("  ", &format_args!("{deed}{times}"));
+    }
+    line(
+        "Backtrace",
+        &format_args!("\n{}\n", std::backtrace::Backtrace::force_capture()),
+    );
+    text
+}

@@ -1,0 +1,197 @@
+//! Reading and writing small files beside the window, one after the other: what was saved last is what a file holds.
+
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender, channel};
+
+use crate::app::services::library::Listed;
+use crate::app::services::snapshots::PinsListed;
+use crate::document::Document;
+use crate::panics::caught;
+use crate::render::worker::Level;
+use crate::store::FileError;
+use crate::store::file::Opened;
+
+/// What came of a job.
+pub(in crate::app) enum Done {
+    /// A file was read.
+    Read(PathBuf, Result<Opened, FileError>),
+    /// The document was written, such as it was then.
+    SavedProject(PathBuf, Box<Document>, Result<(), FileError>),
+    /// The user's materials were listed.
+    Listed(Result<Listed, FileError>),
+    /// The user's materials were changed.
+    ChangedLibrary(Result<Listed, FileError>),
+    /// The pinned states were listed.
+    ListedPins(Result<PinsListed, FileError>),
+    /// The pinned states were changed.
+    ChangedPins(Result<PinsListed, FileError>),
+    /// Something else was written; what to say about it.
+    Wrote(Result<String, String>),
+    /// What was to be done panicked, and what the panic said.
+    Broke(Task, String),
+}
+
+/// What a job is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) enum Task {
+    /// Opening a file.
+    Open,
+    /// Listing a folder.
+    List,
+    /// Writing.
+    Write,
+}
+
+type Job = Box<dyn FnOnce() -> Done + Send>;
+
+/// The thread, and what it was told to do.
+pub(in crate::app) struct Disk {
+    ctx: egui::Context,
+    jobs: Sender<(Task, Job)>,
+    sender: Sender<Done>,
+    done: Receiver<Done>,
+    reads: usize,
+    writes: usize,
+}
+
+impl Disk {
+    /// Starts the thread.
+    ///
+    /// # Errors
+    /// If the system gives none.
+    pub(in crate::app) fn new(ctx: egui::Context) -> std::io::Result<Self> {
+        let (jobs, to_do) = channel::<(Task, Job)>();
+        let (sender, done) = channel();
+        let (of_thread, repaint) = (sender.clone(), ctx.clone());
+        std::thread::Builder::new().name("files".to_owned()).spawn(move || {
+            for (task, job) in to_do {
+                // Nobody listens where the window was closed meanwhile.
+                let _ = of_thread.send(outcome(task, job));
+                repaint.request_repaint();
+            }
+        })?;
+        Ok(Self {
+            ctx,
+            jobs,
+            sender,
+            done,
+            reads: 0,
+            writes: 0,
+        })
+    }
+
+    /// Opens a file.
+    pub(in crate::app) fn open(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
+        self.reads += 1;
+        self.order(Task::Open, job);
+    }
+
+    /// Lists a folder.
+    pub(in crate::app) fn list(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
+        self.reads += 1;
+        self.order(Task::List, job);
+    }
+
+    /// Writes a file.
+    pub(in crate::app) fn write(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
+        self.writes += 1;
+        self.order(Task::Write, job);
+    }
+
+    /// Writes something that takes long, on a thread of its own.
+    pub(in crate::app) fn write_beside(&mut self, work: impl FnOnce() -> Result<String, String> + Send + 'static) {
+        self.writes += 1;
+        let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
+        let body = move || {
+            // Nobody listens where the window was closed meanwhile.
+            let _ = sender.send(outcome(Task::Write, || Done::Wrote(work())));
+            ctx.request_repaint();
+        };
+        if let Err(error) = std::thread::Builder::new().name("save".to_owned()).spawn(body) {
+            let why = format!("the system gives no thread to save on: {error}");
+            // This end listens.
+            let _ = self.sender.send(Done::Wrote(Err(why)));
+        }
+    }
+
+    fn order(&self, task: Task, job: impl FnOnce() -> Done + Send + 'static) {
+        // The thread ends with this.
+        let _ = self.jobs.send((task, Box::new(job)));
+    }
+
+    /// Whether a file that was asked for has not been read yet.
+    pub(in crate::app) fn is_reading(&self) -> bool {
+        self.reads > 0
+    }
+
+    /// Whether something is still to be written.
+    pub(in crate::app) fn is_writing(&self) -> bool {
+        self.writes > 0
+    }
+
+    /// What was done since this was last called.
+    pub(in crate::app) fn take_done(&mut self) -> Vec<Done> {
+        let done: Vec<Done> = self.done.try_iter().collect();
+        for done in &done {
+            match done {
+                Done::Read(..) | Done::Listed(_) | Done::ListedPins(_) | Done::Broke(Task::Open | Task::List, _) => {
+                    self.reads = self.reads.saturating_sub(1)
+                }
+                Done::SavedProject(..)
+                | Done::ChangedLibrary(_)
+                | Done::ChangedPins(_)
+                | Done::Wrote(_)
+                | Done::Broke(Task::Write, _) => self.writes = self.writes.saturating_sub(1),
+            }
+        }
+        done
+    }
+}
+
+/// What came of a job, also where it panicked: the thread goes on, and nobody waits for ever.
+fn outcome(task: Task, job: impl FnOnce() -> Done) -> Done {
+    caught(job).unwrap_or_else(|why| Done::Broke(task, why))
+}
+
+/// How a result is said.
+pub(in crate::app) fn words(result: Result<String, String>) -> (Level, String) {
+    match result {
+        Ok(text) => (Level::Info, text),
+        Err(text) => (Level::Error, text),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_job_that_panics_is_told_and_the_next_ones_are_done() {
+        let mut disk = Disk::new(egui::Context::default()).expect("a thread");
+        disk.open(|| panic!("unreadable on purpose"));
+        disk.write(|| panic!("unwritable on purpose"));
+        disk.write_beside(|| panic!("lost on purpose"));
+        disk.write(|| Done::Wrote(Ok("whole".to_owned())));
+        assert!(disk.is_reading() && disk.is_writing());
+        let begun = std::time::Instant::now();
+        let mut broken = Vec::new();
+        let mut wrote = 0;
+        while disk.is_reading() || disk.is_writing() {
+            assert!(begun.elapsed() < std::time::Duration::from_secs(60), "waited in vain");
+            for done in disk.take_done() {
+                match done {
+                    Done::Broke(task, why) => broken.push((task, why)),
+                    _ => wrote += 1,
+                }
+            }
+        }
+        broken.sort_by(|a, b| a.1.cmp(&b.1));
+        let expected = [
+            (Task::Write, "lost on purpose"),
+            (Task::Open, "unreadable on purpose"),
+            (Task::Write, "unwritable on purpose"),
+        ];
+        assert_eq!(broken, expected.map(|(task, why)| (task, why.to_owned())));
+        assert_eq!(wrote, 1);
+    }
+}

@@ -1,0 +1,129 @@
+//! The environments to choose from: those that come with the program, and the files opened last, with small pictures.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use egui::{ColorImage, TextureHandle, TextureOptions};
+
+use crate::render::environment_thumbnails::{
+    EnvironmentThumbnailWorker, EnvironmentThumbnails, SIZE, Wanted, spawn_environment_thumbnails,
+};
+use crate::scene::environment::{Environment, EnvironmentSource};
+
+/// The environments that come with the program.
+pub(in crate::app) const BUILT_IN: [(&str, &str, EnvironmentSource); 3] = [
+    ("Studio", "Soft boxes in a dark room.", EnvironmentSource::Studio),
+    ("Sky", "A clear sky with its sun.", EnvironmentSource::Sky),
+    (
+        "Furnace",
+        "White light from everywhere: a material that keeps all light vanishes.",
+        EnvironmentSource::Furnace,
+    ),
+];
+
+/// What to call an environment in a menu.
+pub(in crate::app) fn environment_label(source: &EnvironmentSource) -> String {
+    let built_in = BUILT_IN.iter().find(|(.., of)| of == source);
+    match (built_in, source) {
+        (Some((label, ..)), _) => (*label).to_owned(),
+        (None, EnvironmentSource::File(path)) => path.file_name().map_or_else(
+            || path.display().to_string(),
+            |name| name.to_string_lossy().into_owned(),
+        ),
+        (None, other) => other.to_string(),
+    }
+}
+
+/// The small pictures of environments.
+#[derive(Default)]
+pub(in crate::app) struct Environments {
+    cache: Option<PathBuf>,
+    /// Set while the viewport goes first.
+    hold: Arc<AtomicBool>,
+    worker: Option<EnvironmentThumbnailWorker>,
+    has_failed: bool,
+    /// What was asked for last, and the environment that was there then.
+    asked: Option<(Vec<EnvironmentSource>, Option<Arc<Environment>>)>,
+    textures: HashMap<EnvironmentSource, TextureHandle>,
+    uploaded: Option<EnvironmentThumbnails>,
+}
+
+impl Environments {
+    /// `cache` keeps the pictures from one start to the next; nothing is made while `hold` is set.
+    pub(in crate::app) fn new(cache: Option<PathBuf>, hold: Arc<AtomicBool>) -> Self {
+        Self {
+            cache,
+            hold,
+            ..Self::default()
+        }
+    }
+
+    /// The picture of an environment.
+    pub(in crate::app) fn picture(&self, source: &EnvironmentSource) -> Option<&TextureHandle> {
+        self.textures.get(source)
+    }
+
+    /// Whether its file is not there or can't be read.
+    pub(in crate::app) fn is_missing(&self, source: &EnvironmentSource) -> bool {
+        let known = self.uploaded.as_ref().and_then(|made| made.get(source));
+        known.is_some_and(Option::is_none)
+    }
+
+    /// Asks for the pictures of these, and takes those that are there. `loaded` is the environment in use, with where it
+    /// comes from. To be called while they are seen.
+    pub(in crate::app) fn make_pictures(
+        &mut self,
+        ctx: &egui::Context,
+        sources: &[EnvironmentSource],
+        loaded: Option<(&EnvironmentSource, &Arc<Environment>)>,
+    ) {
+        if self.worker.is_none() && !self.has_failed {
+            let repainting = ctx.clone();
+            let folder = self.cache.as_ref().map(|cache| cache.join("environments"));
+            let repaint = move || repainting.request_repaint();
+            self.worker = spawn_environment_thumbnails(folder, self.hold.clone(), repaint).ok();
+            self.has_failed = self.worker.is_none();
+        }
+        let Some(worker) = &self.worker else {
+            return;
+        };
+        let is_asked = self.asked.as_ref().is_some_and(|(asked, with)| {
+            let is_same = match (with, loaded) {
+                (Some(with), Some((_, environment))) => Arc::ptr_eq(with, environment),
+                (with, loaded) => with.is_none() && loaded.is_none(),
+            };
+            is_same && asked == sources
+        });
+        if !is_asked {
+            let wanted = sources.iter().map(|source| Wanted {
+                source: source.clone(),
+                loaded: loaded
+                    .filter(|(of, _)| *of == source)
+                    .map(|(_, environment)| environment.clone()),
+            });
+            worker.ask(wanted.collect());
+            self.asked = Some((sources.to_vec(), loaded.map(|(_, environment)| environment.clone())));
+        }
+        let Some(made) = worker.latest() else {
+            return;
+        };
+        let before = self.uploaded.replace(made.clone());
+        if before.as_ref().is_some_and(|before| Arc::ptr_eq(before, &made)) {
+            return;
+        }
+        for (source, pixels) in made.iter() {
+            let known = before.as_ref().and_then(|before| before.get(source));
+            let Some(pixels) = pixels
+                .as_ref()
+                .filter(|_| known.and_then(Option::as_ref) != pixels.as_ref())
+            else {
+                continue;
+            };
+            let image = ColorImage::from_rgba_unmultiplied(SIZE.map(|side| side as usize), pixels);
+            let texture = ctx.load_texture("environment", image, TextureOptions::LINEAR);
+            self.textures.insert(source.clone(), texture);
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! The user's materials and the small pictures of all of them.
+
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use egui::{ColorImage, TextureHandle, TextureOptions};
+
+use crate::document::MaterialSettings;
+use crate::render::thumbnails::{self, SIDE, ThumbnailWorker, Thumbnails};
+use crate::store::PRESETS;
+use crate::store::library::{Entry, Removed};
+
+/// What can be done with a material of the user's.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// The selected material is added.
+    Add,
+    /// A file's material gets another name.
+    Rename(PathBuf, String),
+    /// A file's material is added once more under another name.
+    Duplicate(PathBuf),
+    /// A file is removed.
+    Remove(PathBuf),
+    /// What was removed last comes back.
+    Restore,
+}
+
+/// What came of a change: what to say, which materials there are, and what was removed.
+pub(in crate::app) struct Listed {
+    pub(in crate::app) words: String,
+    pub(in crate::app) entries: Vec<Entry>,
+    pub(in crate::app) removed: Option<Removed>,
+}
+
+/// A material of the panel, with the key of its picture.
+pub(in crate::app) struct Shown {
+    pub(in crate::app) entry: Entry,
+    pub(in crate::app) key: u64,
+}
+
+/// The materials to choose from.
+#[derive(Default)]
+pub(in crate::app) struct Library {
+    /// Where the user's are; `None` where there is no place for them.
+    pub(in crate::app) folder: Option<PathBuf>,
+    pub(in crate::app) own: Vec<Shown>,
+    /// Keys of the shipped ones.
+    shipped: Vec<u64>,
+    pub(in crate::app) renaming: Option<(PathBuf, String)>,
+    /// What was removed last.
+    pub(in crate::app) removed: Option<Removed>,
+    /// Set while the viewport goes first.
+    hold: Arc<AtomicBool>,
+    cache: Option<PathBuf>,
+    worker: Option<ThumbnailWorker>,
+    is_asked: bool,
+    textures: HashMap<u64, TextureHandle>,
+    uploaded: Option<Thumbnails>,
+}
+
+impl Library {
+    /// `cache` keeps the pictures; without it none are made.
+    pub(in crate::app) fn new(folder: Option<PathBuf>, cache: Option<PathBuf>) -> Self {
+        Self {
+            folder,
+            cache,
+            hold: Arc::new(AtomicBool::new(true)),
+            ..Self::default()
+        }
+    }
+
+    /// Set while pictures have to wait.
+    pub(in crate::app) fn holder(&self) -> Arc<AtomicBool> {
+        self.hold.clone()
+    }
+
+    /// Whether pictures have to wait.
+    pub(in crate::app) fn hold(&self, is_held: bool) {
+        self.hold.store(is_held, Ordering::Relaxed);
+    }
+
+    /// The picture of a shipped material, by its place among them.
+    pub(in crate::app) fn shipped_picture(&self, index: usize) -> Option<&TextureHandle> {
+        self.textures.get(self.shipped.get(index)?)
+    }
+
+    /// The picture of a material of the user's.
+    pub(in crate::app) fn picture(&self, key: u64) -> Option<&TextureHandle> {
+        self.textures.get(&key)
+    }
+
+    pub(in crate::app) fn take_list(&mut self, entries: Vec<Entry>) {
+        let show = |entry: Entry| Shown {
+            key: entry.material.as_ref().map_or(0, thumbnails::key),
+            entry,
+        };
+        self.own = entries.into_iter().map(show).collect();
+        self.is_asked = false;
+    }
+
+    /// Asks for pictures that are not there yet, and takes those that are. To be called while they are seen.
+    pub(in crate::app) fn make_pictures(&mut self, ctx: &egui::Context) {
+        let Some(cache) = &self.cache else {
+            return;
+        };
+        if self.shipped.is_empty() {
+            self.shipped = PRESETS.iter().map(thumbnails::key).collect();
+        }
+        if self.worker.is_none() {
+            let repainting = ctx.clone();
+            let folder = cache.join("thumbnails");
+            let repaint = move || repainting.request_repaint();
+            let worker = thumbnails::spawn_thumbnails(folder, self.hold.clone(), repaint);
+            match worker {
+                Ok(worker) => self.worker = Some(worker),
+                // Colours stand in for pictures.
+                Err(_) => return self.cache = None,
+            }
+        }
+        let Some(worker) = &self.worker else {
+            return;
+        };
+        if !std::mem::replace(&mut self.is_asked, true) {
+            let own = self.own.iter().filter_map(|shown| shown.entry.material.as_ref().ok());
+            worker.ask(PRESETS.iter().chain(own).cloned().collect::<Vec<MaterialSettings>>());
+        }
+        let Some(made) = worker.latest() else {
+            return;
+        };
+        if self.uploaded.as_ref().is_some_and(|of| Arc::ptr_eq(of, &made)) {
+            return;
+        }
+        for (key, pixels) in made.iter() {
+            self.textures.entry(*key).or_insert_with(|| {
+                let image = ColorImage::from_rgba_unmultiplied([SIDE as usize; 2], pixels);
+                ctx.load_texture("material", image, TextureOptions::LINEAR)
+            });
+        }
+        self.uploaded = Some(made);
+    }
+}

@@ -1,0 +1,12 @@
+//! What the window keeps beside the document, each on its own: it sees neither panels nor the window.
+
+pub(super) mod autosave;
+pub mod compare;
+pub(super) mod crash;
+pub(super) mod disk;
+pub(super) mod edits;
+pub(super) mod environments;
+pub mod library;
+pub(super) mod messages;
+pub(super) mod recent;
+pub mod snapshots;

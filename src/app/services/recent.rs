@@ -1,0 +1,109 @@
+//! The files opened and saved last.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::render::background::Background;
+use crate::scene::environment::EnvironmentSource;
+
+/// Most that are remembered.
+const COUNT: usize = 12;
+/// How long an answer to which files are there is good for.
+const FRESH: Duration = Duration::from_secs(1);
+
+/// Looks which files are not there, beside the window: a network folder may take its time.
+type Search = Background<Vec<PathBuf>, Arc<HashSet<PathBuf>>>;
+
+/// The list, the latest first.
+#[derive(Default)]
+pub(in crate::app) struct Recent {
+    paths: Vec<PathBuf>,
+    search: Option<Search>,
+    searched_at: Option<Instant>,
+}
+
+impl Recent {
+    /// The list as the last start left it.
+    pub(in crate::app) fn new(paths: Vec<PathBuf>) -> Self {
+        Self {
+            paths,
+            ..Self::default()
+        }
+    }
+
+    /// What the next start is to have.
+    pub(in crate::app) fn paths(&self) -> &[PathBuf] {
+        &self.paths
+    }
+
+    /// Those that are environments.
+    pub(in crate::app) fn environments(&self) -> impl Iterator<Item = EnvironmentSource> {
+        let is_map = |path: &&PathBuf| {
+            let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
+            ending.is_some_and(|ending| ending == "hdr" || ending == "exr")
+        };
+        self.paths.iter().filter(is_map).cloned().map(EnvironmentSource::File)
+    }
+
+    /// A file was opened or saved. Files not named in Unicode can't be remembered, as the settings are text.
+    pub(in crate::app) fn add(&mut self, path: &Path) {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        if path.to_str().is_none() {
+            return;
+        }
+        self.paths.retain(|known| *known != path);
+        self.paths.insert(0, path);
+        self.paths.truncate(COUNT);
+        self.searched_at = None;
+    }
+
+    /// Forgets them all.
+    pub(in crate::app) fn clear(&mut self) {
+        self.paths.clear();
+    }
+
+    /// Those that are not there any more, as far as is known; looks again where that was long ago.
+    pub(in crate::app) fn missing(&mut self, ctx: &egui::Context) -> Arc<HashSet<PathBuf>> {
+        self.look(ctx);
+        self.search.as_ref().and_then(Background::latest).unwrap_or_default()
+    }
+
+    fn look(&mut self, ctx: &egui::Context) {
+        if self.searched_at.is_some_and(|at| at.elapsed() < FRESH) {
+            return;
+        }
+        if self.search.is_none() {
+            let ctx = ctx.clone();
+            let work = |paths: Vec<PathBuf>, desk: &crate::render::background::Desk<'_, _, _>| {
+                let missing = paths.into_iter().filter(|path| !path.is_file());
+                desk.publish(Arc::new(missing.collect()));
+            };
+            // Without a thread nothing is greyed: opening says then what is missing.
+            self.search = Background::spawn("recent files", move || ctx.request_repaint(), work).ok();
+        }
+        if let Some(search) = &self.search {
+            search.ask(self.paths.clone());
+        }
+        self.searched_at = Some(Instant::now());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_latest_comes_first_and_only_once() {
+        let mut recent = Recent::default();
+        for name in ["/a.json", "/b.glb", "/a.json"] {
+            recent.add(Path::new(name));
+        }
+        assert_eq!(recent.paths(), [Path::new("/a.json"), Path::new("/b.glb")]);
+        for number in 0..2 * COUNT {
+            recent.add(Path::new(&format!("/{number}.glb")));
+        }
+        assert_eq!(recent.paths().len(), COUNT);
+    }
+}

@@ -1,0 +1,346 @@
+//! Choosing files: the system's dialog on a thread of its own, or a path field where there is none.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::time::{Duration, Instant};
+
+use egui::{Key, Ui};
+
+use crate::app::kit::theme;
+use crate::scene::MODEL_ENDINGS;
+use crate::scene::environment::ENDINGS;
+
+/// A dialog that is back sooner with nothing was never there: nobody cancels that fast.
+const NO_DIALOG: Duration = Duration::from_millis(400);
+/// Most completions that are listed.
+const COMPLETIONS: usize = 12;
+
+/// What a file is chosen for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) enum Purpose {
+    Open,
+    SaveProject,
+    OpenModel,
+    OpenEnvironment,
+    OpenMaterial,
+    OpenMeasured,
+    SaveMaterial,
+    SavePicture,
+    SaveLayers,
+    SaveWindow,
+}
+
+impl Purpose {
+    fn title(self) -> &'static str {
+        match self {
+            Self::Open => "Open",
+            Self::SaveProject => "Save the project",
+            Self::OpenModel => "Open a model",
+            Self::OpenEnvironment => "Open an environment",
+            Self::OpenMaterial => "Open a material",
+            Self::OpenMeasured => "Open a measured material",
+            Self::SaveMaterial => "Save the material",
+            Self::SavePicture => "Save the picture",
+            Self::SaveLayers => "Save the picture with layers",
+            Self::SaveWindow => "Save a picture of the window",
+        }
+    }
+
+    fn kind(self) -> (&'static str, &'static [&'static str]) {
+        match self {
+            Self::Open => (
+                "Projects, materials, models, environments, pictures with a document",
+                &[
+                    "json", "glb", "gltf", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "jpg", "jpeg", "tif",
+                    "tiff", "webp",
+                ],
+            ),
+            Self::SaveProject => ("Projects", &["json"]),
+            Self::OpenModel => ("Models", &MODEL_ENDINGS),
+            Self::OpenEnvironment => ("Environment maps", &ENDINGS),
+            Self::OpenMaterial | Self::SaveMaterial => ("Materials", &["json"]),
+            Self::OpenMeasured => ("Measured materials (MERL)", &["binary"]),
+            Self::SavePicture => ("Pictures", &["png", "exr", "hdr"]),
+            Self::SaveLayers => ("OpenEXR pictures", &["exr"]),
+            Self::SaveWindow => ("PNG pictures", &["png"]),
+        }
+    }
+
+    fn is_saving(self) -> bool {
+        matches!(
+            self,
+            Self::SaveProject | Self::SaveMaterial | Self::SavePicture | Self::SaveLayers | Self::SaveWindow
+        )
+    }
+}
+
+/// The dialog that is open, if any, and where the last one was.
+#[derive(Default)]
+pub(in crate::app) struct Dialogs {
+    pending: Option<Pending>,
+    field: Option<PathField>,
+    folder: Option<PathBuf>,
+    /// Paths are typed even where the system has dialogs.
+    is_typed: bool,
+}
+
+struct Pending {
+    purpose: Purpose,
+    suggestion: String,
+    answer: Receiver<Option<PathBuf>>,
+    since: Instant,
+}
+
+struct PathField {
+    purpose: Purpose,
+    text: String,
+    is_new: bool,
+}
+
+impl Dialogs {
+    /// Paths are typed, never chosen in the system's dialog; they begin in a folder.
+    pub(in crate::app) fn typed(folder: PathBuf) -> Self {
+        Self {
+            folder: Some(folder),
+            is_typed: true,
+            ..Self::default()
+        }
+    }
+
+    /// The folder of the file that was chosen last, if any.
+    pub(in crate::app) fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
+    /// Whether the path field is open.
+    pub(in crate::app) fn is_open(&self) -> bool {
+        self.field.is_some()
+    }
+
+    /// Whether a file is being chosen, in the path field or in the system's dialog.
+    pub(in crate::app) fn is_asking(&self) -> bool {
+        self.field.is_some() || self.pending.is_some()
+    }
+
+    /// Asks for a file, unless a dialog is open already. `suggestion` is a file's name to save under.
+    pub(in crate::app) fn ask(&mut self, purpose: Purpose, suggestion: String, ctx: &egui::Context) {
+        if self.pending.is_some() || self.field.is_some() {
+            return;
+        }
+        if self.is_typed {
+            self.open_field(purpose, &suggestion);
+            return;
+        }
+        let (name, endings) = purpose.kind();
+        let mut dialog = rfd::AsyncFileDialog::new()
+            .set_title(purpose.title())
+            .add_filter(name, endings);
+        if let Some(folder) = &self.folder {
+            dialog = dialog.set_directory(folder);
+        }
+        let (sender, answer) = channel();
+        let ctx = ctx.clone();
+        // The futures must be made here: some systems have dialogs only on this thread.
+        let (open, save) = if purpose.is_saving() {
+            (None, Some(dialog.set_file_name(&suggestion).save_file()))
+        } else {
+            (Some(dialog.pick_file()), None)
+        };
+        let spawned = std::thread::Builder::new()
+            .name("file dialog".to_owned())
+            .spawn(move || {
+                let chosen = pollster::block_on(async {
+                    match (open, save) {
+                        (Some(open), _) => open.await,
+                        (_, Some(save)) => save.await,
+                        _ => None,
+                    }
+                });
+                // Nobody listens where the window was closed meanwhile.
+                let _ = sender.send(chosen.map(|file| file.path().to_owned()));
+                ctx.request_repaint();
+            });
+        if spawned.is_ok() {
+            self.pending = Some(Pending {
+                purpose,
+                suggestion,
+                answer,
+                since: Instant::now(),
+            });
+        } else {
+            self.open_field(purpose, &suggestion);
+        }
+    }
+
+    fn open_field(&mut self, purpose: Purpose, suggestion: &str) {
+        let folder = self
+            .folder
+            .clone()
+            .or_else(|| std::env::current_dir().ok())
+            .unwrap_or_default();
+        let mut text = folder.join("").display().to_string();
+        text.push_str(suggestion);
+        log::debug!("no file dialog: a path is asked for");
+        self.field = Some(PathField {
+            purpose,
+            text,
+            is_new: true,
+        });
+    }
+
+    /// Shows the path field where it is open; a file that has been chosen in either way.
+    pub(in crate::app) fn show(&mut self, ui: &mut Ui) -> Option<(Purpose, PathBuf)> {
+        let chosen = self.poll().or_else(|| self.show_field(ui))?;
+        self.folder = chosen.1.parent().map(Path::to_owned);
+        Some(chosen)
+    }
+
+    fn poll(&mut self) -> Option<(Purpose, PathBuf)> {
+        let answer = self.pending.as_ref()?.answer.try_recv();
+        if answer == Err(TryRecvError::Empty) {
+            return None;
+        }
+        let pending = self.pending.take()?;
+        match answer.ok().flatten() {
+            Some(path) => Some((pending.purpose, path)),
+            None => {
+                if pending.since.elapsed() < NO_DIALOG {
+                    self.open_field(pending.purpose, &pending.suggestion);
+                }
+                None
+            }
+        }
+    }
+
+    fn show_field(&mut self, ui: &mut Ui) -> Option<(Purpose, PathBuf)> {
+        let field = self.field.as_mut()?;
+        let mut outcome = None;
+        let modal = egui::Modal::new(egui::Id::unique("path field")).show(ui.ctx(), |ui| {
+            ui.set_width(520.0);
+            outcome = field.show(ui);
+        });
+        if modal.should_close() {
+            outcome = Some(None);
+        }
+        let chosen = outcome?;
+        let purpose = field.purpose;
+        self.field = None;
+        chosen.map(|path| (purpose, path))
+    }
+}
+
+impl PathField {
+    /// `Some(None)`: cancelled.
+    fn show(&mut self, ui: &mut Ui) -> Option<Option<PathBuf>> {
+        ui.heading(self.purpose.title());
+        crate::app::kit::widgets::note(ui, "This system offers no file dialog: type a path. Tab completes it.");
+        ui.add_space(theme::GAP);
+        let (_, endings) = self.purpose.kind();
+        let completions = completions(&self.text, endings);
+        let id = ui.make_persistent_id("path");
+        let completes = ui.memory(|memory| memory.has_focus(id))
+            && ui.input_mut(|i| i.consume_key(egui::Modifiers::NONE, Key::Tab));
+        if completes && let Some(first) = completions.first() {
+            self.text.clone_from(first);
+            move_cursor_to_end(ui.ctx(), id, &self.text);
+        }
+        let edit = egui::TextEdit::singleline(&mut self.text)
+            .id(id)
+            .desired_width(f32::INFINITY)
+            .lock_focus(true);
+        let response = ui.add(edit).accessible_name("Path");
+        if std::mem::take(&mut self.is_new) {
+            response.request_focus();
+            move_cursor_to_end(ui.ctx(), id, &self.text);
+        }
+        let is_entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        let height = 22.0 * COMPLETIONS as f32;
+        egui::ScrollArea::vertical()
+            .max_height(height)
+            .min_scrolled_height(height)
+            .show(ui, |ui| {
+                ui.set_min_size(egui::vec2(ui.available_width(), height));
+                for completion in &completions {
+                    let name = completion.trim_end_matches(std::path::MAIN_SEPARATOR);
+                    let name = Path::new(name)
+                        .file_name()
+                        .and_then(|name| name.to_str())
+                        .unwrap_or(name);
+                    let is_folder = completion.ends_with(std::path::MAIN_SEPARATOR);
+                    let label = if is_folder { format!("{name}/") } else { name.to_owned() };
+                    if ui.selectable_label(false, label).clicked() {
+                        self.text.clone_from(completion);
+                        response.request_focus();
+                        move_cursor_to_end(ui.ctx(), id, &self.text);
+                    }
+                }
+            });
+        let mut outcome = None;
+        let path = PathBuf::from(self.text.trim());
+        let is_usable = if self.purpose.is_saving() {
+            path.file_name().is_some() && !path.is_dir()
+        } else {
+            path.is_file()
+        };
+        ui.horizontal(|ui| {
+            let verb = if self.purpose.is_saving() { "Save" } else { "Open" };
+            let confirmed = ui.add_enabled(is_usable, egui::Button::new(verb)).clicked() || (is_entered && is_usable);
+            if confirmed {
+                outcome = Some(Some(path.clone()));
+            }
+            if ui.button("Cancel").clicked() {
+                outcome = Some(None);
+            }
+            if self.purpose.is_saving() && path.is_file() {
+                ui.colored_label(ui.visuals().warn_fg_color, "This file will be replaced");
+            }
+        });
+        if is_entered && outcome.is_none() {
+            response.request_focus();
+        }
+        outcome
+    }
+}
+
+fn move_cursor_to_end(ctx: &egui::Context, id: egui::Id, text: &str) {
+    use egui::text::{CCursor, CCursorRange};
+    let mut state = egui::text_edit::TextEditState::load(ctx, id).unwrap_or_default();
+    let end = CCursor::new(text.chars().count());
+    state.cursor.set_char_range(Some(CCursorRange::one(end)));
+    state.store(ctx, id);
+}
+
+/// Folders, and files with one of the endings, that begin with a path.
+fn completions(text: &str, endings: &[&str]) -> Vec<String> {
+    let (folder, start) = match text.rfind(['/', std::path::MAIN_SEPARATOR]) {
+        Some(end) => text.split_at(end + 1),
+        None => ("", text),
+    };
+    let folder_path = if folder.is_empty() {
+        Path::new(".")
+    } else {
+        Path::new(folder)
+    };
+    let Ok(entries) = std::fs::read_dir(folder_path) else {
+        return Vec::new();
+    };
+    let start = start.to_lowercase();
+    let mut found: Vec<String> = entries
+        .flatten()
+        .filter_map(|entry| {
+            let name = entry.file_name().into_string().ok()?;
+            let is_hidden = name.starts_with('.') && !start.starts_with('.');
+            if is_hidden || !name.to_lowercase().starts_with(&start) {
+                return None;
+            }
+            if entry.path().is_dir() {
+                return Some(format!("{folder}{name}{}", std::path::MAIN_SEPARATOR));
+            }
+            let ending = Path::new(&name).extension()?.to_str()?.to_lowercase();
+            endings.contains(&ending.as_str()).then(|| format!("{folder}{name}"))
+        })
+        .collect();
+    found.sort_by_key(|path| (!path.ends_with(std::path::MAIN_SEPARATOR), path.to_lowercase()));
+    found.truncate(COMPLETIONS);
+    found
+}

@@ -1,0 +1,271 @@
+//! The menu bar and the sheets of help: both read the table of commands.
+
+use std::path::Path;
+
+use egui::{RichText, Ui, vec2};
+
+use crate::app::actions::{Action, Command, Menu, do_and_close};
+use crate::app::kit::theme;
+use crate::app::pane::Pane;
+use crate::app::services::edits::Edits;
+use crate::app::services::recent::Recent;
+use crate::app::sheets::import;
+use crate::app::sheets::palette;
+use crate::document::{Document, ImportLobe, MaterialSettings};
+use crate::render::EngineChoice;
+use crate::scene::Model;
+
+/// Width of the account of a path where there is room, points.
+const PATH_WIDTH: f32 = 900.0;
+
+/// What is open over the window.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(in crate::app) enum Sheet {
+    #[default]
+    None,
+    Palette {
+        search: String,
+        selected: usize,
+    },
+    Shortcuts,
+    ModelFile,
+    About,
+    /// The account of a path.
+    Path {
+        text: String,
+    },
+}
+
+pub(in crate::app) fn bar(
+    ui: &mut Ui,
+    edits: &Edits,
+    recent: &mut Recent,
+    import_lobe: ImportLobe,
+    actions: &mut Vec<Action>,
+) {
+    egui::MenuBar::new().ui(ui, |ui| {
+        for menu in Menu::ALL {
+            ui.menu_button(menu.label(), |ui| {
+                ui.set_min_width(200.0);
+                let mut group = 0;
+                for command in Command::ALL.iter().filter(|command| command.menu() == menu) {
+                    if command.group() != group {
+                        if menu == Menu::File && group == 0 {
+                            open_recent(ui, recent, actions);
+                        }
+                        ui.separator();
+                        group = command.group();
+                    }
+                    entry(ui, *command, edits, actions);
+                }
+                match menu {
+                    Menu::View => panes(ui, actions),
+                    Menu::Render => engines(ui, actions),
+                    Menu::File => import_lobes(ui, import_lobe, actions),
+                    _ => {}
+                }
+            });
+        }
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            let keys = Command::Palette
+                .shortcut()
+                .map(|shortcut| ui.ctx().format_shortcut(&shortcut));
+            let text = format!("Find a command  {}", keys.unwrap_or_default());
+            if ui.button(RichText::new(text).weak()).clicked() {
+                actions.push(Action::Do(Command::Palette));
+            }
+        });
+    });
+}
+
+fn entry(ui: &mut Ui, command: Command, edits: &Edits, actions: &mut Vec<Action>) {
+    let (label, is_enabled) = match command {
+        Command::Undo => with_step("Undo", edits.undo_label()),
+        Command::Redo => with_step("Redo", edits.redo_label()),
+        _ => (command.label().to_owned(), true),
+    };
+    let mut button = egui::Button::new(label);
+    if let Some(shortcut) = command.shortcut() {
+        button = button.shortcut_text(ui.ctx().format_shortcut(&shortcut));
+    }
+    if ui
+        .add_enabled(is_enabled, button)
+        .on_hover_text(command.help())
+        .clicked()
+    {
+        do_and_close(ui, actions, Action::Do(command));
+    }
+}
+
+/// A menu of the files opened and saved last; those that are not there any more are greyed.
+fn open_recent(ui: &mut Ui, recent: &mut Recent, actions: &mut Vec<Action>) {
+    ui.add_enabled_ui(!recent.paths().is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            ui.set_min_width(220.0);
+            let missing = recent.missing(ui.ctx());
+            for path in recent.paths() {
+                if recent_file(ui, path, missing.contains(path)) {
+                    do_and_close(ui, actions, Action::Open(path.clone()));
+                }
+            }
+            ui.separator();
+            if ui.button("Clear the list").clicked() {
+                recent.clear();
+            }
+        });
+    });
+}
+
+fn recent_file(ui: &mut Ui, path: &Path, is_missing: bool) -> bool {
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    let label = if is_missing {
+        format!("{name} (not there any more)")
+    } else {
+        name.into_owned()
+    };
+    let full = path.display().to_string();
+    ui.add_enabled(!is_missing, egui::Button::new(label))
+        .on_hover_text(&full)
+        .on_disabled_hover_text(full)
+        .clicked()
+}
+
+fn with_step(verb: &str, step: Option<&str>) -> (String, bool) {
+    match step {
+        Some(step) => (format!("{verb}: {step}"), true),
+        None => (verb.to_owned(), false),
+    }
+}
+
+fn panes(ui: &mut Ui, actions: &mut Vec<Action>) {
+    ui.separator();
+    for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport) {
+        if ui.button(pane.command()).clicked() {
+            do_and_close(ui, actions, Action::Reveal(pane));
+        }
+    }
+}
+
+fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
+    ui.separator();
+    for &choice in EngineChoice::ALL {
+        let label = format!("Engine: {}", choice.label());
+        if ui.button(label).on_hover_text(choice.help()).clicked() {
+            do_and_close(ui, actions, Action::UseEngine(choice));
+        }
+    }
+}
+
+fn import_lobes(ui: &mut Ui, chosen: ImportLobe, actions: &mut Vec<Action>) {
+    ui.separator();
+    ui.menu_button("Lobe of opened models", |ui| {
+        for &lobe in ImportLobe::ALL {
+            if ui
+                .radio(lobe == chosen, lobe.label())
+                .on_hover_text(lobe.help())
+                .clicked()
+            {
+                do_and_close(ui, actions, Action::ImportAs(lobe));
+            }
+        }
+    });
+}
+
+/// Shows the sheet that is open.
+pub(in crate::app) fn sheet(
+    ctx: &egui::Context,
+    sheet: &mut Sheet,
+    desk: (&Document, &MaterialSettings),
+    model: Option<&Model>,
+    actions: &mut Vec<Action>,
+) {
+    let (document, material) = desk;
+    let mut is_done = false;
+    let modal = match sheet {
+        Sheet::None => return,
+        Sheet::Palette { search, selected } => egui::Modal::new(egui::Id::unique("palette")).show(ctx, |ui| {
+            is_done = palette::show(ui, search, selected, document, material, actions);
+        }),
+        Sheet::ModelFile => egui::Modal::new(egui::Id::unique("model file")).show(ctx, |ui| {
+            is_done = import::show(ui, document, model, actions);
+        }),
+        Sheet::Shortcuts => egui::Modal::new(egui::Id::unique("shortcuts")).show(ctx, shortcuts),
+        Sheet::About => egui::Modal::new(egui::Id::unique("about")).show(ctx, about),
+        Sheet::Path { text } => egui::Modal::new(egui::Id::unique("path")).show(ctx, |ui| path(ui, text)),
+    };
+    if is_done || modal.should_close() {
+        *sheet = Sheet::None;
+    }
+}
+
+const MOUSE: [(&str, &str); 9] = [
+    ("Drag", "Turn the camera"),
+    ("Middle drag, or ctrl and drag", "Pan"),
+    ("Wheel, or right drag", "Zoom"),
+    ("Shift and drag", "Turn the light"),
+    ("Click", "Select the material there"),
+    ("Ctrl, shift and click", "Explain the last sample of the pixel"),
+    ("Arrows, page up and down", "Turn and zoom, with the viewport focused"),
+    ("Double-click on a label", "Reset the parameter"),
+    ("Shift and drag a number", "Change it finely"),
+];
+
+fn shortcuts(ui: &mut Ui) {
+    ui.set_width(440.0);
+    ui.heading("Keys and mouse");
+    ui.add_space(theme::GAP);
+    egui::Grid::new("keys")
+        .num_columns(2)
+        .spacing(vec2(24.0, 5.0))
+        .show(ui, |ui| {
+            for (how, what) in MOUSE {
+                ui.label(RichText::new(how).strong());
+                ui.label(what);
+                ui.end_row();
+            }
+            for command in Command::ALL {
+                if let Some(shortcut) = command.shortcut() {
+                    ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).strong());
+                    ui.label(command.label());
+                    ui.end_row();
+                }
+            }
+        });
+    ui.add_space(theme::GAP);
+    if ui.button("Close").clicked() {
+        ui.close();
+    }
+}
+
+fn about(ui: &mut Ui) {
+    ui.set_width(420.0);
+    ui.heading(concat!("Glossmith ", env!("CARGO_PKG_VERSION")));
+    ui.add_space(theme::GAP);
+    ui.label(env!("CARGO_PKG_DESCRIPTION"));
+    ui.add_space(theme::GAP);
+    crate::app::kit::widgets::note(ui, concat!("Licence: ", env!("CARGO_PKG_LICENSE")));
+    ui.add_space(theme::GAP);
+    if ui.button("Close").clicked() {
+        ui.close();
+    }
+}
+
+/// Everything that made one sample of one pixel.
+fn path(ui: &mut Ui, text: &str) {
+    ui.set_width(PATH_WIDTH.min(0.9 * ui.ctx().content_rect().width()));
+    ui.heading("One path");
+    ui.add_space(theme::GAP);
+    let height = 0.7 * ui.ctx().content_rect().height();
+    egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        ui.add(egui::Label::new(RichText::new(text).monospace()).wrap());
+    });
+    ui.add_space(theme::GAP);
+    ui.horizontal(|ui| {
+        if ui.button("Copy").on_hover_text("Copies the account as text.").clicked() {
+            ui.ctx().copy_text(text.to_owned());
+        }
+        if ui.button("Close").clicked() {
+            ui.close();
+        }
+    });
+}

@@ -1,0 +1,10 @@
+//! What lies around and over the panels: menus, status bar, dialogs and sheets.
+
+pub(super) mod dialogs;
+pub(super) mod import;
+pub(super) mod menu;
+pub(super) mod palette;
+pub(super) mod recovery;
+pub mod status;
+pub(super) mod turntable;
+pub(super) mod unsaved;

@@ -1,0 +1,136 @@
+//! The command palette: every command, panel and parameter by a few letters, without the mouse.
+
+use egui::{Key, Ui, vec2};
+
+use crate::app::actions::{Action, Command};
+use crate::app::kit::{parameter_row, theme};
+use crate::app::pane::Pane;
+use crate::document::{Document, Kind, MaterialSettings, PARAMETERS, Parameter, SETTINGS};
+
+/// Something to be found.
+struct Entry {
+    label: String,
+    /// What is searched.
+    text: String,
+    help: &'static str,
+    keys: String,
+    action: Action,
+}
+
+/// The keys go to the palette with the next frame: what is typed right after it was asked for is not lost.
+pub(in crate::app) fn focus(ctx: &egui::Context) {
+    ctx.memory_mut(|memory| memory.request_focus(field_id()));
+}
+
+fn field_id() -> egui::Id {
+    egui::Id::unique("palette field")
+}
+
+/// Shows it; true once something was chosen.
+pub(in crate::app) fn show(
+    ui: &mut Ui,
+    search: &mut String,
+    selected: &mut usize,
+    document: &Document,
+    edited: &MaterialSettings,
+    actions: &mut Vec<Action>,
+) -> bool {
+    ui.set_width(420.0);
+    let step = |ui: &mut Ui, key| ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key));
+    let (up, down) = (step(ui, Key::ArrowUp), step(ui, Key::ArrowDown));
+    let field = egui::TextEdit::singleline(search)
+        .id(field_id())
+        .hint_text("Find a command, panel or parameter")
+        .desired_width(f32::INFINITY);
+    let response = ui.add(field.margin(vec2(8.0, 5.0))).accessible_name("Find a command");
+    if response.changed() {
+        *selected = 0;
+    }
+    let is_entered = ui.input(|input| input.key_pressed(Key::Enter));
+    response.request_focus();
+    ui.add_space(theme::GAP);
+    let mut found = found(ui, search, document, edited);
+    let last = found.len().saturating_sub(1);
+    *selected = (*selected + usize::from(down))
+        .min(last)
+        .saturating_sub(usize::from(up));
+    let mut chosen = is_entered.then_some(*selected);
+    egui::ScrollArea::vertical().max_height(360.0).show(ui, |ui| {
+        ui.set_min_width(ui.available_width());
+        for (index, entry) in found.iter().enumerate() {
+            let button = egui::Button::selectable(index == *selected, &entry.label).shortcut_text(&entry.keys);
+            let response = ui.add_sized(vec2(ui.available_width(), theme::ROW_HEIGHT), button);
+            let response = if entry.help.is_empty() {
+                response
+            } else {
+                response.on_hover_text(entry.help)
+            };
+            if index == *selected && (up || down) {
+                response.scroll_to_me(None);
+            }
+            if response.clicked() {
+                chosen = Some(index);
+            }
+        }
+        if found.is_empty() {
+            crate::app::kit::widgets::note(ui, "Nothing of that name.");
+        }
+    });
+    let chosen = chosen.filter(|index| *index < found.len());
+    actions.extend(chosen.map(|index| found.swap_remove(index).action));
+    chosen.is_some()
+}
+
+/// A parameter that has a row.
+fn of_parameter<T>(parameter: &Parameter<T>) -> Option<Entry> {
+    parameter_row::has_row(parameter).then(|| Entry {
+        label: parameter.full_name(),
+        text: format!("{} {}", parameter.full_name(), parameter.key),
+        help: parameter.help,
+        keys: String::new(),
+        action: Action::Edit(parameter.key),
+    })
+}
+
+/// What has all the words of the search, those first that have them in their names; commands, then parameters, then
+/// panels.
+fn found(ui: &Ui, search: &str, document: &Document, edited: &MaterialSettings) -> Vec<Entry> {
+    let search = search.to_lowercase();
+    let words: Vec<&str> = search.split_whitespace().collect();
+    let commands = Command::ALL.iter().filter(|command| **command != Command::Palette);
+    let commands = commands.map(|command| Entry {
+        label: command.label().to_owned(),
+        text: format!("{} {} {}", command.menu().label(), command.label(), command.help()),
+        help: command.help(),
+        keys: command
+            .shortcut()
+            .map(|shortcut| ui.ctx().format_shortcut(&shortcut))
+            .unwrap_or_default(),
+        action: Action::Do(*command),
+    });
+    // A texture's switch stands beside its picture.
+    let parameters = PARAMETERS
+        .iter()
+        .filter(|parameter| !matches!(parameter.kind, Kind::Toggle) && (parameter.applies)(edited))
+        .filter_map(of_parameter);
+    let settings = SETTINGS
+        .iter()
+        .filter(|setting| (setting.applies)(document))
+        .filter_map(of_parameter);
+    let panes = Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport);
+    let panes = panes.map(|pane| Entry {
+        label: pane.command(),
+        text: pane.command(),
+        help: "",
+        keys: String::new(),
+        action: Action::Reveal(pane),
+    });
+    let has_words = |text: &str| {
+        let text = text.to_lowercase();
+        words.iter().all(|word| text.contains(word))
+    };
+    let entries = commands.chain(parameters).chain(settings).chain(panes);
+    let mut found: Vec<Entry> = entries.filter(|entry| has_words(&entry.text)).collect();
+    found.sort_by_key(|entry| !has_words(&entry.label));
+    found
+}

@@ -1,0 +1,143 @@
+//! The sheet that offers what a crash left.
+
+use std::time::{Duration, SystemTime};
+
+use egui::{RichText, Ui};
+
+use crate::app::kit::{theme, widgets};
+use crate::app::services::autosave::Leftover;
+use crate::store::recovery::{Recovered, Report};
+
+/// What is to be done with a leftover.
+pub(in crate::app) enum Choice {
+    Restore,
+    Discard,
+}
+
+pub(in crate::app) fn sheet(ui: &mut Ui, leftovers: &[Leftover]) -> Option<(usize, Choice)> {
+    let mut chosen = None;
+    ui.set_width(460.0);
+    if leftovers.iter().any(|leftover| leftover.contents.is_some()) {
+        ui.heading("Unsaved work was found");
+        widgets::note(
+            ui,
+            "Glossmith ended without closing. What had not been saved was put aside; restored, it can be undone, and \
+             is saved when you save it.",
+        );
+    } else {
+        ui.heading("Glossmith ended by an internal error");
+        widgets::note(ui, "Everything had been saved.");
+    }
+    egui::ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
+        for (at, leftover) in leftovers.iter().enumerate() {
+            ui.add_space(theme::GAP);
+            ui.separator();
+            if let Some(choice) = row(ui, leftover, at == 0) {
+                chosen = Some((at, choice));
+            }
+        }
+    });
+    ui.add_space(theme::GAP);
+    ui.separator();
+    let later = ui.button("Later").on_hover_text("Asks again at the next start.");
+    if later.clicked() {
+        ui.close();
+    }
+    chosen
+}
+
+fn row(ui: &mut Ui, leftover: &Leftover, is_first: bool) -> Option<Choice> {
+    let mut choice = None;
+    let name = match &leftover.contents {
+        Some(Ok(recovered)) => {
+            let name = name(recovered);
+            ui.label(RichText::new(&name).strong());
+            let age = SystemTime::now().duration_since(recovered.at).unwrap_or_default();
+            widgets::note(ui, format!("{}, put aside {}", contents(recovered), ago(age)));
+            name
+        }
+        Some(Err(why)) => {
+            ui.label(RichText::new("A damaged file").strong());
+            ui.colored_label(ui.visuals().error_fg_color, why);
+            "the damaged file".to_owned()
+        }
+        None => "the notice".to_owned(),
+    };
+    if let Some(report) = &leftover.report {
+        told(ui, report);
+    }
+    ui.horizontal(|ui| {
+        if let Some(contents) = &leftover.contents {
+            let restore = ui
+                .add_enabled(contents.is_ok(), egui::Button::new("Restore"))
+                .accessible_name(format!("Restore {name}"));
+            if is_first && ui.memory(|memory| memory.focused().is_none()) {
+                restore.request_focus();
+            }
+            if restore.clicked() {
+                choice = Some(Choice::Restore);
+            }
+        }
+        let discard = ui.button("Discard").accessible_name(format!("Discard {name}"));
+        if discard.on_hover_text("Removes it for good.").clicked() {
+            choice = Some(Choice::Discard);
+        }
+    });
+    choice
+}
+
+/// What a panic said, and where more of it stands.
+fn told(ui: &mut Ui, report: &Report) {
+    let text = format!("It met an internal error: {}", report.message);
+    ui.add(egui::Label::new(RichText::new(text).color(ui.visuals().error_fg_color)).wrap());
+    let where_to = format!(
+        "Please report it with the file {}, which says what was done last, and stays when this is discarded.",
+        report.path.display()
+    );
+    ui.add(egui::Label::new(RichText::new(where_to).weak()).wrap());
+}
+
+/// What to call it.
+pub(in crate::app) fn name(recovered: &Recovered) -> String {
+    let stem = recovered.project.as_ref().and_then(|path| path.file_stem());
+    stem.map_or_else(|| "untitled".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// What tells one untitled document from another.
+fn contents(recovered: &Recovered) -> String {
+    let materials = &recovered.document.materials;
+    let names: Vec<&str> = materials.iter().take(3).map(|material| &*material.name).collect();
+    let more = if materials.len() > 3 { ", …" } else { "" };
+    format!("{} in {}{more}", recovered.document.model, names.join(", "))
+}
+
+/// How long ago something was, in words.
+fn ago(age: Duration) -> String {
+    let minutes = age.as_secs() / 60;
+    let (count, unit) = match minutes {
+        0 => return "less than a minute ago".to_owned(),
+        1..60 => (minutes, "minute"),
+        60..1440 => (minutes / 60, "hour"),
+        _ => (minutes / 1440, "day"),
+    };
+    format!("{count} {unit}{} ago", if count == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ages_are_said_in_the_largest_unit_that_fits() {
+        for (seconds, words) in [
+            (0, "less than a minute ago"),
+            (61, "1 minute ago"),
+            (3599, "59 minutes ago"),
+            (3600, "1 hour ago"),
+            (86_399, "23 hours ago"),
+            (3 * 86_400, "3 days ago"),
+        ] {
+            assert_eq!(ago(Duration::from_secs(seconds)), words);
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The question before unsaved edits would be lost: save, discard, or cancel, which leaves everything as it is.
+
+use std::path::PathBuf;
+
+use egui::Ui;
+
+use crate::app::kit::{theme, widgets};
+use crate::document::Document;
+use crate::store::Loaded;
+
+/// What would lose the edits.
+pub(in crate::app) enum Then {
+    /// The window is closed.
+    Close,
+    /// A new document.
+    New,
+    /// A project that has been read from a file.
+    Adopt(Box<Loaded<Document>>, PathBuf),
+}
+
+impl Then {
+    fn verb(&self) -> &'static str {
+        match self {
+            Self::Close => "closing",
+            Self::New => "starting anew",
+            Self::Adopt(..) => "opening another project",
+        }
+    }
+}
+
+/// The question that is open, and what waits for a file to be saved.
+#[derive(Default)]
+pub(in crate::app) struct Unsaved {
+    pub(in crate::app) question: Option<Question>,
+    pub(in crate::app) after_save: Option<Then>,
+    /// Asked and answered: the window may go.
+    pub(in crate::app) may_close: bool,
+}
+
+/// The open question.
+pub(in crate::app) struct Question {
+    pub(in crate::app) then: Then,
+    pub(in crate::app) is_new: bool,
+}
+
+/// What was answered.
+pub(in crate::app) enum Answer {
+    Save,
+    Discard,
+    Cancel,
+}
+
+impl Unsaved {
+    /// Whether an answer is waited for.
+    pub(in crate::app) fn is_open(&self) -> bool {
+        self.question.is_some()
+    }
+}
+
+impl Question {
+    pub(in crate::app) fn show(&mut self, ui: &mut Ui, name: &str) -> Option<Answer> {
+        ui.set_width(380.0);
+        ui.heading(format!("Save the changes to {name}?"));
+        widgets::note(
+            ui,
+            format!("They would be lost by {}. Escape cancels.", self.then.verb()),
+        );
+        ui.add_space(theme::GAP);
+        let mut answer = None;
+        ui.horizontal(|ui| {
+            let save = ui.button("Save");
+            // The focus lasts only once the sheet has been laid out.
+            if save.has_focus() {
+                self.is_new = false;
+            } else if self.is_new {
+                save.request_focus();
+            }
+            if save.clicked() {
+                answer = Some(Answer::Save);
+            }
+            if ui.button("Discard").clicked() {
+                answer = Some(Answer::Discard);
+            }
+            if ui.button("Cancel").clicked() {
+                answer = Some(Answer::Cancel);
+            }
+        });
+        answer
+    }
+}

@@ -1,0 +1,247 @@
+//! What is rendered, and how: a document from files and options.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::bail;
+use clap::Args;
+
+use super::settings::SettingOptions;
+use super::{names, parse};
+use crate::document::effect::EffectSwitches;
+use crate::document::of_model::materials_of;
+use crate::document::{AreaLight, Background, Document, ImportLobe, range};
+use crate::render::{EngineChoice, Session};
+use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
+use crate::scene::{Model, ModelOptions, ModelSource, is_model};
+use crate::store::file::{self, Opened};
+use crate::store::preset;
+
+/// Arguments that describe what is rendered, and how. Options stand over what files say.
+#[derive(Debug, Default, Args)]
+pub struct SceneArguments {
+    /// What to begin with: projects (.json), pictures saved here (.png, with the document inside), models, environments,
+    /// materials. Options stand over what they say.
+    #[arg(value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// What to render: a built-in model, a file (.glb, .gltf, .obj, .ply, .stl, .zip), or a folder with one [default: teapot].
+    #[arg(long, value_name = "FILE|teapot|sphere|plane|shaderball")]
+    model: Option<ModelSource>,
+    /// Which scene of the model's file, counted from 0. Without it the file's default one.
+    #[arg(long, value_name = "N")]
+    scene: Option<usize>,
+    /// Which variant of the model's materials. Without it the file's own materials.
+    #[arg(long, value_name = "NAME")]
+    variant: Option<String>,
+    /// Pose the model as its first animation does at this time. Without it as the file has it at rest.
+    #[arg(long, value_name = "SECONDS", value_parser = parse::number_in(range::POSE_TIME_S), allow_negative_numbers = true)]
+    time_of_pose: Option<f64>,
+    /// The longest side of a model's textures in texels; larger ones are halved until they fit [default: 8192].
+    #[arg(long, value_name = "N", value_parser = parse::number_in(range::TEXTURE_SIDE))]
+    texture_size: Option<f64>,
+    /// Write what became of the parts of the model's file (used, approximated, ignored, missing), as JSON.
+    #[arg(long, value_name = "FILE")]
+    pub(super) import_report: Option<PathBuf>,
+    /// Where the light comes from: a built-in environment, a picture of the whole sphere (.hdr, .exr, .png, .jpg, .tif,
+    /// .webp; lat-long or cube map), or a folder with the six faces of a cube [default: studio].
+    #[arg(long, value_name = "FILE|studio|sky|furnace")]
+    environment: Option<EnvironmentSource>,
+    /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light [default: display].
+    #[arg(long, value_name = "display|linear", value_parser = parse::environment_encoding)]
+    environment_encoding: Option<EnvironmentEncoding>,
+    /// A rectangle (or triangle) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
+    /// in bounding radii of the model) and radiance. May be repeated up to 8 times.
+    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle][,#rrggbb]", value_parser = parse::area_light, allow_hyphen_values = true)]
+    area_lights: Vec<AreaLight>,
+    /// What the camera sees where it meets nothing [default: environment].
+    #[arg(long, value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
+    background: Option<Background>,
+    /// The material of everything: the name of a shipped one, or a .json file. Without it a file's own materials stay.
+    #[arg(long, value_name = "FILE|NAME")]
+    material: Option<String>,
+    /// The lobe of a file's own materials: geometric, its roughness matched to the look of the file's, or ggx.
+    #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::choice::<ImportLobe>)]
+    import_lobe: ImportLobe,
+    /// Set a parameter of every material, such as specular.roughness=0.2, or a setting, such as camera.fov=40. Stands over
+    /// all other options. May be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE", value_parser = parse::assignment)]
+    assignments: Vec<String>,
+    /// Where the camera is, in degrees around and above its target.
+    #[arg(long, value_name = "YAW,PITCH", value_parser = parse::orbit, allow_hyphen_values = true, conflicts_with = "camera-position")]
+    camera_orbit: Option<[f64; 2]>,
+    /// Width and height in pixels [default: 512x512]. A picture takes some 100 bytes of memory a pixel, 130 more where it is
+    /// denoised; one that does not fit the memory is refused before it is begun.
+    #[arg(long, value_name = "WxH", value_parser = parse::size)]
+    size: Option<[u32; 2]>,
+    /// Render this part of the picture only, the rest staying transparent: shares of width and height.
+    #[arg(long, value_name = "LEFT,TOP,RIGHT,BOTTOM", value_parser = parse::region)]
+    region: Option<[f64; 4]>,
+    #[command(flatten)]
+    settings: SettingOptions,
+    /// Which effects are simulated: those that the scene calls for (auto); all, needed or not; or these alone (names of
+    /// `glossmith plan`, with commas between; +NAME and -NAME change what the scene calls for) [default: auto].
+    #[arg(long, value_name = "auto|all|LIST", allow_hyphen_values = true)]
+    effects: Option<EffectSwitches>,
+    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
+    #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
+    pub(super) engine: EngineChoice,
+}
+
+impl SceneArguments {
+    /// Those of files alone.
+    pub(super) fn of_files(files: &[PathBuf], engine: EngineChoice) -> Self {
+        Self {
+            files: files.to_owned(),
+            engine,
+            ..Self::default()
+        }
+    }
+
+    /// The document that the arguments describe.
+    ///
+    /// # Errors
+    /// One line that names the file, what is wrong and what to do.
+    pub(super) fn document(&self, session: &mut Session) -> anyhow::Result<Document> {
+        let mut document = Document::default();
+        for file in &self.files {
+            open(file, &mut document)?;
+        }
+        let named = self.files.iter().rev().find(|file| is_model_file(file));
+        let named = named.map(|file| ModelSource::File(file.clone()));
+        self.put_model(&mut document, session, self.model.clone().or(named))?;
+        if let Some(name) = &self.material {
+            let material = preset::find(name)?;
+            warn(&material.warnings);
+            document.materials = vec![material.value];
+        }
+        self.put_light(&mut document);
+        self.put_view(&mut document);
+        self.settings.apply(&mut document)?;
+        self.put_limits(&mut document);
+        for assignment in &self.assignments {
+            document.assign(assignment)?;
+        }
+        document.check()?;
+        Ok(document)
+    }
+
+    /// The model: another one with its materials, lights and cameras, or other parts of the document's.
+    fn put_model(
+        &self,
+        document: &mut Document,
+        session: &mut Session,
+        source: Option<ModelSource>,
+    ) -> anyhow::Result<()> {
+        let import = &mut document.import;
+        if source.is_some() {
+            *import = ModelOptions::default();
+        }
+        import.scene = self.scene.or(import.scene);
+        import.variant = self.variant.clone().or(import.variant.take());
+        import.time_s = self.time_of_pose.map(|time| time as f32).or(import.time_s);
+        import.texture_side_max = self.texture_size.map_or(import.texture_side_max, |side| side as u32);
+        let takes_materials = source.is_some() || self.scene.is_some() || self.variant.is_some();
+        document.model = source.unwrap_or(document.model.clone());
+        let model = session.assets().model(&document.model, &document.import)?;
+        if let Some(path) = &self.import_report {
+            write_import_report(path, &model)?;
+        }
+        let has_materials = matches!(document.model, ModelSource::File(_));
+        if takes_materials && has_materials {
+            document.materials = materials_of(&model, self.import_lobe);
+        }
+        document.lighting.area_lights.extend(&self.area_lights);
+        if takes_materials {
+            document.add_lights_and_cameras(&model);
+        }
+        Ok(())
+    }
+
+    fn put_light(&self, document: &mut Document) {
+        let lighting = &mut document.lighting;
+        if let Some(environment) = &self.environment {
+            lighting.environment = environment.clone();
+        }
+        lighting.environment_encoding = self.environment_encoding.unwrap_or(lighting.environment_encoding);
+        lighting.background = self.background.unwrap_or(lighting.background);
+    }
+
+    fn put_view(&self, document: &mut Document) {
+        let camera = &mut document.camera;
+        if let Some([yaw_deg, pitch_deg]) = self.camera_orbit {
+            (camera.yaw_deg, camera.pitch_deg) = (yaw_deg, pitch_deg);
+        }
+        if self.camera_orbit.is_some() || self.settings.has("camera.distance") {
+            // A position of the document's stands over both.
+            camera.position = None;
+        }
+        let render = &mut document.render;
+        if let Some([width, height]) = self.size {
+            (render.width, render.height) = (width, height);
+        }
+        render.region = self.region.or(render.region);
+        if let Some(effects) = self.effects {
+            render.effects = effects;
+        }
+    }
+
+    /// With a time or noise to reach only, samples are not limited.
+    fn put_limits(&self, document: &mut Document) {
+        let is_limited = ["render.time", "render.noise"].iter().any(|key| self.settings.has(key));
+        if is_limited && !self.settings.has("render.samples") {
+            document.render.samples = u32::MAX;
+        }
+    }
+}
+
+fn is_model_file(path: &Path) -> bool {
+    is_model(path) || path.is_dir()
+}
+
+/// Puts what a file holds in the document: an environment, a material or a whole project. Models are left alone.
+fn open(path: &Path, document: &mut Document) -> anyhow::Result<()> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    match ending.to_ascii_lowercase().as_str() {
+        _ if is_model_file(path) => {}
+        ending if ending != "png" && ENDINGS.contains(&ending) => {
+            document.lighting.environment = EnvironmentSource::File(path.to_owned())
+        }
+        "json" | "png" => match file::open(path)? {
+            Opened::Material(material) => {
+                warn(&material.warnings);
+                document.materials = vec![material.value];
+            }
+            Opened::Document(project) | Opened::Picture(project) => {
+                warn(&project.warnings);
+                *document = project.value;
+            }
+        },
+        _ if !path.exists() => bail!(
+            "{}: no such command or file; `glossmith --help` lists what there is",
+            path.display()
+        ),
+        _ => bail!(
+            "{}: neither a model (.glb, .gltf) nor an environment (.hdr, .exr), material or project (.json), or a \
+             picture saved here (.png); give one of these",
+            path.display()
+        ),
+    }
+    Ok(())
+}
+
+fn warn(warnings: &[String]) {
+    warnings.iter().for_each(|warning| log::warn!("{warning}"));
+}
+
+/// What became of the parts of a model's file, as JSON.
+fn write_import_report(path: &Path, model: &Model) -> anyhow::Result<()> {
+    let json = serde_json::json!({
+        "model": model.name,
+        "entries": model.report.entries,
+        "scenes": model.scenes,
+        "variants": model.variants,
+        "animation_seconds": model.duration_s,
+    });
+    let text = serde_json::to_string_pretty(&json)?;
+    file::save_atomically(path, text.as_bytes())?;
+    Ok(())
+}

@@ -1,0 +1,107 @@
+//! What was saved is rendered by the command line: projects, pictures with their document inside, with options on top.
+
+use glossmith::document::{Background, Document, MaterialSettings, SETTINGS};
+use glossmith::scene::ModelSource;
+use glossmith::store::{save_document, save_material};
+
+use crate::cli_support::{Picture, Workplace};
+
+/// A document that differs from the default one in every part, quick to render.
+fn saved() -> Document {
+    let mut document = Document {
+        model: ModelSource::Sphere,
+        materials: vec![MaterialSettings::diffuse("red", [0.8, 0.1, 0.1])],
+        ground: true,
+        ..Document::default()
+    };
+    document.lighting.background = Background::Color([0.1, 0.5, 0.2]);
+    document.lighting.strength = 2.0;
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (100.0, 35.0);
+    document.camera.fov_deg = 50.0;
+    let render = &mut document.render;
+    (render.width, render.height, render.samples, render.seed) = (20, 12, 3, 7);
+    document
+}
+
+fn rendered(place: &Workplace, arguments: &str) -> Picture {
+    place.done(&format!("render --engine cpu --output a.exr {arguments}"));
+    crate::cli_support::read_exr(&place.path("a.exr"))
+}
+
+#[test]
+fn a_project_is_rendered_as_it_was_saved_and_options_stand_over_it() {
+    let place = Workplace::new();
+    save_document(&place.path("saved.json"), &saved()).unwrap();
+    let by_file = rendered(&place, "saved.json");
+    assert_eq!((by_file.width, by_file.height), (20, 12));
+    // The same by options alone.
+    save_material(&place.path("red.json"), &saved().materials[0]).unwrap();
+    let by_options = rendered(
+        &place,
+        "--model sphere --material red.json --ground --background 0.1,0.5,0.2 --environment-strength 2 \
+         --camera-orbit 100,35 --fov 50 --size 20x12 --samples 3 --seed 7",
+    );
+    assert_eq!(by_file.pixels, by_options.pixels);
+    let other = rendered(&place, "saved.json --fov 20 --ground=off");
+    assert!(by_file.difference(&other) > 0.1, "{}", by_file.difference(&other));
+    let again = rendered(&place, "saved.json --size 10x6");
+    assert_eq!((again.width, again.height), (10, 6));
+    // What is not given stays: a limit of time lets samples go on, another seed does not.
+    place.done("render saved.json --engine cpu --output a.exr --seed 3 --report r.json");
+    let report: serde_json::Value = serde_json::from_str(&place.read("r.json")).unwrap();
+    assert_eq!((&report["seed"], &report["samples_per_pixel"]), (&3.into(), &3.into()));
+}
+
+#[test]
+fn a_picture_with_its_document_inside_is_rendered_again() {
+    let place = Workplace::new();
+    save_document(&place.path("saved.json"), &saved()).unwrap();
+    place.done("render saved.json --engine cpu --output first.png");
+    let from_project = rendered(&place, "saved.json");
+    let from_picture = rendered(&place, "first.png");
+    assert_eq!(
+        (from_picture.width, from_picture.at(3, 4)),
+        (from_project.width, from_project.at(3, 4))
+    );
+}
+
+/// The other verbs that take a scene take what was saved as well.
+#[test]
+fn plans_turntables_studies_and_accounts_are_of_what_was_saved() {
+    let place = Workplace::new();
+    save_document(&place.path("saved.json"), &saved()).unwrap();
+    let plan = place.done("plan saved.json").stdout;
+    let words = "stands on a ground";
+    assert!(plan.contains(words), "{plan}");
+    assert!(!place.done("plan saved.json --ground=off").stdout.contains(words));
+    place.done("turntable saved.json --engine cpu --frames 2 --output turn --report t.json");
+    let report: serde_json::Value = serde_json::from_str(&place.read("t.json")).unwrap();
+    assert_eq!((&report["width"], &report["seed"]), (&20.into(), &7.into()));
+    let account = place.done("explain saved.json --pixel 10,6").stdout;
+    assert!(!account.is_empty());
+    place.done("study convergence saved.json --quick --samples 4 --output study");
+    assert!(place.path("study").is_dir());
+}
+
+/// Every setting with a flag has its option, with the table's default, and the option sets it.
+#[test]
+fn options_are_the_table_of_settings() {
+    let place = Workplace::new();
+    let help = place.done("render --help").stdout;
+    for setting in SETTINGS.iter() {
+        let Some(flag) = setting.flag else { continue };
+        let default = setting.text(&setting.default_value());
+        let at = [" ", "[="]
+            .iter()
+            .find_map(|end| help.find(&format!("--{flag}{end}")))
+            .unwrap_or_else(|| panic!("--{flag} is missing"));
+        let text: String = help[at..].split_whitespace().collect::<Vec<_>>().join(" ");
+        let until = text[2..].find(" --").map_or(text.len(), |end| end + 2);
+        assert!(
+            text[..until].contains(&format!("[default: {default}]")),
+            "{}: {}",
+            setting.key,
+            &text[..until]
+        );
+    }
+}
