@@ -1,6 +1,5 @@
 //! What actions and commands do.
 
-use crate::app::App;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::{PICTURE_SIZE, Resolution};
 use crate::app::kit::widgets;
@@ -8,6 +7,7 @@ use crate::app::layout::{self, Pane};
 use crate::app::services::{library, snapshots};
 use crate::app::sheets::menu::Sheet;
 use crate::app::sheets::palette;
+use crate::app::{App, is_dragging};
 use crate::document::{CameraSettings, Document, MaterialSettings, parameter, setting};
 use crate::render::explain::explain;
 use crate::scene::ModelOptions;
@@ -82,6 +82,10 @@ impl App {
 
     fn command(&mut self, ctx: &egui::Context, command: Command) {
         log::debug!("{}", command.label());
+        if matches!(command, Command::Undo | Command::Redo) {
+            // What was edited in this very frame is a step, too.
+            self.record(is_dragging(ctx));
+        }
         match command {
             Command::Undo => {
                 let document = self.edits.undo();

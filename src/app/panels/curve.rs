@@ -64,16 +64,19 @@ impl Panel for CurvePanel {
             (self.dragged, self.selected) = (None, None);
         }
         quantile_plot(ui, self, material.curve, &table, is_custom.then_some(&mut points));
-        if is_custom {
-            selected_point(ui, self, &mut points);
-            let drawn = points.iter().map(|point| point.map(|x| x as f32)).collect::<Vec<_>>();
-            if drawn != material.custom_curve.points()
-                && let Ok(curve) = CustomCurve::try_from(drawn)
-            {
-                material.custom_curve = curve;
-                desk.edits.note("Draw the curve", "custom curve");
+        // A curve of another kind may come with a model.
+        widgets::comes_and_goes(ui, |ui| {
+            if is_custom {
+                selected_point(ui, self, &mut points);
+                let drawn = points.iter().map(|point| point.map(|x| x as f32)).collect::<Vec<_>>();
+                if drawn != material.custom_curve.points()
+                    && let Ok(curve) = CustomCurve::try_from(drawn)
+                {
+                    material.custom_curve = curve;
+                    desk.edits.note("Draw the curve", "custom curve");
+                }
             }
-        }
+        });
         self.left.clone_from(&material.custom_curve);
         distance_plot(ui, material.curve, &table);
         horizon(ui, material.roughness, curve_distance_max(material.curve, &table));
