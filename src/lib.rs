@@ -7,6 +7,8 @@
 pub mod named;
 pub mod panics;
 
+pub mod instructions;
+
 pub mod optics;
 pub mod scene;
 

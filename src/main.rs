@@ -10,17 +10,20 @@ fn main() -> ExitCode {
         env_logger::Env::default().default_filter_or("warn,wgpu=error,wgpu_hal=off,naga=error"),
     )
     .init();
-    let arguments = Arguments::parse();
-    let outcome = match arguments.command {
-        Some(command) => command.run(),
-        None => open_window(arguments),
-    };
-    match outcome {
+    match run(Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("glossmith: {error:#}");
             ExitCode::FAILURE
         }
+    }
+}
+
+fn run(arguments: Arguments) -> anyhow::Result<()> {
+    arguments.instructions.force()?;
+    match arguments.command {
+        Some(command) => command.run(),
+        None => open_window(arguments),
     }
 }
 

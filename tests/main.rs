@@ -65,6 +65,8 @@ mod gltf_builder;
 mod gltf_damaged;
 #[path = "suite/gltf_extensions.rs"]
 mod gltf_extensions;
+#[path = "suite/hierarchy.rs"]
+mod hierarchy;
 #[path = "suite/import_report.rs"]
 mod import_report;
 #[path = "suite/killed.rs"]

@@ -23,6 +23,7 @@ use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
 
+use crate::instructions::Instructions;
 use crate::render::EngineChoice;
 
 /// Glossmith: a material editor around the geometric lobe.
@@ -40,6 +41,9 @@ pub struct Arguments {
     /// The engine that renders: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     pub engine: EngineChoice,
+    /// The instructions that the processor's engine computes with. They change how fast it is, and nothing else.
+    #[arg(long, global = true, default_value = "auto", value_name = "auto|avx512|avx2|neon|portable", value_parser = parse::instructions)]
+    pub instructions: Instructions,
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, rendered or written; 2 wrong arguments.";

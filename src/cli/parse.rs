@@ -8,8 +8,18 @@ use anyhow::Context;
 
 use crate::document::parameter::parse_color;
 use crate::document::{AreaLight, AreaLightShape, Background, Document, ParameterError, range};
+use crate::instructions::{Instructions, Missing};
 use crate::render::output::{OutputError, format_of};
 use crate::scene::environment::EnvironmentEncoding;
+
+/// An instruction set that this processor has.
+pub(super) fn instructions(text: &str) -> Result<Instructions, String> {
+    let chosen: Instructions = super::names::choice(text)?;
+    chosen
+        .level()
+        .map(|_| chosen)
+        .ok_or_else(|| Missing(chosen).to_string())
+}
 
 /// A parser for a number in a range; it refuses NaN.
 pub(super) fn number_in(range: RangeInclusive<f64>) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync {

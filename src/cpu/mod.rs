@@ -36,6 +36,7 @@ const CORE_TILES: usize = 4;
 impl CpuEngine {
     /// Starts a job over.
     pub fn submit(&mut self, job: Arc<Job>) {
+        job.geometry.prepare();
         let [width, height] = job.settings.image_size;
         self.schedule = Schedule::new(width, height);
         // The old one goes first: two would take twice the memory.

@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use crate::job::{BackgroundKind, Settings};
 use crate::scene::Geometry;
 use crate::scene::camera::Camera;
+use crate::scene::light::{LightCell, Lights};
 
 const BACKGROUND_ENVIRONMENT: u32 = 0;
 const BACKGROUND_TRANSPARENT: u32 = 1;
@@ -143,17 +144,34 @@ pub struct Triangle {
     pub corners: [[u32; 4]; 3],
 }
 
-/// The triangles of a geometry, in its order.
+/// The triangles of a geometry, in the order of [`Compressed::triangles`](crate::scene::Compressed), as are all others here.
 pub fn triangles(geometry: &Geometry) -> Vec<Triangle> {
     let corner = |vertex: u32| {
         let [x, y, z] = geometry.positions[vertex as usize].map(f32::to_bits);
         [x, y, z, vertex]
     };
-    geometry
-        .triangles
-        .iter()
-        .map(|triangle| Triangle {
-            corners: triangle.map(corner),
+    let order = geometry.compressed().triangles.iter();
+    order
+        .map(|&triangle| Triangle {
+            corners: geometry.triangles[triangle as usize].map(corner),
+        })
+        .collect()
+}
+
+/// The slots of a geometry's triangles.
+pub fn slots(geometry: &Geometry) -> Vec<u32> {
+    let order = geometry.compressed().triangles.iter();
+    order.map(|&triangle| geometry.slots[triangle as usize]).collect()
+}
+
+/// The table of the triangles that emit.
+pub fn light_cells(geometry: &Geometry, lights: &Lights) -> Vec<LightCell> {
+    let places = geometry.compressed().places();
+    let cells = lights.cells.iter();
+    cells
+        .map(|cell| LightCell {
+            triangle: places[cell.triangle as usize],
+            ..*cell
         })
         .collect()
 }

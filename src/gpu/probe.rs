@@ -93,7 +93,7 @@ impl Probe {
     fn scene(&self, scene: &ProbeScene<'_>) -> Result<wgpu::BindGroup, GpuError> {
         let gpu = &self.gpu;
         let (nodes, triangles) = match scene.geometry {
-            Some(geometry) => (&geometry.bvh.nodes[..], layout::triangles(geometry)),
+            Some(geometry) => (&geometry.compressed().nodes[..], layout::triangles(geometry)),
             None => (&[][..], Vec::new()),
         };
         let globals = Globals {

@@ -64,7 +64,10 @@ impl Resources {
             };
         let light_cells = match old.filter(|old| Arc::ptr_eq(&old.job.lights, &job.lights)) {
             Some(old) => old.light_cells.clone(),
-            None => gpu.storage("the triangles that emit", bytemuck::cast_slice(&job.lights.cells))?,
+            None => {
+                let cells = layout::light_cells(&job.geometry, &job.lights);
+                gpu.storage("the triangles that emit", bytemuck::cast_slice(&cells))?
+            }
         };
         let textures = match old.filter(|old| Arc::ptr_eq(&old.job.textures, &job.textures)) {
             Some(old) => old.textures.clone(),
@@ -100,7 +103,7 @@ impl Resources {
             mapped_at_creation: false,
         });
         let cells = [job.environment.cells_width, job.environment.cells_height];
-        let values = Globals::new(&job.settings, job.geometry.bvh.nodes.len(), cells);
+        let values = Globals::new(&job.settings, job.geometry.compressed().nodes.len(), cells);
         gpu.queue.write_buffer(&globals, 0, bytemuck::bytes_of(&values));
         let [nodes, triangles, vertices, slots] = &geometry;
         let resources = [
@@ -170,13 +173,19 @@ fn clear(gpu: &GpuDevice, buffers: &[wgpu::Buffer]) {
 
 fn upload_geometry(gpu: &GpuDevice, geometry: &Geometry) -> Result<[wgpu::Buffer; 4], GpuError> {
     Ok([
-        gpu.storage("the hierarchy of boxes", bytemuck::cast_slice(&geometry.bvh.nodes))?,
+        gpu.storage(
+            "the hierarchy of boxes",
+            bytemuck::cast_slice(&geometry.compressed().nodes),
+        )?,
         gpu.storage(
             "the model's triangles",
             bytemuck::cast_slice(&layout::triangles(geometry)),
         )?,
         gpu.storage("the model's vertices", bytemuck::cast_slice(&geometry.vertices))?,
-        gpu.storage("the model's material slots", bytemuck::cast_slice(&geometry.slots))?,
+        gpu.storage(
+            "the model's material slots",
+            bytemuck::cast_slice(&layout::slots(geometry)),
+        )?,
     ])
 }
 

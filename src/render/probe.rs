@@ -5,7 +5,8 @@ use crate::cpu::probe as cpu;
 use crate::gpu::GpuError;
 use crate::gpu::probe::Probe;
 use crate::job::probe::{
-    FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, ProbeScene, RandomQuestion, RayAnswer, RayQuestion,
+    FresnelQuestion, LobeAnswer, LobeQuestion, MaterialQuestion, NO_HIT, ProbeScene, RandomQuestion, RayAnswer,
+    RayQuestion,
 };
 use crate::optics::vector::Vec3;
 
@@ -84,7 +85,17 @@ impl Prober {
     pub fn rays(&self, scene: &ProbeScene<'_>, questions: &[RayQuestion]) -> Result<Vec<RayAnswer>, GpuError> {
         match self {
             Self::Cpu => Ok(cpu::probe_ray(scene, questions)),
-            Self::Gpu(probe) => probe.ask("probe_ray", scene, questions),
+            Self::Gpu(probe) => {
+                let mut answers: Vec<RayAnswer> = probe.ask("probe_ray", scene, questions)?;
+                let is_hit = |answer: &&mut RayAnswer| answer.triangle != NO_HIT;
+                if let Some(geometry) = scene.geometry {
+                    let triangles = &geometry.compressed().triangles;
+                    for answer in answers.iter_mut().filter(is_hit) {
+                        answer.triangle = triangles[answer.triangle as usize];
+                    }
+                }
+                Ok(answers)
+            }
         }
     }
 }

@@ -2,15 +2,17 @@
 //! order in which the hierarchy's leaves refer to them.
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
-use obvhs::cwbvh::CwBvh;
+use fearless_simd::Level;
+use glam::{DVec3, Vec3A};
 
-use super::bvh;
 use super::convex::is_convex;
+use super::hierarchy::{Compressed, Hierarchy, Wide};
+use super::intersect::{Hit, RayFrame};
 use super::light::AreaShape;
 use super::mesh::{Mesh, any_tangent};
 use super::model::{Model, Slot};
 use super::shapes;
+use crate::instructions;
 
 /// The ground's half side in bounding radii.
 const GROUND_HALF_SIDE: f64 = 20.0;
@@ -61,14 +63,12 @@ pub struct Geometry {
     pub positions: Vec<[f32; 3]>,
     /// The other attributes of the vertices, as many as `positions`.
     pub vertices: Vec<Vertex>,
-    /// The vertices of each triangle, counter-clockwise from outside, in the order of the hierarchy's leaves: leaf
-    /// entry i of `bvh` is triangle i.
+    /// The vertices of each triangle, counter-clockwise from outside, in the order in which the hierarchy finds them.
     pub triangles: Vec<[u32; 3]>,
     /// The material slot of each triangle; the ground's is the number of the model's slots, those of area lights follow.
     pub slots: Vec<u32>,
-    /// The hierarchy; without `primitive_indices`, as nothing needs to be looked up. No nodes where there are no
-    /// triangles.
-    pub bvh: CwBvh,
+    /// How rays find them.
+    hierarchy: Hierarchy,
     /// No ray that leaves a face on its outside meets anything: the scene is one convex body.
     pub is_convex: bool,
     /// The middle of the model's bounding box in the world.
@@ -106,7 +106,7 @@ impl Geometry {
             vertices: Vec::new(),
             triangles: Vec::new(),
             slots: Vec::new(),
-            bvh: CwBvh::default(),
+            hierarchy: Hierarchy::default(),
             is_convex: false,
             center_world,
             world_units_per_unit,
@@ -126,16 +126,61 @@ impl Geometry {
             let light = light.mesh(slot);
             geometry.add(&light, 0..light.triangles.len(), |place| place.as_vec3().to_array());
         }
-        geometry.build_hierarchy(bvh::DEPTH_MAX);
+        geometry.build_hierarchy();
         geometry.is_convex = is_convex(&geometry.positions, &geometry.triangles);
         geometry
     }
 
-    /// Builds the hierarchy, no deeper than `depth_max` levels if that can be, and puts triangles into its order.
-    pub fn build_hierarchy(&mut self, depth_max: usize) {
+    /// Builds the hierarchy and puts triangles into its order.
+    fn build_hierarchy(&mut self) {
         let corners = self.triangles.iter().map(|triangle| self.corners_of(triangle));
-        self.bvh = bvh::build(corners, depth_max);
-        self.sort_by_leaves();
+        let (hierarchy, order) = Hierarchy::new(corners);
+        self.hierarchy = hierarchy;
+        self.sort(&order);
+    }
+
+    /// The hierarchy as the GPU reads it, built when it is first asked for.
+    pub fn compressed(&self) -> &Compressed {
+        self.hierarchy.compressed(|triangle| self.corners(triangle as usize))
+    }
+
+    /// Builds the processor's hierarchy if it is not there yet, which the first ray would do otherwise; its bytes.
+    pub fn prepare(&self) -> usize {
+        self.wide().bytes()
+    }
+
+    #[inline(always)]
+    fn wide(&self) -> &Wide {
+        self.hierarchy.wide(|triangle| self.corners(triangle as usize))
+    }
+
+    /// The nearest triangle along a ray, in the geometry's units, with 0 < t < `t_max`. The direction may have any
+    /// length but 0.
+    #[inline]
+    pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
+        self.intersect_by(instructions::level(), origin, direction, t_max)
+    }
+
+    /// The same computed with these instructions.
+    #[inline]
+    pub fn intersect_by(&self, level: Level, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
+        let frame = RayFrame::new(origin.into(), direction.into());
+        let (t, triangle) = self.wide().nearest(level, &frame, t_max)?;
+        let [u, v] = frame.weights(self.corners(triangle as usize).map(Vec3A::from_array));
+        Some(Hit { t, triangle, u, v })
+    }
+
+    /// Whether any triangle is met with 0 < t < `t_max`.
+    #[inline]
+    pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
+        self.occluded_by(instructions::level(), origin, direction, t_max)
+    }
+
+    /// The same computed with these instructions.
+    #[inline]
+    pub fn occluded_by(&self, level: Level, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
+        let frame = RayFrame::new(origin.into(), direction.into());
+        self.wide().any(level, &frame, t_max).is_some()
     }
 
     /// The material of the ground, for the slot after the model's.
@@ -225,10 +270,9 @@ impl Geometry {
         }
     }
 
-    /// Puts triangles into the order of the leaves and vertices into that of their first use, which keeps what rays
-    /// read together close together; drops vertices that no triangle uses.
-    fn sort_by_leaves(&mut self) {
-        let order = std::mem::take(&mut self.bvh.primitive_indices);
+    /// Puts triangles into an order and vertices into that of their first use, which keeps what rays read together close
+    /// together; drops vertices that no triangle uses.
+    fn sort(&mut self, order: &[u32]) {
         self.slots = order.iter().map(|&triangle| self.slots[triangle as usize]).collect();
         const UNUSED: u32 = u32::MAX;
         let mut new_of_old = vec![UNUSED; self.positions.len()];

@@ -31,6 +31,8 @@ pub struct RayFrame {
     pub axis_x: Vec3A,
     /// Second axis of the projection.
     pub axis_y: Vec3A,
+    /// Which coordinate `axis_x` has as it is, which `axis_y`, and along which both are sheared.
+    pub axes: [usize; 3],
 }
 
 impl RayFrame {
@@ -38,19 +40,55 @@ impl RayFrame {
     #[inline(always)]
     pub fn new(origin: Vec3A, direction: Vec3A) -> Self {
         let (d, size) = (direction, direction.abs());
-        let (axis_x, axis_y) = if size.z >= size.x && size.z >= size.y {
-            (Vec3A::new(1.0, 0.0, -d.x / d.z), Vec3A::new(0.0, 1.0, -d.y / d.z))
+        let (axes, axis_x, axis_y) = if size.z >= size.x && size.z >= size.y {
+            let (x, y) = (-d.x / d.z, -d.y / d.z);
+            ([0, 1, 2], Vec3A::new(1.0, 0.0, x), Vec3A::new(0.0, 1.0, y))
         } else if size.y >= size.x {
-            (Vec3A::new(1.0, -d.x / d.y, 0.0), Vec3A::new(0.0, -d.z / d.y, 1.0))
+            let (x, y) = (-d.x / d.y, -d.z / d.y);
+            ([0, 2, 1], Vec3A::new(1.0, x, 0.0), Vec3A::new(0.0, y, 1.0))
         } else {
-            (Vec3A::new(-d.y / d.x, 1.0, 0.0), Vec3A::new(-d.z / d.x, 0.0, 1.0))
+            let (x, y) = (-d.y / d.x, -d.z / d.x);
+            ([1, 2, 0], Vec3A::new(x, 1.0, 0.0), Vec3A::new(y, 0.0, 1.0))
         };
         Self {
             origin,
             direction,
             axis_x,
             axis_y,
+            axes,
         }
+    }
+
+    /// Twice the areas that the ray cuts a projected triangle into, opposite to its corners, all of them signed alike
+    /// where it meets it.
+    #[inline(always)]
+    fn areas(&self, [v0, v1, v2]: [Vec3A; 3]) -> Vec3A {
+        // The projected corners, one a lane.
+        let x = Vec3A::new(v0.x, v1.x, v2.x) - self.origin.x;
+        let y = Vec3A::new(v0.y, v1.y, v2.y) - self.origin.y;
+        let z = Vec3A::new(v0.z, v1.z, v2.z) - self.origin.z;
+        let px = x * self.axis_x.x + y * self.axis_x.y + z * self.axis_x.z;
+        let py = x * self.axis_y.x + y * self.axis_y.y + z * self.axis_y.z;
+        let (from_x, from_y, to_x, to_y) = (px.zxy(), py.zxy(), px.yzx(), py.yzx());
+        let is_turned = from_x.cmpgt(to_x) | (from_x.cmpeq(to_x) & from_y.cmpgt(to_y));
+        let (low_x, high_x) = (
+            Vec3A::select(is_turned, to_x, from_x),
+            Vec3A::select(is_turned, from_x, to_x),
+        );
+        let (low_y, high_y) = (
+            Vec3A::select(is_turned, to_y, from_y),
+            Vec3A::select(is_turned, from_y, to_y),
+        );
+        let ordered = low_x * high_y - low_y * high_x;
+        Vec3A::select(is_turned, -ordered, ordered)
+    }
+
+    /// The weights of a triangle's second and third corner where the ray meets it, see [`Hit`].
+    #[inline(always)]
+    pub(super) fn weights(&self, corners: [Vec3A; 3]) -> [f32; 2] {
+        let areas = self.areas(corners);
+        let area = areas.x + areas.y + areas.z;
+        [areas.y / area, areas.z / area]
     }
 }
 
@@ -77,23 +115,7 @@ pub fn triangle_normal<T: Real>([p0, p1, p2]: [Vec3<T>; 3]) -> Vec3<T> {
 #[inline(always)]
 pub fn intersect_triangle(ray: &RayFrame, v0: Vec3A, v1: Vec3A, v2: Vec3A, t_max: f32) -> Option<(f32, f32, f32)> {
     let a = v0 - ray.origin;
-    // The projected corners, one a lane.
-    let [x, y, z] = [0, 1, 2].map(|i| Vec3A::new(v0[i], v1[i], v2[i]) - ray.origin[i]);
-    let px = x * ray.axis_x.x + y * ray.axis_x.y + z * ray.axis_x.z;
-    let py = x * ray.axis_y.x + y * ray.axis_y.y + z * ray.axis_y.z;
-    // Twice the areas that the ray cuts the projected triangle into, opposite to v0, v1 and v2.
-    let (from_x, from_y, to_x, to_y) = (px.zxy(), py.zxy(), px.yzx(), py.yzx());
-    let is_turned = from_x.cmpgt(to_x) | (from_x.cmpeq(to_x) & from_y.cmpgt(to_y));
-    let (low_x, high_x) = (
-        Vec3A::select(is_turned, to_x, from_x),
-        Vec3A::select(is_turned, from_x, to_x),
-    );
-    let (low_y, high_y) = (
-        Vec3A::select(is_turned, to_y, from_y),
-        Vec3A::select(is_turned, from_y, to_y),
-    );
-    let ordered = low_x * high_y - low_y * high_x;
-    let areas = Vec3A::select(is_turned, -ordered, ordered);
+    let areas = ray.areas([v0, v1, v2]);
     let area = areas.x + areas.y + areas.z;
     if (areas.min_element() < 0.0 && areas.max_element() > 0.0) || area == 0.0 {
         return None;

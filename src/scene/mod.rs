@@ -1,7 +1,6 @@
 //! What is rendered: meshes and where they come from, the hierarchy that rays find them by, the light around them.
 
 mod alias;
-mod bvh;
 pub mod camera;
 mod convex;
 pub mod environment;
@@ -9,6 +8,7 @@ pub mod facing;
 mod files;
 mod geometry;
 mod gltf;
+mod hierarchy;
 mod import;
 mod intersect;
 mod ktx2;
@@ -25,10 +25,10 @@ pub mod surface;
 mod tangents;
 pub mod teapot;
 pub mod texture;
-mod traverse;
 
 pub use geometry::{Geometry, Vertex};
 pub use gltf::kept_keys;
+pub use hierarchy::Compressed;
 pub use import::{MODEL_ENDINGS, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
 pub use model::{

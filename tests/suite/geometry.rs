@@ -405,7 +405,7 @@ fn hits_of_the_sphere_are_where_they_should_be() {
 fn broken_triangles_are_left_out_and_counted() {
     let good = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let geometry = Geometry::build(&model_of(Mesh::default()), false);
-    assert!(geometry.triangles.is_empty() && geometry.bvh.nodes.is_empty());
+    assert!(geometry.triangles.is_empty() && geometry.compressed().nodes.is_empty());
     assert_eq!(
         geometry.intersect([0.0, 0.0, -1.0], [0.0, 0.0, 1.0], f32::INFINITY),
         None
@@ -476,25 +476,31 @@ fn the_ground_is_below_and_changes_nothing_else() {
 }
 
 #[test]
-fn geometry_is_stored_in_the_order_of_its_leaves() {
+fn every_triangle_is_in_one_box_of_the_compressed_hierarchy() {
     let geometry = Geometry::build(&built_in(&ModelSource::Teapot), true);
-    assert!(geometry.bvh.primitive_indices.is_empty());
     assert_eq!(geometry.slots.len(), geometry.triangles.len());
     assert_eq!(geometry.vertices.len(), geometry.positions.len());
+    let compressed = geometry.compressed();
     let mut covered = vec![0; geometry.triangles.len()];
-    for node in &geometry.bvh.nodes {
+    for node in &compressed.nodes {
         for child in (0..8).filter(|&child| node.is_leaf(child) && !node.is_child_empty(child)) {
             let (first, count) = node.child_primitives(child);
             let aabb = node.child_aabb(child);
-            for triangle in first..first + count {
-                covered[triangle as usize] += 1;
-                for corner in geometry.corners(triangle as usize).map(Vec3A::from_array) {
+            for place in first..first + count {
+                let triangle = compressed.triangles[place as usize] as usize;
+                covered[triangle] += 1;
+                for corner in geometry.corners(triangle).map(Vec3A::from_array) {
                     assert!(aabb.contains_point(corner), "triangle {triangle} is not in its box");
                 }
             }
         }
     }
     assert!(covered.iter().all(|&times| times == 1), "every triangle is in one leaf");
+    let is_place = |(triangle, &place): (usize, &u32)| compressed.triangles[place as usize] as usize == triangle;
+    assert!(
+        compressed.places().iter().enumerate().all(is_place),
+        "places are those of the triangles"
+    );
     let radius = geometry
         .positions
         .iter()

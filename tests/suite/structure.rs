@@ -7,9 +7,10 @@ use std::path::{Path, PathBuf};
 /// Each folder of `src/` with all others that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("named", &[]),
+    ("instructions", &["named"]),
     ("panics", &[]),
     ("optics", &["named"]),
-    ("scene", &["named", "panics", "optics"]),
+    ("scene", &["named", "panics", "instructions", "optics"]),
     ("job", &["named", "optics", "scene"]),
     ("cpu", &["named", "optics", "scene", "job"]),
     ("gpu", &["named", "optics", "scene", "job"]),
@@ -26,7 +27,16 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "named", "optics", "scene", "job", "analysis", "plot", "document", "store", "render",
+            "named",
+            "instructions",
+            "optics",
+            "scene",
+            "job",
+            "analysis",
+            "plot",
+            "document",
+            "store",
+            "render",
         ],
     ),
     (

@@ -3,7 +3,7 @@
 use std::sync::{LazyLock, OnceLock};
 
 use bytemuck::{bytes_of, cast_slice};
-use glossmith::gpu::layout::{Globals, triangles};
+use glossmith::gpu::layout::{Globals, light_cells, slots, triangles};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
 use glossmith::job::{BackgroundKind, Settings, Strategy};
 use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
@@ -413,7 +413,7 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
         ..
     } = &*SCENE;
     let cells_size = [environment.cells_width, environment.cells_height];
-    let globals = Globals::new(&settings(), geometry.bvh.nodes.len(), cells_size);
+    let globals = Globals::new(&settings(), geometry.compressed().nodes.len(), cells_size);
     let uniforms = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: None,
         size: size_of::<Globals>() as u64,
@@ -423,14 +423,14 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
     gpu.queue.write_buffer(&uniforms, 0, bytes_of(&globals));
     let map = upload_map(gpu, environment);
     let buffers = [
-        gpu.storage("nodes", cast_slice(&geometry.bvh.nodes))?,
+        gpu.storage("nodes", cast_slice(&geometry.compressed().nodes))?,
         gpu.storage("triangles", cast_slice(&triangles(geometry)))?,
         gpu.storage("vertices", cast_slice(&geometry.vertices))?,
-        gpu.storage("slots", cast_slice(&geometry.slots))?,
+        gpu.storage("slots", cast_slice(&slots(geometry)))?,
         gpu.storage("materials", cast_slice(materials))?,
         gpu.storage("tables", cast_slice(tables))?,
         gpu.storage("cells", cast_slice(&environment.cells))?,
-        gpu.storage("light cells", cast_slice(&lights.cells))?,
+        gpu.storage("light cells", cast_slice(&light_cells(geometry, lights)))?,
         gpu.storage("texture records", cast_slice(&textures.records))?,
         gpu.storage("texture words", cast_slice(&textures.words))?,
     ];

@@ -39,7 +39,7 @@ fn surfaces_agree() {
                 "triangle t u v direction",
                 "let p = surface_at(Hit(t, triangle, u, v), direction);",
                 twin!(|row| {
-                    let triangle = row.bits();
+                    let triangle = SCENE.geometry.compressed().triangles[row.bits() as usize];
                     let [t, u, v] = row.numbers().map(|x: T| x.to_f64() as f32);
                     let hit = Hit { t, triangle, u, v };
                     let point = surface_at(&SCENE.geometry, &slots(), &SCENE.textures, &hit, row.vector());

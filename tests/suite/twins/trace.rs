@@ -1,4 +1,4 @@
-//! Rays against the teapot on its ground, through the hierarchy: WGSL's traversal against obvhs's.
+//! Rays against the teapot on its ground, through the hierarchy: WGSL's traversal of its own hierarchy against the processor's of its.
 
 use glossmith::gpu::shader::link_with;
 use glossmith::optics::vector::{Vec3, vec3};
@@ -126,7 +126,7 @@ fn compare(geometry: &Geometry, ray: &Ray, out: &[u32]) -> Outcome {
     let agrees = match rust {
         None => triangle == NO_HIT,
         Some(hit) if triangle != NO_HIT => {
-            outcome.is_other_triangle = hit.triangle != triangle;
+            outcome.is_other_triangle = hit.triangle != geometry.compressed().triangles[triangle as usize];
             outcome.difference = (hit.t - t).abs() / hit.t.max(1.0);
             let weights = (hit.u - u).abs().max((hit.v - v).abs());
             outcome.difference <= SAME_DISTANCE && (outcome.is_other_triangle || weights < 1e-3)

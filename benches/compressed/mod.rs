@@ -1,19 +1,16 @@
-//! Rays through the hierarchy of boxes.
+//! Single rays through the GPU's hierarchy on the processor, as shaders/scene/bvh.wgsl has them: what the processor's own
+//! hierarchy is measured against, and the oracle of its tests.
 //!
 //! Traversal and box test are our own rather than those of obvhs: its box test takes −0 in a direction for negative
 //! when it inverts and for positive when it picks planes, loses boxes to rounding, ignores what is nearer than 1e-4,
 //! and uses 128-bit vectors at most. Here a box is lost only if the ray passes it by, and eight boxes are tested at
 //! once where the processor has AVX2.
-
 use glam::Vec3A;
+use glossmith::scene::{Compressed, Geometry, Hit, RayFrame, intersect_triangle};
 use obvhs::cwbvh::node::CwBvhNode;
 
-use super::bvh::DEPTH_MAX;
-use super::geometry::Geometry;
-use super::intersect::{Hit, RayFrame, intersect_triangle};
-
 /// Groups of nodes still to be visited. A level adds one at most, and hierarchies are built no deeper.
-const STACK_SIZE: usize = DEPTH_MAX;
+const STACK_SIZE: usize = 32;
 
 /// Makes up for the rounding of a box's far side (1 + 2γ₃ of Ize, "Robust BVH Ray Traversal", JCGT 2013, rounded up).
 const FAR_MARGIN: f32 = 1.000_000_5;
@@ -25,22 +22,25 @@ const PLACE_ERROR: f32 = 6e-7;
 /// Inverse directions are at most this, so that their products with distances stay finite.
 const INVERSE_MAX: f32 = 1e18;
 
-impl Geometry {
-    /// The nearest triangle along a ray, in the geometry's units, with 0 < t < `t_max`. The direction may have any
-    /// length but 0.
-    #[inline]
-    pub fn intersect(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
-        self.trace::<false>(origin, direction, t_max)
+/// The GPU's hierarchy with its triangles in its own order.
+pub struct CompressedRays<'a> {
+    compressed: &'a Compressed,
+    corners: Vec<[Vec3A; 3]>,
+}
+
+impl<'a> CompressedRays<'a> {
+    pub fn new(geometry: &'a Geometry) -> Self {
+        let compressed = geometry.compressed();
+        let corners = |&triangle: &u32| geometry.corners(triangle as usize).map(Vec3A::from_array);
+        Self {
+            compressed,
+            corners: compressed.triangles.iter().map(corners).collect(),
+        }
     }
 
-    /// Whether any triangle is met with 0 < t < `t_max`.
+    /// The nearest triangle with 0 < t < `t_max`, or the first that is found if `ANY`.
     #[inline]
-    pub fn occluded(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> bool {
-        self.trace::<true>(origin, direction, t_max).is_some()
-    }
-
-    #[inline]
-    fn trace<const ANY: bool>(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
+    pub fn trace<const ANY: bool>(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
         #[cfg(target_arch = "x86_64")]
         if std::arch::is_x86_feature_detected!("avx2") {
             // SAFETY: the processor has what the function is compiled for.
@@ -59,7 +59,7 @@ impl Geometry {
     /// The nearest triangle, or the first that is found if `ANY`.
     #[inline(always)]
     fn trace_portable<const ANY: bool>(&self, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
-        if self.bvh.nodes.is_empty() {
+        if self.compressed.nodes.is_empty() {
             return None;
         }
         let frame = RayFrame::new(origin.into(), direction.into());
@@ -77,7 +77,7 @@ impl Geometry {
             let slot = group.hits.leading_zeros() ^ 31;
             group.hits &= !(1 << slot);
             let rank = (slot - 24) ^ (ray.octant_inverse & 7);
-            let node = &self.bvh.nodes[(group.first + (group.hits & ((1 << rank) - 1)).count_ones()) as usize];
+            let node = &self.compressed.nodes[(group.first + (group.hits & ((1 << rank) - 1)).count_ones()) as usize];
             if group.hits >> 24 != 0 {
                 stack[height] = group;
                 height += 1;
@@ -87,8 +87,9 @@ impl Geometry {
             while triangles != 0 {
                 let triangle = node.primitive_base_idx + triangles.trailing_zeros();
                 triangles &= triangles - 1;
-                let [v0, v1, v2] = self.corners(triangle as usize).map(Vec3A::from_array);
+                let [v0, v1, v2] = self.corners[triangle as usize];
                 if let Some((t, u, v)) = intersect_triangle(&frame, v0, v1, v2, t_max) {
+                    let triangle = self.compressed.triangles[triangle as usize];
                     nearest = Some(Hit { t, triangle, u, v });
                     if ANY {
                         return nearest;

@@ -1,75 +1,26 @@
-//! The wide hierarchy of boxes (CWBVH, Ylitie, Karras and Laine 2017) that rays find triangles by, built by obvhs.
+//! The binary hierarchy that all others are made of, built by obvhs.
 
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
-use obvhs::cwbvh::CwBvh;
-use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
-
-/// Boxes are grown by this on every side, in units of the bounding radius (some 16 roundings of a coordinate of 1), so
-/// that rounding in a ray's test against a box never loses a triangle in it.
-const BOX_MARGIN: f32 = 1.0 / (1 << 20) as f32;
-
-/// Up to this many triangles share a leaf (the format's limit).
-const LEAF_TRIANGLES: u32 = 3;
-
-/// Deepest hierarchy that a ray's stack has room for (`STACK_SIZE` in `shaders/scene/bvh.wgsl`).
-pub(super) const DEPTH_MAX: usize = 32;
 
 /// From this many triangles on the time to build counts more than the last 3 % of nodes visited.
 const MANY: usize = 200_000;
 
-/// The hierarchy over triangles given by their corners, in units of the bounding radius; its `primitive_indices` are
-/// the order of leaves. No deeper than `depth_max` if halving the triangles can do it, which takes a third of the binary
-/// logarithm of their number.
+/// The hierarchy over the boxes of triangles, in units of the bounding radius, with one triangle a leaf.
 ///
 /// Not by spatial splits: each triangle is in one leaf, so triangles can be stored in the order of leaves.
-pub(super) fn build(corners: impl ExactSizeIterator<Item = [[f32; 3]; 3]>, depth_max: usize) -> CwBvh {
-    let boxes: Vec<Aabb> = corners
-        .map(|corners| {
-            let [a, b, c] = corners.map(Vec3A::from_array);
-            Aabb::new(a.min(b).min(c) - BOX_MARGIN, a.max(b).max(c) + BOX_MARGIN)
-        })
-        .collect();
-    if boxes.is_empty() {
-        return CwBvh::default();
-    }
-    let clusters = Clusters::new(&boxes);
-    let mut binary = clusters.build_binary(&boxes);
+pub(super) fn build(boxes: &[Aabb]) -> Bvh2 {
+    let clusters = Clusters::new(boxes);
+    let mut binary = clusters.build_binary(boxes);
     let reinsertion = if boxes.len() < MANY { 0.2 } else { 0.02 };
     ReinsertionOptimizer::default().run(&mut binary, reinsertion, None);
-    clusters.expand(&mut binary, &boxes);
-    let wide = bvh2_to_cwbvh(&binary, LEAF_TRIANGLES, true, false);
-    if depth(&wide) <= depth_max {
-        return wide;
-    }
-    // Triangles each a fraction of the last make a chain: halves instead, which rays pass more slowly but never in vain.
-    log::debug!("a hierarchy of {} levels is built anew in halves", depth(&wide));
-    binary.nodes.truncate(1);
-    binary.parents.clear();
-    binary.primitives_to_nodes.clear();
-    split(&mut binary.nodes, 0, &clusters.members, &boxes);
-    bvh2_to_cwbvh(&binary, LEAF_TRIANGLES, true, false)
-}
-
-/// Levels of nodes.
-pub(super) fn depth(wide: &CwBvh) -> usize {
-    let mut deepest = 0;
-    let mut open = vec![(0_usize, 1)];
-    while let Some((index, level)) = open.pop() {
-        let Some(node) = wide.nodes.get(index) else {
-            continue;
-        };
-        deepest = deepest.max(level);
-        let children = node.imask.count_ones() as usize;
-        let first = node.child_base_idx as usize;
-        open.extend((first..first + children).map(|child| (child, level + 1)));
-    }
-    deepest
+    clusters.expand(&mut binary, boxes);
+    binary
 }
 
 /// Triangles whose centres are in the same cell of a very fine grid, such as duplicates.

@@ -1,0 +1,52 @@
+//! The GPU's hierarchy: nodes of eight children in 80 bytes (CWBVH, Ylitie, Karras and Laine 2017), by obvhs.
+
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::node::Bvh2Node;
+use obvhs::cwbvh::CwBvh;
+use obvhs::cwbvh::bvh2_to_cwbvh::bvh2_to_cwbvh;
+
+use super::tree::BoxedTree;
+
+/// Up to this many triangles share a leaf (the format's limit).
+const LEAF_TRIANGLES: u32 = 3;
+
+/// The hierarchy over a tree's triangles; its `primitive_indices` say which triangle each entry of a leaf is.
+pub(super) fn compress(tree: &BoxedTree<'_>) -> CwBvh {
+    let root = tree.tree.root();
+    let mut nodes = vec![Bvh2Node::default()];
+    let mut open = vec![(root, 0)];
+    while let Some((node, place)) = open.pop() {
+        let bounds: Aabb = *tree.bounds(node);
+        if node.count == 1 {
+            nodes[place] = Bvh2Node::new(bounds, 1, node.first);
+            continue;
+        }
+        let children = nodes.len();
+        nodes[place] = Bvh2Node::new(bounds, 0, children as u32);
+        nodes.extend([Bvh2Node::default(); 2]);
+        open.extend(tree.tree.sides(node).into_iter().zip(children..));
+    }
+    let binary = Bvh2 {
+        nodes,
+        primitive_indices: (0..root.count).collect(),
+        ..Bvh2::default()
+    };
+    bvh2_to_cwbvh(&binary, LEAF_TRIANGLES, true, false)
+}
+
+/// Levels of nodes.
+pub(super) fn depth(compressed: &CwBvh) -> usize {
+    let mut deepest = 0;
+    let mut open = vec![(0_usize, 1)];
+    while let Some((index, level)) = open.pop() {
+        let Some(node) = compressed.nodes.get(index) else {
+            continue;
+        };
+        deepest = deepest.max(level);
+        let children = node.imask.count_ones() as usize;
+        let first = node.child_base_idx as usize;
+        open.extend((first..first + children).map(|child| (child, level + 1)));
+    }
+    deepest
+}

@@ -1,0 +1,342 @@
+//! Rays through the processor's hierarchy, eight boxes or eight triangles at a time.
+//!
+//! A box is lost only if the ray passes it by, and triangles are met as [`intersect_triangle`] says, bit for bit: nothing
+//! is fused, so every instruction set gives the same hits.
+//!
+//! [`intersect_triangle`]: crate::scene::intersect_triangle
+
+use std::mem::MaybeUninit;
+
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8};
+use glam::Vec3A;
+
+use super::DEPTH_MAX;
+use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
+use crate::scene::intersect::RayFrame;
+
+/// Boxes are met up to this part farther than a ray goes (1 + 2γ₃ of Ize, "Robust BVH Ray Traversal", JCGT 2013, rounded
+/// up): makes up for the rounding of the distance of the triangle that ended it.
+const FAR_MARGIN: f32 = 1.000_000_5;
+
+/// Places relative to the ray's origin are off by at most this part of both: eleven roundings, five of a box's plane and
+/// six of a triangle's projected corner. So a far eye loses nothing.
+const PLACE_ERROR: f32 = 7e-7;
+
+/// Inverse directions are at most this, so that their products with distances stay finite.
+const INVERSE_MAX: f32 = 1e18;
+
+/// A level adds all but one of a node's children, at most.
+const STACK_SIZE: usize = DEPTH_MAX * WIDTH;
+
+impl Wide {
+    /// The nearest triangle with 0 < t < `t_max`, and t.
+    pub fn nearest(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<(f32, u32)> {
+        dispatch!(level, simd => trace::<_, false>(simd, self, frame, t_max))
+    }
+
+    /// Some triangle with 0 < t < `t_max`, and t.
+    pub fn any(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<(f32, u32)> {
+        dispatch!(level, simd => trace::<_, true>(simd, self, frame, t_max))
+    }
+}
+
+/// The nearest triangle, or the first that is found if `ANY`.
+#[inline(always)]
+fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max: f32) -> Option<(f32, u32)> {
+    if wide.nodes.is_empty() {
+        return None;
+    }
+    let boxes = BoxRay::new(simd, frame, wide);
+    let triangles = TriangleRay::new(simd, frame);
+    let mut nearest = None;
+    let mut t_max = t_max;
+    let mut stack = Stack::new();
+    // The root.
+    let mut place = 0;
+    loop {
+        let limit = t_max * FAR_MARGIN;
+        if place & BLOCK == 0 {
+            if let Some(next) = boxes.enter(&wide.nodes[place as usize], limit, &mut stack) {
+                place = next;
+                continue;
+            }
+        } else {
+            let block = (place & !BLOCK) as usize;
+            let (mut met, distances) = triangles.meet(&wide.blocks[block], &wide.normals[block], t_max);
+            while met != 0 {
+                let lane = met.trailing_zeros() % WIDTH as u32;
+                met &= met - 1;
+                let t = distances[lane as usize];
+                if t < t_max {
+                    t_max = t;
+                    nearest = Some((t, wide.firsts[block] + lane));
+                }
+            }
+            if ANY && nearest.is_some() {
+                return nearest;
+            }
+        }
+        match stack.pop_before(t_max * FAR_MARGIN) {
+            Some(next) => place = next,
+            None => return nearest,
+        }
+    }
+}
+
+#[inline(always)]
+fn splat<S: Simd>(simd: S, v: Vec3A) -> [f32x8<S>; 3] {
+    [
+        f32x8::splat(simd, v.x),
+        f32x8::splat(simd, v.y),
+        f32x8::splat(simd, v.z),
+    ]
+}
+
+/// What the test against boxes needs of a ray.
+struct BoxRay<S: Simd> {
+    inverse: [f32x8<S>; 3],
+    /// Added to a side's coordinate times the inverse direction: the near side's distance, rounded down.
+    early: [f32x8<S>; 3],
+    /// The same for the far side's distance, rounded up.
+    late: [f32x8<S>; 3],
+    /// Which of the two sides on each axis is near.
+    near: [usize; 3],
+}
+
+impl<S: Simd> BoxRay<S> {
+    #[inline(always)]
+    fn new(simd: S, frame: &RayFrame, wide: &Wide) -> Self {
+        let (origin, direction) = (frame.origin, frame.direction);
+        // −0 is positive here as in `backward`; NaN becomes the largest inverse.
+        let is_backward = direction.cmplt(Vec3A::ZERO);
+        let size = direction.abs().recip().min(Vec3A::splat(INVERSE_MAX));
+        let inverse = Vec3A::select(is_backward, -size, size);
+        let shift = -origin * inverse;
+        let margin = (wide.reach + origin.abs()) * size * PLACE_ERROR;
+        let backward = is_backward.bitmask() as usize;
+        Self {
+            inverse: splat(simd, inverse),
+            early: splat(simd, shift - margin),
+            late: splat(simd, shift + margin),
+            near: [backward & 1, backward >> 1 & 1, backward >> 2 & 1],
+        }
+    }
+
+    /// The nearest child that is met before `t_max`; the others that are go on the stack, the nearest last.
+    #[inline(always)]
+    fn enter(&self, node: &Node, t_max: f32, stack: &mut Stack) -> Option<u32> {
+        let simd = self.inverse[0].token();
+        let (x, y, z) = (self.near(node, 0), self.near(node, 1), self.near(node, 2));
+        let near = x.max(y).max(z.max(f32x8::splat(simd, 0.0)));
+        let (x, y, z) = (self.far(node, 0), self.far(node, 1), self.far(node, 2));
+        let far = x.min(y).min(z.min(f32x8::splat(simd, t_max)));
+        let met = near.simd_le(far).to_bitmask() as u32;
+        if met == 0 {
+            return None;
+        }
+        let mut met = Met {
+            children: met,
+            near: near.to_array(),
+        };
+        let first = met.take(node);
+        if met.children == 0 {
+            return Some(first.place());
+        }
+        let second = met.take(node);
+        let (nearest, farther) = if second.0 < first.0 {
+            (second, first)
+        } else {
+            (first, second)
+        };
+        if met.children == 0 {
+            stack.push(farther);
+            return Some(nearest.place());
+        }
+        let base = stack.height;
+        stack.push(farther);
+        stack.push(nearest);
+        while met.children != 0 {
+            stack.insert(met.take(node), base);
+        }
+        stack.pop().map(Entry::place)
+    }
+
+    /// How far away the children's near sides are.
+    #[inline(always)]
+    fn near(&self, node: &Node, axis: usize) -> f32x8<S> {
+        let simd = self.inverse[0].token();
+        f32x8::load_array_ref(simd, &node.sides[axis][self.near[axis] & 1]) * self.inverse[axis] + self.early[axis]
+    }
+
+    /// How far away the children's far sides are.
+    #[inline(always)]
+    fn far(&self, node: &Node, axis: usize) -> f32x8<S> {
+        let simd = self.inverse[0].token();
+        f32x8::load_array_ref(simd, &node.sides[axis][(self.near[axis] ^ 1) & 1]) * self.inverse[axis] + self.late[axis]
+    }
+}
+
+/// Children that a ray meets.
+struct Met {
+    /// As bits, those that have not been taken.
+    children: u32,
+    /// How far away each child is.
+    near: [f32; WIDTH],
+}
+
+impl Met {
+    #[inline(always)]
+    fn take(&mut self, node: &Node) -> Entry {
+        let child = (self.children.trailing_zeros() % WIDTH as u32) as usize;
+        self.children &= self.children - 1;
+        Entry::new(self.near[child], node.children[child])
+    }
+}
+
+/// What the test against triangles needs of a ray.
+struct TriangleRay<S: Simd> {
+    origin: [f32x8<S>; 3],
+    direction: [f32x8<S>; 3],
+    axes: [usize; 3],
+    shear: [f32x8<S>; 2],
+}
+
+impl<S: Simd> TriangleRay<S> {
+    #[inline(always)]
+    fn new(simd: S, frame: &RayFrame) -> Self {
+        let [_, _, along] = frame.axes;
+        Self {
+            origin: splat(simd, frame.origin),
+            direction: splat(simd, frame.direction),
+            axes: frame.axes,
+            shear: [
+                f32x8::splat(simd, frame.axis_x[along]),
+                f32x8::splat(simd, frame.axis_y[along]),
+            ],
+        }
+    }
+
+    /// Which triangles of a block are met with 0 < t < `t_max`, as bits, and t.
+    #[inline(always)]
+    fn meet(&self, block: &Block, normals: &Normals, t_max: f32) -> (u32, [f32; WIDTH]) {
+        let simd = self.origin[0].token();
+        let zero = f32x8::splat(simd, 0.0);
+        let [(ax, ay), (bx, by), (cx, cy)] = [self.project(block, 0), self.project(block, 1), self.project(block, 2)];
+        // Neighbours share an edge's area but for its sign, as no product is fused.
+        let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
+        let is_inside = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
+            | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
+        if is_inside.all_false() {
+            return (0, [0.0; WIDTH]);
+        }
+        let x = f32x8::load_array_ref(simd, &normals.axes[0]);
+        let y = f32x8::load_array_ref(simd, &normals.axes[1]);
+        let z = f32x8::load_array_ref(simd, &normals.axes[2]);
+        let [dx, dy, dz] = self.direction;
+        let from_origin = [
+            self.place(block, 0, 0),
+            self.place(block, 0, 1),
+            self.place(block, 0, 2),
+        ];
+        let t = (x * from_origin[0] + y * from_origin[1] + z * from_origin[2]) / (x * dx + y * dy + z * dz);
+        // Not where the triangle is seen from its side; nor where t is NaN.
+        let is_met = is_inside & !(u + v + w).simd_eq(zero) & t.simd_gt(zero) & t.simd_lt(f32x8::splat(simd, t_max));
+        (is_met.to_bitmask() as u32, t.to_array())
+    }
+
+    /// A coordinate of a corner, from the ray's origin.
+    #[inline(always)]
+    fn place(&self, block: &Block, corner: usize, axis: usize) -> f32x8<S> {
+        f32x8::load_array_ref(self.origin[0].token(), &block.corners[corner][axis]) - self.origin[axis]
+    }
+
+    /// A corner along the ray.
+    #[inline(always)]
+    fn project(&self, block: &Block, corner: usize) -> (f32x8<S>, f32x8<S>) {
+        let [axis_x, axis_y, along] = self.axes;
+        let depth = self.place(block, corner, along);
+        (
+            self.place(block, corner, axis_x) + depth * self.shear[0],
+            self.place(block, corner, axis_y) + depth * self.shear[1],
+        )
+    }
+}
+
+/// A child to be visited and how far away its box is, ordered by the distance: that is not negative, so that its bits
+/// are in its order.
+#[derive(Clone, Copy)]
+struct Entry(u64);
+
+impl Entry {
+    #[inline(always)]
+    fn new(distance: f32, place: u32) -> Self {
+        Self(u64::from(distance.to_bits()) << 32 | u64::from(place))
+    }
+
+    #[inline(always)]
+    fn place(self) -> u32 {
+        self.0 as u32
+    }
+
+    #[inline(always)]
+    fn distance(self) -> f32 {
+        f32::from_bits((self.0 >> 32) as u32)
+    }
+}
+
+/// Children to be visited, the next one last. Not filled beforehand: that would take longer than many a ray.
+struct Stack {
+    entries: [MaybeUninit<Entry>; STACK_SIZE],
+    height: usize,
+}
+
+impl Stack {
+    #[inline(always)]
+    fn new() -> Self {
+        Self {
+            entries: [const { MaybeUninit::uninit() }; STACK_SIZE],
+            height: 0,
+        }
+    }
+
+    #[inline(always)]
+    fn push(&mut self, entry: Entry) {
+        self.entries[self.height].write(entry);
+        self.height += 1;
+    }
+
+    #[inline(always)]
+    fn pop(&mut self) -> Option<Entry> {
+        self.height = self.height.checked_sub(1)?;
+        // SAFETY: everything below the height that was has been written by `push` or `insert`.
+        Some(unsafe { self.entries[self.height].assume_init() })
+    }
+
+    /// The next that is nearer than `t_max`.
+    #[inline(always)]
+    fn pop_before(&mut self, t_max: f32) -> Option<u32> {
+        loop {
+            let entry = self.pop()?;
+            if entry.distance() <= t_max {
+                return Some(entry.place());
+            }
+        }
+    }
+
+    /// Pushes an entry below those from `base` on that are nearer.
+    #[inline(always)]
+    fn insert(&mut self, entry: Entry, base: usize) {
+        let mut place = self.height;
+        self.height += 1;
+        while place > base {
+            let below = self.entries[place - 1];
+            // SAFETY: it is below the height that was, see `pop`.
+            if unsafe { below.assume_init() }.0 >= entry.0 {
+                break;
+            }
+            self.entries[place] = below;
+            place -= 1;
+        }
+        self.entries[place].write(entry);
+    }
+}

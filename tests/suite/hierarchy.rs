@@ -1,0 +1,333 @@
+//! Rays through the processor's hierarchy: each instruction set against exact arithmetic, against the GPU's hierarchy and
+//! against the others.
+
+use fearless_simd::Level;
+use glam::{DVec3, Vec3, Vec4};
+use glossmith::instructions::Instructions;
+use glossmith::scene::mesh::Mesh;
+use glossmith::scene::{Geometry, Hit, Model, ModelSource, Slot, load, shapes, teapot};
+use rayon::prelude::*;
+
+use super::cli_support::Workplace;
+use super::support::Random;
+
+#[path = "../../benches/compressed/mod.rs"]
+mod compressed;
+use compressed::CompressedRays;
+
+/// The instruction sets of this processor, with their names.
+fn sets() -> Vec<(&'static str, Level)> {
+    let sets = Instructions::ALL.iter().filter(|set| **set != Instructions::Auto);
+    sets.filter_map(|set| Some((set.name(), set.level()?))).collect()
+}
+
+fn model_of(mesh: Mesh) -> Model {
+    Model {
+        mesh,
+        slots: vec![Slot::neutral("only")],
+        ..Model::default()
+    }
+}
+
+struct Ray {
+    origin: [f32; 3],
+    direction: [f32; 3],
+    t_max: f32,
+}
+
+/// From inside, from outside and from far away; to anywhere, to vertices and edges, along axes with zeros of either sign.
+fn random_ray(random: &mut Random, geometry: &Geometry) -> Ray {
+    let distance = [1.0, 4.0, 1000.0][random.below(3)];
+    let mut origin = random.in_ball() * distance;
+    let corners = geometry.corners(random.below(geometry.triangles.len()));
+    let [a, b, _] = corners.map(Vec3::from_array);
+    let target = match random.below(4) {
+        0 => a,
+        1 => a.lerp(b, random.unit()),
+        _ => random.in_ball(),
+    };
+    let mut direction = target - origin;
+    if random.below(6) == 0 {
+        let axis = random.below(3);
+        let signs = [0, 1, 2].map(|_| if random.below(2) == 0 { 1.0_f32 } else { -1.0 });
+        let along = [0, 1, 2].map(|i| if i == axis { signs[i] } else { 0.0 * signs[i] });
+        direction = along.into();
+        origin = target - direction * distance;
+    } else if random.below(2) == 0 {
+        direction = direction.normalize();
+    }
+    let t_max = if random.below(4) == 0 {
+        random.unit() * 2.0
+    } else {
+        f32::MAX
+    };
+    Ray {
+        origin: origin.into(),
+        direction: direction.into(),
+        t_max,
+    }
+}
+
+fn geometries() -> Vec<(&'static str, Geometry)> {
+    vec![
+        ("teapot", Geometry::build(&model_of(teapot::mesh(4)), false)),
+        (
+            "teapot on its ground",
+            Geometry::build(&model_of(teapot::mesh(4)), true),
+        ),
+        ("sphere", Geometry::build(&model_of(shapes::sphere(24, 16)), false)),
+        ("needles", Geometry::build(&model_of(needles()), false)),
+        (
+            "two triangles",
+            Geometry::build(&load(&ModelSource::Plane).unwrap(), false),
+        ),
+    ]
+}
+
+/// A fan of triangles ten thousand times as long as wide, and one that is there nine times.
+fn needles() -> Mesh {
+    let mut mesh = Mesh::default();
+    let mut add = |corners: [DVec3; 3]| {
+        let vertices = corners.map(|corner| mesh.push_vertex(corner, Vec3::Z, glam::Vec2::ZERO, Vec4::X + Vec4::W));
+        mesh.push_triangle(vertices, 0);
+    };
+    for i in 0..200 {
+        let angle = f64::from(i) * 0.031;
+        let end = DVec3::new(angle.cos(), angle.sin(), 0.3 * (7.0 * angle).sin());
+        add([DVec3::ZERO, end, end + DVec3::new(0.0, 0.0, 1e-4)]);
+    }
+    for _ in 0..9 {
+        add([
+            DVec3::new(0.0, 0.0, -0.5),
+            DVec3::new(0.4, 0.0, -0.5),
+            DVec3::new(0.0, 0.4, -0.5),
+        ]);
+    }
+    mesh
+}
+
+/// What the ray meets, for certain, by arithmetic in f64: the nearest t, or nothing; `None` where a triangle's edge, its
+/// plane or the end of the ray is so near that rounding may say otherwise.
+fn exact(geometry: &Geometry, ray: &Ray) -> Option<Option<f64>> {
+    let [origin, direction] = [ray.origin, ray.direction].map(|v| DVec3::from_array(v.map(f64::from)));
+    let mut nearest = f64::INFINITY;
+    for triangle in 0..geometry.triangles.len() {
+        let [a, b, c] = geometry.corners(triangle).map(|v| DVec3::from_array(v.map(f64::from)));
+        let normal = (b - a).cross(c - a);
+        let sine = normal.dot(direction) / (normal.length() * direction.length());
+        let t = normal.dot(a - origin) / normal.dot(direction);
+        let place = origin + direction * t;
+        let share = |p: DVec3, q: DVec3| (p - place).cross(q - place).dot(normal) / normal.length();
+        // Signed distances from the edges.
+        let distance = |p: DVec3, q: DVec3| share(p, q) / (q - p).length();
+        let inside = distance(a, b).min(distance(b, c)).min(distance(c, a));
+        let blur = 1e-5 * (1.0 + origin.length());
+        let is_edge_on = sine.abs() < 1e-3;
+        if is_edge_on {
+            // Near its plane anything may be said of it: is it anywhere near the ray at all?
+            let nearest_along = |p: DVec3| (p - origin).cross(direction).length() / direction.length();
+            let size = (b - a).length().max((c - a).length());
+            if nearest_along(a) < size + blur {
+                return None;
+            }
+            continue;
+        }
+        if inside.abs() * sine.abs() < blur {
+            return None;
+        }
+        if inside > 0.0 {
+            let margin = 1e-4 * t.abs().max(0.1);
+            if t.abs() < margin || (t - f64::from(ray.t_max)).abs() < margin {
+                return None;
+            }
+            if t > 0.0 && t < f64::from(ray.t_max) {
+                nearest = nearest.min(t);
+            }
+        }
+    }
+    Some((nearest < f64::INFINITY).then_some(nearest))
+}
+
+#[test]
+fn every_instruction_set_meets_what_exact_arithmetic_meets() {
+    for (name, geometry) in geometries() {
+        let mut random = Random::new(21);
+        let rays: Vec<Ray> = (0..20_000).map(|_| random_ray(&mut random, &geometry)).collect();
+        let sets = sets();
+        let compare = |ray: &Ray| {
+            let Some(expected) = exact(&geometry, ray) else {
+                return (0, 0);
+            };
+            for (set, level) in &sets {
+                let hit = geometry.intersect_by(*level, ray.origin, ray.direction, ray.t_max);
+                let is_occluded = geometry.occluded_by(*level, ray.origin, ray.direction, ray.t_max);
+                let t = hit.map(|hit| f64::from(hit.t));
+                let agrees = match (t, expected) {
+                    (Some(t), Some(expected)) => (t - expected).abs() < 1e-4 * expected.max(1.0),
+                    (t, expected) => t.is_none() && expected.is_none(),
+                };
+                assert!(
+                    agrees && is_occluded == expected.is_some(),
+                    "{name}, {set}: {t:?}, occluded {is_occluded} instead of {expected:?} from {:?} along {:?}",
+                    ray.origin,
+                    ray.direction
+                );
+            }
+            (1, usize::from(expected.is_some()))
+        };
+        let counts: Vec<(usize, usize)> = rays.par_iter().map(compare).collect();
+        let (compared, met) = counts.iter().fold((0, 0), |all, one| (all.0 + one.0, all.1 + one.1));
+        println!("{name}: {compared} rays compared, {met} of them met something");
+        assert!(
+            compared > 2_000 && met > 30,
+            "{name}: {compared} compared, {met} met something"
+        );
+    }
+}
+
+/// As bits, so that nothing but the very same numbers is the same.
+fn bits(hit: Option<Hit>) -> Option<[u32; 4]> {
+    hit.map(|hit| [hit.t.to_bits(), hit.u.to_bits(), hit.v.to_bits(), hit.triangle])
+}
+
+#[test]
+fn all_instruction_sets_give_the_same_bits_and_both_hierarchies_the_same_hits() {
+    let mut geometries = geometries();
+    geometries.push(("fine teapot", Geometry::build(&model_of(teapot::mesh(25)), true)));
+    for (name, geometry) in geometries {
+        let compressed = CompressedRays::new(&geometry);
+        let mut random = Random::new(5);
+        let rays: Vec<Ray> = (0..100_000).map(|_| random_ray(&mut random, &geometry)).collect();
+        let outcome = |ray: &Ray| {
+            let mut outcomes = sets().into_iter().map(|(_, level)| {
+                let hit = geometry.intersect_by(level, ray.origin, ray.direction, ray.t_max);
+                let is_occluded = geometry.occluded_by(level, ray.origin, ray.direction, ray.t_max);
+                assert_eq!(
+                    is_occluded,
+                    hit.is_some(),
+                    "{name}: {:?} {:?}",
+                    ray.origin,
+                    ray.direction
+                );
+                hit
+            });
+            let hit = outcomes.next().flatten();
+            assert!(
+                outcomes.all(|other| bits(other) == bits(hit)),
+                "{name}: other bits than {hit:?}"
+            );
+            let expected = compressed.trace::<false>(ray.origin, ray.direction, ray.t_max);
+            let is_near = match (hit, expected) {
+                (Some(hit), Some(expected)) => (hit.t - expected.t).abs() < 1e-3 * expected.t.max(1.0),
+                (None, None) => true,
+                _ => false,
+            };
+            assert!(is_near, "{name}: {hit:?} instead of {expected:?}");
+            (hit.is_some(), bits(hit) != bits(expected))
+        };
+        let outcomes: Vec<(bool, bool)> = rays.par_iter().map(outcome).collect();
+        let met = outcomes.iter().filter(|(is_hit, _)| *is_hit).count();
+        let other = outcomes.iter().filter(|(_, is_other)| *is_other).count();
+        println!(
+            "{name}: {met} of {} rays met something, {other} of them by another triangle",
+            rays.len()
+        );
+        assert!(met > 10_000, "{name}: only {met} rays met something");
+        // Through a vertex or an edge, where several triangles are as near but for the rounding of t.
+        assert!(other < met / 3, "{name}: {other} of {met} met another triangle");
+    }
+}
+
+#[test]
+fn nothing_leaks_under_any_instruction_set() {
+    let sphere = Geometry::build(&load(&ModelSource::Sphere).unwrap(), false);
+    for (set, level) in sets() {
+        let mut random = Random::new(9);
+        let mut escaped = 0;
+        for i in 0..100_000 {
+            let [a, b, c] = sphere
+                .corners(random.below(sphere.triangles.len()))
+                .map(Vec3::from_array);
+            let target = [a, a.lerp(b, random.unit()), b.midpoint(c)][i % 3];
+            let origin = random.in_ball() * 0.9;
+            let direction = target - origin;
+            let is_met = sphere
+                .intersect_by(level, origin.into(), direction.into(), f32::MAX)
+                .is_some();
+            let is_occluded = sphere.occluded_by(level, origin.into(), direction.into(), f32::MAX);
+            escaped += usize::from(!is_met || !is_occluded);
+        }
+        assert_eq!(escaped, 0, "{set}: rays from within a sphere");
+    }
+}
+
+#[test]
+fn rays_that_are_no_rays_meet_nothing() {
+    let sphere = Geometry::build(&load(&ModelSource::Sphere).unwrap(), true);
+    let empty = Geometry::build(&model_of(Mesh::default()), false);
+    let nan = f32::NAN;
+    for (set, level) in sets() {
+        for direction in [[0.0; 3], [nan, 0.0, 1.0], [nan; 3], [f32::INFINITY, 0.0, 0.0]] {
+            let hit = sphere.intersect_by(level, [0.0; 3], direction, f32::MAX);
+            assert_eq!(hit, None, "{set}: {direction:?}");
+        }
+        for origin in [[nan, 0.0, 0.0], [f32::INFINITY; 3]] {
+            let hit = sphere.intersect_by(level, origin, [0.0, 0.0, 1.0], f32::MAX);
+            assert_eq!(hit, None, "{set}: from {origin:?}");
+        }
+        assert_eq!(
+            empty.intersect_by(level, [0.0; 3], [0.0, 0.0, 1.0], f32::MAX),
+            None,
+            "{set}"
+        );
+        assert!(!empty.occluded_by(level, [0.0; 3], [0.0, 0.0, 1.0], f32::MAX), "{set}");
+    }
+}
+
+#[test]
+fn the_hierarchy_takes_less_than_200_bytes_a_triangle() {
+    for segments in [9, 40] {
+        let geometry = Geometry::build(&model_of(teapot::mesh(segments)), true);
+        let (bytes, triangles) = (geometry.prepare(), geometry.triangles.len());
+        println!("{} bytes a triangle", bytes / triangles);
+        assert!(
+            bytes > 48 * triangles,
+            "{bytes} bytes cannot hold {triangles} triangles"
+        );
+        assert!(bytes < 200 * triangles, "{bytes} bytes for {triangles} triangles");
+    }
+}
+
+#[test]
+fn instruction_sets_that_are_missing_are_named_with_those_that_are_there() {
+    let (here, missing): (Vec<_>, Vec<_>) = Instructions::ALL.iter().partition(|set| set.level().is_some());
+    assert!(here.contains(&&Instructions::Auto) && here.contains(&&Instructions::Portable));
+    // No processor has both.
+    assert!(missing.contains(&&Instructions::Neon) || missing.contains(&&Instructions::Avx2));
+    for set in missing {
+        let message = set.force().expect_err("it is missing").to_string();
+        assert!(
+            message.contains(set.label()) && message.contains("portable"),
+            "{message}"
+        );
+    }
+}
+
+#[test]
+fn instruction_sets_change_nothing_but_the_time() {
+    let place = Workplace::new();
+    let picture = |set: &str| place.picture(&format!("--ground --samples 4 --instructions {set}"));
+    let expected = picture("auto");
+    assert!(
+        expected != place.picture("--ground --samples 5"),
+        "the pictures do not tell anything"
+    );
+    for set in Instructions::ALL {
+        if set.level().is_some() {
+            assert!(picture(set.name()) == expected, "{}: another picture", set.name());
+        } else {
+            place.refused(2, &format!("render --instructions {}", set.name()), &[set.name()]);
+        }
+    }
+    place.refused(2, "render --instructions mmx", &["mmx"]);
+}
