@@ -36,9 +36,9 @@ impl Node {
     };
 
     fn set(&mut self, child: usize, bounds: &Aabb, index: u32) {
-        for axis in 0..3 {
-            self.sides[axis][0][child] = bounds.min[axis];
-            self.sides[axis][1][child] = bounds.max[axis];
+        let (low, high) = (bounds.min.to_array(), bounds.max.to_array());
+        for ([lows, highs], (low, high)) in self.sides.iter_mut().zip(low.into_iter().zip(high)) {
+            (lows[child], highs[child]) = (low, high);
         }
         self.children[child] = index;
     }
@@ -233,11 +233,11 @@ impl<F: Fn(u32) -> [[f32; 3]; 3]> Builder<'_, F> {
             let triangle = (self.corners)(node.first + lane);
             let normal = triangle_normal(triangle.map(Vec3::<f32>::from_f32)).to_f32();
             let lane = lane as usize;
-            for axis in 0..3 {
-                normals[axis][lane] = normal[axis];
-                for corner in 0..3 {
-                    corners[corner][axis][lane] = triangle[corner][axis];
-                }
+            for (lanes, coordinate) in normals.iter_mut().zip(normal) {
+                lanes[lane] = coordinate;
+            }
+            for (lanes, coordinate) in corners.iter_mut().flatten().zip(triangle.into_iter().flatten()) {
+                lanes[lane] = coordinate;
             }
         }
         self.made.blocks.push(Block { corners });
