@@ -39,18 +39,3 @@ fn age(at: Instant) -> String {
         seconds => format!("{} h ago", seconds / 3600),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_said_again_stays_the_entry_that_it_was() {
-        let mut log = Vec::new();
-        for text in ["a", "a", "b", "b", "a"] {
-            add(&mut log, Level::Warning, text.to_owned());
-        }
-        let entries: Vec<(u64, &str)> = log.iter().map(|entry| (entry.number, &*entry.text)).collect();
-        assert_eq!(entries, [(0, "a"), (1, "b"), (2, "a")]);
-    }
-}
