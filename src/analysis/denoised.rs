@@ -391,7 +391,7 @@ mod tests {
     #[test]
     fn error_and_bias_are_the_true_ones() {
         let (mut inside, mut told, mut truth, mut biases) = (0, 0.0, 0.0, Vec::new());
-        const RENDERS: u32 = 60;
+        const RENDERS: u32 = 240;
         for seed in 0..RENDERS {
             let halves = halves(&|pixel| if pixel % SIDE < 32 { 0.1 } else { 0.6 }, &|_| 0.05, seed);
             let errors = errors(&halves);
@@ -406,13 +406,15 @@ mod tests {
         }
         assert!((told / truth - 1.0).abs() < 0.1, "{told} {truth}");
         // 95 % of them, less three standard deviations of such a count.
-        assert!(inside >= 52, "{inside} of {RENDERS}");
+        let renders = f64::from(RENDERS);
+        let least = 0.95 * renders - 3.0 * (0.95 * 0.05 * renders).sqrt();
+        assert!(f64::from(inside) >= least, "{inside} of {RENDERS}");
         let mean = biases.iter().sum::<f64>() / f64::from(RENDERS);
         let squares = biases.iter().map(|bias| (bias - mean).powi(2)).sum::<f64>();
         let deviation = (squares / f64::from(RENDERS * (RENDERS - 1))).sqrt();
         let truth = 0.05_f64.powi(2);
         assert!((mean - truth).abs() < 4.0 * deviation, "{mean} {deviation}");
-        assert!(deviation < 0.1 * truth, "it tells something: {deviation}");
+        assert!(deviation < 0.15 * truth, "it tells something: {deviation}");
     }
 
     #[test]

@@ -426,7 +426,7 @@ mod tests {
 
     /// Samples of a mean that is far larger than their spread.
     fn values(count: u32) -> impl Iterator<Item = f64> {
-        (0..count).map(|i| 1000.0 + f64::from(i * 7919 % 101) / 101.0)
+        (0..u64::from(count)).map(|i| 1000.0 + (i * 7919 % 101) as f64 / 101.0)
     }
 
     fn variance(count: u32) -> f64 {
