@@ -3,7 +3,7 @@
 use super::actions::{Action, Command};
 use super::layout::{self, Pane};
 use super::menu::Sheet;
-use super::{App, library, palette, panels, snapshots, widgets};
+use super::{App, is_dragging, library, palette, panels, snapshots, widgets};
 use crate::document::{CameraSettings, Document, MaterialSettings, PARAMETERS};
 use crate::render::explain::explain;
 use crate::scene::ModelOptions;
@@ -68,6 +68,10 @@ impl App {
 
     fn command(&mut self, ctx: &egui::Context, command: Command) {
         log::debug!("{}", command.label());
+        if matches!(command, Command::Undo | Command::Redo) {
+            // What was edited in this very frame is a step, too.
+            self.record(is_dragging(ctx));
+        }
         match command {
             Command::Undo => {
                 let document = self.edits.undo();

@@ -236,6 +236,11 @@ impl App {
             && snapshot.picture.as_deref().is_some_and(is_current)
     }
 
+    /// Whether a file, a model or an environment that was asked for is still being opened: an edit to come.
+    pub fn is_opening(&self) -> bool {
+        self.files.is_reading() || self.worker.is_opening()
+    }
+
     /// Has something done in the next frame, as if it had been chosen from a menu.
     pub fn request(&mut self, action: Action) {
         self.queue.push(action);
@@ -348,13 +353,18 @@ impl App {
             .unwrap_or_default()
     }
 
-    /// Records the frame's edit and hands the renderer what differs from what it has.
-    fn record_and_submit(&mut self, ctx: &egui::Context) {
-        let is_dragging = ctx.input(|input| input.pointer.any_down());
+    /// Records what was edited since this was last done.
+    fn record(&mut self, is_dragging: bool) {
         if self.edits.record(&self.document, is_dragging) {
             let label = self.edits.undo_label().unwrap_or("an edit taken back");
             self.autosave.witness.note(label);
         }
+    }
+
+    /// Records the frame's edit and hands the renderer what differs from what it has.
+    fn record_and_submit(&mut self, ctx: &egui::Context) {
+        let is_dragging = is_dragging(ctx);
+        self.record(is_dragging);
         if self.awaited > 0 {
             return;
         }
@@ -403,7 +413,7 @@ impl App {
     /// Small pictures of materials wait until the picture is there, and while something is being changed.
     fn hold_thumbnails(&self, ctx: &egui::Context) {
         let has_picture = self.worker.snapshot().picture.is_some();
-        let is_changing = ctx.input(|input| input.pointer.any_down()) || self.edits.is_in_flow();
+        let is_changing = is_dragging(ctx) || self.edits.is_in_flow();
         self.panels.library.hold(!has_picture || is_changing);
         if is_changing {
             ctx.request_repaint_after(MOVING);
@@ -491,6 +501,11 @@ impl App {
             self.title = title;
         }
     }
+}
+
+/// Whether a button of the pointer is held.
+fn is_dragging(ctx: &egui::Context) -> bool {
+    ctx.input(|input| input.pointer.any_down())
 }
 
 /// What was pasted as text in this frame.

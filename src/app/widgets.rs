@@ -266,16 +266,24 @@ fn bar(field: Rect, filled: Rect, color: Color32, radius: egui::CornerRadius) ->
     Shape::rect_filled(filled, corners, color)
 }
 
+/// What the picker's own arithmetic changes of a colour at most, with some room.
+const PICKER_ROUNDING: f32 = 1e-5;
+
 /// A linear colour: a swatch that opens a picker, and its sRGB code to type.
 pub(super) fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response {
     let spacing = ui.spacing().item_spacing.x;
     let swatch_width = (ui.available_width() - HEX_WIDTH - spacing).max(30.0);
+    // The picker goes over hue and saturation, which rounds, also where nobody touches it: it calls that a change.
+    let mut picked = *linear;
     let swatch = ui
         .scope(|ui| {
             ui.spacing_mut().interact_size.x = swatch_width;
-            ui.color_edit_button_rgb(linear)
+            ui.color_edit_button_rgb(&mut picked)
         })
         .inner;
+    if std::iter::zip(picked, *linear).any(|(new, old)| (new - old).abs() > PICKER_ROUNDING) {
+        *linear = picked;
+    }
     // A colour like the panel's would not be seen as a field.
     let line = ui.visuals().widgets.noninteractive.bg_stroke;
     let radius = ui.visuals().widgets.inactive.corner_radius;

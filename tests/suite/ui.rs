@@ -175,6 +175,60 @@ fn a_slider_changes_the_document_and_the_picture_and_undo_brings_both_back() {
     assert_eq!(picture(&harness), rough);
 }
 
+/// A picker shows a colour by its hue and saturation, which round: that is no edit.
+#[test]
+fn showing_a_color_leaves_it_as_it_is() {
+    let mut document = small_document();
+    document.materials[0].base_color = [0.913, 0.922, 0.924];
+    document.materials[0].specular_color = [0.955, 0.638, 0.538];
+    document.lighting.area_lights.push(AreaLight {
+        color: [0.7, 0.123_456_79, 0.31],
+        ..AreaLight::default()
+    });
+    let mut harness = editor_with(document.clone(), Vec::new());
+    settle(&mut harness);
+    harness
+        .get_by_role_and_label(Role::ColorWell, "Base colour")
+        .click_accesskit();
+    harness.run_steps(3);
+    for pane in [Pane::Lighting, Pane::Material] {
+        harness.state_mut().reveal(pane);
+        harness.run_steps(3);
+    }
+    assert_eq!(*harness.state().document(), document);
+}
+
+/// Undo comes in the frame of an edit where keys are fast: it takes back that edit, not the one before.
+#[test]
+fn undo_takes_back_what_was_edited_in_the_same_frame() {
+    let mut harness = editor();
+    let set = |harness: &Editor, label: &str, value: f64| {
+        harness
+            .get_by_role_and_label(Role::SpinButton, label)
+            .set_value_accesskit(value);
+    };
+    let of = |harness: &Editor| {
+        let material = &harness.state().document().materials[0];
+        (material.roughness, material.metalness)
+    };
+    set(&harness, "Specular roughness", 0.85);
+    settle(&mut harness);
+    let (_, metalness) = of(&harness);
+    set(&harness, "Base metalness", 0.25);
+    harness.state_mut().request(Action::Do(Command::Undo));
+    settle(&mut harness);
+    assert_eq!(of(&harness), (0.85, metalness));
+    harness.state_mut().request(Action::Do(Command::Redo));
+    settle(&mut harness);
+    assert_eq!(of(&harness), (0.85, 0.25));
+    // Redo in the frame of an edit has nothing to do.
+    undo(&mut harness);
+    set(&harness, "Specular roughness", 0.5);
+    harness.state_mut().request(Action::Do(Command::Redo));
+    settle(&mut harness);
+    assert_eq!(of(&harness), (0.5, metalness));
+}
+
 #[test]
 fn every_number_of_the_material_panel_can_be_set() {
     let mut harness = editor();

@@ -377,6 +377,21 @@ fn make_custom(harness: &mut Editor, is_by_button: bool) {
     harness.run_steps(4);
 }
 
+/// A curve of another kind may come by itself, with a model: what stands below the points of one's own stays what it is.
+#[test]
+fn what_stands_below_the_points_of_a_curve_stays() {
+    let mut harness = editor();
+    make_custom(&mut harness, true);
+    let before = controls(&harness);
+    assert!(
+        before.contains_key(&(Role::CheckBox, "density".to_owned())),
+        "{before:?}"
+    );
+    undo(&mut harness);
+    assert!(harness.query_by_label("Edit as custom").is_some());
+    assert_same_controls(&before, &controls(&harness), "undo");
+}
+
 #[test]
 fn a_named_curve_becomes_a_custom_one_in_its_panel() {
     for is_by_button in [true, false] {

@@ -69,16 +69,19 @@ pub(in crate::app) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         &table,
         is_custom.then_some(&mut points),
     );
-    if is_custom {
-        selected_point(ui, &mut desk.state.curve, &mut points);
-        let drawn = points.iter().map(|point| point.map(|x| x as f32)).collect::<Vec<_>>();
-        if drawn != material.custom_curve.points()
-            && let Ok(curve) = CustomCurve::try_from(drawn)
-        {
-            material.custom_curve = curve;
-            desk.edits.note("Draw the curve", "custom curve");
+    // A curve of another kind may come with a model.
+    widgets::comes_and_goes(ui, |ui| {
+        if is_custom {
+            selected_point(ui, &mut desk.state.curve, &mut points);
+            let drawn = points.iter().map(|point| point.map(|x| x as f32)).collect::<Vec<_>>();
+            if drawn != material.custom_curve.points()
+                && let Ok(curve) = CustomCurve::try_from(drawn)
+            {
+                material.custom_curve = curve;
+                desk.edits.note("Draw the curve", "custom curve");
+            }
         }
-    }
+    });
     desk.state.curve.left.clone_from(&material.custom_curve);
     distance_plot(ui, material.curve, &table);
     horizon(ui, material.roughness, curve_distance_max(material.curve, &table));

@@ -9,6 +9,7 @@ mod thread;
 
 use std::io;
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -38,6 +39,8 @@ const FAREWELL: Duration = Duration::from_secs(2);
 pub struct Worker {
     shared: Arc<Shared>,
     assets: Assets,
+    /// Models and environments that were asked for and whose events have not been taken.
+    opening: AtomicUsize,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -282,6 +285,7 @@ impl Worker {
         Ok(Self {
             shared,
             assets,
+            opening: AtomicUsize::new(0),
             thread: Some(thread),
         })
     }
@@ -309,11 +313,13 @@ impl Worker {
 
     /// Loads a model beside everything else; an [`Event`] tells how it went.
     pub fn open_model(&self, source: ModelSource, options: ModelOptions) {
+        self.opening.fetch_add(1, Relaxed);
         self.order(|orders| orders.models.push((source, options)));
     }
 
     /// Loads an environment beside everything else; an [`Event`] tells how it went.
     pub fn open_environment(&self, source: EnvironmentSource) {
+        self.opening.fetch_add(1, Relaxed);
         self.order(|orders| orders.environments.push(source));
     }
 
@@ -360,7 +366,21 @@ impl Worker {
 
     /// What happened since this was last called.
     pub fn take_events(&self) -> Vec<Event> {
-        std::mem::take(&mut *lock(&self.shared.events))
+        let events = std::mem::take(&mut *lock(&self.shared.events));
+        let ends_opening = |event: &&Event| {
+            matches!(
+                event,
+                Event::ModelOpened(..) | Event::EnvironmentOpened(..) | Event::OpenFailed(..)
+            )
+        };
+        self.opening
+            .fetch_sub(events.iter().filter(ends_opening).count(), Relaxed);
+        events
+    }
+
+    /// Whether a model or an environment that was asked for is still to come, or the news that it could not be opened.
+    pub fn is_opening(&self) -> bool {
+        self.opening.load(Relaxed) > 0
     }
 }
 
