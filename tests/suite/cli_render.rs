@@ -41,7 +41,7 @@ fn pictures_have_their_size_and_linear_values() {
     assert!(channels.iter().all(|channel| channel.sample_type == SampleType::F32));
     let hdr = image::open(place.path("a.hdr")).unwrap().into_rgb32f();
     assert_eq!(hdr.dimensions(), (40, 24));
-    assert_near(&hdr.get_pixel(0, 0).0, &[2.0; 3], 0.01);
+    assert_near(&hdr.get_pixel(0, 0).0, &[2.0; 3], 1e-6);
     let png = image::open(place.path("a.png")).unwrap();
     assert_eq!((png.width(), png.height()), (40, 24));
     assert_eq!(png.color(), image::ColorType::Rgba8);

@@ -6,10 +6,11 @@ use std::process::{Command, Output};
 use glossmith::analysis::fit::basis::Hats;
 use glossmith::analysis::fit::merl::{CELLS, SCALES};
 use glossmith::analysis::fit::{
-    CurveTarget, Measure, Merl, MerlError, Nearest, fit_curve, nearest_roughness, total_variation,
+    CurveFit, CurveTarget, Measure, Merl, MerlError, Nearest, fit_curve, nearest_roughness, total_variation,
 };
 use glossmith::analysis::lobe_model::{LobeModel, NORMAL, view_direction};
 use glossmith::document::MaterialSettings;
+use glossmith::document::custom_curve::POINTS_MAX;
 use glossmith::document::match_look::{Candidate, MatchError, Target, curve_from_fit, match_look};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::{Horizon, Lobe, phong};
@@ -111,6 +112,38 @@ fn least_squares_recover_known_curves() {
         };
         let distance = total_variation(&profile, &stored, view_angle_rad, Measure::Evaluate);
         assert!(distance < 0.01, "{curve:?} {view_angle_deg}: {distance}");
+    }
+}
+
+/// A fit has more points than a document stores: as few as must be are left out, those that are nearest to each other.
+#[test]
+fn a_fitted_curve_keeps_the_points_that_it_can() {
+    let nodes: Vec<f64> = (0..=256).map(|i| f64::from(i) / 256.0).collect();
+    // ξ rises ever faster with D.
+    let h = |distance: &f64| (0.25 + 1.5 * distance) / distance.max(1.0 / 256.0);
+    let mut fit = CurveFit {
+        roughness: 0.3,
+        h: nodes.iter().map(h).collect(),
+        nodes,
+        lobe_albedo: 1.0,
+        base_albedo: 0.0,
+        residual: 0.0,
+    };
+    let all = fit.cumulative(1.0);
+    fit.h.iter_mut().for_each(|h| *h /= all);
+    let curve = curve_from_fit(&fit).unwrap();
+    let points = curve.points();
+    assert!(
+        (POINTS_MAX - 3..=POINTS_MAX).contains(&points.len()),
+        "{}",
+        points.len()
+    );
+    for [xi, distance] in points {
+        let expected = fit.cumulative(f64::from(*distance));
+        assert!(
+            (f64::from(*xi) - expected).abs() < 2e-5,
+            "{distance}: {xi}, not {expected}"
+        );
     }
 }
 
