@@ -320,7 +320,11 @@ fn weighing_both_strategies_is_as_good_as_the_better_one() {
         document.render.samples = 1024;
         let reference = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Mis, 99));
         document.render.samples = 32;
-        let error = |strategy| squared_error(&with_strategy(&document, strategy, 1), &reference);
+        // One seed alone is a fifth off at times.
+        let error = |strategy| -> f64 {
+            let of_seed = |seed| squared_error(&with_strategy(&document, strategy, seed), &reference);
+            (1..=8).map(of_seed).sum()
+        };
         let (mis, other) = (error(Strategy::Mis), error(worse));
         let better = error(if worse == Strategy::Lobe {
             Strategy::Light
