@@ -26,9 +26,11 @@ use super::ui_panels::write_textured_square;
 
 /// Deeds of an episode: fewer than the steps that can be undone.
 const EPISODE: u64 = 200;
-/// Seeds of the episodes, half of them for each of the two tests, which run beside each other: those in which nothing is
-/// found any more. With `GLOSSMITH_THOROUGH` all seeds are played in turn, and some of them may still find something.
-const SEEDS: [u64; 9] = [0, 1, 3, 6, 8, 11, 12, 13, 17];
+/// Seeds of the episodes, half of them for each of the two tests, which run beside each other. With `GLOSSMITH_THOROUGH`
+/// others follow.
+const SEEDS: [u64; 26] = [
+    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25,
+];
 /// How long each of the tests goes on with `GLOSSMITH_THOROUGH`.
 const THOROUGH: Duration = Duration::from_secs(30 * 60);
 /// The last deeds that are told where something breaks.
