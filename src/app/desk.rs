@@ -127,22 +127,12 @@ impl Desk<'_> {
 
     /// The material of the selected slot.
     pub(super) fn material(&self) -> MaterialSettings {
-        let materials = &self.document.materials;
-        materials
-            .get(self.shared.slot)
-            .or(materials.last())
-            .cloned()
-            .unwrap_or_default()
+        self.document.material(self.shared.slot)
     }
 
     /// Replaces the material of the selected slot; slots before it keep what they show.
     pub(super) fn set_material(&mut self, material: MaterialSettings) {
-        let materials = &mut self.document.materials;
-        let last = materials.last().cloned().unwrap_or_default();
-        if materials.len() <= self.shared.slot {
-            materials.resize(self.shared.slot + 1, last);
-        }
-        materials[self.shared.slot] = material;
+        *self.document.material_mut(self.shared.slot) = material;
     }
 
     /// The rows of a group of settings, those that have an effect.

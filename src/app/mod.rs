@@ -346,12 +346,7 @@ impl App {
     }
 
     fn desk_material(&self) -> MaterialSettings {
-        let materials = &self.document.materials;
-        materials
-            .get(self.shared.slot)
-            .or(materials.last())
-            .cloned()
-            .unwrap_or_default()
+        self.document.material(self.shared.slot)
     }
 
     /// Records what was edited since this was last done.

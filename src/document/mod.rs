@@ -90,4 +90,19 @@ impl Document {
     pub fn check(&self) -> Result<(), SettingError> {
         settings::check(self)
     }
+
+    /// The material that a slot shows.
+    pub fn material(&self, slot: usize) -> MaterialSettings {
+        let materials = &self.materials;
+        materials.get(slot).or(materials.last()).cloned().unwrap_or_default()
+    }
+
+    /// The material of a slot, to be changed; slots before it keep what they show.
+    pub fn material_mut(&mut self, slot: usize) -> &mut MaterialSettings {
+        if self.materials.len() <= slot {
+            let last = self.materials.last().cloned().unwrap_or_default();
+            self.materials.resize(slot + 1, last);
+        }
+        &mut self.materials[slot]
+    }
 }

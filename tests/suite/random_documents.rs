@@ -1,6 +1,8 @@
 //! Documents with some of everything, in range: for the tests of plans, and for the benchmark that takes more of them.
 
-use glossmith::document::{AreaLight, Document, Kind, MaterialSettings, PARAMETERS, Parameter, Strategy, Value};
+use glossmith::document::{
+    AreaLight, Denoise, Document, Kind, MaterialSettings, PARAMETERS, Parameter, Strategy, Value,
+};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::store::PRESETS;
@@ -109,6 +111,9 @@ pub fn random_document(random: &mut Random) -> Document {
     }
     if random.below(3) == 0 {
         document.lighting.area_lights.push(AreaLight::default());
+    }
+    if random.below(4) == 0 {
+        document.view.denoise = Denoise::High;
     }
     document
 }

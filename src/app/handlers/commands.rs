@@ -194,13 +194,7 @@ impl App {
 
     pub(in crate::app) fn use_material(&mut self, material: MaterialSettings) {
         let label = format!("Use {}", material.name);
-        let slot = self.shared.slot;
-        let materials = &mut self.document.materials;
-        if materials.len() <= slot {
-            let last = materials.last().cloned().unwrap_or_default();
-            materials.resize(slot + 1, last);
-        }
-        materials[slot] = material;
+        *self.document.material_mut(self.shared.slot) = material;
         self.edits.note(label, "");
     }
 

@@ -185,14 +185,9 @@ impl Compare {
     /// The document with B's materials.
     pub(in crate::app) fn rival_document(&self, document: &Document, slot: usize) -> Document {
         let mut rival = document.clone();
-        let materials = &mut rival.materials;
-        let last = materials.last().cloned().unwrap_or_default();
-        if materials.len() <= slot {
-            materials.resize(slot + 1, last);
-        }
+        let material = rival.material_mut(slot);
         match &self.rival {
             Rival::Lobe(lobe) => {
-                let material = &mut materials[slot];
                 let matched = self.matched(material, *lobe);
                 material.lobe = *lobe;
                 if let Some(Ok(model)) = matched {
@@ -202,8 +197,8 @@ impl Compare {
                     material.anisotropy = 0.0;
                 }
             }
-            Rival::Material(material) => materials[slot] = MaterialSettings::clone(material),
-            Rival::Materials(_, all) => *materials = all.clone(),
+            Rival::Material(other) => *material = MaterialSettings::clone(other),
+            Rival::Materials(_, all) => rival.materials = all.clone(),
         }
         rival
     }
