@@ -3,6 +3,8 @@
 
 #[path = "suite/analytic.rs"]
 mod analytic;
+#[path = "suite/analytic_bodies.rs"]
+mod analytic_bodies;
 #[path = "suite/analytic_scenes.rs"]
 mod analytic_scenes;
 #[path = "suite/check.rs"]

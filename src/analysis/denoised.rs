@@ -283,6 +283,10 @@ impl Errors {
 /// What is told is wrong by ab − db − ea = (a − d)(b − e) − de. As the halves are independent, its variance is
 /// E(a − d)² E(b − e)² − 2 E(a − d)d E(b − e)e + Ed² Ee². With β the filter's bias and δ what is left of the noise,
 /// d = β + δ, means of (A − D)(E − B), (D − E)²/2 and (A − B)(D − E)/2 around the pixel tell β², Eδ² and Eaδ.
+///
+/// The filter spreads a pixel's noise over those around it, so that db of one and ea of another have noise in common:
+/// 2 E(ad') E(be') summed over the others. Where the filter is linear nearby, with weights w that δ = Σ wa, and the noise
+/// is as strong there, that is 2 σ⁴ Σ w² without the pixel itself: 2 (Eδ² σ² − (Eaδ)²), σ² told by (A − B)²/2.
 fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> impl Iterator<Item = [f64; 2]> {
     let height = luminances.len() / width.max(1);
     let first = rows.start.saturating_sub(MAP_RADIUS);
@@ -300,15 +304,17 @@ fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> imp
     let bias = around(&Differences::squared_bias);
     let left = around(&|of| of.between[1] * of.between[1] / 2.0);
     let common = around(&|of| of.between[0] * of.between[1] / 2.0);
+    let whole = around(&|of| of.between[0] * of.between[0] / 2.0);
     let of_pixel = move |i: usize| {
         let bias = bias[i].max(0.0);
         let own = bias + left[i];
-        let variance = noise[0][i] * noise[1][i] - 2.0 * (common[i] - own).powi(2) + own * own;
+        let alone = noise[0][i] * noise[1][i] - 2.0 * (common[i] - own).powi(2) + own * own;
+        let shared = 2.0 * (left[i] * whole[i] - common[i].powi(2));
         // What the filter eats differs from pixel to pixel, which is no noise: that shows in the halves' difference, too.
         let [a, b] = differences[i].noisy;
         let by_halves = ((a + b) * (a - b) / 2.0).powi(2);
         let squares = (a * b - bias).powi(2).min(by_halves);
-        [variance.max(0.0), squares]
+        [alone.max(0.0) + shared.max(0.0), squares]
     };
     ((rows.start - first) * width..(rows.end - first) * width).map(of_pixel)
 }
@@ -391,7 +397,7 @@ mod tests {
     #[test]
     fn error_and_bias_are_the_true_ones() {
         let (mut inside, mut told, mut truth, mut biases) = (0, 0.0, 0.0, Vec::new());
-        const RENDERS: u32 = 240;
+        const RENDERS: u32 = 960;
         for seed in 0..RENDERS {
             let halves = halves(&|pixel| if pixel % SIDE < 32 { 0.1 } else { 0.6 }, &|_| 0.05, seed);
             let errors = errors(&halves);
@@ -405,10 +411,8 @@ mod tests {
             biases.push(sum.denoised / sum.pixels);
         }
         assert!((told / truth - 1.0).abs() < 0.1, "{told} {truth}");
-        // 95 % of them, less three standard deviations of such a count.
-        // It is meant to be 95 % of them and is 87 %: the band is still too narrow. Less three standard deviations of such
-        // a count.
-        assert!(f64::from(inside) >= 0.8 * f64::from(RENDERS), "{inside} of {RENDERS}");
+        // Errors are not quite normal: 93 % in the mean, and the standard deviation of such a count is 0.8 %.
+        assert!(f64::from(inside) >= 0.91 * f64::from(RENDERS), "{inside} of {RENDERS}");
         let mean = biases.iter().sum::<f64>() / f64::from(RENDERS);
         let squares = biases.iter().map(|bias| (bias - mean).powi(2)).sum::<f64>();
         let deviation = (squares / f64::from(RENDERS * (RENDERS - 1))).sqrt();

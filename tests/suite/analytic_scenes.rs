@@ -16,6 +16,7 @@ use glossmith::scene::environment::{Environment, EnvironmentSource};
 use glossmith::scene::mesh::Mesh;
 use glossmith::scene::{Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 
+use crate::analytic_bodies::bodies;
 use crate::lights::{corners, irradiance};
 use crate::renders::document;
 
@@ -31,23 +32,31 @@ pub struct Case {
     pub strategies: &'static [Strategy],
     /// Samples a pixel of a picture of 16 × 16.
     samples: u32,
-    /// Takes so many samples that it is tried once, by the processor.
-    pub is_dear: bool,
+    /// How many times as many the lobe takes alone, where it finds a light by chance.
+    chance: u32,
+    /// Pixels are alike. Where they are not, the mean of the whole picture is known, and its error is told by the spread
+    /// of pictures of many seeds.
+    pub is_even: bool,
 }
 
-const ALL: &[Strategy] = &[Strategy::Mis, Strategy::Lobe, Strategy::Light];
-const BY_LOBE: &[Strategy] = &[Strategy::Lobe, Strategy::Mis];
-const BY_LIGHT: &[Strategy] = &[Strategy::Mis, Strategy::Light];
-const MIS: &[Strategy] = &[Strategy::Mis];
+/// Every strategy.
+pub const ALL: &[Strategy] = &[Strategy::Mis, Strategy::Lobe, Strategy::Light];
+/// One for all: where directions are not drawn from lights, strategies draw the same.
+pub const MIS: &[Strategy] = &[Strategy::Mis];
 const LOBE: &[Strategy] = &[Strategy::Lobe];
+const BY_LOBE: &[Strategy] = &[Strategy::Lobe, Strategy::Mis];
+/// Those that look for lights.
+pub const BY_LIGHT: &[Strategy] = &[Strategy::Mis, Strategy::Light];
 
-const MATT: [&str; 3] = ["base.metalness=0", "specular.weight=0", "base.weight=1"];
+/// Only the base.
+pub const MATT: [&str; 3] = ["base.metalness=0", "specular.weight=0", "base.weight=1"];
 const MIRROR: [&str; 3] = ["base.metalness=1", "specular.roughness=0", "specular.fresnel=none"];
-const CLEAR: [&str; 3] = ["base.metalness=0", "transmission.weight=1", "specular.roughness=0"];
+/// Glass without roughness.
+pub const CLEAR: [&str; 3] = ["base.metalness=0", "transmission.weight=1", "specular.roughness=0"];
 
 impl Case {
     /// A square seen from straight above in an environment of radiance 1.
-    fn new(name: impl Into<String>, assignments: &[&[&str]], expected: [f64; 3]) -> Self {
+    pub fn new(name: impl Into<String>, assignments: &[&[&str]], expected: [f64; 3]) -> Self {
         let mut document = document(ModelSource::Plane, EnvironmentSource::Furnace, &assignments.concat());
         document.lighting.background = Background::Transparent;
         document.render.sequence = Sequence::Sobol;
@@ -59,7 +68,8 @@ impl Case {
             expected,
             strategies: ALL,
             samples: 64,
-            is_dear: false,
+            chance: 1,
+            is_even: true,
         };
         case.look([0.0, 3.0, 0.0], [0.0; 3]);
         case
@@ -70,28 +80,37 @@ impl Case {
         (camera.position, camera.target, camera.fov_deg) = (Some(from), Some(at), 0.1);
     }
 
-    fn seen(mut self, from: [f64; 3], at: [f64; 3]) -> Self {
+    pub fn seen(mut self, from: [f64; 3], at: [f64; 3]) -> Self {
         self.look(from, at);
         self
     }
 
-    fn by(mut self, strategies: &'static [Strategy], samples: u32) -> Self {
+    pub fn by(mut self, strategies: &'static [Strategy], samples: u32) -> Self {
         (self.strategies, self.samples) = (strategies, samples);
         self
     }
 
-    fn dear(mut self) -> Self {
-        self.is_dear = true;
+    fn by_chance(mut self, chance: u32) -> Self {
+        self.chance = chance;
         self
     }
 
-    /// Samples a pixel; where lights are drawn, too, the lobe alone finds them by chance.
-    pub fn samples_of(&self, strategy: Strategy) -> u32 {
-        let is_by_chance = strategy == Strategy::Lobe && self.strategies == ALL;
-        self.samples * if is_by_chance { 8 } else { 1 }
+    pub fn uneven(mut self) -> Self {
+        self.is_even = false;
+        self
     }
 
-    fn of(mut self, mesh: Mesh) -> Self {
+    /// Takes so many samples that it is rendered by each strategy and in no other way.
+    pub fn is_dear(&self) -> bool {
+        self.samples > 1280
+    }
+
+    /// Samples a pixel.
+    pub fn samples_of(&self, strategy: Strategy) -> u32 {
+        self.samples * if strategy == Strategy::Lobe { self.chance } else { 1 }
+    }
+
+    pub fn of(mut self, mesh: Mesh) -> Self {
         let slots = 1 + mesh.slots.iter().max().copied().unwrap_or(0) as usize;
         self.model = Some(Model {
             name: self.name.clone(),
@@ -109,12 +128,12 @@ impl Case {
         self
     }
 
-    fn in_the_dark(mut self) -> Self {
+    pub fn in_the_dark(mut self) -> Self {
         self.document.lighting.strength = 0.0;
         self
     }
 
-    fn with(mut self, change: impl FnOnce(&mut Document)) -> Self {
+    pub fn with(mut self, change: impl FnOnce(&mut Document)) -> Self {
         change(&mut self.document);
         self
     }
@@ -131,7 +150,7 @@ impl Case {
 }
 
 /// A rectangle of two triangles that faces `half_v` × `half_u`.
-fn add_rectangle(mesh: &mut Mesh, center: DVec3, half_u: DVec3, half_v: DVec3, slot: u32) {
+pub fn add_rectangle(mesh: &mut Mesh, center: DVec3, half_u: DVec3, half_v: DVec3, slot: u32) {
     let normal = half_v.cross(half_u).normalize().as_vec3();
     let tangent = half_u.normalize().as_vec3().extend(1.0);
     let [a, b, c, d] = [(-1.0, -1.0), (-1.0, 1.0), (1.0, 1.0), (1.0, -1.0)]
@@ -141,7 +160,7 @@ fn add_rectangle(mesh: &mut Mesh, center: DVec3, half_u: DVec3, half_v: DVec3, s
 }
 
 /// The six faces of a box, facing outwards or inwards.
-fn add_box(mesh: &mut Mesh, center: DVec3, half: DVec3, faces_inwards: bool) {
+pub fn add_box(mesh: &mut Mesh, center: DVec3, half: DVec3, faces_inwards: bool) {
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
             let along = |axis: usize| DVec3::AXES[axis % 3] * half[axis % 3];
@@ -176,6 +195,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend(lobes());
     cases.extend(lens());
     cases.extend(tilts());
+    cases.extend(bodies());
     cases
 }
 
@@ -234,7 +254,8 @@ fn skies() -> Vec<Case> {
         .by(BY_LIGHT, 3072),
         Case::new("plane under a ring", &[&MATT, &white], reflected(row_irradiance(2.0)))
             .under(map(|_, y| if y == 2 { 1.0 } else { 0.0 }))
-            .by(ALL, 1280),
+            .by(ALL, 1280)
+            .by_chance(8),
     ]
 }
 
@@ -265,7 +286,11 @@ fn lights() -> Vec<Case> {
         let case = case
             .in_the_dark()
             .with(|document| document.lighting.area_lights = vec![light]);
-        cases.push(case.seen([4.0, 3.0, 0.0], [0.0; 3]).by(strategies, samples));
+        cases.push(
+            case.seen([4.0, 3.0, 0.0], [0.0; 3])
+                .by(strategies, samples)
+                .by_chance(8),
+        );
     }
     cases.extend(backs(above(0.25, 0.6, 0.6)));
     cases
@@ -369,8 +394,8 @@ fn rooms() -> Vec<Case> {
     });
     vec![
         inside(matt).by(BY_LOBE, 1024),
-        inside(white).by(LOBE, 3072).dear(),
-        inside(metal).by(BY_LOBE, 1024).dear(),
+        inside(white).by(BY_LOBE, 3072),
+        inside(metal).by(BY_LOBE, 1024),
         inside(clamped).by(LOBE, 4),
     ]
 }
@@ -400,7 +425,7 @@ fn glass() -> Vec<Case> {
     let panes = panes
         .of(slab(0.1, &[-0.4, 0.4]))
         .under(map(|_, y| if y < 4 { 1.0 } else { 0.0 }));
-    cases.push(panes.by(MIS, 3072).dear());
+    cases.push(panes.by(MIS, 3072));
     cases
 }
 
@@ -501,7 +526,7 @@ fn tilts() -> Vec<Case> {
         case.model = Some(model.clone());
         case.document.model = ModelSource::File("tilted".into());
         case.document.materials[0].textures.normal = true;
-        case.under(map.clone()).by(MIS, 4)
+        case.under(map.clone()).by(ALL, 4)
     };
     [0.0, 0.5, 1.0].map(case).into()
 }

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use std::sync::{Mutex, Once};
 use std::time::{Duration, Instant};
 
+use egui::accesskit::Role;
 use egui_kittest::Harness;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::{App, Options, Resolution};
@@ -18,7 +19,7 @@ use glossmith::store::{PRESETS, save_document, save_material};
 use tempfile::TempDir;
 
 use super::cli_support::write_hdr;
-use super::monkey_deeds::{Deed, Surroundings};
+use super::monkey_deeds::{Deed, Gesture, Surroundings};
 use super::random_documents::random_document;
 use super::support::Random;
 use super::ui::{Editor, assert_same_controls, controls};
@@ -26,11 +27,9 @@ use super::ui_panels::write_textured_square;
 
 /// Deeds of an episode: fewer than the steps that can be undone.
 const EPISODE: u64 = 200;
-/// Seeds of the episodes, half of them for each of the two tests, which run beside each other. With `GLOSSMITH_THOROUGH`
-/// others follow.
-const SEEDS: [u64; 26] = [
-    0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25,
-];
+/// Episodes, half of them for each of the two tests, which run beside each other: 5000 deeds and more together. With
+/// `GLOSSMITH_THOROUGH` there are as many as time allows.
+const EPISODES: u64 = 26;
 /// How long each of the tests goes on with `GLOSSMITH_THOROUGH`.
 const THOROUGH: Duration = Duration::from_secs(30 * 60);
 /// The last deeds that are told where something breaks.
@@ -171,6 +170,8 @@ impl Monkey {
                 files,
                 before: HashSet::new(),
                 touched: HashSet::new(),
+                seen: HashSet::new(),
+                done: HashSet::new(),
             },
             _folder: folder,
         };
@@ -186,6 +187,7 @@ impl Monkey {
             self.trail.deeds.pop_front();
         }
         self.trail.deeds.push_back(format!("{index}: {deed:?}"));
+        self.surroundings.done.extend(deed.gesture());
         deed.perform(&mut self.harness);
         self.harness.run_steps(2);
         for _ in 0..QUIET_FRAMES {
@@ -274,7 +276,32 @@ fn bits(document: &Document) -> String {
     serde_json::to_string(document).expect("plain values")
 }
 
-fn play(seed: u64) {
+/// What there was in all episodes, and what was done with it.
+#[derive(Default)]
+struct Coverage {
+    seen: HashSet<(Role, String)>,
+    done: HashSet<(Gesture, Role, String)>,
+}
+
+impl Coverage {
+    /// Fails where too few of the controls of some roles have had a gesture made at them.
+    fn assert(&self, gesture: Gesture, roles: &[Role], least: f64) {
+        let of: Vec<_> = self.seen.iter().filter(|(role, _)| roles.contains(role)).collect();
+        let left: Vec<_> = of
+            .iter()
+            .filter(|(role, name)| !self.done.contains(&(gesture, *role, name.clone())))
+            .collect();
+        let share = 1.0 - left.len() as f64 / of.len() as f64;
+        println!("{gesture:?}: {:.0} % of {} controls", 100.0 * share, of.len());
+        assert!(
+            share >= least,
+            "{gesture:?}: only {share:.2} of {}; not {left:?}",
+            of.len()
+        );
+    }
+}
+
+fn play(seed: u64, coverage: &mut Coverage) {
     listen();
     let (mut monkey, first) = Monkey::new(seed);
     for index in 0..EPISODE {
@@ -282,26 +309,35 @@ fn play(seed: u64) {
     }
     monkey.undo_all(&first);
     monkey.check();
+    coverage.seen.extend(monkey.surroundings.seen.drain());
+    coverage.done.extend(monkey.surroundings.done.drain());
 }
 
 /// Episodes whose numbers leave this remainder when divided by two.
 fn play_all(remainder: u64) {
+    let mut coverage = Coverage::default();
     if let Ok(seed) = std::env::var("GLOSSMITH_MONKEY_SEED") {
         let seed: u64 = seed.parse().expect("a number");
         if seed % 2 == remainder {
-            play(seed);
+            play(seed, &mut coverage);
         }
         return;
     }
-    if std::env::var_os("GLOSSMITH_THOROUGH").is_none() {
-        SEEDS.into_iter().filter(|seed| seed % 2 == remainder).for_each(play);
-        return;
-    }
+    let is_thorough = std::env::var_os("GLOSSMITH_THOROUGH").is_some();
     let begun = Instant::now();
     let mut seeds = (0..).map(|turn| 2 * turn + remainder);
-    while begun.elapsed() < THOROUGH {
-        seeds.next().into_iter().for_each(play);
+    let is_enough = |seed: u64| seed >= EPISODES && !(is_thorough && begun.elapsed() < THOROUGH);
+    while let Some(seed) = seeds.next().filter(|seed| !is_enough(*seed)) {
+        play(seed, &mut coverage);
     }
+    let numbers = [Role::Slider, Role::SpinButton];
+    coverage.assert(
+        Gesture::Click,
+        &[Role::Button, Role::CheckBox, Role::ComboBox, Role::RadioButton],
+        0.5,
+    );
+    coverage.assert(Gesture::Drag, &numbers, 0.5);
+    coverage.assert(Gesture::Type, &[Role::SpinButton, Role::TextInput], 0.5);
 }
 
 #[test]
