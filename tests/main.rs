@@ -51,6 +51,10 @@ mod environment_sampling;
 mod environment_shapes;
 #[path = "suite/environment_twin.rs"]
 mod environment_twin;
+#[path = "suite/exchange.rs"]
+mod exchange;
+#[path = "suite/exchange_tools.rs"]
+mod exchange_tools;
 #[path = "suite/explain.rs"]
 mod explain;
 #[path = "suite/files.rs"]

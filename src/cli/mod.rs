@@ -3,7 +3,9 @@
 //! Exit codes: 0 done; 1 something could not be read, rendered or written (one line on stderr says what and what to
 //! do); 2 the arguments are wrong.
 
+mod answer;
 mod check;
+mod convert;
 mod explain;
 mod fit;
 mod lobe;
@@ -65,6 +67,8 @@ pub enum Command {
     Scatter(scatter::ScatterArguments),
     /// Match the look of another lobe or of a measured material.
     Fit(fit::FitArguments),
+    /// Take materials to other programs and back, and tell what is lost.
+    Convert(convert::ConvertArguments),
     /// Show lobes: slices, bodies, densities, albedo, reciprocity, losses.
     Lobe(lobe::LobeArguments),
     /// Measure what accuracy costs in time.
@@ -89,6 +93,7 @@ impl Command {
             Command::Check(arguments) => check::run(&arguments),
             Command::Scatter(arguments) => scatter::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
+            Command::Convert(arguments) => convert::run(&arguments),
             Command::Lobe(arguments) => lobe::run(&arguments),
             Command::Study(arguments) => study::run(&arguments),
             Command::Completions(arguments) => shell::completions(&arguments),

@@ -25,7 +25,7 @@ named! {
 
 impl ImportLobe {
     /// Gives a material that has the roughness of a file this lobe.
-    pub(super) fn apply(self, material: &mut MaterialSettings) {
+    pub fn apply(self, material: &mut MaterialSettings) {
         match self {
             Self::Geometric => {
                 material.lobe = Lobe::Geometric;

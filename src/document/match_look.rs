@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::custom_curve::{CustomCurve, POINTS_MAX, XI_STEP_MIN};
 use super::{MaterialSettings, measured_look};
 use crate::analysis::fit::{
-    CurveFit, CurveTarget, Measure, Merl, fit_curve, nearest_roughness, roughness, total_variation,
+    CurveFit, CurveTarget, Measure, Merl, Nearest, fit_curve, nearest_roughness, roughness, total_variation,
 };
 use crate::analysis::lobe_model::{LobeModel, roughness_min, view_direction};
 use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
@@ -20,6 +20,8 @@ const DISTANCES_MAX: [f64; 6] = [1.0, 1.5, 2.5, 4.0, 7.0, 12.0];
 const CURVE_SCAN: (usize, f64) = (9, 0.02);
 /// The same once the curve is settled.
 const FINAL_SCAN: (usize, f64) = (4, 1e-3);
+/// The scan for the roughness of a stretched lobe.
+const STRETCHED_SCAN: (usize, f64) = (16, 1e-3);
 /// Largest R of a fitted curve: at 1 every curve gives the same lobe.
 const ROUGHNESS_MAX: f64 = 0.99;
 /// Roughness that a measured material is compared at before the fit.
@@ -247,6 +249,39 @@ pub fn matched_lobe_and_curve(model: &LobeModel, lobe: Lobe, curve: Curve) -> Re
     };
     let found = nearest_roughness(profile, &start, 0.0, Measure::Evaluate);
     Ok(start.with_roughness(rounded(found.roughness)))
+}
+
+/// The roughness of GGX that comes closest to a lobe seen along the normal, stretched and turned alike.
+pub fn nearest_ggx(model: &LobeModel) -> Nearest {
+    let wo = view_direction(0.0);
+    let candidate = LobeModel {
+        lobe: Lobe::Ggx,
+        table: Vec::new(),
+        ..model.clone()
+    };
+    let target: Profile = &|wi| model.evaluate(wo, wi)[0];
+    if model.is_symmetric() {
+        return nearest_roughness(target, &candidate, 0.0, Measure::Evaluate);
+    }
+    let distance = |roughness: f64| {
+        let candidate = candidate.with_roughness(roughness);
+        let profile: Profile = &|wi| candidate.evaluate(wo, wi)[0];
+        let grid = SphereGrid::adapted(0.0, Side::Above, false, &[target, profile]);
+        let [p, q] = [target, profile].map(|profile| grid.values(profile));
+        let [p_total, q_total] = [&p, &q].map(|values| grid.integral(values).max(f64::MIN_POSITIVE));
+        let apart: Vec<f64> = p
+            .iter()
+            .zip(&q)
+            .map(|(p, q)| (p / p_total - q / q_total).abs())
+            .collect();
+        0.5 * grid.integral(&apart)
+    };
+    roughness::minimum(
+        [roughness_min(Lobe::Ggx), 1.0],
+        STRETCHED_SCAN.0,
+        STRETCHED_SCAN.1,
+        &distance,
+    )
 }
 
 /// Target and candidates side by side: the normalised profiles in the plane of incidence, around the mirror direction

@@ -190,6 +190,8 @@ pub struct ModelLight {
 pub struct Slot {
     /// The material's name.
     pub name: String,
+    /// The number of the material in a glTF file.
+    pub file_material: Option<usize>,
     /// Linear Rec. 709, each in [0, 1]; multiplies the texture.
     pub base_color: [f32; 3],
     /// In [0, 1]; multiplies the blue channel of the metallic-roughness texture.
@@ -247,6 +249,7 @@ impl Default for Slot {
     fn default() -> Self {
         Self {
             name: "default".to_owned(),
+            file_material: None,
             base_color: [1.0; 3],
             metalness: 1.0,
             roughness: 1.0,

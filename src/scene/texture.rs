@@ -5,11 +5,13 @@
 //! f32: colours are decoded before they are filtered, by a look-up that has no rounding of its own.
 
 use std::ops::Range;
+use std::path::Path;
 
 use bytemuck::{Pod, Zeroable};
 
 use super::geometry::{Geometry, Vertex};
 use super::model::{AlphaMode, Filter, Model, Slot, Texture, TextureRef, Wrap};
+use super::picture::decode_bytes;
 use crate::optics::albedo::table_lookup;
 use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
 use crate::optics::real::Real;
@@ -348,7 +350,7 @@ pub(super) fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Tex
 
 /// The mean of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct TextureMean {
+pub struct TextureMean {
     /// Of its codes, in [0, 1].
     pub codes: [f32; 4],
     /// Of the light that its codes stand for as sRGB.
@@ -368,6 +370,15 @@ pub(super) fn texture_mean(picture: &Texture) -> TextureMean {
         codes: sums.map(|sum| (sum as f64 / (255.0 * texels)) as f32),
         linear: mean_linear(picture),
     }
+}
+
+/// The mean of a picture in a file.
+///
+/// # Errors
+/// What is wrong with the file.
+pub fn mean_of_file(path: &Path) -> Result<TextureMean, String> {
+    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+    Ok(texture_mean(&decode_bytes(String::new(), &bytes)?))
 }
 
 /// The mean of a picture of sRGB codes, linear.

@@ -1,6 +1,7 @@
 //! What is kept in files: projects, presets and the user's folder of them, pictures with a document inside, copies of
-//! unsaved documents, pinned states.
+//! unsaved documents, pinned states; materials in other programs' formats.
 
+pub mod exchange;
 pub mod file;
 pub mod library;
 pub mod picture;

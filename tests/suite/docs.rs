@@ -14,6 +14,7 @@ use glossmith::optics::lobe::Lobe;
 use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear};
 use glossmith::optics::vector::Vec3;
 use glossmith::store::PRESETS;
+use glossmith::store::exchange::{FORMATS, Registered};
 use glossmith::store::preset::command_line_name;
 
 const BEGIN: &str = "<!-- made from the program: ";
@@ -126,6 +127,24 @@ fn presets() -> String {
     )
 }
 
+fn formats() -> String {
+    let row = |format: &Registered| {
+        let endings: Vec<String> = format.extensions.iter().map(|ending| format!("`.{ending}`")).collect();
+        let mark = |is_so: bool| if is_so { "yes" } else { "" }.to_owned();
+        vec![
+            format!("`{}`", format.name),
+            endings.join(" "),
+            mark(format.is_read),
+            mark(format.is_written),
+            format.help.to_owned(),
+        ]
+    };
+    table(
+        &["format", "endings", "read", "written", "what it is"],
+        FORMATS.iter().map(row),
+    )
+}
+
 /// `#rrggbb` in sRGB of a linear colour.
 fn hex(color: [f32; 3]) -> String {
     let srgb = srgb_from_linear(Vec3::<f32>::from_f32(color)).to_f32();
@@ -191,6 +210,7 @@ fn block(name: &str) -> String {
         "tone curves" => choices(ToneCurve::ALL.iter().map(|tone| (tone.name(), tone.help()))),
         "effects" => effects(),
         "presets" => presets(),
+        "formats" => formats(),
         name => match name.strip_prefix("options of glossmith") {
             Some(command) => options(command.trim()),
             None => panic!("the guide asks for '{name}', which nobody makes"),

@@ -17,7 +17,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("analysis", &["named", "panics", "optics", "scene", "job"]),
     ("plot", &["named", "optics", "job", "analysis"]),
     ("document", &["named", "optics", "scene", "job", "analysis", "plot"]),
-    ("store", &["named", "optics", "scene", "document"]),
+    ("store", &["named", "optics", "scene", "analysis", "document"]),
     (
         "render",
         &[

@@ -281,6 +281,7 @@ impl<'a> Materials<'a> {
         let name = material.name.clone().filter(|name| !name.is_empty());
         let mut read = Slot {
             name: name.unwrap_or_else(|| format!("material {index}")),
+            file_material: Some(index),
             base_color: [red, green, blue].map(unit),
             metalness: unit(pbr.metallic_factor.0),
             roughness: unit(pbr.roughness_factor.0),

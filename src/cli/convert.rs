@@ -1,0 +1,165 @@
+//! `glossmith convert`: materials to and from other programs' formats, with what was lost on the way.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use clap::Args;
+
+use super::answer::{Destination, write_json};
+use super::names;
+use crate::document::ImportLobe;
+use crate::store::exchange::report::Report;
+use crate::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
+use crate::store::preset;
+
+/// Arguments of `glossmith convert`.
+#[derive(Debug, Args)]
+#[command(after_help = formats_help())]
+pub struct ConvertArguments {
+    /// What to convert, then where to: materials, projects or models, or names of shipped materials; then a file, or a
+    /// folder with --to.
+    #[arg(required = true, num_args = 2.., value_name = "IN... OUT")]
+    paths: Vec<String>,
+    /// The format to write, where OUT is a folder or its ending says too little.
+    #[arg(long, value_name = "FORMAT", value_parser = format)]
+    to: Option<&'static Registered>,
+    /// The one material of several to convert, by its name or its number from 1.
+    #[arg(long, value_name = "NAME|N")]
+    material: Option<String>,
+    /// The lobe of materials that know only GGX: geometric, its roughness matched to the look of GGX, or ggx.
+    #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::choice::<ImportLobe>)]
+    import_lobe: ImportLobe,
+    /// Read what a file shows, although it has the exact parameters too.
+    #[arg(long)]
+    without_exact: bool,
+    /// Write what was exact, approximated and dropped, as JSON; - is standard output.
+    #[arg(long, value_name = "FILE|-")]
+    report: Option<Destination>,
+}
+
+/// The formats, for the help.
+fn formats_help() -> String {
+    let line = |format: &Registered| {
+        let endings: Vec<String> = format.extensions.iter().map(|ending| format!(".{ending}")).collect();
+        let ways = match (format.is_read, format.is_written) {
+            (true, true) => "in, out",
+            (true, false) => "in",
+            _ => "out",
+        };
+        format!(
+            "  {:<16} {:<12} {ways:<8} {}",
+            format.name,
+            endings.join(" "),
+            format.help
+        )
+    };
+    let lines: Vec<String> = FORMATS.iter().map(line).collect();
+    format!("Formats:\n{}", lines.join("\n"))
+}
+
+fn format(text: &str) -> Result<&'static Registered, String> {
+    let known = || FORMATS.iter().map(|format| format.name).collect::<Vec<_>>().join(", ");
+    exchange::by_name(text).ok_or_else(|| format!("expected one of {}", known()))
+}
+
+/// Converts and tells what was lost.
+///
+/// # Errors
+/// One line that names the file, what is wrong and what to do. Of many files those that can be are converted.
+pub fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
+    let Some((output, inputs)) = arguments.paths.split_last() else {
+        bail!("give what to convert and where to");
+    };
+    let output = Path::new(output);
+    let is_folder = inputs.len() > 1 || output.is_dir();
+    if is_folder && arguments.to.is_none() {
+        bail!(
+            "{}: several files go to a folder; say by --to in which format",
+            output.display()
+        );
+    }
+    if is_folder {
+        std::fs::create_dir_all(output)
+            .with_context(|| format!("{}: the folder cannot be made; give another", output.display()))?;
+    }
+    let targets = targets(inputs, output, arguments.to.filter(|_| is_folder))?;
+    let (mut reports, mut failed) = (Vec::new(), 0);
+    for (input, target) in inputs.iter().zip(&targets) {
+        match convert(input, target, arguments) {
+            Ok(report) => {
+                eprintln!("{report}");
+                reports.push(report);
+            }
+            Err(error) if inputs.len() == 1 => return Err(error),
+            Err(error) => {
+                eprintln!("{error:#}");
+                failed += 1;
+            }
+        }
+    }
+    if let Some(destination) = &arguments.report {
+        write_json(destination, &reports)?;
+    }
+    if failed > 0 {
+        bail!("{failed} of {} files could not be converted", inputs.len());
+    }
+    Ok(())
+}
+
+/// Where each input goes: no two to the same file.
+fn targets(inputs: &[String], output: &Path, to: Option<&Registered>) -> anyhow::Result<Vec<PathBuf>> {
+    let Some(format) = to else {
+        return Ok(vec![output.to_owned()]);
+    };
+    let mut targets: Vec<PathBuf> = Vec::new();
+    for input in inputs {
+        let stem = Path::new(input).file_stem().unwrap_or_default();
+        let target = output.join(stem).with_extension(format.extensions[0]);
+        if targets.contains(&target) {
+            bail!(
+                "{input}: {} would be written twice; convert files of the same name into different folders",
+                target.display()
+            );
+        }
+        targets.push(target);
+    }
+    Ok(targets)
+}
+
+fn convert(input: &str, output: &Path, arguments: &ConvertArguments) -> anyhow::Result<Report> {
+    let format = match arguments.to {
+        Some(format) => format,
+        None => exchange::by_ending(output)?,
+    };
+    let options = ReadOptions {
+        lobe: arguments.import_lobe,
+        is_plain: arguments.without_exact,
+    };
+    let mut subject = match preset::material_by_name(input) {
+        Some(material) => Subject::of(material.clone()),
+        None if Path::new(input).extension().is_none() => Subject::of(preset::find(input)?.value),
+        None => exchange::read(Path::new(input), options)?,
+    };
+    if let Some(wanted) = &arguments.material {
+        subject = chosen(subject, wanted).with_context(|| format!("{input}: --material {wanted}"))?;
+    }
+    Ok(exchange::write(&subject, input, output, format)?)
+}
+
+/// The subject with one of its materials alone.
+fn chosen(subject: Subject, wanted: &str) -> anyhow::Result<Subject> {
+    let names: Vec<&str> = subject
+        .materials
+        .iter()
+        .map(|material| material.name.as_str())
+        .collect();
+    let by_number = wanted.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
+    let by_name = names.iter().position(|name| *name == wanted);
+    let index = by_name.or(by_number.filter(|index| *index < names.len()));
+    let index = index.with_context(|| format!("there is no such material; there are {}", names.join(", ")))?;
+    Ok(Subject {
+        materials: vec![subject.materials[index].clone()],
+        document: None,
+        losses: subject.losses.get(index).cloned().into_iter().collect(),
+    })
+}

@@ -1,0 +1,127 @@
+//! A Python script that makes the material in Blender, by its Principled BSDF.
+
+use std::path::Path;
+
+use serde_json::Value as Json;
+
+use super::surface::{Law, Surface, Takes};
+use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
+
+/// Scripts for Blender 4 and later.
+pub struct Blender;
+
+const TAKES: Takes = Takes {
+    law: Law::Exact,
+    eta_and_k: false,
+    edge_tint: true,
+    specular: true,
+    ior: true,
+    anisotropy: true,
+    coat: true,
+    coat_details: true,
+    transmission: true,
+    absorption: false,
+    textures: false,
+};
+
+impl Format for Blender {
+    fn write(&self, subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
+        let mut text = HEAD.to_owned();
+        let mut reports = Vec::new();
+        for material in &subject.materials {
+            let (surface, report) = shown(material, &TAKES);
+            text += &format!("\n# {}\n", carried::comment(material));
+            text += &call(&surface, &carried::line(material));
+            reports.push(report);
+        }
+        Ok(Written::text(text, reports))
+    }
+
+    fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
+        let bytes = crate::store::file::read(path)?;
+        let materials = carried::in_comments(path, &bytes)?;
+        Ok(Subject {
+            materials,
+            ..Subject::default()
+        })
+    }
+}
+
+const HEAD: &str = r#"# Materials of Glossmith for Blender: Text Editor > Open > Run Script. The new materials are in the list of materials.
+import bpy
+
+
+def glossmith_material(name, inputs, rotation_deg, exact):
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    # By this property the material comes back to Glossmith without loss.
+    material["glossmith_material"] = exact
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    shader = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
+    for key, value in inputs.items():
+        if key in shader.inputs:
+            shader.inputs[key].default_value = value
+        else:
+            print("This Blender has no input " + key)
+    if rotation_deg:
+        tangent = nodes.new("ShaderNodeTangent")
+        tangent.direction_type = "UV_MAP"
+        links.new(tangent.outputs["Tangent"], shader.inputs["Tangent"])
+        shader.inputs["Anisotropic Rotation"].default_value = (rotation_deg / 360.0) % 1.0
+    return material
+
+"#;
+
+/// Text as Python writes it: JSON's marks and escapes are Python's.
+fn python(text: &str) -> String {
+    Json::from(text).to_string()
+}
+
+fn call(surface: &Surface, exact: &str) -> String {
+    let (ratio, rotation_deg) = surface.ratio_and_rotation();
+    let strongest = surface.emission.into_iter().fold(0.0_f32, f32::max);
+    let emitted = surface
+        .emission
+        .map(|x| if strongest > 0.0 { x / strongest } else { 1.0 });
+    let rgba = |[r, g, b]: [f32; 3]| format!("({r}, {g}, {b}, 1.0)");
+    let mut base = surface.base_color;
+    if surface.transmission_weight >= 0.5 && surface.metalness < 0.5 {
+        // What is refracted has the base color there, once a passage.
+        base = surface.transmission_color.map(f32::sqrt);
+    }
+    let tint = if surface.metalness > 0.5 {
+        surface.edge_tint
+    } else {
+        surface.specular_color
+    };
+    let inputs = [
+        ("Base Color", rgba(base)),
+        ("Metallic", surface.metalness.to_string()),
+        ("Roughness", surface.roughness.to_string()),
+        ("IOR", surface.ior.to_string()),
+        ("Alpha", surface.opacity.to_string()),
+        // 0.5 leaves the reflectance of the index as it is.
+        ("Specular IOR Level", (0.5 * surface.specular_weight).to_string()),
+        ("Specular Tint", rgba(tint)),
+        // Its widths are r²/√(1 − 0.9 a) and r² √(1 − 0.9 a).
+        ("Anisotropic", ((1.0 - ratio) / 0.9).clamp(0.0, 1.0).to_string()),
+        ("Transmission Weight", surface.transmission_weight.to_string()),
+        ("Coat Weight", surface.coat_weight.to_string()),
+        ("Coat Roughness", surface.coat_roughness.to_string()),
+        ("Coat IOR", surface.coat_ior.to_string()),
+        ("Coat Tint", rgba(surface.coat_color)),
+        ("Emission Color", rgba(emitted)),
+        ("Emission Strength", strongest.to_string()),
+    ];
+    let lines: Vec<String> = inputs
+        .into_iter()
+        .map(|(key, value)| format!("        \"{key}\": {value},\n"))
+        .collect();
+    let turn = if surface.anisotropy == 0.0 { 0.0 } else { rotation_deg };
+    format!(
+        "glossmith_material(\n    {},\n    {{\n{}    }},\n    {turn},\n    {},\n)\n",
+        python(&surface.name),
+        lines.concat(),
+        python(exact)
+    )
+}

@@ -1,0 +1,66 @@
+//! The exact parameters of a material inside a file of another program's.
+//!
+//! They are the text of a material's own file, in one line, in a place that the format leaves to whoever wants it: a custom
+//! property, or a comment after [`MARK`].
+
+use serde_json::{Map, Value as Json};
+
+use super::ExchangeError;
+use crate::document::MaterialSettings;
+use crate::store::preset;
+
+/// What stands before the parameters in a comment, and the name of the property elsewhere.
+pub const MARK: &str = "glossmith_material";
+
+/// The parameters in one line.
+pub fn json(material: &MaterialSettings) -> Json {
+    let mut object = Map::new();
+    object.insert(preset::MARK.to_owned(), preset::VERSION.into());
+    object.extend(Map::from(material.clone()));
+    Json::Object(object)
+}
+
+/// The parameters as text in one line. It ends no comment: neither `--` nor `*/` is in it.
+pub fn line(material: &MaterialSettings) -> String {
+    json(material)
+        .to_string()
+        .replace("--", "-\\u002d")
+        .replace("*/", "*\\u002f")
+        .replace("?>", "?\\u003e")
+}
+
+/// A comment's contents.
+pub fn comment(material: &MaterialSettings) -> String {
+    format!("{MARK} {}", line(material))
+}
+
+/// The material of a property's value.
+pub fn from_text(text: &str) -> Option<MaterialSettings> {
+    from_json(serde_json::from_str(text).ok()?)
+}
+
+/// The material of an object.
+pub fn from_json(json: Json) -> Option<MaterialSettings> {
+    let Json::Object(object) = json else { return None };
+    MaterialSettings::try_from(object).ok()
+}
+
+/// The materials in the comments of a text.
+///
+/// # Errors
+/// If there is none.
+pub fn in_comments(path: &std::path::Path, bytes: &[u8]) -> Result<Vec<MaterialSettings>, ExchangeError> {
+    let text = String::from_utf8_lossy(bytes);
+    let found: Vec<_> = text
+        .split(&format!("{MARK} "))
+        .skip(1)
+        .filter_map(|rest| {
+            let mut values = serde_json::Deserializer::from_str(rest).into_iter::<Json>();
+            from_json(values.next()?.ok()?)
+        })
+        .collect();
+    if found.is_empty() {
+        return Err(ExchangeError::NothingCarried { path: path.to_owned() });
+    }
+    Ok(found)
+}

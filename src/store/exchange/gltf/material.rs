@@ -1,0 +1,164 @@
+//! Materials of glTF with their extensions.
+
+use serde_json::{Map, Value as Json, json};
+
+use crate::document::MaterialSettings;
+use crate::scene::{AlphaMode, TextureRef};
+use crate::store::exchange::carried;
+use crate::store::exchange::surface::Surface;
+
+/// What a slot's material looks up, as references to textures.
+#[derive(Clone, Debug, Default)]
+pub struct SlotTextures {
+    pub base_color: Option<Json>,
+    pub metallic_roughness: Option<Json>,
+    pub normal: Option<Json>,
+    pub emissive: Option<Json>,
+    /// What the texture's opacity means, where it is looked up.
+    pub alpha: Option<(AlphaMode, f32)>,
+    pub is_double_sided: bool,
+}
+
+/// A reference to a texture with the place that it has on the mesh.
+pub fn texture_info(index: usize, place: &TextureRef) -> Json {
+    let mut info = json!({ "index": index });
+    if place.uv_set > 0 {
+        info["texCoord"] = place.uv_set.into();
+    }
+    let [a, b, offset_u, c, d, offset_v] = place.texture_from_mesh_uv;
+    if [a, b, offset_u, c, d, offset_v] != [1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+        // Offset, rotation, scale: the columns are (cos, −sin) and (sin, cos), scaled.
+        let rotation = (-c).atan2(a);
+        let (sin, cos) = rotation.sin_cos();
+        info["extensions"]["KHR_texture_transform"] = json!({
+            "offset": [offset_u, offset_v],
+            "rotation": rotation,
+            "scale": [a * cos - c * sin, b * sin + d * cos],
+        });
+    }
+    info
+}
+
+/// A material; `radius` is what lengths inside are counted in.
+pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &SlotTextures, radius: f64) -> Json {
+    let transmission = surface.transmission_weight * (1.0 - surface.metalness);
+    let absorbs = transmission > 0.0 && surface.transmission_depth > 0.0;
+    let [r, g, b] = match (transmission > 0.5, absorbs) {
+        // What is refracted has the base color there.
+        (true, true) => [1.0; 3],
+        (true, false) => surface.transmission_color,
+        _ => surface.base_color,
+    };
+    let mut pbr = json!({
+        "baseColorFactor": [r, g, b, surface.opacity],
+        "metallicFactor": surface.metalness,
+        "roughnessFactor": surface.roughness,
+    });
+    let mut json = json!({ "name": surface.name });
+    let put = |to: &mut Json, key: &str, texture: &Option<Json>| {
+        if let Some(texture) = texture {
+            to[key] = texture.clone();
+        }
+    };
+    put(&mut pbr, "baseColorTexture", &textures.base_color);
+    put(&mut pbr, "metallicRoughnessTexture", &textures.metallic_roughness);
+    put(&mut json, "normalTexture", &textures.normal);
+    if textures.normal.is_some() && material.normal_strength != 1.0 {
+        json["normalTexture"]["scale"] = material.normal_strength.into();
+    }
+    put(&mut json, "emissiveTexture", &textures.emissive);
+    json["pbrMetallicRoughness"] = pbr;
+    match textures.alpha {
+        Some((AlphaMode::Mask, cutoff)) => {
+            json["alphaMode"] = "MASK".into();
+            json["alphaCutoff"] = cutoff.into();
+        }
+        Some((AlphaMode::Blend, _)) => json["alphaMode"] = "BLEND".into(),
+        _ if surface.opacity < 1.0 => json["alphaMode"] = "BLEND".into(),
+        _ => {}
+    }
+    if textures.is_double_sided {
+        json["doubleSided"] = true.into();
+    }
+    let extensions = extensions(surface, transmission, absorbs, radius, &mut json);
+    if !extensions.is_empty() {
+        json["extensions"] = Json::Object(extensions);
+    }
+    json["extras"] = json!({ carried::MARK: carried::json(material) });
+    json
+}
+
+fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, json: &mut Json) -> Map<String, Json> {
+    let mut all = Map::new();
+    let strongest = surface.emission.into_iter().fold(0.0_f32, f32::max);
+    if strongest > 0.0 {
+        json["emissiveFactor"] = json!(surface.emission.map(|x| x / strongest));
+        if strongest != 1.0 {
+            all.insert(
+                "KHR_materials_emissive_strength".to_owned(),
+                json!({ "emissiveStrength": strongest }),
+            );
+        }
+    }
+    if surface.ior != 1.5 {
+        all.insert("KHR_materials_ior".to_owned(), json!({ "ior": surface.ior }));
+    }
+    if surface.specular_weight != 1.0 || surface.specular_color != [1.0; 3] {
+        let specular = json!({
+            "specularFactor": surface.specular_weight,
+            "specularColorFactor": surface.specular_color,
+        });
+        all.insert("KHR_materials_specular".to_owned(), specular);
+    }
+    if surface.coat_weight > 0.0 {
+        let coat = json!({
+            "clearcoatFactor": surface.coat_weight,
+            "clearcoatRoughnessFactor": surface.coat_roughness,
+        });
+        all.insert("KHR_materials_clearcoat".to_owned(), coat);
+    }
+    if transmission > 0.0 {
+        all.insert(
+            "KHR_materials_transmission".to_owned(),
+            json!({ "transmissionFactor": surface.transmission_weight }),
+        );
+        let mut volume = json!({ "thicknessFactor": radius as f32 });
+        if absorbs {
+            volume["attenuationDistance"] = ((f64::from(surface.transmission_depth) * radius) as f32).into();
+            volume["attenuationColor"] = json!(surface.transmission_color);
+        }
+        all.insert("KHR_materials_volume".to_owned(), volume);
+    }
+    if surface.anisotropy != 0.0 {
+        let (_, rotation_deg) = surface.ratio_and_rotation();
+        let anisotropy = json!({
+            "anisotropyStrength": surface.anisotropy.abs(),
+            "anisotropyRotation": rotation_deg.to_radians(),
+        });
+        all.insert("KHR_materials_anisotropy".to_owned(), anisotropy);
+    }
+    all
+}
+
+/// The names of the extensions that materials have.
+pub fn extensions_used(materials: &[Json]) -> Vec<Json> {
+    let mut names: Vec<String> = Vec::new();
+    fn collect(json: &Json, names: &mut Vec<String>) {
+        match json {
+            Json::Object(object) => {
+                for (key, value) in object.iter().filter(|(key, _)| *key != "extras") {
+                    if key == "extensions" {
+                        names.extend(value.as_object().into_iter().flat_map(Map::keys).cloned());
+                    }
+                    collect(value, names);
+                }
+            }
+            Json::Array(list) => list.iter().for_each(|value| collect(value, names)),
+            _ => {}
+        }
+    }
+    materials.iter().for_each(|material| collect(material, &mut names));
+    names.sort();
+    names.dedup();
+    names.into_iter().map(Json::from).collect()
+}

@@ -1,0 +1,224 @@
+//! MaterialX 1.39: surfaces of OpenPBR, or Autodesk's Standard Surface.
+
+use std::path::Path;
+
+use super::carried;
+use super::materialx_read;
+use super::surface::{Law, Surface, Takes};
+use super::xml::{Element, identifier, numbers};
+use super::{ExchangeError, Format, ReadOptions, Subject, Written, shown};
+
+/// Documents of MaterialX.
+pub struct MaterialX {
+    /// Standard Surface in OpenPBR's place.
+    pub is_standard: bool,
+}
+
+/// The attribute of a material that has the exact parameters.
+pub(super) const CARRIER: &str = carried::MARK;
+/// Luminance of radiance 1, cd/m²: OpenPBR's emission is in nits.
+pub(super) const NITS: f32 = 1000.0;
+
+pub(super) const OPEN_PBR: Takes = Takes {
+    law: Law::Exact,
+    eta_and_k: false,
+    edge_tint: true,
+    specular: true,
+    ior: true,
+    anisotropy: true,
+    coat: true,
+    coat_details: true,
+    transmission: true,
+    absorption: true,
+    textures: false,
+};
+const STANDARD: Takes = Takes {
+    // Its specular color is a metal's tint at grazing angles by another law.
+    edge_tint: false,
+    ..OPEN_PBR
+};
+
+impl Format for MaterialX {
+    fn write(&self, subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
+        let mut root = Element::new("materialx")
+            .with("version", "1.39")
+            .with("colorspace", "lin_rec709");
+        let (mut taken, mut reports) = (Vec::new(), Vec::new());
+        for material in &subject.materials {
+            let takes = if self.is_standard { STANDARD } else { OPEN_PBR };
+            let (surface, report) = shown(material, &takes);
+            let name = identifier(&material.name, &mut taken);
+            let shader = identifier(&format!("{name}_surface"), &mut taken);
+            if self.is_standard {
+                root.push(standard_surface(&surface, &shader));
+            } else {
+                let turned = turned_tangent(&surface, &shader);
+                root.push(open_pbr(&surface, &shader, turned.is_some()));
+                turned.into_iter().for_each(|graph| root.push(graph));
+            }
+            let place = Element::new("input")
+                .with("name", "surfaceshader")
+                .with("type", "surfaceshader")
+                .with("nodename", shader);
+            root.push(
+                Element::new("surfacematerial")
+                    .with("name", name)
+                    .with("type", "material")
+                    .with("uiname", material.name.clone())
+                    .with(CARRIER, carried::line(material))
+                    .child(place),
+            );
+            reports.push(report);
+        }
+        Ok(Written::text(root.document(None), reports))
+    }
+
+    fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
+        materialx_read::read(path, options)
+    }
+}
+
+fn input(name: &'static str, kind: &'static str, value: String) -> Element {
+    Element::new("input")
+        .with("name", name)
+        .with("type", kind)
+        .with("value", value)
+}
+
+pub(super) fn number(name: &'static str, value: f32) -> Element {
+    input(name, "float", value.to_string())
+}
+
+pub(super) fn color(name: &'static str, value: [f32; 3]) -> Element {
+    input(name, "color3", numbers(&value))
+}
+
+fn node(kind: &'static str, name: &str) -> Element {
+    Element::new(kind).with("name", name).with("type", "surfaceshader")
+}
+
+/// OpenPBR's anisotropy and the roughness that goes with it: α's along and across are r² √(2/(1 + (1 − a)²)) and (1 − a)
+/// times that.
+pub(super) fn open_pbr_widths(surface: &Surface) -> (f32, f32) {
+    let (ratio, _) = surface.ratio_and_rotation();
+    let roughness = surface.roughness * ((1.0 + ratio * ratio) / (2.0 * ratio)).powf(0.25);
+    (roughness.min(1.0), 1.0 - ratio)
+}
+
+fn open_pbr(surface: &Surface, name: &str, is_turned: bool) -> Element {
+    let (roughness, anisotropy) = open_pbr_widths(surface);
+    let (strength, emission) = emission(surface);
+    let mut node = node("open_pbr_surface", name)
+        .child(number("base_weight", 1.0))
+        .child(color("base_color", surface.base_color))
+        .child(number("base_metalness", surface.metalness))
+        .child(number("specular_weight", surface.specular_weight))
+        .child(color("specular_color", specular_color(surface)))
+        .child(number("specular_roughness", roughness))
+        .child(number("specular_ior", surface.ior))
+        .child(number("specular_roughness_anisotropy", anisotropy))
+        .child(number("transmission_weight", surface.transmission_weight))
+        .child(color("transmission_color", surface.transmission_color))
+        .child(number("transmission_depth", surface.transmission_depth))
+        .child(number("coat_weight", surface.coat_weight))
+        .child(color("coat_color", surface.coat_color))
+        .child(number("coat_roughness", surface.coat_roughness))
+        .child(number("coat_ior", surface.coat_ior))
+        // Glossmith's coat leaves what is below it as dark as it is.
+        .child(number("coat_darkening", 0.0))
+        .child(number("emission_luminance", strength * NITS))
+        .child(color("emission_color", emission))
+        .child(number("geometry_opacity", surface.opacity));
+    if is_turned {
+        node.push(
+            Element::new("input")
+                .with("name", "geometry_tangent")
+                .with("type", "vector3")
+                .with("nodegraph", format!("{name}_tangent"))
+                .with("output", "out"),
+        );
+    }
+    node
+}
+
+/// OpenPBR's specular color: of a metal the tint of its edge.
+pub(super) fn specular_color(surface: &Surface) -> [f32; 3] {
+    if surface.metalness > 0.5 {
+        surface.edge_tint
+    } else {
+        surface.specular_color
+    }
+}
+
+/// The brightest channel and the color that makes the emission of it.
+pub(super) fn emission(surface: &Surface) -> (f32, [f32; 3]) {
+    let brightest = surface.emission.into_iter().fold(0.0_f32, f32::max);
+    let color = surface
+        .emission
+        .map(|x| if brightest > 0.0 { x / brightest } else { 1.0 });
+    (brightest, color)
+}
+
+/// The tangent turned about the normal, where the highlight is stretched in another direction.
+fn turned_tangent(surface: &Surface, name: &str) -> Option<Element> {
+    let (_, rotation_deg) = surface.ratio_and_rotation();
+    if surface.anisotropy == 0.0 || rotation_deg == 0.0 {
+        return None;
+    }
+    let vector = |kind: &'static str, name: &str| Element::new(kind).with("name", name).with("type", "vector3");
+    let world = || input("space", "string", "world".to_owned());
+    let from = |name: &'static str, node: &'static str| {
+        Element::new("input")
+            .with("name", name)
+            .with("type", "vector3")
+            .with("nodename", node)
+    };
+    let turn = vector("rotate3d", "turned")
+        .child(from("in", "along"))
+        .child(number("amount", rotation_deg))
+        .child(from("axis", "normal"));
+    let output = Element::new("output")
+        .with("name", "out")
+        .with("type", "vector3")
+        .with("nodename", "turned");
+    Some(
+        Element::new("nodegraph")
+            .with("name", format!("{name}_tangent"))
+            .child(vector("tangent", "along").child(world()))
+            .child(vector("normal", "normal").child(world()))
+            .child(turn)
+            .child(output),
+    )
+}
+
+fn standard_surface(surface: &Surface, name: &str) -> Element {
+    let (ratio, rotation_deg) = surface.ratio_and_rotation();
+    let (strength, emission) = emission(surface);
+    node("standard_surface", name)
+        .child(number("base", 1.0))
+        .child(color("base_color", surface.base_color))
+        .child(number("metalness", surface.metalness))
+        .child(number("specular", surface.specular_weight))
+        .child(color(
+            "specular_color",
+            if surface.metalness > 0.5 {
+                [1.0; 3]
+            } else {
+                surface.specular_color
+            },
+        ))
+        .child(number("specular_roughness", surface.roughness))
+        .child(number("specular_IOR", surface.ior))
+        .child(number("specular_anisotropy", 1.0 - ratio))
+        .child(number("specular_rotation", (rotation_deg / 360.0).rem_euclid(1.0)))
+        .child(number("transmission", surface.transmission_weight))
+        .child(color("transmission_color", surface.transmission_color))
+        .child(number("transmission_depth", surface.transmission_depth))
+        .child(number("coat", surface.coat_weight))
+        .child(color("coat_color", surface.coat_color))
+        .child(number("coat_roughness", surface.coat_roughness))
+        .child(number("coat_IOR", surface.coat_ior))
+        .child(number("emission", strength))
+        .child(color("emission_color", emission))
+        .child(color("opacity", [surface.opacity; 3]))
+}

@@ -1,0 +1,328 @@
+//! Materials in other programs' formats, there and back: one file a format behind one trait, one line in a registry.
+//!
+//! None of them has the geometric lobe. What is written is the GGX that looks nearest ([`surface`]), a report says how far
+//! off it is ([`report`]), and the exact parameters travel along where the format leaves room for them ([`carried`]).
+
+mod blender;
+pub mod carried;
+mod gltf;
+mod materialx;
+mod materialx_read;
+mod measured;
+mod mitsuba;
+mod native;
+pub mod report;
+mod snippet;
+pub mod surface;
+mod table;
+mod usd;
+mod xml;
+
+use std::path::{Path, PathBuf};
+
+use self::report::{Entry, MaterialReport, Report};
+use self::surface::{Surface, Takes};
+use super::file::{self, FileError};
+use crate::document::{Document, ImportLobe, MaterialSettings};
+use crate::scene::ModelError;
+
+pub use self::snippet::Language;
+
+/// A format that materials are written in or read from.
+pub trait Format: Sync {
+    /// The bytes of the file that `path` names.
+    ///
+    /// # Errors
+    /// Why this subject has no place in such a file.
+    fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
+        let _ = subject;
+        Err(ExchangeError::NotWritten { path: path.to_owned() })
+    }
+
+    /// What a file holds.
+    ///
+    /// # Errors
+    /// What is wrong with the file.
+    fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
+        let _ = options;
+        Err(ExchangeError::NotRead { path: path.to_owned() })
+    }
+}
+
+/// A line of the registry.
+pub struct Registered {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// Name in the window.
+    pub label: &'static str,
+    /// Endings of its files, without the dot. What several formats share belongs to the first.
+    pub extensions: &'static [&'static str],
+    /// Whether files of it are read.
+    pub is_read: bool,
+    /// Whether files of it are written.
+    pub is_written: bool,
+    /// What it is.
+    pub help: &'static str,
+    /// The format itself.
+    pub format: &'static dyn Format,
+}
+
+impl std::fmt::Debug for Registered {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}
+
+/// The lines of the registry.
+macro_rules! registered {
+    ($($name:literal, $label:literal, $extensions:expr, $read:literal, $write:literal, $format:expr, $help:literal;)*) => {
+        &[$(Registered {
+            name: $name,
+            label: $label,
+            extensions: &$extensions,
+            is_read: $read,
+            is_written: $write,
+            help: $help,
+            format: &$format,
+        },)*]
+    };
+}
+
+/// Every format, in the order of the menus: name, label, endings, whether it is read and written, where it is, what it is.
+pub static FORMATS: &[Registered] = registered! {
+    "glossmith", "Glossmith", ["json", "png"], true, true, native::Native,
+        "Glossmith's own materials and projects; pictures with a document inside are read.";
+    "materialx", "MaterialX, OpenPBR", ["mtlx"], true, true, materialx::MaterialX { is_standard: false },
+        "MaterialX 1.39 with an OpenPBR surface.";
+    "standard-surface", "MaterialX, Standard Surface", ["mtlx"], true, true, materialx::MaterialX { is_standard: true },
+        "MaterialX 1.39 with a standard_surface.";
+    "gltf", "glTF", ["glb", "gltf"], true, true, gltf::Gltf,
+        "glTF 2.0: a project's model with its materials and textures, or a ball with the material.";
+    "usd", "USD", ["usda"], true, true, usd::Usd,
+        "USD with UsdPreviewSurface and an OpenPBR surface of MaterialX. Read are the exact parameters alone.";
+    "mitsuba", "Mitsuba 3", ["xml"], true, true, mitsuba::Mitsuba,
+        "A scene for Mitsuba 3: a ball with the material. Read are the exact parameters alone.";
+    "blender", "Blender", ["py"], true, true, blender::Blender,
+        "A Python script that makes the material in Blender. Read are the exact parameters alone.";
+    "merl", "MERL measurement", ["binary"], false, true, measured::Measured,
+        "The whole reflectance in a table, as the MERL BRDF database has it.";
+    "table", "Table of the lobe", ["csv"], true, true, table::Table,
+        "Values and densities of the lobe over directions. Read are the exact parameters alone.";
+    "glsl", "Sampler in GLSL", ["glsl"], true, true, Language::Glsl, "A function that samples the geometric lobe.";
+    "wgsl", "Sampler in WGSL", ["wgsl"], true, true, Language::Wgsl, "A function that samples the geometric lobe.";
+    "hlsl", "Sampler in HLSL", ["hlsl"], true, true, Language::Hlsl, "A function that samples the geometric lobe.";
+    "osl", "Sampler in OSL", ["osl"], true, true, Language::Osl, "A function that samples the geometric lobe.";
+    "c", "Sampler in C", ["c", "h"], true, true, Language::C, "A function that samples the geometric lobe.";
+};
+
+/// How files are read.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ReadOptions {
+    /// The lobe of materials that know only GGX.
+    pub lobe: ImportLobe,
+    /// Take what the file shows, though it also has the exact parameters.
+    pub is_plain: bool,
+}
+
+/// What is written, or was read.
+#[derive(Clone, Debug, Default)]
+pub struct Subject {
+    /// The materials, at least one.
+    pub materials: Vec<MaterialSettings>,
+    /// The document that they belong to, where there is one.
+    pub document: Option<Box<Document>>,
+    /// What was lost in reading, for each of the materials.
+    pub losses: Vec<Vec<Entry>>,
+}
+
+/// A file to be written, and what became of the materials.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// Its contents.
+    pub bytes: Vec<u8>,
+    /// A file beside it that it refers to, by its name.
+    pub beside: Option<(String, Vec<u8>)>,
+    /// What became of each material.
+    pub materials: Vec<MaterialReport>,
+}
+
+/// Why a material cannot be taken to or from another program.
+#[derive(Debug, thiserror::Error)]
+pub enum ExchangeError {
+    /// One of ours.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// An ending that no format has.
+    #[error("{}: no format has this ending; the formats are {known}", path.display())]
+    Ending {
+        /// The file.
+        path: PathBuf,
+        /// Those that there are.
+        known: String,
+    },
+    /// A format that is only read.
+    #[error("{}: this format is only read; choose another ending", path.display())]
+    NotWritten {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A format that is only written.
+    #[error("{}: this format is only written; `glossmith fit --target` finds a material that looks like a measurement", path.display())]
+    NotRead {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A file of another program that Glossmith did not write.
+    #[error("{}: has no exact parameters of Glossmith, which alone are read of this format; convert the material itself", path.display())]
+    NothingCarried {
+        /// The file.
+        path: PathBuf,
+    },
+    /// Not what the ending says.
+    #[error("{}: not a {format} document: {reason}; export it again", path.display())]
+    Contents {
+        /// The file.
+        path: PathBuf,
+        /// What it should be.
+        format: &'static str,
+        /// What is wrong.
+        reason: String,
+    },
+    /// No material in it that can be shown.
+    #[error("{}: has no material that can be taken: {reason}", path.display())]
+    NoMaterial {
+        /// The file.
+        path: PathBuf,
+        /// What is there instead.
+        reason: String,
+    },
+    /// Several where one has a place.
+    #[error("{}: holds one material, and there are {count}: {names}; choose one with --material", path.display())]
+    Several {
+        /// The file.
+        path: PathBuf,
+        /// How many.
+        count: usize,
+        /// Their names.
+        names: String,
+    },
+    /// A material that cannot be told in this format.
+    #[error("{}: {reason}", path.display())]
+    Unsuitable {
+        /// The file.
+        path: PathBuf,
+        /// Why, and what to do.
+        reason: String,
+    },
+}
+
+impl Subject {
+    /// A single material.
+    pub fn of(material: MaterialSettings) -> Self {
+        Self {
+            materials: vec![material],
+            ..Self::default()
+        }
+    }
+
+    /// The only material.
+    ///
+    /// # Errors
+    /// If there are several.
+    fn only(&self, path: &Path) -> Result<&MaterialSettings, ExchangeError> {
+        match &self.materials[..] {
+            [material] => Ok(material),
+            several => Err(ExchangeError::Several {
+                path: path.to_owned(),
+                count: several.len(),
+                names: several
+                    .iter()
+                    .map(|material| material.name.as_str())
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            }),
+        }
+    }
+}
+
+impl Written {
+    fn text(text: String, materials: Vec<MaterialReport>) -> Self {
+        Self {
+            bytes: text.into_bytes(),
+            beside: None,
+            materials,
+        }
+    }
+}
+
+/// A material as a format shows it, and what becomes of it there.
+fn shown(material: &MaterialSettings, takes: &Takes) -> (Surface, MaterialReport) {
+    let (surface, highlight) = Surface::of(material);
+    let mut entries = vec![highlight];
+    entries.extend(surface.losses(material, takes));
+    entries.sort_by_key(|entry| std::cmp::Reverse(entry.outcome));
+    let report = MaterialReport {
+        material: material.name.clone(),
+        carries_exact_parameters: true,
+        entries,
+    };
+    (surface, report)
+}
+
+/// The registered format of that name.
+pub fn by_name(name: &str) -> Option<&'static Registered> {
+    FORMATS.iter().find(|format| format.name == name)
+}
+
+/// The format of a file by its ending.
+///
+/// # Errors
+/// If no format has it.
+pub fn by_ending(path: &Path) -> Result<&'static Registered, ExchangeError> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let ending = ending.to_ascii_lowercase();
+    let found = FORMATS
+        .iter()
+        .find(|format| format.extensions.contains(&ending.as_str()));
+    found.ok_or_else(|| {
+        let endings = FORMATS.iter().flat_map(|format| format.extensions);
+        let mut known: Vec<String> = endings.map(|ending| format!(".{ending}")).collect();
+        known.dedup();
+        ExchangeError::Ending {
+            path: path.to_owned(),
+            known: known.join(", "),
+        }
+    })
+}
+
+/// What a file holds.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
+    by_ending(path)?.format.read(path, options)
+}
+
+/// Writes a subject to a file, replacing it at once, and tells what became of it. `input` is only named in the report.
+///
+/// # Errors
+/// Why it has no place there, or what the system says.
+pub fn write(subject: &Subject, input: &str, path: &Path, format: &Registered) -> Result<Report, ExchangeError> {
+    let mut written = format.format.write(subject, path)?;
+    for (report, losses) in written.materials.iter_mut().zip(&subject.losses) {
+        report.entries.splice(0..0, losses.iter().cloned());
+    }
+    if let Some((name, bytes)) = &written.beside {
+        file::save_atomically(&path.with_file_name(name), bytes)?;
+    }
+    file::save_atomically(path, &written.bytes)?;
+    Ok(Report {
+        input: input.to_owned(),
+        output: path.to_owned(),
+        format: format.name,
+        materials: written.materials,
+    })
+}

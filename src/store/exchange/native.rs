@@ -1,0 +1,42 @@
+//! Glossmith's own files: nothing is lost.
+
+use std::path::Path;
+
+use super::report::{Entry, MaterialReport};
+use super::{ExchangeError, Format, ReadOptions, Subject, Written};
+use crate::store::file::{self, Opened};
+use crate::store::preset::material_text;
+use crate::store::project::document_text;
+
+/// Materials, projects and pictures with a document inside.
+pub struct Native;
+
+impl Format for Native {
+    fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
+        let ending = path.extension().unwrap_or_default();
+        if ending.eq_ignore_ascii_case("png") {
+            return Err(ExchangeError::NotWritten { path: path.to_owned() });
+        }
+        let text = match &subject.document {
+            Some(document) if subject.materials.len() > 1 => document_text(path, document)?,
+            _ => material_text(subject.only(path)?),
+        };
+        let report = |material: &crate::document::MaterialSettings| MaterialReport {
+            material: material.name.clone(),
+            carries_exact_parameters: true,
+            entries: vec![Entry::exact("everything")],
+        };
+        Ok(Written::text(text, subject.materials.iter().map(report).collect()))
+    }
+
+    fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
+        Ok(match file::open(path)? {
+            Opened::Material(material) => Subject::of(material.value),
+            Opened::Document(document) | Opened::Picture(document) => Subject {
+                materials: document.value.materials.clone(),
+                document: Some(Box::new(document.value)),
+                losses: Vec::new(),
+            },
+        })
+    }
+}

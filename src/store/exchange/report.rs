@@ -1,0 +1,172 @@
+//! What became of a material on its way into another program's format, as a value and in words.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+/// What became of a part of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// It is there as it was.
+    Exact,
+    /// Something near it is there.
+    Approximated,
+    /// The format has no place for it.
+    Dropped,
+}
+
+impl Outcome {
+    /// As it is said.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Exact => "exact",
+            Self::Approximated => "approximated",
+            Self::Dropped => "dropped",
+        }
+    }
+}
+
+/// A part of a material and what became of it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Entry {
+    /// What became of it.
+    pub outcome: Outcome,
+    /// The part.
+    pub what: String,
+    /// By what it is replaced, or why it is left out; empty where it is exact.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub detail: String,
+    /// How far off it is.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub residual: Option<Residual>,
+}
+
+/// How far an approximation is off.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Residual {
+    /// How far, in [0, 1].
+    pub residual: f64,
+    /// What is measured.
+    pub measure: &'static str,
+}
+
+impl Residual {
+    /// Total variation: the share of the light that goes elsewhere.
+    pub fn total_variation(residual: f64) -> Self {
+        Self {
+            residual,
+            measure: "total variation",
+        }
+    }
+
+    /// The largest difference of a reflectance, over angles and colors.
+    pub fn reflectance(residual: f64) -> Self {
+        Self {
+            residual,
+            measure: "largest difference of the reflectance",
+        }
+    }
+}
+
+impl Entry {
+    /// A part that is as it was.
+    pub fn exact(what: impl Into<String>) -> Self {
+        Self {
+            outcome: Outcome::Exact,
+            what: what.into(),
+            detail: String::new(),
+            residual: None,
+        }
+    }
+
+    /// A part that something near it stands for.
+    pub fn approximated(what: impl Into<String>, detail: impl Into<String>, residual: Option<Residual>) -> Self {
+        Self {
+            outcome: Outcome::Approximated,
+            what: what.into(),
+            detail: detail.into(),
+            residual,
+        }
+    }
+
+    /// A part that is left out.
+    pub fn dropped(what: impl Into<String>, detail: impl Into<String>) -> Self {
+        Self {
+            outcome: Outcome::Dropped,
+            what: what.into(),
+            detail: detail.into(),
+            residual: None,
+        }
+    }
+}
+
+impl fmt::Display for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:<13} {}", self.outcome.word(), self.what)?;
+        if !self.detail.is_empty() {
+            write!(f, ": {}", self.detail)?;
+        }
+        match self.residual {
+            Some(Residual { residual, measure }) => write!(f, " ({measure} {residual:.3})"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// What became of a material.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MaterialReport {
+    /// Its name.
+    pub material: String,
+    /// The file also has the exact parameters, by which it can be opened again without loss.
+    pub carries_exact_parameters: bool,
+    /// What became of its parts.
+    pub entries: Vec<Entry>,
+}
+
+impl MaterialReport {
+    /// The largest residual; 0 where nothing is approximated.
+    pub fn residual(&self) -> f64 {
+        let residuals = self.entries.iter().filter_map(|entry| entry.residual);
+        residuals.map(|residual| residual.residual).fold(0.0, f64::max)
+    }
+
+    /// The worst that became of a part.
+    pub fn worst(&self) -> Outcome {
+        let outcomes = self.entries.iter().map(|entry| entry.outcome);
+        outcomes.max().unwrap_or(Outcome::Exact)
+    }
+}
+
+/// What became of a file.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Report {
+    /// The file or the shipped material that was read.
+    pub input: String,
+    /// The file that was written.
+    pub output: PathBuf,
+    /// The name of its format.
+    pub format: &'static str,
+    /// What became of the materials.
+    pub materials: Vec<MaterialReport>,
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} as {}", self.input, self.output.display())?;
+        for material in &self.materials {
+            let also = if material.carries_exact_parameters {
+                "; the exact parameters travel with it"
+            } else {
+                ""
+            };
+            write!(f, "\n  {}{also}", material.material)?;
+            for entry in &material.entries {
+                write!(f, "\n    {entry}")?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,404 @@
+//! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
+
+use super::report::{Entry, Residual};
+use crate::document::import::ggx_from_geometric;
+use crate::document::match_look::{lobe_of_material, nearest_ggx};
+use crate::document::{ImportLobe, MaterialSettings};
+use crate::optics::fresnel::{
+    Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick,
+};
+use crate::optics::lobe::{Lobe, stretch_from_anisotropy};
+use crate::optics::vector::Vec3;
+
+/// A material as other programs know it. Colors are linear Rec. 709 in [0, 1].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Surface {
+    /// Name in lists.
+    pub name: String,
+    /// Albedo of the diffuse base; of a metal, its reflectance at normal incidence.
+    pub base_color: [f32; 3],
+    /// In [0, 1].
+    pub metalness: f32,
+    /// Factor of what a dielectric reflects, in [0, 1].
+    pub specular_weight: f32,
+    /// Tint of what a dielectric reflects.
+    pub specular_color: [f32; 3],
+    /// What a metal's reflection is multiplied by near 82 degrees.
+    pub edge_tint: [f32; 3],
+    /// Of the dielectric.
+    pub ior: f32,
+    /// The square root of GGX's α, the mean of both widths where they differ, in [0, 1].
+    pub roughness: f32,
+    /// The widths' stretch as Glossmith has it, in [−1, 1]: the longer one lies along the tangent where it is positive.
+    pub anisotropy: f32,
+    /// Turn of the tangent, degrees.
+    pub rotation_deg: f32,
+    /// In [0, 1].
+    pub transmission_weight: f32,
+    /// Tint of what is refracted, or what is left of white after `transmission_depth`.
+    pub transmission_color: [f32; 3],
+    /// In bounding radii of the model; 0 where nothing is absorbed inside.
+    pub transmission_depth: f32,
+    /// In [0, 1].
+    pub coat_weight: f32,
+    /// The square root of GGX's α.
+    pub coat_roughness: f32,
+    /// Of the coat.
+    pub coat_ior: f32,
+    /// What the coat leaves of the light that crosses it twice.
+    pub coat_color: [f32; 3],
+    /// Emitted radiance.
+    pub emission: [f32; 3],
+    /// Share of light that is stopped, in [0, 1].
+    pub opacity: f32,
+}
+
+/// How a format's dielectric reflects more towards grazing angles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// By the exact equations.
+    Exact,
+    /// By Schlick's approximation.
+    Schlick,
+}
+
+/// What a format has a place for.
+#[derive(Clone, Copy, Debug)]
+pub struct Takes {
+    /// How its dielectrics reflect.
+    pub law: Law,
+    /// η and k of metals.
+    pub eta_and_k: bool,
+    /// The tint of a metal's edge.
+    pub edge_tint: bool,
+    /// Weight and tint of a dielectric's reflection.
+    pub specular: bool,
+    /// The dielectric's index of refraction.
+    pub ior: bool,
+    /// Two widths of the highlight, turned.
+    pub anisotropy: bool,
+    /// A coat; of its index and color where `coat_details` says so.
+    pub coat: bool,
+    /// The coat's index of refraction and color.
+    pub coat_details: bool,
+    /// Refraction.
+    pub transmission: bool,
+    /// Absorption inside.
+    pub absorption: bool,
+    /// Pictures that vary a parameter over the surface.
+    pub textures: bool,
+}
+
+/// Least difference that is worth a word.
+const NOTABLE: f64 = 1e-3;
+/// Cosines at which reflectances are compared.
+const COSINES: usize = 64;
+
+impl Default for Surface {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            base_color: [0.8; 3],
+            metalness: 0.0,
+            specular_weight: 1.0,
+            specular_color: [1.0; 3],
+            edge_tint: [1.0; 3],
+            ior: 1.5,
+            roughness: 0.5,
+            anisotropy: 0.0,
+            rotation_deg: 0.0,
+            transmission_weight: 0.0,
+            transmission_color: [1.0; 3],
+            transmission_depth: 0.0,
+            coat_weight: 0.0,
+            coat_roughness: 0.0,
+            coat_ior: 1.5,
+            coat_color: [1.0; 3],
+            emission: [0.0; 3],
+            opacity: 1.0,
+        }
+    }
+}
+
+fn scaled(color: [f32; 3], by: [f32; 3]) -> [f32; 3] {
+    [color[0] * by[0], color[1] * by[1], color[2] * by[2]]
+}
+
+fn unit(x: f32) -> f32 {
+    x.clamp(0.0, 1.0)
+}
+
+/// To the digits that a file is read by people with.
+fn rounded(x: f32) -> f32 {
+    ((f64::from(x) * 1e5).round() / 1e5) as f32
+}
+
+/// The Fresnel factor's terms of a material as it is edited.
+fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
+    FresnelTerms {
+        model: law_of(material),
+        metal_f0: Vec3::from_f32(material.base_color) * f64::from(material.base_weight),
+        metalness: f64::from(material.metalness),
+        tint: Vec3::from_f32(material.specular_color),
+        edge_tint: Vec3::from_f32(material.edge_tint),
+        weight: f64::from(material.specular_weight),
+        ior: f64::from(material.ior),
+        eta: Vec3::from_f32(material.eta),
+        k: Vec3::from_f32(material.k),
+    }
+}
+
+/// The Fresnel model that counts: only the exact equations know total reflection.
+fn law_of(material: &MaterialSettings) -> Fresnel {
+    let transmits = material.transmission_weight > 0.0 && material.metalness < 1.0;
+    if transmits {
+        Fresnel::Dielectric
+    } else {
+        material.fresnel
+    }
+}
+
+impl Surface {
+    /// The material that looks nearest, and what its highlight became.
+    pub fn of(material: &MaterialSettings) -> (Self, Entry) {
+        let (roughness, entry) = highlight(material);
+        let mut surface = Self {
+            name: material.name.clone(),
+            base_color: material.base_color.map(|x| rounded(x * material.base_weight)),
+            metalness: material.metalness,
+            specular_weight: material.specular_weight,
+            specular_color: material.specular_color,
+            edge_tint: material.edge_tint,
+            ior: material.ior,
+            roughness,
+            anisotropy: if material.lobe.is_anisotropic() {
+                material.anisotropy
+            } else {
+                0.0
+            },
+            rotation_deg: material.rotation_deg,
+            transmission_weight: material.transmission_weight,
+            transmission_color: material.transmission_color,
+            transmission_depth: material.transmission_depth,
+            coat_weight: material.coat_weight,
+            coat_roughness: rounded(ggx_from_geometric(material.coat_roughness)),
+            coat_ior: material.coat_ior,
+            coat_color: material.coat_color,
+            emission: material.emission_color.map(|x| x * material.emission_strength),
+            opacity: material.opacity,
+        };
+        surface.take_fresnel(material);
+        (surface, entry)
+    }
+
+    /// Metal as other programs know it: colored at normal incidence, white at grazing angles, with a tint between.
+    fn take_fresnel(&mut self, material: &MaterialSettings) {
+        let white = [1.0; 3];
+        let weight = [material.specular_weight; 3];
+        match law_of(material) {
+            Fresnel::None | Fresnel::Conductor if material.specular_weight == 0.0 => {}
+            Fresnel::None => {
+                self.metalness = 1.0;
+                self.base_color = scaled(material.specular_color, weight);
+            }
+            Fresnel::Conductor => {
+                let terms = fresnel_terms(material);
+                self.metalness = 1.0;
+                let f0 = fresnel(&terms, 1.0);
+                let seventh = 1.0 / 7.0;
+                let (there, plain) = (fresnel(&terms, seventh), fresnel_schlick(f0, seventh));
+                self.base_color = f0.to_f32().map(rounded);
+                let tint = [there.x / plain.x, there.y / plain.y, there.z / plain.z];
+                self.edge_tint = tint.map(|x| rounded(unit(x as f32)));
+            }
+            _ if material.metalness == 1.0 => {
+                self.base_color = scaled(scaled(self.base_color, material.specular_color), weight).map(rounded);
+            }
+            _ => return,
+        }
+        if self.metalness == 1.0 {
+            (self.specular_weight, self.specular_color) = (1.0, white);
+        }
+    }
+
+    /// A material that looks like it. Roughness is GGX's, or that of the lobe that looks like it.
+    pub fn material(&self, lobe: ImportLobe) -> MaterialSettings {
+        let brightest = self.emission.into_iter().fold(0.0_f32, f32::max);
+        let mut material = MaterialSettings {
+            name: self.name.clone(),
+            base_color: self.base_color.map(unit),
+            metalness: unit(self.metalness),
+            specular_weight: unit(self.specular_weight),
+            specular_color: self.specular_color.map(unit),
+            edge_tint: self.edge_tint.map(unit),
+            ior: self.ior.clamp(1.0, 4.0),
+            roughness: unit(self.roughness),
+            anisotropy: self.anisotropy.clamp(-1.0, 1.0),
+            rotation_deg: self.rotation_deg.clamp(-360.0, 360.0),
+            transmission_weight: unit(self.transmission_weight),
+            transmission_color: self.transmission_color.map(unit),
+            transmission_depth: self.transmission_depth.clamp(0.0, 1000.0),
+            coat_weight: unit(self.coat_weight),
+            coat_ior: self.coat_ior.clamp(1.0, 4.0),
+            coat_color: self.coat_color.map(unit),
+            opacity: unit(self.opacity),
+            ..MaterialSettings::default()
+        };
+        lobe.apply(&mut material);
+        if self.coat_weight > 0.0 {
+            material.coat_roughness = crate::document::import::geometric_from_ggx(unit(self.coat_roughness));
+        }
+        if brightest > 0.0 {
+            material.emission_color = self.emission.map(|x| unit(x / brightest));
+            material.emission_strength = brightest.min(1e6);
+        }
+        material
+    }
+
+    /// GGX's α along the tangent and across.
+    pub fn alphas(&self) -> [f32; 2] {
+        let alpha = self.roughness * self.roughness;
+        let stretch = stretch_from_anisotropy(self.anisotropy);
+        [alpha * stretch, alpha / stretch]
+    }
+
+    /// The narrower width over the wider one, and the turn of the wider one in degrees.
+    pub fn ratio_and_rotation(&self) -> (f32, f32) {
+        let stretch = stretch_from_anisotropy(self.anisotropy.abs());
+        let turn = if self.anisotropy < 0.0 { 90.0 } else { 0.0 };
+        (1.0 / (stretch * stretch), self.rotation_deg + turn)
+    }
+
+    /// The anisotropy whose widths have this ratio, the narrower one over the wider.
+    pub fn anisotropy_of_ratio(ratio: f32) -> f32 {
+        let s = (1.0 - ratio) / (1.0 + ratio);
+        (s / 0.9).clamp(0.0, 1.0)
+    }
+
+    /// The reflectance that a program shows that takes what `takes` says, by the cosine at the half vector.
+    fn reflectance(&self, takes: &Takes, cosine: f64) -> Vec3<f64> {
+        let white = Vec3::splat(1.0);
+        let edge = if takes.edge_tint {
+            Vec3::from_f32(self.edge_tint)
+        } else {
+            white
+        };
+        let metal = fresnel_metal(Vec3::from_f32(self.base_color), edge, cosine);
+        let (tint, weight) = match takes.specular {
+            true => (Vec3::from_f32(self.specular_color), f64::from(self.specular_weight)),
+            false => (white, 1.0),
+        };
+        let ior = if takes.ior { f64::from(self.ior) } else { 1.5 };
+        let dielectric = match takes.law {
+            Law::Exact => tint * (fresnel_dielectric(cosine, ior) * weight),
+            Law::Schlick => fresnel_schlick(tint * fresnel_f0(ior), cosine) * weight,
+        };
+        dielectric.mix(metal, f64::from(self.metalness))
+    }
+
+    /// What becomes of a material's parts, other than the highlight's shape.
+    pub fn losses(&self, material: &MaterialSettings, takes: &Takes) -> Vec<Entry> {
+        let mut entries = vec![Entry::exact("base colour, metalness")];
+        let is_specular = material.specular_weight > 0.0 || material.transmission_weight > 0.0;
+        if is_specular && !(takes.eta_and_k && material.fresnel == Fresnel::Conductor && self.metalness == 1.0) {
+            entries.push(self.fresnel_loss(material, takes));
+        }
+        if material.fresnel == Fresnel::Conductor && material.metalness < 1.0 && material.specular_weight > 0.0 {
+            entries.push(Entry::dropped(
+                "the diffuse base",
+                "there is none under a metal of η and k",
+            ));
+        }
+        let mut layer = |is_used: bool, is_taken: bool, what: &str, detail: &str| {
+            if is_used && is_taken {
+                entries.push(Entry::exact(what));
+            } else if is_used {
+                entries.push(Entry::dropped(what, detail));
+            }
+        };
+        let none = "the format has none";
+        let is_stretched = self.anisotropy != 0.0 && is_specular;
+        layer(is_stretched, takes.anisotropy, "anisotropy", "the highlight is round");
+        layer(
+            material.transmission_weight > 0.0,
+            takes.transmission,
+            "refraction",
+            none,
+        );
+        let absorbs = material.transmission_weight > 0.0 && material.transmission_depth > 0.0;
+        layer(absorbs, takes.absorption, "absorption inside", none);
+        let has_extra = material.transmission_weight > 0.0 && material.transmission_roughness != 0.0;
+        layer(has_extra, false, "extra roughness of the refraction", none);
+        let is_coat_tinted =
+            material.coat_weight > 0.0 && (material.coat_ior != 1.5 || material.coat_color != [1.0; 3]);
+        layer(
+            is_coat_tinted && takes.coat,
+            takes.coat_details,
+            "the coat's index and colour",
+            "1.5 and white",
+        );
+        layer(material.emission_strength > 0.0, true, "emission", none);
+        layer(material.opacity < 1.0, true, "opacity", none);
+        let uses = material.textures;
+        let is_textured = uses.color || uses.roughness || uses.normal || uses.emission || uses.opacity;
+        layer(
+            is_textured,
+            takes.textures,
+            "textures of the model",
+            "convert to a glTF model to take them along",
+        );
+        if material.coat_weight > 0.0 && takes.coat {
+            let detail = format!("GGX of roughness {} stands for its geometric lobe", self.coat_roughness);
+            entries.push(Entry::approximated("coat", detail, None));
+        } else if material.coat_weight > 0.0 {
+            entries.push(Entry::dropped("coat", none));
+        }
+        entries
+    }
+
+    fn fresnel_loss(&self, material: &MaterialSettings, takes: &Takes) -> Entry {
+        let terms = fresnel_terms(material);
+        let worst = (0..=COSINES).map(|i| {
+            let cosine = i as f64 / COSINES as f64;
+            let apart = fresnel(&terms, cosine) - self.reflectance(takes, cosine);
+            apart.map(f64::abs).max_component()
+        });
+        let worst = worst.fold(0.0, f64::max);
+        let what = "reflectance by angle";
+        if worst < NOTABLE {
+            return Entry::exact(what);
+        }
+        let law = match (self.metalness == 1.0, takes.law) {
+            (true, _) if takes.edge_tint => "a metal's by its colour and edge tint",
+            (true, _) => "a metal's by its colour",
+            (false, Law::Exact) => "a dielectric's by the exact equations",
+            (false, Law::Schlick) => "a dielectric's by Schlick's approximation",
+        };
+        Entry::approximated(what, law, Some(Residual::reflectance(worst)))
+    }
+}
+
+/// The roughness of GGX that looks like a material's highlight, and how near it comes.
+fn highlight(material: &MaterialSettings) -> (f32, Entry) {
+    let what = "highlight";
+    let is_specular = material.specular_weight > 0.0 || material.transmission_weight > 0.0;
+    if !is_specular {
+        return (material.roughness, Entry::exact("no highlight"));
+    }
+    if matches!(material.lobe, Lobe::Ggx | Lobe::Ggx2018 | Lobe::GgxNdf) {
+        return (material.roughness, Entry::exact(what));
+    }
+    let model = lobe_of_material(material);
+    if !model.has_density() {
+        return (0.0, Entry::exact("highlight, a mirror's"));
+    }
+    let nearest = nearest_ggx(&model);
+    let roughness = rounded(nearest.roughness as f32);
+    let detail = format!(
+        "GGX of roughness {roughness} stands for the {} lobe of {}",
+        material.lobe.name(),
+        material.roughness
+    );
+    let residual = Residual::total_variation(nearest.total_variation);
+    (roughness, Entry::approximated(what, detail, Some(residual)))
+}

@@ -1,0 +1,180 @@
+//! USD as text: each material with a UsdPreviewSurface for whatever reads USD, and MaterialX's OpenPBR for what reads that.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use super::materialx::{NITS, OPEN_PBR, emission, open_pbr_widths, specular_color};
+use super::report::Entry;
+use super::surface::{Surface, Takes};
+use super::xml::{identifier, numbers};
+use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
+
+/// Materials in a `.usda`.
+pub struct Usd;
+
+/// OpenPBR without a graph that turns the tangent.
+const TAKES: Takes = OPEN_PBR;
+
+impl Format for Usd {
+    fn write(&self, subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
+        let (mut taken, mut reports) = (Vec::new(), Vec::new());
+        let mut text =
+            "#usda 1.0\n(\n    defaultPrim = \"Materials\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n\
+                        def Scope \"Materials\"\n{\n"
+                .to_owned();
+        for material in &subject.materials {
+            let (surface, mut report) = shown(material, &TAKES);
+            if surface.anisotropy != 0.0 && surface.ratio_and_rotation().1 != 0.0 {
+                report.entries.insert(
+                    0,
+                    Entry::dropped("rotation of the highlight", "it lies along the tangent"),
+                );
+            }
+            let preview = "UsdPreviewSurface, beside OpenPBR";
+            let detail = "without anisotropy, refraction, tints and the coat's index";
+            report.entries.push(Entry::approximated(preview, detail, None));
+            let name = identifier(&material.name, &mut taken);
+            text += &prim(&surface, &name, &carried::line(material));
+            reports.push(report);
+        }
+        text += "}\n";
+        Ok(Written::text(text, reports))
+    }
+
+    fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
+        let bytes = crate::store::file::read(path)?;
+        let text = String::from_utf8_lossy(&bytes);
+        let mark = format!("string {} = ", carried::MARK);
+        let marks = text.split(&mark).skip(1);
+        let materials: Vec<_> = marks.filter_map(|rest| carried::from_text(&unquoted(rest)?)).collect();
+        if materials.is_empty() {
+            return Err(ExchangeError::NothingCarried { path: path.to_owned() });
+        }
+        Ok(Subject {
+            materials,
+            ..Subject::default()
+        })
+    }
+}
+
+/// Text in quotation marks.
+fn quoted(text: &str) -> String {
+    format!(
+        "\"{}\"",
+        text.replace('\\', "\\\\").replace('"', "\\\"").replace('\n', "\\n")
+    )
+}
+
+/// The text that begins here, in whichever of USD's quotation marks.
+fn unquoted(text: &str) -> Option<String> {
+    let marks = ["\"\"\"", "'''", "\"", "'"];
+    let mark = marks.into_iter().find(|mark| text.starts_with(mark))?;
+    let mut rest = &text[mark.len()..];
+    let mut inner = String::new();
+    while !rest.starts_with(mark) {
+        let mut letters = rest.chars();
+        match letters.next()? {
+            '\\' => inner.push(match letters.next()? {
+                'n' => '\n',
+                't' => '\t',
+                other => other,
+            }),
+            letter => inner.push(letter),
+        }
+        rest = letters.as_str();
+    }
+    Some(inner)
+}
+
+/// A material's prim.
+fn prim(surface: &Surface, name: &str, exact: &str) -> String {
+    let mut text = format!(
+        "    def Material \"{name}\" (\n        customData = {{\n            string {} = {}\n        }}\n    )\n    {{\n",
+        carried::MARK,
+        quoted(exact)
+    );
+    let path = format!("/Materials/{name}");
+    let _ = writeln!(
+        text,
+        "        uniform string ui:displayName = {}",
+        quoted(&surface.name)
+    );
+    let _ = writeln!(
+        text,
+        "        token outputs:surface.connect = <{path}/Preview.outputs:surface>"
+    );
+    let _ = writeln!(
+        text,
+        "        token outputs:mtlx:surface.connect = <{path}/OpenPbr.outputs:out>\n"
+    );
+    text += &shader(
+        "Preview",
+        "UsdPreviewSurface",
+        "token outputs:surface",
+        &preview(surface),
+    );
+    text += &shader(
+        "OpenPbr",
+        "ND_open_pbr_surface_surfaceshader",
+        "token outputs:out",
+        &open_pbr(surface),
+    );
+    text += "    }\n\n";
+    text
+}
+
+fn shader(name: &str, id: &str, output: &str, inputs: &[(&str, String)]) -> String {
+    let mut text = format!("        def Shader \"{name}\"\n        {{\n            uniform token info:id = \"{id}\"\n");
+    for (input, value) in inputs {
+        let (kind, input) = input.split_once(' ').unwrap_or(("float", input));
+        let _ = writeln!(text, "            {kind} inputs:{input} = {value}");
+    }
+    let _ = write!(text, "            {output}\n        }}\n\n");
+    text
+}
+
+fn color(value: [f32; 3]) -> String {
+    format!("({})", numbers(&value))
+}
+
+fn preview(surface: &Surface) -> Vec<(&'static str, String)> {
+    // Refraction is thin there: what opacity does not stop is seen behind.
+    let opacity = surface.opacity * (1.0 - surface.transmission_weight * (1.0 - surface.metalness));
+    vec![
+        ("color3f diffuseColor", color(surface.base_color)),
+        ("color3f emissiveColor", color(surface.emission)),
+        ("int useSpecularWorkflow", "0".to_owned()),
+        ("float metallic", surface.metalness.to_string()),
+        ("float roughness", surface.roughness.to_string()),
+        ("float clearcoat", surface.coat_weight.to_string()),
+        ("float clearcoatRoughness", surface.coat_roughness.to_string()),
+        ("float opacity", opacity.to_string()),
+        ("float ior", surface.ior.to_string()),
+    ]
+}
+
+fn open_pbr(surface: &Surface) -> Vec<(&'static str, String)> {
+    let (roughness, anisotropy) = open_pbr_widths(surface);
+    let (strength, emitted) = emission(surface);
+    let number = |x: f32| x.to_string();
+    vec![
+        ("color3f base_color", color(surface.base_color)),
+        ("float base_metalness", number(surface.metalness)),
+        ("float specular_weight", number(surface.specular_weight)),
+        ("color3f specular_color", color(specular_color(surface))),
+        ("float specular_roughness", number(roughness)),
+        ("float specular_ior", number(surface.ior)),
+        ("float specular_roughness_anisotropy", number(anisotropy)),
+        ("float transmission_weight", number(surface.transmission_weight)),
+        ("color3f transmission_color", color(surface.transmission_color)),
+        ("float transmission_depth", number(surface.transmission_depth)),
+        ("float coat_weight", number(surface.coat_weight)),
+        ("color3f coat_color", color(surface.coat_color)),
+        ("float coat_roughness", number(surface.coat_roughness)),
+        ("float coat_ior", number(surface.coat_ior)),
+        ("float coat_darkening", number(0.0)),
+        ("float emission_luminance", number(strength * NITS)),
+        ("color3f emission_color", color(emitted)),
+        ("float geometry_opacity", number(surface.opacity)),
+    ]
+}
