@@ -87,6 +87,8 @@ mod lobe_cases;
 mod lobe_views;
 #[path = "suite/memory.rs"]
 mod memory;
+#[path = "suite/merge.rs"]
+mod merge;
 #[path = "suite/model_formats.rs"]
 mod model_formats;
 #[path = "suite/monkey.rs"]

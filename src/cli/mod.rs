@@ -10,6 +10,7 @@ mod explain;
 mod fit;
 mod lobe;
 mod lobe_spec;
+mod merge;
 mod names;
 mod parse;
 mod plan;
@@ -69,6 +70,8 @@ pub enum Command {
     Fit(fit::FitArguments),
     /// Take materials to other programs and back, and tell what is lost.
     Convert(convert::ConvertArguments),
+    /// Join films of the same picture, rendered apart.
+    Merge(merge::MergeArguments),
     /// Show lobes: slices, bodies, densities, albedo, reciprocity, losses.
     Lobe(lobe::LobeArguments),
     /// Measure what accuracy costs in time.
@@ -94,6 +97,7 @@ impl Command {
             Command::Scatter(arguments) => scatter::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
             Command::Convert(arguments) => convert::run(&arguments),
+            Command::Merge(arguments) => merge::run(&arguments),
             Command::Lobe(arguments) => lobe::run(&arguments),
             Command::Study(arguments) => study::run(&arguments),
             Command::Completions(arguments) => shell::completions(&arguments),

@@ -11,9 +11,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::parse;
 use super::scene::SceneArguments;
-use crate::document::Document;
+use crate::document::{Denoise, Document};
 use crate::render::denoise::{Attendant, Denoised};
 use crate::render::output::{self, Format, Layers, Rendered};
+use crate::render::sums::KeptFilm;
 use crate::render::{EngineChoice, Progress, Session, SessionError, StopReason};
 
 /// Step of the session between two looks at the clock and the progress bar.
@@ -32,9 +33,38 @@ pub struct RenderArguments {
     /// Write albedo, normal, depth, number of samples and variance as layers into .exr pictures.
     #[arg(long)]
     aovs: bool,
+    /// Write the sums behind the picture into .exr pictures, so that `glossmith merge` can join it with others.
+    #[arg(long, conflicts_with = "aovs")]
+    keep_sums: bool,
+    /// The number of each pixel's first sample: parts of a picture's samples can be rendered apart and joined.
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    samples_from: u32,
+    /// The number after the last; stands over --samples.
+    #[arg(long, value_name = "N")]
+    samples_to: Option<u32>,
     /// Write what was rendered, how and how fast, as JSON.
     #[arg(long, value_name = "FILE")]
     report: Option<PathBuf>,
+}
+
+impl RenderArguments {
+    /// Takes the part of the samples that is asked for.
+    fn put_samples(&self, document: &mut Document) -> anyhow::Result<()> {
+        let (from, render) = (self.samples_from, &mut document.render);
+        if let Some(to) = self.samples_to {
+            if to <= from {
+                bail!("--samples-to {to} must be above --samples-from {from}");
+            }
+            render.samples = to - from;
+        } else if from.checked_add(render.samples).is_none() {
+            bail!("--samples-from {from} leaves no numbers for the samples; give --samples-to");
+        }
+        render.first_sample = from;
+        if from > 0 && (self.aovs || document.view.denoise != Denoise::Off) {
+            bail!("--samples-from {from}: layers and the denoiser need the first samples; merge, then denoise");
+        }
+        Ok(())
+    }
 }
 
 /// Renders as the arguments say.
@@ -54,13 +84,18 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     if arguments.aovs && !arguments.outputs.iter().any(takes_layers) {
         bail!("--aovs writes layers into .exr pictures; give --output FILE.exr");
     }
+    if arguments.keep_sums && !arguments.outputs.iter().any(takes_layers) {
+        bail!("--keep-sums writes sums into .exr pictures; give --output FILE.exr");
+    }
     let begun = Instant::now();
     let scene = &arguments.scene;
     let mut session = Session::open(scene.engine)?;
-    let document = scene.document(&mut session)?;
+    let mut document = scene.document(&mut session)?;
+    arguments.put_samples(&mut document)?;
     let targets = Targets {
         outputs: &arguments.outputs,
         has_layers: arguments.aovs,
+        has_sums: arguments.keep_sums,
         report: arguments.report.as_deref(),
     };
     render(session, scene.engine, &document, begun, &targets)
@@ -71,6 +106,8 @@ struct Targets<'a> {
     outputs: &'a [PathBuf],
     /// .exr pictures have layers.
     has_layers: bool,
+    /// .exr pictures have the film's sums.
+    has_sums: bool,
     report: Option<&'a Path>,
 }
 
@@ -88,6 +125,7 @@ pub fn run_default(files: &[PathBuf], engine: EngineChoice) -> anyhow::Result<()
     let targets = Targets {
         outputs: &[path],
         has_layers: false,
+        has_sums: false,
         report: None,
     };
     render(session, engine, &document, begun, &targets)
@@ -113,7 +151,16 @@ fn render(
     let image = session.image()?;
     let shown = denoised.as_ref().map(|denoised| &denoised.image);
     for path in targets.outputs {
-        if targets.has_layers && output::format_of(path)? == Format::Exr {
+        if targets.has_sums && output::format_of(path)? == Format::Exr {
+            let (first, film) = (document.render.first_sample, session.film()?.clone());
+            let last = first + film.samples_max();
+            let kept = KeptFilm {
+                film,
+                document: document.clone(),
+                samples: vec![[first, last]],
+            };
+            kept.write(path)?;
+        } else if targets.has_layers && output::format_of(path)? == Format::Exr {
             let layers = Layers {
                 denoised: shown.cloned(),
                 ..session.layers()?

@@ -64,7 +64,8 @@ impl Change {
         self.materials |= !look_alike(old, new) || !emit_alike(lights, other_lights);
         self.geometry |=
             (&old.model, &old.import) != (&new.model, &new.import) || !have_same_shapes(lights, other_lights);
-        self.sampling |= (render.effects, render.region) != (other.effects, other.region);
+        self.sampling |=
+            (render.effects, render.region, render.first_sample) != (other.effects, other.region, other.first_sample);
     }
 
     /// As if nothing had been rendered yet.

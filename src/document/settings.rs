@@ -277,6 +277,8 @@ pub struct RenderSettings {
     pub height: u32,
     /// Samples a pixel after which rendering stops.
     pub samples: u32,
+    /// The number of the first of them: a part of a picture's samples is rendered where it is not 0.
+    pub first_sample: u32,
     /// Seconds after which it stops earlier.
     pub time_s: Option<f64>,
     /// Relative error of the picture (see [`crate::analysis::noise`]) at which it stops earlier; 0.01 is 1 %.
@@ -311,6 +313,7 @@ impl Default for RenderSettings {
             width: 512,
             height: 512,
             samples: 256,
+            first_sample: 0,
             time_s: None,
             noise: None,
             min_samples: 16,

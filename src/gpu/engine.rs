@@ -86,6 +86,7 @@ impl GpuEngine {
     /// [`GpuError::TooLarge`] where the adapter can't hold a part of it.
     pub fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         let [width, height] = job.settings.image_size;
+        let first_sample = job.settings.first_sample;
         let old = self.resources.take();
         if old
             .as_ref()
@@ -97,7 +98,7 @@ impl GpuEngine {
         self.film = Film::default();
         self.film = Film::of(&job);
         self.resources = Some(Resources::new(&self.gpu, &self.pipelines.bindings, job, old)?);
-        self.schedule = Schedule::new(width, height);
+        self.schedule = Schedule::starting_at(width, height, first_sample);
         (self.unflushed, self.is_flushed, self.gpu_seconds) = (0, true, 0.0);
         Ok(())
     }

@@ -256,6 +256,12 @@ impl Film {
         f64::from(even.samples) + f64::from(odd.samples)
     }
 
+    /// The most samples that a pixel has.
+    pub fn samples_max(&self) -> u32 {
+        let samples = (0..self.pixels.len()).map(|pixel| self.samples_of(pixel) as u32);
+        samples.max().unwrap_or(0)
+    }
+
     /// How many of a pixel's samples are in the sums of what they saw first.
     pub fn guide_samples(&self, pixel: usize) -> f64 {
         self.samples_of(pixel).min(f64::from(GUIDE_SAMPLES))

@@ -70,6 +70,8 @@ pub struct Settings {
     pub strategy: Strategy,
     /// Changes all random numbers.
     pub seed: u32,
+    /// The number of each pixel's first sample.
+    pub first_sample: u32,
 }
 
 named! {

@@ -117,6 +117,8 @@ pub struct SliceLimits {
 #[derive(Clone, Debug, Default)]
 pub struct Schedule {
     grid: TileGrid,
+    /// The number of each pixel's first sample: all others here are counted from it.
+    first_sample: u32,
     samples: Vec<u32>,
     goals: Vec<u32>,
     /// The tiles of the pass in progress, how many of them have been rendered, and the most samples that each gets.
@@ -129,9 +131,15 @@ pub struct Schedule {
 impl Schedule {
     /// Nothing rendered, nothing to render.
     pub fn new(width: u32, height: u32) -> Self {
+        Self::starting_at(width, height, 0)
+    }
+
+    /// The same for samples from a number on.
+    pub fn starting_at(width: u32, height: u32, first_sample: u32) -> Self {
         let grid = TileGrid { width, height };
         Self {
             grid,
+            first_sample,
             samples: vec![0; grid.tiles()],
             goals: vec![0; grid.tiles()],
             ..Self::default()
@@ -178,11 +186,10 @@ impl Schedule {
     /// The next tiles of the pass, at most `most`.
     fn next(&self, most: usize) -> Vec<Work> {
         let work = |tile: &usize| {
-            let first_sample = self.samples[*tile];
-            let lacking = self.goals[*tile].saturating_sub(first_sample);
+            let lacking = self.goals[*tile].saturating_sub(self.samples[*tile]);
             Work {
                 tile: *tile,
-                first_sample,
+                first_sample: self.first_sample.saturating_add(self.samples[*tile]),
                 count: lacking.min(self.pass_samples),
             }
         };

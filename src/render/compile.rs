@@ -71,6 +71,7 @@ impl Compiler {
             sequence: document.render.sequence,
             strategy: document.render.strategy,
             seed: document.render.seed,
+            first_sample: document.render.first_sample,
         };
         let plan = plan(&Facts {
             document,

@@ -23,6 +23,7 @@ pub mod probe;
 pub mod samples;
 mod session;
 pub mod study;
+pub mod sums;
 pub mod thumbnails;
 pub mod turntable;
 pub mod worker;

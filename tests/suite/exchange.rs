@@ -231,13 +231,20 @@ fn a_measurement_looks_like_the_material_that_it_was_made_of() {
     place.done("convert gold gold.binary");
     let run = place.done("fit --target gold.binary --output like.json");
     let like = load_material(&place.path("like.json")).unwrap().value;
+    // nearest  TV 0.0340  Geometric 0.16097, smooth
+    let nearest = run.stdout.lines().find(|line| line.starts_with("nearest")).unwrap();
+    let numbers: Vec<f64> = nearest.split([' ', ',']).filter_map(|word| word.parse().ok()).collect();
     let gold = PRESETS.iter().find(|material| material.name == "Gold").unwrap();
+    assert!(numbers[0] < 0.06, "{}", run.stdout);
     assert!(
-        (like.roughness - gold.roughness).abs() < 0.1,
-        "{}\n{}",
-        like.roughness,
+        (numbers[1] / f64::from(gold.roughness) - 1.0).abs() < 0.03,
+        "{}",
         run.stdout
     );
+    // What η and k reflect head-on.
+    for (like, gold) in like.base_color.into_iter().zip([0.967, 0.802, 0.324]) {
+        assert!((like - gold).abs() < 0.03, "{}", run.stdout);
+    }
     assert_eq!(like.metalness, 1.0);
 }
 

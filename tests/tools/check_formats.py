@@ -44,7 +44,7 @@ def materialx(path):
 
 
 def usd(path):
-    from pxr import Usd, UsdShade, UsdUtils
+    from pxr import Usd, UsdShade, UsdValidation
 
     stage = Usd.Stage.Open(path)
     materials = [UsdShade.Material(prim) for prim in stage.Traverse() if prim.IsA(UsdShade.Material)]
@@ -57,25 +57,36 @@ def usd(path):
                 wrong.append(f"{path}: {material.GetPath()} has no surface for '{context}'")
         if "glossmith_material" not in material.GetPrim().GetCustomData():
             wrong.append(f"{path}: {material.GetPath()} has lost its exact parameters")
-    checker = UsdUtils.ComplianceChecker(arkit=False, skipARKitRootLayerCheck=True)
-    checker.CheckCompliance(path)
-    wrong.extend(f"{path}: {text}" for text in checker.GetErrors() + checker.GetFailedChecks())
+    validators = UsdValidation.ValidationRegistry().GetOrLoadAllValidators()
+    for error in UsdValidation.ValidationContext(validators).Validate(stage):
+        text = error.GetErrorAsString()
+        # This build of USD knows no nodes of MaterialX; those are judged by MaterialX itself.
+        if not ("MissingShaderIdInRegistry" in text and "ND_open_pbr_surface_surfaceshader" in text):
+            wrong.append(f"{path}: {text}")
 
 
-def mitsuba(path):
-    """The mean of the middle of the ball in even light, by channel."""
+def mitsuba(path, spp=1):
+    """Prints the mean of the middle of the ball in even light, by channel."""
     import mitsuba as mi
 
     mi.set_variant("scalar_rgb")
-    scene = mi.load_file(path, spp=64)
-    picture = mi.render(scene, spp=64, seed=1).numpy()
-    if not (picture[..., :3] >= 0).all():
+    scene = mi.load_file(path)
+    picture = mi.render(scene, spp=spp, seed=1)
+    height, width, channels = picture.shape
+    numbers = list(picture.array)
+    if not all(x >= 0 for x in numbers):
         wrong.append(f"{path}: darker than black")
-    middle = picture[96:160, 96:160, :3].mean(axis=(0, 1))
-    print(path, *(f"{x:.5f}" for x in middle))
+    rows, columns = range(3 * height // 8, 5 * height // 8), range(3 * width // 8, 5 * width // 8)
+    middle = [(y * width + x) * channels for y in rows for x in columns]
+    means = (sum(numbers[at + channel] for at in middle) / len(middle) for channel in range(3))
+    print(path, *(f"{x:.5f}" for x in means))
+
+
+def mitsuba_means(path):
+    mitsuba(path, spp=64)
 
 
 for name in sys.argv[2:]:
-    {"materialx": materialx, "usd": usd, "mitsuba": mitsuba}[sys.argv[1]](name)
+    {"materialx": materialx, "usd": usd, "mitsuba": mitsuba, "mitsuba-means": mitsuba_means}[sys.argv[1]](name)
 print("\n".join(wrong))
 sys.exit(bool(wrong))

@@ -398,6 +398,7 @@ fn settings() -> Settings {
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
         seed: 0,
+        first_sample: 0,
         firefly_clamp: f64::INFINITY,
     }
 }
