@@ -191,7 +191,7 @@ impl KeptFilm {
             let joined = high
                 .iter()
                 .zip(low)
-                .map(|(high, low)| u64::from(*high) << 32 | u64::from(*low));
+                .map(|(high, low)| (u64::from(*high) << 32) | u64::from(*low));
             Ok(joined.map(f64::from_bits).collect())
         };
         let document = parse_document(path, attribute(DOCUMENT)?.as_bytes())?.value;

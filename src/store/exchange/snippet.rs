@@ -217,16 +217,17 @@ impl Language {
     fn custom_curve(self) -> String {
         let n = |x: f64| self.number(x);
         let (sqrt, max) = (self.of_library("sqrt"), self.maximum());
-        let (integer, table) = match self {
-            Self::Wgsl => ("    var low = 0;\n", "glossmith_curve"),
-            _ => ("    int low = 0;\n", "glossmith_curve"),
-        };
+        let table = "glossmith_curve";
         let mut text = String::new();
         if self == Self::Wgsl {
             // Constants are not indexed by variables there.
             text += "    var glossmith_curve = glossmith_curve_values;\n";
         }
-        text += integer;
+        text += if self == Self::Wgsl {
+            "    var low = 0;\n"
+        } else {
+            "    int low = 0;\n"
+        };
         let last = CUSTOM_INTERVALS - 1;
         text += &format!("    while (low < {last} && {table}[low + 2] <= xi) {{\n        low = low + 1;\n    }}\n");
         text += &self.named("width", &format!("{table}[0] / {}", n(CUSTOM_INTERVALS as f64)), false);
