@@ -117,6 +117,8 @@ mod plan_kernels;
 mod precision;
 #[path = "suite/random_documents.rs"]
 mod random_documents;
+#[path = "suite/refused.rs"]
+mod refused;
 #[path = "suite/renders.rs"]
 mod renders;
 #[path = "suite/same_paths.rs"]

@@ -8,14 +8,9 @@ pub(super) const UNIFORMS: wgpu::BufferBindingType = wgpu::BufferBindingType::Un
 pub(super) const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
 pub(super) const WRITE: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: false };
 
-/// What `make` makes, or what the driver has against it.
+/// A part of a pipeline, or what the driver has against its shader.
 pub(super) fn validated<T>(gpu: &GpuDevice, make: impl FnOnce(&wgpu::Device) -> T) -> Result<T, GpuError> {
-    let scope = gpu.device.push_error_scope(wgpu::ErrorFilter::Validation);
-    let made = make(&gpu.device);
-    match pollster::block_on(scope.pop()) {
-        Some(error) => Err(GpuError::Shader(error.to_string())),
-        None => Ok(made),
-    }
+    gpu.checked(make).map_err(GpuError::Shader)
 }
 
 /// The module of `shaders/pass/NAME.wgsl`, every access checked.

@@ -1,7 +1,8 @@
 //! The GPU: which adapter, and what it says when it fails.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex};
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use pollster::block_on;
 use wgpu::util::DeviceExt;
@@ -38,12 +39,22 @@ pub enum GpuError {
         /// The adapter's limit.
         allowed_mib: u64,
     },
+    /// A command that the device did not carry out; it goes on working.
+    #[error("the GPU refused a command: {0}. Choose something smaller, or render on the processor with --engine cpu")]
+    Refused(String),
     /// The device stopped working.
     #[error("the GPU stopped working: {0}. Start again, or render on the processor with --engine cpu")]
     Lost(String),
     /// A shader did not compile: a mistake of ours.
     #[error("a shader does not compile on this adapter: {0}. Please report it; --engine cpu works meanwhile")]
     Shader(String),
+}
+
+impl GpuError {
+    /// True where nothing more is to be had of the device; after any other error it goes on with what it has.
+    pub fn is_lost(&self) -> bool {
+        matches!(self, Self::Lost(_))
+    }
 }
 
 /// Which adapters are considered.
@@ -66,8 +77,18 @@ pub struct GpuDevice {
     pub queue: wgpu::Queue,
     /// Name, driver, kind.
     pub info: wgpu::AdapterInfo,
-    /// The first error that no call returned.
-    failure: Arc<Mutex<Option<String>>>,
+    failures: Arc<Mutex<Failures>>,
+    /// Bytes that a buffer may have, where that is less than the adapter's limit.
+    buffer_limit: Arc<AtomicU64>,
+}
+
+/// What the device said outside of any call.
+#[derive(Debug, Default)]
+struct Failures {
+    /// Why it stopped working.
+    lost: Option<String>,
+    /// The first error since one was last told.
+    refused: Option<String>,
 }
 
 /// Storage buffers that the path tracer binds.
@@ -127,28 +148,32 @@ impl GpuDevice {
         };
         let (device, queue) =
             block_on(adapter.request_device(&descriptor)).map_err(|error| unfit(error.to_string()))?;
-        let failure = Arc::new(Mutex::new(None));
-        let note = |failure: &Arc<Mutex<Option<String>>>, message: String| {
-            log::error!("GPU: {message}");
-            failure
-                .lock()
-                .unwrap_or_else(|poisoned| poisoned.into_inner())
-                .get_or_insert(message);
-        };
-        let uncaptured = failure.clone();
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| note(&uncaptured, error.to_string())));
-        let lost = failure.clone();
+        let failures = Arc::<Mutex<Failures>>::default();
+        let of_commands = failures.clone();
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            log::error!("GPU: {error}");
+            lock(&of_commands).refused.get_or_insert(error.to_string());
+        }));
+        let of_device = failures.clone();
         device.set_device_lost_callback(move |reason, message| {
+            // Every device is destroyed in the end.
             if reason != wgpu::DeviceLostReason::Destroyed {
-                note(&lost, message);
+                log::error!("GPU: {message}");
             }
+            lock(&of_device).lost.get_or_insert(message);
         });
         Ok(Self {
             device,
             queue,
             info,
-            failure,
+            failures,
+            buffer_limit: Arc::new(AtomicU64::new(u64::MAX)),
         })
+    }
+
+    /// Refuses buffers above a size, as a smaller adapter does: for tests of what follows.
+    pub fn limit_buffers(&self, bytes: u64) {
+        self.buffer_limit.store(bytes, Relaxed);
     }
 
     /// True where the adapter is the processor in disguise.
@@ -163,17 +188,36 @@ impl GpuDevice {
             .to_owned()
     }
 
+    /// What `make` makes, or what the device has against it.
+    pub(super) fn checked<T>(&self, make: impl FnOnce(&wgpu::Device) -> T) -> Result<T, String> {
+        use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
+        let scopes = [Internal, OutOfMemory, Validation].map(|filter| self.device.push_error_scope(filter));
+        let made = make(&self.device);
+        // The last one is closed first.
+        let said: Vec<_> = scopes
+            .into_iter()
+            .rev()
+            .filter_map(|scope| block_on(scope.pop()))
+            .collect();
+        match said.first() {
+            Some(error) => Err(error.to_string()),
+            None => Ok(made),
+        }
+    }
+
     /// Waits until all submitted work is done.
     ///
     /// # Errors
-    /// If the device failed since it was opened.
+    /// [`GpuError::Lost`] from the device's loss on; [`GpuError::Refused`] once for what it refused since this was last asked.
     pub fn wait(&self) -> Result<(), GpuError> {
         let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
-        let failure = self.failure.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-        match (&*failure, polled) {
-            (Some(message), _) => Err(GpuError::Lost(message.clone())),
-            (None, Err(error)) => Err(GpuError::Lost(error.to_string())),
-            (None, Ok(_)) => Ok(()),
+        let mut failures = lock(&self.failures);
+        let refused = failures.refused.take();
+        match (&failures.lost, polled, refused) {
+            (Some(message), ..) => Err(GpuError::Lost(message.clone())),
+            (None, Err(error), _) => Err(GpuError::Lost(error.to_string())),
+            (None, Ok(_), Some(message)) => Err(GpuError::Refused(message)),
+            (None, Ok(_), None) => Ok(()),
         }
     }
 
@@ -193,7 +237,8 @@ impl GpuDevice {
     /// [`GpuError::TooLarge`] beyond the adapter's limit.
     pub fn empty_storage(&self, what: &'static str, size: u64) -> Result<wgpu::Buffer, GpuError> {
         let limits = self.device.limits();
-        let allowed = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let of_adapter = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let allowed = of_adapter.min(self.buffer_limit.load(Relaxed));
         if size > allowed {
             return Err(GpuError::TooLarge {
                 what,
@@ -248,9 +293,14 @@ impl GpuDevice {
         self.wait()?;
         let view = staging
             .get_mapped_range(..)
-            .map_err(|error| GpuError::Lost(error.to_string()))?;
+            .map_err(|error| GpuError::Refused(error.to_string()))?;
         Ok(bytemuck::pod_collect_to_vec(&view))
     }
+}
+
+/// What a panicking thread leaves is whole: every write is a single assignment.
+fn lock(failures: &Mutex<Failures>) -> MutexGuard<'_, Failures> {
+    failures.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Sorts adapters: real GPUs first.

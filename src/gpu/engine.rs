@@ -75,29 +75,23 @@ impl GpuEngine {
         &self.gpu
     }
 
-    /// Takes the device away, as a driver's reset does; the next step fails with [`GpuError::Lost`].
-    pub fn lose_device(&self) {
-        self.gpu.device.destroy();
-    }
-
-    /// Starts a job over.
+    /// Begins a job. After an error the old one goes on.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] where the adapter can't hold a part of it.
+    /// [`GpuError::TooLarge`], [`GpuError::Unfit`] and [`GpuError::Refused`] where the adapter can't hold a part of it.
     pub fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         let [width, height] = job.settings.image_size;
         let first_sample = job.settings.first_sample;
-        let old = self.resources.take();
-        if old
-            .as_ref()
-            .is_some_and(|old| old.job().plan.specialisation() != job.plan.specialisation())
-        {
+        let old = self.resources.as_ref();
+        let resources = Resources::new(&self.gpu, &self.pipelines.bindings, job.clone(), old)?;
+        if old.is_some_and(|old| old.job().plan.specialisation() != job.plan.specialisation()) {
             self.samples_per_second = 0.0;
         }
-        // The old one goes first: two would take twice the memory.
+        resources.clear_sums(&self.gpu);
+        self.resources = Some(resources);
+        // The old film goes first: two would take twice the memory.
         self.film = Film::default();
         self.film = Film::of(&job);
-        self.resources = Some(Resources::new(&self.gpu, &self.pipelines.bindings, job, old)?);
         self.schedule = Schedule::starting_at(width, height, first_sample);
         (self.unflushed, self.is_flushed, self.gpu_seconds) = (0, true, 0.0);
         Ok(())
@@ -118,9 +112,9 @@ impl GpuEngine {
         self.dispatch(&[Tile::default()])
     }
 
-    /// Lets the scene go and keeps the kernels.
+    /// Lets scene and film go and keeps the kernels.
     pub fn rest(&mut self) {
-        self.resources = None;
+        (self.resources, self.film, self.schedule) = (None, Film::default(), Schedule::default());
     }
 
     /// Goes on with what another engine rendered of the same job.

@@ -34,17 +34,27 @@ pub struct Resources {
 }
 
 impl Resources {
-    /// Uploads a job, taking over from `old` what has not changed. The sums are zero.
+    /// Uploads a job, sharing with `old` what has not changed. The sums may be the old ones as they stand.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`] where the adapter can't hold a part of it.
+    /// [`GpuError::TooLarge`], [`GpuError::Unfit`] and [`GpuError::Refused`] where the adapter can't hold a part of it; what
+    /// `old` holds is as it was.
     pub fn new(
         gpu: &GpuDevice,
         bindings: &wgpu::BindGroupLayout,
         job: Arc<Job>,
-        old: Option<Self>,
+        old: Option<&Self>,
     ) -> Result<Self, GpuError> {
-        let old = old.as_ref();
+        gpu.checked(|_| Self::made(gpu, bindings, job, old))
+            .map_err(GpuError::Refused)?
+    }
+
+    fn made(
+        gpu: &GpuDevice,
+        bindings: &wgpu::BindGroupLayout,
+        job: Arc<Job>,
+        old: Option<&Self>,
+    ) -> Result<Self, GpuError> {
         let geometry = match old.filter(|old| Arc::ptr_eq(&old.job.geometry, &job.geometry)) {
             Some(old) => old.geometry.clone(),
             None => upload_geometry(gpu, &job.geometry)?,
@@ -94,8 +104,10 @@ impl Resources {
                 )?,
             ],
         };
-        clear(gpu, &sums);
-        let tiles = gpu.empty_storage("the list of tiles", (DISPATCH_TILES * size_of::<Tile>()) as u64)?;
+        let tiles = match old {
+            Some(old) => old.tiles.clone(),
+            None => gpu.empty_storage("the list of tiles", (DISPATCH_TILES * size_of::<Tile>()) as u64)?,
+        };
         let globals = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("globals"),
             size: size_of::<Globals>() as u64,
@@ -155,20 +167,16 @@ impl Resources {
 
     /// Sets the sums to zero.
     pub fn clear_sums(&self, gpu: &GpuDevice) {
-        clear(gpu, &self.sums);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        for buffer in &self.sums {
+            encoder.clear_buffer(buffer, 0, None);
+        }
+        gpu.queue.submit([encoder.finish()]);
     }
 }
 
 fn pixels(job: &Job) -> u64 {
     job.settings.image_size.iter().map(|&x| u64::from(x)).product()
-}
-
-fn clear(gpu: &GpuDevice, buffers: &[wgpu::Buffer]) {
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    for buffer in buffers {
-        encoder.clear_buffer(buffer, 0, None);
-    }
-    gpu.queue.submit([encoder.finish()]);
 }
 
 fn upload_geometry(gpu: &GpuDevice, geometry: &Geometry) -> Result<[wgpu::Buffer; 4], GpuError> {

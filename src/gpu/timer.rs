@@ -67,7 +67,7 @@ impl Timer {
             let view = self
                 .staging
                 .get_mapped_range(..)
-                .map_err(|error| GpuError::Lost(error.to_string()))?;
+                .map_err(|error| GpuError::Refused(error.to_string()))?;
             bytemuck::pod_read_unaligned(&view)
         };
         self.staging.unmap();

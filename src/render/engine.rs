@@ -123,10 +123,11 @@ impl Engine {
         }
     }
 
-    /// See [`super::worker::Worker::lose_device`].
-    pub(super) fn lose_device(&self) {
-        if let Engine::Gpu(engine) = self {
-            engine.lose_device();
+    /// The GPU's device, where it renders.
+    pub(super) fn device(&self) -> Option<&GpuDevice> {
+        match self {
+            Engine::Cpu(_) => None,
+            Engine::Gpu(engine) => Some(engine.device()),
         }
     }
 

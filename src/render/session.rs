@@ -15,7 +15,7 @@ use crate::analysis::halves::Distance;
 use crate::analysis::noise::Noise;
 use crate::document::change::Change;
 use crate::document::{Denoise, Document};
-use crate::gpu::GpuError;
+use crate::gpu::{GpuDevice, GpuError};
 use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
 use crate::job::features::Features;
@@ -128,6 +128,10 @@ pub struct Session {
     stand_in_seconds: f64,
     /// Where kernels are compiled beside the picture; `None` where the session waits for them.
     workshop: Option<Workshop>,
+    /// The GPU can't take over what the processor draws.
+    keeps_stand_in: bool,
+    /// The engine failed at the picture, which stays as it is.
+    is_stuck: bool,
     precision: Precision,
     denoised: Option<Distance>,
     /// Why guides are kept whatever the document says.
@@ -166,6 +170,8 @@ impl Session {
             step_time: Duration::ZERO,
             stand_in_seconds: 0.0,
             workshop: None,
+            keeps_stand_in: false,
+            is_stuck: false,
             precision: Precision::default(),
             denoised: None,
             guides_wanted: None,
@@ -190,19 +196,22 @@ impl Session {
 
     /// True while the processor draws because the GPU's kernel is being compiled.
     pub fn is_standing_in(&self) -> bool {
-        self.workshop.is_some() && matches!(self.engine, Engine::Cpu(_))
+        self.workshop.is_some() && !self.keeps_stand_in && matches!(self.engine, Engine::Cpu(_))
     }
 
-    /// Lets the GPU take over where its kernel is ready by now.
+    /// Lets the GPU take over where its kernel is ready by now. After an error the processor goes on with the picture.
     fn change_over(&mut self) -> Result<(), SessionError> {
-        let (true, Some(job)) = (self.is_standing_in(), &self.job) else {
+        let (true, Some(job), Some(workshop)) = (self.is_standing_in(), &self.job, &mut self.workshop) else {
             return Ok(());
         };
-        let finished = self.workshop.as_mut().map(|workshop| workshop.finished(job));
-        let Some(mut engine) = finished.transpose()?.flatten() else {
-            return Ok(());
+        let engine = match workshop.finished(job) {
+            Ok(engine) => engine,
+            Err(error) => {
+                self.keeps_stand_in = true;
+                return Err(error.into());
+            }
         };
-        engine.submit(job.clone())?;
+        let Some(mut engine) = engine else { return Ok(()) };
         self.stand_in_seconds += self.engine_seconds();
         self.step_time = Duration::ZERO;
         if let Engine::Cpu(stand_in) = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
@@ -213,9 +222,9 @@ impl Session {
         Ok(())
     }
 
-    /// See [`super::worker::Worker::lose_device`].
-    pub(super) fn lose_device(&self) {
-        self.engine.lose_device();
+    /// The GPU's device, where it renders at the moment.
+    pub fn device(&self) -> Option<&GpuDevice> {
+        self.engine.device()
     }
 
     /// What renders.
@@ -287,6 +296,7 @@ impl Session {
             self.job = Some(job);
         }
         self.document = Some(document.clone());
+        self.is_stuck = false;
         if change.target {
             // The goals in force were those of another aim.
             self.convergence.goals.clear();
@@ -305,29 +315,35 @@ impl Session {
         Ok(memory::check(job, is_software_gpu, allowed)?)
     }
 
-    /// Has the engine begin anew.
+    /// Has the engine begin anew; after an error it goes on with what it had.
     fn start(&mut self, job: Arc<Job>) -> Result<(), SessionError> {
-        if let Some(workshop) = &mut self.workshop {
-            let current = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default()));
-            self.engine = workshop.engine_for(&job, current);
+        match &mut self.workshop {
+            Some(workshop) => workshop.begin(&job, &mut self.engine)?,
+            None => self.engine.submit(job)?,
         }
-        self.engine.submit(job)?;
+        self.keeps_stand_in = false;
         self.start_clocks();
         Ok(())
     }
 
     fn start_clocks(&mut self) {
-        self.denoised = None;
+        (self.denoised, self.is_stuck) = (None, false);
         self.convergence = Convergence::default();
         (self.render_time, self.step_time, self.stand_in_seconds) = (Duration::ZERO, Duration::ZERO, 0.0);
     }
 
-    /// Renders for about `budget`.
+    /// Renders for about `budget`. After an error of the engine the picture is done as it is, until something is submitted.
     ///
     /// # Errors
     /// If the GPU fails; [`Session::fall_back_to_cpu`] goes on without it.
     pub fn step(&mut self, budget: Duration) -> Result<Progress, SessionError> {
         self.change_over()?;
+        let outcome = self.render(budget);
+        self.is_stuck = outcome.is_err();
+        outcome
+    }
+
+    fn render(&mut self, budget: Duration) -> Result<Progress, SessionError> {
         let before = self.render_time;
         let begun = Instant::now();
         while !self.progress().is_done {
@@ -424,7 +440,7 @@ impl Session {
         } else {
             None
         };
-        progress.is_done = self.job.is_none() || progress.stopped_by.is_some();
+        progress.is_done = self.job.is_none() || self.is_stuck || progress.stopped_by.is_some();
         progress
     }
 

@@ -56,26 +56,42 @@ impl Workshop {
         self.compile_time.as_ref().map(Duration::as_secs_f64)
     }
 
-    /// The engine to begin a job with: the GPU's where a kernel is ready, else the processor's, until [`Self::finished`]
-    /// gives one.
-    pub(super) fn engine_for(&mut self, job: &Arc<Job>, current: Engine) -> Engine {
-        if let Engine::Gpu(engine) = current {
-            self.ready.push(*engine);
-        }
+    /// Begins a job with the GPU where a kernel is ready, else with the processor, until [`Self::finished`] gives one.
+    /// After an error the current engine goes on with what it had.
+    ///
+    /// # Errors
+    /// What the GPU has against the job.
+    pub(super) fn begin(&mut self, job: &Arc<Job>, current: &mut Engine) -> Result<(), GpuError> {
         let wanted = job.plan.specialisation();
-        if let Some(place) = self.ready.iter().position(|engine| engine.has_kernel(&wanted)) {
-            return Engine::Gpu(Box::new(self.ready.remove(place)));
+        if let Engine::Gpu(engine) = current
+            && engine.has_kernel(&wanted)
+        {
+            return engine.submit(job.clone());
+        }
+        let next = match self.ready.iter().position(|engine| engine.has_kernel(&wanted)) {
+            Some(place) => {
+                self.ready[place].submit(job.clone())?;
+                Engine::Gpu(Box::new(self.ready.remove(place)))
+            }
+            None => {
+                self.compile(job);
+                let mut engine = Engine::Cpu(Box::default());
+                engine.submit(job.clone())?;
+                engine
+            }
+        };
+        if let Engine::Gpu(engine) = std::mem::replace(current, next) {
+            self.ready.push(*engine);
         }
         if self.ready.len() > KEPT {
             self.ready.remove(0);
         }
         self.ready.iter_mut().for_each(GpuEngine::rest);
-        self.begin(job);
-        Engine::Cpu(Box::default())
+        Ok(())
     }
 
-    /// Begins to compile where nothing else is being compiled.
-    fn begin(&mut self, job: &Arc<Job>) {
+    /// Compiles a job's kernel where nothing else is being compiled.
+    fn compile(&mut self, job: &Arc<Job>) {
         if self.in_work.is_some() {
             return;
         }
@@ -107,13 +123,13 @@ impl Workshop {
         }
     }
 
-    /// The engine whose kernel is for this job, once it is ready.
+    /// The engine that has taken this job, once its kernel is ready.
     ///
     /// # Errors
-    /// What the driver said to the kernel.
+    /// What the driver said to the kernel, or the GPU to the job.
     pub(super) fn finished(&mut self, job: &Arc<Job>) -> Result<Option<GpuEngine>, GpuError> {
         let Some(preparation) = &self.in_work else {
-            self.begin(job);
+            self.compile(job);
             return Ok(None);
         };
         let outcome = match preparation.engine.try_recv() {
@@ -126,12 +142,26 @@ impl Workshop {
         let is_wanted = preparation.specialisation == job.plan.specialisation();
         self.compile_time = Some(preparation.begun.elapsed());
         self.in_work = None;
-        let engine = outcome?;
-        if is_wanted {
-            return Ok(Some(engine));
+        let mut engine = match outcome {
+            // Another job's: this one has its own chance.
+            Err(error) if !is_wanted && !error.is_lost() => {
+                log::warn!("{error}");
+                self.compile(job);
+                return Ok(None);
+            }
+            outcome => outcome?,
+        };
+        if !is_wanted {
+            engine.rest();
+            self.ready.push(engine);
+            self.compile(job);
+            return Ok(None);
         }
-        self.ready.push(engine);
-        self.begin(job);
-        Ok(None)
+        let taken = engine.submit(job.clone());
+        if taken.is_err() {
+            self.ready.push(engine);
+            return taken.map(|()| None);
+        }
+        Ok(Some(engine))
     }
 }

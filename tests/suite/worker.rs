@@ -26,7 +26,7 @@ fn worker() -> Worker {
     Worker::spawn(EngineChoice::Cpu, || {}).expect("a thread")
 }
 
-fn wait(worker: &Worker, what: &str, until: impl Fn(&Snapshot) -> bool) -> Arc<Snapshot> {
+pub fn wait(worker: &Worker, what: &str, until: impl Fn(&Snapshot) -> bool) -> Arc<Snapshot> {
     let begun = Instant::now();
     loop {
         let snapshot = worker.snapshot();
@@ -42,7 +42,7 @@ fn wait(worker: &Worker, what: &str, until: impl Fn(&Snapshot) -> bool) -> Arc<S
     }
 }
 
-fn finished(worker: &Worker, revision: u64) -> Arc<Picture> {
+pub fn finished(worker: &Worker, revision: u64) -> Arc<Picture> {
     let is_finished = |snapshot: &Snapshot| {
         let picture = snapshot.picture.as_ref();
         snapshot.activity == Activity::Done
@@ -52,7 +52,7 @@ fn finished(worker: &Worker, revision: u64) -> Arc<Picture> {
     snapshot.picture.clone().expect("checked above")
 }
 
-fn errors(worker: &Worker) -> Vec<String> {
+pub fn errors(worker: &Worker) -> Vec<String> {
     let error = |event| match event {
         Event::Message(Level::Error, text) => Some(text),
         _ => None,

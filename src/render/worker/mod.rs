@@ -23,6 +23,7 @@ use super::priority::lower_thread_priority;
 use super::session::Progress;
 use crate::analysis::halves::Distance;
 use crate::document::Document;
+use crate::gpu::GpuDevice;
 use crate::job::Job;
 use crate::job::film::Image;
 use crate::scene::environment::{Environment, EnvironmentSource};
@@ -203,7 +204,8 @@ struct Orders {
     shown: Option<Shown>,
     reload: bool,
     restart: bool,
-    lose_device: bool,
+    /// What befalls the GPU's device.
+    device: Vec<fn(&GpuDevice)>,
     quit: bool,
 }
 
@@ -217,7 +219,7 @@ impl Orders {
             && self.shown.is_none()
             && !self.reload
             && !self.restart
-            && !self.lose_device
+            && self.device.is_empty()
             && !self.quit
     }
 }
@@ -341,7 +343,12 @@ impl Worker {
 
     /// Takes the GPU's device away, as a driver's reset does: for tests of what follows. Nothing on the processor.
     pub fn lose_device(&self) {
-        self.order(|orders| orders.lose_device = true);
+        self.order(|orders| orders.device.push(|device| device.device.destroy()));
+    }
+
+    /// Has the GPU refuse buffers above 1 MiB, as a small adapter does larger ones: for tests of what follows.
+    pub fn limit_buffers(&self) {
+        self.order(|orders| orders.device.push(|device| device.limit_buffers(1 << 20)));
     }
 
     /// Goes on with another engine.

@@ -107,8 +107,8 @@ impl State<'_> {
             self.open(choice);
             self.restart();
         }
-        if let Some(session) = self.session.as_ref().filter(|_| orders.lose_device) {
-            session.lose_device();
+        if let Some(device) = self.session.as_ref().and_then(Session::device) {
+            orders.device.iter().for_each(|befall| befall(device));
         }
         if orders.reload || orders.restart {
             self.guarded(|state| {
@@ -269,12 +269,12 @@ impl State<'_> {
         }
     }
 
-    /// Runs what may fail. Where the GPU does, or something panics, the processor takes over with the same document;
-    /// anything else is said and leaves what was there.
+    /// Runs what may fail. Where the GPU is lost, or something panics, the processor takes over with the same document;
+    /// anything else is said and leaves what was there, the GPU included.
     fn guarded(&mut self, work: impl FnOnce(&mut Self) -> Result<(), SessionError>) -> bool {
         let why = match caught(|| work(self)) {
             Ok(Ok(())) => return true,
-            Ok(Err(SessionError::Gpu(error))) => error.to_string(),
+            Ok(Err(SessionError::Gpu(error))) if error.is_lost() => error.to_string(),
             Ok(Err(error)) => {
                 self.say(Level::Error, error.to_string());
                 return false;

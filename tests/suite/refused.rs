@@ -1,0 +1,186 @@
+//! What the GPU refuses: only a lost device ends it, anything else leaves what was there.
+
+use std::time::{Duration, Instant};
+
+use glossmith::document::Document;
+use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
+use glossmith::job::film::Image;
+use glossmith::render::worker::{Activity, Pace, Worker};
+use glossmith::render::{Assets, EngineChoice, EngineKind, Session, SessionError};
+use glossmith::scene::environment::{Environment, EnvironmentSource};
+
+use super::worker::{errors, finished, small_document, wait};
+
+const STEP: Duration = Duration::from_millis(20);
+/// More steps than any render here takes.
+const STEPS: usize = 3000;
+
+fn gpu() -> Session {
+    Session::open(EngineChoice::Gpu).expect("a Vulkan driver: apt install mesa-vulkan-drivers")
+}
+
+fn render(session: &mut Session) {
+    for _ in 0..STEPS {
+        if session.step(STEP).expect("nothing fails here").is_done {
+            return;
+        }
+    }
+    panic!("it spins: {:?}", session.progress());
+}
+
+/// Where the GPU's sums are taken over depends on the clock, and with it their rounding.
+fn is_alike(a: &Image, b: &Image) -> bool {
+    let is_near = |(a, b): (&[f32; 4], &[f32; 4])| {
+        let channels = a.iter().zip(b);
+        channels
+            .into_iter()
+            .all(|(a, b)| (a - b).abs() <= 1e-4 * (a + b + 0.01))
+    };
+    a.pixels.iter().zip(&b.pixels).all(is_near)
+}
+
+/// Wider than any adapter's textures: files are made smaller when they are read.
+fn too_wide(assets: &Assets) -> EnvironmentSource {
+    let width = 1 << 17;
+    let texels = vec![[1.0; 4]; width as usize];
+    let source = EnvironmentSource::File("wide.hdr".into());
+    let environment = Environment::from_texels("wide.hdr".to_owned(), width, 1, texels).expect("texels");
+    assets.keep_environment(source.clone(), environment);
+    source
+}
+
+#[test]
+fn a_refused_command_is_told_once_and_the_device_goes_on() {
+    let gpu = GpuDevice::open(AdapterKind::Any).expect("a Vulkan driver: apt install mesa-vulkan-drivers");
+    let buffer = gpu.storage("a test's", &[1; 64]).expect("small");
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(&buffer, 0, &buffer, 0, 1 << 20);
+    gpu.queue.submit([encoder.finish()]);
+    let refused = gpu.wait().expect_err("there are no such bytes");
+    assert!(matches!(refused, GpuError::Refused(_)), "{refused}");
+    assert!(!refused.is_lost());
+    assert_eq!(gpu.read::<u8>(&buffer, 64).expect("told already"), [1; 64]);
+    gpu.device.destroy();
+    for _ in 0..2 {
+        assert!(gpu.wait().is_err_and(|error| error.is_lost()));
+    }
+}
+
+#[test]
+fn what_the_adapter_cannot_hold_leaves_the_old_picture_in_the_making() {
+    let mut document = small_document();
+    document.render.samples = 40;
+    let mut undisturbed = gpu();
+    undisturbed.submit(&document).expect("a sphere");
+    render(&mut undisturbed);
+    let mut session = gpu();
+    session.submit(&document).expect("a sphere");
+    let begun = session
+        .step(Duration::ZERO)
+        .expect("nothing fails here")
+        .samples_per_pixel;
+    assert!(begun < 40, "{begun}");
+    let wide = too_wide(session.assets());
+    let mut refused = document.clone();
+    refused.lighting.environment = wide;
+    let mut large = document.clone();
+    (large.render.width, large.render.height) = (400, 400);
+    session.device().expect("it renders").limit_buffers(1 << 20);
+    for refused in [&refused, &large] {
+        let error = session.submit(refused).expect_err("the adapter can't");
+        assert!(
+            matches!(error, SessionError::Gpu(ref error) if !error.is_lost()),
+            "{error}"
+        );
+        assert_eq!(session.progress().samples_per_pixel, begun);
+    }
+    render(&mut session);
+    let expected = undisturbed.image().expect("it is done");
+    assert!(is_alike(&session.image().expect("it goes on"), &expected));
+    // Finished, it stays as well, and the next edit is rendered.
+    session.submit(&large).expect_err("the adapter can't");
+    assert!(session.step(STEP).expect("nothing to do").is_done);
+    assert!(is_alike(&session.image().expect("it stays"), &expected));
+    session.device().expect("it renders").limit_buffers(u64::MAX);
+    document.materials[0].roughness = 0.9;
+    session.submit(&document).expect("another sphere");
+    render(&mut session);
+    assert_eq!(session.engine().kind, EngineKind::Gpu);
+    assert!(!is_alike(&session.image().expect("it is there"), &expected));
+}
+
+/// Where the processor draws until the kernel is there, it finishes what the GPU can't take.
+#[test]
+fn the_processor_finishes_what_the_gpu_cannot_take_over() {
+    let assets = Assets::default();
+    let mut session = Session::open_fluid(EngineChoice::Gpu, assets.clone()).expect("a Vulkan driver");
+    let mut document = small_document();
+    document.render.samples = 20_000;
+    let plain = document.clone();
+    document.lighting.environment = too_wide(&assets);
+    session.submit(&document).expect("the processor takes it");
+    let mut told = Vec::new();
+    let begun = Instant::now();
+    while told.is_empty() && begun.elapsed() < Duration::from_secs(60) {
+        told.extend(session.step(STEP).err());
+    }
+    assert!(
+        matches!(told.as_slice(), [SessionError::Gpu(GpuError::Unfit { .. })]),
+        "{told:?}"
+    );
+    let before = session.progress();
+    assert!(!before.is_standing_in && !before.is_done, "{before:?}");
+    let after = session.step(10 * STEP).expect("told once");
+    assert!(after.samples_per_pixel > before.samples_per_pixel, "it goes on");
+    session.submit(&plain).expect("a sphere");
+    let begun = Instant::now();
+    while session.device().is_none() && begun.elapsed() < Duration::from_secs(120) {
+        session.step(STEP).expect("the GPU can");
+    }
+    assert!(session.device().is_some(), "the next edit gives the GPU its chance");
+}
+
+#[test]
+fn the_window_keeps_gpu_and_picture_where_an_edit_is_too_large() {
+    let worker = Worker::spawn(EngineChoice::Gpu, || {}).expect("a thread");
+    let mut document = small_document();
+    document.render.samples = 1_000_000;
+    let revision = worker.submit(&document, Pace::Still);
+    wait(&worker, "the GPU's picture", |snapshot| {
+        snapshot.picture.is_some() && !snapshot.progress.is_standing_in
+    });
+    worker.limit_buffers();
+    let large = Document {
+        render: glossmith::document::RenderSettings {
+            width: 400,
+            height: 400,
+            ..document.render
+        },
+        ..document.clone()
+    };
+    worker.submit(&large, Pace::Still);
+    let mut told = Vec::new();
+    let begun = Instant::now();
+    while told.is_empty() && begun.elapsed() < Duration::from_secs(60) {
+        told.extend(errors(&worker));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(told.iter().any(|text| text.contains("MiB at once")), "{told:?}");
+    let before = worker.snapshot();
+    assert_eq!(before.activity, Activity::Rendering, "the old picture goes on");
+    let samples = before.progress.samples_per_pixel;
+    let after = wait(&worker, "more samples", |snapshot| {
+        snapshot.progress.samples_per_pixel > samples
+    });
+    let picture = after.picture.as_ref().expect("it is shown");
+    assert_eq!((&*picture.document, picture.revision), (&document, revision));
+    assert_eq!(after.engine.as_ref().expect("it is open").kind, EngineKind::Gpu);
+    document.render.samples = 8;
+    document.materials[0].roughness = 0.9;
+    let picture = finished(&worker, worker.submit(&document, Pace::Still));
+    assert_eq!(*picture.document, document);
+    let snapshot = worker.snapshot();
+    assert_eq!(snapshot.engine.as_ref().expect("it is open").kind, EngineKind::Gpu);
+    assert!(!snapshot.progress.is_standing_in);
+    assert_eq!(errors(&worker), Vec::<String>::new());
+}
