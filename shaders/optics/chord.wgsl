@@ -1,5 +1,5 @@
 // The geometric lobe's density where the lobe is a unit ball. Twin of src/optics/chord.rs, which explains the mathematics.
-#import "optics/curve"
+#import "optics/curve/registry"
 
 const PEAK_RADIUS: f32 = 1e-7;
 const TINY: f32 = 1e-18;
@@ -55,16 +55,17 @@ fn chord_density(
         return 0.0;
     }
     var integral = 0.0;
-    switch curve {
-        case CURVE_LINEAR: { integral = chord_reciprocal_integral(chord); }
-        case CURVE_SQRT, CURVE_CBRT, CURVE_SMOOTH: {
-            if curve == CURVE_SMOOTH && chord_range(chord) < SHORT_RANGE {
+    let how = curve_integral(curve);
+    switch how {
+        case INTEGRAL_RECIPROCAL: { integral = chord_reciprocal_integral(chord); }
+        case INTEGRAL_POLYNOMIAL, INTEGRAL_POLYNOMIAL_TO_ZERO: {
+            if how == INTEGRAL_POLYNOMIAL_TO_ZERO && chord_range(chord) < SHORT_RANGE {
                 integral = chord_quadrature(curve, 3u, chord);
             } else {
-                integral = chord_polynomial_integral(chord, chord_polynomial(curve));
+                integral = chord_polynomial_integral(chord, curve_polynomial(curve));
             }
         }
-        case CURVE_LONG_TAIL: {
+        case INTEGRAL_QUADRATURE: {
             integral = chord_quadrature(curve, select(10u, 6u, kappa <= SHORT_RULE_ROUGHNESS), chord);
         }
         default: { integral = chord_table_integral(table, chord); }
@@ -164,14 +165,6 @@ fn chord_polynomial_integral(chord: Chord, h: vec3f) -> f32 {
     return h.x * chord_weighed(chord, vec3f(i0, i1, i2), vec2f(d1, d2))
         + h.y * chord_weighed(chord, vec3f(i1, i2, i3), vec2f(d2, d3))
         + h.z * chord_weighed(chord, vec3f(i2, i3, i4), vec2f(d3, d4));
-}
-
-fn chord_polynomial(curve: u32) -> vec3f {
-    switch curve {
-        case CURVE_SQRT: { return vec3f(2.0, 0.0, 0.0); }
-        case CURVE_CBRT: { return vec3f(0.0, 3.0, 0.0); }
-        default: { return vec3f(8.0, -12.0, 4.0); }
-    }
 }
 
 // `pairs` of nodes: 3, 6 or 10.

@@ -169,8 +169,7 @@ struct MaterialNumbers {
 }
 
 fn passes_on(material: Material) -> bool {
-    let lobe = planned(material.lobe, PLAN_LOBE);
-    return material_transmits(material) && (lobe == LOBE_GEOMETRIC || lobe == LOBE_LAMBERT);
+    return material_transmits(material) && weighs_one(planned(material.lobe, PLAN_LOBE));
 }
 
 fn material_sample(

@@ -2,7 +2,7 @@
 
 use crate::optics::curve::Curve;
 use crate::optics::frame::{Frame, frame_from_tangent};
-use crate::optics::lobe::{ALPHA_MIN, Horizon, Lobe, LobeShape, MIRROR_WIDTH, lobe_evaluate, raw_density};
+use crate::optics::lobe::{ALPHA_MIN, Horizon, Lobe, LobeShape, MIRROR_WIDTH, Width, lobe_evaluate, raw_density};
 use crate::optics::vector::{Vec3, vec3};
 
 /// A lobe with its settings. Directions are in the frame with the normal +z and the view in the half plane x ≤ 0, as in
@@ -32,11 +32,13 @@ pub struct LobeModel {
 impl LobeModel {
     /// An isotropic lobe under the mirror policy, named after its settings.
     pub fn new(lobe: Lobe, roughness: f64, curve: Curve) -> Self {
-        let name = match lobe {
-            Lobe::Lambert => lobe.label().to_owned(),
-            Lobe::Geometric => format!("{} {roughness}, {}", lobe.label(), curve.label().to_lowercase()),
-            _ => format!("{} {roughness}", lobe.label()),
-        };
+        let mut name = lobe.label().to_owned();
+        if lobe.has_roughness() {
+            name += &format!(" {roughness}");
+        }
+        if lobe.has_curves() {
+            name += &format!(", {}", curve.label().to_lowercase());
+        }
         Self {
             name,
             lobe,
@@ -91,13 +93,10 @@ impl LobeModel {
         self.anisotropy == 0.0 || !self.lobe.is_anisotropic()
     }
 
-    /// Radius about the mirror direction, in radians, that plots leave out: the geometric lobe's density has an
-    /// (integrable) infinite peak there, whose height would be that of the nearest point drawn.
+    /// Radius about the mirror direction, in radians, that plots leave out: where the density has an (integrable) infinite
+    /// peak, its height would be that of the nearest point drawn.
     pub fn peak_radius_rad(&self) -> f64 {
-        match self.lobe {
-            Lobe::Geometric => 0.03 * self.roughness,
-            _ => 0.0,
-        }
+        self.lobe.traits().peak * self.roughness
     }
 
     /// False where the roughness is so small that the lobe has no density to plot or fit.
@@ -116,10 +115,9 @@ pub fn view_direction(view_angle_rad: f64) -> Vec3<f64> {
 
 /// The smallest roughness at which a lobe's density is one: below, it is a mirror.
 pub fn roughness_min(lobe: Lobe) -> f64 {
-    match lobe {
-        Lobe::Geometric => MIRROR_WIDTH,
-        Lobe::Lambert => 0.0,
-        // α is the square of the roughness.
-        _ => ALPHA_MIN.sqrt(),
+    match lobe.traits().width {
+        Width::Fixed => 0.0,
+        Width::Roughness => MIRROR_WIDTH,
+        Width::Alpha => ALPHA_MIN.sqrt(),
     }
 }

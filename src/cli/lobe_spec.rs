@@ -2,7 +2,7 @@
 
 use crate::analysis::lobe_model::{LobeModel, roughness_min};
 use crate::optics::curve::Curve;
-use crate::optics::lobe::Lobe;
+use crate::optics::lobe::{Lobe, Width};
 
 use super::names::choice;
 
@@ -23,10 +23,10 @@ pub(super) fn lobe_model(text: &str) -> Result<LobeModel, String> {
     let lobe = choice::<Lobe>(name)?;
     let curve = match curve_name {
         None => Curve::Smooth,
-        Some(_) if lobe != Lobe::Geometric => return Err(format!("only the geometric lobe has curves, not {name}")),
+        Some(_) if !lobe.has_curves() => return Err(format!("only the geometric lobe has curves, not {name}")),
         Some(name) => choice::<Curve>(name)?,
     };
-    if curve == Curve::Custom {
+    if curve.has_table() {
         return Err("the custom curve has no points here; name another, or give its material by --material".to_owned());
     }
     let roughness = number.map_or(Ok(ROUGHNESS_DEFAULT), |number| roughness(lobe, number))?;
@@ -45,8 +45,11 @@ pub(super) fn lobe_model(text: &str) -> Result<LobeModel, String> {
 fn roughness(lobe: Lobe, text: &str) -> Result<f64, String> {
     let in_range = |text: &str| text.parse().ok().filter(|x: &f64| (0.0..=1.0).contains(x));
     let value = match text.strip_prefix("alpha=") {
-        Some(_) if lobe == Lobe::Geometric => {
-            return Err("the geometric lobe has no α; give its roughness R as a plain number".to_owned());
+        Some(_) if lobe.traits().width == Width::Roughness => {
+            return Err(format!(
+                "the {} lobe has no α; give its roughness R as a plain number",
+                lobe.name()
+            ));
         }
         Some(alpha) => in_range(alpha).map(f64::sqrt),
         None => in_range(text),

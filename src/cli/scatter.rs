@@ -120,7 +120,9 @@ fn format_of(path: &Path) -> anyhow::Result<Format> {
 /// A custom curve's points have no place on the command line.
 fn named_curve(text: &str) -> Result<Curve, String> {
     match choice::<Curve>(text)? {
-        Curve::Custom => Err("it has no points here; draw it in the editor, or choose a named curve".to_owned()),
+        curve if curve.has_table() => {
+            Err("it has no points here; draw it in the editor, or choose a named curve".to_owned())
+        }
         named => Ok(named),
     }
 }

@@ -6,9 +6,8 @@ use super::MaterialSettings;
 use super::import::{MATCHED, ggx_from_geometric};
 use crate::optics::albedo::{albedo_table, rough_albedo_table, table_lookup};
 use crate::optics::coat::coat_shape;
-use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
-use crate::optics::lobe::Lobe;
+use crate::optics::lobe::Width;
 use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::texture::SlotTextures;
@@ -132,7 +131,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
 
 /// The roughness that a texture's value gives: such values are meant for GGX.
 fn textured_roughness(settings: &MaterialSettings, share: f32) -> f32 {
-    if settings.lobe == Lobe::Geometric {
+    if settings.lobe.traits().width == Width::Roughness {
         let of_ggx = ggx_from_geometric(settings.roughness) * share;
         return table_lookup(&*MATCHED, 0, MATCHED_NODES, of_ggx);
     }
@@ -143,7 +142,7 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
     let mut material = without_tables(settings, textures);
     let anywhere = material.least_metallic();
     let mut curve_table = Vec::new();
-    if settings.lobe == Lobe::Geometric && settings.curve == Curve::Custom {
+    if settings.lobe.has_curves() && settings.curve.has_table() {
         curve_table = settings.custom_curve.table();
         material.curve_table = tables.len() as u32;
         tables.extend(&curve_table);
@@ -156,7 +155,7 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
         material.inner_albedo_table = tables.len() as u32;
         tables.extend(remembered_albedo(&material, &curve_table, true).iter());
     }
-    if material.textures[1] != NO_TEXTURE && settings.lobe == Lobe::Geometric {
+    if material.textures[1] != NO_TEXTURE && settings.lobe.traits().width == Width::Roughness {
         // A texture's values are meant for GGX.
         material.texture_roughness = ggx_from_geometric(settings.roughness);
         material.roughness_table = tables.len() as u32;

@@ -114,7 +114,7 @@ impl LookMatch {
 
 /// The specular lobe of a material.
 pub fn lobe_of_material(material: &MaterialSettings) -> LobeModel {
-    let is_custom = material.lobe == Lobe::Geometric && material.curve == Curve::Custom;
+    let is_custom = material.lobe.has_curves() && material.curve.has_table();
     LobeModel {
         name: material.name.clone(),
         lobe: material.lobe,
@@ -204,7 +204,7 @@ pub fn match_look(target: &Target, lobe: Lobe, view_angle_deg: f64) -> Result<Lo
     let nearest = candidate(found.roughness);
     let mut after = nearest.clone();
     let mut curve = None;
-    if lobe == Lobe::Geometric {
+    if lobe.has_curves() {
         let fitted = curve_candidate(profile, view_angle_rad, &nearest.model).ok_or(MatchError::NoHighlight)?;
         if fitted.0.total_variation < after.total_variation {
             (after, curve) = (fitted.0, Some(fitted.1));

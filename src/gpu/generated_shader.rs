@@ -7,7 +7,7 @@ use crate::job::features::GUIDE_SAMPLES;
 use crate::named::Named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
-use crate::optics::lobe::{Horizon, Lobe};
+use crate::optics::lobe::{Horizon, Lobe, LobeTraits, Width};
 use crate::optics::random::Sequence;
 use crate::scene::camera::PixelFilter;
 
@@ -17,6 +17,7 @@ pub type Generated = (&'static str, fn() -> String);
 /// Every module that no file holds.
 pub const GENERATED: &[Generated] = &[
     ("optics/lobe/registry", lobe_registry),
+    ("optics/curve/registry", curve_registry),
     ("optics/choices", optics_choices),
     ("scene/choices", scene_choices),
     ("scene/plan_constants", plan_constants),
@@ -62,58 +63,105 @@ fn plan_constants() -> String {
     text
 }
 
-/// WGSL that finds a lobe's functions by its number: the twin of the `match`es in `src/optics/lobe/mod.rs`.
+/// A function that chooses among numbered cases; the number is called `switch`.
+fn dispatch(signature: &str, switch: &str, cases: &[(u32, String)], otherwise: &str) -> String {
+    let case = |(number, value): &(u32, String)| format!("        case {number}u: {{ return {value}; }}\n");
+    let cases: String = cases.iter().map(case).collect();
+    format!(
+        "fn {signature} {{\n    switch {switch} {{\n{cases}        default: {{ return {otherwise}; }}\n    }}\n}}\n"
+    )
+}
+
+/// A case for each choice.
+fn cases<T: Named>(value: impl Fn(T) -> String) -> Vec<(u32, String)> {
+    T::ALL.iter().map(|choice| (choice.number(), value(*choice))).collect()
+}
+
+/// WGSL that finds a lobe's functions by its number, and what is special about it: the twin of the `match`es in
+/// `src/optics/lobe/mod.rs`.
 fn lobe_registry() -> String {
     let mut text = String::from("// Generated from the registry in src/optics/lobe/mod.rs.\n");
     for lobe in Lobe::ALL {
         text += &format!("#import \"optics/lobe/{}\"\n", lobe.module());
     }
     for lobe in Lobe::ALL {
-        text += &format!(
-            "const LOBE_{}: u32 = {}u;\n",
-            lobe.module().to_uppercase(),
-            *lobe as u32
-        );
+        let name = lobe.module().to_uppercase();
+        text += &format!("const LOBE_{name}: u32 = {}u;\n", *lobe as u32);
     }
-    let cases = |call: &dyn Fn(&str) -> String| -> String {
-        let case = |lobe: &Lobe| {
-            format!(
-                "        case {}u: {{ return {}; }}\n",
-                *lobe as u32,
-                call(lobe.module())
-            )
-        };
-        Lobe::ALL.iter().map(case).collect()
-    };
-    let dispatch = |signature: &str, switch: &str, cases: String, otherwise: &str| {
-        format!(
-            "fn {signature} {{\n    switch {switch} {{\n{cases}        default: {{ return {otherwise}; }}\n    }}\n}}\n"
-        )
-    };
     let directions = "shape: LobeShape, frame: Frame, wo: vec3f";
     text += &dispatch(
         &format!("raw_sample({directions}, xi: vec3f) -> vec3f"),
         "shape.lobe",
-        cases(&|module| format!("{module}_sample(shape, frame, wo, xi)")),
+        &cases(|lobe: Lobe| format!("{}_sample(shape, frame, wo, xi)", lobe.module())),
         "frame.normal",
     );
     for name in ["density", "weight"] {
         text += &dispatch(
             &format!("raw_{name}({directions}, wi: vec3f) -> f32"),
             "shape.lobe",
-            cases(&|module| format!("{module}_{name}(shape, frame, wo, wi)")),
+            &cases(|lobe: Lobe| format!("{}_{name}(shape, frame, wo, wi)", lobe.module())),
             "0.0",
         );
     }
-    let property = |signature: &str, value: &dyn Fn(Lobe) -> String, otherwise: &str| {
-        let case = |lobe: &Lobe| format!("        case {}u: {{ return {}; }}\n", *lobe as u32, value(*lobe));
-        dispatch(signature, "lobe", Lobe::ALL.iter().map(case).collect(), otherwise)
+    let mut of_lobe = |signature: &str, value: &dyn Fn(LobeTraits) -> String, otherwise: &str| {
+        text += &dispatch(signature, "lobe", &cases(|lobe: Lobe| value(lobe.traits())), otherwise);
     };
-    let hemispherical = |lobe: Lobe| format!("{}_HEMISPHERICAL", lobe.module().to_uppercase());
-    text += &property("is_hemispherical(lobe: u32) -> bool", &hemispherical, "true");
-    let anisotropic = |lobe: Lobe| lobe.is_anisotropic().to_string();
-    text += &property("is_anisotropic(lobe: u32) -> bool", &anisotropic, "false");
-    let facets = |lobe: Lobe| format!("{}u", lobe.facets() as u32);
-    text += &property("facets(lobe: u32) -> u32", &facets, "0u");
+    let hemispherical = |traits: LobeTraits| traits.is_hemispherical.to_string();
+    of_lobe("is_hemispherical(lobe: u32) -> bool", &hemispherical, "true");
+    let anisotropic = |traits: LobeTraits| traits.is_anisotropic.to_string();
+    of_lobe("is_anisotropic(lobe: u32) -> bool", &anisotropic, "false");
+    let weighs_one = |traits: LobeTraits| traits.weighs_one.to_string();
+    of_lobe("weighs_one(lobe: u32) -> bool", &weighs_one, "false");
+    let facets = |traits: LobeTraits| format!("{}u", traits.facets as u32);
+    of_lobe("facets(lobe: u32) -> u32", &facets, "0u");
+    let width = |traits: LobeTraits| match traits.width {
+        Width::Fixed => "1.0".to_owned(),
+        Width::Roughness => "roughness".to_owned(),
+        Width::Alpha => "roughness * roughness".to_owned(),
+    };
+    of_lobe("lobe_width(lobe: u32, roughness: f32) -> f32", &width, "1.0");
+    text
+}
+
+/// WGSL that finds a curve's functions by its number, and what is special about it: the twin of the `match`es in
+/// `src/optics/curve/mod.rs`.
+fn curve_registry() -> String {
+    let mut text = String::from("// Generated from the registry in src/optics/curve/mod.rs.\n");
+    for curve in Curve::ALL {
+        text += &format!("#import \"optics/curve/{}\"\n", curve.module());
+    }
+    let mut integrals: Vec<_> = Curve::ALL
+        .iter()
+        .map(|curve| curve.traits().integral.in_shaders())
+        .collect();
+    integrals.sort_unstable();
+    integrals.dedup();
+    for (number, name) in integrals {
+        text += &format!("const INTEGRAL_{name}: u32 = {number}u;\n");
+    }
+    let mut of_curve = |signature: &str, value: &dyn Fn(Curve) -> String, otherwise: &str| {
+        text += &dispatch(signature, "curve", &cases(value), otherwise);
+    };
+    let distance = |curve: Curve| format!("{}_distance(table, xi)", curve.module());
+    of_curve(
+        "curve_distance(curve: u32, table: u32, xi: f32) -> f32",
+        &distance,
+        "xi",
+    );
+    let distance_max = |curve: Curve| format!("{}_distance_max(table)", curve.module());
+    of_curve(
+        "curve_distance_max(curve: u32, table: u32) -> f32",
+        &distance_max,
+        "1.0",
+    );
+    let h = |curve: Curve| format!("{}_h(table, distance)", curve.module());
+    of_curve("curve_h(curve: u32, table: u32, distance: f32) -> f32", &h, "0.0");
+    let integral = |curve: Curve| format!("{}u", curve.traits().integral.in_shaders().0);
+    of_curve("curve_integral(curve: u32) -> u32", &integral, "0u");
+    let polynomial = |curve: Curve| {
+        let [a, b, c] = curve.traits().integral.polynomial();
+        format!("vec3f({a:?}, {b:?}, {c:?})")
+    };
+    of_curve("curve_polynomial(curve: u32) -> vec3f", &polynomial, "vec3f(0.0)");
     text
 }

@@ -9,7 +9,7 @@
 //! one from another; in the second W dv = dD. So a curve whose h is a polynomial or 1/D costs one logarithm, whatever the
 //! roughness, and a density drawn by hand costs as much in each of its intervals. Only the long tail needs quadrature.
 
-use super::curve::{CUSTOM_INTERVALS, Curve, curve_distance_max, curve_h};
+use super::curve::{CUSTOM_INTERVALS, Curve, Integral, curve_distance_max, curve_h};
 use super::numeric::log1p;
 use super::real::{Mask, Real};
 use super::vector::Vec3;
@@ -21,9 +21,9 @@ pub const TINY: f64 = 1e-18;
 /// Longest range of v worth integrating where the lobe is Lambertian, and its growth with μ: there the integrand falls as
 /// e^(2v) towards its lower end, else it is level in between.
 pub const RANGE_MAX: [f64; 2] = [20.0, 1000.0];
-/// Roughness up to which the shorter rule integrates the long tail to better than 1e-3.
+/// Roughness up to which the shorter rule integrates a curve without a closed form (the long tail) to better than 1e-3.
 pub const SHORT_RULE_ROUGHNESS: f64 = 0.5;
-/// Range of v up to which the smooth curve, whose h vanishes at the silhouette, is integrated node by node: the closed
+/// Range of v up to which a curve whose h vanishes at the silhouette is integrated node by node: the closed
 /// form takes it as a difference of moments there, each much larger.
 pub const SHORT_RANGE: f64 = 0.5;
 
@@ -92,15 +92,17 @@ pub fn chord_density<T: Real>(
     light: Vec3<T>,
 ) -> T {
     let chord = chord_through(curve_distance_max(curve, table), kappa, stretch, normal, mirror, light);
-    let integral = match curve {
-        Curve::Linear => chord_reciprocal_integral(&chord),
-        Curve::Smooth if chord_range(&chord).less(T::from_f64(SHORT_RANGE)).any() => {
+    let integral = match curve.traits().integral {
+        Integral::Reciprocal => chord_reciprocal_integral(&chord),
+        Integral::PolynomialToZero(_) if chord_range(&chord).less(T::from_f64(SHORT_RANGE)).any() => {
             chord_quadrature(curve, &GAUSS_6, &chord)
         }
-        Curve::Sqrt | Curve::Cbrt | Curve::Smooth => chord_polynomial_integral(&chord, chord_polynomial(curve)),
-        Curve::LongTail if kappa.to_f64() <= SHORT_RULE_ROUGHNESS => chord_quadrature(curve, &GAUSS_12, &chord),
-        Curve::LongTail => chord_quadrature(curve, &GAUSS_20, &chord),
-        Curve::Custom => chord_table_integral(table, chord),
+        Integral::Polynomial(h) | Integral::PolynomialToZero(h) => {
+            chord_polynomial_integral(&chord, h.map(T::from_f64))
+        }
+        Integral::Quadrature if kappa.to_f64() <= SHORT_RULE_ROUGHNESS => chord_quadrature(curve, &GAUSS_12, &chord),
+        Integral::Quadrature => chord_quadrature(curve, &GAUSS_20, &chord),
+        Integral::Table => chord_table_integral(table, chord),
     };
     let value = T::from_f64(0.25 * std::f64::consts::FRAC_1_PI) * integral / chord.a_root;
     // Nothing is met, or nothing ahead: without the test the second would be the rounding of two ends that cancel.
@@ -224,17 +226,6 @@ fn chord_polynomial_integral<T: Real>(chord: &Chord<T>, h: [T; 3]) -> T {
     h[0] * chord_weighed(chord, [i0, i1, i2], [d1, d2])
         + h[1] * chord_weighed(chord, [i1, i2, i3], [d2, d3])
         + h[2] * chord_weighed(chord, [i2, i3, i4], [d3, d4])
-}
-
-/// h as coefficients of 1, D, D², for the curves where it is a polynomial.
-#[inline(always)]
-fn chord_polynomial<T: Real>(curve: Curve) -> [T; 3] {
-    let coefficients = match curve {
-        Curve::Sqrt => [2.0, 0.0, 0.0],
-        Curve::Cbrt => [0.0, 3.0, 0.0],
-        _ => [8.0, -12.0, 4.0],
-    };
-    coefficients.map(T::from_f64)
 }
 
 /// ∫ t² h dv by Gauss–Legendre in v, for curves without a closed form, or where it cancels.

@@ -455,8 +455,7 @@ pub struct MaterialNumbers<T> {
 /// however often light is reflected inside. It takes a lobe whose own weights are 1.
 #[inline(always)]
 fn passes_on<T: Real>(material: &Material<T>) -> bool {
-    let lobe: Lobe = by_index(Lobe::ALL, material.lobe);
-    material.transmits() && matches!(lobe, Lobe::Geometric | Lobe::Lambert)
+    material.transmits() && by_index(Lobe::ALL, material.lobe).traits().weighs_one
 }
 
 /// Draws a direction: from the specular lobe, the base or the refracting lobe. `wants_density` is false where no other

@@ -21,7 +21,6 @@ use figure::Style;
 use lobe_view::{LinePlot, LobeView};
 
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
-use crate::optics::lobe::Lobe;
 use crate::optics::vector::Vec3;
 
 /// A plot that can't be written.
@@ -128,10 +127,10 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
     let reach = points.clone().map(|(x, y)| x.abs().max(y.abs())).fold(0.01, f32::max) * 1.05;
     let root = BitMapBackend::new(path, (800, 810)).into_drawing_area();
     root.fill(&WHITE)?;
-    let lobe = match request.lobe {
-        Lobe::Geometric => format!("Geometric, {}", request.curve.label().to_lowercase()),
-        lobe => lobe.label().to_owned(),
-    };
+    let mut lobe = request.lobe.label().to_owned();
+    if request.lobe.has_curves() {
+        lobe += &format!(", {}", request.curve.label().to_lowercase());
+    }
     let refracted = if request.eta == 0.0 {
         String::new()
     } else {
@@ -156,7 +155,7 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
     let opacity = (4000.0 / cloud.samples.len().max(1) as f64).clamp(0.04, 0.8);
     let dot = RGBColor(20, 90, 170).mix(opacity).filled();
     chart.draw_series(points.map(|point| Circle::new(point, 1, dot)))?;
-    if request.lobe == Lobe::Geometric {
+    if request.lobe.has_curves() {
         let circle = (0..=180).map(|i| (i as f32 * 2.0).to_radians());
         let circle = circle.map(|phi_rad| (request.roughness * phi_rad.cos(), request.roughness * phi_rad.sin()));
         chart.draw_series(LineSeries::new(circle, RGBColor(220, 90, 30).mix(0.7)))?;

@@ -175,7 +175,7 @@ pub(super) fn shapes() -> Vec<(Lobe, Curve, f32)> {
 
 /// The table of the curve that is drawn by hand.
 fn table(curve: Curve) -> Vec<f32> {
-    if curve == Curve::Custom {
+    if curve.has_table() {
         CustomCurve::default().table()
     } else {
         Vec::new()
@@ -248,7 +248,7 @@ fn samples(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
 
 /// The name of a case.
 fn describe(case: &ScatterRequest) -> String {
-    let curve = if case.lobe == Lobe::Geometric {
+    let curve = if case.lobe.has_curves() {
         format!("/{}", case.curve.name())
     } else {
         String::new()
@@ -292,22 +292,18 @@ fn twin_samples(case: &ScatterRequest, count: u32) -> impl Iterator<Item = LobeS
     })
 }
 
-/// The mean weight of the samples: 1 for the geometric lobe under the mirror policy, never above 1.
+/// The mean weight of the samples: 1 for lobes that weigh 1 under the mirror policy, never above 1.
 fn energy() -> Vec<Check> {
     let check = |case: &ScatterRequest| {
         let mean = twin_samples(case, 4096).map(|drawn| drawn.weight).sum::<f64>() / 4096.0;
-        let is_conserving = case.lobe == Lobe::Geometric && case.horizon == Horizon::Mirror;
+        let is_conserving = case.lobe.traits().weighs_one && case.horizon == Horizon::Mirror;
         let value = if is_conserving {
             (mean - 1.0).abs()
         } else {
             (mean - 1.0).max(0.0)
         };
-        // ggx-ndf's weights are noisy at grazing angles.
-        let limit = if case.lobe == Lobe::GgxNdf || case.lobe == Lobe::BlinnPhong {
-            0.15
-        } else {
-            2e-3
-        };
+        // Facets drawn whether or not they are seen have noisy weights at grazing angles.
+        let limit = if case.lobe.facets() == Facets::All { 0.15 } else { 2e-3 };
         Check::new("energy", describe(case), "error", value, limit)
     };
     summed_up(

@@ -221,11 +221,6 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
     let mut number = |name: String, value: f64| twins.push((name, vec![value]));
     for lobe in Lobe::ALL {
         number(upper("LOBE", lobe.module()), f64::from(*lobe as u32));
-        let is_hemispherical = f64::from(u8::from(lobe.is_hemispherical()));
-        number(
-            format!("{}_HEMISPHERICAL", lobe.module().to_uppercase()),
-            is_hemispherical,
-        );
     }
     let kept = 1.0 - (-0.5 * (GAUSSIAN_RADIUS / GAUSSIAN_SIGMA).powi(2)).exp();
     for (name, value) in [

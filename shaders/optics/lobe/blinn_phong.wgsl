@@ -1,8 +1,6 @@
 // Blinn-Phong as a microfacet lobe. Twin of src/optics/lobe/blinn_phong.rs.
 #import "optics/microfacet"
 
-const BLINN_PHONG_HEMISPHERICAL: bool = true;
-
 fn blinn_phong_exponent(roughness: f32) -> f32 {
     let alpha = alpha_from_roughness(roughness);
     return max(2.0 / (alpha * alpha) - 2.0, 0.0);

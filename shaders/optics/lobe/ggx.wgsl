@@ -1,8 +1,6 @@
 // GGX, visible normals sampled by spherical caps. Twin of src/optics/lobe/ggx.rs.
 #import "optics/microfacet"
 
-const GGX_HEMISPHERICAL: bool = true;
-
 fn ggx_sample(shape: LobeShape, frame: Frame, wo_world: vec3f, xi: vec3f) -> vec3f {
     let alpha = microfacet_alpha(shape);
     let wo = local_from_world(frame, wo_world);

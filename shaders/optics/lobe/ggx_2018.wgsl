@@ -1,8 +1,6 @@
 // GGX, visible normals sampled as by Heitz 2018. Twin of src/optics/lobe/ggx_2018.rs.
 #import "optics/microfacet"
 
-const GGX_2018_HEMISPHERICAL: bool = true;
-
 fn ggx_2018_sample(shape: LobeShape, frame: Frame, wo_world: vec3f, xi: vec3f) -> vec3f {
     let alpha = microfacet_alpha(shape);
     let wo = local_from_world(frame, wo_world);

@@ -1,8 +1,6 @@
 // GGX, all normals sampled in proportion to D cos(theta). Twin of src/optics/lobe/ggx_ndf.rs.
 #import "optics/microfacet"
 
-const GGX_NDF_HEMISPHERICAL: bool = true;
-
 fn ggx_ndf_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
     let alpha = microfacet_alpha(shape);
     let slope = sqrt(xi.x / (1.0 - xi.x));

@@ -2,8 +2,6 @@
 #import "optics/lobe/lobe"
 #import "optics/warp"
 
-const LAMBERT_HEMISPHERICAL: bool = true;
-
 fn lambert_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
     return normalize_or(frame.normal + uniform_sphere(xi.xy), frame.normal);
 }

@@ -1,6 +1,5 @@
 // What all lobes share, and what happens below the horizon. Twin of src/optics/lobe/mod.rs.
-// raw_sample, raw_density, raw_weight, is_hemispherical, is_anisotropic, facets and LOBE_* are generated from the
-// registry.
+// raw_sample, raw_density, raw_weight, what is special about each lobe and LOBE_* are generated from the registry.
 #import "optics/choices"
 #import "optics/frame"
 #import "optics/lobe/registry"
@@ -39,9 +38,7 @@ fn stretch_from_anisotropy(anisotropy: f32) -> f32 {
 }
 
 fn is_mirror(shape: LobeShape) -> bool {
-    var width = shape.roughness * shape.roughness;
-    if shape.lobe == LOBE_GEOMETRIC { width = shape.roughness; }
-    if shape.lobe == LOBE_LAMBERT { width = 1.0; }
+    var width = lobe_width(shape.lobe, shape.roughness);
     if refracts_at_facets(shape) { width *= abs(1.0 - 1.0 / shape.eta); }
     return width < MIRROR_WIDTH;
 }

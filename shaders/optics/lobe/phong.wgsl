@@ -1,8 +1,6 @@
 // The modified Phong lobe (Lafortune and Willems 1994). Twin of src/optics/lobe/phong.rs.
 #import "optics/lobe/lobe"
 
-const PHONG_HEMISPHERICAL: bool = true;
-
 fn phong_exponent(roughness: f32) -> f32 {
     let alpha = alpha_from_roughness(roughness);
     return max(0.5 / (alpha * alpha) - 0.5, 0.0);

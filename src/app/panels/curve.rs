@@ -10,12 +10,9 @@ use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
 use crate::document::custom_curve::{CustomCurve, DISTANCE_MAX, DISTANCE_MIN, POINTS_MAX, XI_STEP_MIN};
 use crate::optics::curve::{Curve, curve_density, curve_distance, curve_distance_max};
-use crate::optics::lobe::Lobe;
 
 /// How near the pointer must be to a point to take it, points.
 const REACH: f32 = 12.0;
-/// The part of an infinite curve that is shown.
-const SHOWN_MAX: f64 = 5.0;
 /// Steps of a drawn line.
 const STEPS: usize = 240;
 /// Points that a named curve becomes when it is edited.
@@ -37,7 +34,7 @@ pub(super) struct CurvePanel {
 impl Panel for CurvePanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         let before = desk.material();
-        if before.lobe != Lobe::Geometric {
+        if !before.lobe.has_curves() {
             widgets::note(
                 ui,
                 "Only the geometric lobe has a curve: choose it in the material panel.",
@@ -47,7 +44,7 @@ impl Panel for CurvePanel {
         let mut material = before.clone();
         head(ui, desk, &mut material);
         // Only now: the head may just have made the curve a custom one, which is looked up in its table.
-        let table = if material.curve == Curve::Custom {
+        let table = if material.curve.has_table() {
             material.custom_curve.table()
         } else {
             Vec::new()
@@ -58,7 +55,7 @@ impl Panel for CurvePanel {
             .iter()
             .map(|point| point.map(f64::from))
             .collect();
-        let is_custom = material.curve == Curve::Custom;
+        let is_custom = material.curve.has_table();
         if self.left != material.custom_curve {
             // Something else changed it, such as undo during a drag: which points there are now, the drag does not know.
             (self.dragged, self.selected) = (None, None);
@@ -107,7 +104,7 @@ fn head(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut crate::document::Materi
     }
     ui.horizontal(|ui| {
         widgets::note(ui, format!("D = {}", material.curve.formula()));
-        if material.curve != Curve::Custom {
+        if !material.curve.has_table() {
             ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                 let button = ui
                     .button("Edit as custom")
@@ -167,9 +164,9 @@ fn quantile_plot(ui: &mut Ui, state: &mut CurvePanel, curve: Curve, table: &[f32
     let line: Vec<[f64; 2]> = (0..=STEPS)
         .map(|i| i as f64 / STEPS as f64)
         .map(|xi| [xi, curve_distance(curve, table, xi.min(1.0 - 1e-7))])
-        .filter(|[_, distance]| curve != Curve::LongTail || *distance <= SHOWN_MAX)
+        .filter(|[_, distance]| *distance <= curve.traits().plotted_max)
         .collect();
-    let top = curve_distance_max::<f64>(curve, table).min(if curve == Curve::LongTail { SHOWN_MAX } else { f64::MAX });
+    let top = curve_distance_max::<f64>(curve, table).min(curve.traits().plotted_max);
     let is_drawn_on = state.dragged.is_some();
     let shown = plot("quantile", "ξ: share of the samples", plot_height(ui))
         .include_x(0.0)
@@ -190,7 +187,7 @@ fn quantile_plot(ui: &mut Ui, state: &mut CurvePanel, curve: Curve, table: &[f32
     }
     response.on_hover_ui_at_pointer(|ui| {
         ui.label("The share ξ of the samples stays within the distance D of the mirror direction.");
-        if curve == Curve::Custom {
+        if curve.has_table() {
             widgets::note(
                 ui,
                 "Drag points (ctrl: in steps). Double-click: a new point, or one away.",
@@ -346,7 +343,7 @@ fn selected_point(ui: &mut Ui, state: &mut CurvePanel, points: &mut Vec<[f64; 2]
 /// The density of D and its cumulative distribution.
 fn distance_plot(ui: &mut Ui, curve: Curve, table: &[f32]) {
     let visuals = ui.visuals().clone();
-    let top = curve_distance_max::<f64>(curve, table).min(if curve == Curve::LongTail { SHOWN_MAX } else { f64::MAX });
+    let top = curve_distance_max::<f64>(curve, table).min(curve.traits().plotted_max);
     let density: Vec<[f64; 2]> = (1..=STEPS)
         .map(|i| top * (i as f64 - 0.5) / STEPS as f64)
         .map(|distance| [distance, curve_density(curve, table, distance)])
@@ -402,7 +399,7 @@ mod tests {
 
     #[test]
     fn named_curves_become_valid_custom_ones_that_follow_them() {
-        for curve in Curve::ALL.iter().copied().filter(|curve| *curve != Curve::Custom) {
+        for curve in Curve::with_formulas() {
             let custom = from_named(curve);
             assert_eq!(custom.points().len(), POINTS, "{curve:?} fell back");
             for i in 0..=20 {

@@ -11,7 +11,7 @@ use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, Name};
 use crate::app::kit::words::short_number;
 use crate::job::scatter::ScatterRequest;
-use crate::optics::lobe::{Horizon, Lobe};
+use crate::optics::lobe::Horizon;
 use crate::optics::vector::Vec3;
 use crate::render::EngineChoice;
 use crate::render::samples::{SampleQuery, SampleReport, SampleWorker, spawn_samples};
@@ -119,7 +119,7 @@ impl Panel for SamplesPanel {
 fn query(state: &SamplesPanel, desk: &Desk<'_>) -> Option<SampleQuery> {
     let engine = desk.snapshot.engine.as_ref()?;
     let material = desk.material();
-    let is_custom = material.lobe == Lobe::Geometric && material.curve == crate::optics::curve::Curve::Custom;
+    let is_custom = material.lobe.has_curves() && material.curve.has_table();
     let request = ScatterRequest {
         lobe: material.lobe,
         curve: material.curve,
@@ -282,7 +282,7 @@ fn marks(ui: &Ui, rect: Rect, drawn: &Drawn) {
     };
     match drawn.look {
         Look::Mirror | Look::Angle => {
-            if request.lobe == Lobe::Geometric {
+            if request.lobe.has_curves() {
                 painter.circle_stroke(rect.center(), scale * request.roughness, stroke);
             }
             letter(rect.center(), "r");

@@ -40,7 +40,7 @@ pub(super) fn decide(facts: &Facts<'_>) -> Decision {
 /// known.
 fn stays_above(facts: &Facts<'_>) -> bool {
     let is_bounded = |material: &Material<f32>| {
-        material.lobe == Lobe::Geometric as u32
+        Lobe::ALL[material.lobe as usize].has_curves()
             && Curve::ALL
                 .iter()
                 .any(|curve| *curve as u32 == material.curve && curve.is_within_unit())

@@ -157,7 +157,7 @@ pub static EFFECTS: &[Effect] = &[
         decide: |facts| {
             let geometric = facts
                 .reflecting()
-                .filter(|material| material.lobe == Lobe::Geometric as u32);
+                .filter(|material| Lobe::ALL[material.lobe as usize].has_curves());
             let mut curves = geometric.map(|material| material.curve);
             let Some(first) = curves.next() else {
                 // Any number will do; the first keeps the other curves' code out.

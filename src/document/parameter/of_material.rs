@@ -111,7 +111,7 @@ fn specular_shape() -> Vec<Parameter> {
             label: "Roughness",
             symbol: "R",
             help: "How far the reflection is spread: from a mirror at 0 to, for the geometric lobe, perfectly diffuse at 1.",
-            applies: |material| has_specular(material) && material.lobe != Lobe::Lambert,
+            applies: |material| has_specular(material) && material.lobe.has_roughness(),
             ..of("specular.roughness", unit_number(), field!(Number roughness))
         },
         Parameter {
@@ -123,14 +123,14 @@ fn specular_shape() -> Vec<Parameter> {
             label: "Curve",
             symbol: "D(ξ)",
             help: "The profile of the geometric lobe's highlight, from its middle to its edge.",
-            applies: is_geometric,
+            applies: has_curves,
             ..of("specular.curve", choices::<Curve>(), choice_field!(curve))
         },
         Parameter {
             label: "Custom curve",
             symbol: "D(ξ)",
             help: "Your own profile: the share ξ of the samples stays within the distance D of the mirror direction.",
-            applies: |material| is_geometric(material) && material.curve == Curve::Custom,
+            applies: |material| has_curves(material) && material.curve.has_table(),
             ..of("specular.custom_curve", Kind::Curve, custom_curve())
         },
         Parameter {
@@ -406,8 +406,8 @@ fn transmits(material: &MaterialSettings) -> bool {
     material.transmission_weight > 0.0 && material.metalness < 1.0
 }
 
-fn is_geometric(material: &MaterialSettings) -> bool {
-    has_specular(material) && material.lobe == Lobe::Geometric
+fn has_curves(material: &MaterialSettings) -> bool {
+    has_specular(material) && material.lobe.has_curves()
 }
 
 fn is_conductor(material: &MaterialSettings) -> bool {

@@ -121,7 +121,7 @@ pub static GROUPS: &[Group] = &[
         label: "Lobes",
         help: "Each reflecting lobe with the roughness at which it looks most like the material's own.",
         members: |_| {
-            let lobes = Lobe::ALL.iter().filter(|lobe| **lobe != Lobe::Lambert);
+            let lobes = Lobe::ALL.iter().filter(|lobe| lobe.has_roughness());
             lobes.map(|lobe| Setting::Lobe(*lobe)).collect()
         },
     },
@@ -129,10 +129,7 @@ pub static GROUPS: &[Group] = &[
         name: "curve",
         label: "Curves",
         help: "The geometric lobe's curves, each with the roughness at which it looks most like the material's own.",
-        members: |_| {
-            let curves = Curve::ALL.iter().filter(|curve| **curve != Curve::Custom);
-            curves.map(|curve| Setting::Curve(*curve)).collect()
-        },
+        members: |_| Curve::with_formulas().map(Setting::Curve).collect(),
     },
     Group {
         name: "effect",
@@ -203,7 +200,7 @@ impl Setting {
 fn change_lobes(document: &mut Document, lobe: Lobe, curve: Curve) {
     let reflecting = document.materials.iter_mut().filter(|m| m.specular_weight > 0.0);
     for material in reflecting {
-        let is_same_curve = lobe != Lobe::Geometric || material.curve == curve || curve == Curve::Smooth;
+        let is_same_curve = !lobe.has_curves() || material.curve == curve || curve == Curve::Smooth;
         if material.lobe == lobe && is_same_curve {
             continue;
         }
@@ -351,7 +348,9 @@ impl FromStr for Setting {
         match group {
             "lobe" => entry!(Lobe).map(Setting::Lobe),
             "curve" => match entry!(Curve)? {
-                Curve::Custom => Err(wrong("a curve with a name: a drawn one has no points here".to_owned())),
+                curve if curve.has_table() => {
+                    Err(wrong("a curve with a name: a drawn one has no points here".to_owned()))
+                }
                 curve => Ok(Setting::Curve(curve)),
             },
             "strategy" => entry!(Strategy).map(Setting::Strategy),

@@ -1,7 +1,7 @@
 //! Blinn-Phong as a microfacet lobe: D = (n + 2)/(2π) cosⁿθh (Blinn 1977), n = 2/α² − 2, masked as GGX of the same α
 //! (Walter et al. 2007 show the two to be close).
 
-use super::{Facets, LobeShape};
+use super::{Facets, LobeShape, LobeTraits, Width};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
@@ -9,12 +9,17 @@ use crate::optics::lobe::alpha_from_roughness;
 use crate::optics::microfacet::{distribution_weight, facet, isotropic_alpha};
 use crate::optics::numeric::{expm1, log1p};
 
-/// Reflections below the shading normal are lost: single scattering.
-pub const HEMISPHERICAL: bool = true;
-/// Isotropic.
-pub const ANISOTROPIC: bool = false;
-/// Facets drawn in proportion to D cosθ.
-pub const FACETS: Facets = Facets::All;
+/// What is special about the lobe.
+pub const TRAITS: LobeTraits = LobeTraits {
+    // Single scattering.
+    is_hemispherical: true,
+    is_anisotropic: false,
+    facets: Facets::All,
+    width: Width::Alpha,
+    has_curves: false,
+    weighs_one: false,
+    peak: 0.0,
+};
 
 /// The exponent n.
 #[inline(always)]

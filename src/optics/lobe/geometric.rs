@@ -4,7 +4,7 @@
 //! In the frame where the lobe is a unit ball (widths M divided out) a sample is a + D (V + κ n), a = (1 − R) M⁻¹ r,
 //! κ = R; `chord` has the density there.
 
-use super::{Facets, LobeShape, stretch_from_anisotropy};
+use super::{Facets, LobeShape, LobeTraits, Width, stretch_from_anisotropy};
 use crate::optics::chord::chord_density;
 use crate::optics::curve::curve_distance;
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
@@ -13,12 +13,19 @@ use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_sphere;
 
-/// The horizon policy decides about samples below the surface.
-pub const HEMISPHERICAL: bool = false;
-/// Widths along tangent and bitangent.
-pub const ANISOTROPIC: bool = true;
-/// No facets: refraction turns the lobe about the refracted direction.
-pub const FACETS: Facets = Facets::None;
+/// What is special about the lobe.
+pub const TRAITS: LobeTraits = LobeTraits {
+    // The horizon policy decides about samples below the surface.
+    is_hemispherical: false,
+    is_anisotropic: true,
+    // Refraction turns the lobe about the refracted direction.
+    facets: Facets::None,
+    width: Width::Roughness,
+    has_curves: true,
+    weighs_one: true,
+    // The density is infinite in the mirror direction.
+    peak: 0.03,
+};
 
 /// Widths of the lobe along the frame's axes: R itself three times, or stretched with the product of the first two kept.
 #[inline(always)]

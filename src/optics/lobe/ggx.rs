@@ -1,19 +1,24 @@
 //! GGX with height-correlated Smith masking, single scattering; visible normals sampled by spherical caps.
 //! Source: Dupuy and Benyoub, "Sampling visible GGX normals with spherical caps", HPG 2023, listing 3.
 
-use super::{Facets, LobeShape};
+use super::{Facets, LobeShape, LobeTraits, Width};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::microfacet::{microfacet_alpha, visible_density, visible_weight};
 use crate::optics::numeric::normalize_or;
 
-/// Reflections below the shading normal are lost: single scattering.
-pub const HEMISPHERICAL: bool = true;
-/// Two widths.
-pub const ANISOTROPIC: bool = true;
-/// Facets drawn among those that the viewer sees.
-pub const FACETS: Facets = Facets::Visible;
+/// What is special about the lobe.
+pub const TRAITS: LobeTraits = LobeTraits {
+    // Single scattering.
+    is_hemispherical: true,
+    is_anisotropic: true,
+    facets: Facets::Visible,
+    width: Width::Alpha,
+    has_curves: false,
+    weighs_one: false,
+    peak: 0.0,
+};
 
 /// The reflection at a visible normal: a uniform point on the spherical cap of the stretched view direction.
 #[inline(always)]

@@ -1,19 +1,24 @@
 //! GGX as in [`super::ggx`], all normals sampled in proportion to D cosθ (Walter et al. 2007, eqs. 35 and 36): kept to
 //! be compared in noise.
 
-use super::{Facets, LobeShape};
+use super::{Facets, LobeShape, LobeTraits, Width};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::microfacet::{distribution_weight, facet, ggx_distribution, microfacet_alpha};
 use crate::optics::numeric::normalize_or;
 
-/// Reflections below the shading normal are lost: single scattering.
-pub const HEMISPHERICAL: bool = true;
-/// Two widths.
-pub const ANISOTROPIC: bool = true;
-/// Facets drawn in proportion to D cosθ.
-pub const FACETS: Facets = Facets::All;
+/// What is special about the lobe.
+pub const TRAITS: LobeTraits = LobeTraits {
+    // Single scattering.
+    is_hemispherical: true,
+    is_anisotropic: true,
+    facets: Facets::All,
+    width: Width::Alpha,
+    has_curves: false,
+    weighs_one: false,
+    peak: 0.0,
+};
 
 /// The reflection at a normal drawn from D cosθ.
 #[inline(always)]

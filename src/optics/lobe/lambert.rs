@@ -1,18 +1,22 @@
 //! Lambert's lobe: density cosθ/π, drawn without a basis as the normal plus a uniform direction.
 
-use super::{Facets, LobeShape};
+use super::{Facets, LobeShape, LobeTraits, Width};
 use crate::optics::frame::Frame;
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::Real;
 use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_sphere;
 
-/// Nothing is sampled below the shading normal.
-pub const HEMISPHERICAL: bool = true;
-/// Isotropic.
-pub const ANISOTROPIC: bool = false;
-/// No facets: refraction turns the lobe about the refracted direction.
-pub const FACETS: Facets = Facets::None;
+/// What is special about the lobe.
+pub const TRAITS: LobeTraits = LobeTraits {
+    is_hemispherical: true,
+    is_anisotropic: false,
+    facets: Facets::None,
+    width: Width::Fixed,
+    has_curves: false,
+    weighs_one: true,
+    peak: 0.0,
+};
 
 /// A direction with density cosθ/π.
 #[inline(always)]

@@ -4,7 +4,7 @@
 //! the density of what `sample` returns, per steradian over the whole sphere; `weight` is evaluate/density, the factor
 //! that a sample carries. What lies below the horizon is settled here, once for all lobes ([`lobe_sample`]).
 //!
-//! To add a lobe: one Rust file, one WGSL file of the same name, one line in the registry below.
+//! To add a lobe: one Rust file with its [`LobeTraits`], one WGSL file of the same name, one line in the registry below.
 
 use super::curve::Curve;
 use super::frame::Frame;
@@ -30,22 +30,10 @@ macro_rules! lobes {
             pub fn module(self) -> &'static str {
                 match self { $(Lobe::$variant => stringify!($module),)* }
             }
-            /// True where the model loses what it samples below the shading normal's horizon; false where the horizon
-            /// policy decides.
-            pub fn is_hemispherical(self) -> bool {
-                match self { $(Lobe::$variant => $module::HEMISPHERICAL,)* }
-            }
-            /// The curves that make a difference: all for the geometric lobe, any one for those that read none.
-            pub fn curves(self) -> &'static [Curve] {
-                if self == Lobe::Geometric { Curve::ALL } else { &[Curve::Sqrt] }
-            }
-            /// True where the lobe reads the anisotropy.
-            pub fn is_anisotropic(self) -> bool {
-                match self { $(Lobe::$variant => $module::ANISOTROPIC,)* }
-            }
-            /// Whether the lobe is made of facets, each of which refracts by itself.
-            pub fn facets(self) -> Facets {
-                match self { $(Lobe::$variant => $module::FACETS,)* }
+            /// What is special about it.
+            #[inline(always)]
+            pub const fn traits(self) -> LobeTraits {
+                match self { $(Lobe::$variant => $module::TRAITS,)* }
             }
         }
 
@@ -86,6 +74,85 @@ lobes! {
         "A cosine power around the mirror direction (Lafortune and Willems 1994).";
     lambert Lambert = 6, "lambert", "Lambert",
         "Perfectly diffuse: equally bright from everywhere, whatever the roughness.";
+}
+
+impl Lobe {
+    /// See [`LobeTraits::is_hemispherical`].
+    #[inline(always)]
+    pub const fn is_hemispherical(self) -> bool {
+        self.traits().is_hemispherical
+    }
+
+    /// See [`LobeTraits::is_anisotropic`].
+    #[inline(always)]
+    pub const fn is_anisotropic(self) -> bool {
+        self.traits().is_anisotropic
+    }
+
+    /// See [`LobeTraits::facets`].
+    #[inline(always)]
+    pub const fn facets(self) -> Facets {
+        self.traits().facets
+    }
+
+    /// See [`LobeTraits::has_curves`].
+    #[inline(always)]
+    pub const fn has_curves(self) -> bool {
+        self.traits().has_curves
+    }
+
+    /// The curves that make a difference: any one where it reads none.
+    pub fn curves(self) -> &'static [Curve] {
+        if self.has_curves() { Curve::ALL } else { &[Curve::Sqrt] }
+    }
+
+    /// True where the roughness makes a difference.
+    pub fn has_roughness(self) -> bool {
+        self.traits().width != Width::Fixed
+    }
+}
+
+/// What is special about a lobe: said in its own file, read by everything else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LobeTraits {
+    /// The model loses what it samples below the shading normal's horizon; else the horizon policy decides.
+    pub is_hemispherical: bool,
+    /// It reads the anisotropy.
+    pub is_anisotropic: bool,
+    /// Whether it is made of facets, each of which refracts by itself.
+    pub facets: Facets,
+    /// How wide it is.
+    pub width: Width,
+    /// It is a ball around the mirror direction whose radius is drawn by a curve D(ξ): for D ≤ 1 no sample is lower above
+    /// the surface than (1 − R)(n·r − R).
+    pub has_curves: bool,
+    /// Evaluate over density is always 1. Then what a mirror does not reflect is passed on to what is below it, and under
+    /// the mirror policy no light is lost.
+    pub weighs_one: bool,
+    /// Radius about the mirror direction, in radians per roughness, where plots leave the density out: its peak is infinite
+    /// there, though integrable.
+    pub peak: f64,
+}
+
+/// What the angular width of a lobe goes with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// It is as wide at any roughness.
+    Fixed,
+    /// With the roughness.
+    Roughness,
+    /// With its square, α: the roughness of GGX, which textures and files are made for.
+    Alpha,
+}
+
+/// The angular width of a lobe, near enough.
+#[inline(always)]
+pub fn lobe_width<T: Real>(lobe: Lobe, roughness: T) -> T {
+    match lobe.traits().width {
+        Width::Fixed => T::one(),
+        Width::Roughness => roughness,
+        Width::Alpha => roughness * roughness,
+    }
 }
 
 /// Draws a direction from one lobe.
@@ -165,11 +232,7 @@ pub fn stretch_from_anisotropy<T: Real>(anisotropy: T) -> T {
 /// direction by |1 − 1/η| of their own tilt: where both sides are nearly alike, everything goes straight on.
 #[inline(always)]
 pub fn is_mirror<T: Real>(shape: &LobeShape<'_, T>) -> T::Mask {
-    let mut width = match shape.lobe {
-        Lobe::Geometric => shape.roughness,
-        Lobe::Lambert => T::one(),
-        _ => shape.roughness * shape.roughness,
-    };
+    let mut width = lobe_width(shape.lobe, shape.roughness);
     if refracts_at_facets(shape) {
         width = width * (T::one() - T::one() / shape.eta).abs();
     }

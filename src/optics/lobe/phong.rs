@@ -3,18 +3,22 @@
 //! f = (n + 2)/(2π) cosⁿα, sampled with density (n + 1)/(2π) cosⁿα (paper, eqs. 2 and 5), n = (2/α² − 2)/4 with
 //! α = roughness². What falls below the surface is lost: the model's own loss.
 
-use super::{Facets, LobeShape, alpha_from_roughness};
+use super::{Facets, LobeShape, LobeTraits, Width, alpha_from_roughness};
 use crate::optics::frame::{Frame, frame_from_normal, world_from_local};
 use crate::optics::numeric::{expm1, log1p};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
-/// Samples below the shading normal are lost.
-pub const HEMISPHERICAL: bool = true;
-/// Isotropic.
-pub const ANISOTROPIC: bool = false;
-/// No facets: refraction turns the lobe about the refracted direction.
-pub const FACETS: Facets = Facets::None;
+/// What is special about the lobe.
+pub const TRAITS: LobeTraits = LobeTraits {
+    is_hemispherical: true,
+    is_anisotropic: false,
+    facets: Facets::None,
+    width: Width::Alpha,
+    has_curves: false,
+    weighs_one: false,
+    peak: 0.0,
+};
 
 /// The exponent n, never below 0.
 #[inline(always)]

@@ -36,7 +36,7 @@ impl ViewKind {
 
     /// Whether there is anything of a lobe to be seen.
     pub fn shows(self, lobe: Lobe) -> bool {
-        self != ViewKind::Distance || lobe == Lobe::Geometric
+        self != ViewKind::Distance || lobe.has_curves()
     }
 
     /// View angles in degrees where none are given.

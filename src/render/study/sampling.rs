@@ -118,13 +118,18 @@ impl Meter {
 
 /// Lobes and curves that are drawn: Lambert's is no reflection to choose.
 fn shapes() -> Vec<(Lobe, Curve, String)> {
-    let curves = Curve::ALL.iter().filter(|curve| **curve != Curve::Custom);
-    let geometric = curves.map(|curve| (Lobe::Geometric, *curve, format!("geometric/{}", curve.name())));
-    let others = Lobe::ALL
-        .iter()
-        .filter(|lobe| !matches!(lobe, Lobe::Geometric | Lobe::Lambert))
-        .map(|lobe| (*lobe, Curve::Smooth, lobe.name().to_owned()));
-    geometric.chain(others).collect()
+    let reflecting = Lobe::ALL.iter().copied().filter(|lobe| lobe.has_roughness());
+    let of_lobe = |lobe: Lobe| -> Vec<_> {
+        if lobe.has_curves() {
+            let curves = Curve::with_formulas();
+            curves
+                .map(|curve| (lobe, curve, format!("{}/{}", lobe.name(), curve.name())))
+                .collect()
+        } else {
+            vec![(lobe, Curve::Smooth, lobe.name().to_owned())]
+        }
+    };
+    reflecting.flat_map(of_lobe).collect()
 }
 
 /// Measures. `watch` is told how far it has come, and may stop it.

@@ -60,7 +60,7 @@ fn curves_agree() {
             inputs![curve as u32, table, distance]
         });
     }
-    check(&["optics/curve"], &[distance, distance_max, h]);
+    check(&["optics/curve/registry"], &[distance, distance_max, h]);
 }
 
 /// An index of refraction from water under glass to diamond.

@@ -59,10 +59,10 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, sou
     let material = desk.material();
     let query = Query {
         source,
-        lobe: if material.lobe == Lobe::Lambert {
-            Lobe::Geometric
-        } else {
+        lobe: if material.lobe.has_roughness() {
             material.lobe
+        } else {
+            Lobe::Geometric
         },
         view_angle_deg: f64::from(desk.shared.view_angle_deg).min(VIEW_ANGLE_MAX_DEG),
     };

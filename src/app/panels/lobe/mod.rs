@@ -117,7 +117,7 @@ fn controls(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut LobePanel, mut kind: V
         desk.view_angle_row(ui);
     }
     let mut others = vec![(Other::Nothing, "Nothing", "")];
-    let lobes = Lobe::ALL.iter().filter(|lobe| **lobe != Lobe::Lambert);
+    let lobes = Lobe::ALL.iter().filter(|lobe| lobe.has_roughness());
     others.extend(lobes.map(|lobe| (Other::Lobe(*lobe), lobe.label(), lobe.help())));
     others.push((
         Other::Measured,

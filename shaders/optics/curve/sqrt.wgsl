@@ -1,0 +1,13 @@
+// D(xi) and h(D). Twin of src/optics/curve/sqrt.rs.
+
+fn sqrt_distance(table: u32, xi: f32) -> f32 {
+    return sqrt(xi);
+}
+
+fn sqrt_distance_max(table: u32) -> f32 {
+    return 1.0;
+}
+
+fn sqrt_h(table: u32, distance: f32) -> f32 {
+    return 2.0;
+}

@@ -1,0 +1,84 @@
+//! A curve drawn by hand: the density of D is linear between the nodes of a table.
+
+use super::{CurveTraits, Integral};
+use crate::optics::real::Real;
+
+/// What is special about the curve.
+pub const TRAITS: CurveTraits = CurveTraits {
+    formula: "drawn",
+    integral: Integral::Table,
+    plotted_max: f64::INFINITY,
+};
+
+/// Intervals of a custom curve's table, equal in D.
+pub const CUSTOM_INTERVALS: usize = 64;
+/// Numbers of a custom curve's table: D's maximum, then at each node the cumulative distribution, then the density.
+pub const CUSTOM_LENGTH: usize = 1 + 2 * (CUSTOM_INTERVALS + 1);
+
+/// The distance at which the cumulative distribution reaches ξ: a quadratic equation in the interval that bisection finds.
+#[inline(always)]
+pub fn distance<T: Real>(table: &[f32], xi: T) -> T {
+    let c = T::from_f64;
+    let number = |i: usize| c(f64::from(table[i]));
+    // Six halvings of 64 intervals; `low` counts the nodes that lie below ξ.
+    let mut low = T::zero();
+    let mut step = CUSTOM_INTERVALS / 2;
+    while step > 0 {
+        let middle = low + c(step as f64);
+        let node = number(1 + middle.to_f64() as usize);
+        low = T::select(xi.less(node), low, middle);
+        step /= 2;
+    }
+    let index = low.to_f64() as usize;
+    let width = number(0) * c(1.0 / CUSTOM_INTERVALS as f64);
+    let (left, right) = (
+        number(CUSTOM_INTERVALS + 2 + index),
+        number(CUSTOM_INTERVALS + 3 + index),
+    );
+    let missing = (xi - number(1 + index)).max(T::zero());
+    let root = (left * left + c(2.0) * (right - left) / width * missing).safe_sqrt();
+    let step = c(2.0) * missing / (left + root).max(c(1e-12));
+    width * low + step.min(width)
+}
+
+/// D's maximum.
+#[inline(always)]
+pub fn distance_max<T: Real>(table: &[f32]) -> T {
+    T::from_f64(f64::from(table[0]))
+}
+
+/// h(D).
+#[inline(always)]
+pub fn h<T: Real>(table: &[f32], distance: T) -> T {
+    density(table, distance) / distance.max(T::from_f64(1e-6))
+}
+
+/// The density of D, linear between the nodes.
+#[inline(always)]
+fn density<T: Real>(table: &[f32], distance: T) -> T {
+    let c = T::from_f64;
+    let number = |i: usize| c(f64::from(table[i]));
+    let position = (distance / number(0) * c(CUSTOM_INTERVALS as f64)).clamp(T::zero(), c(CUSTOM_INTERVALS as f64));
+    let low = position.floor().min(c(CUSTOM_INTERVALS as f64 - 1.0));
+    let node = CUSTOM_INTERVALS + 2 + low.to_f64() as usize;
+    let fraction = position - low;
+    number(node) * (T::one() - fraction) + number(node + 1) * fraction
+}
+
+/// A custom curve's table from the density of D at equidistant nodes over [0, `distance_max`] (65 values, not negative,
+/// any scale: normalised here). Returns `None` where the density is zero everywhere or not finite.
+pub fn custom_table(distance_max: f64, density: &[f64]) -> Option<Vec<f32>> {
+    let width = distance_max / CUSTOM_INTERVALS as f64;
+    let mut cumulative = vec![0.0; CUSTOM_INTERVALS + 1];
+    for i in 0..CUSTOM_INTERVALS {
+        cumulative[i + 1] = cumulative[i] + 0.5 * width * (density[i] + density[i + 1]);
+    }
+    let total = cumulative[CUSTOM_INTERVALS];
+    if !(total.is_finite() && total > 0.0 && distance_max.is_finite() && density.iter().all(|f| *f >= 0.0)) {
+        return None;
+    }
+    let mut table = vec![distance_max as f32];
+    table.extend(cumulative.iter().map(|c| (c / total) as f32));
+    table.extend(density.iter().map(|f| (f / total) as f32));
+    Some(table)
+}
