@@ -71,6 +71,8 @@ mod gltf_builder;
 mod gltf_damaged;
 #[path = "suite/gltf_extensions.rs"]
 mod gltf_extensions;
+#[path = "suite/gltf_materials.rs"]
+mod gltf_materials;
 #[path = "suite/hierarchy.rs"]
 mod hierarchy;
 #[path = "suite/import_report.rs"]

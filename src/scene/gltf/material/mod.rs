@@ -1,4 +1,6 @@
-//! Materials as slots, and their pictures.
+//! Materials as slots.
+
+mod pictures;
 
 use std::collections::HashMap;
 
@@ -6,20 +8,19 @@ use gltf::json;
 use json::extensions::texture::TextureTransform;
 use json::material::Material;
 use json::mesh::Primitive;
-use json::texture::WrappingMode;
 use json::validation::Checked;
 use rayon::prelude::*;
 use serde_json::Value as Json;
 
+use self::pictures::{PictureKey, affine, without_missing};
 use super::container::Document;
-use super::image;
 use super::material_extensions::{
     Anisotropy, Clearcoat, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension, kept,
 };
 use super::specular_glossiness::{Factors, convert, convert_textures};
-use crate::scene::model::{AlphaMode, Filter, ModelOptions, Slot, Texture, TextureRef, Wrap};
+use crate::scene::model::{AlphaMode, ModelOptions, Slot, Texture, TextureRef};
 use crate::scene::report::{Fate, ImportReport};
-use crate::scene::texture::{TextureMean, scaled_to, texture_mean};
+use crate::scene::texture::{TextureMean, texture_mean};
 
 /// The largest index of refraction that a material takes.
 const IOR_MAX: f32 = 4.0;
@@ -43,17 +44,6 @@ impl Default for UvUse {
             has_normal_texture: false,
         }
     }
-}
-
-/// A picture that slots look up.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum PictureKey {
-    /// An image of the file.
-    Image(usize),
-    /// The base colour that a material of the specular-glossiness workflow is turned into.
-    BaseColor(usize),
-    /// Its metalness and roughness.
-    Surface(usize),
 }
 
 /// A texture of which a slot takes the mean only: the image, and what its mean changes.
@@ -217,53 +207,6 @@ impl<'a> Materials<'a> {
         let textures = without_missing(&mut slots, textures.collect());
         report.append(self.report);
         (slots, textures)
-    }
-
-    /// Decodes pictures on all cores, none larger than wished. Those that cannot be had are told.
-    fn decode(&mut self, images: Vec<usize>) -> HashMap<usize, Texture> {
-        let is_color = |image: usize| {
-            let is_used_as_color = |slot: &Slot| {
-                let colors = [slot.base_color_texture, slot.emissive_texture];
-                colors
-                    .into_iter()
-                    .flatten()
-                    .any(|r| self.pictures[r.texture] == PictureKey::Image(image))
-            };
-            self.slots.iter().any(|(slot, _)| is_used_as_color(slot))
-        };
-        let side_max = self.texture_side_max;
-        let results: Vec<_> = images
-            .into_par_iter()
-            .map(|image| {
-                let texture = image::decode(self.document, image);
-                (
-                    image,
-                    texture.map(|texture| scaled_to(texture, side_max, is_color(image))),
-                )
-            })
-            .collect();
-        let mut decoded = HashMap::new();
-        for (image, result) in results {
-            match result {
-                Ok((texture, scaled_from)) => {
-                    self.report.note(Fate::Used, "textures", &texture.name);
-                    if let Some([width, height]) = scaled_from {
-                        let what = format!(
-                            "a picture of {width} × {height}, used at {} × {}",
-                            texture.width, texture.height
-                        );
-                        self.report.note(Fate::Approximated, what, &texture.name);
-                    }
-                    decoded.insert(image, texture);
-                }
-                Err(reason) => {
-                    let name = image::name(self.document, image);
-                    self.report
-                        .note(Fate::Missing, format!("a texture, grey instead ({reason})"), &name);
-                }
-            }
-        }
-        decoded
     }
 
     /// A material and the texture coordinates of its pictures: the normal texture's are the first set, since tangents
@@ -503,111 +446,6 @@ impl<'a> Materials<'a> {
             }
         }
     }
-
-    /// The image of a texture.
-    fn image(&mut self, texture: usize) -> Option<usize> {
-        let image = self
-            .document
-            .root
-            .textures
-            .get(texture)
-            .map(|texture| texture.source.value());
-        let found = image.filter(|&image| image < self.document.root.images.len());
-        if found.is_none() {
-            self.report.note(
-                Fate::Missing,
-                "a texture without a picture",
-                &format!("texture {texture}"),
-            );
-        }
-        found
-    }
-
-    /// A reference to the picture of a texture. Where the texture itself is not there, none.
-    fn texture(
-        &mut self,
-        reference: Option<Reference>,
-        sets: &mut [Option<u32>; 2],
-        owner: &str,
-    ) -> Option<TextureRef> {
-        let (texture, set, transform) = reference?;
-        let set = transform
-            .as_ref()
-            .and_then(|transform| transform.tex_coord)
-            .unwrap_or(set);
-        let place = sets.iter().position(|known| known.is_none_or(|known| known == set));
-        let Some(uv_set) = place else {
-            let what = format!("a texture on TEXCOORD_{set}: its material looks up two other sets already");
-            self.report.note(Fate::Ignored, what, owner);
-            return None;
-        };
-        let image = self.image(texture)?;
-        sets[uv_set] = Some(set);
-        let key = PictureKey::Image(image);
-        let place = self.pictures.iter().position(|known| *known == key).unwrap_or_else(|| {
-            self.pictures.push(key);
-            self.pictures.len() - 1
-        });
-        let sampler = self.document.root.textures[texture].sampler;
-        let sampler = sampler.and_then(|sampler| self.document.root.samplers.get(sampler.value()));
-        let wrap = sampler.map_or([Wrap::Repeat; 2], |sampler| {
-            [wrap(sampler.wrap_s), wrap(sampler.wrap_t)]
-        });
-        let is_nearest = sampler.is_some_and(|sampler| {
-            matches!(
-                sampler.mag_filter,
-                Some(Checked::Valid(json::texture::MagFilter::Nearest))
-            )
-        });
-        Some(TextureRef {
-            texture: place,
-            uv_set,
-            filter: if is_nearest { Filter::Nearest } else { Filter::Linear },
-            texture_from_mesh_uv: affine(&transform.unwrap_or_default()),
-            wrap,
-        })
-    }
-
-    /// The crate knows no KHR_texture_transform on normal textures.
-    fn normal_transform(&self, material: usize) -> Option<TextureTransform> {
-        let extensions = &self.document.raw["materials"][material]["normalTexture"]["extensions"];
-        serde_json::from_value(extensions.get("KHR_texture_transform")?.clone()).ok()
-    }
-}
-
-/// The textures that are there, with the slots' references to them; what is not there becomes a plain grey.
-fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>) -> Vec<Texture> {
-    let mut place = 0;
-    let places: Vec<Option<usize>> = textures
-        .iter()
-        .map(|texture| {
-            texture.as_ref().map(|_| {
-                place += 1;
-                place - 1
-            })
-        })
-        .collect();
-    let keep = |reference: &mut Option<TextureRef>| {
-        let Some(texture) = reference.as_mut() else { return true };
-        match places[texture.texture] {
-            Some(place) => texture.texture = place,
-            None => *reference = None,
-        }
-        reference.is_some()
-    };
-    for slot in slots {
-        if !keep(&mut slot.base_color_texture) {
-            slot.base_color = slot.base_color.map(|factor| 0.5 * factor);
-        }
-        if !keep(&mut slot.metallic_roughness_texture) {
-            (slot.metalness, slot.roughness) = (0.0, 0.5 * slot.roughness);
-        }
-        keep(&mut slot.normal_texture);
-        if !keep(&mut slot.emissive_texture) {
-            slot.emission = [0.0; 3];
-        }
-    }
-    textures.into_iter().flatten().collect()
 }
 
 /// A material that shows its colour whatever the light: it shines with it, and reflects nothing.
@@ -634,26 +472,4 @@ fn alpha_mode(material: &Material) -> AlphaMode {
         Checked::Valid(json::material::AlphaMode::Blend) => AlphaMode::Blend,
         _ => AlphaMode::Opaque,
     }
-}
-
-fn wrap(mode: Checked<WrappingMode>) -> Wrap {
-    match mode {
-        Checked::Valid(WrappingMode::ClampToEdge) => Wrap::ClampToEdge,
-        Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::MirroredRepeat,
-        _ => Wrap::Repeat,
-    }
-}
-
-/// Offset · rotation · scale, as KHR_texture_transform defines them.
-fn affine(transform: &TextureTransform) -> [f32; 6] {
-    let (sin, cos) = transform.rotation.0.sin_cos();
-    let ([scale_u, scale_v], [offset_u, offset_v]) = (transform.scale.0, transform.offset.0);
-    [
-        cos * scale_u,
-        sin * scale_v,
-        offset_u,
-        -sin * scale_u,
-        cos * scale_v,
-        offset_v,
-    ]
 }

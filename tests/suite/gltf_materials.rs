@@ -1,0 +1,237 @@
+//! What glTF says of materials and pictures beyond its core: extensions, picture formats, tangents.
+
+use glossmith::document::ImportLobe;
+use glossmith::document::of_model::materials_of;
+use glossmith::scene::{Fate, Model, ModelOptions};
+use serde_json::{Value, json};
+
+use super::gltf_builder::{Buffer, Folder, png, square};
+use super::gltf_extensions::{load, load_plain, says};
+
+/// The slot of a material on a square, with a picture of two texels as texture 0.
+fn slot_of(material: &Value) -> Model {
+    let (mut buffer, _) = square();
+    let picture = buffer.view(&png());
+    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 0});
+    let mut document = buffer.document(json!([primitive]));
+    document["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"] = json!([material]);
+    load_plain(&document, &buffer)
+}
+
+#[test]
+fn material_extensions_reach_the_slots() {
+    let texture = json!({"index": 0});
+    let model = slot_of(&json!({"extensions": {
+        "KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [0.25, 2.0, 1.0]},
+        "KHR_materials_clearcoat": {
+            "clearcoatFactor": 0.5, "clearcoatTexture": texture, "clearcoatRoughnessFactor": 1.0,
+            "clearcoatRoughnessTexture": texture, "clearcoatNormalTexture": texture,
+        },
+        "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": 0.5},
+        "KHR_materials_ior": {"ior": 6.0},
+    }}));
+    let slot = &model.slots[0];
+    assert_eq!((slot.specular, slot.specular_color), (0.5, [0.25, 1.0, 1.0]));
+    assert_eq!(
+        (slot.anisotropy, slot.anisotropy_rotation_rad, slot.ior),
+        (0.75, 0.5, 4.0)
+    );
+    // Both texels of the picture are (10, 20, 30).
+    assert!((slot.coat - 0.5 * 10.0 / 255.0).abs() < 1e-6, "{}", slot.coat);
+    assert!(
+        (slot.coat_roughness - 20.0 / 255.0).abs() < 1e-6,
+        "{}",
+        slot.coat_roughness
+    );
+    says(&model, Fate::Approximated, "an index of refraction of 6, taken as 4");
+    says(&model, Fate::Approximated, "specular colour above 1");
+    says(&model, Fate::Approximated, "a coat texture, by its mean");
+    says(&model, Fate::Ignored, "a coat normal texture");
+    let material = &materials_of(&model, ImportLobe::Ggx)[0];
+    assert_eq!(
+        (material.specular_weight, material.specular_color),
+        (0.5, [0.25, 1.0, 1.0])
+    );
+    assert_eq!(
+        (material.anisotropy, material.rotation_deg, material.ior),
+        (0.75, 0.5_f32.to_degrees(), 4.0)
+    );
+}
+
+#[test]
+fn unlit_materials_shine_and_reflect_nothing() {
+    let model = slot_of(&json!({
+        "pbrMetallicRoughness": {"baseColorFactor": [0.25, 0.5, 0.75, 1.0], "baseColorTexture": {"index": 0}},
+        "extensions": {"KHR_materials_unlit": {}},
+    }));
+    let slot = &model.slots[0];
+    assert_eq!(
+        (slot.emission, slot.base_color, slot.specular),
+        ([0.25, 0.5, 0.75], [0.0; 3], 0.0)
+    );
+    assert!(slot.emissive_texture.is_some());
+}
+
+#[test]
+fn specular_glossiness_becomes_metalness_and_roughness() {
+    let of = |diffuse: [f32; 3], specular: [f32; 3]| {
+        let [r, g, b] = diffuse;
+        let workflow = json!({"diffuseFactor": [r, g, b, 0.5], "specularFactor": specular, "glossinessFactor": 0.75});
+        slot_of(&json!({"extensions": {"KHR_materials_pbrSpecularGlossiness": workflow}})).slots[0].clone()
+    };
+    let plastic = of([0.2, 0.4, 0.6], [0.04; 3]);
+    assert_eq!(
+        (plastic.metalness, plastic.roughness, plastic.opacity),
+        (0.0, 0.25, 0.5)
+    );
+    for (found, expected) in plastic.base_color.iter().zip([0.2, 0.4, 0.6]) {
+        assert!((found - expected).abs() < 1e-6, "{:?}", plastic.base_color);
+    }
+    let gold = of([0.0; 3], [1.0, 0.75, 0.25]);
+    assert!((gold.metalness - 1.0).abs() < 1e-6, "{}", gold.metalness);
+    for (found, expected) in gold.base_color.iter().zip([1.0, 0.75, 0.25]) {
+        assert!((found - expected).abs() < 1e-5, "{:?}", gold.base_color);
+    }
+    // With textures, texel by texel: (10, 20, 30) is dark and reflects little.
+    let texture = json!({"index": 0});
+    let workflow = json!({"diffuseTexture": texture, "specularFactor": [0.04, 0.04, 0.04], "glossinessFactor": 0.5});
+    let model = slot_of(&json!({"extensions": {"KHR_materials_pbrSpecularGlossiness": workflow}}));
+    let names: Vec<&str> = model.textures.iter().map(|texture| texture.name.as_str()).collect();
+    assert_eq!(model.textures.len(), 3, "{names:?}");
+    let slot = &model.slots[0];
+    let color = &model.textures[slot.base_color_texture.unwrap().texture];
+    let surface = &model.textures[slot.metallic_roughness_texture.unwrap().texture];
+    assert_eq!(color.rgba8, [10, 20, 30, 255, 10, 20, 30, 128]);
+    assert_eq!(surface.rgba8[..4], [255, 128, 0, 255]);
+}
+
+#[test]
+fn what_cannot_be_shown_yet_is_kept_in_the_material() {
+    let model = slot_of(&json!({"extensions": {
+        "KHR_materials_sheen": {"sheenColorFactor": [0.5, 0.25, 1.0], "sheenRoughnessFactor": 0.5},
+        "KHR_materials_iridescence": {"iridescenceFactor": 1.0, "iridescenceThicknessMaximum": 350},
+        "KHR_materials_dispersion": {"dispersion": 0.0},
+        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25},
+    }}));
+    says(&model, Fate::Ignored, "sheen, kept in the material");
+    says(&model, Fate::Ignored, "iridescence, kept in the material");
+    assert!(
+        !model
+            .report
+            .entries
+            .iter()
+            .any(|entry| entry.what.contains("dispersion")),
+        "there is none"
+    );
+    let material = materials_of(&model, ImportLobe::Geometric).remove(0);
+    let folder = Folder::new();
+    let path = folder.path("kept.json");
+    glossmith::store::save_material(&path, &material).unwrap();
+    let read = glossmith::store::load_material(&path).unwrap();
+    assert_eq!(
+        (read.value.extra.clone(), read.warnings),
+        (material.extra, Vec::<String>::new())
+    );
+    assert_eq!(read.value.extra["sheen.color"], json!([0.5, 0.25, 1.0]));
+    assert_eq!(read.value.extra["iridescence.thickness_nm"], json!(350));
+    assert_eq!(read.value.extra["diffuse_transmission.weight"], json!(0.25));
+}
+
+#[test]
+fn pictures_may_be_webp_and_are_scaled_to_the_chosen_size() {
+    let mut webp = std::io::Cursor::new(Vec::new());
+    let picture = image::RgbaImage::from_fn(64, 32, |x, _| image::Rgba([if x < 32 { 200 } else { 0 }, 9, 8, 255]));
+    picture.write_to(&mut webp, image::ImageFormat::WebP).expect("encodes");
+    let (mut buffer, _) = square();
+    let view = buffer.view(&webp.into_inner());
+    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 0});
+    let mut document = buffer.document(json!([primitive]));
+    document["images"] = json!([{"bufferView": view, "mimeType": "image/webp", "name": "leaf"}]);
+    document["textures"] = json!([{"extensions": {"EXT_texture_webp": {"source": 0}}}]);
+    document["materials"] = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+    document["extensionsRequired"] = json!(["EXT_texture_webp"]);
+    let model = load_plain(&document, &buffer);
+    assert_eq!(
+        (model.textures[0].width, &model.textures[0].rgba8[..4]),
+        (64, &[200, 9, 8, 255][..])
+    );
+    assert!(model.report.is_clean(), "{:?}", model.report);
+    let options = ModelOptions {
+        texture_side_max: 16,
+        ..ModelOptions::default()
+    };
+    let small = load(&document, &buffer, &options);
+    assert_eq!((small.textures[0].width, small.textures[0].height), (16, 8));
+    says(&small, Fate::Approximated, "64 × 32, used at 16 × 8");
+}
+
+#[test]
+fn ktx2_pictures_of_plain_bytes_are_read() {
+    let ktx2 = |format: u32, size: [u32; 2], texels: &[u8]| {
+        let mut bytes = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
+        // Format, size of a number, width, height, depth, layers, faces, levels, compression.
+        let numbers = [format, 1, size[0], size[1], 0, 0, 1, 1, 0];
+        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        bytes.resize(80, 0);
+        let level = [104, texels.len() as u64, texels.len() as u64];
+        bytes.extend(level.iter().flat_map(|number| number.to_le_bytes()));
+        bytes.extend(texels);
+        bytes
+    };
+    let of = |picture: &[u8]| {
+        let (mut buffer, _) = square();
+        let view = buffer.view(picture);
+        let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 3, "material": 0});
+        let mut document = buffer.document(json!([primitive]));
+        document["images"] = json!([{"bufferView": view, "mimeType": "image/ktx2"}]);
+        document["textures"] = json!([{"extensions": {"KHR_texture_basisu": {"source": 0}}}]);
+        document["materials"] = json!([{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}]);
+        load_plain(&document, &buffer)
+    };
+    let rgb = of(&ktx2(29, [2, 1], &[1, 2, 3, 4, 5, 6]));
+    assert_eq!(rgb.textures[0].rgba8, [1, 2, 3, 255, 4, 5, 6, 255]);
+    let bgra = of(&ktx2(44, [1, 2], &[1, 2, 3, 4, 5, 6, 7, 8]));
+    assert_eq!(bgra.textures[0].rgba8, [3, 2, 1, 4, 7, 6, 5, 8]);
+    // Too few bytes, a format of floats, Basis Universal that is none.
+    for broken in [
+        ktx2(37, [2, 2], &[0; 12]),
+        ktx2(109, [1, 1], &[0; 16]),
+        ktx2(0, [4, 4], &[0; 16]),
+    ] {
+        let grey = of(&broken);
+        says(&grey, Fate::Missing, "a texture, grey instead");
+        assert_eq!((grey.textures.len(), grey.slots[0].base_color), (0, [0.5; 3]));
+    }
+}
+
+#[test]
+fn normal_textures_get_the_tangents_of_mikktspace() {
+    // A strip of two squares, the texture of the right one mirrored about their common edge.
+    let mut buffer = Buffer::default();
+    let positions: Vec<[f32; 3]> = (0..6).map(|i| [(i % 3) as f32, (i / 3) as f32, 0.0]).collect();
+    let uvs: Vec<[f32; 2]> = (0..6).map(|i| [[0.0, 1.0, 0.0][i % 3], 1.0 - (i / 3) as f32]).collect();
+    let (positions, uvs) = (buffer.floats(&positions), buffer.floats(&uvs));
+    let normals = buffer.floats(&[[0.0, 0.0, 1.0]; 6]);
+    let indices = buffer.indices(&[0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]);
+    let picture = buffer.view(&png());
+    let attributes = json!({"POSITION": positions, "NORMAL": normals, "TEXCOORD_0": uvs});
+    let mut document = buffer.document(json!([{"attributes": attributes, "indices": indices, "material": 0}]));
+    document["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}]);
+    document["textures"] = json!([{"source": 0}]);
+    document["materials"] = json!([{"normalTexture": {"index": 0}}]);
+    let mesh = load_plain(&document, &buffer).mesh;
+    assert_eq!(
+        mesh.positions.len(),
+        8,
+        "the two vertices of the common edge are there twice"
+    );
+    for triangle in 0..4 {
+        let sign = if triangle < 2 { 1.0 } else { -1.0 };
+        for vertex in mesh.triangles[triangle] {
+            let tangent = mesh.tangents[vertex as usize];
+            assert_eq!(tangent.to_array(), [sign, 0.0, 0.0, sign], "triangle {triangle}");
+        }
+    }
+}
