@@ -13,10 +13,21 @@ fn main() -> ExitCode {
     match run(Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("glossmith: {error:#}");
+            eprintln!("glossmith: {}", message(&error));
             ExitCode::FAILURE
         }
     }
+}
+
+/// An error with its causes, but for those that it quotes already.
+fn message(error: &anyhow::Error) -> String {
+    error
+        .chain()
+        .fold(String::new(), |told, cause| match cause.to_string() {
+            cause if told.is_empty() => cause,
+            cause if told.contains(&cause) => told,
+            cause => format!("{told}: {cause}"),
+        })
 }
 
 fn run(arguments: Arguments) -> anyhow::Result<()> {

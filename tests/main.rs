@@ -7,6 +7,8 @@ mod analytic;
 mod analytic_bodies;
 #[path = "suite/analytic_scenes.rs"]
 mod analytic_scenes;
+#[path = "suite/assets.rs"]
+mod assets;
 #[path = "suite/check.rs"]
 mod check;
 #[path = "suite/cli_errors.rs"]

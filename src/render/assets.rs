@@ -1,4 +1,4 @@
-//! What a document names and a session keeps: models, their geometry, environments.
+//! What documents name and sessions keep: models, their textures and geometry, environments.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -17,31 +17,66 @@ type ModelKey = (ModelSource, ModelOptions);
 /// An environment's file, and what its numbers stand for.
 type EnvironmentKey = (EnvironmentSource, EnvironmentEncoding);
 
-/// The last of each kind that was asked for: an edit that leaves a source alone costs nothing. Clones share what they
+/// Bytes that are kept: what was used last of each kind whatever it takes, and what else fits.
+const MEMORY: usize = 1 << 30;
+
+/// Geometries that are kept of one model: each place of a light that is dragged is another one.
+const GEOMETRIES_OF_MODEL: usize = 2;
+
+/// What was asked for lately: an edit that leaves a source alone costs nothing, and neither does going back and forth between
+/// two, as comparisons and studies do. Within 1 GiB; what was not used for longest goes first. Clones share what they
 /// keep, so that two sessions with the same scene load it once.
 #[derive(Clone, Debug, Default)]
 pub struct Assets(Arc<Mutex<Kept>>);
 
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Kept {
-    model: Option<(ModelKey, Arc<Model>)>,
-    textures: Option<(ModelKey, Arc<Textures>)>,
-    geometry: Option<(GeometryKey, Arc<Geometry>)>,
-    environment: Option<(EnvironmentKey, Arc<Environment>)>,
+    models: Shelf<ModelKey, Model>,
+    textures: Shelf<ModelKey, Textures>,
+    geometries: Shelf<GeometryKey, Geometry>,
+    environments: Shelf<EnvironmentKey, Environment>,
+    /// Counts the uses.
+    clock: u64,
+    memory: usize,
+}
+
+impl Default for Kept {
+    fn default() -> Self {
+        Self {
+            models: Shelf::new(Model::bytes),
+            textures: Shelf::new(Textures::bytes),
+            geometries: Shelf::new(Geometry::bytes),
+            environments: Shelf::new(Environment::bytes),
+            clock: 0,
+            memory: MEMORY,
+        }
+    }
 }
 
 impl Assets {
+    /// Keeps within another memory, in bytes.
+    pub fn within(memory: usize) -> Self {
+        let kept = Kept {
+            memory,
+            ..Kept::default()
+        };
+        Self(Arc::new(Mutex::new(kept)))
+    }
+
     /// What a panic left is whole: every change is a single assignment.
     fn kept(&self) -> MutexGuard<'_, Kept> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The model of a source, loaded unless it is the last one.
+    /// The model of a source, loaded unless it is kept.
     ///
     /// # Errors
     /// Names the file, what is wrong with it and what to do.
     pub fn model(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Model>, SessionError> {
-        self.kept().model(&(source.clone(), options.clone()))
+        let mut kept = self.kept();
+        let model = kept.model(&(source.clone(), options.clone()))?;
+        kept.tidy();
+        Ok(model)
     }
 
     /// The textures of a source, packed.
@@ -49,7 +84,10 @@ impl Assets {
     /// # Errors
     /// As [`Assets::model`].
     pub fn textures(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Textures>, SessionError> {
-        self.kept().textures(&(source.clone(), options.clone()))
+        let mut kept = self.kept();
+        let textures = kept.textures(&(source.clone(), options.clone()))?;
+        kept.tidy();
+        Ok(textures)
     }
 
     /// The geometry of a source, with or without ground, with area lights.
@@ -63,8 +101,10 @@ impl Assets {
         ground: bool,
         area_lights: Vec<AreaShape>,
     ) -> Result<Arc<Geometry>, SessionError> {
-        let key = ((source.clone(), options.clone()), ground, area_lights);
-        self.kept().geometry(key)
+        let mut kept = self.kept();
+        let geometry = kept.geometry(((source.clone(), options.clone()), ground, area_lights))?;
+        kept.tidy();
+        Ok(geometry)
     }
 
     /// The environment of a source.
@@ -76,69 +116,188 @@ impl Assets {
         source: &EnvironmentSource,
         encoding: EnvironmentEncoding,
     ) -> Result<Arc<Environment>, SessionError> {
-        self.kept().environment(&(source.clone(), encoding))
+        let mut kept = self.kept();
+        let environment = kept.environment(&(source.clone(), encoding))?;
+        kept.tidy();
+        Ok(environment)
     }
 
-    /// Keeps a model under a name of its own, as if it had been loaded from there, until another one is asked for.
+    /// Keeps a model under a name of its own, as if it had been loaded from there.
     pub fn keep_model(&self, source: ModelSource, model: Model) {
+        let key = (source, ModelOptions::default());
         let mut kept = self.kept();
-        (kept.textures, kept.geometry) = (None, None);
-        kept.model = Some(((source, ModelOptions::default()), Arc::new(model)));
+        kept.textures.retain(|of| *of != key);
+        kept.geometries.retain(|(of, ..)| *of != key);
+        let now = kept.now();
+        kept.models.put(key, Arc::new(model), now);
     }
 
     /// The same for an environment.
     pub fn keep_environment(&self, source: EnvironmentSource, environment: Environment) {
         let key = (source, EnvironmentEncoding::default());
-        self.kept().environment = Some((key, Arc::new(environment)));
+        let mut kept = self.kept();
+        let now = kept.now();
+        kept.environments.put(key, Arc::new(environment), now);
     }
 
     /// Forgets files, so that they are read again.
     pub fn reload(&self) {
-        *self.kept() = Kept::default();
+        let mut kept = self.kept();
+        *kept = Kept {
+            memory: kept.memory,
+            ..Kept::default()
+        };
     }
 }
 
 impl Kept {
+    fn now(&mut self) -> u64 {
+        self.clock += 1;
+        self.clock
+    }
+
     fn model(&mut self, key: &ModelKey) -> Result<Arc<Model>, SessionError> {
-        if let Some((_, model)) = self.model.as_ref().filter(|(of, _)| of == key) {
-            return Ok(model.clone());
+        let now = self.now();
+        if let Some(model) = self.models.get(key, now) {
+            return Ok(model);
         }
         let (source, options) = key;
         let model = Arc::new(scene::load_with(source, options)?);
         if let Some(summary) = model.report.summary() {
             log::warn!("{source}: {summary}");
         }
-        self.model = Some((key.clone(), model.clone()));
+        self.models.put(key.clone(), model.clone(), now);
         Ok(model)
     }
 
     fn textures(&mut self, key: &ModelKey) -> Result<Arc<Textures>, SessionError> {
-        if let Some((_, textures)) = self.textures.as_ref().filter(|(of, _)| of == key) {
-            return Ok(textures.clone());
+        let now = self.now();
+        if let Some(textures) = self.textures.get(key, now) {
+            return Ok(textures);
         }
         let textures = Arc::new(Textures::new(&*self.model(key)?));
         textures.warnings.iter().for_each(|warning| log::warn!("{warning}"));
-        self.textures = Some((key.clone(), textures.clone()));
+        self.textures.put(key.clone(), textures.clone(), now);
         Ok(textures)
     }
 
     fn geometry(&mut self, key: GeometryKey) -> Result<Arc<Geometry>, SessionError> {
-        if let Some((_, geometry)) = self.geometry.as_ref().filter(|(of, _)| *of == key) {
-            return Ok(geometry.clone());
+        let now = self.now();
+        if let Some(geometry) = self.geometries.get(&key, now) {
+            return Ok(geometry);
         }
-        let (model, ground, area_lights) = &key;
-        let geometry = Arc::new(Geometry::build_lit(&*self.model(model)?, *ground, area_lights));
-        self.geometry = Some((key, geometry.clone()));
+        let (of_model, ground, area_lights) = &key;
+        let geometry = Arc::new(Geometry::build_lit(&*self.model(of_model)?, *ground, area_lights));
+        let others = |(of, ..): &GeometryKey| of == of_model;
+        while self.geometries.count(others) >= GEOMETRIES_OF_MODEL {
+            self.geometries.drop_oldest(others);
+        }
+        self.geometries.put(key, geometry.clone(), now);
         Ok(geometry)
     }
 
     fn environment(&mut self, key: &EnvironmentKey) -> Result<Arc<Environment>, SessionError> {
-        if let Some((_, environment)) = self.environment.as_ref().filter(|(of, _)| of == key) {
-            return Ok(environment.clone());
+        let now = self.now();
+        if let Some(environment) = self.environments.get(key, now) {
+            return Ok(environment);
         }
         let environment = Arc::new(environment::load_encoded(&key.0, key.1)?);
         environment.warnings.iter().for_each(|warning| log::warn!("{warning}"));
-        self.environment = Some((key.clone(), environment.clone()));
+        self.environments.put(key.clone(), environment.clone(), now);
         Ok(environment)
+    }
+
+    /// Lets go what was not used for longest, until what is kept fits the memory. Hierarchies, which are built when they are
+    /// first needed, count from then on.
+    fn tidy(&mut self) {
+        loop {
+            let mut shelves: [&mut dyn Tidied; 4] = [
+                &mut self.models,
+                &mut self.textures,
+                &mut self.geometries,
+                &mut self.environments,
+            ];
+            if shelves.iter().map(|shelf| shelf.bytes()).sum::<usize>() <= self.memory {
+                return;
+            }
+            let oldest = shelves.iter_mut().filter(|shelf| shelf.spare().is_some());
+            let Some(shelf) = oldest.min_by_key(|shelf| shelf.spare()) else {
+                return;
+            };
+            shelf.drop_spare();
+        }
+    }
+}
+
+/// Values of one kind by their keys.
+#[derive(Debug)]
+struct Shelf<K, V> {
+    entries: Vec<Entry<K, V>>,
+    bytes_of: fn(&V) -> usize,
+}
+
+#[derive(Debug)]
+struct Entry<K, V> {
+    key: K,
+    value: Arc<V>,
+    used: u64,
+}
+
+impl<K: PartialEq, V> Shelf<K, V> {
+    fn new(bytes_of: fn(&V) -> usize) -> Self {
+        Self {
+            entries: Vec::new(),
+            bytes_of,
+        }
+    }
+
+    fn get(&mut self, key: &K, now: u64) -> Option<Arc<V>> {
+        let entry = self.entries.iter_mut().find(|entry| entry.key == *key)?;
+        entry.used = now;
+        Some(entry.value.clone())
+    }
+
+    fn put(&mut self, key: K, value: Arc<V>, now: u64) {
+        self.retain(|known| *known != key);
+        self.entries.push(Entry { key, value, used: now });
+    }
+
+    fn retain(&mut self, stays: impl Fn(&K) -> bool) {
+        self.entries.retain(|entry| stays(&entry.key));
+    }
+
+    fn count(&self, counts: impl Fn(&K) -> bool) -> usize {
+        self.entries.iter().filter(|entry| counts(&entry.key)).count()
+    }
+
+    /// Lets go what was not used for longest among some.
+    fn drop_oldest(&mut self, among: impl Fn(&K) -> bool) {
+        let candidates = self.entries.iter().filter(|entry| among(&entry.key));
+        if let Some(oldest) = candidates.map(|entry| entry.used).min() {
+            self.entries.retain(|entry| entry.used != oldest);
+        }
+    }
+}
+
+/// A shelf whatever is on it.
+trait Tidied {
+    fn bytes(&self) -> usize;
+    /// When it was last used what can be let go first, if anything can: not the last of its kind.
+    fn spare(&self) -> Option<u64>;
+    fn drop_spare(&mut self);
+}
+
+impl<K: PartialEq, V> Tidied for Shelf<K, V> {
+    fn bytes(&self) -> usize {
+        self.entries.iter().map(|entry| (self.bytes_of)(&entry.value)).sum()
+    }
+
+    fn spare(&self) -> Option<u64> {
+        let oldest = self.entries.iter().map(|entry| entry.used).min();
+        oldest.filter(|_| self.entries.len() > 1)
+    }
+
+    fn drop_spare(&mut self) {
+        self.drop_oldest(|_| true);
     }
 }

@@ -144,6 +144,15 @@ impl Geometry {
         self.hierarchy.compressed(|triangle| self.corners(triangle as usize))
     }
 
+    /// Bytes in memory, with the hierarchies that have been built.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.positions[..])
+            + size_of_val(&self.vertices[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.slots[..])
+            + self.hierarchy.bytes()
+    }
+
     /// Builds the processor's hierarchy if it is not there yet, which the first ray would do otherwise; its bytes.
     pub fn prepare(&self) -> usize {
         self.wide().bytes()

@@ -30,6 +30,18 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.positions[..])
+            + size_of_val(&self.normals[..])
+            + size_of_val(&self.uvs[..])
+            + size_of_val(&self.second_uvs[..])
+            + size_of_val(&self.colors[..])
+            + size_of_val(&self.tangents[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.slots[..])
+    }
+
     /// Adds one vertex and gives its index.
     pub fn push_vertex(&mut self, position: DVec3, normal: Vec3, uv: Vec2, tangent: Vec4) -> u32 {
         let index = self.positions.len() as u32;

@@ -107,6 +107,14 @@ pub struct Model {
     pub duration_s: f32,
 }
 
+impl Model {
+    /// Bytes in memory, near enough.
+    pub fn bytes(&self) -> usize {
+        let pictures: usize = self.textures.iter().map(|texture| texture.rgba8.len()).sum();
+        self.mesh.bytes() + pictures
+    }
+}
+
 /// What is shown of a file that holds more than one picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]

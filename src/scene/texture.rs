@@ -119,6 +119,11 @@ impl Default for Textures {
 }
 
 impl Textures {
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.records[..]) + size_of_val(&self.words[..])
+    }
+
     /// Packs what a model's slots look up. Where that is too much for a GPU the largest pictures are halved, which the
     /// warnings say.
     pub fn new(model: &Model) -> Self {

@@ -100,6 +100,10 @@ impl Workplace {
                 "'{word}' is not in the first line: {arguments}\n{stderr}"
             );
         }
+        assert!(
+            lines[0].matches("os error").count() <= 1,
+            "told twice: {arguments}\n{stderr}"
+        );
         let most = if code == 2 { 7 } else { 1 };
         assert!(lines.len() <= most, "more than {most} lines: {arguments}\n{stderr}");
     }

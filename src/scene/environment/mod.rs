@@ -117,6 +117,11 @@ pub struct Environment {
 }
 
 impl Environment {
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.texels[..]) + size_of_val(&self.cells[..])
+    }
+
     /// Builds the sampling tables over `texels` (`width` × `height`, finite and not negative).
     ///
     /// # Errors

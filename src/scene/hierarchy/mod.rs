@@ -68,6 +68,14 @@ impl Hierarchy {
         (hierarchy, order)
     }
 
+    /// Bytes in memory of what has been built.
+    pub(super) fn bytes(&self) -> usize {
+        let compressed = |made: &Compressed| size_of_val(&made.nodes[..]) + size_of_val(&made.triangles[..]);
+        self.tree.as_ref().map_or(0, Tree::bytes)
+            + self.wide.get().map_or(0, Wide::bytes)
+            + self.compressed.get().map_or(0, compressed)
+    }
+
     /// The processor's; `corners` of the triangles as they are stored.
     pub(super) fn wide(&self, corners: impl Fn(u32) -> [[f32; 3]; 3]) -> &Wide {
         self.wide.get_or_init(|| {

@@ -23,6 +23,11 @@ pub(in crate::scene) struct Subtree {
 }
 
 impl Tree {
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.left_leaves[..])
+    }
+
     /// The tree of a hierarchy whose leaves have one triangle each, and the order of its leaves.
     pub fn of(binary: &Bvh2) -> (Self, Vec<u32>) {
         let mut order = Vec::with_capacity(binary.primitive_indices.len());
