@@ -47,7 +47,9 @@ fn going_back_and_forth_loads_nothing_again() {
 
 #[test]
 fn what_was_not_used_for_longest_goes_first_where_memory_is_short() {
-    let bytes = SOURCES.each_ref().map(|source| model(&Assets::default(), source).bytes());
+    let bytes = SOURCES
+        .each_ref()
+        .map(|source| model(&Assets::default(), source).bytes());
     assert!(bytes.iter().all(|bytes| *bytes > 100), "{bytes:?}");
     let assets = Assets::within(bytes.iter().sum::<usize>() - 1);
     let first = SOURCES.each_ref().map(|source| model(&assets, source));

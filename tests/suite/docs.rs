@@ -152,20 +152,18 @@ fn hex(color: [f32; 3]) -> String {
     format!("`#{r:02x}{g:02x}{b:02x}`")
 }
 
-/// The options of a subcommand, or what it offers where it has subcommands itself; of the program itself without a name.
-fn options(name: &str) -> String {
-    let root = Arguments::command();
-    let command = name.split_whitespace().fold(&root, |command, word| {
+/// A command by its name; the program itself without one.
+fn command(name: &str) -> Command {
+    name.split_whitespace().fold(Arguments::command(), |command, word| {
         let found = command.get_subcommands().find(|command| command.get_name() == word);
-        found.unwrap_or_else(|| panic!("there is no command {word} in '{name}'"))
-    });
-    if command.has_subcommands() && !name.is_empty() {
-        let row = |command: &Command| {
-            let help = command.get_about().map(ToString::to_string).unwrap_or_default();
-            vec![format!("`{}`", command.get_name()), help]
-        };
-        return table(&["command", "what it does"], command.get_subcommands().map(row));
-    }
+        found
+            .unwrap_or_else(|| panic!("there is no command {word} in '{name}'"))
+            .clone()
+    })
+}
+
+/// The options of a command: option, default, what it does.
+fn option_rows(command: &Command) -> Vec<Vec<String>> {
     let is_shown = |argument: &&Arg| !matches!(argument.get_action(), ArgAction::Help | ArgAction::Version);
     let row = |argument: &Arg| {
         let values: Vec<_> = argument
@@ -193,10 +191,37 @@ fn options(name: &str) -> String {
             argument.get_help().map(ToString::to_string).unwrap_or_default(),
         ]
     };
-    table(
-        &["option", "default", "what it does"],
-        command.get_arguments().filter(is_shown).map(row),
-    )
+    command.get_arguments().filter(is_shown).map(row).collect()
+}
+
+/// The options of a subcommand, or what it offers where it has subcommands itself; of the program itself without a name.
+/// Those that are the same as render's are named only.
+fn options(name: &str) -> String {
+    let of = command(name);
+    if of.has_subcommands() && !name.is_empty() {
+        let row = |command: &Command| {
+            let help = command.get_about().map(ToString::to_string).unwrap_or_default();
+            vec![format!("`{}`", command.get_name()), help]
+        };
+        return table(&["command", "what it does"], of.get_subcommands().map(row));
+    }
+    let of_render = if name == "render" {
+        Vec::new()
+    } else {
+        option_rows(&command("render"))
+    };
+    let (shared, own): (Vec<_>, Vec<_>) = option_rows(&of).into_iter().partition(|row| of_render.contains(row));
+    let mut text = table(&["option", "default", "what it does"], own);
+    if !shared.is_empty() {
+        let names: Vec<_> = shared.iter().map(|row| format!("`{}`", option_name(&row[0]))).collect();
+        let _ = writeln!(text, "\nAs for [render](#all-options-of-render): {}.", names.join(", "));
+    }
+    text
+}
+
+/// `--size` of "`--size WxH`".
+fn option_name(option: &str) -> &str {
+    option.trim_matches('`').split(' ').next().unwrap_or_default()
 }
 
 fn block(name: &str) -> String {
