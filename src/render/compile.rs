@@ -34,7 +34,7 @@ pub(super) struct Compiler {
 
 impl Compiler {
     pub(super) fn compile(&mut self, document: &Document, assets: &Assets) -> Result<Job, SessionError> {
-        let document = &without_what_is_off(document);
+        let document = &*without_what_is_off(document);
         let (source, options) = (&document.model, &document.import);
         let model = assets.model(source, options)?;
         let shapes = document.lighting.area_lights.iter().map(AreaLight::shape).collect();

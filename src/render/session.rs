@@ -118,7 +118,7 @@ pub struct Session {
     info: EngineInfo,
     assets: Assets,
     compiler: Compiler,
-    document: Option<Document>,
+    document: Option<Arc<Document>>,
     job: Option<Arc<Job>>,
     convergence: Convergence,
     render_time: Duration,
@@ -276,6 +276,14 @@ impl Session {
     /// # Errors
     /// A model or environment that can't be loaded, or what the GPU can't hold.
     pub fn submit(&mut self, document: &Document) -> Result<Change, SessionError> {
+        self.submit_shared(&Arc::new(document.clone()))
+    }
+
+    /// The same without a copy of the document.
+    ///
+    /// # Errors
+    /// As [`Session::submit`].
+    pub fn submit_shared(&mut self, document: &Arc<Document>) -> Result<Change, SessionError> {
         let change = match &self.document {
             Some(old) => Change::between(old, document),
             None => Change::everything(),

@@ -8,6 +8,8 @@ mod horizon;
 mod switches;
 mod table;
 
+use std::borrow::Cow;
+
 use crate::document::{Document, MaterialSettings};
 use crate::job::Settings;
 use crate::job::effect::{ANY, Decision, EffectId};
@@ -67,12 +69,12 @@ pub fn plan(facts: &Facts<'_>) -> Plan {
 }
 
 /// The document with the effects taken out that the user switched off.
-pub fn without_what_is_off(document: &Document) -> Document {
+pub fn without_what_is_off(document: &Document) -> Cow<'_, Document> {
     let switches: EffectSwitches = document.render.effects;
-    let mut document = document.clone();
+    let mut document = Cow::Borrowed(document);
     for effect in EFFECTS {
         if let (Switch::Off, Some(remove)) = (switches.get(effect.id), effect.remove) {
-            remove(&mut document);
+            remove(document.to_mut());
         }
     }
     document

@@ -259,7 +259,7 @@ pub fn most_accurate(document: &Document) -> Document {
 
 /// The same for all documents that converge to the same picture: how it is reached and shown is left out.
 pub fn converged(document: &Document) -> Document {
-    let mut document = without_what_is_off(document);
+    let mut document = without_what_is_off(document).into_owned();
     let default = RenderSettings::default();
     document.render = RenderSettings {
         width: document.render.width,

@@ -135,7 +135,7 @@ impl Picture {
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// The document as submitted.
-    pub document: Document,
+    pub document: Arc<Document>,
     /// What it compiled to.
     pub job: Arc<Job>,
     /// Its model.
@@ -226,7 +226,7 @@ impl Orders {
 
 #[derive(Clone, Debug)]
 struct Submission {
-    document: Document,
+    document: Arc<Document>,
     pace: Pace,
     revision: u64,
     at: Instant,
@@ -298,7 +298,7 @@ impl Worker {
         book.last_revision += 1;
         let revision = book.last_revision;
         book.orders.submission = Some(Submission {
-            document: document.clone(),
+            document: Arc::new(document.clone()),
             pace,
             revision,
             at: Instant::now(),

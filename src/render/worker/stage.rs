@@ -1,5 +1,6 @@
 //! At which resolution a submission is rendered, and until when.
 
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::{Pace, Submission};
@@ -68,11 +69,14 @@ impl Stage {
     }
 
     /// The document at the stage's resolution.
-    pub(super) fn document(&self) -> Document {
-        let mut document = self.submission.document.clone();
+    pub(super) fn document(&self) -> Arc<Document> {
+        if self.reduction == 1 {
+            return self.submission.document.clone();
+        }
+        let mut document = Document::clone(&self.submission.document);
         document.render.width = document.render.width.div_ceil(self.reduction);
         document.render.height = document.render.height.div_ceil(self.reduction);
-        document
+        Arc::new(document)
     }
 
     /// Whether the full resolution is due: at once after the first picture, or after a rest where more changes are to
@@ -106,7 +110,7 @@ mod tests {
         let mut document = Document::default();
         (document.render.width, document.render.height) = (512, 512);
         let submission = Submission {
-            document,
+            document: Arc::new(document),
             revision: 1,
             pace: Pace::Still,
             at: Instant::now(),

@@ -298,7 +298,7 @@ impl State<'_> {
             .map(for_window)
             .and_then(|mut session| {
                 if let Some(stage) = &self.stage {
-                    session.submit(&stage.document())?;
+                    session.submit_shared(&stage.document())?;
                 }
                 Ok(session)
             });
@@ -391,7 +391,7 @@ impl State<'_> {
     /// What has been rendered counts, but is shown in another way or has another aim.
     fn go_on(&mut self, change: Change) -> Result<(), SessionError> {
         let Some(stage) = self.stage.clone() else { return Ok(()) };
-        self.session()?.submit(&stage.document())?;
+        self.session()?.submit_shared(&stage.document())?;
         let view = &stage.submission.document.view;
         let shown = self.snapshot.picture.as_ref().map(|picture| &picture.document.view);
         let denoises_alike =
@@ -453,7 +453,7 @@ impl State<'_> {
         true
     }
 
-    fn hand_over(&mut self, document: &Document) -> Result<(), SessionError> {
+    fn hand_over(&mut self, document: &Arc<Document>) -> Result<(), SessionError> {
         if self.is_new_model(document) {
             self.tell(Activity::Loading(document.model.to_string()));
             self.session()?.assets().model(&document.model, &document.import)?;
@@ -465,7 +465,7 @@ impl State<'_> {
             let encoding = document.lighting.environment_encoding;
             self.session()?.assets().environment(environment, encoding)?;
         }
-        self.session()?.submit(document)?;
+        self.session()?.submit_shared(document)?;
         Ok(())
     }
 
@@ -568,7 +568,7 @@ mod tests {
             ..Document::default()
         };
         let submission = Submission {
-            document,
+            document: Arc::new(document),
             pace: Pace::Still,
             revision: 1,
             at: Instant::now(),

@@ -100,7 +100,7 @@ impl State<'_> {
             reduction: stage.reduction,
             samples_per_pixel,
             map: scale.map(|scale| (wanted, scale)),
-            document: Arc::new(stage.submission.document.clone()),
+            document: stage.submission.document.clone(),
         }));
         self.tell(Activity::Rendering);
         Ok(())
