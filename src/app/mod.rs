@@ -145,7 +145,7 @@ impl App {
     /// The editor in a window.
     ///
     /// # Errors
-    /// If the system gives no thread to render on.
+    /// If no thread can be started.
     pub fn new(creation: &eframe::CreationContext<'_>, options: Options) -> io::Result<Self> {
         theme::install(&creation.egui_ctx);
         let kept = settings::Kept::load(creation);

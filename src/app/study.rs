@@ -144,7 +144,7 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
             // Without a thread the button does nothing; the log says why.
             match Background::spawn("study", move || ctx.request_repaint(), body) {
                 Ok(worker) => self.worker = Some(worker),
-                Err(error) => log::error!("the system gives no thread to measure on: {error}"),
+                Err(error) => log::error!("cannot start a thread to measure on: {error}"),
             }
         }
         if let Some(worker) = &self.worker {

@@ -64,7 +64,7 @@ impl<Q: Send + 'static, A: Clone + Send + 'static> Background<Q, A> {
     /// Starts the thread, which gives way to the window. `repaint` is called when there is something new to show.
     ///
     /// # Errors
-    /// If the system gives no thread.
+    /// If no thread can be started.
     pub fn spawn(
         name: &str,
         repaint: impl Fn() + Send + 'static,

@@ -37,7 +37,7 @@ pub type EnvironmentThumbnailWorker = Background<Vec<Wanted>, EnvironmentThumbna
 /// viewport goes first.
 ///
 /// # Errors
-/// If the system gives no thread.
+/// If no thread can be started.
 pub fn spawn_environment_thumbnails(
     folder: Option<PathBuf>,
     hold: Arc<AtomicBool>,

@@ -17,7 +17,7 @@ pub type PrecisionMaps = Background<Arc<Job>, Arc<PrecisionMap>>;
 /// Starts the thread that makes maps; `repaint` is called when one is finished.
 ///
 /// # Errors
-/// If the system gives no thread.
+/// If no thread can be started.
 pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<PrecisionMaps> {
     Background::spawn("precision", repaint, |job: Arc<Job>, desk| {
         if let Some(map) = precision(&job, map_size(job.settings.image_size), || desk.is_superseded()) {

@@ -76,7 +76,7 @@ pub type SampleWorker = Background<SampleQuery, SampleAnswer>;
 /// Starts the thread; `repaint` is called when there is something new to show.
 ///
 /// # Errors
-/// If the system gives no thread.
+/// If no thread can be started.
 pub fn spawn_samples(repaint: impl Fn() + Send + 'static) -> io::Result<SampleWorker> {
     let mut sampler: Option<(EngineChoice, Sampler)> = None;
     Background::spawn("samples", repaint, move |query: SampleQuery, desk| {

@@ -47,7 +47,7 @@ pub fn key(material: &MaterialSettings) -> u64 {
 /// is rendered while `hold` is set: the viewport goes first.
 ///
 /// # Errors
-/// If the system gives no thread.
+/// If no thread can be started.
 pub fn spawn_thumbnails(
     folder: PathBuf,
     hold: Arc<AtomicBool>,

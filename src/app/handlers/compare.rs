@@ -97,7 +97,7 @@ impl App {
                 .spawn_beside(engine.into(), move || repainting.request_repaint())
             else {
                 compare.is_on = false;
-                self.say(Level::Error, "the system gives no thread to render B on");
+                self.say(Level::Error, "cannot start a thread to render B");
                 return;
             };
             compare.generation += 1;

@@ -135,7 +135,7 @@ impl App {
             self.drop_file(path);
         } else {
             let shown: String = text.chars().take(80).collect();
-            self.say(Level::Warning, format!("pasted text is no file's name: {shown}"));
+            self.say(Level::Warning, format!("the pasted text is not a file name: {shown}"));
         }
     }
 

@@ -59,10 +59,7 @@ impl App {
             let table = self.turntable.order(&self.document);
             match Running::begin(ctx, table, engine) {
                 Ok(running) => self.turntable.running = Some(running),
-                Err(error) => self.say(
-                    Level::Error,
-                    format!("the system gives no thread to render on: {error}"),
-                ),
+                Err(error) => self.say(Level::Error, format!("cannot start a thread to render: {error}")),
             }
         }
     }

@@ -87,7 +87,7 @@ impl Panel for SamplesPanel {
             state.worker = spawn_samples(move || ctx.request_repaint()).ok();
         }
         let Some(worker) = &state.worker else {
-            widgets::note(ui, "The system gives no thread to draw samples on.");
+            widgets::note(ui, "Cannot start a thread to draw samples.");
             return;
         };
         if state.asked.as_ref() != Some(&query) {

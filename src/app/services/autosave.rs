@@ -59,7 +59,7 @@ impl Autosave {
     /// Starts to put documents aside in a folder, and looks for what crashes left there.
     ///
     /// # Errors
-    /// If the system gives no thread.
+    /// If no thread can be started.
     pub(in crate::app) fn begin(folder: PathBuf, interval: Duration, ctx: egui::Context) -> std::io::Result<Self> {
         let (orders, ordered) = channel();
         let (sender, reports) = channel();

@@ -108,7 +108,7 @@ impl Disk {
             ctx.request_repaint();
         };
         if let Err(error) = std::thread::Builder::new().name("save".to_owned()).spawn(body) {
-            let why = format!("the system gives no thread to save on: {error}");
+            let why = format!("cannot start a thread to save: {error}");
             // This end listens.
             let _ = self.sender.send(Done::Wrote(Err(why)));
         }

@@ -264,7 +264,7 @@ impl Worker {
     /// Starts the thread, which opens the engine; `repaint` is called when there is something new to show.
     ///
     /// # Errors
-    /// If the system gives no thread.
+    /// If no thread can be started.
     pub fn spawn(choice: EngineChoice, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
         Self::spawn_with(choice, Assets::default(), repaint)
     }
@@ -272,7 +272,7 @@ impl Worker {
     /// Starts another one that shares models and environments with this one.
     ///
     /// # Errors
-    /// If the system gives no thread.
+    /// If no thread can be started.
     pub fn spawn_beside(&self, choice: EngineChoice, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
         Self::spawn_with(choice, self.assets.clone(), repaint)
     }

@@ -42,7 +42,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
         state.worker = Background::spawn("hard cases", move || ctx.request_repaint(), work).ok();
     }
     let Some(worker) = &state.worker else {
-        widgets::note(ui, "The system gives no thread to check on.");
+        widgets::note(ui, "Cannot start a thread to check.");
         return;
     };
     if ui

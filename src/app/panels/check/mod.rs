@@ -54,7 +54,7 @@ impl Panel for CheckPanel {
             .ok();
         }
         let Some(worker) = &state.worker else {
-            widgets::note(ui, "The system gives no thread to check on.");
+            widgets::note(ui, "Cannot start a thread to check.");
             return;
         };
         ui.horizontal(|ui| {

@@ -72,7 +72,7 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut MatchState, sou
         state.worker = Background::spawn("match look", move || ctx.request_repaint(), work).ok();
     }
     let Some(worker) = &state.worker else {
-        widgets::note(ui, "The system gives no thread to compute on.");
+        widgets::note(ui, "Cannot start a thread to compute.");
         return;
     };
     let is_busy = worker.is_busy();

@@ -171,7 +171,7 @@ fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
         .ok();
     }
     let Some(worker) = &state.worker else {
-        widgets::note(ui, "The system gives no thread to compute on.");
+        widgets::note(ui, "Cannot start a thread to compute.");
         return;
     };
     if state.asked.as_ref() != Some(&query) {
