@@ -143,7 +143,7 @@ fn a_worker_that_is_dropped_does_not_wait_for_the_denoiser() {
     let worker = Worker::spawn(EngineChoice::Cpu, || {}).unwrap();
     worker.submit(&document, Pace::Still);
     let begun = Instant::now();
-    while worker.snapshot().progress.samples_per_pixel == 0 && begun.elapsed() < Duration::from_secs(60) {
+    while worker.snapshot().progress.samples_per_pixel == 0 && begun.elapsed() < Duration::from_secs(600) {
         std::thread::sleep(Duration::from_millis(1));
     }
     let begun = Instant::now();

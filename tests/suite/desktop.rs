@@ -11,7 +11,7 @@ use glossmith::store::load_document;
 use tempfile::TempDir;
 
 /// A slow machine has to open a window, compile and render.
-const PATIENCE: Duration = Duration::from_secs(180);
+const PATIENCE: Duration = Duration::from_secs(600);
 /// How often is looked whether something has happened.
 const GLANCE: Duration = Duration::from_millis(30);
 

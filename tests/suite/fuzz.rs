@@ -14,7 +14,7 @@ mod formats;
 /// Damaged files made of each file of the corpus.
 const DAMAGED: usize = 120;
 /// The longest that a file may take.
-const TIME_MAX: Duration = Duration::from_secs(10);
+const TIME_MAX: Duration = Duration::from_secs(30);
 /// What a process may need beyond ten times the file: the tables of decoders and their threads.
 const MEMORY_FLOOR_KIB: u64 = 48 << 10;
 /// Tells the child process that it is one.

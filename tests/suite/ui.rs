@@ -24,7 +24,7 @@ use super::worker::small_document;
 /// The window without a screen.
 pub(super) type Editor = Harness<'static, App>;
 
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// The options of an editor that is tested: nothing of the user's is read or written.
 pub(super) fn options() -> Options {

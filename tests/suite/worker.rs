@@ -9,7 +9,7 @@ use glossmith::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot,
 use glossmith::render::{EngineChoice, EngineKind};
 use glossmith::scene::{ModelOptions, ModelSource};
 
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_secs(600);
 
 /// A sphere in few pixels.
 pub fn small_document() -> Document {
@@ -112,7 +112,7 @@ fn maps_are_shown_without_rendering_again() {
             if picture.serial > last.serial {
                 break picture;
             }
-            assert!(begun.elapsed() < Duration::from_secs(20), "{shown:?} is not shown");
+            assert!(begun.elapsed() < Duration::from_secs(120), "{shown:?} is not shown");
             std::thread::sleep(Duration::from_millis(2));
         };
         assert_eq!((picture.width, picture.height, picture.samples_per_pixel), (40, 24, 8));
@@ -155,7 +155,7 @@ fn a_steady_stream_of_changes_is_shown_while_it_lasts() {
     let begun = Instant::now();
     let mut shown = 0;
     let mut last_serial = worker.snapshot().picture.as_ref().map(|picture| picture.serial);
-    while begun.elapsed() < Duration::from_secs(6) && shown < 4 {
+    while begun.elapsed() < Duration::from_secs(60) && shown < 4 {
         document.camera.yaw_deg += 1.0;
         worker.submit(&document, Pace::Moving);
         std::thread::sleep(Duration::from_millis(3));

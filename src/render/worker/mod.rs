@@ -193,6 +193,23 @@ pub enum Event {
     LayersMade(PathBuf, Box<Layers>),
 }
 
+/// What befalls the GPU's device.
+#[derive(Clone, Copy, Debug)]
+enum Mishap {
+    Lost,
+    /// Buffers above so many bytes are refused.
+    Limited(u64),
+}
+
+impl Mishap {
+    fn befall(self, device: &GpuDevice) {
+        match self {
+            Self::Lost => device.device.destroy(),
+            Self::Limited(bytes) => device.limit_buffers(bytes),
+        }
+    }
+}
+
 /// What the window wants.
 #[derive(Debug, Default)]
 struct Orders {
@@ -204,8 +221,7 @@ struct Orders {
     shown: Option<Shown>,
     reload: bool,
     restart: bool,
-    /// What befalls the GPU's device.
-    device: Vec<fn(&GpuDevice)>,
+    mishaps: Vec<Mishap>,
     quit: bool,
 }
 
@@ -219,7 +235,7 @@ impl Orders {
             && self.shown.is_none()
             && !self.reload
             && !self.restart
-            && self.device.is_empty()
+            && self.mishaps.is_empty()
             && !self.quit
     }
 }
@@ -343,12 +359,12 @@ impl Worker {
 
     /// Takes the GPU's device away, as a driver's reset does: for tests of what follows. Nothing on the processor.
     pub fn lose_device(&self) {
-        self.order(|orders| orders.device.push(|device| device.device.destroy()));
+        self.order(|orders| orders.mishaps.push(Mishap::Lost));
     }
 
-    /// Has the GPU refuse buffers above 1 MiB, as a small adapter does larger ones: for tests of what follows.
-    pub fn limit_buffers(&self) {
-        self.order(|orders| orders.device.push(|device| device.limit_buffers(1 << 20)));
+    /// Has the GPU refuse buffers above a size, as a small adapter does: for tests of what follows.
+    pub fn limit_buffers(&self, bytes: u64) {
+        self.order(|orders| orders.mishaps.push(Mishap::Limited(bytes)));
     }
 
     /// Goes on with another engine.

@@ -108,7 +108,7 @@ impl State<'_> {
             self.restart();
         }
         if let Some(device) = self.session.as_ref().and_then(Session::device) {
-            orders.device.iter().for_each(|befall| befall(device));
+            orders.mishaps.iter().for_each(|mishap| mishap.befall(device));
         }
         if orders.reload || orders.restart {
             self.guarded(|state| {
