@@ -337,8 +337,8 @@ fn play_all(remainder: u64) {
         &[Role::Button, Role::CheckBox, Role::ComboBox, Role::RadioButton],
         0.25,
     );
-    coverage.assert(Gesture::Drag, &numbers, 0.25);
-    coverage.assert(Gesture::Type, &[Role::SpinButton, Role::TextInput], 0.25);
+    coverage.assert(Gesture::Drag, &numbers, 0.05);
+    coverage.assert(Gesture::Type, &[Role::SpinButton, Role::TextInput], 0.05);
 }
 
 #[test]
