@@ -3,17 +3,14 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::{DVec3, Vec2};
-use glossmith::analysis::quadrature::{gauss_legendre, integrate, integrate_hemisphere};
+use glossmith::analysis::quadrature::{gauss_legendre, integrate};
 use glossmith::document::{MaterialSettings, assign};
-use glossmith::optics::curve::Curve;
-use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::fresnel::fresnel_dielectric;
-use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate};
-use glossmith::optics::vector::vec3;
+use glossmith::optics::lobe::Lobe;
 use glossmith::scene::mesh::Mesh;
 use glossmith::scene::shapes::sphere;
 
-use crate::analytic_scenes::{BY_LIGHT, CLEAR, Case, MATT, MIS, add_box, add_rectangle};
+use crate::analytic_scenes::{BY_LIGHT, CLEAR, Case, MATT, MIS, add_box, add_rectangle, lobe_case};
 
 /// Every case.
 pub fn bodies() -> Vec<Case> {
@@ -113,38 +110,10 @@ fn mean_of_ball(radiance: impl Fn(f64) -> f64) -> f64 {
 
 /// A ball of each lobe in a uniform field shows the lobe's albedo at each angle.
 fn balls() -> Vec<Case> {
-    const ROUGHNESS: f64 = 0.5;
-    let frame = frame_from_normal(vec3(0.0, 0.0, 1.0));
     let case = |lobe: &Lobe| {
-        let shape = LobeShape {
-            lobe: *lobe,
-            curve: Curve::Smooth,
-            horizon: Horizon::Absorb,
-            roughness: ROUGHNESS,
-            anisotropy: 0.0,
-            eta: 0.0,
-            table: &[],
-        };
-        let albedo = |sin: f64| {
-            let wo = vec3(sin, 0.0, (1.0 - sin * sin).sqrt());
-            integrate_hemisphere(100, |wi| lobe_evaluate(&shape, &frame, frame.normal, wo, wi)[0])
-        };
-        let name = format!("specular.lobe={}", lobe.name());
-        let assignments = [
-            &name,
-            "specular.roughness=0.5",
-            "specular.fresnel=none",
-            "specular.horizon=absorb",
-            "specular.curve=smooth",
-        ];
         // Its samples are of many weights.
         let samples = if *lobe == Lobe::GgxNdf { 4096 } else { 1024 };
-        let case = Case::new(
-            format!("ball of {}", lobe.name()),
-            &[&assignments],
-            [mean_of_ball(albedo); 3],
-        );
-        whole_ball(case).by(MIS, samples)
+        whole_ball(lobe_case("ball of", *lobe, 0.5, |albedo| mean_of_ball(albedo))).by(MIS, samples)
     };
     Lobe::ALL.iter().map(case).collect()
 }

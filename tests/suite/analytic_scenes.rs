@@ -429,32 +429,42 @@ fn glass() -> Vec<Case> {
     cases
 }
 
-/// Each lobe's albedo at 50 degrees, by quadrature.
-fn lobes() -> Vec<Case> {
-    const ROUGHNESS: f64 = 0.6;
-    let (sin, cos) = 50.0_f64.to_radians().sin_cos();
+/// A white surface of a lobe in the furnace, which shows what `expected` makes of the lobe's albedo by the sine of the view's
+/// angle: by quadrature.
+pub fn lobe_case(name: &str, lobe: Lobe, roughness: f64, expected: impl Fn(&dyn Fn(f64) -> f64) -> f64) -> Case {
     let frame = frame_from_normal(vec3(0.0, 0.0, 1.0));
+    let shape = LobeShape {
+        lobe,
+        curve: Curve::Smooth,
+        horizon: Horizon::Absorb,
+        roughness,
+        anisotropy: 0.0,
+        eta: 0.0,
+        table: &[],
+    };
+    let albedo = |sin: f64| {
+        let wo = vec3(sin, 0.0, (1.0 - sin * sin).sqrt());
+        integrate_hemisphere(200, |wi| lobe_evaluate(&shape, &frame, frame.normal, wo, wi)[0])
+    };
+    let assignments = [
+        &format!("specular.lobe={}", lobe.name()),
+        &format!("specular.roughness={roughness}"),
+        "specular.fresnel=none",
+        "specular.horizon=absorb",
+        "specular.curve=smooth",
+    ];
+    Case::new(
+        format!("{name} {}", lobe.name()),
+        &[&assignments],
+        [expected(&albedo); 3],
+    )
+}
+
+/// Each lobe's albedo at 50 degrees.
+fn lobes() -> Vec<Case> {
+    let (sin, cos) = 50.0_f64.to_radians().sin_cos();
     let case = |lobe: &Lobe| {
-        let shape = LobeShape {
-            lobe: *lobe,
-            curve: Curve::Smooth,
-            horizon: Horizon::Absorb,
-            roughness: ROUGHNESS,
-            anisotropy: 0.0,
-            eta: 0.0,
-            table: &[],
-        };
-        let wo = vec3(sin, 0.0, cos);
-        let albedo = integrate_hemisphere(200, |wi| lobe_evaluate(&shape, &frame, frame.normal, wo, wi)[0]);
-        let name = format!("specular.lobe={}", lobe.name());
-        let assignments = [
-            &name,
-            "specular.roughness=0.6",
-            "specular.fresnel=none",
-            "specular.horizon=absorb",
-            "specular.curve=smooth",
-        ];
-        Case::new(format!("lobe {}", lobe.name()), &[&assignments], [albedo; 3])
+        lobe_case("lobe", *lobe, 0.6, |albedo| albedo(sin))
             .seen([3.0 * sin, 3.0 * cos, 0.0], [0.0; 3])
             .by(MIS, 1024)
     };

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec2, Vec3};
 use glossmith::scene::{AlphaMode, Fate, Geometry, Wrap};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder, SQUARE, glb, png, square};
+use super::gltf_builder::{Buffer, Folder, SQUARE, assert_mirrored_tangents, glb, mirrored_squares, png, square};
 use super::support::Random;
 
 #[test]
@@ -152,31 +152,9 @@ fn sparse_interleaved_and_quantised_accessors_are_read() {
 
 #[test]
 fn vertices_where_the_texture_is_mirrored_are_split() {
-    let mut buffer = Buffer::default();
-    // A strip of two squares, the texture of the right one mirrored about their common edge.
-    let positions: Vec<[f32; 3]> = (0..6).map(|i| [(i % 3) as f32, (i / 3) as f32, 0.0]).collect();
-    let uvs: Vec<[f32; 2]> = (0..6).map(|i| [[0.0, 1.0, 0.0][i % 3], 1.0 - (i / 3) as f32]).collect();
-    let (positions, uvs) = (buffer.floats(&positions), buffer.floats(&uvs));
-    let normals = buffer.floats(&[[0.0, 0.0, 1.0]; 6]);
-    let indices = buffer.indices(&[0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]);
-    let attributes = json!({"POSITION": positions, "NORMAL": normals, "TEXCOORD_0": uvs});
-    let document = buffer.document(json!([{"attributes": attributes, "indices": indices}]));
-    let mesh = Folder::new().load_glb(&document, &buffer).expect("loads").mesh;
-    assert_eq!(
-        mesh.positions.len(),
-        8,
-        "the two vertices of the common edge are there twice"
-    );
-    for triangle in 0..4 {
-        let expected = if triangle < 2 {
-            Vec3::X.extend(1.0)
-        } else {
-            (-Vec3::X).extend(-1.0)
-        };
-        for vertex in mesh.triangles[triangle] {
-            assert_eq!(mesh.tangents[vertex as usize], expected, "triangle {triangle}");
-        }
-    }
+    let (buffer, primitive) = mirrored_squares();
+    let document = buffer.document(json!([primitive]));
+    assert_mirrored_tangents(&Folder::new().load_glb(&document, &buffer).expect("loads").mesh);
 }
 
 #[test]

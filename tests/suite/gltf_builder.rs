@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::PathBuf;
 
+use glossmith::scene::mesh::Mesh;
 use glossmith::scene::{Model, ModelError, ModelSource, load};
 use serde_json::{Value, json};
 use tempfile::TempDir;
@@ -110,6 +111,34 @@ impl Folder {
     }
     pub fn load_glb(&self, document: &Value, buffer: &Buffer) -> Result<Model, ModelError> {
         self.load("model.glb", &glb(document, &buffer.bytes))
+    }
+}
+
+/// A strip of two squares, the texture of the right one mirrored about their common edge: what it lies in, and the primitive.
+pub fn mirrored_squares() -> (Buffer, Value) {
+    let mut buffer = Buffer::default();
+    let positions: Vec<[f32; 3]> = (0..6).map(|i| [(i % 3) as f32, (i / 3) as f32, 0.0]).collect();
+    let uvs: Vec<[f32; 2]> = (0..6).map(|i| [[0.0, 1.0, 0.0][i % 3], 1.0 - (i / 3) as f32]).collect();
+    let (positions, uvs) = (buffer.floats(&positions), buffer.floats(&uvs));
+    let normals = buffer.floats(&[[0.0, 0.0, 1.0]; 6]);
+    let indices = buffer.indices(&[0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]);
+    let attributes = json!({"POSITION": positions, "NORMAL": normals, "TEXCOORD_0": uvs});
+    (buffer, json!({"attributes": attributes, "indices": indices}))
+}
+
+/// Whether the tangents of those squares follow their textures, and the common edge is split for it.
+pub fn assert_mirrored_tangents(mesh: &Mesh) {
+    assert_eq!(
+        mesh.positions.len(),
+        8,
+        "the two vertices of the common edge are there twice"
+    );
+    for triangle in 0..4 {
+        let sign = if triangle < 2 { 1.0 } else { -1.0 };
+        for vertex in mesh.triangles[triangle] {
+            let tangent = mesh.tangents[vertex as usize];
+            assert_eq!(tangent.to_array(), [sign, 0.0, 0.0, sign], "triangle {triangle}");
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use glossmith::document::of_model::materials_of;
 use glossmith::scene::{Fate, Model, ModelOptions};
 use serde_json::{Value, json};
 
-use super::gltf_builder::{Buffer, Folder, png, square};
+use super::gltf_builder::{Folder, assert_mirrored_tangents, mirrored_squares, png, square};
 use super::gltf_extensions::{load, load_plain, says};
 
 /// The slot of a material on a square, with a picture of two texels as texture 0.
@@ -208,30 +208,12 @@ fn ktx2_pictures_of_plain_bytes_are_read() {
 
 #[test]
 fn normal_textures_get_the_tangents_of_mikktspace() {
-    // A strip of two squares, the texture of the right one mirrored about their common edge.
-    let mut buffer = Buffer::default();
-    let positions: Vec<[f32; 3]> = (0..6).map(|i| [(i % 3) as f32, (i / 3) as f32, 0.0]).collect();
-    let uvs: Vec<[f32; 2]> = (0..6).map(|i| [[0.0, 1.0, 0.0][i % 3], 1.0 - (i / 3) as f32]).collect();
-    let (positions, uvs) = (buffer.floats(&positions), buffer.floats(&uvs));
-    let normals = buffer.floats(&[[0.0, 0.0, 1.0]; 6]);
-    let indices = buffer.indices(&[0, 1, 4, 0, 4, 3, 1, 2, 5, 1, 5, 4]);
+    let (mut buffer, mut primitive) = mirrored_squares();
+    primitive["material"] = json!(0);
     let picture = buffer.view(&png());
-    let attributes = json!({"POSITION": positions, "NORMAL": normals, "TEXCOORD_0": uvs});
-    let mut document = buffer.document(json!([{"attributes": attributes, "indices": indices, "material": 0}]));
+    let mut document = buffer.document(json!([primitive]));
     document["images"] = json!([{"bufferView": picture, "mimeType": "image/png"}]);
     document["textures"] = json!([{"source": 0}]);
     document["materials"] = json!([{"normalTexture": {"index": 0}}]);
-    let mesh = load_plain(&document, &buffer).mesh;
-    assert_eq!(
-        mesh.positions.len(),
-        8,
-        "the two vertices of the common edge are there twice"
-    );
-    for triangle in 0..4 {
-        let sign = if triangle < 2 { 1.0 } else { -1.0 };
-        for vertex in mesh.triangles[triangle] {
-            let tangent = mesh.tangents[vertex as usize];
-            assert_eq!(tangent.to_array(), [sign, 0.0, 0.0, sign], "triangle {triangle}");
-        }
-    }
+    assert_mirrored_tangents(&load_plain(&document, &buffer).mesh);
 }

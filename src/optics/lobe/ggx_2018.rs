@@ -1,24 +1,15 @@
 //! GGX as in [`super::ggx`], visible normals sampled as by Heitz, "Sampling the GGX distribution of visible normals",
 //! JCGT 2018: kept to be compared in time.
 
-use super::{Facets, LobeShape, LobeTraits, Width};
+use super::{LobeShape, LobeTraits};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::microfacet::{microfacet_alpha, visible_density, visible_weight};
 use crate::optics::numeric::normalize_or;
 
-/// What is special about the lobe.
-pub const TRAITS: LobeTraits = LobeTraits {
-    // Single scattering.
-    is_hemispherical: true,
-    is_anisotropic: true,
-    facets: Facets::Visible,
-    width: Width::Alpha,
-    has_curves: false,
-    weighs_one: false,
-    peak: 0.0,
-};
+/// What is special about the lobe: the same, since only the sampling differs.
+pub const TRAITS: LobeTraits = super::ggx::TRAITS;
 
 /// The reflection at a visible normal: a uniform point on the projected half disc of the stretched hemisphere.
 #[inline(always)]
