@@ -45,7 +45,7 @@ use sheets::unsaved::Unsaved;
 use viewport::Viewport;
 
 use crate::document::of_model::materials_of;
-use crate::document::{Change, Document, MaterialSettings};
+use crate::document::{Change, Denoise, Document, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::render::display::Shown;
 use crate::render::study::references::ReferenceCache;
@@ -141,6 +141,13 @@ pub struct App {
     theme: egui::ThemePreference,
 }
 
+/// What a new document is: the default one, but noise is taken out as before.
+fn new_document(denoise: Denoise) -> Document {
+    let mut document = Document::default();
+    document.view.denoise = denoise;
+    document
+}
+
 impl App {
     /// The editor in a window.
     ///
@@ -152,7 +159,7 @@ impl App {
         creation.egui_ctx.set_theme(kept.theme);
         let ctx = creation.egui_ctx.clone();
         let worker = Worker::spawn(options.engine, move || ctx.request_repaint())?;
-        let document = options.document.unwrap_or_default();
+        let document = options.document.unwrap_or_else(|| new_document(kept.denoise));
         let materials = options.data.as_ref().map(|data| data.join("materials"));
         let library = library::Library::new(materials, options.cache.clone());
         let environments = environments::Environments::new(options.cache.clone(), library.holder());
@@ -565,6 +572,7 @@ impl eframe::App for App {
             layout: Some(layout),
             resolution: self.shared.resolution,
             import_lobe: self.shared.import_lobe,
+            denoise: self.document.view.denoise,
             recent: self.shared.recent.paths().to_vec(),
         };
         kept.save(storage);

@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::desk::Resolution;
 use crate::app::layout::{self, Pane};
-use crate::document::ImportLobe;
+use crate::document::{Denoise, ImportLobe};
+use crate::render::denoise::Library;
 
 /// Under which the window's state is stored.
 const KEY: &str = "editor";
@@ -73,6 +74,9 @@ pub(super) struct Kept {
     pub(super) layout: Option<Tree<Pane>>,
     pub(super) resolution: Resolution,
     pub(super) import_lobe: ImportLobe,
+    /// How noise was taken out last: new documents begin with that.
+    #[serde(default = "first_denoise")]
+    pub(super) denoise: Denoise,
     /// Files opened and saved, the latest first.
     pub(super) recent: Vec<PathBuf>,
 }
@@ -84,18 +88,22 @@ impl Default for Kept {
             layout: None,
             resolution: Resolution::default(),
             import_lobe: ImportLobe::default(),
+            denoise: Denoise::Off,
             recent: Vec::new(),
         }
     }
 }
 
 impl Kept {
-    /// What the last start left; the defaults where that can't be read any more.
+    /// What the last start left; the defaults where that can't be read any more, or nothing is kept.
     pub(super) fn load(creation: &eframe::CreationContext<'_>) -> Self {
-        let mut kept: Self = creation
-            .storage
-            .and_then(|storage| eframe::get_value(storage, KEY))
-            .unwrap_or_default();
+        let first = || Self {
+            denoise: first_denoise(),
+            ..Self::default()
+        };
+        let mut kept: Self = creation.storage.map_or_else(Self::default, |storage| {
+            eframe::get_value(storage, KEY).unwrap_or_else(first)
+        });
         kept.layout = kept.layout.and_then(layout::complete);
         kept
     }
@@ -103,5 +111,14 @@ impl Kept {
     /// Leaves it for the next start.
     pub(super) fn save(&self, storage: &mut dyn eframe::Storage) {
         eframe::set_value(storage, KEY, self);
+    }
+}
+
+/// Pictures are clean at once where that can be had.
+fn first_denoise() -> Denoise {
+    if Library::get().is_ok() {
+        Denoise::Auto
+    } else {
+        Denoise::Off
     }
 }

@@ -258,11 +258,13 @@ fn swapping_and_taking_b_are_one_step_each() {
         Action::CompareWith(Rival::Material(Box::new(gold.clone()))),
     );
     settle_both(&mut harness, "B", |b| b.materials[0] == *gold);
-    harness.get_by_role_and_label(Role::Button, "Use B").click();
+    harness.get_by_role_and_label(Role::Button, "Replace A with B").click();
     harness.run_steps(2);
     assert_eq!(harness.state().document().materials[0], *gold);
     assert!(
-        harness.query_by_role_and_label(Role::Button, "Use B").is_none(),
+        harness
+            .query_by_role_and_label(Role::Button, "Replace A with B")
+            .is_none(),
         "nothing to compare"
     );
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);

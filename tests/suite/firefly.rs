@@ -38,9 +38,11 @@ fn energy(film: &Film) -> f64 {
     film.colors().map(luminance).sum()
 }
 
-/// The same paths are traced: what is missing from the picture is what the film says was taken.
+/// The same paths are traced: what is missing from the picture is what the film says was taken, and both engines take the
+/// same.
 #[test]
 fn what_is_taken_is_told() {
+    let mut taken = Vec::new();
     for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
         let (free, effects) = film(engine, &scene(None));
         assert_eq!(free.clamped(), 0.0);
@@ -65,7 +67,9 @@ fn what_is_taken_is_told() {
         if engine == EngineChoice::Cpu {
             assert!(loose.colors().eq(free.colors()));
         }
+        taken.push(limited.clamped());
     }
+    assert!((taken[0] / taken[1] - 1.0).abs() < 0.01, "{taken:?}");
 }
 
 /// Light that was reflected once or not at all is never limited: the sun itself, and what it lights.

@@ -187,7 +187,7 @@ fn opened_models_get_the_lobe_that_the_menu_says() {
     for (label, lobe) in [("GGX", Lobe::Ggx), ("Geometric", Lobe::Geometric)] {
         harness.get_by_role_and_label(Role::Button, "File").click();
         harness.run_steps(3);
-        harness.get_by_label_contains("Lobe of opened models").click();
+        harness.get_by_label_contains("Import glTF materials as").click();
         harness.run_steps(3);
         harness.get_by_role_and_label(Role::RadioButton, label).click();
         harness.run_steps(3);

@@ -1,13 +1,14 @@
 //! Effects, depth of field, bookmarks and picking, in the editor with the real renderer.
 
 use egui::accesskit::Role;
-use egui::{Modifiers, Pos2};
+use egui::{Modifiers, Pos2, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
 use glossmith::document::Denoise;
 use glossmith::document::effect::Switch;
 use glossmith::job::effect::EffectId;
+use glossmith::optics::tone::ToneCurve;
 use glossmith::render::display::Shown;
 use glossmith::scene::ModelSource;
 
@@ -71,7 +72,7 @@ fn a_bookmark_brings_the_camera_back() {
         .set_value_accesskit(-60.0);
     harness.run_steps(3);
     assert_ne!(harness.state().document().camera, first);
-    harness.get_by_label("Go").click_accesskit();
+    harness.get_by_label("Apply").click_accesskit();
     harness.run_steps(3);
     assert_eq!(harness.state().document().camera, first);
     undo(&mut harness);
@@ -188,4 +189,32 @@ fn noise_is_taken_out_and_the_error_that_is_left_is_told() {
     undo(&mut harness);
     assert_eq!(picture(&harness), noisy);
     assert!(harness.query_by_label_contains("denoised ").is_none());
+}
+
+/// A narrow bar over the viewport: what it has no room for is in a menu, and works from there.
+#[test]
+fn a_narrow_bar_puts_what_it_has_no_room_for_into_a_menu() {
+    let mut harness = editor();
+    harness.set_size(Vec2::new(1024.0, 720.0));
+    harness.run_steps(2);
+    for gone in ["Viewport tone map", "Resolution"] {
+        assert!(harness.query_by_label(gone).is_none(), "{gone} is in the bar");
+    }
+    harness.get_by_label("Viewport denoise").click_accesskit();
+    harness.run_steps(2);
+    assert_eq!(harness.state().document().view.denoise, Denoise::Auto);
+    let open = |harness: &mut Editor, menu: &str| {
+        harness.get_by_label("More of the viewport's controls").click();
+        harness.run_steps(2);
+        harness.get_by_role_and_label(Role::Button, menu).click();
+        harness.run_steps(2);
+    };
+    open(&mut harness, "Tone map");
+    harness.get_by_role_and_label(Role::RadioButton, "PBR Neutral").click();
+    harness.run_steps(2);
+    assert_eq!(harness.state().document().view.tone_map, ToneCurve::PbrNeutral);
+    undo(&mut harness);
+    harness.set_size(Vec2::new(1400.0, 1000.0));
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Resolution").is_some(), "there is room again");
 }

@@ -32,7 +32,7 @@ fn a_race_is_run_and_its_winner_taken() {
         harness.run_steps(2);
     }
     harness
-        .get_by_role_and_label(Role::SpinButton, "Time of each")
+        .get_by_role_and_label(Role::SpinButton, "Time per technique")
         .set_value_accesskit(0.05);
     harness.run_steps(2);
     harness.get_by_label("Run the race").click_accesskit();
@@ -62,7 +62,7 @@ fn racing(seconds: f64) -> Editor {
     harness.state_mut().reveal(Pane::Race);
     harness.run_steps(2);
     harness
-        .get_by_role_and_label(Role::SpinButton, "Time of each")
+        .get_by_role_and_label(Role::SpinButton, "Time per technique")
         .set_value_accesskit(seconds);
     harness.run_steps(2);
     harness.get_by_label("Run the race").click_accesskit();

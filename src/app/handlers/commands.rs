@@ -8,7 +8,7 @@ use crate::app::services::{library, snapshots};
 use crate::app::sheets::menu::Sheet;
 use crate::app::sheets::palette;
 use crate::app::{App, is_dragging};
-use crate::document::{CameraSettings, Document, MaterialSettings, parameter, setting};
+use crate::document::{CameraSettings, Denoise, Document, MaterialSettings, parameter, setting};
 use crate::render::explain::explain;
 use crate::scene::ModelOptions;
 use crate::scene::camera::framing_distance;
@@ -108,6 +108,14 @@ impl App {
                 let camera = &mut self.document.camera;
                 (camera.target, camera.distance, camera.position) = (None, None, None);
                 self.edits.note("Frame all", "");
+            }
+            Command::Denoise => {
+                let denoise = &mut self.document.view.denoise;
+                *denoise = match *denoise {
+                    Denoise::Off => Denoise::Auto,
+                    _ => Denoise::Off,
+                };
+                self.edits.note("Denoise", "view.denoise");
             }
             Command::FrameSelected => self.frame_selected(),
             Command::Maximise => {

@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::app::App;
 use crate::app::actions::Command;
 use crate::app::handlers::take_picture::Destination;
 use crate::app::services::disk::{Disk, Done, Task, words};
 use crate::app::services::edits::Edits;
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::unsaved::Then;
+use crate::app::{App, new_document};
 use crate::document::Document;
 use crate::render::worker::Level;
 use crate::scene::environment::{ENDINGS, EnvironmentSource};
@@ -245,7 +245,7 @@ impl App {
 
     /// Goes on with the default document.
     pub(in crate::app) fn start_anew(&mut self) {
-        self.document = Document::default();
+        self.document = new_document(self.document.view.denoise);
         self.shared.slot = 0;
         self.files.project = None;
         self.edits.note("New", "");

@@ -399,6 +399,26 @@ pub(in crate::app) fn choice<T: PartialEq + Clone>(
     response
 }
 
+/// The same as a menu within a menu; true where another one is chosen.
+pub(in crate::app) fn choice_menu<T: PartialEq + Clone>(
+    ui: &mut Ui,
+    label: &str,
+    value: &mut T,
+    choices: &[(T, &str, &str)],
+) -> bool {
+    let before = value.clone();
+    ui.menu_button(label, |ui| {
+        for (choice, label, help) in choices {
+            if ui.radio(choice == value, *label).on_hover_text(*help).clicked() {
+                *value = choice.clone();
+                // By the keyboard, too, which egui alone would leave it open for.
+                ui.close();
+            }
+        }
+    });
+    *value != before
+}
+
 /// Up and down choose the neighbour, as in other programs.
 fn step_by_keys<T: PartialEq + Clone>(
     ui: &Ui,

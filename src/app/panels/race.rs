@@ -124,7 +124,11 @@ fn choices(ui: &mut Ui, state: &mut RacePanel) {
         speed: 0.1,
         decimals: 2,
     };
-    let name = Name::new("Time of each", "Time of each", "How long each of them renders.");
+    let name = Name::new(
+        "Time per technique",
+        "Time per technique",
+        "How long each of them renders.",
+    );
     let RowResponse { reset, .. } = widgets::row(ui, name, |ui| widgets::number(ui, &mut state.seconds, &style));
     if reset {
         state.seconds = RacePanel::default().seconds;
@@ -136,8 +140,8 @@ fn outcome(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut RacePanel, race: &Arc<R
     widgets::note(
         ui,
         format!(
-            "Left: soon at a noise of {}. Low: near the most accurate picture; lowest, no bias that could be told. \
-             Click a point to take its settings.",
+            "Left: faster, to a noise of {}. Low: less bias against the most accurate picture; on the lowest line none \
+             could be measured. Click a point to use its settings.",
             percent(race.noise)
         ),
     );

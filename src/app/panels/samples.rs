@@ -29,7 +29,7 @@ pub(in crate::app) enum Look {
 const LOOKS: [(Look, &str, &str); 4] = [
     (
         Look::Mirror,
-        "From r",
+        "Along mirror direction",
         "From the mirror direction, as in the paper's Fig. 1; the circle has the radius of the roughness.",
     ),
     (Look::Above, "Above", "Down the normal: the circle is the horizon."),
@@ -380,7 +380,7 @@ fn numbers(ui: &mut Ui, report: &SampleReport) {
     for other in &report.angle.others {
         let [roughness, apart] = [other.nearest.roughness, 100.0 * other.nearest.total_variation];
         ui.label(format!(
-            "nearest {}: roughness {roughness:.3}, {apart:.1} % apart",
+            "nearest {}: roughness {roughness:.3}, {apart:.1} % difference",
             other.lobe.label()
         ));
     }

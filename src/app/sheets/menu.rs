@@ -5,7 +5,7 @@ use std::path::Path;
 use egui::{RichText, Ui, vec2};
 
 use crate::app::actions::{Action, Command, Menu, do_and_close};
-use crate::app::kit::theme;
+use crate::app::kit::{theme, widgets};
 use crate::app::pane::Pane;
 use crate::app::services::edits::Edits;
 use crate::app::services::recent::Recent;
@@ -156,19 +156,15 @@ fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
     }
 }
 
-fn import_lobes(ui: &mut Ui, chosen: ImportLobe, actions: &mut Vec<Action>) {
+fn import_lobes(ui: &mut Ui, mut chosen: ImportLobe, actions: &mut Vec<Action>) {
     ui.separator();
-    ui.menu_button("Lobe of opened models", |ui| {
-        for &lobe in ImportLobe::ALL {
-            if ui
-                .radio(lobe == chosen, lobe.label())
-                .on_hover_text(lobe.help())
-                .clicked()
-            {
-                do_and_close(ui, actions, Action::ImportAs(lobe));
-            }
-        }
-    });
+    let choices: Vec<_> = ImportLobe::ALL
+        .iter()
+        .map(|lobe| (*lobe, lobe.label(), lobe.help()))
+        .collect();
+    if widgets::choice_menu(ui, "Import glTF materials as", &mut chosen, &choices) {
+        actions.push(Action::ImportAs(chosen));
+    }
 }
 
 /// Shows the sheet that is open.
@@ -243,7 +239,7 @@ fn about(ui: &mut Ui) {
     ui.add_space(theme::GAP);
     ui.label(env!("CARGO_PKG_DESCRIPTION"));
     ui.add_space(theme::GAP);
-    crate::app::kit::widgets::note(ui, concat!("Licence: ", env!("CARGO_PKG_LICENSE")));
+    widgets::note(ui, concat!("Licence: ", env!("CARGO_PKG_LICENSE")));
     ui.add_space(theme::GAP);
     if ui.button("Close").clicked() {
         ui.close();

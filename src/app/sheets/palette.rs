@@ -73,7 +73,7 @@ pub(in crate::app) fn show(
             }
         }
         if found.is_empty() {
-            crate::app::kit::widgets::note(ui, "Nothing of that name.");
+            crate::app::kit::widgets::note(ui, "No matches.");
         }
     });
     let chosen = chosen.filter(|index| *index < found.len());

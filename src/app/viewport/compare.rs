@@ -249,7 +249,10 @@ fn contestants(ui: &mut Ui, desk: &mut Desk<'_>) {
         if icons::button(ui, Icon::Close, "Stop comparing", "Stop comparing (C)").clicked() {
             desk.act(Command::Compare);
         }
-        for (command, text) in [(Command::TakeCompared, "Use B"), (Command::SwapCompared, "Swap")] {
+        for (command, text) in [
+            (Command::TakeCompared, "Replace A with B"),
+            (Command::SwapCompared, "Swap"),
+        ] {
             let response = ui.button(text).on_hover_text(command.help());
             if response.clicked() {
                 desk.act(command);

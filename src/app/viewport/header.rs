@@ -5,15 +5,47 @@ use egui::{Align, Layout, Rect, Ui, UiBuilder, vec2};
 use crate::app::actions::{Action, Command, do_and_close};
 use crate::app::desk::{Desk, RESOLUTIONS};
 use crate::app::kit::icons::{self, Icon};
-use crate::app::kit::widgets;
+use crate::app::kit::{theme, widgets};
 use crate::app::services::environments;
+use crate::document::Denoise;
+use crate::optics::tone::ToneCurve;
 use crate::render::display::Shown;
 use crate::scene::ModelSource;
 
-/// From this width on there is room for more than model and environment, points.
-const WIDE: f32 = 650.0;
-/// Width of the tone map's menu, points.
-const TONE_MAP: f32 = 116.0;
+/// What stands in the bar beside model and environment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Item {
+    ToneMap,
+    Exposure,
+    Denoise,
+    Resolution,
+    Compare,
+    Shown,
+    Pause,
+}
+
+/// From left to right, with their widths in points.
+const ITEMS: [(Item, f32); 7] = [
+    (Item::ToneMap, 116.0),
+    (Item::Exposure, 76.0),
+    (Item::Denoise, 62.0),
+    (Item::Resolution, 104.0),
+    (Item::Compare, 44.0),
+    (Item::Shown, 84.0),
+    (Item::Pause, theme::ROW_HEIGHT),
+];
+/// Which of them the bar keeps longest when it gets narrow.
+const RANKED: [Item; 7] = [
+    Item::Pause,
+    Item::Exposure,
+    Item::Denoise,
+    Item::Shown,
+    Item::Compare,
+    Item::Resolution,
+    Item::ToneMap,
+];
+/// Width of the menu with the others, points.
+const MORE: f32 = 28.0;
 
 /// The models that come with the program.
 const MODELS: [(&str, ModelSource); 4] = [
@@ -43,14 +75,36 @@ pub(super) fn show(ui: &mut Ui, bar: Rect, desk: &mut Desk<'_>) {
         .layout(Layout::left_to_right(Align::Center));
     let mut ui = ui.new_child(builder);
     ui.set_clip_rect(bar.intersect(ui.clip_rect()));
-    // Narrow viewports keep what is looked at and give up the rest.
-    let is_wide = bar.width() > WIDE;
-    let has_tone_map = bar.width() > WIDE + TONE_MAP;
     models(&mut ui, desk);
     environments(&mut ui, desk);
-    if is_wide {
-        ui.with_layout(Layout::right_to_left(Align::Center), |ui| shown(ui, desk, has_tone_map));
+    let inside = fitting(ui.available_width(), ui.spacing().item_spacing.x);
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+        if inside.len() < ITEMS.len() {
+            more(ui, desk, &inside);
+        }
+        for (item, width) in ITEMS.into_iter().rev().filter(|(item, _)| inside.contains(item)) {
+            sized(ui, width, |ui| show_item(ui, desk, item));
+        }
+    });
+}
+
+/// The items that there is room for, points, beside a menu with the others.
+fn fitting(room: f32, spacing: f32) -> Vec<Item> {
+    let width = |item: &Item| {
+        ITEMS
+            .iter()
+            .find(|(of, _)| of == item)
+            .map_or(0.0, |(_, width)| width + spacing)
+    };
+    if RANKED.iter().map(width).sum::<f32>() <= room {
+        return RANKED.to_vec();
     }
+    let mut left = room - MORE - spacing;
+    let fits = |item: &&Item| {
+        left -= width(item);
+        left >= 0.0
+    };
+    RANKED.iter().take_while(fits).copied().collect()
 }
 
 fn models(ui: &mut Ui, desk: &mut Desk<'_>) {
@@ -97,49 +151,130 @@ fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
         .on_hover_text("Environment");
 }
 
-/// Added from the right.
-fn shown(ui: &mut Ui, desk: &mut Desk<'_>, has_tone_map: bool) {
-    let is_paused = desk.shared.is_paused;
-    let (icon, help) = if is_paused {
-        (Icon::Play, "Go on (space)")
-    } else {
-        (Icon::Pause, "Pause (space)")
-    };
-    if icons::button(ui, icon, Command::Pause.label(), help).clicked() {
-        desk.act(Command::Pause);
-    }
-    sized(ui, 84.0, |ui| {
-        let response = widgets::choice(ui, "header shown", &mut desk.shared.shown, &Shown::ALL);
-        if response.changed() {
-            desk.actions.push(Action::Show(desk.shared.shown));
+fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
+    match item {
+        Item::ToneMap => desk.setting_control(ui, "view.tone_map", "Viewport tone map"),
+        Item::Exposure => desk.setting_control(ui, "view.exposure", "Viewport exposure"),
+        Item::Denoise => {
+            let denoises = ui.selectable_label(desk.document.view.denoise != Denoise::Off, "Denoise");
+            let denoises = denoises.on_hover_text(Command::Denoise.help());
+            if denoises.clicked() {
+                desk.act(Command::Denoise);
+            }
+            denoises.accessible_name("Viewport denoise");
         }
-        response
-            .accessible_name("Viewport shows")
-            .on_hover_text("Picture, error, samples or precision");
-    });
-    let compares = ui.selectable_label(desk.shared.compare.is_on, "A | B");
-    let compares = compares.on_hover_text("Compare with another material or lobe (C)");
-    if compares.clicked() {
-        desk.act(Command::Compare);
+        Item::Resolution => {
+            let response = widgets::choice(ui, "header size", &mut desk.shared.resolution, &RESOLUTIONS);
+            response
+                .accessible_name("Resolution")
+                .on_hover_text("Size of the picture");
+        }
+        Item::Compare => {
+            let compares = ui.selectable_label(desk.shared.compare.is_on, "A | B");
+            let compares = compares.on_hover_text("Compare with another material or lobe (C)");
+            if compares.clicked() {
+                desk.act(Command::Compare);
+            }
+            compares.accessible_name("Compare");
+        }
+        Item::Shown => {
+            let response = widgets::choice(ui, "header shown", &mut desk.shared.shown, &Shown::ALL);
+            if response.changed() {
+                desk.actions.push(Action::Show(desk.shared.shown));
+            }
+            response
+                .accessible_name("Viewport shows")
+                .on_hover_text("Picture, error, samples or precision");
+        }
+        Item::Pause => {
+            let (icon, help) = if desk.shared.is_paused {
+                (Icon::Play, "Go on (space)")
+            } else {
+                (Icon::Pause, "Pause (space)")
+            };
+            if icons::button(ui, icon, Command::Pause.label(), help).clicked() {
+                desk.act(Command::Pause);
+            }
+        }
     }
-    compares.accessible_name("Compare");
-    sized(ui, 104.0, |ui| {
-        let response = widgets::choice(ui, "header size", &mut desk.shared.resolution, &RESOLUTIONS);
-        response
-            .accessible_name("Resolution")
-            .on_hover_text("Size of the picture");
+}
+
+/// A menu of the items that the bar has no room for.
+fn more(ui: &mut Ui, desk: &mut Desk<'_>, inside: &[Item]) {
+    let menu = ui.menu_button("…", |ui| {
+        for (item, _) in ITEMS.iter().filter(|(item, _)| !inside.contains(item)) {
+            menu_entry(ui, desk, *item);
+        }
     });
-    sized(ui, 76.0, |ui| {
-        desk.setting_control(ui, "view.exposure", "Viewport exposure")
-    });
-    if has_tone_map {
-        sized(ui, TONE_MAP, |ui| {
-            desk.setting_control(ui, "view.tone_map", "Viewport tone map")
-        });
+    menu.response
+        .accessible_name("More of the viewport's controls")
+        .on_hover_text("What the bar has no room for");
+}
+
+/// An item as an entry of a menu, where controls that open menus of their own can't be.
+fn menu_entry(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
+    match item {
+        Item::ToneMap => {
+            let mut curve = desk.document.view.tone_map;
+            let choices: Vec<_> = ToneCurve::ALL
+                .iter()
+                .map(|curve| (*curve, curve.label(), curve.help()))
+                .collect();
+            if widgets::choice_menu(ui, "Tone map", &mut curve, &choices) {
+                desk.document.view.tone_map = curve;
+                desk.edits.note("Tone map", "view.tone_map");
+            }
+        }
+        Item::Resolution => {
+            widgets::choice_menu(ui, "Resolution", &mut desk.shared.resolution, &RESOLUTIONS);
+        }
+        Item::Shown => {
+            if widgets::choice_menu(ui, "Viewport shows", &mut desk.shared.shown, &Shown::ALL) {
+                desk.actions.push(Action::Show(desk.shared.shown));
+            }
+        }
+        Item::Exposure => {
+            ui.horizontal(|ui| {
+                ui.label("Exposure");
+                show_item(ui, desk, item);
+            });
+        }
+        Item::Denoise => command(ui, desk, Command::Denoise),
+        Item::Compare => command(ui, desk, Command::Compare),
+        Item::Pause => command(ui, desk, Command::Pause),
+    }
+}
+
+fn command(ui: &mut Ui, desk: &mut Desk<'_>, command: Command) {
+    if ui.button(command.label()).on_hover_text(command.help()).clicked() {
+        do_and_close(ui, desk.actions, Action::Do(command));
     }
 }
 
 pub(super) fn sized(ui: &mut Ui, width: f32, add: impl FnOnce(&mut Ui)) {
     let layout = Layout::left_to_right(Align::Center);
-    ui.allocate_ui_with_layout(vec2(width, crate::app::kit::theme::ROW_HEIGHT), layout, add);
+    ui.allocate_ui_with_layout(vec2(width, theme::ROW_HEIGHT), layout, add);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_bar_keeps_what_it_has_room_for_and_in_order() {
+        let spacing = 8.0;
+        let all: f32 = ITEMS.iter().map(|(_, width)| width + spacing).sum();
+        assert_eq!(fitting(all, spacing).len(), ITEMS.len());
+        let mut fewer = ITEMS.len();
+        for room in (0..all as u32).rev() {
+            let inside = fitting(room as f32, spacing);
+            assert!(
+                inside.len() <= fewer && inside == RANKED[..inside.len()],
+                "{room}: {inside:?}"
+            );
+            fewer = inside.len();
+        }
+        assert_eq!(fewer, 0);
+        assert!(ITEMS.iter().all(|(item, _)| RANKED.contains(item)));
+    }
 }

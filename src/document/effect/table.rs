@@ -39,7 +39,7 @@ pub static EFFECTS: &[Effect] = &[
             } else if facts.materials.iter().all(Material::is_mirror) {
                 Decision::off("every surface is a mirror, which meets light in one direction only")
             } else {
-                Decision::on("the environment is brighter here than there")
+                Decision::on("environment brightness varies")
             }
         },
         remove: Some(|document| document.render.effects.set(EffectId::LightSampling, Switch::Off)),
@@ -287,7 +287,13 @@ pub static EFFECTS: &[Effect] = &[
         id: EffectId::Alpha,
         label: "Opacity",
         help: "Surfaces that let some light go straight on.",
-        decide: |facts| facts.needed_by(Material::has_holes, "is not opaque everywhere"),
+        decide: |facts| {
+            if facts.materials.iter().any(Material::has_holes) {
+                facts.needed_by(Material::has_holes, "is not opaque everywhere")
+            } else {
+                Decision::off("all materials are opaque")
+            }
+        },
         remove: Some(|document| {
             for material in &mut document.materials {
                 material.textures.opacity = false;
@@ -337,8 +343,8 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::Variance,
         label: "Variance",
-        help: "Sums of squares beside those of the light: the error of the picture is told from them.",
-        decide: |_| Decision::on("the error of the picture is told from them"),
+        help: "Sums of squares beside those of the radiance, used to estimate the error.",
+        decide: |_| Decision::on("used to estimate the error"),
         remove: None,
     },
     Effect {

@@ -82,7 +82,7 @@ impl Group {
 pub static GROUPS: &[Group] = &[
     Group {
         name: "strategy",
-        label: "How light is found",
+        label: "Light sampling",
         help: "By the lobe, by the light, or by both; all converge to the same picture.",
         members: |_| Strategy::ALL.iter().map(|s| Setting::Strategy(*s)).collect(),
     },
@@ -133,7 +133,7 @@ pub static GROUPS: &[Group] = &[
     },
     Group {
         name: "effect",
-        label: "Effects taken out",
+        label: "Effects disabled",
         help: "The scene without one of the effects that it calls for.",
         members: |plan| {
             let removable = plan.table().filter(|(effect, decision)| {

@@ -242,7 +242,7 @@ fn polar<'a>(title: String, each: impl Iterator<Item = (&'a LobeModel, f64)>) ->
     LinePlot {
         title,
         x: axis("Angle to the normal in degrees", [-90.0, 90.0]),
-        y: axis("Reflectance × cosine in 1/sr", [0.0, 1.05 * top]),
+        y: axis("BRDF × cos θ (1/sr)", [0.0, 1.05 * top]),
         is_polar: true,
         x_column: "angle_deg",
         series,

@@ -87,12 +87,12 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
             let is_here = bookmark.camera == desk.document.camera;
             let name = format!("Camera bookmark {}", index + 1);
             if ui
-                .selectable_label(is_here, "Go")
+                .selectable_label(is_here, "Apply")
                 .on_hover_text("Looks from there.")
                 .clicked()
             {
                 desk.document.camera = bookmark.camera;
-                desk.edits.note("Go to bookmark", "");
+                desk.edits.note("Apply bookmark", "");
             }
             let width = (ui.available_width() - 72.0).max(40.0);
             let field = egui::TextEdit::singleline(&mut bookmark.name).desired_width(width);
@@ -100,12 +100,12 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
                 desk.edits.note("Rename bookmark", name.clone());
             }
             if ui
-                .button("Set")
+                .button("Update")
                 .on_hover_text("Replaces it by the present camera.")
                 .clicked()
             {
                 bookmark.camera = desk.document.camera;
-                desk.edits.note("Set bookmark", "");
+                desk.edits.note("Update bookmark", "");
             }
             let remove = format!("Remove {}", name.to_lowercase());
             if icons::button(ui, Icon::Close, &remove, "Remove this bookmark").clicked() {

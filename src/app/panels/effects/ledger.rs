@@ -46,7 +46,7 @@ pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState
     let help = "What each effect and setting costs in time, and does to noise and picture: renders this scene with and \
                 without each of them, in turns.";
     let LedgerState { worker, asked, slice } = state;
-    worker.controls(ui, desk, "Measure what it costs", help, |desk| {
+    worker.controls(ui, desk, "Measure cost of effects", help, |desk| {
         *asked = Some(desk.document.clone());
         let document = small_document(desk, SIDE_MAX);
         let mut options = LedgerOptions::new(engine(desk));

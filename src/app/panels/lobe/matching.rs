@@ -109,7 +109,7 @@ fn result(ui: &mut Ui, desk: &mut Desk<'_>, matched: &Matched, is_current: bool)
         for (label, candidate) in rows.into_iter().take(count) {
             ui.label(label);
             ui.label(format!("R {:.3}", candidate.model.roughness));
-            ui.label(format!("{:.1} % apart", 100.0 * candidate.total_variation))
+            ui.label(format!("{:.1} % difference", 100.0 * candidate.total_variation))
                 .on_hover_text("Total variation distance: the share of the highlight that lies elsewhere");
             ui.end_row();
         }

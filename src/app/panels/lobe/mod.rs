@@ -147,7 +147,7 @@ fn controls(ui: &mut Ui, desk: &mut Desk<'_>, panel: &mut LobePanel, mut kind: V
         };
         let name = Name::new(
             "Other roughness",
-            "Its roughness",
+            "Reference roughness",
             "Follows the material's until it is changed.",
         );
         let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut roughness, &style));
