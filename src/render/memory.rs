@@ -11,8 +11,12 @@ pub const LIMIT_VARIABLE: &str = "GLOSSMITH_MEMORY";
 
 /// Bytes a pixel beside the film: the mean picture, what of it is shown, and what is written to a file.
 const PICTURE_BYTES: u64 = 16 + 4 + 12;
-/// And where it is denoised: both halves, guides and results.
+/// And where it is denoised: both halves, guides and results. Measured, as the two below, by the peak of pictures of 512 to
+/// 3072 pixels a side.
 const DENOISED_BYTES: u64 = 160;
+/// What the library itself takes meanwhile, up to the size from which it works in tiles.
+const DENOISER_BYTES: u64 = 640;
+const DENOISER_BYTES_MOST: u64 = 1_600 << 20;
 /// And where the GPU's memory is the processor's: the sums since they were last taken over.
 const SOFTWARE_GPU_BYTES: u64 = 56;
 /// The share of the free memory that a picture may take: the rest of the program and other programs live on.
@@ -40,19 +44,19 @@ pub struct TooLarge {
 /// # Errors
 /// [`TooLarge`], with the remedy.
 pub(super) fn check(job: &Job, is_software_gpu: bool, allowed: u64) -> Result<(), TooLarge> {
-    let needed = needed(job, is_software_gpu);
+    let needs = Needs::of(job, is_software_gpu);
+    let needed = needs.bytes();
     if needed <= allowed {
         return Ok(());
     }
     let [width, height] = job.settings.image_size;
-    let pixels = u64::from(width) * u64::from(height);
     Err(TooLarge {
         width,
         height,
         needed_mib: needed.div_ceil(1 << 20),
         allowed_mib: allowed >> 20,
-        side: (allowed / (needed / pixels.max(1)).max(1)).isqrt(),
-        remedy: if job.plan.has(EffectId::Denoising) {
+        side: needs.pixels_within(allowed).isqrt(),
+        remedy: if needs.is_denoised {
             ", or switch denoising off"
         } else {
             ""
@@ -60,22 +64,50 @@ pub(super) fn check(job: &Job, is_software_gpu: bool, allowed: u64) -> Result<()
     })
 }
 
-/// The bytes that a job's picture takes until it is shown and written.
-pub(super) fn needed(job: &Job, is_software_gpu: bool) -> u64 {
-    let given = |is_given: bool, bytes: u64| if is_given { bytes } else { 0 };
-    let extras = Extras::of(job);
-    let guides = extras.pixel_bytes()
-        - Extras {
-            guides: false,
-            ..extras
+/// What a job's picture takes until it is shown and written.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Needs {
+    pixels: u64,
+    pixel_bytes: u64,
+    is_denoised: bool,
+}
+
+impl Needs {
+    pub(super) fn of(job: &Job, is_software_gpu: bool) -> Self {
+        let given = |is_given: bool, bytes: u64| if is_given { bytes } else { 0 };
+        let extras = Extras::of(job);
+        let guides = extras.pixel_bytes()
+            - Extras {
+                guides: false,
+                ..extras
+            }
+            .pixel_bytes();
+        let [width, height] = job.settings.image_size;
+        let is_denoised = job.plan.has(EffectId::Denoising);
+        Self {
+            pixels: u64::from(width) * u64::from(height),
+            pixel_bytes: extras.pixel_bytes()
+                + PICTURE_BYTES
+                + given(is_denoised, DENOISED_BYTES)
+                + given(is_software_gpu, SOFTWARE_GPU_BYTES + guides),
+            is_denoised,
         }
-        .pixel_bytes();
-    let [width, height] = job.settings.image_size;
-    let bytes = extras.pixel_bytes()
-        + PICTURE_BYTES
-        + given(job.plan.has(EffectId::Denoising), DENOISED_BYTES)
-        + given(is_software_gpu, SOFTWARE_GPU_BYTES + guides);
-    u64::from(width) * u64::from(height) * bytes
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        let of_library = (self.pixels * DENOISER_BYTES).min(DENOISER_BYTES_MOST);
+        self.pixels * self.pixel_bytes + if self.is_denoised { of_library } else { 0 }
+    }
+
+    /// The most pixels of such pictures that fit so many bytes.
+    fn pixels_within(&self, bytes: u64) -> u64 {
+        if !self.is_denoised {
+            return bytes / self.pixel_bytes;
+        }
+        let in_one = bytes / (self.pixel_bytes + DENOISER_BYTES);
+        let in_tiles = bytes.saturating_sub(DENOISER_BYTES_MOST) / self.pixel_bytes;
+        in_one.max(in_tiles)
+    }
 }
 
 /// The bytes that [`LIMIT_VARIABLE`] names.

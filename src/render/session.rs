@@ -318,7 +318,7 @@ impl Session {
         // A film takes memory from its first sample on, and goes when another is begun.
         let is_in_use = self.engine.schedule().pixel_samples() > 0;
         let old = self.job.as_deref().filter(|_| is_in_use);
-        let held = old.map_or(0, |old| memory::needed(old, is_software_gpu));
+        let held = old.map_or(0, |old| memory::Needs::of(old, is_software_gpu).bytes());
         let allowed = self.memory_limit.unwrap_or_else(|| memory::free(held));
         Ok(memory::check(job, is_software_gpu, allowed)?)
     }

@@ -34,26 +34,25 @@ fn what_does_not_fit_is_refused_and_the_old_picture_goes_on() {
             assert!(text.contains(words), "{text}");
         }
         assert_eq!(session.image().unwrap(), picture);
-        // As large as it says fits; a denoised or transparent one takes more.
-        let side: u32 = text
-            .split("about ")
-            .nth(1)
-            .unwrap()
-            .split(' ')
-            .next()
-            .unwrap()
-            .parse()
-            .unwrap();
-        let mut document = of_size(side);
+        // As large as it says fits; a transparent or denoised one takes more.
+        let mut document = of_size(told_side(&text));
         session.submit(&document).unwrap();
-        session.submit(&of_size(side + 2)).unwrap_err();
+        session.submit(&of_size(told_side(&text) + 2)).unwrap_err();
         document.lighting.background = Background::Transparent;
         session.submit(&document).unwrap_err();
         document.lighting.background = Background::Environment;
         document.view.denoise = Denoise::Fast;
         let text = session.submit(&document).unwrap_err().to_string();
         assert!(text.contains("switch denoising off"), "{text}");
+        (document.render.width, document.render.height) = (told_side(&text), told_side(&text));
+        session.submit(&document).unwrap();
     }
+}
+
+/// The side of the largest square picture that a refusal tells.
+fn told_side(text: &str) -> u32 {
+    let after = text.split("about ").nth(1).unwrap();
+    after.split(' ').next().unwrap().parse().unwrap()
 }
 
 #[test]

@@ -9,8 +9,8 @@ use crate::app::kit::words::{duration, percent_short};
 /// The share of an axis at either end in which there are no labels: half of a label's height in a low chart.
 const LABEL_GAP: f64 = 0.05;
 
-/// A plot that stands still, of logarithms to base 10: seconds to the right, shares upwards.
-pub(in crate::app) fn log_log(name: &str, height: f32, margin: [f32; 2]) -> Plot<'static> {
+/// A plot that stands still, of logarithms to base 10: seconds to the right, shares upwards; `axes` are the titles.
+pub(in crate::app) fn log_log(name: &str, axes: [&str; 2], height: f32, margin: [f32; 2]) -> Plot<'static> {
     Plot::new(name)
         .height(height)
         .allow_drag(false)
@@ -18,6 +18,8 @@ pub(in crate::app) fn log_log(name: &str, height: f32, margin: [f32; 2]) -> Plot
         .allow_zoom(false)
         .allow_boxed_zoom(false)
         .show_background(false)
+        .x_axis_label(axes[0])
+        .y_axis_label(axes[1])
         .x_grid_spacer(decades)
         .y_grid_spacer(decades)
         .x_axis_formatter(|mark: GridMark, range: &RangeInclusive<f64>| {

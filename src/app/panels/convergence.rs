@@ -98,7 +98,7 @@ fn plot(ui: &mut Ui, history: &[Measurement], wanted: Option<f64>) {
         [seconds.log10(), error.log10()]
     });
     let height = (0.7 * ui.available_width()).clamp(160.0, 420.0);
-    let shown = log_log("convergence", height, [0.04, 0.08]).show(ui, |plot_ui| {
+    let shown = log_log("convergence", ["Render time", "Relative error"], height, [0.04, 0.08]).show(ui, |plot_ui| {
         let dashed = |name: &str, points: Vec<[f64; 2]>, color: Color32| {
             Line::new(name.to_owned(), PlotPoints::from(points))
                 .color(color)

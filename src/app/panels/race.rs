@@ -176,7 +176,8 @@ fn chart(ui: &mut Ui, race: &Race) -> Option<usize> {
     let accent = theme::accent(ui.visuals().dark_mode);
     let weak = ui.visuals().weak_text_color();
     let height = (0.8 * ui.available_width()).clamp(180.0, 420.0);
-    let shown: PlotResponse<()> = log_log("race", height, [0.2, 0.12]).show(ui, |plot_ui| {
+    let time = format!("Time to a noise of {}", percent(race.noise));
+    let shown: PlotResponse<()> = log_log("race", [&time, "Bias"], height, [0.2, 0.12]).show(ui, |plot_ui| {
         plot_ui.line(Line::new("best", PlotPoints::from(best)).color(accent.gamma_multiply(0.6)));
         for (runner, place) in std::iter::zip(&race.runners, &places) {
             let color = if runner.is_on_front { accent } else { weak };

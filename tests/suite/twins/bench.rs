@@ -3,6 +3,7 @@
 use std::sync::{LazyLock, OnceLock};
 
 use bytemuck::{bytes_of, cast_slice};
+use glam::Vec2;
 use glossmith::gpu::layout::{Globals, light_cells, slots, triangles};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
 use glossmith::job::{BackgroundKind, Settings, Strategy};
@@ -42,8 +43,16 @@ pub struct Scene {
 
 /// The teapot on its ground in the studio, with a material for each combination of lobe, curve and Fresnel model.
 pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
-    let model = scene::load(&ModelSource::Teapot).unwrap();
+    let mut model = scene::load(&ModelSource::Teapot).unwrap();
     let mut rng = Rng::new(7);
+    let mut coordinates = Rng::new(8);
+    let mut coordinate = || coordinates.range(-1.0, 2.0);
+    let second_uvs = model
+        .mesh
+        .positions
+        .iter()
+        .map(|_| Vec2::new(coordinate(), coordinate()));
+    model.mesh.second_uvs = second_uvs.collect();
     let mut tables = Vec::new();
     let mut curves = Vec::new();
     for curve in 0..CUSTOM_CURVES {

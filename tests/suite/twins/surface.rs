@@ -5,12 +5,14 @@ use glossmith::optics::material::Material;
 use glossmith::optics::real::Real;
 use glossmith::optics::vector::Vec3;
 use glossmith::scene::surface::{bent_normal, lifted_normal, surface_at};
+use glossmith::scene::texture::uvs_at;
 use glossmith::scene::{Hit, RayFrame, intersect_triangle};
 
 use super::bench::SCENE;
 use super::harness::{Case, Output, Rng, Row, Twin, Value, check, inputs, twin};
 
 const UNIT: Output = Output::Vector(1.0);
+const COORDINATE: Output = Output::Number(1.0);
 
 /// A random triangle of the scene, and a place in it.
 fn place_in_triangle(rng: &mut Rng) -> (u32, f32, f32) {
@@ -73,6 +75,26 @@ fn surfaces_agree() {
             .group("teapot and ground", |rng, _| {
                 let (triangle, u, v) = place_in_triangle(rng);
                 inputs![triangle, rng.range(0.1, 10.0), u, v, rng.direction()]
+            }),
+            Case::new(
+                "hit_uvs",
+                "triangle u v",
+                "let uvs = hit_uvs(Hit(1.0, triangle, u, v));",
+                twin!(|row| {
+                    let triangle = SCENE.geometry.compressed().triangles[row.bits() as usize];
+                    let [u, v]: [T; 2] = row.numbers();
+                    let weights = [T::one() - u - v, u, v];
+                    let sets = uvs_at(&SCENE.geometry, triangle as usize, weights);
+                    sets.as_flattened().iter().for_each(|x| row.put(*x));
+                }),
+            )
+            .output("uvs.x", COORDINATE)
+            .output("uvs.y", COORDINATE)
+            .output("uvs.z", COORDINATE)
+            .output("uvs.w", COORDINATE)
+            .group("teapot and ground", |rng, _| {
+                let (triangle, u, v) = place_in_triangle(rng);
+                inputs![triangle, u, v]
             }),
             Case::new(
                 "bent_normal",

@@ -54,12 +54,8 @@ pub(super) fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot) {
         shown.include_y(bottom).include_y(top).include_x(first).include_x(last)
     };
     let response = shown.show(ui, |plot_ui| {
-        for (rank, series) in plot
-            .series
-            .chunk_by(|a, b| a.group == b.group)
-            .flat_map(|group| group.iter().enumerate())
-        {
-            let style = if rank == 0 {
+        for (is_first, series) in series(plot) {
+            let style = if is_first {
                 LineStyle::Solid
             } else {
                 LineStyle::dashed_dense()
@@ -76,19 +72,28 @@ pub(super) fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot) {
     key(ui, plot);
 }
 
+/// The series, and whether each is the first of its group, which is solid; the others are dashed.
+fn series(plot: &LinePlot) -> impl Iterator<Item = (bool, &Series)> {
+    plot.series
+        .chunk_by(|a, b| a.group == b.group)
+        .flat_map(|group| group.iter().enumerate().map(|(rank, series)| (rank == 0, series)))
+}
+
 /// What the lines are, below the plot: over it they would hide narrow lobes.
 fn key(ui: &mut Ui, plot: &LinePlot) {
     if !plot.is_polar {
         ui.weak(&plot.y.label);
     }
-    for series in &plot.series {
+    for (is_first, series) in series(plot) {
         ui.horizontal(|ui| {
-            let (rect, _) = ui.allocate_exact_size(egui::vec2(14.0, 12.0), egui::Sense::hover());
-            ui.painter().hline(
-                rect.x_range(),
-                rect.center().y,
-                egui::Stroke::new(2.5, color(series.group)),
-            );
+            let (rect, _) = ui.allocate_exact_size(egui::vec2(22.0, 12.0), egui::Sense::hover());
+            let stroke = egui::Stroke::new(2.5, color(series.group));
+            let ends = [rect.left_center(), rect.right_center()];
+            if is_first {
+                ui.painter().line_segment(ends, stroke);
+            } else {
+                ui.painter().extend(egui::Shape::dashed_line(&ends, stroke, 4.0, 4.0));
+            }
             ui.add(egui::Label::new(plot.label(series)).truncate());
         });
     }
