@@ -55,6 +55,8 @@ pub enum Action {
     Show(Shown),
     /// Brings a panel to the front.
     Reveal(Pane),
+    /// Closes a panel.
+    Close(Pane),
     /// Shows a parameter of the selected material and gives it the keys.
     Edit(&'static str),
     /// Which lobe the materials of models get that are opened from now on.

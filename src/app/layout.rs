@@ -2,8 +2,8 @@
 
 use egui::{Color32, Stroke, Ui, Visuals, WidgetText};
 use egui_tiles::{
-    Behavior, Container, Linear, LinearDir, ResizeState, SimplificationOptions, TabState, Tabs, TileId, Tiles, Tree,
-    UiResponse,
+    Behavior, Container, Linear, LinearDir, ResizeState, SimplificationOptions, TabState, Tabs, Tile, TileId, Tiles,
+    Tree, UiResponse,
 };
 
 use crate::app::desk::Desk;
@@ -63,9 +63,46 @@ pub(super) fn complete(mut tree: Tree<Pane>) -> Option<Tree<Pane>> {
     Some(tree)
 }
 
-/// Brings a panel to the front.
+/// Brings a panel to the front, opened where it was closed.
 pub(super) fn reveal(tree: &mut Tree<Pane>, pane: Pane) {
+    set_open(&mut tree.tiles, pane, true);
     tree.make_active(|_, tile| matches!(tile, egui_tiles::Tile::Pane(of) if *of == pane));
+}
+
+/// Whether a panel has not been closed.
+pub(super) fn is_open(tree: &Tree<Pane>, pane: Pane) -> bool {
+    tree.tiles
+        .find_pane(&pane)
+        .is_some_and(|tile| tree.tiles.is_visible(tile))
+}
+
+/// Closes a panel.
+pub(super) fn close(tree: &mut Tree<Pane>, pane: Pane) {
+    set_open(&mut tree.tiles, pane, false);
+}
+
+/// Opens or closes a panel where it is docked; what is left without an open panel closes, too.
+fn set_open(tiles: &mut Tiles<Pane>, pane: Pane, is_open: bool) {
+    let Some(mut tile) = tiles.find_pane(&pane) else { return };
+    tiles.set_visible(tile, is_open);
+    while let Some(parent) = tiles.parent_of(tile) {
+        let children: Vec<TileId> = match tiles.get_container(parent) {
+            Some(container) => container.children().copied().collect(),
+            None => return,
+        };
+        let is_used = children.iter().any(|child| tiles.is_visible(*child));
+        tiles.set_visible(parent, is_used);
+        tile = parent;
+    }
+}
+
+/// The titles of the open panels below a tile.
+fn titles(tiles: &Tiles<Pane>, tile: TileId) -> Vec<&'static str> {
+    match tiles.get(tile) {
+        Some(Tile::Pane(pane)) if tiles.is_visible(tile) => vec![pane.title()],
+        Some(Tile::Container(container)) => container.children().flat_map(|child| titles(tiles, *child)).collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// Shows panes.
@@ -94,6 +131,25 @@ impl Behavior<Pane> for Panes<'_, '_> {
 
     fn tab_title_for_pane(&mut self, pane: &Pane) -> WidgetText {
         pane.title().into()
+    }
+
+    fn tab_title_for_tile(&mut self, tiles: &Tiles<Pane>, tile_id: TileId) -> WidgetText {
+        titles(tiles, tile_id).join(" | ").into()
+    }
+
+    /// The panel in front, so that the others' tabs keep their room.
+    fn is_tab_closable(&self, tiles: &Tiles<Pane>, tile_id: TileId) -> bool {
+        let tabs = tiles.parent_of(tile_id).and_then(|parent| tiles.get_container(parent));
+        let is_in_front = matches!(tabs, Some(Container::Tabs(tabs)) if tabs.active == Some(tile_id));
+        is_in_front && matches!(tiles.get(tile_id), Some(Tile::Pane(pane)) if *pane != Pane::Viewport)
+    }
+
+    fn on_tab_close(&mut self, tiles: &mut Tiles<Pane>, tile_id: TileId) -> bool {
+        if let Some(Tile::Pane(pane)) = tiles.get(tile_id) {
+            set_open(tiles, *pane, false);
+        }
+        // It stays where it is docked, for when it is opened again.
+        false
     }
 
     fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
@@ -182,6 +238,24 @@ mod tests {
         let beside = |pane: &Pane| whole.tiles.parent_of(whole.tiles.find_pane(pane)?);
         assert_eq!(beside(&Pane::Race), beside(&Pane::Effects));
         assert_eq!(beside(&Pane::Convergence), beside(&Pane::Curve));
+    }
+
+    #[test]
+    fn a_panel_that_is_closed_comes_back_where_it_was() {
+        let mut tree = default_layout();
+        let place = |tree: &Tree<Pane>, pane: Pane| tree.tiles.parent_of(tree.tiles.find_pane(&pane)?);
+        let tabs = place(&tree, Pane::Race).expect("it is docked");
+        for pane in panes_of(Home::LowerLeft) {
+            close(&mut tree, pane);
+            assert!(!is_open(&tree, pane), "{pane:?}");
+        }
+        assert!(!tree.tiles.is_visible(tabs), "nothing is left in it");
+        assert_eq!(titles(&tree.tiles, tabs), [""; 0]);
+        reveal(&mut tree, Pane::Race);
+        assert!(is_open(&tree, Pane::Race) && tree.tiles.is_visible(tabs));
+        assert_eq!(place(&tree, Pane::Race), Some(tabs));
+        assert_eq!(titles(&tree.tiles, tabs), [Pane::Race.title()]);
+        assert!(complete(tree).is_some_and(|tree| !is_open(&tree, Pane::Effects)));
     }
 
     #[test]

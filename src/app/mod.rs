@@ -433,13 +433,10 @@ impl App {
             .frame(bar)
             .show_separator_line(false)
             .show(ui, |ui| {
-                menu::bar(
-                    ui,
-                    &self.edits,
-                    &mut self.shared.recent,
-                    self.shared.import_lobe,
-                    actions,
-                );
+                // With the viewport alone all of them can be brought back.
+                let is_open = |pane| !self.is_maximised && layout::is_open(&self.layout, pane);
+                let (edits, recent) = (&self.edits, &mut self.shared.recent);
+                menu::bar(ui, edits, recent, self.shared.import_lobe, is_open, actions);
             });
         egui::Panel::bottom("status")
             .frame(bar)

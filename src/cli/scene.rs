@@ -68,8 +68,8 @@ pub struct SceneArguments {
     /// Where the camera is, in degrees around and above its target.
     #[arg(long, value_name = "YAW,PITCH", value_parser = parse::orbit, allow_hyphen_values = true, conflicts_with = "camera-position")]
     camera_orbit: Option<[f64; 2]>,
-    /// Width and height in pixels [default: 512x512]. A picture takes some 100 bytes of memory a pixel, 160 more and up to 1.6 GB for the library where it is
-    /// denoised; one that does not fit the memory is refused before it is begun.
+    /// Width and height in pixels [default: 512x512]. A picture takes some 100 bytes of memory a pixel, 160 more and
+    /// up to 1.6 GB for the library where it is denoised; one that does not fit the memory is refused before it is begun.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
     size: Option<[u32; 2]>,
     /// Render this part of the picture only, the rest staying transparent: shares of width and height.

@@ -2,7 +2,11 @@
 
 use glossmith::document::parameter::{Kind, Parameter, Value, assign, parameter, parse_color};
 use glossmith::document::{Change, Conductor, Document, MaterialSettings, PARAMETERS, SETTINGS, Stage};
-use glossmith::store::preset;
+use glossmith::render::EngineChoice;
+use glossmith::store::{PRESETS, preset};
+
+use super::renders::render;
+use super::worker::small_document;
 
 /// Values of a kind: both ends and something between, every choice.
 fn values_of(kind: &Kind) -> Vec<Value> {
@@ -252,4 +256,32 @@ fn a_metal_brings_its_indices_and_indices_of_ones_own_are_custom() {
         "the file's k wins over its metal's, in whatever order"
     );
     assert_eq!(loaded.conductor, Conductor::Custom);
+}
+
+/// What is shown grey changes nothing: the picture stays the same to the bit.
+#[test]
+fn what_is_idle_has_no_effect() {
+    let mut document = small_document();
+    document.materials[0] = PRESETS
+        .iter()
+        .find(|preset| preset.name == "Gold")
+        .expect("it is shipped")
+        .clone();
+    let idle: Vec<&Parameter> = PARAMETERS
+        .iter()
+        .filter(|parameter| (parameter.idle)(&document.materials[0]).is_some())
+        .collect();
+    assert!(idle.iter().any(|parameter| parameter.key == "base.color"));
+    let before = render(EngineChoice::Cpu, &document);
+    for parameter in idle {
+        for value in valid_values(parameter) {
+            let mut changed = document.clone();
+            parameter.set(&mut changed.materials[0], value).expect("it is valid");
+            let after = render(EngineChoice::Cpu, &changed);
+            assert!(after.colors().eq(before.colors()), "{}", parameter.key);
+        }
+    }
+    assign(&mut document.materials[0], "specular.fresnel=schlick").expect("it is one");
+    let color = parameter("base.color").expect("it is one");
+    assert!((color.idle)(&document.materials[0]).is_none());
 }

@@ -218,3 +218,23 @@ fn a_narrow_bar_puts_what_it_has_no_room_for_into_a_menu() {
     harness.run_steps(2);
     assert!(harness.query_by_label("Resolution").is_some(), "there is room again");
 }
+
+/// A panel is closed and opened by its tick in the menu *View*; the cross on its tab closes it, too.
+#[test]
+fn panels_are_closed_and_come_back() {
+    let mut harness = editor();
+    let toggle = |harness: &mut Editor| {
+        harness.get_by_role_and_label(Role::Button, "View").click();
+        harness.run_steps(2);
+        harness.get_by_role_and_label(Role::CheckBox, "Snapshots").click();
+        harness.run_steps(2);
+    };
+    let is_there = |harness: &Editor| harness.query_by_label_contains("Pin a snapshot").is_some();
+    harness.state_mut().reveal(Pane::Snapshots);
+    harness.run_steps(2);
+    assert!(is_there(&harness));
+    toggle(&mut harness);
+    assert!(!is_there(&harness));
+    toggle(&mut harness);
+    assert!(is_there(&harness));
+}

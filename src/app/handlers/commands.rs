@@ -43,6 +43,7 @@ impl App {
                 self.edits.note("Look from a side", "");
             }
             Action::Reveal(pane) => self.reveal(pane),
+            Action::Close(pane) => layout::close(&mut self.layout, pane),
             Action::Edit(key) => self.edit_parameter(ctx, key),
             Action::UseEngine(choice) => self.worker.use_engine(choice),
             Action::Show(shown) => {

@@ -13,6 +13,9 @@ use crate::app::kit::{parameter_row, theme};
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter};
 use crate::scene::{AlphaMode, Model, Texture};
 
+/// The slots that are seen at once: more are scrolled to, so that the parameters stay in sight.
+const SLOTS_SHOWN: f32 = 6.0;
+
 /// The parameters of the selected material.
 #[derive(Default)]
 pub(super) struct MaterialPanel;
@@ -79,19 +82,34 @@ fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
             .scene()
             .map(|scene| scene.model.slots.iter().map(|slot| slot.name.clone()).collect())
             .unwrap_or_default();
-        for (slot, name) in names.iter().enumerate() {
-            let label = if name.is_empty() {
-                format!("slot {}", slot + 1)
-            } else {
-                name.clone()
-            };
-            let width = egui::vec2(ui.available_width(), theme::ROW_HEIGHT);
-            let item = egui::Button::selectable(slot == desk.shared.slot, label).min_size(width);
-            if ui.add(item).clicked() {
-                desk.actions.push(Action::SelectSlot(slot));
+        let height = SLOTS_SHOWN * (theme::ROW_HEIGHT + ui.spacing().item_spacing.y);
+        egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+            for (slot, name) in names.iter().enumerate() {
+                slot_entry(ui, desk, slot, name);
             }
-        }
+        });
     });
+}
+
+fn slot_entry(ui: &mut Ui, desk: &mut Desk<'_>, slot: usize, name: &str) {
+    let label = if name.is_empty() {
+        format!("slot {}", slot + 1)
+    } else {
+        name.to_owned()
+    };
+    let is_selected = slot == desk.shared.slot;
+    let size = egui::vec2(ui.available_width(), theme::ROW_HEIGHT);
+    let button = egui::Button::selectable(is_selected, label.as_str()).truncate();
+    let item = ui.add_sized(size, button.min_size(size));
+    // Where a click in the viewport selected it.
+    let shown = egui::Id::unique("slot in sight");
+    if is_selected && ui.memory(|memory| memory.data.get_temp::<usize>(shown)) != Some(slot) {
+        item.scroll_to_me(None);
+        ui.memory_mut(|memory| memory.data.insert_temp(shown, slot));
+    }
+    if item.on_hover_text(label).clicked() {
+        desk.actions.push(Action::SelectSlot(slot));
+    }
 }
 
 fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
@@ -191,11 +209,18 @@ fn show_parameter(
     material: &mut MaterialSettings,
 ) {
     let mut value = parameter.get(material);
-    let is_other = parameter_row::show(ui, parameter, &mut value, |ui| {
-        if let Some(picture) = picture {
-            picture.show(ui);
-        }
+    let idle = (parameter.idle)(material);
+    let row = ui.add_enabled_ui(idle.is_none(), |ui| {
+        parameter_row::show(ui, parameter, &mut value, |ui| {
+            if let Some(picture) = picture {
+                picture.show(ui);
+            }
+        })
     });
+    if let Some(why) = idle {
+        row.response.on_hover_text(why);
+    }
+    let is_other = row.inner;
     if is_other && parameter.set(material, value).is_ok() {
         let key = format!("{}/{}", desk.shared.slot, parameter.key);
         desk.edits.note(parameter.full_name(), key);

@@ -41,6 +41,7 @@ pub(in crate::app) fn bar(
     edits: &Edits,
     recent: &mut Recent,
     import_lobe: ImportLobe,
+    is_open: impl Fn(Pane) -> bool,
     actions: &mut Vec<Action>,
 ) {
     egui::MenuBar::new().ui(ui, |ui| {
@@ -59,7 +60,7 @@ pub(in crate::app) fn bar(
                     entry(ui, *command, edits, actions);
                 }
                 match menu {
-                    Menu::View => panes(ui, actions),
+                    Menu::View => panes(ui, &is_open, actions),
                     Menu::Render => engines(ui, actions),
                     Menu::File => import_lobes(ui, import_lobe, actions),
                     _ => {}
@@ -137,11 +138,18 @@ fn with_step(verb: &str, step: Option<&str>) -> (String, bool) {
     }
 }
 
-fn panes(ui: &mut Ui, actions: &mut Vec<Action>) {
+/// The panels: a tick at those that are open.
+fn panes(ui: &mut Ui, is_open: impl Fn(Pane) -> bool, actions: &mut Vec<Action>) {
     ui.separator();
     for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport) {
-        if ui.button(pane.command()).clicked() {
-            do_and_close(ui, actions, Action::Reveal(pane));
+        let mut opens = is_open(pane);
+        if ui.checkbox(&mut opens, pane.title()).changed() {
+            let action = if opens {
+                Action::Reveal(pane)
+            } else {
+                Action::Close(pane)
+            };
+            do_and_close(ui, actions, action);
         }
     }
 }

@@ -173,6 +173,8 @@ pub struct Parameter<T: 'static = MaterialSettings> {
     pub stage: Stage,
     /// True where the parameter has an effect.
     pub applies: fn(&T) -> bool,
+    /// Why a parameter that applies changes nothing at present: it is shown, and can't be edited.
+    pub idle: fn(&T) -> Option<&'static str>,
     get: fn(&T) -> Value,
     /// Only called with values that `check` accepts.
     set: fn(&mut T, Value),

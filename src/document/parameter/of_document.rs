@@ -194,6 +194,7 @@ fn of(
         },
         stage,
         applies: |_| true,
+        idle: |_| None,
         get,
         set,
     }

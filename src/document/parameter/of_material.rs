@@ -80,6 +80,12 @@ fn base() -> Vec<Parameter> {
         Parameter {
             label: "Colour",
             help: "Colour of the diffuse base; of a metal, its reflection seen head-on.",
+            idle: |material| {
+                let of_indices = is_conductor(material) && material.metalness >= 1.0;
+                of_indices.then_some(
+                    "The metal's colour follows from its index of refraction, while Fresnel is that of a conductor.",
+                )
+            },
             ..of("base.color", Kind::Color, field!(Color base_color))
         },
         Parameter {
@@ -375,6 +381,7 @@ fn of(key: &'static str, kind: Kind, (get, set): (Get, Set)) -> Parameter {
         row: bar(0.0, 1.0),
         stage: Stage::Materials,
         applies,
+        idle: |_| None,
         get,
         set,
     }
