@@ -51,9 +51,8 @@ struct Moments {
     noisy: f64,
     /// Product of both errors.
     product: f64,
-    /// Variance of the first, from what is seen around each pixel, and from its own deviation from that.
-    variance: f64,
-    squares: f64,
+    /// Variance of the first.
+    variances: Variances,
     /// Squared difference of the two pictures.
     difference: f64,
     /// Pixels.
@@ -66,8 +65,7 @@ impl std::ops::AddAssign for Moments {
         self.known += other.known;
         self.noisy += other.noisy;
         self.product += other.product;
-        self.variance += other.variance;
-        self.squares += other.squares;
+        self.variances += other.variances;
         self.difference += other.difference;
         self.pixels += other.pixels;
     }
@@ -79,10 +77,9 @@ impl Moments {
         self.denoised.max(self.known)
     }
 
-    /// Standard error of the first. Where most pixels have not yet met what their noise comes from, what is seen around them
-    /// tells far too little of it.
+    /// Standard error of the first.
     fn deviation(&self) -> f64 {
-        self.variance.max(self.squares).sqrt()
+        self.variances.whole().sqrt()
     }
 
     /// The share of the samples' mean with which a mixture is nearest to the truth, as far as that is beyond doubt.
@@ -90,6 +87,45 @@ impl Moments {
         let denoised = (self.denoised - DOUBT * self.deviation()).max(self.known);
         let share = (denoised - self.product) / self.difference;
         if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
+    }
+}
+
+/// What the variance of a told squared error consists of, and three estimates of the pixels' own part of it; sums of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Variances {
+    /// What a pixel has in common with those around it.
+    shared: f64,
+    /// From what is seen around each pixel: too little where noise differs from pixel to pixel, or most have not yet met what
+    /// theirs comes from.
+    around: f64,
+    /// From the products of each pixel's halves: too much where the filter's bias differs from pixel to pixel.
+    by_products: f64,
+    /// From the difference of their squares: too much where noise has long tails.
+    by_squares: f64,
+}
+
+impl std::ops::AddAssign for Variances {
+    fn add_assign(&mut self, other: Self) {
+        self.shared += other.shared;
+        self.around += other.around;
+        self.by_products += other.by_products;
+        self.by_squares += other.by_squares;
+    }
+}
+
+impl Variances {
+    fn times(self, factor: f64) -> Self {
+        Self {
+            shared: factor * self.shared,
+            around: factor * self.around,
+            by_products: factor * self.by_products,
+            by_squares: factor * self.by_squares,
+        }
+    }
+
+    /// The estimate that is not known to be too little or too much.
+    fn whole(self) -> f64 {
+        self.shared + self.around.max(self.by_products.min(self.by_squares))
     }
 }
 
@@ -126,8 +162,8 @@ impl Differences {
 #[derive(Clone, Debug)]
 pub struct Errors {
     luminances: Vec<Luminances>,
-    /// Variances of the told squared error: from what is seen around the pixel, and from its own deviation from that.
-    variances: Vec<[f64; 2]>,
+    /// Of the told squared error.
+    variances: Vec<Variances>,
     grid: TileGrid,
     mean_luminance: f64,
 }
@@ -161,14 +197,12 @@ impl Errors {
         let of_pixel = self.luminances[pixel].differences();
         let [noise, clean] = of_pixel.between;
         let known = clean * clean / 4.0;
-        let [variance, squares] = self.variances[pixel];
         Moments {
             denoised: of_pixel.squared_bias() + known,
             known,
             noisy: noise * noise / 4.0,
             product: clean * noise / 4.0,
-            variance,
-            squares,
+            variances: self.variances[pixel],
             difference: ((of_pixel.noisy[0] + of_pixel.noisy[1]) / 2.0).powi(2),
             pixels: 1.0,
         }
@@ -217,8 +251,7 @@ impl Errors {
             sum += Moments {
                 denoised,
                 known,
-                variance: spread * moments.variance,
-                squares: spread * moments.squares,
+                variances: moments.variances.times(spread),
                 ..moments
             };
         }
@@ -287,7 +320,7 @@ impl Errors {
 /// The filter spreads a pixel's noise over those around it, so that db of one and ea of another have noise in common:
 /// 2 E(ad') E(be') summed over the others. Where the filter is linear nearby, with weights w that δ = Σ wa, and the noise
 /// is as strong there, that is 2 σ⁴ Σ w² without the pixel itself: 2 (Eδ² σ² − (Eaδ)²), σ² told by (A − B)²/2.
-fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> impl Iterator<Item = [f64; 2]> {
+fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> impl Iterator<Item = Variances> {
     let height = luminances.len() / width.max(1);
     let first = rows.start.saturating_sub(MAP_RADIUS);
     let last = (rows.end + MAP_RADIUS).min(height);
@@ -310,11 +343,13 @@ fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> imp
         let own = bias + left[i];
         let alone = noise[0][i] * noise[1][i] - 2.0 * (common[i] - own).powi(2) + own * own;
         let shared = 2.0 * (left[i] * whole[i] - common[i].powi(2));
-        // What the filter eats differs from pixel to pixel, which is no noise: that shows in the halves' difference, too.
         let [a, b] = differences[i].noisy;
-        let by_halves = ((a + b) * (a - b) / 2.0).powi(2);
-        let squares = (a * b - bias).powi(2).min(by_halves);
-        [alone.max(0.0) + shared.max(0.0), squares]
+        Variances {
+            shared: shared.max(0.0),
+            around: alone.max(0.0),
+            by_products: (a * b - bias).powi(2),
+            by_squares: ((a + b) * (a - b) / 2.0).powi(2),
+        }
     };
     ((rows.start - first) * width..(rows.end - first) * width).map(of_pixel)
 }
