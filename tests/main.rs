@@ -143,6 +143,8 @@ mod tone;
 mod transmission;
 #[path = "suite/ui.rs"]
 mod ui;
+#[path = "suite/ui_export.rs"]
+mod ui_export;
 #[path = "suite/ui_panels.rs"]
 mod ui_panels;
 #[path = "suite/ui_pictures.rs"]

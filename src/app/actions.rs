@@ -146,7 +146,7 @@ commands! {
     Open, File, "Open…", "Opens a project, a material, a model or an environment.", keys(CTRL, Key::O), 0;
     OpenModel, File, "Open model…", "Opens a model (.glb, .gltf, .obj, .ply, .stl, .zip).", None, 0;
     OpenEnvironment, File, "Open environment…", "Opens an environment map (.hdr, .exr, .png, .jpg, .tif, .webp).", keys(CTRL_SHIFT, Key::O), 0;
-    OpenMaterial, File, "Open material…", "Opens a material (.json) into the selected slot.", None, 0;
+    OpenMaterial, File, "Open material…", "Opens a material (.json, .mtlx, or a file of another program that has the exact parameters) into the selected slot.", None, 0;
     OpenMeasured, File, "Open measured material…", "Opens a measured material (.binary of the MERL database) to match looks with.", None, 0;
     ModelFile, File, "Model file…", "What became of the parts of the model's file; its scenes, variants and poses.", None, 0;
     Reload, File, "Reload files", "Reads model and environment again.", keys(CTRL, Key::R), 0;
@@ -154,6 +154,7 @@ commands! {
     SaveAs, File, "Save project as…", "Saves the project under another name.", keys(CTRL_SHIFT, Key::S), 1;
     SaveMaterial, File, "Save material…", "Saves the selected material (.json).", None, 1;
     SaveToMyPresets, File, "Save to my presets", "Adds the selected material to your own presets.", None, 1;
+    Export, File, "Export…", "Writes the material, or a model with its materials, for another program, and tells first what is lost.", None, 1;
     SavePicture, File, "Save picture…", "Saves what has been rendered so far (.png with the document inside, .exr, .hdr).", keys(CTRL, Key::E), 1;
     SaveLayers, File, "Save picture with layers…", "Saves albedo, normal, depth, samples and variance beside the colour (.exr).", None, 1;
     CopyPicture, File, "Copy picture", "Copies what has been rendered so far to the clipboard.", keys(CTRL_SHIFT, Key::C), 1;

@@ -38,6 +38,7 @@ use services::recent::Recent;
 pub use services::{compare, library, snapshots};
 use services::{environments, messages};
 use sheets::dialogs::Dialogs;
+use sheets::export::ExportSheet;
 use sheets::menu::{self, Sheet};
 use sheets::status::{self, FrameMeter};
 use sheets::turntable::TurntableSheet;
@@ -129,6 +130,7 @@ pub struct App {
     dialogs: Dialogs,
     sheet: Sheet,
     turntable: TurntableSheet,
+    export: ExportSheet,
     files: handlers::files::Files,
     autosave: Autosave,
     /// What crashes left and the user has not decided about.
@@ -202,6 +204,7 @@ impl App {
             dialogs: options.typed_paths.map(Dialogs::typed).unwrap_or_default(),
             sheet: Sheet::None,
             turntable: TurntableSheet::default(),
+            export: ExportSheet::default(),
             files: handlers::files::Files::new(creation.egui_ctx.clone())?,
             autosave: match options.data {
                 Some(data) => {
@@ -473,14 +476,18 @@ impl App {
             self.chosen(purpose, path);
         }
         self.show_turntable(ui.ctx());
+        self.show_export(ui.ctx());
         self.show_recovery(ui.ctx());
         self.show_question(ui.ctx());
     }
 
     /// Whether something lies over the window that takes the keys.
     fn is_covered(&self) -> bool {
-        let is_asked =
-            self.dialogs.is_open() || self.turntable.is_open() || self.unsaved.is_open() || !self.leftovers.is_empty();
+        let is_asked = self.dialogs.is_open()
+            || self.turntable.is_open()
+            || self.export.is_open()
+            || self.unsaved.is_open()
+            || !self.leftovers.is_empty();
         is_asked || self.sheet != Sheet::None
     }
 

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
+use super::answer::{Destination, write_json};
 use crate::render::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
 use crate::render::hard::{self, HardOptions, HardRow};
-use crate::render::{EngineChoice, EngineKind};
+use crate::render::{EngineChoice, EngineInfo, EngineKind};
 
 /// Arguments of `glossmith check`.
 #[derive(Debug, Args)]
@@ -21,9 +22,9 @@ pub struct CheckArguments {
     /// List every check, not only those that fail.
     #[arg(long)]
     verbose: bool,
-    /// Write all checks as JSON.
-    #[arg(long, value_name = "FILE.json")]
-    output: Option<PathBuf>,
+    /// Write all checks as JSON; - is standard output, in place of the table.
+    #[arg(long, visible_alias = "json", value_name = "FILE|-")]
+    output: Option<Destination>,
     /// Run the hard cases instead: places where naive code breaks, each with its verdict.
     #[arg(long)]
     hard: bool,
@@ -33,6 +34,13 @@ pub struct CheckArguments {
     /// Write the hard cases as a table in Markdown, on this engine and on the processor.
     #[arg(long, value_name = "FILE.md", requires = "hard")]
     markdown: Option<PathBuf>,
+}
+
+impl CheckArguments {
+    /// Whether words have a place on standard output.
+    fn has_words(&self) -> bool {
+        self.output != Some(Destination::Output)
+    }
 }
 
 /// Runs the checks and prints a table.
@@ -48,19 +56,21 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
         thorough: arguments.thorough,
     };
     let checks = run_checks(options, |group| eprintln!("checking {group} …"))?;
-    print_table(&checks, arguments.verbose);
+    if arguments.has_words() {
+        print_table(&checks, arguments.verbose);
+    }
     conclude(arguments, &checks)
 }
 
 /// Writes the checks where that is wanted, and fails where one failed.
 fn conclude(arguments: &CheckArguments, checks: &[Check]) -> anyhow::Result<()> {
-    if let Some(path) = &arguments.output {
-        let text = serde_json::to_string_pretty(&serde_json::json!({
+    if let Some(destination) = &arguments.output {
+        let answer = serde_json::json!({
             "version": env!("CARGO_PKG_VERSION"),
             "passed": checks.iter().all(|check| check.passed),
             "checks": checks,
-        }))?;
-        write(path, &(text + "\n"))?;
+        });
+        write_json(destination, &answer)?;
     }
     let failed = checks.iter().filter(|check| !check.passed).count();
     if failed > 0 {
@@ -83,8 +93,24 @@ fn run_hard(arguments: &CheckArguments) -> anyhow::Result<()> {
         hard::run(&options, |name| eprintln!("{name} …"))
     };
     let (engine, rows) = run_on(arguments.engine)?;
+    if arguments.has_words() {
+        print_hard(&engine, &rows, arguments.verbose);
+    }
+    let checks: Vec<Check> = rows.iter().map(|row| row.check.clone()).collect();
+    if let Some(path) = &arguments.markdown {
+        let mut engines = vec![(engine, rows)];
+        if engines[0].0.kind != EngineKind::Cpu {
+            engines.push(run_on(EngineChoice::Cpu)?);
+        }
+        write(path, &hard::markdown(&engines))?;
+    }
+    conclude(arguments, &checks)
+}
+
+/// A line a case, and more of those that fail (or of every one).
+fn print_hard(engine: &EngineInfo, rows: &[HardRow], verbose: bool) {
     println!("{engine}\n{:8} {:34} {:>7}  verdict", "group", "case", "seconds");
-    for row in &rows {
+    for row in rows {
         let HardRow {
             case, check, seconds, ..
         } = row;
@@ -98,19 +124,10 @@ fn run_hard(arguments: &CheckArguments) -> anyhow::Result<()> {
             case.name,
             (case.naive)()
         );
-        if arguments.verbose || !check.passed {
+        if verbose || !check.passed {
             println!("         {}; {}; {}", case.danger, case.made, case.must);
         }
     }
-    let checks: Vec<Check> = rows.iter().map(|row| row.check.clone()).collect();
-    if let Some(path) = &arguments.markdown {
-        let mut engines = vec![(engine, rows)];
-        if engines[0].0.kind != EngineKind::Cpu {
-            engines.push(run_on(EngineChoice::Cpu)?);
-        }
-        write(path, &hard::markdown(&engines))?;
-    }
-    conclude(arguments, &checks)
 }
 
 fn write(path: &Path, text: &str) -> anyhow::Result<()> {

@@ -8,8 +8,11 @@ use clap::Args;
 use super::answer::{Destination, write_json};
 use super::names;
 use crate::document::ImportLobe;
+use crate::plot::{PictureSheet, picture_sheet_file};
+use crate::render::looks::compared;
 use crate::store::exchange::report::Report;
 use crate::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
+use crate::store::file::save_by;
 use crate::store::preset;
 
 /// Arguments of `glossmith convert`.
@@ -32,8 +35,9 @@ pub struct ConvertArguments {
     /// Read what a file shows, although it has the exact parameters too.
     #[arg(long)]
     without_exact: bool,
-    /// Write what was exact, approximated and dropped, as JSON; - is standard output.
-    #[arg(long, value_name = "FILE|-")]
+    /// Write what was exact, approximated and dropped, as JSON; - is standard output. Beside a file go pictures of a ball with
+    /// each material, with what the file shows, and of their difference.
+    #[arg(long, visible_alias = "json", value_name = "FILE|-")]
     report: Option<Destination>,
 }
 
@@ -143,7 +147,37 @@ fn convert(input: &str, output: &Path, arguments: &ConvertArguments) -> anyhow::
     if let Some(wanted) = &arguments.material {
         subject = chosen(subject, wanted).with_context(|| format!("{input}: --material {wanted}"))?;
     }
-    Ok(exchange::write(&subject, input, output, format)?)
+    let mut prepared = exchange::prepare(&subject, input, output, format)?;
+    if let Some(Destination::File(path)) = &arguments.report {
+        compare(&mut prepared.report, path)?;
+    }
+    prepared.save()?;
+    Ok(prepared.report)
+}
+
+/// Renders a ball of each material and of what the file shows, into a picture beside the report.
+fn compare(report: &mut Report, path: &Path) -> anyhow::Result<()> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let of_file = report.output.file_stem().unwrap_or_default().to_string_lossy();
+    for (index, material) in report.materials.iter_mut().enumerate() {
+        let Some(looks) = &material.looks else { continue };
+        let compared = compared(looks)?;
+        material.difference = Some(compared.difference);
+        let names = [material.material.as_str(), "as the file shows it", "difference"];
+        let sheet = PictureSheet {
+            title: format!("{}, {of_file}", material.material),
+            pictures: names.map(str::to_owned).into_iter().zip(compared.pictures).collect(),
+        };
+        let number = if index == 0 {
+            String::new()
+        } else {
+            format!("-{}", index + 1)
+        };
+        let picture = path.with_file_name(format!("{stem}-{of_file}{number}.png"));
+        save_by(&picture, |path| picture_sheet_file(path, &sheet))??;
+        eprintln!("wrote {}", picture.display());
+    }
+    Ok(())
 }
 
 /// The subject with one of its materials alone.

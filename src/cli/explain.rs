@@ -1,10 +1,9 @@
 //! `glossmith explain`: everything that made one sample of one pixel.
 
-use std::path::{Path, PathBuf};
-
 use anyhow::{Context, bail};
 use clap::Args;
 
+use super::answer::Answer;
 use super::parse;
 use super::scene::SceneArguments;
 use crate::render::explain::{PathAccount, explain};
@@ -19,9 +18,8 @@ pub struct ExplainArguments {
     /// Number of the sample in its pixel, from 0.
     #[arg(long, default_value_t = 0, value_name = "N", allow_negative_numbers = true)]
     sample: u32,
-    /// Write the account as JSON: to a file, or in place of the words (-).
-    #[arg(long, value_name = "FILE|-")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    answer: Answer,
     #[command(flatten)]
     scene: SceneArguments,
 }
@@ -31,25 +29,12 @@ pub struct ExplainArguments {
 /// # Errors
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &ExplainArguments) -> anyhow::Result<()> {
-    let to_stdout = |path: &&Path| *path == Path::new("-");
-    let json = arguments.json.as_deref();
-    let file = json.filter(|path| !to_stdout(path));
-    if let Some(path) = file {
-        parse::check_writable(path)?;
-    }
+    arguments.answer.check_writable()?;
     let account = account(arguments)?;
-    let text = serde_json::to_string_pretty(&account)? + "\n";
-    match file {
-        Some(path) => std::fs::write(path, text)
-            .with_context(|| format!("{}: the account could not be written", path.display()))?,
-        None if json.is_some() => {
-            print!("{text}");
-            return Ok(());
-        }
-        None => {}
+    if arguments.answer.has_words() {
+        print!("{account}");
     }
-    print!("{account}");
-    Ok(())
+    arguments.answer.write(&account)
 }
 
 fn account(arguments: &ExplainArguments) -> anyhow::Result<PathAccount> {

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
+use super::answer::Answer;
 use super::lobe::{check_ending, write_view};
 use super::lobe_spec::lobe_model;
 use super::names;
@@ -41,6 +42,8 @@ pub struct FitArguments {
     /// Also write target and fits, before and after, in the plane of incidence.
     #[arg(long, value_name = "FILE.png|FILE.svg|FILE.csv")]
     plot: Option<PathBuf>,
+    #[command(flatten)]
+    answer: Answer,
 }
 
 /// A target as it is named.
@@ -76,7 +79,9 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
         }
     };
     let found = match_look(&target, arguments.lobe, arguments.view_angle.unwrap_or(view_angle_deg))?;
-    print_match(&found);
+    if arguments.answer.has_words() {
+        print_match(&found);
+    }
     let mut material = MaterialSettings {
         name: format!("Like {}", found.target),
         ..MaterialSettings::default()
@@ -87,7 +92,31 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     if let Some(path) = &arguments.plot {
         write_view(path, &LobeView::Lines(comparison(&target, &found)?))?;
     }
-    Ok(())
+    arguments.answer.write(&json(&found, arguments))
+}
+
+/// What was found, as a value.
+fn json(found: &LookMatch, arguments: &FitArguments) -> serde_json::Value {
+    let candidate = |candidate: &Candidate| {
+        serde_json::json!({
+            "lobe": candidate.model.name,
+            "roughness": candidate.model.roughness,
+            "total_variation": candidate.total_variation,
+        })
+    };
+    let files = [Some(&arguments.output), arguments.plot.as_ref()];
+    serde_json::json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "target": found.target,
+        "view_angle_deg": found.view_angle_deg,
+        "before": candidate(&found.before),
+        "nearest": candidate(&found.nearest),
+        "after": candidate(&found.after),
+        "curve": found.curve.as_ref().map(|curve| curve.points()),
+        "base_color": found.colors.as_ref().map(|colors| colors.base.to_f64()),
+        "specular_color": found.colors.as_ref().map(|colors| colors.highlight.to_f64()),
+        "files": files.into_iter().flatten().collect::<Vec<_>>(),
+    })
 }
 
 /// The residuals and what was found, a line each.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, bail};
 use clap::Args;
 
+use super::answer::Answer;
 use super::lobe_spec::lobe_model;
 use super::names;
 use crate::analysis::lobe_model::LobeModel;
@@ -12,7 +13,7 @@ use crate::document::match_look::lobe_of_material;
 use crate::optics::lobe::Horizon;
 use crate::plot::lobe_view::{LobeView, ViewKind, lobe_view};
 use crate::plot::lobe_view_file;
-use crate::store::preset;
+use crate::store::exchange::{self, ReadOptions};
 
 /// Arguments of `glossmith lobe`.
 #[derive(Debug, Args)]
@@ -37,6 +38,8 @@ pub struct LobeArguments {
     /// The plot, or its numbers.
     #[arg(long, value_name = "FILE.png|FILE.svg|FILE.csv")]
     output: PathBuf,
+    #[command(flatten)]
+    answer: Answer,
 }
 
 fn parse_angle(text: &str) -> Result<f64, String> {
@@ -59,7 +62,14 @@ pub fn run(arguments: &LobeArguments) -> anyhow::Result<()> {
         arguments.view_angle.clone()
     };
     let view = lobe_view(arguments.plot, &lobes, &angles_deg);
-    write_view(&arguments.output, &view)
+    write_view(&arguments.output, &view)?;
+    arguments.answer.write(&serde_json::json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "plot": arguments.plot.name(),
+        "lobes": lobes.iter().map(|lobe| &lobe.name).collect::<Vec<_>>(),
+        "view_angles_deg": angles_deg,
+        "files": [&arguments.output],
+    }))
 }
 
 /// Before the work, not after it.
@@ -92,7 +102,7 @@ fn lobes(arguments: &LobeArguments) -> anyhow::Result<Vec<LobeModel>> {
         lobe.horizon = arguments.horizon;
     }
     for name in &arguments.materials {
-        let loaded = preset::find(name)?;
+        let loaded = exchange::find(name, ReadOptions::default())?;
         loaded.warnings.iter().for_each(|warning| log::warn!("{warning}"));
         let lobe = lobe_of_material(&loaded.value);
         if !lobe.has_density() {

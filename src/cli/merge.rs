@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use anyhow::bail;
 use clap::Args;
 
+use super::answer::Answer;
 use super::parse;
 use crate::render::output::{self, Format, Rendered};
 use crate::render::sums::KeptFilm;
@@ -18,6 +19,8 @@ pub struct MergeArguments {
     /// Picture to write: .exr (with the sums, to be merged again), .png or .hdr. May be repeated.
     #[arg(long = "output", required = true, value_name = "FILE", value_parser = parse::picture)]
     outputs: Vec<PathBuf>,
+    #[command(flatten)]
+    answer: Answer,
 }
 
 /// Joins the films in the order of their samples, so that the result does not depend on the order of the names.
@@ -28,6 +31,7 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
     for path in &arguments.outputs {
         parse::check_writable(path)?;
     }
+    arguments.answer.check_writable()?;
     let mut films = Vec::new();
     for path in &arguments.films {
         films.push((path, KeptFilm::read(path)?));
@@ -40,8 +44,11 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
     for (path, film) in films {
         whole.add(&film, path, first)?;
     }
-    let samples: u32 = whole.samples.iter().map(|[from, to]| to - from).sum();
-    eprintln!("{samples} samples a pixel of {} films", arguments.films.len());
+    eprintln!(
+        "{} samples a pixel of {} films",
+        whole.sample_count(),
+        arguments.films.len()
+    );
     let image = whole.film.image();
     for path in &arguments.outputs {
         match output::format_of(path)? {
@@ -50,5 +57,11 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
         }
         eprintln!("wrote {}", path.display());
     }
-    Ok(())
+    arguments.answer.write(&serde_json::json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "films": arguments.films,
+        "samples": whole.samples,
+        "samples_per_pixel": whole.sample_count(),
+        "files": arguments.outputs,
+    }))
 }

@@ -1,11 +1,9 @@
 //! `glossmith plan`: which effects a scene calls for, and why.
 
-use std::path::PathBuf;
-
 use anyhow::Context;
 use clap::Args;
 
-use super::parse;
+use super::answer::Answer;
 use super::scene::SceneArguments;
 use crate::job::effect::{Decision, EffectId};
 use crate::job::plan::Plan;
@@ -16,9 +14,8 @@ use crate::render::{EngineChoice, Session};
 pub struct PlanArguments {
     #[command(flatten)]
     scene: SceneArguments,
-    /// Write the table as JSON, too.
-    #[arg(long, value_name = "FILE")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    answer: Answer,
 }
 
 /// Prints the plan as a table.
@@ -26,20 +23,15 @@ pub struct PlanArguments {
 /// # Errors
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &PlanArguments) -> anyhow::Result<()> {
-    if let Some(path) = &arguments.json {
-        parse::check_writable(path)?;
-    }
+    arguments.answer.check_writable()?;
     let mut session = Session::open(EngineChoice::Cpu)?;
     let document = arguments.scene.document(&mut session)?;
     session.submit(&document)?;
     let job = session.job().context("the scene has no plan")?;
-    print(&job.plan);
-    if let Some(path) = &arguments.json {
-        let text = serde_json::to_string_pretty(&json(&job.plan))?;
-        std::fs::write(path, text + "\n")
-            .with_context(|| format!("{}: the plan could not be written", path.display()))?;
+    if arguments.answer.has_words() {
+        print(&job.plan);
     }
-    Ok(())
+    arguments.answer.write(&json(&job.plan))
 }
 
 fn print(plan: &Plan) {

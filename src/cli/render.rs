@@ -1,14 +1,15 @@
 //! `glossmith render`: a document from arguments, a picture in a file.
 
 use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::answer::{Destination, write_json};
 use super::parse;
 use super::scene::SceneArguments;
 use crate::document::{Denoise, Document};
@@ -42,9 +43,9 @@ pub struct RenderArguments {
     /// The number after the last; stands over --samples.
     #[arg(long, value_name = "N")]
     samples_to: Option<u32>,
-    /// Write what was rendered, how and how fast, as JSON.
-    #[arg(long, value_name = "FILE")]
-    report: Option<PathBuf>,
+    /// Write what was rendered, how and how fast, as JSON; - is standard output.
+    #[arg(long, visible_alias = "json", value_name = "FILE|-")]
+    report: Option<Destination>,
 }
 
 impl RenderArguments {
@@ -72,14 +73,10 @@ impl RenderArguments {
 /// # Errors
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
-    for path in arguments
-        .outputs
-        .iter()
-        .chain(&arguments.report)
-        .chain(&arguments.scene.import_report)
-    {
+    for path in arguments.outputs.iter().chain(&arguments.scene.import_report) {
         parse::check_writable(path)?;
     }
+    arguments.report.iter().try_for_each(Destination::check_writable)?;
     let takes_layers = |path: &PathBuf| output::format_of(path).is_ok_and(|format| format == Format::Exr);
     if arguments.aovs && !arguments.outputs.iter().any(takes_layers) {
         bail!("--aovs writes layers into .exr pictures; give --output FILE.exr");
@@ -92,11 +89,14 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
     let mut session = Session::open(scene.engine)?;
     let mut document = scene.document(&mut session)?;
     arguments.put_samples(&mut document)?;
+    if arguments.keep_sums {
+        KeptFilm::check(&document)?;
+    }
     let targets = Targets {
         outputs: &arguments.outputs,
         has_layers: arguments.aovs,
         has_sums: arguments.keep_sums,
-        report: arguments.report.as_deref(),
+        report: arguments.report.as_ref(),
     };
     render(session, scene.engine, &document, begun, &targets)
 }
@@ -108,7 +108,7 @@ struct Targets<'a> {
     has_layers: bool,
     /// .exr pictures have the film's sums.
     has_sums: bool,
-    report: Option<&'a Path>,
+    report: Option<&'a Destination>,
 }
 
 /// Renders the default scene, with the files given in the place of its parts, to `glossmith.png` in the working folder.
@@ -142,8 +142,7 @@ fn render(
     if targets.has_layers {
         session.keep_guides("layers of the picture are written");
     }
-    let submitted = session.submit(document).map(|_| ());
-    or_fall_back(submitted, &mut session, engine, document)?;
+    submit(&mut session, engine, document)?;
     eprintln!("{} ({})", session.engine(), session.engine().reason);
     let setup_seconds = begun.elapsed().as_secs_f64();
     let (progress, denoised) = step_to_end(&mut session, engine, document)?;
@@ -152,14 +151,7 @@ fn render(
     let shown = denoised.as_ref().map(|denoised| &denoised.image);
     for path in targets.outputs {
         if targets.has_sums && output::format_of(path)? == Format::Exr {
-            let (first, film) = (document.render.first_sample, session.film()?.clone());
-            let last = first + film.samples_max();
-            let kept = KeptFilm {
-                film,
-                document: document.clone(),
-                samples: vec![[first, last]],
-            };
-            kept.write(path)?;
+            KeptFilm::of(session.film()?.clone(), document).write(path)?;
         } else if targets.has_layers && output::format_of(path)? == Format::Exr {
             let layers = Layers {
                 denoised: shown.cloned(),
@@ -175,12 +167,11 @@ fn render(
         }
         eprintln!("wrote {}", path.display());
     }
-    if let Some(path) = targets.report {
+    if let Some(destination) = targets.report {
         let mut report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
         add_denoised(&mut report, document, denoised.as_ref());
-        let text = serde_json::to_string_pretty(&report)?;
-        std::fs::write(path, text + "\n")
-            .with_context(|| format!("{}: the report could not be written", path.display()))?;
+        report["files"] = serde_json::json!(targets.outputs);
+        write_json(destination, &report)?;
     }
     let dropped = session.film()?.dropped();
     if dropped > 0 {
@@ -205,6 +196,24 @@ fn add_denoised(report: &mut serde_json::Value, document: &Document, denoised: O
     report["denoised_error"] = error.map(|error| error.value).into();
     report["denoised_error_low"] = error.map(|error| error.low).into();
     report["denoised_error_high"] = error.map(|error| error.high).into();
+}
+
+/// Has a session render a document, to the end.
+///
+/// # Errors
+/// What the engine says.
+pub(super) fn render_to_end(
+    session: &mut Session,
+    engine: EngineChoice,
+    document: &Document,
+) -> anyhow::Result<(Progress, Option<Denoised>)> {
+    submit(session, engine, document)?;
+    step_to_end(session, engine, document)
+}
+
+fn submit(session: &mut Session, engine: EngineChoice, document: &Document) -> Result<(), SessionError> {
+    let submitted = session.submit(document).map(|_| ());
+    or_fall_back(submitted, session, engine, document)
 }
 
 /// Steps until the session is done, with a progress bar on a terminal, and denoises the picture where that is asked for.

@@ -12,6 +12,7 @@ use crate::optics::curve::Curve;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::render::EngineChoice;
 
+use super::answer::Answer;
 use super::names::choice;
 use super::parse::{check_writable, number_in};
 
@@ -54,6 +55,8 @@ pub struct ScatterArguments {
     /// .csv: columns x,y,z,density, a row a sample; .png: the samples seen from the lobe's middle.
     #[arg(long, value_name = "FILE.csv|FILE.png", value_parser = parse_output)]
     output: PathBuf,
+    #[command(flatten)]
+    answer: Answer,
 }
 
 /// Draws and writes the samples.
@@ -62,6 +65,7 @@ pub struct ScatterArguments {
 /// An argument out of range, a GPU that fails, a file that can't be written.
 pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
     check_writable(&arguments.output)?;
+    arguments.answer.check_writable()?;
     let request = ScatterRequest {
         lobe: arguments.lobe,
         curve: arguments.curve,
@@ -87,7 +91,16 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
         Format::Png => crate::plot::scatter_png(&arguments.output, &request, &cloud)?,
     }
     eprintln!("wrote {}", arguments.output.display());
-    Ok(())
+    arguments.answer.write(&serde_json::json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "lobe": request.lobe.name(),
+        "curve": request.curve.name(),
+        "roughness": arguments.roughness,
+        "view_angle_deg": arguments.view_angle,
+        "samples": request.count,
+        "absorbed": cloud.absorbed,
+        "files": [&arguments.output],
+    }))
 }
 
 fn write_csv(path: &Path, cloud: &ScatterCloud) -> io::Result<()> {

@@ -13,8 +13,8 @@ use crate::document::{AreaLight, Background, Document, ImportLobe, range};
 use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::{Model, ModelOptions, ModelSource, is_model};
+use crate::store::exchange::{self, ReadOptions};
 use crate::store::file::{self, Opened};
-use crate::store::preset;
 
 /// Arguments that describe what is rendered, and how. Options stand over what files say.
 #[derive(Debug, Default, Args)]
@@ -55,7 +55,8 @@ pub struct SceneArguments {
     /// What the camera sees where it meets nothing [default: environment].
     #[arg(long, value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
     background: Option<Background>,
-    /// The material of everything: the name of a shipped one, or a .json file. Without it a file's own materials stay.
+    /// The material of everything: the name of a shipped one, or a file (.json, or one of another program, such as .mtlx).
+    /// Without it a file's own materials stay.
     #[arg(long, value_name = "FILE|NAME")]
     material: Option<String>,
     /// The lobe of a file's own materials: geometric, its roughness matched to the look of the file's, or ggx.
@@ -103,13 +104,13 @@ impl SceneArguments {
     pub(super) fn document(&self, session: &mut Session) -> anyhow::Result<Document> {
         let mut document = Document::default();
         for file in &self.files {
-            open(file, &mut document)?;
+            open(file, &mut document, self.read_options())?;
         }
         let named = self.files.iter().rev().find(|file| is_model_file(file));
         let named = named.map(|file| ModelSource::File(file.clone()));
         self.put_model(&mut document, session, self.model.clone().or(named))?;
         if let Some(name) = &self.material {
-            let material = preset::find(name)?;
+            let material = exchange::find(name, self.read_options())?;
             warn(&material.warnings);
             document.materials = vec![material.value];
         }
@@ -122,6 +123,14 @@ impl SceneArguments {
         }
         document.check()?;
         Ok(document)
+    }
+
+    /// How materials of other programs are read.
+    fn read_options(&self) -> ReadOptions {
+        ReadOptions {
+            lobe: self.import_lobe,
+            ..ReadOptions::default()
+        }
     }
 
     /// The model: another one with its materials, lights and cameras, or other parts of the document's.
@@ -198,23 +207,26 @@ fn is_model_file(path: &Path) -> bool {
 }
 
 /// Puts what a file holds in the document: an environment, a material or a whole project. Models are left alone.
-fn open(path: &Path, document: &mut Document) -> anyhow::Result<()> {
+fn open(path: &Path, document: &mut Document, options: ReadOptions) -> anyhow::Result<()> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    match ending.to_ascii_lowercase().as_str() {
+    let ending = ending.to_ascii_lowercase();
+    match ending.as_str() {
         _ if is_model_file(path) => {}
         ending if ending != "png" && ENDINGS.contains(&ending) => {
             document.lighting.environment = EnvironmentSource::File(path.to_owned())
         }
-        "json" | "png" => match file::open(path)? {
-            Opened::Material(material) => {
-                warn(&material.warnings);
-                document.materials = vec![material.value];
+        ending if matches!(ending, "json" | "png") || exchange::holds_materials(path) => {
+            match exchange::open(path, options)? {
+                Opened::Material(material) => {
+                    warn(&material.warnings);
+                    document.materials = vec![material.value];
+                }
+                Opened::Document(project) | Opened::Picture(project) => {
+                    warn(&project.warnings);
+                    *document = project.value;
+                }
             }
-            Opened::Document(project) | Opened::Picture(project) => {
-                warn(&project.warnings);
-                *document = project.value;
-            }
-        },
+        }
         _ if !path.exists() => bail!(
             "{}: no such command or file; `glossmith --help` lists what there is",
             path.display()

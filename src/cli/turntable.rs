@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use anyhow::Context;
 use clap::Args;
 
+use super::answer::{Destination, write_json};
 use super::names;
 use super::render::bar;
 use super::scene::SceneArguments;
@@ -25,9 +25,9 @@ pub struct TurntableArguments {
     /// The folder for the pictures frame-0001.png, frame-0002.png and so on; made where it is not there.
     #[arg(long, default_value = "turntable", value_name = "FOLDER")]
     output: PathBuf,
-    /// Write what was rendered, how and how fast, as JSON.
-    #[arg(long, value_name = "FILE")]
-    report: Option<PathBuf>,
+    /// Write what was rendered, how and how fast, as JSON; - is standard output.
+    #[arg(long, visible_alias = "json", value_name = "FILE|-")]
+    report: Option<Destination>,
     #[command(flatten)]
     scene: SceneArguments,
 }
@@ -38,9 +38,7 @@ pub struct TurntableArguments {
 /// One line that names the file, what is wrong and what to do.
 pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
     const BAR_STEPS: f64 = 1000.0;
-    if let Some(path) = &arguments.report {
-        super::parse::check_writable(path)?;
-    }
+    arguments.report.iter().try_for_each(Destination::check_writable)?;
     let begun = Instant::now();
     let mut session = Session::open(arguments.scene.engine)?;
     let table = Turntable {
@@ -65,7 +63,9 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
     if outcome.dropped > 0 {
         eprintln!("{} samples were left out because they were not finite", outcome.dropped);
     }
-    let Some(path) = &arguments.report else { return Ok(()) };
+    let Some(destination) = &arguments.report else {
+        return Ok(());
+    };
     let render = &table.document.render;
     let engine = session.engine().clone();
     let report = serde_json::json!({
@@ -82,7 +82,7 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         "render_seconds": outcome.render_seconds,
         "dropped_samples": outcome.dropped,
         "seed": render.seed,
+        "files": (1..=outcome.frames).map(|frame| frame_path(&table.folder, frame)).collect::<Vec<_>>(),
     });
-    std::fs::write(path, serde_json::to_string_pretty(&report)? + "\n")
-        .with_context(|| format!("{}: the report could not be written", path.display()))
+    write_json(destination, &report)
 }

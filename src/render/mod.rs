@@ -14,6 +14,7 @@ mod engine;
 pub mod environment_thumbnails;
 pub mod explain;
 pub mod hard;
+pub mod looks;
 pub mod memory;
 pub mod output;
 mod picture_cache;

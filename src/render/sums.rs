@@ -55,6 +55,14 @@ pub enum SumsError {
     /// The document inside is damaged.
     #[error(transparent)]
     Document(#[from] FileError),
+    /// A picture whose pixels have different numbers of samples.
+    #[error(
+        "films are joined whose pixels have equally many samples, and here {reason}; give a number of samples alone"
+    )]
+    Uneven {
+        /// Why.
+        reason: &'static str,
+    },
     /// Another picture.
     #[error("{}: of another picture than {}: they differ in {differs}; render both with the same settings", path.display(), first.display())]
     Differs {
@@ -95,6 +103,34 @@ fn bits(values: impl Iterator<Item = f64> + Clone) -> [FlatSamples; 2] {
 }
 
 impl KeptFilm {
+    /// A film that was just rendered.
+    pub fn of(film: Film, document: &Document) -> Self {
+        let first = document.render.first_sample;
+        Self {
+            samples: vec![[first, first + film.samples_max()]],
+            film,
+            document: document.clone(),
+        }
+    }
+
+    /// Whether films of this document can be joined: each pixel must have as many samples as any other, and how many must
+    /// be known before.
+    ///
+    /// # Errors
+    /// [`SumsError::Uneven`].
+    pub fn check(document: &Document) -> Result<(), SumsError> {
+        let render = &document.render;
+        let reasons = [
+            (render.is_adaptive(), "samples go where the error is (adaptive)"),
+            (render.noise.is_some(), "it ends at a noise"),
+            (render.time_s.is_some(), "it ends with a time"),
+        ];
+        match reasons.into_iter().find(|(is_so, _)| *is_so) {
+            Some((_, reason)) => Err(SumsError::Uneven { reason }),
+            None => Ok(()),
+        }
+    }
+
     /// Writes the picture with its sums.
     ///
     /// # Errors
@@ -237,6 +273,11 @@ impl KeptFilm {
         })
     }
 
+    /// Samples a pixel.
+    pub fn sample_count(&self) -> u32 {
+        self.samples.iter().map(|[from, to]| to - from).sum()
+    }
+
     /// What both must have in common.
     fn picture(&self) -> Document {
         let mut document = self.document.clone();
@@ -280,7 +321,7 @@ impl KeptFilm {
         self.samples.sort_unstable();
         joined(&mut self.samples);
         self.document.render.first_sample = self.samples[0][0];
-        self.document.render.samples = self.samples.iter().map(|[from, to]| to - from).sum();
+        self.document.render.samples = self.sample_count();
         Ok(())
     }
 }
@@ -299,10 +340,12 @@ fn joined(ranges: &mut Vec<[u32; 2]>) {
 
 /// Ranges as text, such as `0-64,128-192`.
 fn ranges(text: &str) -> Option<Vec<[u32; 2]>> {
-    let range = |text: &str| {
-        let (from, to) = text.split_once('-')?;
-        let range = [from.parse().ok()?, to.parse().ok()?];
-        (range[0] < range[1]).then_some(range)
-    };
     text.split(',').map(range).collect()
+}
+
+/// A range as text, such as `0-64`.
+pub fn range(text: &str) -> Option<[u32; 2]> {
+    let (from, to) = text.split_once('-')?;
+    let range = [from.parse().ok()?, to.parse().ok()?];
+    (range[0] < range[1]).then_some(range)
 }

@@ -27,7 +27,7 @@ pub mod teapot;
 pub mod texture;
 
 pub use geometry::{Geometry, Vertex};
-pub use gltf::kept_keys;
+pub use gltf::{Widths, gltf_from_widths, kept_keys, widths_from_gltf};
 pub use hierarchy::Compressed;
 pub use import::{MODEL_ENDINGS, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};

@@ -242,7 +242,7 @@ pub struct Slot {
     pub specular: f32,
     /// Tint of the specular reflection of what is no metal, linear, each in [0, 1].
     pub specular_color: [f32; 3],
-    /// Stretch of the reflection along the tangent, in [0, 1] (KHR_materials_anisotropy).
+    /// Stretch of the reflection along the tangent, in [0, 1], as lobes have it (KHR_materials_anisotropy).
     pub anisotropy: f32,
     /// Turn of the stretch from the tangent towards the bitangent, radians.
     pub anisotropy_rotation_rad: f32,

@@ -363,7 +363,7 @@ pub struct TextureMean {
 }
 
 /// The mean of a picture.
-pub(super) fn texture_mean(picture: &Texture) -> TextureMean {
+pub fn texture_mean(picture: &Texture) -> TextureMean {
     let mut sums = [0_u64; 4];
     for texel in picture.rgba8.as_chunks::<4>().0 {
         sums.iter_mut()

@@ -227,6 +227,24 @@ pub fn save_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     })
 }
 
+/// Replaces a file at once by what `write` writes: it is given the name of another one beside it, with the same ending.
+///
+/// # Errors
+/// [`FileError::Write`] where that cannot take the file's place; and those of `write`.
+pub fn save_by<E>(path: &Path, write: impl FnOnce(&Path) -> Result<(), E>) -> Result<Result<(), E>, FileError> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let temporary = path.with_file_name(format!(".{}.{name}", std::process::id()));
+    if let Err(error) = write(&temporary) {
+        let _ = fs::remove_file(&temporary);
+        return Ok(Err(error));
+    }
+    let renamed = fs::rename(&temporary, path);
+    renamed.map(Ok).map_err(|source| FileError::Write {
+        path: path.to_owned(),
+        source,
+    })
+}
+
 fn replace(target: &Path, bytes: &[u8]) -> io::Result<()> {
     let name = target.file_name().ok_or(io::ErrorKind::IsADirectory)?;
     let folder = target

@@ -29,6 +29,38 @@ fn rendered(place: &Workplace, arguments: &str) -> Picture {
 }
 
 #[test]
+fn every_command_answers_in_json_on_standard_output() {
+    let place = Workplace::new();
+    let scene = "--engine cpu --model sphere --size 8x8 --samples 2";
+    place.done(&format!("render {scene} --keep-sums --output a.exr"));
+    for (command, key) in [
+        (format!("render {scene} --output b.png"), "files"),
+        (format!("turntable {scene} --frames 2 --output turn"), "files"),
+        (format!("plan {scene}"), "effects"),
+        (format!("explain {scene} --pixel 4,4"), "pixel"),
+        ("merge a.exr --output c.exr".to_owned(), "samples_per_pixel"),
+        (
+            "scatter --lobe ggx --engine cpu --count 9 --output s.csv".to_owned(),
+            "samples",
+        ),
+        ("lobe --plot polar --material gold --output l.csv".to_owned(), "lobes"),
+        ("fit --target ggx:0.3 --output f.json".to_owned(), "after"),
+    ] {
+        let run = place.done(&format!("{command} --json -"));
+        let answer: serde_json::Value =
+            serde_json::from_str(&run.stdout).unwrap_or_else(|error| panic!("{command}: {error}\n{}", run.stdout));
+        assert!(!answer[key].is_null(), "{command}: {answer}");
+    }
+    let run = place.done("convert gold gold.mtlx --json -");
+    let losses: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    assert_eq!(losses[0]["materials"][0]["material"], "Gold");
+    // The same to a file, beside the words.
+    let run = place.done(&format!("plan {scene} --json plan.json"));
+    assert!(run.stdout.contains("effects are simulated"));
+    assert!(place.read("plan.json").contains("\"effects\""));
+}
+
+#[test]
 fn a_project_is_rendered_as_it_was_saved_and_options_stand_over_it() {
     let place = Workplace::new();
     save_document(&place.path("saved.json"), &saved()).unwrap();

@@ -136,6 +136,42 @@ fn without_the_exact_parameters_what_is_shown_comes_back() {
 }
 
 #[test]
+fn widths_that_a_format_does_not_reach_are_no_exact_ones() {
+    let place = Workplace::new();
+    let mut material = MaterialSettings {
+        lobe: glossmith::optics::lobe::Lobe::Ggx,
+        fresnel: glossmith::optics::fresnel::Fresnel::Conductor,
+        metalness: 1.0,
+        roughness: 0.3,
+        anisotropy: 0.5,
+        ..MaterialSettings::default()
+    };
+    let formats = [
+        ("materialx", "mtlx"),
+        ("standard-surface", "mtlx"),
+        ("gltf", "glb"),
+        ("mitsuba", "xml"),
+        ("blender", "py"),
+    ];
+    let mut outcomes = |roughness: f32, anisotropy: f32| {
+        (material.roughness, material.anisotropy) = (roughness, anisotropy);
+        save_material(&place.path("a.json"), &material).unwrap();
+        formats.map(|(format, ending)| {
+            let run = place.done(&format!("convert a.json a.{ending} --to {format} --report -"));
+            let report: Json = serde_json::from_str(&run.stdout).unwrap();
+            let entries = report[0]["materials"][0]["entries"].as_array().unwrap();
+            let entry = entries.iter().find(|entry| entry["what"] == "anisotropy").unwrap();
+            entry["outcome"] == "exact"
+        })
+    };
+    assert_eq!(outcomes(0.3, 0.5), [true; 5]);
+    // Disney's surface is not stretched more than 10 : 1; Mitsuba's conductor has both widths as they are.
+    assert_eq!(outcomes(0.3, 1.0), [true, true, true, true, false]);
+    // α is 1 at most.
+    assert_eq!(outcomes(0.95, 0.9), [false, false, false, true, true]);
+}
+
+#[test]
 fn a_file_that_was_edited_elsewhere_is_taken_as_it_is() {
     let place = Workplace::new();
     for (format, ending, from, to) in [
@@ -195,6 +231,39 @@ fn documents_of_materialx_are_read_and_graphs_are_named() {
         material.specular_color
     );
     assert_eq!(material.roughness, 0.2, "the default stands in");
+}
+
+#[test]
+fn a_report_in_a_file_has_pictures_beside_it() {
+    let place = Workplace::new();
+    let ggx = MaterialSettings {
+        lobe: glossmith::optics::lobe::Lobe::Ggx,
+        ..MaterialSettings::default()
+    };
+    save_material(&place.path("ggx.json"), &ggx).unwrap();
+    let difference = |name: &str| {
+        place.done(&format!("convert {name} out.mtlx --report loss.json"));
+        let report: Json = serde_json::from_str(&place.read("loss.json")).unwrap();
+        let picture = image::open(place.path("loss-out.png")).unwrap();
+        assert!(picture.width() > 3 * 64, "three pictures in a row");
+        report[0]["materials"][0]["difference"].as_f64().unwrap()
+    };
+    // GGX is GGX there; the geometric lobe is not.
+    let (exact, off) = (difference("ggx.json"), difference("gold"));
+    assert!(exact < 0.02 && off > 2.0 * exact, "{exact} and {off}");
+}
+
+#[test]
+fn materials_of_other_programs_are_rendered_as_they_are() {
+    let place = Workplace::new();
+    place.done("convert gold gold.mtlx");
+    place.done("convert gold gold.py");
+    let scene = "--model sphere --size 12x12 --samples 2";
+    let gold = place.picture(&format!("{scene} --material gold"));
+    for file in ["gold.mtlx", "gold.py"] {
+        assert!(place.picture(&format!("{scene} --material {file}")) == gold, "{file}");
+        assert!(place.picture(&format!("{scene} {file}")) == gold, "{file}");
+    }
 }
 
 #[test]

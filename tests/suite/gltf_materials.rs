@@ -1,8 +1,9 @@
 //! What glTF says of materials and pictures beyond its core: extensions, picture formats, tangents.
 
-use glossmith::document::ImportLobe;
 use glossmith::document::of_model::materials_of;
-use glossmith::scene::{Fate, Model, ModelOptions};
+use glossmith::document::{ImportLobe, MaterialSettings};
+use glossmith::optics::lobe::stretch_from_anisotropy;
+use glossmith::scene::{Fate, Model, ModelOptions, gltf_from_widths, widths_from_gltf};
 use serde_json::{Value, json};
 
 use super::gltf_builder::{Folder, assert_mirrored_tangents, mirrored_squares, png, square};
@@ -23,21 +24,21 @@ fn slot_of(material: &Value) -> Model {
 #[test]
 fn material_extensions_reach_the_slots() {
     let texture = json!({"index": 0});
-    let model = slot_of(&json!({"extensions": {
-        "KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [0.25, 2.0, 1.0]},
-        "KHR_materials_clearcoat": {
-            "clearcoatFactor": 0.5, "clearcoatTexture": texture, "clearcoatRoughnessFactor": 1.0,
-            "clearcoatRoughnessTexture": texture, "clearcoatNormalTexture": texture,
-        },
-        "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": 0.5},
-        "KHR_materials_ior": {"ior": 6.0},
-    }}));
+    let model = slot_of(
+        &json!({"pbrMetallicRoughness": {"roughnessFactor": 0.5}, "extensions": {
+            "KHR_materials_specular": {"specularFactor": 0.5, "specularColorFactor": [0.25, 2.0, 1.0]},
+            "KHR_materials_clearcoat": {
+                "clearcoatFactor": 0.5, "clearcoatTexture": texture, "clearcoatRoughnessFactor": 1.0,
+                "clearcoatRoughnessTexture": texture, "clearcoatNormalTexture": texture,
+            },
+            "KHR_materials_anisotropy": {"anisotropyStrength": 0.75, "anisotropyRotation": 0.5},
+            "KHR_materials_ior": {"ior": 6.0},
+        }}),
+    );
     let slot = &model.slots[0];
     assert_eq!((slot.specular, slot.specular_color), (0.5, [0.25, 1.0, 1.0]));
-    assert_eq!(
-        (slot.anisotropy, slot.anisotropy_rotation_rad, slot.ior),
-        (0.75, 0.5, 4.0)
-    );
+    assert_eq!((slot.anisotropy_rotation_rad, slot.ior), (0.5, 4.0));
+    has_widths(&materials_of(&model, ImportLobe::Ggx)[0], 0.5, 0.75);
     // Both texels of the picture are (10, 20, 30).
     assert!((slot.coat - 0.5 * 10.0 / 255.0).abs() < 1e-6, "{}", slot.coat);
     assert!(
@@ -54,10 +55,83 @@ fn material_extensions_reach_the_slots() {
         (material.specular_weight, material.specular_color),
         (0.5, [0.25, 1.0, 1.0])
     );
-    assert_eq!(
-        (material.anisotropy, material.rotation_deg, material.ior),
-        (0.75, 0.5_f32.to_degrees(), 4.0)
-    );
+    assert_eq!((material.rotation_deg, material.ior), (0.5_f32.to_degrees(), 4.0));
+}
+
+/// Compares a material's widths with those that the extension defines: α = mix(roughness², 1, strength²) along the
+/// direction of anisotropy, roughness² across.
+fn has_widths(material: &MaterialSettings, roughness: f64, strength: f64) {
+    let across = roughness * roughness;
+    let along = across + (1.0 - across) * strength * strength;
+    let stretch = stretch_from_anisotropy(f64::from(material.anisotropy));
+    let mean = f64::from(material.roughness).powi(2);
+    for (found, wanted) in [(mean * stretch, along), (mean / stretch, across)] {
+        assert!(
+            (found / wanted - 1.0).abs() < 1e-4,
+            "roughness {roughness}, strength {strength}: {found} in place of {wanted}"
+        );
+    }
+}
+
+#[test]
+fn a_stretched_highlight_has_the_widths_of_the_extension() {
+    let read = |roughness: f64, strength: f64| {
+        let model = slot_of(&json!({
+            "pbrMetallicRoughness": {"roughnessFactor": roughness},
+            "extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": strength}},
+        }));
+        (materials_of(&model, ImportLobe::Ggx)[0].clone(), model)
+    };
+    for (roughness, strength) in [(0.5, 0.0), (0.3, 0.1), (0.3, 0.6), (0.5, 0.9), (0.9, 1.0), (1.0, 0.7)] {
+        let (material, model) = read(roughness, strength);
+        has_widths(&material, roughness, strength);
+        let told = model.report.entries.iter().any(|entry| entry.what.contains("19 : 1"));
+        assert!(!told, "{roughness}, {strength}");
+    }
+    // What is stretched more than any lobe of ours has the longer width.
+    for (roughness, strength) in [(0.0, 0.5), (0.1, 0.5), (0.2, 1.0)] {
+        let (material, model) = read(roughness, strength);
+        let along = roughness * roughness + (1.0 - roughness * roughness) * strength * strength;
+        let found = f64::from(material.roughness).powi(2) * stretch_from_anisotropy(f64::from(material.anisotropy));
+        assert!((found / along - 1.0).abs() < 1e-4, "{found} in place of {along}");
+        assert_eq!(material.anisotropy, 1.0);
+        says(&model, Fate::Approximated, "stretched more than 19 : 1");
+    }
+}
+
+#[test]
+fn a_texture_of_the_roughness_widens_with_it() {
+    // Both texels have 20/255 of roughness.
+    let model = slot_of(&json!({
+        "pbrMetallicRoughness": {"metallicRoughnessTexture": {"index": 0}},
+        "extensions": {"KHR_materials_anisotropy": {"anisotropyStrength": 0.2}},
+    }));
+    let slot = &model.slots[0];
+    let texture = &model.textures[slot.metallic_roughness_texture.as_ref().unwrap().texture];
+    let mut material = materials_of(&model, ImportLobe::Ggx)[0].clone();
+    assert_eq!(material.roughness, 1.0);
+    material.roughness *= f32::from(texture.rgba8[1]) / 255.0;
+    let widths = widths_from_gltf(20.0 / 255.0, 0.2);
+    // To a code of the texture.
+    assert!((material.roughness - widths.roughness).abs() < 0.5 / 255.0 + 1e-6);
+    assert_eq!(material.anisotropy, widths.stretch);
+    assert_eq!(texture.rgba8[2], 30, "metalness stays");
+}
+
+#[test]
+fn widths_come_back_from_gltf() {
+    for roughness in [0.05, 0.2, 0.3, 0.45] {
+        for anisotropy in [0.0, 0.3, 0.8, 1.0] {
+            let there = gltf_from_widths(roughness, -anisotropy);
+            assert!(there.is_exact, "{roughness}, {anisotropy}");
+            let back = widths_from_gltf(there.roughness, there.stretch);
+            assert!(back.is_exact, "{roughness}, {anisotropy}");
+            assert!((back.roughness - roughness).abs() < 1e-5, "{there:?} {back:?}");
+            assert!((back.stretch - anisotropy).abs() < 1e-4, "{there:?} {back:?}");
+        }
+    }
+    // Wider than 1.
+    assert!(!gltf_from_widths(0.9, 0.9).is_exact);
 }
 
 #[test]

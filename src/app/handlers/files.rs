@@ -13,8 +13,9 @@ use crate::document::Document;
 use crate::render::worker::Level;
 use crate::scene::environment::{ENDINGS, EnvironmentSource};
 use crate::scene::{ModelOptions, ModelSource, SlotPicture, is_model};
+use crate::store::exchange::{self, ExchangeError, ReadOptions};
 use crate::store::file::Opened;
-use crate::store::{FileError, Loaded, file, preset, save_document, save_material};
+use crate::store::{FileError, Loaded, preset, save_document, save_material};
 
 /// The project's file, and the thread that reads and writes.
 pub(in crate::app) struct Files {
@@ -71,6 +72,7 @@ fn kind_of(path: &Path) -> FileKind {
     match ending.as_str() {
         _ if is_model(path) || path.is_dir() => FileKind::Model,
         "json" | "png" => FileKind::Document,
+        _ if exchange::holds_materials(path) => FileKind::Document,
         ending if ENDINGS.contains(&ending) => FileKind::Environment,
         _ => FileKind::Unknown,
     }
@@ -82,13 +84,20 @@ impl App {
         match kind_of(&path) {
             FileKind::Model => self.worker.open_model(ModelSource::File(path), ModelOptions::default()),
             FileKind::Environment => self.worker.open_environment(EnvironmentSource::File(path)),
-            FileKind::Document => self.files.disk.open(move || {
-                let opened = file::open(&path);
-                Done::Read(path, opened)
-            }),
+            FileKind::Document => {
+                let options = ReadOptions {
+                    lobe: self.shared.import_lobe,
+                    ..ReadOptions::default()
+                };
+                self.files.disk.open(move || {
+                    let opened = exchange::open(&path, options);
+                    Done::Read(path, opened)
+                });
+            }
             FileKind::Unknown => {
                 let text = "opened are models (.glb, .gltf, .obj, .ply, .stl, .zip), environments (.hdr, .exr, .jpg, \
-                            .tif, .webp), materials and projects (.json), and pictures saved here (.png)";
+                            .tif, .webp), materials (.json, .mtlx, and other programs' with exact parameters), projects (.json), and pictures \
+                            saved here (.png)";
                 self.say(
                     Level::Error,
                     format!("{}: not a kind of file that can be opened; {text}", path.display()),
@@ -145,6 +154,7 @@ impl App {
         for done in self.files.disk.take_done() {
             match done {
                 Done::Read(path, opened) => self.take_opened(ctx, path, opened),
+                Done::Prepared(ready) => self.take_prepared(ctx, *ready),
                 Done::SavedProject(path, document, saved) => {
                     has_failed |= saved.is_err();
                     if saved.is_ok() {
@@ -182,7 +192,7 @@ impl App {
         self.go_on_after_save(ctx, has_failed);
     }
 
-    fn take_opened(&mut self, ctx: &egui::Context, path: PathBuf, opened: Result<Opened, FileError>) {
+    fn take_opened(&mut self, ctx: &egui::Context, path: PathBuf, opened: Result<Opened, ExchangeError>) {
         let is_at_start = self.awaited > 0;
         match opened {
             Ok(Opened::Material(loaded)) => {
@@ -204,7 +214,9 @@ impl App {
                     self.edits = Edits::new(self.document.clone());
                 }
             }
-            Err(FileError::NoDocument { path }) if self.files.dropped.take_if(|dropped| *dropped == path).is_some() => {
+            Err(ExchangeError::File(FileError::NoDocument { path }))
+                if self.files.dropped.take_if(|dropped| *dropped == path).is_some() =>
+            {
                 self.paint(path);
             }
             Err(error) => self.say(Level::Error, error.to_string()),
@@ -285,6 +297,10 @@ impl App {
             Command::OpenMaterial => (Purpose::OpenMaterial, String::new()),
             Command::OpenMeasured => (Purpose::OpenMeasured, String::new()),
             Command::SaveMaterial => (Purpose::SaveMaterial, material_file()),
+            Command::Export => (
+                Purpose::Export,
+                format!("{}.mtlx", preset::command_line_name(&self.desk_material().name)),
+            ),
             Command::SaveLayers => (Purpose::SaveLayers, format!("{}.exr", self.files.project_name())),
             Command::SaveWindow => (Purpose::SaveWindow, "glossmith-window.png".to_owned()),
             Command::SavePicture => (Purpose::SavePicture, format!("{}.png", self.files.project_name())),
@@ -305,6 +321,7 @@ impl App {
             Purpose::SaveProject if is_picture(&path) => self.want_picture(Destination::File(path)),
             Purpose::SaveProject => self.save_project(as_json(path)),
             Purpose::SaveMaterial => self.save_material(as_json(path)),
+            Purpose::Export => self.prepare_export(path),
             Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
             Purpose::SaveWindow => self.window_picture = Some(path.with_extension("png")),
             Purpose::SavePicture => self.want_picture(Destination::File(with_ending(path, "png"))),

@@ -2,6 +2,7 @@
 
 mod commands;
 mod compare;
+mod export;
 pub(super) mod files;
 mod library;
 mod recovery;

@@ -3,18 +3,22 @@
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use crate::app::services::export::Ready;
 use crate::app::services::library::Listed;
 use crate::app::services::snapshots::PinsListed;
 use crate::document::Document;
 use crate::panics::caught;
 use crate::render::worker::Level;
 use crate::store::FileError;
+use crate::store::exchange::ExchangeError;
 use crate::store::file::Opened;
 
 /// What came of a job.
 pub(in crate::app) enum Done {
     /// A file was read.
-    Read(PathBuf, Result<Opened, FileError>),
+    Read(PathBuf, Result<Opened, ExchangeError>),
+    /// A file for another program is ready to be written.
+    Prepared(Box<Result<Ready, String>>),
     /// The document was written, such as it was then.
     SavedProject(PathBuf, Box<Document>, Result<(), FileError>),
     /// The user's materials were listed.
@@ -101,16 +105,26 @@ impl Disk {
     /// Writes something that takes long, on a thread of its own.
     pub(in crate::app) fn write_beside(&mut self, work: impl FnOnce() -> Result<String, String> + Send + 'static) {
         self.writes += 1;
+        self.beside(Task::Write, || Done::Wrote(work()));
+    }
+
+    /// Makes something that takes long and is shown then, on a thread of its own.
+    pub(in crate::app) fn open_beside(&mut self, job: impl FnOnce() -> Done + Send + 'static) {
+        self.reads += 1;
+        self.beside(Task::List, job);
+    }
+
+    fn beside(&self, task: Task, job: impl FnOnce() -> Done + Send + 'static) {
         let (sender, ctx) = (self.sender.clone(), self.ctx.clone());
         let body = move || {
             // Nobody listens where the window was closed meanwhile.
-            let _ = sender.send(outcome(Task::Write, || Done::Wrote(work())));
+            let _ = sender.send(outcome(task, job));
             ctx.request_repaint();
         };
-        if let Err(error) = std::thread::Builder::new().name("save".to_owned()).spawn(body) {
-            let why = format!("cannot start a thread to save: {error}");
+        if let Err(error) = std::thread::Builder::new().name("beside".to_owned()).spawn(body) {
+            let why = format!("cannot start a thread: {error}");
             // This end listens.
-            let _ = self.sender.send(Done::Wrote(Err(why)));
+            let _ = self.sender.send(Done::Broke(task, why));
         }
     }
 
@@ -134,9 +148,11 @@ impl Disk {
         let done: Vec<Done> = self.done.try_iter().collect();
         for done in &done {
             match done {
-                Done::Read(..) | Done::Listed(_) | Done::ListedPins(_) | Done::Broke(Task::Open | Task::List, _) => {
-                    self.reads = self.reads.saturating_sub(1)
-                }
+                Done::Read(..)
+                | Done::Prepared(_)
+                | Done::Listed(_)
+                | Done::ListedPins(_)
+                | Done::Broke(Task::Open | Task::List, _) => self.reads = self.reads.saturating_sub(1),
                 Done::SavedProject(..)
                 | Done::ChangedLibrary(_)
                 | Done::ChangedPins(_)

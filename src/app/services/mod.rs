@@ -6,6 +6,7 @@ pub(super) mod crash;
 pub(super) mod disk;
 pub(super) mod edits;
 pub(super) mod environments;
+pub(super) mod export;
 pub mod library;
 pub(super) mod messages;
 pub(super) mod recent;

@@ -15,6 +15,15 @@ const NO_DIALOG: Duration = Duration::from_millis(400);
 /// Most completions that are listed.
 const COMPLETIONS: usize = 12;
 
+/// Endings of the files that materials are opened from.
+const MATERIALS: [&str; 11] = [
+    "json", "mtlx", "usda", "xml", "py", "csv", "glsl", "wgsl", "hlsl", "osl", "c",
+];
+/// Endings of the files for other programs.
+const EXPORTS: [&str; 14] = [
+    "mtlx", "glb", "gltf", "usda", "xml", "py", "binary", "csv", "glsl", "wgsl", "hlsl", "osl", "c", "h",
+];
+
 /// What a file is chosen for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::app) enum Purpose {
@@ -25,6 +34,7 @@ pub(in crate::app) enum Purpose {
     OpenMaterial,
     OpenMeasured,
     SaveMaterial,
+    Export,
     SavePicture,
     SaveLayers,
     SaveWindow,
@@ -40,6 +50,7 @@ impl Purpose {
             Self::OpenMaterial => "Open a material",
             Self::OpenMeasured => "Open a measured material",
             Self::SaveMaterial => "Save the material",
+            Self::Export => "Export for another program",
             Self::SavePicture => "Save the picture",
             Self::SaveLayers => "Save the picture with layers",
             Self::SaveWindow => "Save a picture of the window",
@@ -52,13 +63,15 @@ impl Purpose {
                 "Projects, materials, models, environments, pictures with a document",
                 &[
                     "json", "glb", "gltf", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "jpg", "jpeg", "tif",
-                    "tiff", "webp",
+                    "tiff", "webp", "mtlx", "usda", "xml", "py",
                 ],
             ),
             Self::SaveProject => ("Projects", &["json"]),
             Self::OpenModel => ("Models", &MODEL_ENDINGS),
             Self::OpenEnvironment => ("Environment maps", &ENDINGS),
-            Self::OpenMaterial | Self::SaveMaterial => ("Materials", &["json"]),
+            Self::OpenMaterial => ("Materials", &MATERIALS),
+            Self::SaveMaterial => ("Materials", &["json"]),
+            Self::Export => ("Files of other programs", &EXPORTS),
             Self::OpenMeasured => ("Measured materials (MERL)", &["binary"]),
             Self::SavePicture => ("Pictures", &["png", "exr", "hdr"]),
             Self::SaveLayers => ("OpenEXR pictures", &["exr"]),
@@ -69,7 +82,12 @@ impl Purpose {
     fn is_saving(self) -> bool {
         matches!(
             self,
-            Self::SaveProject | Self::SaveMaterial | Self::SavePicture | Self::SaveLayers | Self::SaveWindow
+            Self::SaveProject
+                | Self::SaveMaterial
+                | Self::Export
+                | Self::SavePicture
+                | Self::SaveLayers
+                | Self::SaveWindow
         )
     }
 }
@@ -343,4 +361,27 @@ fn completions(text: &str, endings: &[&str]) -> Vec<String> {
     found.sort_by_key(|path| (!path.ends_with(std::path::MAIN_SEPARATOR), path.to_lowercase()));
     found.truncate(COMPLETIONS);
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::exchange::FORMATS;
+
+    #[test]
+    fn the_endings_of_other_programs_are_those_of_the_formats() {
+        let endings = |chosen: fn(&crate::store::exchange::Registered) -> bool| -> Vec<&str> {
+            let formats = FORMATS.iter().filter(|format| chosen(format));
+            let mut endings: Vec<_> = formats.flat_map(|format| format.extensions).copied().collect();
+            endings.dedup();
+            endings
+        };
+        assert_eq!(
+            EXPORTS.to_vec(),
+            endings(|format| format.is_written && format.name != "glossmith")
+        );
+        for ending in endings(|format| format.is_read && !["glossmith", "gltf"].contains(&format.name)) {
+            assert!(MATERIALS.contains(&ending) || ending == "h", "{ending}");
+        }
+    }
 }

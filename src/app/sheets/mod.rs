@@ -1,6 +1,7 @@
 //! What lies around and over the panels: menus, status bar, dialogs and sheets.
 
 pub(super) mod dialogs;
+pub(super) mod export;
 pub(super) mod import;
 pub(super) mod menu;
 pub(super) mod palette;

@@ -228,6 +228,11 @@ pub fn stretch_from_anisotropy<T: Real>(anisotropy: T) -> T {
     ((T::one() + s) / (T::one() - s)).sqrt()
 }
 
+/// The anisotropy in [0, 1] whose narrower width is this share of the wider one; 1 where none is so narrow.
+pub fn anisotropy_from_ratio(ratio: f64) -> f64 {
+    ((1.0 - ratio) / (0.9 * (1.0 + ratio))).clamp(0.0, 1.0)
+}
+
 /// True where the lobe is so narrow that it is weighed as a mirror ([`MIRROR_WIDTH`]). Facets turn the refracted
 /// direction by |1 − 1/η| of their own tilt: where both sides are nearly alike, everything goes straight on.
 #[inline(always)]

@@ -5,6 +5,7 @@
 //! a file that leaves nothing to show is an error.
 
 mod accessor;
+mod anisotropy;
 mod compressed;
 mod container;
 mod image;
@@ -20,6 +21,7 @@ use std::path::Path;
 
 use glam::DMat4;
 
+pub use self::anisotropy::{Widths, gltf_from_widths, widths_from_gltf};
 pub use self::material_extensions::kept_keys;
 
 use self::container::Document;

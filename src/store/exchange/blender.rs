@@ -4,24 +4,16 @@ use std::path::Path;
 
 use serde_json::Value as Json;
 
-use super::surface::{Law, Surface, Takes};
+use super::surface::{Surface, Takes};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
 
 /// Scripts for Blender 4 and later.
 pub struct Blender;
 
 const TAKES: Takes = Takes {
-    law: Law::Exact,
-    eta_and_k: false,
-    edge_tint: true,
-    specular: true,
-    ior: true,
-    anisotropy: true,
-    coat: true,
-    coat_details: true,
-    transmission: true,
+    widths: Surface::disney_widths,
     absorption: false,
-    textures: false,
+    ..Takes::OPEN_PBR
 };
 
 impl Format for Blender {
@@ -38,12 +30,7 @@ impl Format for Blender {
     }
 
     fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
-        let bytes = crate::store::file::read(path)?;
-        let materials = carried::in_comments(path, &bytes)?;
-        Ok(Subject {
-            materials,
-            ..Subject::default()
-        })
+        carried::in_comments(path)
     }
 }
 
@@ -78,22 +65,14 @@ fn python(text: &str) -> String {
 }
 
 fn call(surface: &Surface, exact: &str) -> String {
-    let (ratio, rotation_deg) = surface.ratio_and_rotation();
-    let strongest = surface.emission.into_iter().fold(0.0_f32, f32::max);
-    let emitted = surface
-        .emission
-        .map(|x| if strongest > 0.0 { x / strongest } else { 1.0 });
+    let (_, rotation_deg) = surface.ratio_and_rotation();
+    let (strongest, emitted) = surface.strength_and_color();
     let rgba = |[r, g, b]: [f32; 3]| format!("({r}, {g}, {b}, 1.0)");
     let mut base = surface.base_color;
     if surface.transmission_weight >= 0.5 && surface.metalness < 0.5 {
         // What is refracted has the base color there, once a passage.
         base = surface.transmission_color.map(f32::sqrt);
     }
-    let tint = if surface.metalness > 0.5 {
-        surface.edge_tint
-    } else {
-        surface.specular_color
-    };
     let inputs = [
         ("Base Color", rgba(base)),
         ("Metallic", surface.metalness.to_string()),
@@ -102,9 +81,8 @@ fn call(surface: &Surface, exact: &str) -> String {
         ("Alpha", surface.opacity.to_string()),
         // 0.5 leaves the reflectance of the index as it is.
         ("Specular IOR Level", (0.5 * surface.specular_weight).to_string()),
-        ("Specular Tint", rgba(tint)),
-        // Its widths are r²/√(1 − 0.9 a) and r² √(1 − 0.9 a).
-        ("Anisotropic", ((1.0 - ratio) / 0.9).clamp(0.0, 1.0).to_string()),
+        ("Specular Tint", rgba(surface.tint())),
+        ("Anisotropic", surface.disney_anisotropy().to_string()),
         ("Transmission Weight", surface.transmission_weight.to_string()),
         ("Coat Weight", surface.coat_weight.to_string()),
         ("Coat Roughness", surface.coat_roughness.to_string()),

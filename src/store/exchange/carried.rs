@@ -3,11 +3,13 @@
 //! They are the text of a material's own file, in one line, in a place that the format leaves to whoever wants it: a custom
 //! property, or a comment after [`MARK`].
 
+use std::path::Path;
+
 use serde_json::{Map, Value as Json};
 
-use super::ExchangeError;
+use super::{ExchangeError, Subject};
 use crate::document::MaterialSettings;
-use crate::store::preset;
+use crate::store::{file, preset};
 
 /// What stands before the parameters in a comment, and the name of the property elsewhere.
 pub const MARK: &str = "glossmith_material";
@@ -45,12 +47,13 @@ pub fn from_json(json: Json) -> Option<MaterialSettings> {
     MaterialSettings::try_from(object).ok()
 }
 
-/// The materials in the comments of a text.
+/// The materials in the comments of a file.
 ///
 /// # Errors
-/// If there is none.
-pub fn in_comments(path: &std::path::Path, bytes: &[u8]) -> Result<Vec<MaterialSettings>, ExchangeError> {
-    let text = String::from_utf8_lossy(bytes);
+/// If it cannot be read, or there is none.
+pub fn in_comments(path: &Path) -> Result<Subject, ExchangeError> {
+    let bytes = file::read(path)?;
+    let text = String::from_utf8_lossy(&bytes);
     let found: Vec<_> = text
         .split(&format!("{MARK} "))
         .skip(1)
@@ -59,8 +62,19 @@ pub fn in_comments(path: &std::path::Path, bytes: &[u8]) -> Result<Vec<MaterialS
             from_json(values.next()?.ok()?)
         })
         .collect();
-    if found.is_empty() {
+    subject(path, found)
+}
+
+/// What a file holds of which the exact parameters alone are read.
+///
+/// # Errors
+/// If there are none.
+pub fn subject(path: &Path, materials: Vec<MaterialSettings>) -> Result<Subject, ExchangeError> {
+    if materials.is_empty() {
         return Err(ExchangeError::NothingCarried { path: path.to_owned() });
     }
-    Ok(found)
+    Ok(Subject {
+        materials,
+        ..Subject::default()
+    })
 }

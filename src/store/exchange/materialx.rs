@@ -4,7 +4,8 @@ use std::path::Path;
 
 use super::carried;
 use super::materialx_read;
-use super::surface::{Law, Surface, Takes};
+use super::open_pbr::{Value, inputs};
+use super::surface::{Surface, Takes};
 use super::xml::{Element, identifier, numbers};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written, shown};
 
@@ -16,26 +17,11 @@ pub struct MaterialX {
 
 /// The attribute of a material that has the exact parameters.
 pub(super) const CARRIER: &str = carried::MARK;
-/// Luminance of radiance 1, cd/m²: OpenPBR's emission is in nits.
-pub(super) const NITS: f32 = 1000.0;
-
-pub(super) const OPEN_PBR: Takes = Takes {
-    law: Law::Exact,
-    eta_and_k: false,
-    edge_tint: true,
-    specular: true,
-    ior: true,
-    anisotropy: true,
-    coat: true,
-    coat_details: true,
-    transmission: true,
-    absorption: true,
-    textures: false,
-};
 const STANDARD: Takes = Takes {
     // Its specular color is a metal's tint at grazing angles by another law.
     edge_tint: false,
-    ..OPEN_PBR
+    widths: standard_widths,
+    ..Takes::OPEN_PBR
 };
 
 impl Format for MaterialX {
@@ -45,7 +31,7 @@ impl Format for MaterialX {
             .with("colorspace", "lin_rec709");
         let (mut taken, mut reports) = (Vec::new(), Vec::new());
         for material in &subject.materials {
-            let takes = if self.is_standard { STANDARD } else { OPEN_PBR };
+            let takes = if self.is_standard { STANDARD } else { Takes::OPEN_PBR };
             let (surface, report) = shown(material, &takes);
             let name = identifier(&material.name, &mut taken);
             let shader = identifier(&format!("{name}_surface"), &mut taken);
@@ -97,38 +83,19 @@ fn node(kind: &'static str, name: &str) -> Element {
     Element::new(kind).with("name", name).with("type", "surfaceshader")
 }
 
-/// OpenPBR's anisotropy and the roughness that goes with it: α's along and across are r² √(2/(1 + (1 − a)²)) and (1 − a)
-/// times that.
-pub(super) fn open_pbr_widths(surface: &Surface) -> (f32, f32) {
-    let (ratio, _) = surface.ratio_and_rotation();
-    let roughness = surface.roughness * ((1.0 + ratio * ratio) / (2.0 * ratio)).powf(0.25);
-    (roughness.min(1.0), 1.0 - ratio)
+/// The widths of Standard Surface: none is wider than 1.
+fn standard_widths(surface: &Surface) -> [f32; 2] {
+    surface.widths().map(|alpha| alpha.min(1.0))
 }
 
 fn open_pbr(surface: &Surface, name: &str, is_turned: bool) -> Element {
-    let (roughness, anisotropy) = open_pbr_widths(surface);
-    let (strength, emission) = emission(surface);
-    let mut node = node("open_pbr_surface", name)
-        .child(number("base_weight", 1.0))
-        .child(color("base_color", surface.base_color))
-        .child(number("base_metalness", surface.metalness))
-        .child(number("specular_weight", surface.specular_weight))
-        .child(color("specular_color", specular_color(surface)))
-        .child(number("specular_roughness", roughness))
-        .child(number("specular_ior", surface.ior))
-        .child(number("specular_roughness_anisotropy", anisotropy))
-        .child(number("transmission_weight", surface.transmission_weight))
-        .child(color("transmission_color", surface.transmission_color))
-        .child(number("transmission_depth", surface.transmission_depth))
-        .child(number("coat_weight", surface.coat_weight))
-        .child(color("coat_color", surface.coat_color))
-        .child(number("coat_roughness", surface.coat_roughness))
-        .child(number("coat_ior", surface.coat_ior))
-        // Glossmith's coat leaves what is below it as dark as it is.
-        .child(number("coat_darkening", 0.0))
-        .child(number("emission_luminance", strength * NITS))
-        .child(color("emission_color", emission))
-        .child(number("geometry_opacity", surface.opacity));
+    let mut node = node("open_pbr_surface", name);
+    for (name, value) in inputs(surface) {
+        node.push(match value {
+            Value::Number(x) => number(name, x),
+            Value::Color(value) => color(name, value),
+        });
+    }
     if is_turned {
         node.push(
             Element::new("input")
@@ -139,24 +106,6 @@ fn open_pbr(surface: &Surface, name: &str, is_turned: bool) -> Element {
         );
     }
     node
-}
-
-/// OpenPBR's specular color: of a metal the tint of its edge.
-pub(super) fn specular_color(surface: &Surface) -> [f32; 3] {
-    if surface.metalness > 0.5 {
-        surface.edge_tint
-    } else {
-        surface.specular_color
-    }
-}
-
-/// The brightest channel and the color that makes the emission of it.
-pub(super) fn emission(surface: &Surface) -> (f32, [f32; 3]) {
-    let brightest = surface.emission.into_iter().fold(0.0_f32, f32::max);
-    let color = surface
-        .emission
-        .map(|x| if brightest > 0.0 { x / brightest } else { 1.0 });
-    (brightest, color)
 }
 
 /// The tangent turned about the normal, where the highlight is stretched in another direction.
@@ -193,7 +142,7 @@ fn turned_tangent(surface: &Surface, name: &str) -> Option<Element> {
 
 fn standard_surface(surface: &Surface, name: &str) -> Element {
     let (ratio, rotation_deg) = surface.ratio_and_rotation();
-    let (strength, emission) = emission(surface);
+    let (strength, emission) = surface.strength_and_color();
     node("standard_surface", name)
         .child(number("base", 1.0))
         .child(color("base_color", surface.base_color))

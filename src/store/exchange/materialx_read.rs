@@ -6,14 +6,17 @@ use std::path::{Path, PathBuf};
 
 use roxmltree::{Document, Node};
 
-use super::materialx::{CARRIER, MaterialX, NITS};
+use super::materialx::{CARRIER, MaterialX};
+use super::open_pbr::{NITS, widening};
 use super::report::Entry;
 use super::surface::Surface;
 use super::{ExchangeError, Format as _, ReadOptions, Subject, carried};
 use crate::document::MaterialSettings;
+use crate::optics::lobe::anisotropy_from_ratio;
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
 use crate::scene::texture::mean_of_file;
+use crate::scene::widths_from_gltf;
 
 /// Deepest chain of nodes that is followed.
 const DEPTH_MAX: usize = 64;
@@ -390,7 +393,6 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         (specular_color, [1.0; 3])
     };
     let ratio = 1.0 - inputs.number("specular_roughness_anisotropy", 0.0).clamp(0.0, 0.999);
-    let widened = ((1.0 + ratio * ratio) / (2.0 * ratio)).powf(0.25);
     Surface {
         base_color: weighted(inputs.color("base_color", [0.8; 3]), inputs.number("base_weight", 1.0)),
         metalness,
@@ -398,8 +400,8 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         specular_color: tint,
         edge_tint,
         ior: inputs.number("specular_ior", 1.5),
-        roughness: inputs.number("specular_roughness", 0.3) / widened,
-        anisotropy: Surface::anisotropy_of_ratio(ratio),
+        roughness: inputs.number("specular_roughness", 0.3) / widening(ratio),
+        anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
         transmission_weight: inputs.number("transmission_weight", 0.0),
         transmission_color: inputs.color("transmission_color", [1.0; 3]),
         transmission_depth: inputs.number("transmission_depth", 0.0),
@@ -438,7 +440,7 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
         specular_color: inputs.color("specular_color", [1.0; 3]),
         ior: inputs.number("specular_IOR", 1.5),
         roughness: inputs.number("specular_roughness", 0.2),
-        anisotropy: Surface::anisotropy_of_ratio(ratio),
+        anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
         rotation_deg: 360.0 * inputs.number("specular_rotation", 0.0),
         transmission_weight: inputs.number("transmission", 0.0),
         transmission_color: inputs.color("transmission_color", [1.0; 3]),
@@ -454,22 +456,27 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
 }
 
 fn gltf_pbr(inputs: &mut Inputs) -> Surface {
-    inputs.drop_layers(&[
-        ("iridescence", 0.0),
-        ("sheen_color", 0.0),
-        ("dispersion", 0.0),
-        ("anisotropy_strength", 0.0),
-    ]);
+    inputs.drop_layers(&[("iridescence", 0.0), ("sheen_color", 0.0), ("dispersion", 0.0)]);
     let distance = inputs.number("attenuation_distance", 0.0);
     let inside = inputs.color("attenuation_color", [1.0; 3]);
     let color = inputs.color("base_color", [1.0; 3]);
+    let strength = inputs.number("anisotropy_strength", 0.0);
+    let widths = widths_from_gltf(inputs.number("roughness", 1.0), strength);
+    if !widths.is_exact {
+        let detail = "the highlight is stretched no more than 19 : 1";
+        inputs
+            .losses
+            .push(Entry::approximated("anisotropy_strength", detail, None));
+    }
     Surface {
         base_color: color,
         metalness: inputs.number("metallic", 1.0),
         specular_weight: inputs.number("specular", 1.0),
         specular_color: inputs.color("specular_color", [1.0; 3]),
         ior: inputs.number("ior", 1.5),
-        roughness: inputs.number("roughness", 1.0),
+        roughness: widths.roughness,
+        anisotropy: widths.stretch,
+        rotation_deg: inputs.number("anisotropy_rotation", 0.0).to_degrees(),
         transmission_weight: inputs.number("transmission", 0.0),
         transmission_color: if distance > 0.0 { inside } else { color },
         transmission_depth: distance,

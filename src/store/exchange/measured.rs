@@ -68,6 +68,8 @@ fn report(material: &MaterialSettings, cells: &[[Vec3<f64>; 2]]) -> MaterialRepo
         material: material.name.clone(),
         carries_exact_parameters: false,
         entries,
+        looks: None,
+        difference: None,
     }
 }
 

@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use super::report::Entry;
 use super::surface::{Law, Surface, Takes};
 use super::xml::{Element, identifier, numbers};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
@@ -51,7 +50,11 @@ impl Kind {
             edge_tint: false,
             specular: self == Self::Glass,
             ior: true,
-            anisotropy: true,
+            widths: if is_principled {
+                Surface::disney_widths
+            } else {
+                Surface::widths
+            },
             coat: is_principled,
             coat_details: false,
             transmission: true,
@@ -66,13 +69,7 @@ impl Format for Mitsuba {
         let material = subject.only(path)?;
         let kind = Kind::of(material);
         let (surface, mut report) = shown(material, &kind.takes());
-        let (_, rotation_deg) = surface.ratio_and_rotation();
-        if surface.anisotropy != 0.0 && rotation_deg != 0.0 {
-            report.entries.insert(
-                0,
-                Entry::dropped("rotation of the highlight", "it lies along the tangent"),
-            );
-        }
+        report.entries.splice(0..0, surface.rotation_loss());
         let name = identifier(&material.name, &mut Vec::new());
         let mut bsdf = match kind {
             Kind::Diffuse => bsdf("diffuse").child(rgb("reflectance", surface.base_color)),
@@ -95,12 +92,7 @@ impl Format for Mitsuba {
     }
 
     fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
-        let bytes = crate::store::file::read(path)?;
-        let materials = carried::in_comments(path, &bytes)?;
-        Ok(Subject {
-            materials,
-            ..Subject::default()
-        })
+        carried::in_comments(path)
     }
 }
 
@@ -160,13 +152,11 @@ fn glass(surface: &Surface) -> Element {
 }
 
 fn principled(surface: &Surface) -> Element {
-    let (ratio, _) = surface.ratio_and_rotation();
     let principled = bsdf("principled")
         .child(rgb("base_color", surface.base_color))
         .child(float("metallic", surface.metalness))
         .child(float("roughness", surface.roughness))
-        // Its widths are r²/√(1 − 0.9 a) and r² √(1 − 0.9 a).
-        .child(float("anisotropic", ((1.0 - ratio) / 0.9).clamp(0.0, 1.0)))
+        .child(float("anisotropic", surface.disney_anisotropy()))
         .child(float("spec_trans", surface.transmission_weight))
         .child(float("clearcoat", surface.coat_weight))
         .child(float("clearcoat_gloss", 1.0 - surface.coat_roughness));

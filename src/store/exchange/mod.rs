@@ -11,6 +11,7 @@ mod materialx_read;
 mod measured;
 mod mitsuba;
 mod native;
+mod open_pbr;
 pub mod report;
 mod snippet;
 pub mod surface;
@@ -22,7 +23,8 @@ use std::path::{Path, PathBuf};
 
 use self::report::{Entry, MaterialReport, Report};
 use self::surface::{Surface, Takes};
-use super::file::{self, FileError};
+use super::file::{self, FileError, Loaded, Opened};
+use super::preset;
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::scene::ModelError;
 
@@ -268,6 +270,8 @@ fn shown(material: &MaterialSettings, takes: &Takes) -> (Surface, MaterialReport
         material: material.name.clone(),
         carries_exact_parameters: true,
         entries,
+        looks: Some(Box::new([material.clone(), surface.as_taken(material, takes)])),
+        difference: None,
     };
     (surface, report)
 }
@@ -298,6 +302,67 @@ pub fn by_ending(path: &Path) -> Result<&'static Registered, ExchangeError> {
     })
 }
 
+/// Whether a format takes a model with all its materials.
+pub fn takes_models(format: &Registered) -> bool {
+    format.name == "gltf"
+}
+
+/// Whether files of this ending hold materials of another program, and nothing else that is opened.
+pub fn holds_materials(path: &Path) -> bool {
+    by_ending(path).is_ok_and(|format| format.is_read && format.name != "glossmith" && !takes_models(format))
+}
+
+/// What a file holds that is opened: one of ours, or the first material of another program's.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn open(path: &Path, options: ReadOptions) -> Result<Opened, ExchangeError> {
+    if !holds_materials(path) {
+        return Ok(file::open(path)?);
+    }
+    let subject = read(path, options)?;
+    let Some(material) = subject.materials.first() else {
+        return Err(ExchangeError::NoMaterial {
+            path: path.to_owned(),
+            reason: "it is empty".to_owned(),
+        });
+    };
+    let mut warnings: Vec<String> = subject
+        .losses
+        .first()
+        .into_iter()
+        .flatten()
+        .map(Entry::to_string)
+        .collect();
+    if subject.materials.len() > 1 {
+        let others: Vec<&str> = subject.materials[1..].iter().map(|other| other.name.as_str()).collect();
+        warnings.push(format!(
+            "{} is taken; the others are {}: `glossmith convert --material` takes one of them out",
+            material.name,
+            others.join(", ")
+        ));
+    }
+    let told = |warning: String| format!("{}: {warning}", path.display());
+    Ok(Opened::Material(Box::new(Loaded {
+        value: material.clone(),
+        warnings: warnings.into_iter().map(told).collect(),
+    })))
+}
+
+/// The material of a name: that of a shipped one, or of a file of any format.
+///
+/// # Errors
+/// What is wrong with the file, or what the names are.
+pub fn find(name_or_path: &str, options: ReadOptions) -> Result<Loaded<MaterialSettings>, ExchangeError> {
+    let path = Path::new(name_or_path);
+    if holds_materials(path)
+        && let Opened::Material(loaded) = open(path, options)?
+    {
+        return Ok(*loaded);
+    }
+    Ok(preset::find(name_or_path)?)
+}
+
 /// What a file holds.
 ///
 /// # Errors
@@ -306,23 +371,42 @@ pub fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError>
     by_ending(path)?.format.read(path, options)
 }
 
-/// Writes a subject to a file, replacing it at once, and tells what became of it. `input` is only named in the report.
+/// A file that is made and not written yet, with what it loses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prepared {
+    written: Written,
+    /// What becomes of the materials.
+    pub report: Report,
+}
+
+impl Prepared {
+    /// Writes the file, replacing it at once.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn save(&self) -> Result<(), FileError> {
+        let path = &self.report.output;
+        if let Some((name, bytes)) = &self.written.beside {
+            file::save_atomically(&path.with_file_name(name), bytes)?;
+        }
+        file::save_atomically(path, &self.written.bytes)
+    }
+}
+
+/// Makes the file of a subject and tells what becomes of it. `input` is only named in the report.
 ///
 /// # Errors
-/// Why it has no place there, or what the system says.
-pub fn write(subject: &Subject, input: &str, path: &Path, format: &Registered) -> Result<Report, ExchangeError> {
+/// Why it has no place there.
+pub fn prepare(subject: &Subject, input: &str, path: &Path, format: &Registered) -> Result<Prepared, ExchangeError> {
     let mut written = format.format.write(subject, path)?;
     for (report, losses) in written.materials.iter_mut().zip(&subject.losses) {
         report.entries.splice(0..0, losses.iter().cloned());
     }
-    if let Some((name, bytes)) = &written.beside {
-        file::save_atomically(&path.with_file_name(name), bytes)?;
-    }
-    file::save_atomically(path, &written.bytes)?;
-    Ok(Report {
+    let report = Report {
         input: input.to_owned(),
         output: path.to_owned(),
         format: format.name,
-        materials: written.materials,
-    })
+        materials: written.materials.clone(),
+    };
+    Ok(Prepared { written, report })
 }

@@ -25,6 +25,8 @@ impl Format for Native {
             material: material.name.clone(),
             carries_exact_parameters: true,
             entries: vec![Entry::exact("everything")],
+            looks: None,
+            difference: None,
         };
         Ok(Written::text(text, subject.materials.iter().map(report).collect()))
     }

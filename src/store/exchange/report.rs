@@ -5,6 +5,8 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use crate::document::MaterialSettings;
+
 /// What became of a part of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
@@ -124,6 +126,13 @@ pub struct MaterialReport {
     pub carries_exact_parameters: bool,
     /// What became of its parts.
     pub entries: Vec<Entry>,
+    /// The material, and the one that the file shows; none where it shows no material.
+    #[serde(skip)]
+    pub looks: Option<Box<[MaterialSettings; 2]>>,
+    /// How far pictures of a ball with the one and the other are apart, where they were rendered: the root mean square of
+    /// the difference over the mean brightness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub difference: Option<f64>,
 }
 
 impl MaterialReport {
@@ -165,6 +174,9 @@ impl fmt::Display for Report {
             write!(f, "\n  {}{also}", material.material)?;
             for entry in &material.entries {
                 write!(f, "\n    {entry}")?;
+            }
+            if let Some(difference) = material.difference {
+                write!(f, "\n    two balls differ by {:.1} %", 100.0 * difference)?;
             }
         }
         Ok(())

@@ -7,7 +7,7 @@ use crate::document::{ImportLobe, MaterialSettings};
 use crate::optics::fresnel::{
     Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick,
 };
-use crate::optics::lobe::{Lobe, stretch_from_anisotropy};
+use crate::optics::lobe::{Lobe, anisotropy_from_ratio, stretch_from_anisotropy};
 use crate::optics::vector::Vec3;
 
 /// A material as other programs know it. Colors are linear Rec. 709 in [0, 1].
@@ -75,8 +75,8 @@ pub struct Takes {
     pub specular: bool,
     /// The dielectric's index of refraction.
     pub ior: bool,
-    /// Two widths of the highlight, turned.
-    pub anisotropy: bool,
+    /// The widths of a stretched highlight that it shows, as GGX's α, the longer one first.
+    pub widths: fn(&Surface) -> [f32; 2],
     /// A coat; of its index and color where `coat_details` says so.
     pub coat: bool,
     /// The coat's index of refraction and color.
@@ -223,7 +223,7 @@ impl Surface {
 
     /// A material that looks like it. Roughness is GGX's, or that of the lobe that looks like it.
     pub fn material(&self, lobe: ImportLobe) -> MaterialSettings {
-        let brightest = self.emission.into_iter().fold(0.0_f32, f32::max);
+        let (brightest, emission) = self.strength_and_color();
         let mut material = MaterialSettings {
             name: self.name.clone(),
             base_color: self.base_color.map(unit),
@@ -249,10 +249,51 @@ impl Surface {
             material.coat_roughness = crate::document::import::geometric_from_ggx(unit(self.coat_roughness));
         }
         if brightest > 0.0 {
-            material.emission_color = self.emission.map(|x| unit(x / brightest));
+            material.emission_color = emission.map(unit);
             material.emission_strength = brightest.min(1e6);
         }
         material
+    }
+
+    /// What a program shows of a material that takes what `takes` says.
+    pub fn as_taken(&self, material: &MaterialSettings, takes: &Takes) -> MaterialSettings {
+        let mut taken = self.clone();
+        let [longer, shorter] = (takes.widths)(self);
+        if self.anisotropy != 0.0 && shorter > 0.0 {
+            taken.roughness = (longer * shorter).powf(0.25);
+            let stretch = anisotropy_from_ratio(f64::from(shorter / longer)) as f32;
+            taken.anisotropy = stretch.copysign(self.anisotropy);
+        }
+        if !takes.edge_tint {
+            taken.edge_tint = [1.0; 3];
+        }
+        let reflects = self.specular_weight > 0.0 || self.coat_weight > 0.0;
+        if !takes.specular && reflects {
+            (taken.specular_weight, taken.specular_color) = (1.0, [1.0; 3]);
+        }
+        if !takes.ior {
+            taken.ior = 1.5;
+        }
+        if !takes.coat {
+            taken.coat_weight = 0.0;
+        }
+        if !takes.coat_details {
+            (taken.coat_ior, taken.coat_color) = (1.5, [1.0; 3]);
+        }
+        if !takes.transmission {
+            taken.transmission_weight = 0.0;
+        }
+        if !takes.absorption {
+            taken.transmission_depth = 0.0;
+        }
+        let mut shown = taken.material(ImportLobe::Ggx);
+        shown.fresnel = match takes.law {
+            _ if takes.eta_and_k => material.fresnel,
+            Law::Exact => Fresnel::Dielectric,
+            Law::Schlick => Fresnel::Schlick,
+        };
+        (shown.conductor, shown.eta, shown.k) = (material.conductor, material.eta, material.k);
+        shown
     }
 
     /// GGX's α along the tangent and across.
@@ -269,10 +310,59 @@ impl Surface {
         (1.0 / (stretch * stretch), self.rotation_deg + turn)
     }
 
-    /// The anisotropy whose widths have this ratio, the narrower one over the wider.
-    pub fn anisotropy_of_ratio(ratio: f32) -> f32 {
-        let s = (1.0 - ratio) / (1.0 + ratio);
-        (s / 0.9).clamp(0.0, 1.0)
+    /// GGX's α of the longer width and of the shorter.
+    pub fn widths(&self) -> [f32; 2] {
+        let [along, across] = self.alphas();
+        [along.max(across), along.min(across)]
+    }
+
+    /// The anisotropy a of Disney's principled surface, whose α's are r²/√(1 − 0.9 a) and r² √(1 − 0.9 a).
+    pub fn disney_anisotropy(&self) -> f32 {
+        let (ratio, _) = self.ratio_and_rotation();
+        ((1.0 - ratio) / 0.9).clamp(0.0, 1.0)
+    }
+
+    /// The widths that Disney's principled surface shows.
+    pub fn disney_widths(&self) -> [f32; 2] {
+        let aspect = (1.0 - 0.9 * self.disney_anisotropy()).sqrt();
+        let alpha = self.roughness * self.roughness;
+        [alpha / aspect, alpha * aspect]
+    }
+
+    /// The tint of reflections in OpenPBR: of a metal that of its edge.
+    pub fn tint(&self) -> [f32; 3] {
+        if self.metalness > 0.5 {
+            self.edge_tint
+        } else {
+            self.specular_color
+        }
+    }
+
+    /// The brightest channel of the emission and the color that makes the emission of it; white where there is none.
+    pub fn strength_and_color(&self) -> (f32, [f32; 3]) {
+        let brightest = self.emission.into_iter().fold(0.0_f32, f32::max);
+        let color = self.emission.map(|x| if brightest > 0.0 { x / brightest } else { 1.0 });
+        (brightest, color)
+    }
+
+    /// What is lost where a highlight lies along the tangent though it is turned.
+    pub fn rotation_loss(&self) -> Option<Entry> {
+        let is_turned = self.anisotropy != 0.0 && self.ratio_and_rotation().1 != 0.0;
+        is_turned.then(|| Entry::dropped("rotation of the highlight", "it lies along the tangent"))
+    }
+
+    /// What becomes of the widths of a stretched highlight.
+    fn widths_loss(&self, takes: &Takes) -> Entry {
+        let (what, own, shown) = ("anisotropy", self.widths(), (takes.widths)(self));
+        let apart = |i: usize| f64::from((own[i] - shown[i]).abs() / own[i].max(f32::MIN_POSITIVE));
+        if apart(0).max(apart(1)) < NOTABLE {
+            return Entry::exact(what);
+        }
+        let detail = format!(
+            "widths (GGX's α) of {:.3} and {:.3} stand for {:.3} and {:.3}",
+            shown[0], shown[1], own[0], own[1]
+        );
+        Entry::approximated(what, detail, None)
     }
 
     /// The reflectance that a program shows that takes what `takes` says, by the cosine at the half vector.
@@ -309,6 +399,9 @@ impl Surface {
                 "there is none under a metal of η and k",
             ));
         }
+        if self.anisotropy != 0.0 && is_specular {
+            entries.push(self.widths_loss(takes));
+        }
         let mut layer = |is_used: bool, is_taken: bool, what: &str, detail: &str| {
             if is_used && is_taken {
                 entries.push(Entry::exact(what));
@@ -317,8 +410,6 @@ impl Surface {
             }
         };
         let none = "the format has none";
-        let is_stretched = self.anisotropy != 0.0 && is_specular;
-        layer(is_stretched, takes.anisotropy, "anisotropy", "the highlight is round");
         layer(
             material.transmission_weight > 0.0,
             takes.transmission,

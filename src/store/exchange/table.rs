@@ -50,17 +50,14 @@ impl Format for Table {
             material: material.name.clone(),
             carries_exact_parameters: true,
             entries,
+            looks: None,
+            difference: None,
         };
         Ok(Written::text(text, vec![report]))
     }
 
     fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {
-        let bytes = crate::store::file::read(path)?;
-        let materials = carried::in_comments(path, &bytes)?;
-        Ok(Subject {
-            materials,
-            ..Subject::default()
-        })
+        carried::in_comments(path)
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use super::materialx::{NITS, OPEN_PBR, emission, open_pbr_widths, specular_color};
+use super::open_pbr::{Value, inputs};
 use super::report::Entry;
 use super::surface::{Surface, Takes};
 use super::xml::{identifier, numbers};
@@ -11,9 +11,6 @@ use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown
 
 /// Materials in a `.usda`.
 pub struct Usd;
-
-/// OpenPBR without a graph that turns the tangent.
-const TAKES: Takes = OPEN_PBR;
 
 impl Format for Usd {
     fn write(&self, subject: &Subject, _path: &Path) -> Result<Written, ExchangeError> {
@@ -23,13 +20,8 @@ impl Format for Usd {
                         def Scope \"Materials\"\n{\n"
                 .to_owned();
         for material in &subject.materials {
-            let (surface, mut report) = shown(material, &TAKES);
-            if surface.anisotropy != 0.0 && surface.ratio_and_rotation().1 != 0.0 {
-                report.entries.insert(
-                    0,
-                    Entry::dropped("rotation of the highlight", "it lies along the tangent"),
-                );
-            }
+            let (surface, mut report) = shown(material, &Takes::OPEN_PBR);
+            report.entries.splice(0..0, surface.rotation_loss());
             let preview = "UsdPreviewSurface, beside OpenPBR";
             let detail = "without anisotropy, refraction, tints and the coat's index";
             report.entries.push(Entry::approximated(preview, detail, None));
@@ -46,14 +38,8 @@ impl Format for Usd {
         let text = String::from_utf8_lossy(&bytes);
         let mark = format!("string {} = ", carried::MARK);
         let marks = text.split(&mark).skip(1);
-        let materials: Vec<_> = marks.filter_map(|rest| carried::from_text(&unquoted(rest)?)).collect();
-        if materials.is_empty() {
-            return Err(ExchangeError::NothingCarried { path: path.to_owned() });
-        }
-        Ok(Subject {
-            materials,
-            ..Subject::default()
-        })
+        let materials = marks.filter_map(|rest| carried::from_text(&unquoted(rest)?));
+        carried::subject(path, materials.collect())
     }
 }
 
@@ -123,10 +109,10 @@ fn prim(surface: &Surface, name: &str, exact: &str) -> String {
     text
 }
 
-fn shader(name: &str, id: &str, output: &str, inputs: &[(&str, String)]) -> String {
+fn shader(name: &str, id: &str, output: &str, inputs: &[(impl AsRef<str>, String)]) -> String {
     let mut text = format!("        def Shader \"{name}\"\n        {{\n            uniform token info:id = \"{id}\"\n");
     for (input, value) in inputs {
-        let (kind, input) = input.split_once(' ').unwrap_or(("float", input));
+        let (kind, input) = input.as_ref().split_once(' ').unwrap_or(("float", input.as_ref()));
         let _ = writeln!(text, "            {kind} inputs:{input} = {value}");
     }
     let _ = write!(text, "            {output}\n        }}\n\n");
@@ -153,28 +139,10 @@ fn preview(surface: &Surface) -> Vec<(&'static str, String)> {
     ]
 }
 
-fn open_pbr(surface: &Surface) -> Vec<(&'static str, String)> {
-    let (roughness, anisotropy) = open_pbr_widths(surface);
-    let (strength, emitted) = emission(surface);
-    let number = |x: f32| x.to_string();
-    vec![
-        ("color3f base_color", color(surface.base_color)),
-        ("float base_metalness", number(surface.metalness)),
-        ("float specular_weight", number(surface.specular_weight)),
-        ("color3f specular_color", color(specular_color(surface))),
-        ("float specular_roughness", number(roughness)),
-        ("float specular_ior", number(surface.ior)),
-        ("float specular_roughness_anisotropy", number(anisotropy)),
-        ("float transmission_weight", number(surface.transmission_weight)),
-        ("color3f transmission_color", color(surface.transmission_color)),
-        ("float transmission_depth", number(surface.transmission_depth)),
-        ("float coat_weight", number(surface.coat_weight)),
-        ("color3f coat_color", color(surface.coat_color)),
-        ("float coat_roughness", number(surface.coat_roughness)),
-        ("float coat_ior", number(surface.coat_ior)),
-        ("float coat_darkening", number(0.0)),
-        ("float emission_luminance", number(strength * NITS)),
-        ("color3f emission_color", color(emitted)),
-        ("float geometry_opacity", number(surface.opacity)),
-    ]
+fn open_pbr(surface: &Surface) -> Vec<(String, String)> {
+    let typed = |(name, value): (&str, Value)| match value {
+        Value::Number(x) => (format!("float {name}"), x.to_string()),
+        Value::Color(value) => (format!("color3f {name}"), color(value)),
+    };
+    inputs(surface).into_iter().map(typed).collect()
 }

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use serde_json::Value as Json;
 
 use self::pictures::{PictureKey, affine, without_missing};
+use super::anisotropy::convert_widths;
 use super::container::Document;
 use super::material_extensions::{
     Anisotropy, Clearcoat, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension, kept,
@@ -204,7 +205,13 @@ impl<'a> Materials<'a> {
             PictureKey::BaseColor(material) => converted.get(material).map(|[color, _]| color.clone()),
             PictureKey::Surface(material) => converted.get(material).map(|[_, surface]| surface.clone()),
         });
-        let textures = without_missing(&mut slots, textures.collect());
+        let mut textures = without_missing(&mut slots, textures.collect());
+        for slot in slots.iter_mut().filter(|slot| slot.anisotropy > 0.0) {
+            if !convert_widths(slot, &mut textures) {
+                let what = "a highlight stretched more than 19 : 1, taken as 19 : 1";
+                self.report.note(Fate::Approximated, what, &slot.name);
+            }
+        }
         report.append(self.report);
         (slots, textures)
     }

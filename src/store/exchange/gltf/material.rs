@@ -3,9 +3,12 @@
 use serde_json::{Map, Value as Json, json};
 
 use crate::document::MaterialSettings;
-use crate::scene::{AlphaMode, TextureRef};
+use crate::scene::{AlphaMode, TextureRef, gltf_from_widths};
 use crate::store::exchange::carried;
 use crate::store::exchange::surface::Surface;
+
+/// The extension of stretched highlights.
+pub const ANISOTROPY: &str = "KHR_materials_anisotropy";
 
 /// What a slot's material looks up, as references to textures.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +17,8 @@ pub struct SlotTextures {
     pub metallic_roughness: Option<Json>,
     pub normal: Option<Json>,
     pub emissive: Option<Json>,
+    /// The mean of the roughness that a texture varies.
+    pub roughness_mean: Option<f32>,
     /// What the texture's opacity means, where it is looked up.
     pub alpha: Option<(AlphaMode, f32)>,
     pub is_double_sided: bool,
@@ -41,6 +46,8 @@ pub fn texture_info(index: usize, place: &TextureRef) -> Json {
 
 /// A material; `radius` is what lengths inside are counted in.
 pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &SlotTextures, radius: f64) -> Json {
+    let mean = textures.roughness_mean.unwrap_or(1.0).max(1e-3);
+    let widths = gltf_from_widths(surface.roughness * mean, surface.anisotropy);
     let transmission = surface.transmission_weight * (1.0 - surface.metalness);
     let absorbs = transmission > 0.0 && surface.transmission_depth > 0.0;
     let [r, g, b] = match (transmission > 0.5, absorbs) {
@@ -52,7 +59,7 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
     let mut pbr = json!({
         "baseColorFactor": [r, g, b, surface.opacity],
         "metallicFactor": surface.metalness,
-        "roughnessFactor": surface.roughness,
+        "roughnessFactor": if surface.anisotropy == 0.0 { surface.roughness } else { widths.roughness / mean },
     });
     let mut json = json!({ "name": surface.name });
     let put = |to: &mut Json, key: &str, texture: &Option<Json>| {
@@ -80,7 +87,15 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
     if textures.is_double_sided {
         json["doubleSided"] = true.into();
     }
-    let extensions = extensions(surface, transmission, absorbs, radius, &mut json);
+    let mut extensions = extensions(surface, transmission, absorbs, radius, &mut json);
+    if surface.anisotropy != 0.0 {
+        let (_, rotation_deg) = surface.ratio_and_rotation();
+        let anisotropy = json!({
+            "anisotropyStrength": widths.stretch,
+            "anisotropyRotation": rotation_deg.to_radians(),
+        });
+        extensions.insert(ANISOTROPY.to_owned(), anisotropy);
+    }
     if !extensions.is_empty() {
         json["extensions"] = Json::Object(extensions);
     }
@@ -90,9 +105,9 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
 
 fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, json: &mut Json) -> Map<String, Json> {
     let mut all = Map::new();
-    let strongest = surface.emission.into_iter().fold(0.0_f32, f32::max);
+    let (strongest, emission) = surface.strength_and_color();
     if strongest > 0.0 {
-        json["emissiveFactor"] = json!(surface.emission.map(|x| x / strongest));
+        json["emissiveFactor"] = json!(emission);
         if strongest != 1.0 {
             all.insert(
                 "KHR_materials_emissive_strength".to_owned(),
@@ -128,14 +143,6 @@ fn extensions(surface: &Surface, transmission: f32, absorbs: bool, radius: f64, 
             volume["attenuationColor"] = json!(surface.transmission_color);
         }
         all.insert("KHR_materials_volume".to_owned(), volume);
-    }
-    if surface.anisotropy != 0.0 {
-        let (_, rotation_deg) = surface.ratio_and_rotation();
-        let anisotropy = json!({
-            "anisotropyStrength": surface.anisotropy.abs(),
-            "anisotropyRotation": rotation_deg.to_radians(),
-        });
-        all.insert("KHR_materials_anisotropy".to_owned(), anisotropy);
     }
     all
 }

@@ -6,13 +6,14 @@ use std::path::Path;
 
 use serde_json::{Map, Value as Json, json};
 
-use self::material::{SlotTextures, extensions_used, material_json};
+use self::material::{ANISOTROPY, SlotTextures, extensions_used, material_json};
 use super::report::Entry;
-use super::surface::{Law, Takes};
+use super::surface::{Law, Surface, Takes};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
 use crate::document::of_model::materials_of;
 use crate::document::{Document, MaterialSettings};
-use crate::scene::{Fate, Model, ModelSource, Wrap, load, load_with};
+use crate::scene::texture::texture_mean;
+use crate::scene::{Fate, Model, ModelSource, Slot, Wrap, gltf_from_widths, load, load_with};
 use crate::store::picture::png_bytes;
 
 /// `.glb` and `.gltf`.
@@ -24,13 +25,20 @@ const TAKES: Takes = Takes {
     edge_tint: false,
     specular: true,
     ior: true,
-    anisotropy: true,
+    widths: shown_widths,
     coat: true,
     coat_details: false,
     transmission: true,
     absorption: true,
     textures: true,
 };
+
+/// α is 1 there at most.
+fn shown_widths(surface: &Surface) -> [f32; 2] {
+    let told = gltf_from_widths(surface.roughness, surface.anisotropy);
+    let across = told.roughness * told.roughness;
+    [across + (1.0 - across) * told.stretch * told.stretch, across]
+}
 
 /// Numbers of the format: of components, buffers' uses, sampling.
 const FLOAT: u32 = 5126;
@@ -61,6 +69,12 @@ impl Format for Gltf {
             };
             let (surface, mut report) = shown(material, &TAKES);
             let textures = file.textures(&model, slot, material);
+            if textures.roughness_mean.is_some() && surface.anisotropy != 0.0 {
+                let detail = "the strength is that of the roughness texture's mean";
+                report
+                    .entries
+                    .insert(0, Entry::approximated("anisotropy, which varies", detail, None));
+            }
             materials.push(material_json(material, &surface, &textures, radius_of(&model)));
             if subject.document.as_ref().is_some_and(|document| document.ground) && slot == 0 {
                 report
@@ -89,12 +103,18 @@ impl Format for Gltf {
             let (Some(exact), Some(of_file), false) = (exact, of_file, options.is_plain) else {
                 continue;
             };
-            let shows = material_json(
+            let mut shows = material_json(
                 &exact,
                 &shown(&exact, &TAKES).0,
                 &SlotTextures::default(),
                 radius_of(&model),
             );
+            if let (true, Some(extensions)) = (exact.textures.roughness, shows["extensions"].as_object_mut()) {
+                // It depends on the texture.
+                extensions.remove(ANISOTROPY);
+                shows["pbrMetallicRoughness"]["roughnessFactor"] =
+                    of_file["pbrMetallicRoughness"]["roughnessFactor"].clone();
+            }
             if is_near(&shows, of_file) {
                 *material = exact;
                 losses.clear();
@@ -245,6 +265,7 @@ impl Builder {
         };
         SlotTextures {
             base_color: texture(uses.color || uses.opacity, &slot.base_color_texture),
+            roughness_mean: uses.roughness.then(|| mean_of_roughness(model, slot)).flatten(),
             metallic_roughness: texture(uses.roughness, &slot.metallic_roughness_texture),
             normal: texture(uses.normal, &slot.normal_texture),
             emissive: texture(uses.emission, &slot.emissive_texture),
@@ -310,9 +331,8 @@ impl Builder {
         if !mesh.colors.is_empty() {
             attributes.insert("COLOR_0".to_owned(), self.floats(&mesh.colors, false).into());
         }
-        let needs_tangents = |material: &Json| {
-            !material["normalTexture"].is_null() || !material["extensions"]["KHR_materials_anisotropy"].is_null()
-        };
+        let needs_tangents =
+            |material: &Json| !material["normalTexture"].is_null() || !material["extensions"][ANISOTROPY].is_null();
         if materials.iter().any(needs_tangents) {
             let tangents: Vec<[f32; 4]> = mesh.tangents.iter().map(|t| t.to_array()).collect();
             attributes.insert("TANGENT".to_owned(), self.floats(&tangents, false).into());
@@ -359,6 +379,12 @@ impl Builder {
         document["buffers"] = json!([{ "byteLength": self.bytes.len() }]);
         document
     }
+}
+
+/// The mean of the roughness that a slot's texture has.
+fn mean_of_roughness(model: &Model, slot: &Slot) -> Option<f32> {
+    let place = slot.metallic_roughness_texture.as_ref()?;
+    Some(texture_mean(model.textures.get(place.texture)?).codes[1])
 }
 
 /// The place of a value in a list, where it is added unless it is there.

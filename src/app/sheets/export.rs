@@ -1,0 +1,131 @@
+//! The sheet that tells what another program's file loses, before it is written.
+
+use egui::{ColorImage, RichText, TextureHandle, TextureOptions, Ui, vec2};
+
+use crate::app::kit::{theme, widgets};
+use crate::app::services::export::Ready;
+use crate::render::looks::Compared;
+use crate::store::exchange::Prepared;
+use crate::store::exchange::report::{MaterialReport, Outcome};
+
+/// Points that the side of a picture takes.
+const PICTURE: f32 = 128.0;
+/// What the pictures of a ball show.
+const PICTURES: [&str; 3] = ["The material", "As the file shows it", "Difference"];
+
+/// The sheet, while there is something to ask.
+#[derive(Default)]
+pub(in crate::app) struct ExportSheet {
+    ready: Option<Ready>,
+    textures: Vec<Option<[TextureHandle; 3]>>,
+}
+
+/// What was answered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::app) enum Answer {
+    Write,
+    Cancel,
+}
+
+impl ExportSheet {
+    /// Opens the sheet.
+    pub(in crate::app) fn ask(&mut self, ctx: &egui::Context, ready: Ready) {
+        let texture = |(name, picture): (&&str, &image::RgbImage)| {
+            let size = [picture.width() as usize, picture.height() as usize];
+            ctx.load_texture(*name, ColorImage::from_rgb(size, picture), TextureOptions::LINEAR)
+        };
+        let textures = |compared: &Option<Compared>| {
+            let pictures = &compared.as_ref()?.pictures;
+            let textures: Vec<_> = PICTURES.iter().zip(pictures).map(texture).collect();
+            textures.try_into().ok()
+        };
+        self.textures = ready.compared.iter().map(textures).collect();
+        self.ready = Some(ready);
+    }
+
+    pub(in crate::app) fn is_open(&self) -> bool {
+        self.ready.is_some()
+    }
+
+    /// The file, to be written; the sheet is closed.
+    pub(in crate::app) fn take(&mut self) -> Option<Prepared> {
+        self.textures.clear();
+        Some(self.ready.take()?.prepared)
+    }
+
+    /// Shows the sheet where it is open.
+    pub(in crate::app) fn show(&self, ctx: &egui::Context) -> Option<Answer> {
+        let ready = self.ready.as_ref()?;
+        let mut answer = None;
+        let modal = egui::Modal::new(egui::Id::unique("export")).show(ctx, |ui| {
+            ui.set_width(560.0);
+            ui.heading("Export");
+            let report = &ready.prepared.report;
+            ui.label(report.output.display().to_string());
+            ui.add_space(theme::GAP);
+            egui::ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
+                for (material, textures) in report.materials.iter().zip(&self.textures) {
+                    material_rows(ui, material, textures.as_ref());
+                }
+            });
+            ui.add_space(theme::GAP);
+            ui.horizontal(|ui| {
+                if ui.button("Write the file").clicked() {
+                    answer = Some(Answer::Write);
+                }
+                if ui.button("Cancel").clicked() {
+                    answer = Some(Answer::Cancel);
+                }
+            });
+        });
+        if modal.should_close() {
+            answer = Some(Answer::Cancel);
+        }
+        answer
+    }
+}
+
+/// What becomes of a material's parts, and the pictures of a ball.
+fn material_rows(ui: &mut Ui, material: &MaterialReport, textures: Option<&[TextureHandle; 3]>) {
+    ui.label(RichText::new(&material.material).strong());
+    egui::Grid::new(&material.material)
+        .num_columns(2)
+        .spacing([12.0, 3.0])
+        .show(ui, |ui| {
+            for entry in &material.entries {
+                let word = RichText::new(entry.outcome.word());
+                ui.label(match entry.outcome {
+                    Outcome::Exact => word.weak(),
+                    _ => word.color(ui.visuals().warn_fg_color),
+                });
+                let mut text = entry.what.clone();
+                if !entry.detail.is_empty() {
+                    text += &format!(": {}", entry.detail);
+                }
+                if let Some(residual) = entry.residual {
+                    text += &format!(" ({} {:.3})", residual.measure, residual.residual);
+                }
+                ui.add(egui::Label::new(text).wrap());
+                ui.end_row();
+            }
+        });
+    if let Some(textures) = textures {
+        ui.add_space(theme::GAP);
+        ui.horizontal(|ui| {
+            for (texture, name) in textures.iter().zip(PICTURES) {
+                ui.vertical(|ui| {
+                    let picture = egui::Image::new((texture.id(), vec2(PICTURE, PICTURE))).alt_text(name);
+                    ui.add(picture);
+                    ui.label(name);
+                });
+            }
+        });
+    }
+    if let Some(difference) = material.difference {
+        ui.label(format!("The two balls differ by {:.1} %.", 100.0 * difference));
+    }
+    if material.carries_exact_parameters {
+        widgets::note(ui, "The exact parameters travel with it: opened here, nothing is lost.");
+    }
+    ui.add_space(theme::GAP);
+}

@@ -1,0 +1,107 @@
+//! Two materials held against each other: a ball of each in the studio, and how far their pictures are apart.
+
+use std::time::Duration;
+
+use image::RgbImage;
+
+use super::EngineChoice;
+use super::display::display;
+use super::session::{Session, SessionError};
+use crate::document::{Denoise, Document, MaterialSettings, RenderSettings, ViewSettings};
+use crate::job::film::Film;
+use crate::plot::scale_color;
+use crate::scene::ModelSource;
+
+/// Columns and rows of each picture.
+pub const SIDE: u32 = 64;
+/// Samples a pixel.
+const SAMPLES: u32 = 64;
+/// Step of the session.
+const STEP: Duration = Duration::from_millis(100);
+/// Difference over the mean brightness that has the brightest color of the map.
+const BRIGHTEST: f64 = 0.5;
+
+/// What came of the comparison.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Compared {
+    /// The first, the second, and a map of their difference: dark where there is none, yellow from half the mean brightness.
+    pub pictures: [RgbImage; 3],
+    /// Root mean square of the difference of luminance over the mean luminance, free of noise: the two halves of the samples
+    /// err independently, so that the mean of their differences' product does not.
+    pub difference: f64,
+}
+
+/// Renders a ball of each material in the studio, on the processor.
+///
+/// # Errors
+/// What the session says.
+pub fn compared(materials: &[MaterialSettings; 2]) -> Result<Compared, SessionError> {
+    let mut session = Session::open(EngineChoice::Cpu)?;
+    let [first, second] = [ball(&mut session, &materials[0])?, ball(&mut session, &materials[1])?];
+    let mean = (0..first.pixel_count())
+        .map(|pixel| luminance(&first, pixel, None))
+        .sum::<f64>();
+    let mean = (mean / first.pixel_count() as f64).max(1e-9);
+    let mut squares = 0.0;
+    let mut map = RgbImage::new(SIDE, SIDE);
+    for (pixel, color) in map.pixels_mut().enumerate() {
+        let apart = |half: Option<usize>| luminance(&first, pixel, half) - luminance(&second, pixel, half);
+        squares += apart(Some(0)) * apart(Some(1));
+        color.0 = scale_color(apart(None).abs() / mean / BRIGHTEST);
+    }
+    let shown = |film: &Film| {
+        let codes = display(&film.image(), &ViewSettings::default());
+        let colors = codes.as_chunks::<4>().0.iter().flat_map(|[r, g, b, _]| [*r, *g, *b]);
+        RgbImage::from_raw(SIDE, SIDE, colors.collect()).unwrap_or_default()
+    };
+    Ok(Compared {
+        difference: (squares / first.pixel_count() as f64).max(0.0).sqrt() / mean,
+        pictures: [shown(&first), shown(&second), map],
+    })
+}
+
+/// The mean luminance of a pixel, or of a half of its samples.
+fn luminance(film: &Film, pixel: usize, half: Option<usize>) -> f64 {
+    let sums = half.map_or_else(|| film.sums(pixel), |half| film.halves(pixel)[half]);
+    let [r, g, b] = sums.color.map(|sum| sum / sums.samples.max(1.0));
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+fn ball(session: &mut Session, material: &MaterialSettings) -> Result<Film, SessionError> {
+    let document = Document {
+        model: ModelSource::Sphere,
+        materials: vec![material.clone()],
+        render: RenderSettings {
+            width: SIDE,
+            height: SIDE,
+            samples: SAMPLES,
+            ..RenderSettings::default()
+        },
+        view: ViewSettings {
+            denoise: Denoise::Off,
+            ..ViewSettings::default()
+        },
+        ..Document::default()
+    };
+    session.submit(&document)?;
+    while !session.step(STEP)?.is_done {}
+    Ok(session.film()?.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_same_material_is_not_apart_and_another_is() {
+        let gold = MaterialSettings::default();
+        let rougher = MaterialSettings {
+            roughness: 0.8,
+            ..gold.clone()
+        };
+        assert_eq!(compared(&[gold.clone(), gold.clone()]).unwrap().difference, 0.0);
+        let apart = compared(&[gold, rougher]).unwrap();
+        assert!(apart.difference > 0.05, "{}", apart.difference);
+        assert!(apart.pictures[0] != apart.pictures[1]);
+    }
+}

@@ -1,0 +1,75 @@
+//! Files for other programs, made and opened in the window.
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::actions::{Action, Command};
+use glossmith::store::PRESETS;
+use glossmith::store::preset::{load_material, material_text};
+
+use crate::ui::{Editor, editor, request, see, see_label, wait};
+
+/// Chooses *Export…* and types a path.
+fn ask_for(harness: &mut Editor, path: &std::path::Path) {
+    request(harness, Action::Do(Command::Export));
+    see(harness, "the path field", |harness| {
+        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
+    });
+    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
+    field.set_text_value_accesskit(&path.display().to_string());
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Save").click();
+    harness.run_steps(2);
+}
+
+#[test]
+fn what_an_export_loses_is_shown_before_it_is_written() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut harness = editor();
+    request(&mut harness, Action::UseMaterial(Box::new(PRESETS[0].clone())));
+    harness.run_steps(2);
+    let material = harness.state().document().materials[0].clone();
+    let path = folder.path().join("out.mtlx");
+    ask_for(&mut harness, &path);
+    see_label(&mut harness, "Write the file");
+    harness.check_accessibility();
+    assert!(!path.exists(), "it was written before anybody agreed");
+    for words in ["approximated", "Difference", "As the file shows it"] {
+        assert!(harness.query_all_by_label_contains(words).count() > 0, "{words}");
+    }
+    assert!(harness.query_by_label_contains("two balls differ").is_some());
+    harness.get_by_role_and_label(Role::Button, "Cancel").click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Write the file").is_none() && !path.exists());
+    ask_for(&mut harness, &path);
+    see_label(&mut harness, "Write the file");
+    harness.get_by_role_and_label(Role::Button, "Write the file").click();
+    wait(&mut harness, "the file", |app| {
+        app.messages().iter().any(|text| text.contains("exported"))
+    });
+    // It comes back as it was.
+    request(&mut harness, Action::UseMaterial(Box::new(PRESETS[5].clone())));
+    harness.run_steps(2);
+    request(&mut harness, Action::Open(path.clone()));
+    let text = material_text(&material);
+    wait(&mut harness, "the material", |app| {
+        material_text(&app.document().materials[0]) == text
+    });
+    // The exact parameters are those of the command line.
+    let place = crate::cli_support::Workplace::new();
+    place.done(&format!("convert {} back.json", path.display()));
+    let back = load_material(&place.path("back.json")).expect("a material").value;
+    assert_eq!(material_text(&back), text);
+}
+
+#[test]
+fn what_has_no_place_in_a_format_is_said() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut harness = editor();
+    ask_for(&mut harness, &folder.path().join("out.xyz"));
+    wait(&mut harness, "the message", |app| {
+        app.messages()
+            .iter()
+            .any(|text| text.contains("no format has this ending"))
+    });
+    assert!(!folder.path().join("out.xyz").exists());
+}
