@@ -14,7 +14,7 @@ fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("glossmith: {}", message(&error));
-            ExitCode::FAILURE
+            ExitCode::from(glossmith::cli::exit_code(&error))
         }
     }
 }

@@ -9,6 +9,8 @@ mod analytic_bodies;
 mod analytic_scenes;
 #[path = "suite/assets.rs"]
 mod assets;
+#[path = "suite/batch.rs"]
+mod batch;
 #[path = "suite/check.rs"]
 mod check;
 #[path = "suite/cli_errors.rs"]
@@ -59,6 +61,8 @@ mod exchange;
 mod exchange_tools;
 #[path = "suite/explain.rs"]
 mod explain;
+#[path = "suite/farm.rs"]
+mod farm;
 #[path = "suite/files.rs"]
 mod files;
 #[path = "suite/fit.rs"]

@@ -1,9 +1,10 @@
 //! The command line: one module a subcommand.
 //!
 //! Exit codes: 0 done; 1 something could not be read, rendered or written (one line on stderr says what and what to
-//! do); 2 the arguments are wrong.
+//! do); 2 the arguments are wrong; 3 of several things some were done and others could not be.
 
 mod answer;
+mod batch;
 mod check;
 mod convert;
 mod explain;
@@ -49,7 +50,8 @@ pub struct Arguments {
     pub instructions: Instructions,
 }
 
-const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, rendered or written; 2 wrong arguments.";
+const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, rendered or written; 2 wrong \
+                          arguments; 3 some of several were done.";
 
 /// The subcommands.
 #[derive(Debug, Subcommand)]
@@ -70,6 +72,8 @@ pub enum Command {
     Fit(fit::FitArguments),
     /// Take materials to other programs and back, and tell what is lost.
     Convert(convert::ConvertArguments),
+    /// Render all combinations of models, materials, environments, cameras and settings.
+    Batch(batch::BatchArguments),
     /// Join films of the same picture, rendered apart.
     Merge(merge::MergeArguments),
     /// Show lobes: slices, bodies, densities, albedo, reciprocity, losses.
@@ -80,6 +84,16 @@ pub enum Command {
     Completions(shell::CompletionsArguments),
     /// Print a manual page.
     Manual(shell::ManualArguments),
+}
+
+/// Of several things some were done and others could not be.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct PartialFailure(String);
+
+/// The exit code of a subcommand that failed.
+pub fn exit_code(error: &anyhow::Error) -> u8 {
+    if error.is::<PartialFailure>() { 3 } else { 1 }
 }
 
 impl Command {
@@ -97,6 +111,7 @@ impl Command {
             Command::Scatter(arguments) => scatter::run(&arguments),
             Command::Fit(arguments) => fit::run(&arguments),
             Command::Convert(arguments) => convert::run(&arguments),
+            Command::Batch(arguments) => batch::run(&arguments),
             Command::Merge(arguments) => merge::run(&arguments),
             Command::Lobe(arguments) => lobe::run(&arguments),
             Command::Study(arguments) => study::run(&arguments),

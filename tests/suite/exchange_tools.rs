@@ -11,7 +11,7 @@ use glossmith::store::{PRESETS, save_material};
 use crate::cli_support::Workplace;
 
 /// The folder of the tools.
-fn tools() -> PathBuf {
+pub fn tools() -> PathBuf {
     let data = || {
         let home = || std::env::var_os("HOME").map(|home| PathBuf::from(home).join(".local/share"));
         let folder = std::env::var_os("XDG_DATA_HOME").map(PathBuf::from).or_else(home);

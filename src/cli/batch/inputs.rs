@@ -1,0 +1,101 @@
+//! The hash of all that a picture is made of: by it a batch knows what is done.
+
+use std::hash::Hasher as _;
+use std::io::Read as _;
+use std::path::Path;
+
+use anyhow::Context;
+use siphasher::sip128::{Hasher128 as _, SipHasher13};
+
+use crate::document::Document;
+use crate::scene::Model;
+use crate::scene::environment::EnvironmentSource;
+use crate::store::project::document_text;
+
+/// To be raised where the same inputs make other files than before.
+const VERSION: u32 = 1;
+
+/// A hash that grows; its numbers are the same on every machine and with every compiler.
+pub(super) struct Inputs(SipHasher13);
+
+impl Inputs {
+    pub(super) fn new() -> Self {
+        let mut inputs = Self(SipHasher13::new());
+        inputs.text(env!("CARGO_PKG_VERSION"));
+        inputs.text(&VERSION.to_string());
+        inputs
+    }
+
+    /// Adds a text.
+    pub(super) fn text(&mut self, text: &str) {
+        self.bytes(text.as_bytes());
+    }
+
+    /// Adds bytes and how many they are.
+    fn bytes(&mut self, bytes: &[u8]) {
+        self.0.write(&(bytes.len() as u64).to_le_bytes());
+        self.0.write(bytes);
+    }
+
+    /// Adds a document, the contents of its model, and the environment's files. Files beside the batch's file may move with
+    /// it.
+    pub(super) fn document(&mut self, document: &Document, model: &Model, batch: &Path) -> anyhow::Result<()> {
+        self.text(&document_text(batch, document)?);
+        self.model(model);
+        if let EnvironmentSource::File(path) = &document.lighting.environment {
+            self.file(path)?;
+        }
+        Ok(())
+    }
+
+    /// What a model is: its files may be many.
+    fn model(&mut self, model: &Model) {
+        let mesh = &model.mesh;
+        self.bytes(bytemuck::cast_slice(&mesh.positions));
+        self.bytes(bytemuck::cast_slice(&mesh.normals));
+        self.bytes(bytemuck::cast_slice(&mesh.uvs));
+        self.bytes(bytemuck::cast_slice(&mesh.second_uvs));
+        self.bytes(bytemuck::cast_slice(&mesh.colors));
+        self.bytes(bytemuck::cast_slice(&mesh.tangents));
+        self.bytes(bytemuck::cast_slice(&mesh.triangles));
+        self.bytes(bytemuck::cast_slice(&mesh.slots));
+        for slot in &model.slots {
+            self.text(&format!("{slot:?}"));
+        }
+        for texture in &model.textures {
+            self.text(&format!("{texture:?}"));
+            self.bytes(&texture.rgba8);
+        }
+    }
+
+    /// A file's contents, or those of a folder's files.
+    fn file(&mut self, path: &Path) -> anyhow::Result<()> {
+        let told = || format!("{}: cannot be read; check the path and its permissions", path.display());
+        if path.is_dir() {
+            let entries: std::io::Result<Vec<_>> = std::fs::read_dir(path).with_context(told)?.collect();
+            let mut files: Vec<_> = entries
+                .with_context(told)?
+                .into_iter()
+                .map(|entry| entry.path())
+                .collect();
+            files.sort();
+            return files
+                .iter()
+                .filter(|file| file.is_file())
+                .try_for_each(|file| self.file(file));
+        }
+        let mut file = std::fs::File::open(path).with_context(told)?;
+        let mut piece = vec![0; 1 << 16];
+        loop {
+            match file.read(&mut piece).with_context(told)? {
+                0 => return Ok(()),
+                length => self.bytes(&piece[..length]),
+            }
+        }
+    }
+
+    /// 32 hexadecimal digits.
+    pub(super) fn hash(&self) -> String {
+        format!("{:032x}", self.0.finish128().as_u128())
+    }
+}

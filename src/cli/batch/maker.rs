@@ -1,0 +1,360 @@
+//! The pictures of a batch: rendered whole or in parts, or joined of parts. A record beside each says of what it was made.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+use serde::{Deserialize, Serialize};
+
+use super::Part;
+use super::file::{BatchFile, Picture, Scene};
+use super::inputs::Inputs;
+use super::sheet;
+use crate::cli::render::render_to_end;
+use crate::document::turntable::turned;
+use crate::document::{Denoise, Document};
+use crate::job::film::Image;
+use crate::render::output::{self, Rendered};
+use crate::render::sums::{self, KeptFilm};
+use crate::render::{EngineChoice, Progress, Session};
+use crate::store::file::{save_atomically, save_by};
+
+/// What became of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum Status {
+    /// It was rendered.
+    Rendered,
+    /// Its parts were joined.
+    Merged,
+    /// It was there, made of the same inputs.
+    Kept,
+    /// It could not be made.
+    Failed,
+}
+
+impl Status {
+    pub(super) fn word(self) -> &'static str {
+        match self {
+            Self::Rendered => "rendered",
+            Self::Merged => "merged",
+            Self::Kept => "kept",
+            Self::Failed => "failed",
+        }
+    }
+}
+
+/// What is told of a picture in a line of JSON, and kept beside it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Row {
+    /// Its number from 1.
+    pub(super) number: usize,
+    /// Its name.
+    pub(super) picture: String,
+    /// What became of it.
+    pub(super) status: Status,
+    /// Its files.
+    pub(super) files: Vec<PathBuf>,
+    /// The hash of what it was made of.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) hash: Option<String>,
+    /// The numbers of the first sample and the one after the last, of a part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) samples: Option<[u32; 2]>,
+    /// Samples a pixel.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) samples_per_pixel: Option<u32>,
+    /// The engine's own time.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) render_seconds: Option<f64>,
+    /// The estimated error of the picture's mean brightness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) noise: Option<f64>,
+    /// Why it is not there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) error: Option<String>,
+}
+
+impl Row {
+    fn new(number: usize, picture: &Picture, status: Status) -> Self {
+        Self {
+            number,
+            picture: picture.name.clone(),
+            status,
+            files: Vec::new(),
+            hash: None,
+            samples: None,
+            samples_per_pixel: None,
+            render_seconds: None,
+            noise: None,
+            error: None,
+        }
+    }
+
+    fn failed(number: usize, picture: &Picture, error: &anyhow::Error) -> Self {
+        Self {
+            error: Some(format!("{error:#}")),
+            ..Self::new(number, picture, Status::Failed)
+        }
+    }
+
+    /// The record beside a picture; none where there is none that can be read.
+    pub(super) fn read(path: &Path) -> Option<Self> {
+        serde_json::from_slice(&std::fs::read(path).ok()?).ok()
+    }
+}
+
+/// What makes the pictures of a batch.
+pub(super) struct Maker<'a> {
+    file: &'a BatchFile,
+    engine: EngineChoice,
+    session: Session,
+}
+
+/// A picture that is to be made.
+struct Wanted<'a> {
+    number: usize,
+    picture: &'a Picture,
+    document: Document,
+    part: Option<[u32; 2]>,
+    hash: String,
+}
+
+impl<'a> Maker<'a> {
+    pub(super) fn open(file: &'a BatchFile, engine: EngineChoice) -> anyhow::Result<Self> {
+        let session = Session::open(engine)?;
+        Ok(Self { file, engine, session })
+    }
+
+    /// The document of a picture, and the hash of what it is made of.
+    fn wanted<'p>(&mut self, number: usize, picture: &'p Picture, part: Part) -> anyhow::Result<Wanted<'p>> {
+        let scene = Scene::parse(&picture.arguments)?.arguments;
+        let mut document = scene.document(&mut self.session)?;
+        let part = part.range(document.render.samples);
+        if let Some(range) = part {
+            put_part(&mut document, range)?;
+        }
+        let hash = self.hash(&document, picture, part)?;
+        Ok(Wanted {
+            number,
+            picture,
+            document,
+            part,
+            hash,
+        })
+    }
+
+    fn hash(&mut self, document: &Document, picture: &Picture, part: Option<[u32; 2]>) -> anyhow::Result<String> {
+        let model = self.session.assets().model(&document.model, &document.import)?;
+        let mut inputs = Inputs::new();
+        inputs.document(document, &model, &self.file.path)?;
+        inputs.text(&format!("{:?}", (picture.frame, self.file.frames, self.file.turn)));
+        // Which files of a whole picture are there, is seen by their names.
+        inputs.text(&format!("{part:?}"));
+        Ok(inputs.hash())
+    }
+
+    /// A picture, or a part of its samples: rendered, unless it is there.
+    pub(super) fn make(&mut self, number: usize, picture: &Picture, part: Part) -> Row {
+        let made = self
+            .wanted(number, picture, part)
+            .and_then(|wanted| match self.kept(&wanted) {
+                Some(row) => Ok(row),
+                None => self.rendered(wanted),
+            });
+        made.unwrap_or_else(|error| Row::failed(number, picture, &error))
+    }
+
+    /// The record of a picture that is there already.
+    fn kept(&self, wanted: &Wanted<'_>) -> Option<Row> {
+        let row = Row::read(&self.record(wanted))?;
+        let is_same = row.hash.as_ref() == Some(&wanted.hash);
+        let files = self.files(wanted);
+        (is_same && files.iter().all(|file| file.is_file())).then_some(Row {
+            number: wanted.number,
+            status: Status::Kept,
+            files,
+            ..row
+        })
+    }
+
+    fn stem(&self, wanted: &Wanted<'_>) -> String {
+        match wanted.part {
+            Some([from, to]) => format!("{}.{from}-{to}", wanted.picture.name),
+            None => wanted.picture.name.clone(),
+        }
+    }
+
+    fn record(&self, wanted: &Wanted<'_>) -> PathBuf {
+        self.file.folder.join(format!("{}.json", self.stem(wanted)))
+    }
+
+    fn files(&self, wanted: &Wanted<'_>) -> Vec<PathBuf> {
+        let stem = self.stem(wanted);
+        let endings = match wanted.part {
+            Some(_) => vec!["exr".to_owned()],
+            None => self.file.formats.clone(),
+        };
+        let named = |ending: &String| self.file.folder.join(format!("{stem}.{ending}"));
+        endings.iter().map(named).collect()
+    }
+
+    fn rendered(&mut self, wanted: Wanted<'_>) -> anyhow::Result<Row> {
+        let document = match (wanted.picture.frame, self.file.frames) {
+            (Some(frame), Some(frames)) => {
+                self.session.submit(&wanted.document)?;
+                let center = self.session.job().map(|job| job.geometry.center_world.to_array());
+                turned(
+                    &wanted.document,
+                    self.file.turn,
+                    frame,
+                    frames,
+                    center.unwrap_or_default(),
+                )
+            }
+            _ => wanted.document.clone(),
+        };
+        let (progress, denoised) = render_to_end(&mut self.session, self.engine, &document)?;
+        let mut row = self.told(&wanted, Status::Rendered, &progress);
+        if wanted.part.is_some() {
+            let kept = KeptFilm::of(self.session.film()?.clone(), &document);
+            save_by(&row.files[0], |path| kept.write(path))??;
+        } else {
+            let image = self.session.image()?;
+            let rendered = Rendered {
+                image: &image,
+                denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
+            };
+            self.write(&row.files, rendered, &document, wanted.picture)?;
+        }
+        row.hash = Some(wanted.hash.clone());
+        self.finish(&wanted, row)
+    }
+
+    fn told(&self, wanted: &Wanted<'_>, status: Status, progress: &Progress) -> Row {
+        Row {
+            files: self.files(wanted),
+            samples: wanted.part,
+            samples_per_pixel: Some(progress.samples_per_pixel),
+            render_seconds: Some(progress.render_seconds),
+            noise: progress.noise.map(|noise| noise.relative),
+            ..Row::new(wanted.number, wanted.picture, status)
+        }
+    }
+
+    /// The files of a whole picture, each replaced at once.
+    fn write(
+        &self,
+        files: &[PathBuf],
+        rendered: Rendered<'_>,
+        document: &Document,
+        picture: &Picture,
+    ) -> anyhow::Result<()> {
+        for file in files {
+            save_by(file, |path| output::write(path, rendered, document))??;
+        }
+        let shown: &Image = rendered.denoised.unwrap_or(rendered.image);
+        sheet::write_thumbnail(&self.file.folder, &picture.name, shown, &document.view)
+    }
+
+    /// The record last: what has one is done.
+    fn finish(&self, wanted: &Wanted<'_>, row: Row) -> anyhow::Result<Row> {
+        let text = serde_json::to_string_pretty(&row)? + "\n";
+        save_atomically(&self.record(wanted), text.as_bytes())?;
+        Ok(row)
+    }
+
+    /// A picture of the parts in the folder that were made of the same inputs.
+    pub(super) fn join(&mut self, number: usize, picture: &Picture) -> Row {
+        let made = self
+            .wanted(number, picture, Part::Whole)
+            .and_then(|wanted| match self.kept(&wanted) {
+                Some(row) => Ok(row),
+                None => self.joined(wanted),
+            });
+        made.unwrap_or_else(|error| Row::failed(number, picture, &error))
+    }
+
+    fn joined(&mut self, wanted: Wanted<'_>) -> anyhow::Result<Row> {
+        let samples = wanted.document.render.samples;
+        let mut done = 0;
+        let mut whole: Option<(PathBuf, KeptFilm)> = None;
+        let mut seconds = 0.0;
+        for (range, row) in self.parts(&wanted)? {
+            // What another division into parts has left is passed over.
+            if range[0] != done || range[1] > samples {
+                continue;
+            }
+            let path = self
+                .file
+                .folder
+                .join(format!("{}.{}-{}.exr", wanted.picture.name, range[0], range[1]));
+            let film = KeptFilm::read(&path)?;
+            match &mut whole {
+                Some((first, whole)) => whole.add(&film, &path, first)?,
+                None => whole = Some((path, film)),
+            }
+            done = range[1];
+            seconds += row.render_seconds.unwrap_or_default();
+        }
+        let Some((_, whole)) = whole.filter(|_| done == samples) else {
+            bail!(
+                "{}: samples {done} to {samples} of {} are missing or of other settings; render them by --slice or \
+                 --samples-from and --samples-to, then join again",
+                self.file.folder.display(),
+                wanted.picture.name
+            );
+        };
+        let row = Row {
+            files: self.files(&wanted),
+            samples_per_pixel: Some(whole.sample_count()),
+            render_seconds: Some(seconds),
+            hash: Some(wanted.hash.clone()),
+            ..Row::new(wanted.number, wanted.picture, Status::Merged)
+        };
+        // The frame that was rendered, with the number of all samples.
+        self.write(
+            &row.files,
+            Rendered::from(&whole.film.image()),
+            &whole.document,
+            wanted.picture,
+        )?;
+        self.finish(&wanted, row)
+    }
+
+    /// The parts of a picture in the folder, in order; of those that begin alike the longest first.
+    fn parts(&mut self, wanted: &Wanted<'_>) -> anyhow::Result<Vec<([u32; 2], Row)>> {
+        let mut parts = Vec::new();
+        let prefix = format!("{}.", wanted.picture.name);
+        let folder = &self.file.folder;
+        let entries = std::fs::read_dir(folder).with_context(|| format!("{}: cannot be read", folder.display()))?;
+        for entry in entries {
+            let path = entry?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let middle = name.strip_prefix(&prefix).and_then(|rest| rest.strip_suffix(".json"));
+            let Some(range) = middle.and_then(sums::range) else {
+                continue;
+            };
+            let mut document = wanted.document.clone();
+            put_part(&mut document, range)?;
+            let hash = self.hash(&document, wanted.picture, Some(range))?;
+            if let Some(row) = Row::read(&path).filter(|row| row.hash == Some(hash)) {
+                parts.push((range, row));
+            }
+        }
+        parts.sort_by_key(|([from, to], _)| (*from, std::cmp::Reverse(*to)));
+        Ok(parts)
+    }
+}
+
+/// Takes a part of the samples.
+fn put_part(document: &mut Document, [from, to]: [u32; 2]) -> anyhow::Result<()> {
+    if from >= to {
+        bail!("the part from sample {from} to {to} is empty; take fewer slices, or more samples");
+    }
+    if document.view.denoise != Denoise::Off {
+        bail!("a part of the samples cannot be denoised; take denoise away");
+    }
+    (document.render.first_sample, document.render.samples) = (from, to - from);
+    KeptFilm::check(document)?;
+    Ok(())
+}

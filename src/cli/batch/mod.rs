@@ -1,0 +1,247 @@
+//! `glossmith batch`: all combinations of lists, as pictures in a folder; what is done already stays.
+
+mod file;
+mod inputs;
+mod maker;
+mod sheet;
+mod template;
+
+use std::ops::RangeInclusive;
+use std::path::PathBuf;
+
+use anyhow::{Context, bail};
+use clap::Args;
+
+use self::file::{BatchFile, Picture};
+use self::maker::{Maker, Row, Status};
+use super::answer::{Destination, Lines};
+use super::{PartialFailure, parse};
+use crate::render::EngineChoice;
+
+/// Arguments of `glossmith batch`.
+#[derive(Debug, Args)]
+pub struct BatchArguments {
+    /// The lists, in TOML: models, materials, environments, cameras, settings; docs/GUIDE.md shows one.
+    #[arg(value_name = "FILE.toml")]
+    file: PathBuf,
+    /// The folder for the pictures, in place of the file's.
+    #[arg(long, value_name = "FOLDER")]
+    folder: Option<PathBuf>,
+    /// Only these pictures, by their numbers from 1.
+    #[arg(long, value_name = "N|FROM-TO", value_parser = numbers)]
+    pictures: Option<RangeInclusive<usize>>,
+    /// Only these frames of each turn, by their numbers from 1.
+    #[arg(long, value_name = "N|FROM-TO", value_parser = numbers)]
+    frame_range: Option<RangeInclusive<usize>>,
+    /// Render a part of each picture's samples only, to be joined by --merge: the number of the first.
+    #[arg(long, value_name = "N", requires = "samples_to")]
+    samples_from: Option<u32>,
+    /// The number after the part's last sample. Other numbers draw other random numbers.
+    #[arg(long, value_name = "N")]
+    samples_to: Option<u32>,
+    /// The same by parts of equal size: part K of N.
+    #[arg(long, value_name = "K/N", value_parser = slice, conflicts_with_all = ["samples_from", "samples_to"])]
+    slice: Option<[u32; 2]>,
+    /// Join the parts that are in the folder to pictures, and render nothing; write the contact sheets.
+    #[arg(long, conflicts_with_all = ["samples_from", "samples_to", "slice"])]
+    merge: bool,
+    /// Render nothing: write an Open Job Description template (jobtemplate-2023-09), by which render farms run the batch.
+    #[arg(long, value_name = "OUT.yaml")]
+    job_template: Option<PathBuf>,
+    /// Tasks of the template for each picture, each with an equal part of its samples.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "job_template", value_parser = clap::value_parser!(u32).range(1..=9999))]
+    slices: u32,
+    /// Where a line of JSON goes for each picture; - is standard output.
+    #[arg(long, value_name = "FILE|-", default_value = "-")]
+    json: Destination,
+    /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
+    #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
+    engine: EngineChoice,
+}
+
+/// `3` or `3-7`, from 1.
+fn numbers(text: &str) -> Result<RangeInclusive<usize>, String> {
+    let (from, to) = text.split_once('-').unwrap_or((text, text));
+    let number = |text: &str| text.trim().parse::<usize>().ok().filter(|number| *number > 0);
+    match (number(from), number(to)) {
+        (Some(from), Some(to)) if from <= to => Ok(from..=to),
+        _ => Err("give a number from 1, or two such as 3-7".to_owned()),
+    }
+}
+
+/// `2/5`: the second of five.
+fn slice(text: &str) -> Result<[u32; 2], String> {
+    let parsed = text.split_once('/');
+    let parsed = parsed.and_then(|(part, of)| Some([part.trim().parse().ok()?, of.trim().parse().ok()?]));
+    let is_one = |[part, of]: &[u32; 2]| (1..=*of).contains(part);
+    parsed
+        .filter(is_one)
+        .ok_or_else(|| "give the number of the part and how many there are, such as 2/5".to_owned())
+}
+
+/// Which samples of a picture are rendered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Part {
+    /// All.
+    Whole,
+    /// From a number up to another.
+    Numbers([u32; 2]),
+    /// The part of this number, of so many.
+    Slice([u32; 2]),
+}
+
+impl Part {
+    /// The first number and the one after the last of a picture of so many samples.
+    fn range(self, samples: u32) -> Option<[u32; 2]> {
+        match self {
+            Self::Whole => None,
+            Self::Numbers(range) => Some(range),
+            Self::Slice([part, of]) => {
+                let bound = |part: u32| (u64::from(samples) * u64::from(part) / u64::from(of)) as u32;
+                Some([bound(part - 1), bound(part)])
+            }
+        }
+    }
+}
+
+/// Renders, joins, or writes the template.
+///
+/// # Errors
+/// One line that names the file, what is wrong and what to do; [`PartialFailure`] where some pictures are there and others
+/// are not.
+pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
+    let mut file = BatchFile::read(&arguments.file)?;
+    if let Some(folder) = &arguments.folder {
+        file.folder = folder.clone();
+    }
+    let all = file.pictures();
+    if let Some(path) = &arguments.job_template {
+        parse::check_writable(path)?;
+        std::fs::write(path, template::text(path, &file, all.len(), arguments.slices))
+            .with_context(|| format!("{}: the template could not be written", path.display()))?;
+        eprintln!(
+            "wrote {}: {} pictures, {} tasks each",
+            path.display(),
+            all.len(),
+            arguments.slices
+        );
+        return Ok(());
+    }
+    let chosen = chosen(&file, &all, arguments)?;
+    std::fs::create_dir_all(&file.folder).with_context(|| {
+        format!(
+            "{}: the folder cannot be made; give another by --folder",
+            file.folder.display()
+        )
+    })?;
+    let part = match (arguments.slice, arguments.samples_to) {
+        (Some(slice), _) => Part::Slice(slice),
+        (None, Some(to)) => Part::Numbers([arguments.samples_from.unwrap_or(0), to]),
+        (None, None) => Part::Whole,
+    };
+    let mut lines = Lines::open(&arguments.json)?;
+    let mut maker = Maker::open(&file, arguments.engine)?;
+    let mut failed = 0;
+    for (number, picture) in &chosen {
+        let row = match arguments.merge {
+            true => maker.join(*number, picture),
+            false => maker.make(*number, picture, part),
+        };
+        tell(&row, &mut lines, all.len())?;
+        failed += usize::from(row.status == Status::Failed);
+    }
+    // Of many that render at once, none has all pictures.
+    if part == Part::Whole && (chosen.len() == all.len() || arguments.merge) {
+        sheet::write(&file, &all)?;
+    }
+    match failed {
+        0 => Ok(()),
+        _ if failed == chosen.len() => bail!("none of the {failed} pictures could be made; the lines above say why"),
+        _ => Err(PartialFailure(format!(
+            "{failed} of {} pictures could not be made; the lines above say why. Run it again for them alone",
+            chosen.len()
+        ))
+        .into()),
+    }
+}
+
+/// The pictures that are asked for, with their numbers.
+fn chosen<'a>(
+    file: &BatchFile,
+    all: &'a [Picture],
+    arguments: &BatchArguments,
+) -> anyhow::Result<Vec<(usize, &'a Picture)>> {
+    let within = |range: &Option<RangeInclusive<usize>>, option: &str, count: usize| match range {
+        Some(range) if *range.end() > count => {
+            bail!("{option} {}-{}: there are {count} only", range.start(), range.end())
+        }
+        _ => Ok(()),
+    };
+    within(&arguments.pictures, "--pictures", all.len())?;
+    match (file.frames, &arguments.frame_range) {
+        (None, Some(_)) => bail!(
+            "--frame-range: nothing turns in {}; add frames = 36 to it, or choose by --pictures",
+            file.path.display()
+        ),
+        (Some(frames), range) => within(range, "--frame-range", frames as usize)?,
+        (None, None) => {}
+    }
+    if let (Some(from), Some(to)) = (arguments.samples_from.or(Some(0)), arguments.samples_to)
+        && to <= from
+    {
+        bail!("--samples-to {to} must be above --samples-from {from}");
+    }
+    let is_chosen = |(number, picture): &(usize, &Picture)| {
+        let frame = picture.frame.map_or(1, |frame| frame as usize + 1);
+        arguments.pictures.as_ref().is_none_or(|range| range.contains(number))
+            && arguments
+                .frame_range
+                .as_ref()
+                .is_none_or(|range| range.contains(&frame))
+    };
+    Ok((1..).zip(all).filter(is_chosen).collect())
+}
+
+/// A line to the program that called, and one for people.
+fn tell(row: &Row, lines: &mut Lines, count: usize) -> anyhow::Result<()> {
+    lines.write(row)?;
+    let Row {
+        number,
+        picture,
+        status,
+        ..
+    } = row;
+    match &row.error {
+        Some(error) => eprintln!("{number} of {count}, {picture}: {error}"),
+        None => eprintln!("{number} of {count}, {picture}: {}", status.word()),
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slices_share_all_samples() {
+        for samples in [1, 7, 64] {
+            for of in [1, 2, 3, 5] {
+                let ranges: Vec<[u32; 2]> = (1..=of)
+                    .filter_map(|part| Part::Slice([part, of]).range(samples))
+                    .collect();
+                assert_eq!(ranges[0][0], 0);
+                assert_eq!(ranges[of as usize - 1][1], samples);
+                assert!(ranges.windows(2).all(|pair| pair[0][1] == pair[1][0]), "{ranges:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn ranges_are_numbers_from_one() {
+        assert_eq!(numbers("3"), Ok(3..=3));
+        assert_eq!(numbers("3-7"), Ok(3..=7));
+        assert!(["0", "7-3", "a", "", "-3"].iter().all(|text| numbers(text).is_err()));
+        assert_eq!(slice("2/5"), Ok([2, 5]));
+        assert!(["0/5", "6/5", "2", "/"].iter().all(|text| slice(text).is_err()));
+    }
+}

@@ -1,0 +1,123 @@
+//! Contact sheets: all pictures of a batch, small, in one picture and on a page that needs no network.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use image::RgbImage;
+use image::imageops::{FilterType, overlay, resize};
+
+use super::file::{BatchFile, Picture};
+use super::maker::Row;
+use crate::document::ViewSettings;
+use crate::job::film::Image;
+use crate::plot::{PictureSheet, picture_sheet_file};
+use crate::render::display::display;
+use crate::store::file::{save_atomically, save_by};
+use crate::store::picture::png_bytes;
+
+/// Longest side of a small picture, pixels.
+const SIDE: u32 = 192;
+/// The folder of the small pictures, and the names of the sheets.
+const THUMBNAILS: &str = "thumbnails";
+const SHEET: &str = "contact-sheet";
+/// Codes of the paper where a picture is missing or lets light through.
+const PAPER: u8 = 230;
+
+fn thumbnail_path(folder: &Path, name: &str) -> PathBuf {
+    folder.join(THUMBNAILS).join(format!("{name}.png"))
+}
+
+/// Writes the small picture of one that was made.
+pub(super) fn write_thumbnail(folder: &Path, name: &str, image: &Image, view: &ViewSettings) -> anyhow::Result<()> {
+    let path = thumbnail_path(folder, name);
+    std::fs::create_dir_all(folder.join(THUMBNAILS))
+        .with_context(|| format!("{}: the folder cannot be made", folder.join(THUMBNAILS).display()))?;
+    let pixels = image::RgbaImage::from_raw(image.width, image.height, display(image, view));
+    let pixels = pixels.context("a picture of another size")?;
+    let longest = image.width.max(image.height).max(1);
+    let small = if longest > SIDE {
+        let side = |length: u32| (length * SIDE / longest).max(1);
+        resize(&pixels, side(image.width), side(image.height), FilterType::Triangle)
+    } else {
+        pixels
+    };
+    let bytes = png_bytes([small.width(), small.height()], &small, None).map_err(anyhow::Error::msg)?;
+    Ok(save_atomically(&path, &bytes)?)
+}
+
+/// A small picture on paper, in the middle of a square; paper alone where there is none.
+fn cell(path: &Path) -> RgbImage {
+    let mut cell = image::RgbaImage::from_pixel(SIDE, SIDE, image::Rgba([PAPER, PAPER, PAPER, 255]));
+    if let Ok(picture) = image::open(path) {
+        let corner = |length: u32| i64::from(SIDE.saturating_sub(length) / 2);
+        let (x, y) = (corner(picture.width()), corner(picture.height()));
+        overlay(&mut cell, &picture.to_rgba8(), x, y);
+    }
+    image::DynamicImage::ImageRgba8(cell).to_rgb8()
+}
+
+/// Writes both sheets of all pictures, those that are missing among them.
+pub(super) fn write(file: &BatchFile, pictures: &[Picture]) -> anyhow::Result<()> {
+    let folder = &file.folder;
+    let title = file.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let cells = pictures.iter().map(|picture| {
+        let path = thumbnail_path(folder, &picture.name);
+        (picture.name.clone(), cell(&path))
+    });
+    let sheet = PictureSheet {
+        title: title.clone(),
+        pictures: cells.collect(),
+    };
+    let path = folder.join(format!("{SHEET}.png"));
+    save_by(&path, |path| picture_sheet_file(path, &sheet))??;
+    let page = folder.join(format!("{SHEET}.html"));
+    save_atomically(&page, html(folder, &title, pictures).as_bytes())?;
+    eprintln!("wrote {} and {}", path.display(), page.display());
+    Ok(())
+}
+
+/// The page: pictures with their names and what is known of them, each a link to its file.
+fn html(folder: &Path, title: &str, pictures: &[Picture]) -> String {
+    let mut text = format!(
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{title}</title>\n<style>\n\
+         body {{ font: 14px sans-serif; margin: 24px; background: #fff; color: #222 }}\n\
+         main {{ display: grid; grid-template-columns: repeat(auto-fill, minmax(200px, 1fr)); gap: 16px }}\n\
+         figure {{ margin: 0 }}\nfigcaption {{ overflow-wrap: anywhere }}\nsmall {{ color: #666 }}\n\
+         img, .missing {{ width: 192px; height: 192px; object-fit: contain; background: #e6e6e6; display: block }}\n\
+         </style>\n</head>\n<body>\n<h1>{title}</h1>\n<main>\n",
+        title = escaped(title)
+    );
+    for picture in pictures {
+        let name = escaped(&picture.name);
+        let row = Row::read(&folder.join(format!("{}.json", picture.name)));
+        let file = row.as_ref().and_then(|row| row.files.first()?.file_name());
+        let _ = match (&row, file) {
+            (Some(row), Some(file)) => writeln!(
+                text,
+                "<figure><a href=\"{}\"><img src=\"{THUMBNAILS}/{name}.png\" alt=\"{name}\"></a><figcaption>{name}<br>\
+                 <small>{}</small></figcaption></figure>",
+                escaped(&file.to_string_lossy()),
+                told(row)
+            ),
+            _ => writeln!(
+                text,
+                "<figure><div class=\"missing\"></div><figcaption>{name}<br><small>missing</small></figcaption></figure>"
+            ),
+        };
+    }
+    text + "</main>\n</body>\n</html>\n"
+}
+
+/// Samples, time and error.
+fn told(row: &Row) -> String {
+    let mut parts = Vec::new();
+    parts.extend(row.samples_per_pixel.map(|samples| format!("{samples} samples")));
+    parts.extend(row.render_seconds.map(|seconds| format!("{seconds:.1} s")));
+    parts.extend(row.noise.map(|noise| format!("error {:.2} %", 100.0 * noise)));
+    parts.join(", ")
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}

@@ -1,0 +1,229 @@
+//! Batches: all combinations of lists as pictures, whole or in parts, and what happens when something goes wrong.
+
+use std::collections::HashMap;
+use std::io::{BufRead as _, BufReader};
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
+
+use glossmith::store::PRESETS;
+use serde_json::Value as Json;
+
+use crate::cli_support::{Run, Workplace};
+
+const SMALL: &str = "\n[common]\nsize = \"16x16\"\nsamples = 4\nmodel = \"sphere\"\n";
+
+/// The lines of standard output.
+fn lines(run: &Run) -> Vec<Json> {
+    let line = |line: &str| serde_json::from_str(line).unwrap();
+    run.stdout.lines().map(line).collect()
+}
+
+/// What became of each picture, by its name.
+fn outcomes(run: &Run) -> HashMap<String, String> {
+    let text = |row: &Json, key: &str| row[key].as_str().unwrap().to_owned();
+    let rows = lines(run);
+    rows.iter()
+        .map(|row| (text(row, "picture"), text(row, "status")))
+        .collect()
+}
+
+fn bytes(place: &Workplace, name: &str) -> Vec<u8> {
+    std::fs::read(place.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+#[test]
+fn all_combinations_are_rendered_once() {
+    let place = Workplace::new();
+    let text = |samples: u32| {
+        format!(
+            "materials = [\"gold\", \"mine.json\"]\nformats = [\"png\", \"exr\"]\n\
+             [[settings]]\nname = \"few\"\nsamples = 2\n[[settings]]\nname = \"more\"\nsamples = {samples}\n{SMALL}"
+        )
+    };
+    glossmith::store::save_material(&place.path("mine.json"), &PRESETS[2]).unwrap();
+    place.write("a.toml", text(3).as_bytes());
+    let run = place.done("batch a.toml --engine cpu");
+    let rows = lines(&run);
+    let names: Vec<&str> = rows.iter().map(|row| row["picture"].as_str().unwrap()).collect();
+    assert_eq!(names, ["gold-few", "gold-more", "mine-few", "mine-more"]);
+    for (row, number) in rows.iter().zip(1..) {
+        assert_eq!(row["status"], "rendered");
+        assert_eq!(row["number"], number);
+        assert_eq!(row["hash"].as_str().unwrap().len(), 32);
+        for file in row["files"].as_array().unwrap() {
+            assert!(place.path(file.as_str().unwrap()).is_file(), "{file}");
+        }
+    }
+    assert_eq!(rows[1]["samples_per_pixel"], 3);
+    // Nothing is rendered twice.
+    let again = outcomes(&place.done("batch a.toml --engine cpu"));
+    assert!(again.values().all(|status| status == "kept"), "{again:?}");
+    // What one setting changes concerns its pictures alone.
+    place.write("a.toml", text(4).as_bytes());
+    let changed = outcomes(&place.done("batch a.toml --engine cpu"));
+    assert_eq!(
+        (changed["gold-few"].as_str(), changed["gold-more"].as_str()),
+        ("kept", "rendered")
+    );
+    // So does another file behind the same name, or a picture that is gone.
+    glossmith::store::save_material(&place.path("mine.json"), &PRESETS[3]).unwrap();
+    std::fs::remove_file(place.path("pictures/gold-few.exr")).unwrap();
+    let changed = outcomes(&place.done("batch a.toml --engine cpu --json told.json"));
+    assert!(changed.is_empty(), "lines go to the file");
+    let told = place.read("told.json");
+    let rows: Vec<Json> = told.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let states: Vec<&str> = rows.iter().map(|row| row["status"].as_str().unwrap()).collect();
+    assert_eq!(states, ["rendered", "kept", "rendered", "rendered"]);
+    // The picture is the one of `glossmith render`.
+    place.done("render --engine cpu --size 16x16 --samples 2 --model sphere --material gold --output one.exr");
+    assert!(bytes(&place, "one.exr") == bytes(&place, "pictures/gold-few.exr"));
+    let page = place.read("pictures/contact-sheet.html");
+    assert!(!page.contains("://"), "the page needs no network");
+    for name in names {
+        assert!(page.contains(&format!("thumbnails/{name}.png")), "{page}");
+    }
+    let sheet = image::open(place.path("pictures/contact-sheet.png")).unwrap();
+    assert!(sheet.width() > 4 * 190 && sheet.height() > 190);
+}
+
+#[test]
+fn a_batch_that_was_killed_goes_on_where_it_was() {
+    let place = Workplace::new();
+    let text =
+        format!("materials = [\"gold\", \"silver\", \"car-paint-red\"]\nframes = 2\nformats = [\"exr\"]\n{SMALL}");
+    place.write("a.toml", text.as_bytes());
+    place.done("batch a.toml --engine cpu --folder whole");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_glossmith"))
+        .args(["batch", "a.toml", "--engine", "cpu"])
+        .current_dir(place.path(""))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut first = String::new();
+    BufReader::new(child.stdout.take().unwrap())
+        .read_line(&mut first)
+        .unwrap();
+    child.kill().unwrap();
+    child.wait().unwrap();
+    assert!(first.contains("gold-0001"), "{first}");
+    assert!(
+        !place.path("pictures/contact-sheet.png").exists(),
+        "it was not in the middle"
+    );
+    let outcomes = outcomes(&place.done("batch a.toml --engine cpu"));
+    assert_eq!(outcomes.len(), 6);
+    assert_eq!(outcomes["gold-0001"], "kept");
+    assert_eq!(outcomes["car-paint-red-0002"], "rendered");
+    for name in outcomes.keys() {
+        let [whole, resumed] = ["whole", "pictures"].map(|folder| bytes(&place, &format!("{folder}/{name}.exr")));
+        assert!(whole == resumed, "{name}");
+    }
+}
+
+#[test]
+fn what_cannot_be_rendered_leaves_the_others_and_an_exit_code() {
+    let place = Workplace::new();
+    place.write("broken.json", b"{");
+    place.write(
+        "a.toml",
+        format!("materials = [\"gold\", \"broken.json\"]{SMALL}").as_bytes(),
+    );
+    let run = place.run("batch a.toml --engine cpu");
+    assert_eq!(run.code, Some(3), "{}", run.stderr);
+    assert!(run.stderr.contains("1 of 2 pictures"), "{}", run.stderr);
+    let rows = lines(&run);
+    assert_eq!(
+        (&rows[0]["status"], &rows[1]["status"]),
+        (&"rendered".into(), &"failed".into())
+    );
+    assert!(rows[1]["error"].as_str().unwrap().contains("broken.json"));
+    assert!(place.read("pictures/contact-sheet.html").contains("missing"));
+    place.write("b.toml", format!("materials = [\"broken.json\"]{SMALL}").as_bytes());
+    let run = place.run("batch b.toml --engine cpu");
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    place.refused(1, "batch none.toml", &["none.toml"]);
+    place.write("c.toml", b"materials = [\"gold\"]\n[common]\nsampels = 3\n");
+    place.refused(1, "batch c.toml", &["c.toml", "line 3", "--sampels"]);
+    place.refused(1, "batch a.toml --pictures 2-3", &["--pictures 2-3", "2 only"]);
+    place.refused(1, "batch a.toml --frame-range 2", &["a.toml", "frames"]);
+    place.refused(2, "batch a.toml --slice 3/2", &["2/5"]);
+}
+
+#[test]
+fn parts_of_the_samples_join_to_the_whole_pictures() {
+    let place = Workplace::new();
+    let text = format!(
+        "materials = [\"gold\", \"car-paint-red\"]\nframes = 3\nturn = \"light\"\nformats = [\"png\", \"exr\"]\n{SMALL}"
+    );
+    place.write("a.toml", text.replace("samples = 4", "samples = 7").as_bytes());
+    let whole = place.done("batch a.toml --engine cpu --folder whole --frame-range 2-3");
+    assert_eq!(lines(&whole).len(), 4);
+    for slice in 1..=3 {
+        let run = place.done(&format!(
+            "batch a.toml --engine cpu --frame-range 2-3 --slice {slice}/3"
+        ));
+        let expected = [[0, 2], [2, 4], [4, 7]][slice - 1];
+        assert_eq!(lines(&run)[0]["samples"], Json::from(expected.to_vec()));
+    }
+    assert!(!place.path("pictures/contact-sheet.png").exists());
+    // What another division has left disturbs nothing.
+    place.done("batch a.toml --engine cpu --pictures 2 --samples-from 2 --samples-to 3");
+    let merged = outcomes(&place.done("batch a.toml --merge --frame-range 2-3"));
+    assert!(merged.values().all(|status| status == "merged"), "{merged:?}");
+    for name in merged.keys() {
+        for ending in ["png", "exr"] {
+            let [whole, merged] =
+                ["whole", "pictures"].map(|folder| bytes(&place, &format!("{folder}/{name}.{ending}")));
+            assert!(whole == merged, "{name}.{ending}");
+        }
+    }
+    // They count as rendered.
+    let kept = outcomes(&place.done("batch a.toml --engine cpu --pictures 2-3"));
+    assert!(kept.values().all(|status| status == "kept"), "{kept:?}");
+    // A part that is missing, or was made of something else.
+    std::fs::remove_file(place.path("pictures/gold-0002.json")).unwrap();
+    std::fs::remove_file(place.path("pictures/gold-0002.2-4.json")).unwrap();
+    let run = place.run("batch a.toml --merge --pictures 2-3");
+    assert_eq!(run.code, Some(3), "{}", run.stderr);
+    let error = lines(&run)[0]["error"].as_str().unwrap().to_owned();
+    assert!(error.contains("samples 3 to 7 of gold-0002"), "{error}");
+    place.write(
+        "b.toml",
+        text.replace("samples = 4", "samples = 7\nnoise = 0.1").as_bytes(),
+    );
+    let run = place.run("batch b.toml --engine cpu --slice 1/2");
+    assert_eq!(run.code, Some(1));
+    assert!(
+        lines(&run)[0]["error"]
+            .as_str()
+            .unwrap()
+            .contains("equally many samples")
+    );
+}
+
+#[test]
+fn files_are_found_beside_the_batch_and_pictures_go_there() {
+    let place = Workplace::new();
+    std::fs::create_dir(place.path("deep")).unwrap();
+    glossmith::store::save_material(&place.path("deep/mine.json"), &PRESETS[2]).unwrap();
+    crate::cli_support::write_hdr(&place.path("deep/sky.hdr"), 8, 4, |_, _| [1.0; 3]);
+    place.write(
+        "deep/a.toml",
+        format!("materials = [\"mine.json\"]\nenvironments = [\"sky.hdr\", \"furnace\"]\nfolder = \"out\"{SMALL}")
+            .as_bytes(),
+    );
+    let rows = lines(&place.done("batch deep/a.toml --engine cpu"));
+    let files: Vec<PathBuf> = rows
+        .iter()
+        .map(|row| place.path(row["files"][0].as_str().unwrap()))
+        .collect();
+    assert_eq!(files[0], place.path("deep/out/mine-sky.png"));
+    // The environment's contents count, not its name.
+    crate::cli_support::write_hdr(&place.path("deep/sky.hdr"), 8, 4, |_, _| [0.5; 3]);
+    let again = outcomes(&place.done("batch deep/a.toml --engine cpu"));
+    assert_eq!(
+        (again["mine-sky"].as_str(), again["mine-furnace"].as_str()),
+        ("rendered", "kept")
+    );
+}
