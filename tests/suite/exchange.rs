@@ -267,6 +267,41 @@ fn materials_of_other_programs_are_rendered_as_they_are() {
 }
 
 #[test]
+fn surfaces_of_materialx_have_the_widths_that_their_nodes_define() {
+    let place = Workplace::new();
+    let read = |node: &str, inputs: &str| {
+        let document = format!(
+            "<materialx version=\"1.39\"><{node} name=\"s\" type=\"surfaceshader\">{inputs}</{node}><surfacematerial \
+             name=\"M\" type=\"material\"><input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"s\"/>\
+             </surfacematerial></materialx>"
+        );
+        place.write("s.mtlx", document.as_bytes());
+        place.done("convert s.mtlx s.json --import-lobe ggx");
+        load_material(&place.path("s.json")).unwrap().value
+    };
+    let number = |name: &str, value: f32| format!("<input name=\"{name}\" type=\"float\" value=\"{value}\"/>");
+    let widths = |material: &MaterialSettings| {
+        let mean = f64::from(material.roughness).powi(2);
+        let stretch = glossmith::optics::lobe::stretch_from_anisotropy(f64::from(material.anisotropy));
+        [mean * stretch, mean / stretch]
+    };
+    // α = roughness², aspect = √(1 − anisotropy): α over the aspect, and times it.
+    let inputs = number("roughness", 0.4) + &number("anisotropic", 0.5) + &number("clearcoat", 1.0);
+    let material = read("disney_principled", &inputs);
+    let aspect = 0.5_f64.sqrt();
+    for (found, wanted) in widths(&material).into_iter().zip([0.16 / aspect, 0.16 * aspect]) {
+        assert!((found / wanted - 1.0).abs() < 1e-4, "{found} and {wanted}");
+    }
+    assert_eq!((material.coat_weight, material.specular_weight), (1.0, 1.0));
+    // glTF's: α is mix(roughness², 1, strength²) along, roughness² across.
+    let inputs = number("roughness", 0.4) + &number("anisotropy_strength", 0.5);
+    let material = read("gltf_pbr", &inputs);
+    for (found, wanted) in widths(&material).into_iter().zip([0.16 + 0.84 * 0.25, 0.16]) {
+        assert!((found / wanted - 1.0).abs() < 1e-4, "{found} and {wanted}");
+    }
+}
+
+#[test]
 fn what_is_no_document_is_refused_with_the_files_name() {
     let place = Workplace::new();
     place.write("a.mtlx", b"<materialx");

@@ -133,3 +133,32 @@ fn mitsuba_renders_what_we_render() {
         }
     }
 }
+
+/// What the report says that the highlight loses is what Mitsuba shows otherwise than we do.
+#[test]
+fn the_stated_loss_is_what_mitsuba_shows() {
+    let place = Workplace::new();
+    for (number, roughness) in [0.25_f32, 0.4, 0.6].into_iter().enumerate() {
+        let metal = MaterialSettings {
+            lobe: Lobe::Geometric,
+            roughness,
+            fresnel: glossmith::optics::fresnel::Fresnel::Conductor,
+            ..MaterialSettings::default()
+        };
+        let name = format!("m{number}");
+        save_material(&place.path(&format!("{name}.json")), &metal).unwrap();
+        place.done(&format!("convert {name}.json {name}.csv"));
+        let report = place.done(&format!("convert {name}.json {name}.xml --json -")).stdout;
+        let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+        let entries = report[0]["materials"][0]["entries"].as_array().unwrap();
+        let highlight = entries.iter().find(|entry| entry["what"] == "highlight").unwrap();
+        let stated = highlight["residual"].as_f64().unwrap();
+        let told = judged("mitsuba-lobe", &[place.path(&format!("{name}.xml"))]);
+        let measured: f64 = told.split_whitespace().nth(1).unwrap().parse().unwrap();
+        println!("roughness {roughness}: stated {stated}, measured {measured}");
+        assert!(
+            (stated / measured - 1.0).abs() < 1.0 / 3.0,
+            "roughness {roughness}: stated {stated}, measured {measured}"
+        );
+    }
+}

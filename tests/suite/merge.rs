@@ -63,6 +63,64 @@ fn parts_of_the_samples_joined_are_the_picture_of_one_run() {
 }
 
 #[test]
+fn a_region_of_a_picture_joins_like_the_whole() {
+    let place = Workplace::new();
+    let scene = format!("{SCENE} --region 0.25,0.1,0.7,0.8");
+    place.done(&format!("render {scene} --samples 9 --keep-sums --output whole.exr"));
+    place.done(&format!("render {scene} --samples-to 4 --keep-sums --output a.exr"));
+    place.done(&format!(
+        "render {scene} --samples-from 4 --samples-to 9 --keep-sums --output b.exr"
+    ));
+    place.done("merge a.exr b.exr --output joined.exr");
+    let (whole, joined) = (bits(&place.path("whole.exr")), bits(&place.path("joined.exr")));
+    for (channel, expected) in &whole {
+        if !channel.ends_with("deviations") {
+            assert!(joined[channel] == *expected, "{channel}");
+        }
+    }
+    // Another region is another picture.
+    place.done(&format!(
+        "render {SCENE} --samples-from 4 --samples-to 9 --keep-sums --output b.exr"
+    ));
+    place.refused(1, "merge a.exr b.exr --output x.exr", &["b.exr", "another picture"]);
+}
+
+/// The GPU sums in f32 before it hands over: pictures agree to its rounding.
+#[test]
+fn films_of_the_gpu_join_to_rounding() {
+    let place = Workplace::new();
+    let scene = SCENE.replace("--engine cpu", "--engine gpu");
+    place.done(&format!("render {scene} --samples 9 --keep-sums --output whole.exr"));
+    place.done(&format!("render {scene} --samples-to 4 --keep-sums --output a.exr"));
+    place.done(&format!(
+        "render {scene} --samples-from 4 --samples-to 9 --keep-sums --output b.exr"
+    ));
+    place.done("merge a.exr b.exr --output joined.exr");
+    let (whole, joined) = (read_exr(&place.path("whole.exr")), read_exr(&place.path("joined.exr")));
+    for (pixel, (a, b)) in whole.pixels.iter().zip(&joined.pixels).enumerate() {
+        for (a, b) in a.iter().zip(b) {
+            assert!((a - b).abs() <= 2e-6 * (1.0 + a.abs()), "pixel {pixel}: {a} and {b}");
+        }
+    }
+}
+
+#[test]
+fn films_with_unequal_pixels_are_not_kept() {
+    let place = Workplace::new();
+    for (more, word) in [
+        ("--adaptive on --noise 0.2", "adaptive"),
+        ("--adaptive off --noise 0.2", "noise"),
+        ("--time 1", "time"),
+    ] {
+        place.refused(
+            1,
+            &format!("render {SCENE} {more} --keep-sums --output a.exr"),
+            &["equally many samples", word],
+        );
+    }
+}
+
+#[test]
 fn films_that_do_not_belong_together_are_refused() {
     let place = Workplace::new();
     let film = |arguments: &str, name: &str| {

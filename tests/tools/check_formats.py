@@ -86,7 +86,33 @@ def mitsuba_means(path):
     mitsuba(path, spp=64)
 
 
+def mitsuba_lobe(path):
+    """Prints how far the lobe is, as a total variation seen along the normal, from the table of the same name (.csv)."""
+    import csv
+    import math
+
+    import drjit as dr
+    import mitsuba as mi
+
+    mi.set_variant("scalar_rgb")
+    bsdf = mi.load_file(path).shapes()[0].bsdf()
+    seen = dr.zeros(mi.SurfaceInteraction3f)
+    seen.wi = mi.Vector3f(0, 0, 1)
+    with open(path.removesuffix("xml") + "csv") as file:
+        rows = csv.DictReader(line for line in file if not line.startswith("#"))
+        rows = [row for row in rows if row["view_deg"] == "0"]
+    theirs, ours = [], []
+    for row in rows:
+        light, azimuth = math.radians(float(row["light_deg"])), math.radians(float(row["light_azimuth_deg"]))
+        sine = math.sin(light)
+        towards = mi.Vector3f(sine * math.cos(azimuth), sine * math.sin(azimuth), math.cos(light))
+        theirs.append(sine * sum(bsdf.eval(mi.BSDFContext(), seen, towards)))
+        ours.append(sine * float(row["value"]))
+    apart = zip(theirs, ours)
+    print(path, 0.5 * sum(abs(a / sum(theirs) - b / sum(ours)) for a, b in apart))
+
+
 for name in sys.argv[2:]:
-    {"materialx": materialx, "usd": usd, "mitsuba": mitsuba, "mitsuba-means": mitsuba_means}[sys.argv[1]](name)
+    {"materialx": materialx, "usd": usd, "mitsuba": mitsuba, "mitsuba-means": mitsuba_means, "mitsuba-lobe": mitsuba_lobe}[sys.argv[1]](name)
 print("\n".join(wrong))
 sys.exit(bool(wrong))

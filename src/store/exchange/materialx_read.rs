@@ -211,6 +211,7 @@ fn read_surface(
         "standard_surface" => standard_surface(&mut inputs),
         "gltf_pbr" => gltf_pbr(&mut inputs),
         "UsdPreviewSurface" => usd_preview_surface(&mut inputs),
+        "disney_principled" => disney_principled(&mut inputs),
         other => return Err(format!("{name} is a {other}")),
     };
     surface.name = name.to_owned();
@@ -487,6 +488,32 @@ fn gltf_pbr(inputs: &mut Inputs) -> Surface {
             inputs.number("emissive_strength", 1.0),
         ),
         opacity: inputs.number("alpha", 1.0),
+        ..Surface::default()
+    }
+}
+
+fn disney_principled(inputs: &mut Inputs) -> Surface {
+    inputs.drop_layers(&[("sheen", 0.0), ("subsurface", 0.0), ("specularTint", 0.0)]);
+    let base_color = inputs.color("baseColor", [0.16; 3]);
+    let specular = inputs.number("specular", 0.5);
+    if specular > 0.5 {
+        let detail = "no more is reflected than the index has it";
+        inputs.losses.push(Entry::approximated("specular", detail, None));
+    }
+    // MaterialX has the anisotropy of Standard Surface there.
+    let ratio = 1.0 - inputs.number("anisotropic", 0.0).clamp(0.0, 0.98);
+    Surface {
+        base_color,
+        metalness: inputs.number("metallic", 0.0),
+        // 0.5 leaves the reflectance of the index as it is.
+        specular_weight: 2.0 * specular,
+        ior: inputs.number("ior", 1.5),
+        roughness: inputs.number("roughness", 0.5),
+        anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,
+        transmission_weight: inputs.number("specTrans", 0.0),
+        transmission_color: base_color,
+        coat_weight: inputs.number("clearcoat", 0.0),
+        coat_roughness: 1.0 - inputs.number("clearcoatGloss", 1.0),
         ..Surface::default()
     }
 }
