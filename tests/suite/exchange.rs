@@ -89,6 +89,7 @@ fn without_the_exact_parameters_what_is_shown_comes_back() {
         name: "Öl & \"Lack\" <-->".to_owned(),
         lobe: glossmith::optics::lobe::Lobe::Ggx,
         metalness: 0.0,
+        base_weight: 0.5,
         base_color: [0.25, 0.5, 0.125],
         roughness: 0.4,
         anisotropy: 0.5,
@@ -97,6 +98,7 @@ fn without_the_exact_parameters_what_is_shown_comes_back() {
         specular_weight: 0.75,
         coat_weight: 0.5,
         coat_ior: 1.5,
+        coat_roughness: 0.25,
         opacity: 0.5,
         emission_color: [1.0, 0.5, 0.25],
         emission_strength: 4.0,
@@ -111,9 +113,10 @@ fn without_the_exact_parameters_what_is_shown_comes_back() {
         assert_eq!(back.name, material.name, "{format}");
         let numbers = |m: &MaterialSettings| {
             [
-                m.base_color[0],
-                m.base_color[1],
-                m.base_color[2],
+                m.base_weight * m.base_color[0],
+                m.base_weight * m.base_color[1],
+                m.base_weight * m.base_color[2],
+                m.coat_roughness,
                 m.metalness,
                 m.roughness,
                 m.anisotropy,
