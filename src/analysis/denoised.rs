@@ -26,6 +26,9 @@ const RADIUS: usize = 2;
 /// Standard errors by which the denoised picture's error must be beyond doubt before samples are preferred.
 const DOUBT: f64 = 1.0;
 
+/// Fewest tiles that a standard error is taken to rest on: with fewer, the expansion of Student's quantile fails.
+const TILES_MIN: f64 = 3.0;
+
 /// A linear picture without opacity, row by row.
 pub type Colors = Vec<[f32; 3]>;
 
@@ -51,8 +54,15 @@ struct Moments {
     noisy: f64,
     /// Product of both errors.
     product: f64,
-    /// Variance of the first.
-    variances: Variances,
+    /// Variance of the first, from what is seen around each pixel: too little where noise differs from pixel to pixel, or most
+    /// have not yet met what theirs comes from.
+    variance: f64,
+    /// The same from tiles as wholes. From what is told by them: too much where the filter's bias differs from tile to tile.
+    by_products: f64,
+    /// From the differences of the halves' squares: too much where noise has long tails.
+    by_squares: f64,
+    /// Squares of that of each tile.
+    fourth_powers: f64,
     /// Squared difference of the two pictures.
     difference: f64,
     /// Pixels.
@@ -65,7 +75,10 @@ impl std::ops::AddAssign for Moments {
         self.known += other.known;
         self.noisy += other.noisy;
         self.product += other.product;
-        self.variances += other.variances;
+        self.variance += other.variance;
+        self.by_products += other.by_products;
+        self.by_squares += other.by_squares;
+        self.fourth_powers += other.fourth_powers;
         self.difference += other.difference;
         self.pixels += other.pixels;
     }
@@ -77,9 +90,21 @@ impl Moments {
         self.denoised.max(self.known)
     }
 
-    /// Standard error of the first.
+    /// Standard error of the first: by the estimate of its variance that is not known to be too little or too much.
     fn deviation(&self) -> f64 {
-        self.variances.whole().sqrt()
+        self.variance.max(self.by_products.min(self.by_squares)).sqrt()
+    }
+
+    /// How many standard errors make the band: Student's quantile, as the standard error is itself an estimate, from the few
+    /// tiles that make up most of it. Their number follows from the kurtosis; Cornish and Fisher's expansion.
+    fn deviations_within(&self) -> f64 {
+        let tiles = (3.0 * self.by_squares * self.by_squares / self.fourth_powers).max(TILES_MIN);
+        let square = BAND * BAND;
+        let terms = [
+            (square + 1.0) / (4.0 * tiles),
+            (5.0 * square * square + 16.0 * square + 3.0) / (96.0 * tiles * tiles),
+        ];
+        BAND * (1.0 + terms[0] + terms[1])
     }
 
     /// The share of the samples' mean with which a mixture is nearest to the truth, as far as that is beyond doubt.
@@ -87,45 +112,6 @@ impl Moments {
         let denoised = (self.denoised - DOUBT * self.deviation()).max(self.known);
         let share = (denoised - self.product) / self.difference;
         if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
-    }
-}
-
-/// What the variance of a told squared error consists of, and three estimates of the pixels' own part of it; sums of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Variances {
-    /// What a pixel has in common with those around it.
-    shared: f64,
-    /// From what is seen around each pixel: too little where noise differs from pixel to pixel, or most have not yet met what
-    /// theirs comes from.
-    around: f64,
-    /// From the products of each pixel's halves: too much where the filter's bias differs from pixel to pixel.
-    by_products: f64,
-    /// From the difference of their squares: too much where noise has long tails.
-    by_squares: f64,
-}
-
-impl std::ops::AddAssign for Variances {
-    fn add_assign(&mut self, other: Self) {
-        self.shared += other.shared;
-        self.around += other.around;
-        self.by_products += other.by_products;
-        self.by_squares += other.by_squares;
-    }
-}
-
-impl Variances {
-    fn times(self, factor: f64) -> Self {
-        Self {
-            shared: factor * self.shared,
-            around: factor * self.around,
-            by_products: factor * self.by_products,
-            by_squares: factor * self.by_squares,
-        }
-    }
-
-    /// The estimate that is not known to be too little or too much.
-    fn whole(self) -> f64 {
-        self.shared + self.around.max(self.by_products.min(self.by_squares))
     }
 }
 
@@ -156,14 +142,19 @@ impl Differences {
     fn squared_bias(&self) -> f64 {
         self.noisy[0] * self.noisy[1]
     }
+
+    /// As noisy as that for normal noise, but of mean 0.
+    fn square(&self) -> f64 {
+        (self.noisy[0] + self.noisy[1]) * (self.noisy[0] - self.noisy[1]) / 2.0
+    }
 }
 
 /// What is known of a denoised picture's error.
 #[derive(Clone, Debug)]
 pub struct Errors {
     luminances: Vec<Luminances>,
-    /// Of the told squared error.
-    variances: Vec<Variances>,
+    /// Variances of the told squared errors, from what is seen around each pixel.
+    variances: Vec<f64>,
     grid: TileGrid,
     mean_luminance: f64,
 }
@@ -202,7 +193,10 @@ impl Errors {
             known,
             noisy: noise * noise / 4.0,
             product: clean * noise / 4.0,
-            variances: self.variances[pixel],
+            variance: self.variances[pixel],
+            by_products: of_pixel.squared_bias(),
+            by_squares: of_pixel.square(),
+            fourth_powers: 0.0,
             difference: ((of_pixel.noisy[0] + of_pixel.noisy[1]) / 2.0).powi(2),
             pixels: 1.0,
         }
@@ -241,21 +235,58 @@ impl Errors {
     /// Sums over the pixels; `squares` gives a squared error and what of it is known for certain, for the shares of the
     /// denoised picture and of the samples' mean.
     fn sum(&self, shares: Option<&[f32]>, squares: impl Fn(&Moments, f64, f64) -> (f64, f64)) -> Moments {
-        let mut sum = Moments::default();
-        for pixel in 0..self.luminances.len() {
+        let of_pixel = |pixel: usize| {
             let moments = self.moments(pixel);
             let samples = shares.map_or(0.0, |shares| f64::from(shares[pixel]));
             let clean = 1.0 - samples;
             let (denoised, known) = squares(&moments, clean, samples);
             let spread = clean.powi(4) + samples.powi(4);
-            sum += Moments {
+            Moments {
                 denoised,
                 known,
-                variances: moments.variances.times(spread),
+                variance: spread * moments.variance,
+                by_products: spread.sqrt() * moments.by_products,
+                by_squares: spread.sqrt() * moments.by_squares,
                 ..moments
-            };
+            }
+        };
+        let mut sum = Moments::default();
+        for tile in self.of_tiles(of_pixel) {
+            sum += tile;
         }
         sum
+    }
+
+    /// Sums over the pixels of each tile, which have noise in common: deviations of what its pixels add, squared.
+    fn of_tiles(&self, of_pixel: impl Fn(usize) -> Moments) -> Vec<Moments> {
+        let mut tiles = vec![Moments::default(); self.grid.tiles()];
+        for pixel in 0..self.luminances.len() {
+            tiles[self.grid.of_pixel(pixel)] += of_pixel(pixel);
+        }
+        let deviation = |tile: usize| {
+            let others = tiles_around(self.grid, tile, 1).filter(|other| *other != tile);
+            let (sum, pixels, count) = others.fold((0.0, 0.0, 0.0), |(sum, pixels, count), other| {
+                (
+                    sum + tiles[other].by_products,
+                    pixels + tiles[other].pixels,
+                    count + 1.0,
+                )
+            });
+            // The others' mean has noise, too: a part of one tile's.
+            let expected = if count > 0.0 {
+                sum / pixels * tiles[tile].pixels
+            } else {
+                0.0
+            };
+            (tiles[tile].by_products - expected).powi(2) * count / (count + 1.0)
+        };
+        let deviations: Vec<f64> = (0..tiles.len()).map(deviation).collect();
+        for (tile, by_products) in tiles.iter_mut().zip(deviations) {
+            tile.by_products = by_products;
+            tile.by_squares *= tile.by_squares;
+            tile.fourth_powers = tile.by_squares * tile.by_squares;
+        }
+        tiles
     }
 
     fn distance(&self, sum: &Moments) -> Distance {
@@ -263,7 +294,7 @@ impl Errors {
             let scale = self.mean_luminance.max(f64::MIN_POSITIVE);
             (squared.max(0.0) / sum.pixels.max(1.0)).sqrt() / scale
         };
-        let band = BAND * sum.deviation();
+        let band = sum.deviations_within() * sum.deviation();
         Distance {
             value: relative(sum.denoised()),
             low: relative((sum.denoised - band).max(sum.known)),
@@ -291,27 +322,27 @@ impl Errors {
 
     /// Sums over the tiles around each tile.
     fn around_tiles(&self, radius: usize) -> Vec<Moments> {
-        let grid = self.grid;
-        let mut tiles = vec![Moments::default(); grid.tiles()];
-        for pixel in 0..self.luminances.len() {
-            tiles[grid.of_pixel(pixel)] += self.moments(pixel);
-        }
-        let (columns, rows) = (grid.columns(), grid.rows());
+        let tiles = self.of_tiles(|pixel| self.moments(pixel));
         let around = |tile: usize| {
-            let (x, y) = (tile % columns, tile / columns);
             let mut sum = Moments::default();
-            for y in y.saturating_sub(radius)..(y + radius + 1).min(rows) {
-                for x in x.saturating_sub(radius)..(x + radius + 1).min(columns) {
-                    sum += tiles[y * columns + x];
-                }
+            for other in tiles_around(self.grid, tile, radius) {
+                sum += tiles[other];
             }
             sum
         };
-        (0..grid.tiles()).map(around).collect()
+        (0..tiles.len()).map(around).collect()
     }
 }
 
-/// The variances of the told squared errors of some rows' pixels.
+/// The numbers of the tiles around a tile, itself included.
+fn tiles_around(grid: TileGrid, tile: usize, radius: usize) -> impl Iterator<Item = usize> {
+    let (columns, rows) = (grid.columns(), grid.rows());
+    let (x, y) = (tile % columns, tile / columns);
+    let near = move |at: usize, count: usize| at.saturating_sub(radius)..(at + radius + 1).min(count);
+    near(y, rows).flat_map(move |y| near(x, columns).map(move |x| y * columns + x))
+}
+
+/// The variances of the told squared errors of some rows' pixels, from what is seen around them.
 ///
 /// What is told is wrong by ab − db − ea = (a − d)(b − e) − de. As the halves are independent, its variance is
 /// E(a − d)² E(b − e)² − 2 E(a − d)d E(b − e)e + Ed² Ee². With β the filter's bias and δ what is left of the noise,
@@ -320,7 +351,7 @@ impl Errors {
 /// The filter spreads a pixel's noise over those around it, so that db of one and ea of another have noise in common:
 /// 2 E(ad') E(be') summed over the others. Where the filter is linear nearby, with weights w that δ = Σ wa, and the noise
 /// is as strong there, that is 2 σ⁴ Σ w² without the pixel itself: 2 (Eδ² σ² − (Eaδ)²), σ² told by (A − B)²/2.
-fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> impl Iterator<Item = Variances> {
+fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> impl Iterator<Item = f64> {
     let height = luminances.len() / width.max(1);
     let first = rows.start.saturating_sub(MAP_RADIUS);
     let last = (rows.end + MAP_RADIUS).min(height);
@@ -343,13 +374,7 @@ fn variances(luminances: &[Luminances], width: usize, rows: Range<usize>) -> imp
         let own = bias + left[i];
         let alone = noise[0][i] * noise[1][i] - 2.0 * (common[i] - own).powi(2) + own * own;
         let shared = 2.0 * (left[i] * whole[i] - common[i].powi(2));
-        let [a, b] = differences[i].noisy;
-        Variances {
-            shared: shared.max(0.0),
-            around: alone.max(0.0),
-            by_products: (a * b - bias).powi(2),
-            by_squares: ((a + b) * (a - b) / 2.0).powi(2),
-        }
+        alone.max(0.0) + shared.max(0.0)
     };
     ((rows.start - first) * width..(rows.end - first) * width).map(of_pixel)
 }

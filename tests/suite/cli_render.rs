@@ -103,8 +103,10 @@ fn the_report_has_its_keys_and_their_types() {
         "denoised_error",
         "denoised_error_low",
         "denoised_error_high",
+        "files",
     ];
     assert_eq!(keys, expected);
+    assert_eq!(report["files"].as_array().map(Vec::len), Some(1), "the picture");
     assert_eq!(report["version"], env!("CARGO_PKG_VERSION"));
     assert_eq!(report["engine"], "cpu");
     assert!(!report["adapter"].as_str().unwrap().is_empty());
