@@ -137,21 +137,6 @@ impl Behavior<Pane> for Panes<'_, '_> {
         titles(tiles, tile_id).join(" | ").into()
     }
 
-    /// The panel in front, so that the others' tabs keep their room.
-    fn is_tab_closable(&self, tiles: &Tiles<Pane>, tile_id: TileId) -> bool {
-        let tabs = tiles.parent_of(tile_id).and_then(|parent| tiles.get_container(parent));
-        let is_in_front = matches!(tabs, Some(Container::Tabs(tabs)) if tabs.active == Some(tile_id));
-        is_in_front && matches!(tiles.get(tile_id), Some(Tile::Pane(pane)) if *pane != Pane::Viewport)
-    }
-
-    fn on_tab_close(&mut self, tiles: &mut Tiles<Pane>, tile_id: TileId) -> bool {
-        if let Some(Tile::Pane(pane)) = tiles.get(tile_id) {
-            set_open(tiles, *pane, false);
-        }
-        // It stays where it is docked, for when it is opened again.
-        false
-    }
-
     fn tab_bar_height(&self, _style: &egui::Style) -> f32 {
         theme::BAR_HEIGHT
     }

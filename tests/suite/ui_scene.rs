@@ -219,7 +219,7 @@ fn a_narrow_bar_puts_what_it_has_no_room_for_into_a_menu() {
     assert!(harness.query_by_label("Resolution").is_some(), "there is room again");
 }
 
-/// A panel is closed and opened by its tick in the menu *View*; the cross on its tab closes it, too.
+/// A panel is closed and opened by its tick in the menu *View*.
 #[test]
 fn panels_are_closed_and_come_back() {
     let mut harness = editor();
