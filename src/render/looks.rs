@@ -37,7 +37,10 @@ pub struct Compared {
 /// What the session says.
 pub fn compared(materials: &[MaterialSettings; 2]) -> Result<Compared, SessionError> {
     let mut session = Session::open(EngineChoice::Cpu)?;
-    let [first, second] = [ball(&mut session, &materials[0])?, ball(&mut session, &materials[1])?];
+    let [first, second] = [
+        rendered(&mut session, &materials[0])?,
+        rendered(&mut session, &materials[1])?,
+    ];
     let mean = (0..first.pixel_count())
         .map(|pixel| luminance(&first, pixel, None))
         .sum::<f64>();
@@ -63,27 +66,30 @@ pub fn compared(materials: &[MaterialSettings; 2]) -> Result<Compared, SessionEr
 /// The mean luminance of a pixel, or of a half of its samples.
 fn luminance(film: &Film, pixel: usize, half: Option<usize>) -> f64 {
     let sums = half.map_or_else(|| film.sums(pixel), |half| film.halves(pixel)[half]);
-    let [r, g, b] = sums.color.map(|sum| sum / sums.samples.max(1.0));
-    0.2126 * r + 0.7152 * g + 0.0722 * b
+    sums.luminance() / sums.samples.max(1.0)
 }
 
-fn ball(session: &mut Session, material: &MaterialSettings) -> Result<Film, SessionError> {
-    let document = Document {
+/// A ball of a material in the studio, which stays visible: what glass refracts is seen against something.
+pub(super) fn ball(material: &MaterialSettings, side: u32, samples: u32, denoise: Denoise) -> Document {
+    Document {
         model: ModelSource::Sphere,
         materials: vec![material.clone()],
         render: RenderSettings {
-            width: SIDE,
-            height: SIDE,
-            samples: SAMPLES,
+            width: side,
+            height: side,
+            samples,
             ..RenderSettings::default()
         },
         view: ViewSettings {
-            denoise: Denoise::Off,
+            denoise,
             ..ViewSettings::default()
         },
         ..Document::default()
-    };
-    session.submit(&document)?;
+    }
+}
+
+fn rendered(session: &mut Session, material: &MaterialSettings) -> Result<Film, SessionError> {
+    session.submit(&ball(material, SIDE, SAMPLES, Denoise::Off))?;
     while !session.step(STEP)?.is_done {}
     Ok(session.film()?.clone())
 }

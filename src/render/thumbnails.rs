@@ -11,9 +11,9 @@ use std::time::Duration;
 use super::background::{Background, Desk};
 use super::denoise::{Attendant, Library};
 use super::display::display;
+use super::looks::ball;
 use super::{EngineChoice, Session, SessionError, picture_cache};
-use crate::document::{Denoise, Document, MaterialSettings, RenderSettings, ViewSettings};
-use crate::scene::ModelSource;
+use crate::document::{Denoise, Document, MaterialSettings};
 use crate::store::preset::material_text;
 
 /// Columns and rows of a thumbnail.
@@ -75,28 +75,15 @@ pub fn spawn_thumbnails(
     })
 }
 
-/// The document of a thumbnail. The environment stays visible: what glass refracts is seen against something.
+/// The document of a thumbnail.
 fn document(material: &MaterialSettings) -> Document {
-    Document {
-        model: ModelSource::Sphere,
-        materials: vec![material.clone()],
-        render: RenderSettings {
-            width: SIDE,
-            height: SIDE,
-            samples: SAMPLES,
-            ..RenderSettings::default()
-        },
-        view: ViewSettings {
-            // Where there is no denoiser nothing is said of it: nobody asked for one.
-            denoise: if Library::get().is_ok() {
-                Denoise::High
-            } else {
-                Denoise::Off
-            },
-            ..ViewSettings::default()
-        },
-        ..Document::default()
-    }
+    // Where there is no denoiser nothing is said of it: nobody asked for one.
+    let denoise = if Library::get().is_ok() {
+        Denoise::High
+    } else {
+        Denoise::Off
+    };
+    ball(material, SIDE, SAMPLES, denoise)
 }
 
 /// What thumbnails are made with.

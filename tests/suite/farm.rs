@@ -129,20 +129,7 @@ fn workers_of_a_farm_make_the_pictures_of_one_machine() {
         place.read("again.log")
     );
     assert_eq!(parts(&place.path("pictures")).len(), 6);
-    let program = format!("Glossmith={}", env!("CARGO_BIN_EXE_glossmith"));
-    let collect = [
-        "run",
-        "job.yaml",
-        "--step",
-        "Collect",
-        "--no-run-dependencies",
-        "-p",
-        &program,
-        "-p",
-        "Engine=cpu",
-    ];
-    let output = openjd(&place, &collect).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    collect(&place, "--no-run-dependencies");
     for name in ["gold", "car-paint-red"] {
         for ending in ["png", "exr"] {
             let [one, farm] = ["one", "pictures"]
@@ -153,6 +140,24 @@ fn workers_of_a_farm_make_the_pictures_of_one_machine() {
     assert!(place.path("pictures/contact-sheet.png").is_file());
 }
 
+/// Runs a job's last step, with or without those before it.
+fn collect(place: &Workplace, dependencies: &str) {
+    let program = format!("Glossmith={}", env!("CARGO_BIN_EXE_glossmith"));
+    let run = [
+        "run",
+        "job.yaml",
+        "--step",
+        "Collect",
+        dependencies,
+        "-p",
+        &program,
+        "-p",
+        "Engine=cpu",
+    ];
+    let output = openjd(place, &run).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+}
+
 #[test]
 fn a_template_of_whole_pictures_runs_in_one_go() {
     let place = Workplace::new();
@@ -161,20 +166,7 @@ fn a_template_of_whole_pictures_runs_in_one_go() {
         b"materials = [\"gold\", \"silver\"]\n[common]\nmodel = \"sphere\"\nsize = \"16x16\"\nsamples = 2\n",
     );
     place.done("batch a.toml --job-template job.yaml --folder out");
-    let program = format!("Glossmith={}", env!("CARGO_BIN_EXE_glossmith"));
-    let run = [
-        "run",
-        "job.yaml",
-        "--step",
-        "Collect",
-        "--run-dependencies",
-        "-p",
-        &program,
-        "-p",
-        "Engine=cpu",
-    ];
-    let output = openjd(&place, &run).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stdout));
+    collect(&place, "--run-dependencies");
     assert!(place.path("out/gold.png").is_file() && place.path("out/silver.png").is_file());
     assert!(place.path("out/contact-sheet.html").is_file());
 }

@@ -62,16 +62,23 @@ fn parts_of_the_samples_joined_are_the_picture_of_one_run() {
     assert!(place.path("joined.png").is_file());
 }
 
+/// Renders a scene as a whole, and in two parts that are joined.
+fn render_whole_and_joined(place: &Workplace, scene: &str) {
+    for (samples, name) in [
+        ("--samples 9", "whole"),
+        ("--samples-to 4", "a"),
+        ("--samples-from 4 --samples-to 9", "b"),
+    ] {
+        place.done(&format!("render {scene} {samples} --keep-sums --output {name}.exr"));
+    }
+    place.done("merge a.exr b.exr --output joined.exr");
+}
+
 #[test]
 fn a_region_of_a_picture_joins_like_the_whole() {
     let place = Workplace::new();
     let scene = format!("{SCENE} --region 0.25,0.1,0.7,0.8");
-    place.done(&format!("render {scene} --samples 9 --keep-sums --output whole.exr"));
-    place.done(&format!("render {scene} --samples-to 4 --keep-sums --output a.exr"));
-    place.done(&format!(
-        "render {scene} --samples-from 4 --samples-to 9 --keep-sums --output b.exr"
-    ));
-    place.done("merge a.exr b.exr --output joined.exr");
+    render_whole_and_joined(&place, &scene);
     let (whole, joined) = (bits(&place.path("whole.exr")), bits(&place.path("joined.exr")));
     for (channel, expected) in &whole {
         if !channel.ends_with("deviations") {
@@ -90,12 +97,7 @@ fn a_region_of_a_picture_joins_like_the_whole() {
 fn films_of_the_gpu_join_to_rounding() {
     let place = Workplace::new();
     let scene = SCENE.replace("--engine cpu", "--engine gpu");
-    place.done(&format!("render {scene} --samples 9 --keep-sums --output whole.exr"));
-    place.done(&format!("render {scene} --samples-to 4 --keep-sums --output a.exr"));
-    place.done(&format!(
-        "render {scene} --samples-from 4 --samples-to 9 --keep-sums --output b.exr"
-    ));
-    place.done("merge a.exr b.exr --output joined.exr");
+    render_whole_and_joined(&place, &scene);
     let (whole, joined) = (read_exr(&place.path("whole.exr")), read_exr(&place.path("joined.exr")));
     for (pixel, (a, b)) in whole.pixels.iter().zip(&joined.pixels).enumerate() {
         for (a, b) in a.iter().zip(b) {
