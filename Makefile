@@ -2,7 +2,7 @@
 # ARGS is handed on: make run ARGS="render --material gold --output gold.png"
 
 .DEFAULT_GOAL := help
-.PHONY: help run check test test-thorough bench pictures mutants
+.PHONY: help run install uninstall check test test-thorough bench pictures mutants
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -10,6 +10,14 @@ help: ## Print this list
 run: ## Open the editor (without a display: render the default scene to a picture)
 	@scripts/setup run
 	cargo run --release -- $(ARGS)
+
+install: ## Install it for you: program, icon, menu entry, kinds of files (PREFIX=~/.local)
+	@scripts/setup run
+	cargo build --release
+	scripts/install
+
+uninstall: ## Take away what `make install` installed; your materials and settings stay
+	scripts/install --remove
 
 check: ## The quick loop: format, lints, the tests that concern what you changed
 	@scripts/setup test

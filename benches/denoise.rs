@@ -6,6 +6,7 @@
 //!   both, against a long render; the told error over the true one and how often the latter lies in the band.
 //! - `edit`: seconds from an edit to a picture below a relative mean squared error of 0.003, in the worker behind the
 //!   window, without denoiser and with either quality.
+//! - `steps`: seconds of each step on the way to the first denoised picture, and to one of two halves.
 //! - `cost`: what the guides take of the samples, and what denoising while rendering takes after the first second.
 //!
 //! `quick` does the same small; the beginning of a scene's name takes that scene alone; `side=`, `renders=`, `reference=`,
@@ -48,6 +49,10 @@ const QUICK: Extent = Extent {
 fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().collect();
     let has = |name: &str| arguments.iter().any(|argument| argument == name);
+    if has("edit") {
+        // As in the window.
+        glossmith::render::priority::let_rendering_give_way();
+    }
     let number = |name: &str| -> Option<u32> {
         arguments
             .iter()
@@ -68,10 +73,13 @@ fn main() -> Result<(), Failure> {
     {
         scenes.retain(|(name, _)| name.starts_with(only));
     }
-    let is_wanted = |part: &str| has(part) || !["told", "edit", "cost"].iter().any(|other| has(other));
+    let is_wanted = |part: &str| has(part) || !["told", "edit", "steps", "cost"].iter().any(|other| has(other));
     if is_wanted("cost") {
         guides_cost(&mut session, &scenes, has("quick"))?;
         denoising_cost(&scenes)?;
+    }
+    if is_wanted("steps") {
+        steps(&mut session, &scenes, if has("quick") { 128 } else { 512 })?;
     }
     if is_wanted("edit") {
         edits(&mut session, &scenes, has("quick"))?;
@@ -305,6 +313,55 @@ fn denoising_cost(scenes: &[(&str, Document)]) -> Result<(), Failure> {
         let without = (before + samples(Denoise::Off)?) / 2.0;
         let [fast, high, auto] = with.map(|with| with.map_or(f64::NAN, |with| with / without));
         println!("| {name} | {fast:.2} | {high:.2} | {auto:.2} |");
+    }
+    Ok(())
+}
+
+/// Seconds of what an edit waits for, each by itself.
+fn steps(session: &mut Session, scenes: &[(&str, Document)], side: u32) -> Result<(), Failure> {
+    println!(
+        "## Steps to a denoised picture of one sample and of two halves, {side} x {side}, s; the library made ready first"
+    );
+    println!("| scene | sample | film read | new filter, fast | fast | high | film of two halves read | fast | high |");
+    let seconds = |work: &mut dyn FnMut() -> Result<(), Failure>| -> Result<String, Failure> {
+        let begun = Instant::now();
+        work()?;
+        Ok(format!("{:.3}", begun.elapsed().as_secs_f64()))
+    };
+    for (name, document) in scenes {
+        let mut document = document.clone();
+        (document.render.width, document.render.height) = (side, side);
+        let mut columns = vec![(*name).to_owned()];
+        for samples in [1, 2] {
+            document.render.samples = samples;
+            let film = if samples == 1 {
+                let mut film = None;
+                columns.push(seconds(&mut || {
+                    film = Some(finish(session, &document)?);
+                    Ok(())
+                })?);
+                film.expect("rendered above")
+            } else {
+                finish(session, &document)?
+            };
+            let mut noisy = None;
+            columns.push(seconds(&mut || {
+                noisy = Some(Noisy::of(&film, None));
+                Ok(())
+            })?);
+            let noisy = noisy.expect("read above");
+            let mut denoiser = Denoiser::open()?;
+            for how in [Denoise::Fast, Denoise::Fast, Denoise::High]
+                .into_iter()
+                .skip(samples as usize - 1)
+            {
+                columns.push(seconds(&mut || {
+                    denoiser.denoise(&noisy, how)?;
+                    Ok(())
+                })?);
+            }
+        }
+        println!("| {} |", columns.join(" | "));
     }
     Ok(())
 }

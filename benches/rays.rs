@@ -15,7 +15,7 @@ use glossmith::instructions::Instructions;
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::optics::warp::uniform_sphere;
-use glossmith::scene::{Geometry, Model, teapot};
+use glossmith::scene::{Geometry, Model, PACKET, Packet, teapot};
 
 /// Rays of a kind.
 const COUNT: u32 = 100_000;
@@ -50,6 +50,7 @@ fn main() {
         let seconds = begun.elapsed().as_secs_f64();
         for kind in kinds(&geometry) {
             compare(&geometry, &sets, &kind);
+            compare_packets(&geometry, &sets, &kind);
         }
         let count = geometry.triangles.len();
         println!(
@@ -84,6 +85,44 @@ fn compare(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
         best[0] / 1e6,
         rates.collect::<Vec<_>>().join(" | ")
     );
+}
+
+/// The same rays sixteen at a time, against one by one.
+fn compare_packets(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
+    let packet = |rays: &[Ray]| {
+        let mut packet = Packet::default();
+        for (lane, &(origin, direction)) in rays.iter().enumerate() {
+            packet.set(lane, origin, direction, f32::MAX);
+        }
+        packet.fill(rays.len());
+        packet
+    };
+    let packets: Vec<Packet> = kind.rays.chunks(PACKET).map(packet).collect();
+    let mut cells = Vec::new();
+    for (_, level) in sets {
+        let (mut alone, mut together) = (0.0_f64, 0.0_f64);
+        for _ in 0..TURNS {
+            alone = alone.max(rate(kind, |(origin, direction)| match kind.any {
+                true => geometry.occluded_by(*level, origin, direction, f32::MAX),
+                false => geometry.intersect_by(*level, origin, direction, f32::MAX).is_some(),
+            }));
+            let begun = Instant::now();
+            let mut rays = 0;
+            while begun.elapsed() < TURN {
+                for packet in &packets {
+                    match kind.any {
+                        true => _ = black_box(geometry.occluded_packet(*level, packet).iter().len()),
+                        false => _ = black_box(geometry.intersect_packet(*level, packet).iter().len()),
+                    }
+                }
+                rays += kind.rays.len();
+            }
+            together = together.max(rays as f64 / begun.elapsed().as_secs_f64());
+        }
+        cells.push(format!("{:.2} | {:.2}", together / 1e6, together / alone));
+    }
+    let name = format!("{} in packets, against alone", kind.name);
+    println!("| {} | {name} | | {} |", geometry.triangles.len(), cells.join(" | "));
 }
 
 /// Rays a second.

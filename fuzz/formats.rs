@@ -9,15 +9,52 @@ use glossmith::store::{file, load_document, load_material};
 
 /// Kinds of files.
 #[allow(dead_code)]
-pub const FORMATS: [&str; 10] = [
-    "glb", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "material", "project",
+pub const FORMATS: [&str; 14] = [
+    "glb", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "jpg", "tif", "ktx2", "dds", "material", "project",
 ];
+
+/// Formats of pictures, which are textures as well as environments.
+const PICTURES: [&str; 6] = ["exr", "png", "jpg", "tif", "ktx2", "dds"];
 
 /// Reads a file of a kind. Panics where what comes out can't be rendered; that is the point of it.
 pub fn try_file(format: &str, bytes: &[u8]) {
     let path = path(format);
     std::fs::write(&path, bytes).expect("a temporary folder that can be written to");
     try_path(format, &path);
+    if PICTURES.contains(&format) {
+        std::fs::write(&path, textured(bytes)).expect("a temporary folder that can be written to");
+        try_path("glb", &path);
+    }
+}
+
+/// A triangle in a GLB whose normals and roughness are in a picture.
+fn textured(picture: &[u8]) -> Vec<u8> {
+    let places = [[0.0_f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let mut binary: Vec<u8> = places.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    let start = binary.len();
+    binary.extend(picture);
+    binary.resize(binary.len().next_multiple_of(4), 0);
+    let text = format!(
+        r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],
+        "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}},"material":0}}]}}],
+        "materials":[{{"normalTexture":{{"index":0}},"pbrMetallicRoughness":{{"metallicRoughnessTexture":{{"index":0}}}}}}],
+        "textures":[{{"source":0}}],"images":[{{"bufferView":1,"mimeType":"image/png"}}],
+        "buffers":[{{"byteLength":{length}}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",
+        "min":[0,0,0],"max":[1,1,0]}}],
+        "bufferViews":[{{"buffer":0,"byteLength":{start}}},{{"buffer":0,"byteOffset":{start},"byteLength":{size}}}]}}"#,
+        length = binary.len(),
+        size = picture.len(),
+    );
+    let text = format!("{text:width$}", width = text.len().next_multiple_of(4));
+    let mut bytes = b"glTF".to_vec();
+    let number = |number: usize| (number as u32).to_le_bytes();
+    bytes.extend([number(2), number(28 + text.len() + binary.len()), number(text.len())].concat());
+    bytes.extend(b"JSON");
+    bytes.extend(text.as_bytes());
+    bytes.extend(number(binary.len()));
+    bytes.extend(b"BIN\0");
+    bytes.extend(binary);
+    bytes
 }
 
 fn path(format: &str) -> PathBuf {
@@ -38,7 +75,7 @@ fn try_path(format: &str, path: &Path) {
                 assert!(hit.is_none_or(|hit| hit.t > 0.0));
             }
         }
-        "hdr" | "exr" | "png" => {
+        "hdr" | "exr" | "png" | "jpg" | "tif" | "ktx2" | "dds" => {
             if let Ok(map) = environment::load(&EnvironmentSource::File(path.to_owned())) {
                 assert!(map.texels.iter().flatten().all(|x| x.is_finite() && *x >= 0.0));
                 assert!(

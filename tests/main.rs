@@ -57,6 +57,8 @@ mod environment_shapes;
 mod environment_twin;
 #[path = "suite/exchange.rs"]
 mod exchange;
+#[path = "suite/exchange_samplers.rs"]
+mod exchange_samplers;
 #[path = "suite/exchange_tools.rs"]
 mod exchange_tools;
 #[path = "suite/explain.rs"]
@@ -83,6 +85,8 @@ mod gltf_materials;
 mod hierarchy;
 #[path = "suite/import_report.rs"]
 mod import_report;
+#[path = "suite/installed.rs"]
+mod installed;
 #[path = "suite/killed.rs"]
 mod killed;
 #[path = "suite/library.rs"]
@@ -99,6 +103,8 @@ mod memory;
 mod merge;
 #[path = "suite/model_formats.rs"]
 mod model_formats;
+#[path = "suite/model_parts.rs"]
+mod model_parts;
 #[path = "suite/monkey.rs"]
 mod monkey;
 #[path = "suite/monkey_deeds.rs"]
@@ -149,6 +155,12 @@ mod transmission;
 mod ui;
 #[path = "suite/ui_export.rs"]
 mod ui_export;
+#[path = "suite/ui_files.rs"]
+mod ui_files;
+#[path = "suite/ui_look.rs"]
+mod ui_look;
+#[path = "suite/ui_objects.rs"]
+mod ui_objects;
 #[path = "suite/ui_panels.rs"]
 mod ui_panels;
 #[path = "suite/ui_pictures.rs"]
@@ -157,6 +169,8 @@ mod ui_pictures;
 mod ui_scene;
 #[path = "suite/ui_study.rs"]
 mod ui_study;
+#[path = "suite/ui_workshop.rs"]
+mod ui_workshop;
 #[path = "suite/worker.rs"]
 mod worker;
 #[path = "suite/xdotool_session.rs"]
@@ -168,6 +182,8 @@ mod firefly;
 mod fuzz;
 #[path = "suite/fuzz_documents.rs"]
 mod fuzz_documents;
+#[path = "suite/gpu_pictures.rs"]
+mod gpu_pictures;
 #[path = "suite/hard.rs"]
 mod hard;
 #[path = "suite/layouts.rs"]

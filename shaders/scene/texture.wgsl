@@ -9,6 +9,7 @@ const WRAP_CLAMP: u32 = 2u;
 const IS_SRGB: u32 = 1u;
 const IS_NEAREST: u32 = 2u;
 const IS_SECOND_SET: u32 = 4u;
+const IS_FINE: u32 = 8u;
 
 // Red, green, blue (linear) and alpha. uvs holds both sets of texture coordinates.
 fn texture_lookup(index: u32, uvs: vec4f) -> vec4f {
@@ -58,7 +59,14 @@ fn neighbours(low: f32, size: u32, wrap: u32) -> vec2u {
 }
 
 fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
-    let word = texture_words[record.first_texel + row * record.width + column];
+    let place = row * record.width + column;
+    if (record.flags & IS_FINE) != 0u {
+        let first = record.first_texel + 2u * place;
+        let rg = texture_words[first];
+        let ba = texture_words[first + 1u];
+        return vec4f(vec4u(rg & 0xffffu, rg >> 16u, ba & 0xffffu, ba >> 16u)) / 65535.0;
+    }
+    let word = texture_words[record.first_texel + place];
     let codes = vec4u(word & 0xffu, (word >> 8u) & 0xffu, (word >> 16u) & 0xffu, word >> 24u);
     if (record.flags & IS_SRGB) == 0u {
         return vec4f(codes) / 255.0;

@@ -57,9 +57,8 @@ struct Moments {
     /// Variance of the first, from what is seen around each pixel: too little where noise differs from pixel to pixel, or most
     /// have not yet met what theirs comes from.
     variance: f64,
-    /// The same from tiles as wholes. From what is told by them: too much where the filter's bias differs from tile to tile.
-    by_products: f64,
-    /// From the differences of the halves' squares: too much where noise has long tails.
+    /// The same from tiles as wholes, by the differences of the halves' squares: too much where noise has long tails, of which
+    /// there the error is in doubt, too.
     by_squares: f64,
     /// Squares of that of each tile.
     fourth_powers: f64,
@@ -76,7 +75,6 @@ impl std::ops::AddAssign for Moments {
         self.noisy += other.noisy;
         self.product += other.product;
         self.variance += other.variance;
-        self.by_products += other.by_products;
         self.by_squares += other.by_squares;
         self.fourth_powers += other.fourth_powers;
         self.difference += other.difference;
@@ -90,9 +88,9 @@ impl Moments {
         self.denoised.max(self.known)
     }
 
-    /// Standard error of the first: by the estimate of its variance that is not known to be too little or too much.
+    /// Standard error of the first.
     fn deviation(&self) -> f64 {
-        self.variance.max(self.by_products.min(self.by_squares)).sqrt()
+        self.variance.max(self.by_squares).sqrt()
     }
 
     /// How many standard errors make the band: Student's quantile, as the standard error is itself an estimate, from the few
@@ -194,7 +192,6 @@ impl Errors {
             noisy: noise * noise / 4.0,
             product: clean * noise / 4.0,
             variance: self.variances[pixel],
-            by_products: of_pixel.squared_bias(),
             by_squares: of_pixel.square(),
             fourth_powers: 0.0,
             difference: ((of_pixel.noisy[0] + of_pixel.noisy[1]) / 2.0).powi(2),
@@ -245,7 +242,6 @@ impl Errors {
                 denoised,
                 known,
                 variance: spread * moments.variance,
-                by_products: spread.sqrt() * moments.by_products,
                 by_squares: spread.sqrt() * moments.by_squares,
                 ..moments
             }
@@ -257,32 +253,13 @@ impl Errors {
         sum
     }
 
-    /// Sums over the pixels of each tile, which have noise in common: deviations of what its pixels add, squared.
+    /// Sums over the pixels of each tile, which have noise in common: what its pixels add, squared.
     fn of_tiles(&self, of_pixel: impl Fn(usize) -> Moments) -> Vec<Moments> {
         let mut tiles = vec![Moments::default(); self.grid.tiles()];
         for pixel in 0..self.luminances.len() {
             tiles[self.grid.of_pixel(pixel)] += of_pixel(pixel);
         }
-        let deviation = |tile: usize| {
-            let others = tiles_around(self.grid, tile, 1).filter(|other| *other != tile);
-            let (sum, pixels, count) = others.fold((0.0, 0.0, 0.0), |(sum, pixels, count), other| {
-                (
-                    sum + tiles[other].by_products,
-                    pixels + tiles[other].pixels,
-                    count + 1.0,
-                )
-            });
-            // The others' mean has noise, too: a part of one tile's.
-            let expected = if count > 0.0 {
-                sum / pixels * tiles[tile].pixels
-            } else {
-                0.0
-            };
-            (tiles[tile].by_products - expected).powi(2) * count / (count + 1.0)
-        };
-        let deviations: Vec<f64> = (0..tiles.len()).map(deviation).collect();
-        for (tile, by_products) in tiles.iter_mut().zip(deviations) {
-            tile.by_products = by_products;
+        for tile in &mut tiles {
             tile.by_squares *= tile.by_squares;
             tile.fourth_powers = tile.by_squares * tile.by_squares;
         }

@@ -11,7 +11,7 @@ use crate::app::services::snapshots::PinChange;
 use crate::document::ImportLobe;
 use crate::document::MaterialSettings;
 use crate::render::EngineChoice;
-use crate::render::display::Shown;
+use crate::render::shown::Shown;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{ModelOptions, ModelSource};
 
@@ -22,11 +22,13 @@ pub enum Action {
     Do(Command),
     /// Opens a file by its ending.
     Open(PathBuf),
-    /// Takes a file that was dropped on the window: a picture becomes the base colour of the selected material, anything
-    /// else is opened.
-    Drop(PathBuf),
-    /// Takes text that was pasted into the window: the name of a file.
+    /// Takes files that were dropped on the window together: a picture becomes the base colour of the selected material,
+    /// anything else is opened.
+    Drop(Vec<PathBuf>),
+    /// Takes text that was pasted into the window: names of files.
     Paste(String),
+    /// Calls off what is being loaded or made ready.
+    CancelLoading,
     /// Changes the model.
     UseModel(ModelSource),
     /// Loads a model's file anew, to show another scene, variant or pose of it.
@@ -35,6 +37,10 @@ pub enum Action {
     UseEnvironment(EnvironmentSource),
     /// Replaces the selected material, keeping nothing of it.
     UseMaterial(Box<MaterialSettings>),
+    /// Asks where to write a material for another program.
+    Export(Box<MaterialSettings>),
+    /// Copies a material to the clipboard, as the text of a format of this name.
+    CopyAs(Box<MaterialSettings>, &'static str),
     /// Selects a material slot.
     SelectSlot(usize),
     /// Shows everything that made a sample (from 0) of a pixel of the picture.
@@ -53,6 +59,8 @@ pub enum Action {
     UseEngine(EngineChoice),
     /// Shows the picture or a map of its error or samples.
     Show(Shown),
+    /// Opens an example, by number.
+    OpenExample(usize),
     /// Brings a panel to the front.
     Reveal(Pane),
     /// Closes a panel.
@@ -145,7 +153,7 @@ commands! {
     New, File, "New", "Starts anew, with the default model, light and material.", keys(CTRL, Key::N), 0;
     Open, File, "Open…", "Opens a project, a material, a model or an environment.", keys(CTRL, Key::O), 0;
     OpenModel, File, "Open model…", "Opens a model (.glb, .gltf, .obj, .ply, .stl, .zip).", None, 0;
-    OpenEnvironment, File, "Open environment…", "Opens an environment map (.hdr, .exr, .png, .jpg, .tif, .webp).", keys(CTRL_SHIFT, Key::O), 0;
+    OpenEnvironment, File, "Open environment…", "Opens an environment map (.hdr, .exr, .ktx2, .dds, .png, .jpg, .tif, .webp).", keys(CTRL_SHIFT, Key::O), 0;
     OpenMaterial, File, "Open material…", "Opens a material (.json, .mtlx, or a file of another program that has the exact parameters) into the selected slot.", None, 0;
     OpenMeasured, File, "Open measured material…", "Opens a measured material (.binary of the MERL database) to match looks with.", None, 0;
     ModelFile, File, "Model file…", "What became of the parts of the model's file; its scenes, variants and poses.", None, 0;
@@ -165,11 +173,18 @@ commands! {
     Redo, Edit, "Redo", "Makes the change again that was taken back.", keys(CTRL_SHIFT, Key::Z), 0;
     ResetMaterial, Edit, "Reset material", "Gives the selected material its defaults, keeping its name.", None, 1;
     ResetCamera, Edit, "Reset camera", "Puts the camera where it was at first.", None, 1;
+    CopyMaterial, Edit, "Copy material", "Copies the selected material, to be pasted onto others.", None, 1;
+    PasteMaterial, Edit, "Paste material", "Gives the selected materials what was copied.", None, 1;
     FrameAll, View, "Frame all", "Moves the camera so that the whole model is seen.", key(Key::F), 0;
-    FrameSelected, View, "Frame selected", "Moves the camera so that the surfaces of the selected material are seen.", keys(Modifiers::SHIFT, Key::F), 0;
+    FrameSelected, View, "Frame selected", "Moves the camera so that the selected objects are seen, or the surfaces of the selected material.", keys(Modifiers::SHIFT, Key::F), 0;
+    ShowObjects, View, "Show all objects", "Shows the objects again that were hidden.", None, 0;
     Compare, View, "Compare A and B", "Shows the material beside another one, or beside another lobe.", key(Key::C), 2;
     SwapCompared, View, "Swap A and B", "Makes B the document, and what the document was B.", key(Key::X), 2;
     TakeCompared, View, "Replace A with B", "Gives the document B's materials and ends the comparison.", None, 2;
+    Inspect, View, "Pin the pixel", "The inspector stays at the pixel under the pointer, or follows the pointer again.", key(Key::I), 3;
+    ZoomIn, View, "Magnify the picture", "Shows the picture's own pixels larger. In the viewport: ctrl and the wheel.", key(Key::Plus), 3;
+    ZoomOut, View, "Less magnified", "Shows the picture's own pixels smaller, as far as the whole picture.", key(Key::Minus), 3;
+    ZoomFit, View, "Whole picture", "Shows the whole picture again, as large as it fits.", key(Key::Num0), 3;
     Denoise, View, "Denoise on or off", "Takes the noise out of the picture, by Open Image Denoise, or shows the samples as they are. How and when: Camera & picture.", key(Key::D), 2;
     Pin, View, "Pin a snapshot", "Keeps material, light and camera with the picture, to come back to.", key(Key::P), 2;
     Maximise, View, "Viewport only", "Hides the panels, or shows them again.", key(Key::F11), 1;

@@ -12,11 +12,14 @@ use crate::app::services::compare::Compare;
 use crate::app::services::edits::Edits;
 use crate::app::services::environments::Environments;
 use crate::app::services::library::Library;
+use crate::app::services::look::Look;
 use crate::app::services::messages::Entry;
 use crate::app::services::recent::Recent;
+use crate::app::services::selection::Selection;
 use crate::app::services::snapshots::Snapshots;
-use crate::document::{Document, ImportLobe, MaterialSettings, Parameter, SETTINGS, setting};
-use crate::render::display::Shown;
+use crate::document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting};
+use crate::render::EngineChoice;
+use crate::render::shown::Shown;
 use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Scene, Snapshot};
 use crate::scene::ModelSource;
@@ -34,6 +37,8 @@ pub(super) struct Desk<'a> {
 pub(super) struct Shared {
     /// The material slot that is edited.
     pub(super) slot: usize,
+    /// What is chosen beside it, and what is lit up.
+    pub(super) selection: Selection,
     /// The slots that were selected of other models, for when undo or redo brings them back.
     pub(super) slots_of: Vec<(ModelSource, usize)>,
     /// What was said, oldest first.
@@ -44,10 +49,17 @@ pub(super) struct Shared {
     pub(super) recent: Recent,
     /// The lobe of the materials of models that are opened.
     pub(super) import_lobe: ImportLobe,
+    /// The engine that was asked for, and the one that is remembered: the command line's is not.
+    pub(super) engine: EngineChoice,
+    pub(super) kept_engine: EngineChoice,
     /// How large the picture is.
     pub(super) resolution: Resolution,
     /// What of the render the viewport shows.
     pub(super) shown: Shown,
+    /// The pixel that is looked at closely.
+    pub(super) look: Look,
+    /// How many of the hints for new users are over.
+    pub(super) hints_seen: usize,
     /// The angle between view and normal in the plots of lobes and their samples, degrees.
     pub(super) view_angle_deg: f32,
     /// The file of a measured material, to compare lobes with.
@@ -125,13 +137,33 @@ impl Desk<'_> {
             .filter(|scene| scene.document.model == self.document.model)
     }
 
+    /// What an object of the model is called.
+    pub(super) fn object_name(&self, object: usize) -> Option<String> {
+        let own = self.document.object_names.get(&object).cloned();
+        own.or_else(|| Some(self.scene()?.model.objects.get(object)?.name.clone()))
+    }
+
     /// The material of the selected slot.
     pub(super) fn material(&self) -> MaterialSettings {
         self.document.material(self.shared.slot)
     }
 
-    /// Replaces the material of the selected slot; slots before it keep what they show.
+    /// Replaces the material of the selected slot; slots before it keep what they show. What is another in it becomes the
+    /// same in the materials that are chosen beside it.
     pub(super) fn set_material(&mut self, material: MaterialSettings) {
+        let before = self.material();
+        for slot in self.shared.selection.slots(self.shared.slot).into_iter().skip(1) {
+            let other = self.document.material_mut(slot);
+            for parameter in PARAMETERS.iter() {
+                let value = parameter.get(&material);
+                if value != parameter.get(&before)
+                    && let Err(error) = parameter.set(other, value)
+                {
+                    // A picker's colour may be out of range for a frame.
+                    log::debug!("{error}");
+                }
+            }
+        }
         *self.document.material_mut(self.shared.slot) = material;
     }
 

@@ -28,6 +28,8 @@ use egui_tiles::Tree;
 use actions::Action;
 pub use desk::Resolution;
 use desk::{Desk, Shared};
+use handlers::dropped;
+use handlers::models::ENVIRONMENT_CHANGED;
 use kit::theme;
 use layout::Pane;
 use panels::Panels;
@@ -45,14 +47,14 @@ use sheets::turntable::TurntableSheet;
 use sheets::unsaved::Unsaved;
 use viewport::Viewport;
 
-use crate::document::of_model::materials_of;
 use crate::document::{Change, Denoise, Document, MaterialSettings};
 use crate::render::EngineChoice;
-use crate::render::display::Shown;
+use crate::render::shown::Shown;
 use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
+use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
-use crate::scene::{Model, ModelOptions, ModelSource, SlotPicture};
+use crate::store::examples::EXAMPLES;
 
 /// A picture that has cost this much time keeps its size while nothing but the viewport's size changes.
 const KEPT_FROM: Duration = Duration::from_secs(10);
@@ -150,6 +152,13 @@ fn new_document(denoise: Denoise) -> Document {
     document
 }
 
+/// An example, whose noise is taken out as before.
+fn example(number: usize, denoise: Denoise) -> Option<Document> {
+    let mut document = (EXAMPLES.get(number)?.document)();
+    document.view.denoise = denoise;
+    Some(document)
+}
+
 impl App {
     /// The editor in a window.
     ///
@@ -160,8 +169,18 @@ impl App {
         let kept = settings::Kept::load(creation);
         creation.egui_ctx.set_theme(kept.theme);
         let ctx = creation.egui_ctx.clone();
-        let worker = Worker::spawn(options.engine, move || ctx.request_repaint())?;
-        let document = options.document.unwrap_or_else(|| new_document(kept.denoise));
+        // What the command line says stands over what was chosen in the window.
+        let engine = match options.engine {
+            EngineChoice::Auto => kept.engine,
+            given => given,
+        };
+        let worker = Worker::spawn(engine, move || ctx.request_repaint())?;
+        let document = options
+            .document
+            .unwrap_or_else(|| match kept.is_first && options.files.is_empty() {
+                true => example(0, kept.denoise).unwrap_or_default(),
+                false => new_document(kept.denoise),
+            });
         let materials = options.data.as_ref().map(|data| data.join("materials"));
         let library = library::Library::new(materials, options.cache.clone());
         let environments = environments::Environments::new(options.cache.clone(), library.holder());
@@ -178,13 +197,18 @@ impl App {
             awaited: 0,
             shared: Shared {
                 slot: 0,
+                selection: services::selection::Selection::default(),
                 slots_of: Vec::new(),
                 messages: Vec::new(),
                 environments,
                 recent: Recent::new(kept.recent),
                 import_lobe: kept.import_lobe,
+                engine,
+                kept_engine: kept.engine,
                 resolution: options.resolution.unwrap_or(kept.resolution),
                 shown: Shown::default(),
+                look: services::look::Look::default(),
+                hints_seen: kept.hints_seen,
                 view_angle_deg: desk::VIEW_ANGLE_DEG,
                 measured: None,
                 picks_focus: false,
@@ -222,9 +246,7 @@ impl App {
         };
         app.list_library();
         app.list_snapshots();
-        for path in options.files {
-            app.awaited += usize::from(app.open(path));
-        }
+        app.awaited += app.open_all(options.files);
         Ok(app)
     }
 
@@ -295,6 +317,7 @@ impl App {
                         self.shared.recent.add(path);
                     }
                     self.adopt_model(source, options, &model);
+                    self.use_dropped_with(&model);
                     self.count_as_start(is_start);
                 }
                 Event::EnvironmentOpened(source, _) => {
@@ -303,55 +326,24 @@ impl App {
                         self.shared.recent.add(path);
                     }
                     self.document.lighting.environment = source;
-                    self.edits.note("Change the environment", "");
+                    self.edits.note(ENVIRONMENT_CHANGED, "");
                     self.count_as_start(is_start);
                 }
                 Event::LayersMade(path, layers) => {
                     self.write_layers(path, layers);
                     continue;
                 }
-                Event::OpenFailed(_, why) => self.say(Level::Error, why),
+                Event::Reloaded(before, model) => {
+                    self.adopt_reloaded(before, model);
+                    continue;
+                }
+                Event::Cancelled => {
+                    self.take_back_cancelled(ctx);
+                    continue;
+                }
+                Event::OpenFailed(_, level, why) => self.say(level, why),
             }
             self.awaited = self.awaited.saturating_sub(1);
-        }
-    }
-
-    /// Takes a loaded model over: a file's materials come with it, a built-in keeps the one that is being edited.
-    fn adopt_model(&mut self, source: ModelSource, options: ModelOptions, model: &Model) {
-        let is_file = matches!(source, ModelSource::File(_));
-        let is_shown_anew = self.document.model == source && self.document.import != options;
-        let edited = self.desk_material();
-        let before = std::mem::take(&mut self.document.materials);
-        self.document.materials = materials_of(model, self.shared.import_lobe);
-        if is_shown_anew {
-            self.keep_edits(before, &options);
-        } else if !is_file && let Some(first) = self.document.materials.first_mut() {
-            *first = edited;
-        }
-        self.shared.slot = 0;
-        self.document.model = source;
-        self.document.import = options;
-        if !is_shown_anew {
-            let camera = &mut self.document.camera;
-            (camera.target, camera.distance, camera.position) = (None, None, None);
-            self.document.add_lights_and_cameras(model);
-        }
-        self.edits.note(format!("Change the model to {}", model.name), "");
-    }
-
-    /// Where the same file is shown in another way: materials whose slots have the same name stay as they were edited. One
-    /// that was given a picture shows it.
-    fn keep_edits(&mut self, mut before: Vec<MaterialSettings>, options: &ModelOptions) {
-        let is_new = |picture: &&SlotPicture| !self.document.import.pictures.contains(picture);
-        for picture in options.pictures.iter().filter(is_new) {
-            if let Some(material) = before.get_mut(picture.slot) {
-                (material.base_color, material.textures.color) = ([1.0; 3], true);
-            }
-        }
-        for material in &mut self.document.materials {
-            if let Some(known) = before.iter().position(|known| known.name == material.name) {
-                *material = before.swap_remove(known);
-            }
         }
     }
 
@@ -438,14 +430,14 @@ impl App {
             .show(ui, |ui| {
                 // With the viewport alone all of them can be brought back.
                 let is_open = |pane| !self.is_maximised && layout::is_open(&self.layout, pane);
-                let (edits, recent) = (&self.edits, &mut self.shared.recent);
-                menu::bar(ui, edits, recent, self.shared.import_lobe, is_open, actions);
+                let chosen = (self.shared.import_lobe, self.shared.engine);
+                menu::bar(ui, &self.edits, &mut self.shared.recent, chosen, is_open, actions);
             });
         egui::Panel::bottom("status")
             .frame(bar)
             .show_separator_line(false)
             .exact_size(theme::BAR_HEIGHT)
-            .show(ui, |ui| status::show(ui, &snapshot, &self.meter));
+            .show(ui, |ui| status::show(ui, &snapshot, &self.meter, actions));
         let ground = egui::Frame::new()
             .fill(theme::ground(is_dark))
             .inner_margin(egui::Margin::symmetric(0, 3));
@@ -517,41 +509,34 @@ fn is_dragging(ctx: &egui::Context) -> bool {
     ctx.input(|input| input.pointer.any_down())
 }
 
-/// What was pasted as text in this frame.
-fn pasted(ctx: &egui::Context) -> impl Iterator<Item = String> {
-    let texts = ctx.input(|input| {
-        let events = input.events.iter();
-        let text = |event: &egui::Event| match event {
-            egui::Event::Paste(text) => Some(text.trim().to_owned()),
-            _ => None,
-        };
-        events.filter_map(text).collect::<Vec<_>>()
-    });
-    texts.into_iter().filter(|text| !text.is_empty())
-}
-
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let ctx = ui.ctx().clone();
         let is_running = ctx.requested_repaint_last_pass();
         self.meter.begin(Instant::now(), is_running, frame.info().cpu_usage);
+        settings::fit_to_screen(&ctx);
         self.take_events(&ctx);
+        self.watch_files();
         self.picture_window(&ctx);
         let mut actions = std::mem::take(&mut self.queue);
         if !self.is_covered() {
             actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
         }
+        self.shared.selection.begin_frame();
+        self.shared.look.begin_frame();
         self.show(ui, &mut actions);
-        // After the viewport, which selects what a file is dropped on.
-        let dropped = ctx.input(|input| input.raw.dropped_files.clone());
-        actions.extend(dropped.iter().map(|file| Action::Drop(file.path().to_owned())));
-        if !self.is_covered()
-            && ctx
-                .memory(|memory| memory.focused())
-                .is_none_or(|id| Some(id) == self.viewport.id())
-        {
-            actions.extend(pasted(&ctx).map(Action::Paste));
+        let look = &self.shared.look;
+        if look.is_shown != look.was_shown {
+            self.worker.look_closer(look.is_shown);
+            ctx.request_repaint();
         }
+        if self.shared.selection.is_news() {
+            ctx.request_repaint();
+        }
+        // After the viewport, which selects what a file is dropped on.
+        let focused = ctx.memory(|memory| memory.focused());
+        let takes_text = !self.is_covered() && focused.is_none_or(|id| Some(id) == self.viewport.id());
+        actions.extend(dropped::handed_over(&ctx, takes_text));
         for action in actions {
             self.apply(&ctx, action);
         }
@@ -576,8 +561,11 @@ impl eframe::App for App {
             layout: Some(layout),
             resolution: self.shared.resolution,
             import_lobe: self.shared.import_lobe,
+            engine: self.shared.kept_engine,
             denoise: self.document.view.denoise,
             recent: self.shared.recent.paths().to_vec(),
+            hints_seen: self.shared.hints_seen,
+            is_first: false,
         };
         kept.save(storage);
     }

@@ -18,6 +18,8 @@ macro_rules! list {
         $make! {
             /// Materials to start from.
             Presets, "Presets", UpperLeft, presets::PresetsPanel;
+            /// Objects, materials, lights and cameras.
+            Scene, "Scene", UpperLeft, scene::ScenePanel;
             /// Pinned states.
             Snapshots, "Snapshots", UpperLeft, snapshots::SnapshotsPanel;
             /// What was said.
@@ -40,6 +42,8 @@ macro_rules! list {
             Samples, "Samples", LowerRight, samples::SamplesPanel;
             /// The lobe itself.
             Lobe, "Lobe", LowerRight, lobe::LobePanel;
+            /// What is known of a pixel, and how bright the picture is.
+            Inspector, "Inspector", LowerRight, inspector::InspectorPanel;
             /// Error against time.
             Convergence, "Convergence", LowerRight, convergence::ConvergencePanel;
         }

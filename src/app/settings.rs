@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::app::desk::Resolution;
 use crate::app::layout::{self, Pane};
 use crate::document::{Denoise, ImportLobe};
+use crate::render::EngineChoice;
 use crate::render::denoise::Library;
 
 /// Under which the window's state is stored.
@@ -19,6 +20,7 @@ const KEY: &str = "editor";
 pub(super) fn native_options() -> eframe::NativeOptions {
     let viewport = egui::ViewportBuilder::default()
         .with_app_id("glossmith")
+        .with_icon(icon())
         .with_title("Glossmith")
         .with_inner_size([1440.0, 900.0])
         .with_min_inner_size([760.0, 480.0]);
@@ -30,6 +32,46 @@ pub(super) fn native_options() -> eframe::NativeOptions {
         setup.device_descriptor = Arc::new(device_descriptor);
     }
     options
+}
+
+/// The window's picture, which desktops show beside its name.
+fn icon() -> Arc<egui::IconData> {
+    let png = include_bytes!("../../assets/desktop/glossmith.png");
+    let icon = eframe::icon_data::from_png_bytes(png);
+    if let Err(error) = &icon {
+        log::debug!("the window has no icon: {error}");
+    }
+    Arc::new(icon.unwrap_or_default())
+}
+
+/// Frames after the start in which the window is fitted to the screen: by then the system has told both sizes.
+const FITTED_FRAMES: u64 = 30;
+
+/// Fills the screen with a window that was opened as large as it or larger: what is around a window would push its last
+/// bar beyond the screen.
+pub(super) fn fit_to_screen(ctx: &egui::Context) {
+    if ctx.cumulative_frame_nr() > FITTED_FRAMES {
+        return;
+    }
+    let info = ctx.input(|input| input.viewport().clone());
+    let fills = [info.maximized, info.fullscreen].contains(&Some(true));
+    let (Some(screen), Some(inner), false) = (info.monitor_size, info.inner_rect, fills) else {
+        return;
+    };
+    let around = info
+        .outer_rect
+        .map_or(egui::Vec2::ZERO, |outer| outer.size() - inner.size());
+    if let Some(size) = smaller(screen, inner.size(), around) {
+        ctx.send_viewport_cmd(egui::ViewportCommand::InnerSize(size));
+        ctx.send_viewport_cmd(egui::ViewportCommand::Maximized(true));
+    }
+}
+
+/// The size of a window that is too large for the screen with what is around it, points.
+fn smaller(screen: egui::Vec2, inner: egui::Vec2, around: egui::Vec2) -> Option<egui::Vec2> {
+    let most = (screen - around.max(egui::Vec2::ZERO)).max(egui::Vec2::splat(1.0));
+    let fitted = inner.min(most);
+    (fitted != inner).then_some(fitted)
 }
 
 /// The window only draws triangles with textures: it takes what limits the adapter has, as the defaults ask for compute
@@ -74,11 +116,18 @@ pub(super) struct Kept {
     pub(super) layout: Option<Tree<Pane>>,
     pub(super) resolution: Resolution,
     pub(super) import_lobe: ImportLobe,
+    /// The engine as it was chosen by hand.
+    pub(super) engine: EngineChoice,
     /// How noise was taken out last: new documents begin with that.
     #[serde(default = "first_denoise")]
     pub(super) denoise: Denoise,
     /// Files opened and saved, the latest first.
     pub(super) recent: Vec<PathBuf>,
+    /// How many of the hints for new users are over.
+    pub(super) hints_seen: usize,
+    /// Nothing was left by an earlier start.
+    #[serde(skip)]
+    pub(super) is_first: bool,
 }
 
 impl Default for Kept {
@@ -88,8 +137,11 @@ impl Default for Kept {
             layout: None,
             resolution: Resolution::default(),
             import_lobe: ImportLobe::default(),
+            engine: EngineChoice::Auto,
             denoise: Denoise::Off,
             recent: Vec::new(),
+            hints_seen: usize::MAX,
+            is_first: false,
         }
     }
 }
@@ -99,6 +151,8 @@ impl Kept {
     pub(super) fn load(creation: &eframe::CreationContext<'_>) -> Self {
         let first = || Self {
             denoise: first_denoise(),
+            hints_seen: 0,
+            is_first: true,
             ..Self::default()
         };
         let mut kept: Self = creation.storage.map_or_else(Self::default, |storage| {
@@ -120,5 +174,54 @@ fn first_denoise() -> Denoise {
         Denoise::Auto
     } else {
         Denoise::Off
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::HashMap;
+
+    use egui::vec2;
+
+    use super::*;
+
+    #[derive(Default)]
+    struct Memory(HashMap<String, String>);
+
+    impl eframe::Storage for Memory {
+        fn get_string(&self, key: &str) -> Option<String> {
+            self.0.get(key).cloned()
+        }
+        fn set_string(&mut self, key: &str, value: String) {
+            self.0.insert(key.to_owned(), value);
+        }
+        fn remove_string(&mut self, key: &str) {
+            self.0.remove(key);
+        }
+        fn flush(&mut self) {}
+    }
+
+    #[test]
+    fn a_window_is_no_larger_than_its_screen_has_room_for() {
+        let screen = vec2(1366.0, 768.0);
+        let bars = vec2(2.0, 30.0);
+        assert_eq!(smaller(screen, vec2(1366.0, 768.0), bars), Some(vec2(1364.0, 738.0)));
+        assert_eq!(smaller(screen, vec2(1200.0, 900.0), bars), Some(vec2(1200.0, 738.0)));
+        assert_eq!(smaller(screen, vec2(1200.0, 700.0), bars), None);
+        // Without a window manager nothing is around it.
+        assert_eq!(smaller(screen, screen, vec2(0.0, 0.0)), None);
+    }
+
+    #[test]
+    fn the_engine_chosen_by_hand_is_there_at_the_next_start() {
+        let mut storage = Memory::default();
+        let kept = Kept {
+            engine: EngineChoice::Gpu,
+            ..Kept::default()
+        };
+        kept.save(&mut storage);
+        let mut creation = eframe::CreationContext::_new_kittest(egui::Context::default());
+        creation.storage = Some(&storage);
+        assert_eq!(Kept::load(&creation).engine, EngineChoice::Gpu);
     }
 }

@@ -7,8 +7,9 @@ use egui::Ui;
 
 use crate::app::actions::Command;
 use crate::app::desk::Desk;
+use crate::app::kit::start_stop::{Pressed, start_or_stop};
 use crate::app::kit::widgets;
-use crate::document::Document;
+use crate::document::{Change, Document};
 use crate::render::EngineChoice;
 use crate::render::background::Background;
 use crate::render::study::{StudyError, StudyProgress, Watch};
@@ -35,6 +36,8 @@ pub(super) struct StudyWorker<R> {
     holds_renderer: bool,
     /// It is to be started as soon as it is shown.
     is_wished: bool,
+    /// The document that it was asked about last, and what its outcome made of it.
+    asked: Vec<Document>,
 }
 
 impl<R> Default for StudyWorker<R> {
@@ -45,6 +48,7 @@ impl<R> Default for StudyWorker<R> {
             has_begun: false,
             holds_renderer: false,
             is_wished: false,
+            asked: Vec::new(),
         }
     }
 }
@@ -88,17 +92,15 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         let is_free = !desk.shared.is_measuring;
         let is_wished = is_free && std::mem::take(&mut self.is_wished);
         ui.horizontal(|ui| {
-            if is_busy {
-                // Another control than the one that starts it: a click under way when it ends must not start it again.
-                if ui.push_id("stop", |ui| ui.button("Stop")).inner.clicked() {
-                    self.stop.store(true, Ordering::Relaxed);
-                }
-                ui.add(egui::Spinner::new().size(12.0));
-                return;
-            }
-            let button = ui.add_enabled(is_free, egui::Button::new(label)).on_hover_text(help);
-            let button = button.on_disabled_hover_text("Something else is being measured.");
-            if button.clicked() || is_wished {
+            let dress = |button: egui::Response| {
+                let button = button.on_hover_text(help);
+                button.on_disabled_hover_text("Something else is being measured.")
+            };
+            let pressed = start_or_stop(ui, label, is_busy, is_free, dress);
+            if pressed == Pressed::Stop {
+                self.stop.store(true, Ordering::Relaxed);
+            } else if pressed == Pressed::Start || (is_wished && !is_busy) {
+                self.asked = vec![desk.document.clone()];
                 let work = begin(desk);
                 self.begin(ui, work);
                 self.has_begun = true;
@@ -124,6 +126,23 @@ impl<R: Clone + Send + Sync + 'static> StudyWorker<R> {
         widgets::comes_and_goes(ui, |ui| {
             widgets::failure(ui, self.worker.as_ref().and_then(Background::failure))
         });
+        let is_stale = self.found().is_some() && self.is_stale(desk);
+        widgets::comes_and_goes(ui, |ui| {
+            if is_stale {
+                widgets::note(ui, "Measured before the last changes.");
+            }
+        });
+    }
+
+    /// Whether the document is another one by now than what was asked about.
+    pub(super) fn is_stale(&self, desk: &Desk<'_>) -> bool {
+        let is_it = |asked: &Document| !Change::between(asked, desk.document).restarts();
+        !self.asked.iter().any(is_it)
+    }
+
+    /// Takes note of what the outcome made of the document: it holds for that, too.
+    pub(super) fn holds_for(&mut self, document: &Document) {
+        self.asked.push(document.clone());
     }
 
     fn begin(&mut self, ui: &Ui, work: Work<R>) {

@@ -1,6 +1,7 @@
 //! Where a command's answer goes: a file, or standard output for the program that called.
 
 use std::convert::Infallible;
+use std::fmt;
 use std::io::Write as _;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -37,7 +38,27 @@ impl Destination {
     pub(super) fn check_writable(&self) -> anyhow::Result<()> {
         match self {
             Self::Output => Ok(()),
-            Self::File(path) => super::parse::check_writable(path),
+            Self::File(path) => super::parse::check_opens(path),
+        }
+    }
+
+    /// Opens it; a file is begun anew.
+    fn open(&self) -> anyhow::Result<Box<dyn std::io::Write>> {
+        Ok(match self {
+            Self::Output => Box::new(std::io::stdout()),
+            Self::File(path) => Box::new(
+                std::fs::File::create(path)
+                    .with_context(|| format!("{}: cannot be written; check the folder", path.display()))?,
+            ),
+        })
+    }
+}
+
+impl fmt::Display for Destination {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Output => f.write_str("standard output"),
+            Self::File(path) => path.display().fmt(f),
         }
     }
 }
@@ -76,7 +97,10 @@ impl Answer {
 }
 
 /// Values that are told while others are still to come: a line of JSON each.
-pub(super) struct Lines(Box<dyn std::io::Write>);
+pub(super) struct Lines {
+    to: Destination,
+    file: Box<dyn std::io::Write>,
+}
 
 impl Lines {
     /// Where they go; a file is begun anew.
@@ -84,13 +108,10 @@ impl Lines {
     /// # Errors
     /// If it cannot be written there.
     pub(super) fn open(destination: &Destination) -> anyhow::Result<Self> {
-        Ok(Self(match destination {
-            Destination::Output => Box::new(std::io::stdout()),
-            Destination::File(path) => Box::new(
-                std::fs::File::create(path)
-                    .with_context(|| format!("{}: cannot be written; check the folder", path.display()))?,
-            ),
-        }))
+        Ok(Self {
+            to: destination.clone(),
+            file: destination.open()?,
+        })
     }
 
     /// Writes a line, at once.
@@ -98,9 +119,12 @@ impl Lines {
     /// # Errors
     /// If it cannot be written there.
     pub(super) fn write(&mut self, value: &impl Serialize) -> anyhow::Result<()> {
-        let text = serde_json::to_string(value)? + "\n";
-        let written = self.0.write_all(text.as_bytes()).and_then(|()| self.0.flush());
-        written.context("the answer could not be written; is there room?")
+        self.text(&serde_json::to_string(value)?)
+    }
+
+    fn text(&mut self, text: &str) -> anyhow::Result<()> {
+        let written = writeln!(self.file, "{text}").and_then(|()| self.file.flush());
+        written.with_context(|| format!("{}: the answer could not be written; is there room?", self.to))
     }
 }
 
@@ -109,18 +133,5 @@ impl Lines {
 /// # Errors
 /// If it cannot be written there.
 pub(super) fn write_json(destination: &Destination, value: &impl Serialize) -> anyhow::Result<()> {
-    let text = serde_json::to_string_pretty(value)? + "\n";
-    match destination {
-        Destination::Output => {
-            let mut output = std::io::stdout().lock();
-            let written = output.write_all(text.as_bytes()).and_then(|()| output.flush());
-            written.context("standard output: the answer could not be written")
-        }
-        Destination::File(path) => std::fs::write(path, text).with_context(|| {
-            format!(
-                "{}: could not be written; check the folder and its permissions",
-                path.display()
-            )
-        }),
-    }
+    Lines::open(destination)?.text(&serde_json::to_string_pretty(value)?)
 }

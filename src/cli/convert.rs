@@ -8,12 +8,12 @@ use clap::Args;
 use super::answer::{Destination, write_json};
 use super::names;
 use crate::document::ImportLobe;
-use crate::plot::{PictureSheet, picture_sheet_file};
+use crate::plot::{PictureSheet, write_picture_sheet};
 use crate::render::looks::compared;
 use crate::store::exchange::report::Report;
 use crate::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
-use crate::store::file::save_by;
 use crate::store::preset;
+use crate::store::replace::save_by;
 
 /// Arguments of `glossmith convert`.
 #[derive(Debug, Args)]
@@ -174,7 +174,7 @@ fn compare(report: &mut Report, path: &Path) -> anyhow::Result<()> {
             format!("-{}", index + 1)
         };
         let picture = path.with_file_name(format!("{stem}-{of_file}{number}.png"));
-        save_by(&picture, |path| picture_sheet_file(path, &sheet))??;
+        save_by(&picture, |file| write_picture_sheet(file, &sheet))?;
         eprintln!("wrote {}", picture.display());
     }
     Ok(())

@@ -6,8 +6,11 @@ use anyhow::bail;
 use clap::Args;
 
 use super::answer::Answer;
-use super::parse;
-use crate::render::output::{self, Format, Rendered};
+use super::render::{add_denoised, check_takes, write_pictures};
+use super::{names, parse};
+use crate::document::Denoise;
+use crate::render::denoise::{Denoised, Denoiser, Noisy};
+use crate::render::output::{Layers, Rendered};
 use crate::render::sums::KeptFilm;
 
 /// Arguments of `glossmith merge`.
@@ -19,6 +22,12 @@ pub struct MergeArguments {
     /// Picture to write: .exr (with the sums, to be merged again), .png or .hdr. May be repeated.
     #[arg(long = "output", required = true, value_name = "FILE", value_parser = parse::picture)]
     outputs: Vec<PathBuf>,
+    /// Write albedo, normal, depth, number of samples and variance as layers into .exr pictures.
+    #[arg(long)]
+    aovs: bool,
+    /// Take the noise out of the joined picture.
+    #[arg(long, default_value = "off", value_name = "off|fast|high|auto", value_parser = names::choice::<Denoise>)]
+    denoise: Denoise,
     #[command(flatten)]
     answer: Answer,
 }
@@ -32,8 +41,42 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
         parse::check_writable(path)?;
     }
     arguments.answer.check_writable()?;
+    if arguments.aovs {
+        check_takes("--aovs", &arguments.outputs)?;
+    }
+    let mut whole = joined(&arguments.films)?;
+    whole.document.view.denoise = arguments.denoise;
+    let samples = whole.film.samples() as f64 / whole.film.pixel_count().max(1) as f64;
+    let image = whole.film.image();
+    let layers = match arguments.aovs {
+        true => Some(Layers::of(&whole.film, whole.features()?)),
+        false => None,
+    };
+    let denoised = denoised(&whole)?;
+    eprintln!("{samples:.0} samples a pixel of {} films", arguments.films.len());
+    let rendered = Rendered {
+        denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
+        layers: layers.as_ref(),
+        sums: Some(&whole),
+        ..Rendered::from(&image)
+    };
+    write_pictures(&arguments.outputs, rendered, &whole.document)?;
+    let mut answer = serde_json::json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "films": arguments.films,
+        "samples": whole.samples,
+        "samples_per_pixel": whole.sample_count(),
+        "mean_samples_per_pixel": samples,
+        "files": arguments.outputs,
+    });
+    add_denoised(&mut answer, &whole.document, denoised.as_ref());
+    arguments.answer.write(&answer)
+}
+
+/// The films as one.
+fn joined(paths: &[PathBuf]) -> anyhow::Result<KeptFilm> {
     let mut films = Vec::new();
-    for path in &arguments.films {
+    for path in paths {
         films.push((path, KeptFilm::read(path)?));
     }
     films.sort_by_key(|(_, film)| film.samples.clone());
@@ -44,24 +87,18 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
     for (path, film) in films {
         whole.add(&film, path, first)?;
     }
-    eprintln!(
-        "{} samples a pixel of {} films",
-        whole.sample_count(),
-        arguments.films.len()
-    );
-    let image = whole.film.image();
-    for path in &arguments.outputs {
-        match output::format_of(path)? {
-            Format::Exr => whole.write(path)?,
-            Format::Png | Format::Hdr => output::write(path, Rendered::from(&image), &whole.document)?,
-        }
-        eprintln!("wrote {}", path.display());
+    Ok(whole)
+}
+
+/// The picture of a film without its noise, where its document asks for that.
+///
+/// # Errors
+/// Where the denoiser is not there or fails, or the film lacks what it is led by.
+pub(super) fn denoised(film: &KeptFilm) -> anyhow::Result<Option<Denoised>> {
+    let how = film.document.view.denoise;
+    if how == Denoise::Off {
+        return Ok(None);
     }
-    arguments.answer.write(&serde_json::json!({
-        "version": env!("CARGO_PKG_VERSION"),
-        "films": arguments.films,
-        "samples": whole.samples,
-        "samples_per_pixel": whole.sample_count(),
-        "files": arguments.outputs,
-    }))
+    let noisy = Noisy::led_by(&film.features()?, &film.film, film.document.render.region);
+    Ok(Some(Denoiser::open()?.denoise(&noisy, how)?))
 }

@@ -22,6 +22,7 @@ mod settings;
 mod shell;
 mod study;
 mod turntable;
+mod waiting;
 
 use std::path::PathBuf;
 

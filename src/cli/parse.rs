@@ -11,6 +11,7 @@ use crate::document::{AreaLight, AreaLightShape, Background, Document, Parameter
 use crate::instructions::{Instructions, Missing};
 use crate::render::output::{OutputError, format_of};
 use crate::scene::environment::EnvironmentEncoding;
+use crate::store::replace::check_saving;
 
 /// An instruction set that this processor has.
 pub(super) fn instructions(text: &str) -> Result<Instructions, String> {
@@ -143,11 +144,20 @@ pub(super) fn picture(text: &str) -> Result<PathBuf, OutputError> {
     Ok(path)
 }
 
-/// Whether a file can be written there, asked before the work that fills it. What is there stays as it is.
+/// Whether a file can be saved there, asked before the work that fills it. What is there stays as it is.
 ///
 /// # Errors
 /// What the system says.
 pub(super) fn check_writable(path: &Path) -> anyhow::Result<()> {
+    check_opens(path)?;
+    Ok(check_saving(path)?)
+}
+
+/// Whether a file can be opened for writing, or a pipe: what is not replaced, but written into.
+///
+/// # Errors
+/// What the system says.
+pub(super) fn check_opens(path: &Path) -> anyhow::Result<()> {
     let existed = path.exists();
     let opened = OpenOptions::new().append(true).create(true).open(path);
     opened.with_context(|| {

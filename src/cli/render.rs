@@ -2,7 +2,6 @@
 
 use std::io::IsTerminal;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
@@ -12,10 +11,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::answer::{Destination, write_json};
 use super::parse;
 use super::scene::SceneArguments;
+use super::waiting::Waiting;
 use crate::document::{Denoise, Document};
 use crate::render::denoise::{Attendant, Denoised};
-use crate::render::output::{self, Format, Layers, Rendered};
-use crate::render::sums::KeptFilm;
+use crate::render::output::{self, Format, Rendered};
 use crate::render::{EngineChoice, Progress, Session, SessionError, StopReason};
 
 /// Step of the session between two looks at the clock and the progress bar.
@@ -35,7 +34,7 @@ pub struct RenderArguments {
     #[arg(long)]
     aovs: bool,
     /// Write the sums behind the picture into .exr pictures, so that `glossmith merge` can join it with others.
-    #[arg(long, conflicts_with = "aovs")]
+    #[arg(long)]
     keep_sums: bool,
     /// The number of each pixel's first sample: parts of a picture's samples can be rendered apart and joined.
     #[arg(long, value_name = "N", default_value_t = 0)]
@@ -77,21 +76,19 @@ pub fn run(arguments: &RenderArguments) -> anyhow::Result<()> {
         parse::check_writable(path)?;
     }
     arguments.report.iter().try_for_each(Destination::check_writable)?;
-    let takes_layers = |path: &PathBuf| output::format_of(path).is_ok_and(|format| format == Format::Exr);
-    if arguments.aovs && !arguments.outputs.iter().any(takes_layers) {
-        bail!("--aovs writes layers into .exr pictures; give --output FILE.exr");
+    if arguments.aovs {
+        check_takes("--aovs", &arguments.outputs)?;
     }
-    if arguments.keep_sums && !arguments.outputs.iter().any(takes_layers) {
-        bail!("--keep-sums writes sums into .exr pictures; give --output FILE.exr");
+    if arguments.keep_sums {
+        check_takes("--keep-sums", &arguments.outputs)?;
     }
     let begun = Instant::now();
     let scene = &arguments.scene;
     let mut session = Session::open(scene.engine)?;
+    let waiting = Waiting::on(session.assets().loading());
     let mut document = scene.document(&mut session)?;
+    drop(waiting);
     arguments.put_samples(&mut document)?;
-    if arguments.keep_sums {
-        KeptFilm::check(&document)?;
-    }
     let targets = Targets {
         outputs: &arguments.outputs,
         has_layers: arguments.aovs,
@@ -141,32 +138,26 @@ fn render(
 ) -> anyhow::Result<()> {
     if targets.has_layers {
         session.keep_guides("layers of the picture are written");
+    } else if targets.has_sums {
+        session.keep_guides("sums of the picture are kept");
     }
+    let waiting = Waiting::on(session.assets().loading());
     submit(&mut session, engine, document)?;
+    drop(waiting);
     eprintln!("{} ({})", session.engine(), session.engine().reason);
     let setup_seconds = begun.elapsed().as_secs_f64();
     let (progress, denoised) = step_to_end(&mut session, engine, document)?;
     eprintln!("{}", told(&progress));
     let image = session.image()?;
-    let shown = denoised.as_ref().map(|denoised| &denoised.image);
-    for path in targets.outputs {
-        if targets.has_sums && output::format_of(path)? == Format::Exr {
-            KeptFilm::of(session.film()?.clone(), document).write(path)?;
-        } else if targets.has_layers && output::format_of(path)? == Format::Exr {
-            let layers = Layers {
-                denoised: shown.cloned(),
-                ..session.layers()?
-            };
-            output::write_layers(path, &layers)?;
-        } else {
-            let rendered = Rendered {
-                image: &image,
-                denoised: shown.map(Arc::as_ref),
-            };
-            output::write(path, rendered, document)?;
-        }
-        eprintln!("wrote {}", path.display());
-    }
+    let layers = targets.has_layers.then(|| session.layers()).transpose()?;
+    let sums = targets.has_sums.then(|| session.kept_film()).transpose()?;
+    let rendered = Rendered {
+        denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
+        layers: layers.as_ref(),
+        sums: sums.as_ref(),
+        ..Rendered::from(&image)
+    };
+    write_pictures(targets.outputs, rendered, document)?;
     if let Some(destination) = targets.report {
         let mut report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
         add_denoised(&mut report, document, denoised.as_ref());
@@ -180,6 +171,27 @@ fn render(
     Ok(())
 }
 
+/// Writes a picture in all formats that are asked for.
+pub(super) fn write_pictures(outputs: &[PathBuf], rendered: Rendered<'_>, document: &Document) -> anyhow::Result<()> {
+    for path in outputs {
+        output::write(path, rendered, document)?;
+        eprintln!("wrote {}", path.display());
+    }
+    Ok(())
+}
+
+/// Whether layers or sums have a place: in .exr pictures alone.
+///
+/// # Errors
+/// Where none is written.
+pub(super) fn check_takes(option: &str, outputs: &[PathBuf]) -> anyhow::Result<()> {
+    let is_exr = |path: &PathBuf| output::format_of(path).is_ok_and(|format| format == Format::Exr);
+    if !outputs.iter().any(is_exr) {
+        bail!("{option} writes into .exr pictures; give --output FILE.exr");
+    }
+    Ok(())
+}
+
 /// A progress bar on a terminal, else none.
 pub(super) fn bar(template: &str, steps: u64) -> anyhow::Result<ProgressBar> {
     if !std::io::stderr().is_terminal() {
@@ -189,7 +201,7 @@ pub(super) fn bar(template: &str, steps: u64) -> anyhow::Result<ProgressBar> {
 }
 
 /// What became of the denoised picture, for the report: which quality, null without; seconds; error with its band.
-fn add_denoised(report: &mut serde_json::Value, document: &Document, denoised: Option<&Denoised>) {
+pub(super) fn add_denoised(report: &mut serde_json::Value, document: &Document, denoised: Option<&Denoised>) {
     let error = denoised.and_then(|denoised| denoised.error);
     report["denoised"] = denoised.map(|_| document.view.denoise.name()).into();
     report["denoise_seconds"] = denoised.map(|denoised| denoised.seconds).into();

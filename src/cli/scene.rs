@@ -14,13 +14,14 @@ use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::{Model, ModelOptions, ModelSource, is_model};
 use crate::store::exchange::{self, ReadOptions};
-use crate::store::file::{self, Opened};
+use crate::store::file::Opened;
+use crate::store::replace::save_atomically;
 
 /// Arguments that describe what is rendered, and how. Options stand over what files say.
 #[derive(Debug, Default, Args)]
 pub struct SceneArguments {
-    /// What to begin with: projects (.json), pictures saved here (.png, with the document inside), models, environments,
-    /// materials. Options stand over what they say.
+    /// What to begin with: projects (.json), pictures saved here (.png, with the document inside), models (several are
+    /// shown together), environments, materials. Options stand over what they say.
     #[arg(value_name = "FILE")]
     files: Vec<PathBuf>,
     /// What to render: a built-in model, a file (.glb, .gltf, .obj, .ply, .stl, .zip), or a folder with one [default: teapot].
@@ -41,8 +42,8 @@ pub struct SceneArguments {
     /// Write what became of the parts of the model's file (used, approximated, ignored, missing), as JSON.
     #[arg(long, value_name = "FILE")]
     pub(super) import_report: Option<PathBuf>,
-    /// Where the light comes from: a built-in environment, a picture of the whole sphere (.hdr, .exr, .png, .jpg, .tif,
-    /// .webp; lat-long or cube map), or a folder with the six faces of a cube [default: studio].
+    /// Where the light comes from: a built-in environment, a picture of the whole sphere (.hdr, .exr, .ktx2, .dds, .png,
+    /// .jpg, .tif, .webp; lat-long or cube map), or a folder with the six faces of a cube [default: studio].
     #[arg(long, value_name = "FILE|studio|sky|furnace")]
     environment: Option<EnvironmentSource>,
     /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light [default: display].
@@ -106,9 +107,7 @@ impl SceneArguments {
         for file in &self.files {
             open(file, &mut document, self.read_options())?;
         }
-        let named = self.files.iter().rev().find(|file| is_model_file(file));
-        let named = named.map(|file| ModelSource::File(file.clone()));
-        self.put_model(&mut document, session, self.model.clone().or(named))?;
+        self.put_model(&mut document, session)?;
         if let Some(name) = &self.material {
             let material = exchange::find(name, self.read_options())?;
             warn(&material.warnings);
@@ -133,16 +132,21 @@ impl SceneArguments {
         }
     }
 
-    /// The model: another one with its materials, lights and cameras, or other parts of the document's.
-    fn put_model(
-        &self,
-        document: &mut Document,
-        session: &mut Session,
-        source: Option<ModelSource>,
-    ) -> anyhow::Result<()> {
+    /// The model: another one with its materials, lights and cameras, or other parts of the document's. Several files are
+    /// shown together.
+    fn put_model(&self, document: &mut Document, session: &mut Session) -> anyhow::Result<()> {
+        let mut named = self.files.iter().filter(|file| is_model_file(file)).cloned();
+        let source = self.model.clone().or_else(|| named.next().map(ModelSource::File));
         let import = &mut document.import;
         if source.is_some() {
-            *import = ModelOptions::default();
+            *import = ModelOptions {
+                beside: if self.model.is_none() {
+                    named.collect()
+                } else {
+                    Vec::new()
+                },
+                ..ModelOptions::default()
+            };
         }
         import.scene = self.scene.or(import.scene);
         import.variant = self.variant.clone().or(import.variant.take());
@@ -254,6 +258,6 @@ fn write_import_report(path: &Path, model: &Model) -> anyhow::Result<()> {
         "animation_seconds": model.duration_s,
     });
     let text = serde_json::to_string_pretty(&json)?;
-    file::save_atomically(path, text.as_bytes())?;
+    save_atomically(path, text.as_bytes())?;
     Ok(())
 }

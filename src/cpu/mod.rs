@@ -123,25 +123,25 @@ impl CpuEngine {
 /// Adds a tile's samples to its sums.
 fn render_tile<T: Real>(integrator: &Integrator<'_, T>, origin: [u32; 2], work: &Work, sums: &mut Film) {
     let mut costs = sums.costs[0];
-    for pixel in 0..sums.pixel_count() {
-        let place = [pixel as u32 % sums.width, pixel as u32 / sums.width];
-        let place = [origin[0] + place[0], origin[1] + place[1]];
-        let mut halves = sums.halves(pixel);
-        for sample in work.first_sample..work.first_sample + work.count {
-            let path = integrator.trace_path(place, sample);
+    let mut halves: Vec<_> = (0..sums.pixel_count()).map(|pixel| sums.halves(pixel)).collect();
+    for sample in work.first_sample..work.first_sample + work.count {
+        let paths = integrator.trace_tile(origin, [sums.width, sums.height], sample);
+        for (pixel, path) in paths.iter().enumerate() {
             costs.rays += f64::from(path.rays);
             if !is_sound(path.radiance) {
                 costs.dropped += 1;
                 continue;
             }
-            halves[sample as usize % 2].add(path.radiance.to_f64());
+            halves[pixel][sample as usize % 2].add(path.radiance.to_f64());
             sums.add_coverage(pixel, path.alpha.to_f64());
             costs.clamped += path.clamped.to_f64();
             if let Some(guides) = sums.guides.get_mut(pixel) {
                 guides.add(&path.seen);
             }
         }
-        sums.set_halves(pixel, &halves);
+    }
+    for (pixel, halves) in halves.iter().enumerate() {
+        sums.set_halves(pixel, halves);
     }
     sums.costs[0] = costs;
 }

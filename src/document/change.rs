@@ -62,8 +62,9 @@ impl Change {
             != (&other_light.environment, other_light.environment_encoding);
         self.lighting |= light.background != other_light.background;
         self.materials |= !look_alike(old, new) || !emit_alike(lights, other_lights);
-        self.geometry |=
-            (&old.model, &old.import) != (&new.model, &new.import) || !have_same_shapes(lights, other_lights);
+        self.geometry |= (&old.model, &old.import, &old.hidden_objects)
+            != (&new.model, &new.import, &new.hidden_objects)
+            || !have_same_shapes(lights, other_lights);
         self.sampling |=
             (render.effects, render.region, render.first_sample) != (other.effects, other.region, other.first_sample);
     }

@@ -16,6 +16,8 @@ mod settings;
 pub mod technique;
 pub mod turntable;
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 pub use change::Change;
@@ -45,6 +47,10 @@ pub struct Document {
     pub model: ModelSource,
     /// What is shown of a file that holds more than one picture.
     pub import: ModelOptions,
+    /// The numbers of the objects of the model that are not shown, each once.
+    pub hidden_objects: Vec<usize>,
+    /// Names of objects of the model instead of the file's, by number; no picture depends on them.
+    pub object_names: BTreeMap<usize, String>,
     /// Whether the model stands on a ground plane.
     pub ground: bool,
     /// The materials in the order of the model's slots. A slot beyond the last takes the last one.
@@ -69,6 +75,8 @@ impl Default for Document {
         Self {
             model: ModelSource::default(),
             import: ModelOptions::default(),
+            hidden_objects: Vec::new(),
+            object_names: BTreeMap::new(),
             ground: false,
             materials: vec![MaterialSettings::default()],
             lighting: Lighting::default(),

@@ -52,10 +52,15 @@ impl GuideSums {
 impl Features {
     /// The means of a film's sums; `world_units_per_unit` is the geometry's. Nothing is seen where the film keeps none.
     pub fn of(film: &Film, world_units_per_unit: f64) -> Self {
+        Self::of_samples(film, |pixel| film.guide_samples(pixel), world_units_per_unit)
+    }
+
+    /// The same where it is said how many samples of a pixel are in the sums.
+    pub fn of_samples(film: &Film, samples: impl Fn(usize) -> f64, world_units_per_unit: f64) -> Self {
         let nothing = GuideSums::default();
         let sums = || (0..film.pixel_count()).map(|pixel| (pixel, film.guides.get(pixel).unwrap_or(&nothing)));
         let mean = |pixel: usize, sum: [f32; 3]| {
-            let per_sample = 1.0 / film.guide_samples(pixel).max(1.0) as f32;
+            let per_sample = 1.0 / samples(pixel).max(1.0) as f32;
             sum.map(|x| x * per_sample)
         };
         let depth = |sums: &GuideSums| match sums.hits {

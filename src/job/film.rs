@@ -262,7 +262,7 @@ impl Film {
         samples.max().unwrap_or(0)
     }
 
-    /// How many of a pixel's samples are in the sums of what they saw first.
+    /// How many of a pixel's samples are in the sums of what they saw first, where rendering began with the first.
     pub fn guide_samples(&self, pixel: usize) -> f64 {
         self.samples_of(pixel).min(f64::from(GUIDE_SAMPLES))
     }

@@ -9,6 +9,7 @@ pub mod albedo;
 pub mod chord;
 pub mod coat;
 pub mod curve;
+pub mod elementary;
 pub mod frame;
 pub mod fresnel;
 pub mod lobe;

@@ -107,19 +107,46 @@ pub fn sobol_second_reversed(index: u32) -> u32 {
 #[inline(always)]
 pub fn random_pair_bits(state: RandomState, dimension: u32) -> [u32; 2] {
     match state.sequence {
-        Sequence::Sobol => {
-            let seed = hash_bits(state.key ^ dimension.wrapping_mul(0x9e37_79b9).wrapping_add(0x2545_f491));
-            let index = scramble_from_low(state.sample.reverse_bits(), seed).reverse_bits();
-            [
-                scramble_from_low(index, hash_bits(seed ^ 0x68bc_21eb)).reverse_bits(),
-                scramble_from_low(sobol_second_reversed(index), hash_bits(seed ^ 0x02e5_be93)).reverse_bits(),
-            ]
-        }
-        Sequence::Independent => [
-            random_bits(state.key, state.sample, 2 * dimension),
-            random_bits(state.key, state.sample, 2 * dimension + 1),
-        ],
+        Sequence::Sobol => sobol_pair_bits(state.key, state.sample, dimension),
+        Sequence::Independent => independent_pair_bits(state.key, state.sample, dimension),
     }
+}
+
+#[inline(always)]
+fn sobol_pair_bits(key: u32, sample: u32, dimension: u32) -> [u32; 2] {
+    let seed = hash_bits(key ^ dimension.wrapping_mul(0x9e37_79b9).wrapping_add(0x2545_f491));
+    let index = scramble_from_low(sample.reverse_bits(), seed).reverse_bits();
+    [
+        scramble_from_low(index, hash_bits(seed ^ 0x68bc_21eb)).reverse_bits(),
+        scramble_from_low(sobol_second_reversed(index), hash_bits(seed ^ 0x02e5_be93)).reverse_bits(),
+    ]
+}
+
+#[inline(always)]
+fn independent_pair_bits(key: u32, sample: u32, dimension: u32) -> [u32; 2] {
+    [
+        random_bits(key, sample, 2 * dimension),
+        random_bits(key, sample, 2 * dimension + 1),
+    ]
+}
+
+/// The same of paths that differ in their keys alone. Written so that compilers turn it into lanes.
+#[inline(always)]
+pub fn random_pairs_bits<const N: usize>(keys: [u32; N], state: RandomState, dimension: u32) -> [[u32; N]; 2] {
+    let mut pairs = [[0; N]; 2];
+    match state.sequence {
+        Sequence::Sobol => {
+            for i in 0..N {
+                [pairs[0][i], pairs[1][i]] = sobol_pair_bits(keys[i], state.sample, dimension);
+            }
+        }
+        Sequence::Independent => {
+            for i in 0..N {
+                [pairs[0][i], pairs[1][i]] = independent_pair_bits(keys[i], state.sample, dimension);
+            }
+        }
+    }
+    pairs
 }
 
 /// The pair of numbers in [0, 1) number `dimension` of this path.

@@ -6,6 +6,8 @@
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
+use super::elementary;
+
 /// The outcome of a comparison: `bool`, or one truth value a lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// True where any lane is true.
@@ -63,7 +65,7 @@ pub trait Real:
     fn ln(self) -> Self;
     /// Positive `self` to the power of `exponent`.
     fn powf(self, exponent: Self) -> Self;
-    /// The angle of the vector (`other`, `self`) in radians, in (−π, π].
+    /// The angle of the vector (`other`, `self`), both finite, in radians, in [−π, π].
     fn atan2(self, other: Self) -> Self;
     /// The largest integer that is not above `self`.
     fn floor(self) -> Self;
@@ -91,7 +93,7 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($type:ident) => {
+    ($type:ident, $atan2:path) => {
         impl Real for $type {
             type Mask = bool;
             #[inline(always)]
@@ -148,7 +150,7 @@ macro_rules! real {
             }
             #[inline(always)]
             fn atan2(self, other: Self) -> Self {
-                $type::atan2(self, other)
+                $atan2(self, other)
             }
             #[inline(always)]
             fn floor(self) -> Self {
@@ -158,5 +160,5 @@ macro_rules! real {
     };
 }
 
-real!(f32);
-real!(f64);
+real!(f32, elementary::atan2);
+real!(f64, f64::atan2);

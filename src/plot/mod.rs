@@ -11,6 +11,7 @@ mod solids;
 pub use charts::{BarPlot, NamedPoint, PictureSheet, PointPlot};
 pub use maps::scale_color;
 
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Once;
 
@@ -94,12 +95,15 @@ pub fn bar_plot_file(path: &Path, plot: &BarPlot) -> Result<(), PlotError> {
     figure::write(path, plot)
 }
 
-/// Pictures in rows as .png.
+/// Pictures in rows as .png, into a file that is open.
 ///
 /// # Errors
 /// Where the file can't be written.
-pub fn picture_sheet_file(path: &Path, sheet: &PictureSheet) -> Result<(), PlotError> {
-    figure::write(path, sheet)
+pub fn write_picture_sheet(file: &mut (impl io::Write + io::Seek), sheet: &PictureSheet) -> io::Result<()> {
+    let picture = figure::picture(sheet, Style::light(1.0)).map_err(|error| io::Error::other(error.to_string()))?;
+    picture
+        .write_to(file, image::ImageFormat::Png)
+        .map_err(io::Error::other)
 }
 
 /// The samples seen from the lobe's middle, as in the paper's Fig. 1: the plane's horizontal axis lies in the plane of

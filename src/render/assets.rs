@@ -6,10 +6,10 @@ use super::session::SessionError;
 use crate::scene::environment::{self, Environment, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::light::AreaShape;
 use crate::scene::texture::Textures;
-use crate::scene::{self, Geometry, Model, ModelOptions, ModelSource};
+use crate::scene::{self, Geometry, Loading, Model, ModelError, ModelOptions, ModelSource};
 
-/// What a geometry is made of: model, ground, area lights.
-type GeometryKey = (ModelKey, bool, Vec<AreaShape>);
+/// What a geometry is made of: model, ground, area lights, hidden objects.
+type GeometryKey = (ModelKey, bool, Vec<AreaShape>, Vec<usize>);
 
 /// A model's file, and what is shown of it.
 type ModelKey = (ModelSource, ModelOptions);
@@ -27,7 +27,21 @@ const GEOMETRIES_OF_MODEL: usize = 2;
 /// two, as comparisons and studies do. Within 1 GiB; what was not used for longest goes first. Clones share what they
 /// keep, so that two sessions with the same scene load it once.
 #[derive(Clone, Debug, Default)]
-pub struct Assets(Arc<Mutex<Kept>>);
+pub struct Assets {
+    kept: Arc<Mutex<Kept>>,
+    loading: Loading,
+}
+
+/// What files hold after they were read again.
+#[derive(Clone, Debug)]
+pub struct Reloaded {
+    /// The model as it was, where it is known.
+    pub before: Option<Arc<Model>>,
+    /// The model.
+    pub model: Arc<Model>,
+    /// The environment.
+    pub environment: Arc<Environment>,
+}
 
 #[derive(Debug)]
 struct Kept {
@@ -60,12 +74,20 @@ impl Assets {
             memory,
             ..Kept::default()
         };
-        Self(Arc::new(Mutex::new(kept)))
+        Self {
+            kept: Arc::new(Mutex::new(kept)),
+            loading: Loading::default(),
+        }
+    }
+
+    /// What is being loaded, to be told and called off by those who wait.
+    pub fn loading(&self) -> &Loading {
+        &self.loading
     }
 
     /// What a panic left is whole: every change is a single assignment.
     fn kept(&self) -> MutexGuard<'_, Kept> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The model of a source, loaded unless it is kept.
@@ -74,7 +96,7 @@ impl Assets {
     /// Names the file, what is wrong with it and what to do.
     pub fn model(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Model>, SessionError> {
         let mut kept = self.kept();
-        let model = kept.model(&(source.clone(), options.clone()))?;
+        let model = kept.model(&(source.clone(), options.clone()), &self.loading)?;
         kept.tidy();
         Ok(model)
     }
@@ -85,12 +107,12 @@ impl Assets {
     /// As [`Assets::model`].
     pub fn textures(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Textures>, SessionError> {
         let mut kept = self.kept();
-        let textures = kept.textures(&(source.clone(), options.clone()))?;
+        let textures = kept.textures(&(source.clone(), options.clone()), &self.loading)?;
         kept.tidy();
         Ok(textures)
     }
 
-    /// The geometry of a source, with or without ground, with area lights.
+    /// The geometry of a source, with or without ground, with area lights, without the objects that are hidden.
     ///
     /// # Errors
     /// As [`Assets::model`].
@@ -100,9 +122,11 @@ impl Assets {
         options: &ModelOptions,
         ground: bool,
         area_lights: Vec<AreaShape>,
+        hidden: Vec<usize>,
     ) -> Result<Arc<Geometry>, SessionError> {
         let mut kept = self.kept();
-        let geometry = kept.geometry(((source.clone(), options.clone()), ground, area_lights))?;
+        let key = ((source.clone(), options.clone()), ground, area_lights, hidden);
+        let geometry = kept.geometry(key, &self.loading)?;
         kept.tidy();
         Ok(geometry)
     }
@@ -117,7 +141,7 @@ impl Assets {
         encoding: EnvironmentEncoding,
     ) -> Result<Arc<Environment>, SessionError> {
         let mut kept = self.kept();
-        let environment = kept.environment(&(source.clone(), encoding))?;
+        let environment = kept.environment(&(source.clone(), encoding), &self.loading)?;
         kept.tidy();
         Ok(environment)
     }
@@ -140,13 +164,31 @@ impl Assets {
         kept.environments.put(key, Arc::new(environment), now);
     }
 
-    /// Forgets files, so that they are read again.
-    pub fn reload(&self) {
+    /// Reads the files of a model and of an environment again and forgets all others; what they hold now, and the model
+    /// before. Where either cannot be read, all stays as it is.
+    ///
+    /// # Errors
+    /// As [`Assets::model`] and [`Assets::environment`].
+    pub fn reload(
+        &self,
+        source: &ModelSource,
+        options: &ModelOptions,
+        environment: &EnvironmentSource,
+        encoding: EnvironmentEncoding,
+    ) -> Result<Reloaded, SessionError> {
+        let mut fresh = Kept::default();
+        let (of_model, of_environment) = ((source.clone(), options.clone()), (environment.clone(), encoding));
+        let model = fresh.model(&of_model, &self.loading)?;
+        let environment = fresh.environment(&of_environment, &self.loading)?;
         let mut kept = self.kept();
-        *kept = Kept {
-            memory: kept.memory,
-            ..Kept::default()
-        };
+        fresh.memory = kept.memory;
+        let before = kept.models.get(&of_model, 0);
+        *kept = fresh;
+        Ok(Reloaded {
+            before,
+            model,
+            environment,
+        })
     }
 }
 
@@ -156,13 +198,13 @@ impl Kept {
         self.clock
     }
 
-    fn model(&mut self, key: &ModelKey) -> Result<Arc<Model>, SessionError> {
+    fn model(&mut self, key: &ModelKey, loading: &Loading) -> Result<Arc<Model>, SessionError> {
         let now = self.now();
         if let Some(model) = self.models.get(key, now) {
             return Ok(model);
         }
         let (source, options) = key;
-        let model = Arc::new(scene::load_with(source, options)?);
+        let model = Arc::new(scene::load_watched(source, options, loading)?);
         if let Some(summary) = model.report.summary() {
             log::warn!("{source}: {summary}");
         }
@@ -170,24 +212,26 @@ impl Kept {
         Ok(model)
     }
 
-    fn textures(&mut self, key: &ModelKey) -> Result<Arc<Textures>, SessionError> {
+    fn textures(&mut self, key: &ModelKey, loading: &Loading) -> Result<Arc<Textures>, SessionError> {
         let now = self.now();
         if let Some(textures) = self.textures.get(key, now) {
             return Ok(textures);
         }
-        let textures = Arc::new(Textures::new(&*self.model(key)?));
+        let textures = Arc::new(Textures::new(&*self.model(key, loading)?));
         textures.warnings.iter().for_each(|warning| log::warn!("{warning}"));
         self.textures.put(key.clone(), textures.clone(), now);
         Ok(textures)
     }
 
-    fn geometry(&mut self, key: GeometryKey) -> Result<Arc<Geometry>, SessionError> {
+    fn geometry(&mut self, key: GeometryKey, loading: &Loading) -> Result<Arc<Geometry>, SessionError> {
         let now = self.now();
         if let Some(geometry) = self.geometries.get(&key, now) {
             return Ok(geometry);
         }
-        let (of_model, ground, area_lights) = &key;
-        let geometry = Arc::new(Geometry::build_lit(&*self.model(of_model)?, *ground, area_lights));
+        let (of_model, ground, area_lights, hidden) = &key;
+        let model = self.model(of_model, loading)?;
+        let geometry = Geometry::build_watched(&model, *ground, area_lights, hidden, loading);
+        let geometry = Arc::new(geometry.map_err(ModelError::from)?);
         let others = |(of, ..): &GeometryKey| of == of_model;
         while self.geometries.count(others) >= GEOMETRIES_OF_MODEL {
             self.geometries.drop_oldest(others);
@@ -196,12 +240,12 @@ impl Kept {
         Ok(geometry)
     }
 
-    fn environment(&mut self, key: &EnvironmentKey) -> Result<Arc<Environment>, SessionError> {
+    fn environment(&mut self, key: &EnvironmentKey, loading: &Loading) -> Result<Arc<Environment>, SessionError> {
         let now = self.now();
         if let Some(environment) = self.environments.get(key, now) {
             return Ok(environment);
         }
-        let environment = Arc::new(environment::load_encoded(&key.0, key.1)?);
+        let environment = Arc::new(environment::load_watched(&key.0, key.1, loading)?);
         environment.warnings.iter().for_each(|warning| log::warn!("{warning}"));
         self.environments.put(key.clone(), environment.clone(), now);
         Ok(environment)

@@ -1,14 +1,17 @@
 //! Without a hardware GPU: is software Vulkan or our own processor engine faster on this machine?
 //!
-//! Measured once on a small picture of the default document, and remembered for this driver and version.
+//! Measured on a small picture of the default document while nothing else is at work, the engines by turns, and
+//! remembered for this driver and version. Where pictures render at rates that say otherwise, it is measured again.
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::assets::Assets;
 use super::compile::Compiler;
 use super::engine::{Engine, EngineInfo, Precision, cpu, gpu};
+use super::quiet::{self, Quiet};
 use crate::document::Document;
 use crate::gpu::{AdapterKind, GpuDevice};
 use crate::job::Job;
@@ -18,6 +21,11 @@ const SIZE: u32 = 96;
 /// How often the engines are measured in turns, and how long each time.
 const TURNS: usize = 7;
 const DURATION: Duration = Duration::from_millis(60);
+/// How long it must have been quiet before a turn, and how often is looked.
+const REST: Duration = Duration::from_millis(200);
+const GLANCE: Duration = Duration::from_millis(20);
+/// By how much software Vulkan must be slower than the processor on the same picture for another measurement.
+const DOUBT: f64 = 1.1;
 
 /// Opens whichever engine is faster. Where that is to be measured and nobody may wait for it, the processor's is opened:
 /// compiling a kernel to measure takes software Vulkan some ten seconds, and what is found counts the next time.
@@ -26,13 +34,7 @@ pub(super) fn fastest_without_hardware(may_wait: bool) -> (Engine, EngineInfo) {
         Ok(device) => device,
         Err(_) => return cpu("there is no Vulkan driver".to_owned()),
     };
-    let machine = format!(
-        "{} | {} | {} threads | {}",
-        device.info.name,
-        device.driver(),
-        rayon::current_num_threads(),
-        env!("CARGO_PKG_VERSION")
-    );
+    let machine = machine(&device);
     let remembered = read_verdict(&machine);
     if let Some(verdict) = remembered.as_ref().filter(|verdict| verdict.ratio >= 1.0) {
         return cpu(verdict.reason());
@@ -42,15 +44,15 @@ pub(super) fn fastest_without_hardware(may_wait: bool) -> (Engine, EngineInfo) {
     };
     let verdict = match remembered {
         Some(verdict) => verdict,
-        None if may_wait => match measured(&mut software.0, machine) {
+        // Who waits does nothing else.
+        None if may_wait => match measured(&mut software.0, machine, &Quiet::new()) {
             Some(verdict) => verdict,
             None => return cpu("software Vulkan does not run the renderer".to_owned()),
         },
         None => {
-            let work = move || measured(&mut software.0, machine);
-            // Without a thread the next start tries again.
-            let _ = std::thread::Builder::new().name("calibration".to_owned()).spawn(work);
-            return cpu("no hardware GPU; software Vulkan is being measured, for the next start".to_owned());
+            measure_when_quiet();
+            let reason = "no hardware GPU; software Vulkan is measured once nothing renders, for the next start";
+            return cpu(reason.to_owned());
         }
     };
     if verdict.ratio >= 1.0 {
@@ -58,6 +60,52 @@ pub(super) fn fastest_without_hardware(may_wait: bool) -> (Engine, EngineInfo) {
     }
     software.1.reason = verdict.reason();
     software
+}
+
+/// Takes note of how fast software Vulkan renders a picture beside the processor, both in samples a second: where the
+/// processor is faster, what was measured does not hold, and is measured again.
+pub(super) fn compare_rates(software: f64, processor: f64) {
+    if is_doubtful(software, processor) && measure_when_quiet() {
+        log::info!(
+            "software Vulkan renders {:.1} × as fast as the processor here: it is measured again",
+            software / processor
+        );
+    }
+}
+
+fn is_doubtful(software: f64, processor: f64) -> bool {
+    software > 0.0 && processor > DOUBT * software
+}
+
+/// What the measurement holds for.
+fn machine(device: &GpuDevice) -> String {
+    format!(
+        "{} | {} | {} threads | {} | in a quiet time",
+        device.info.name,
+        device.driver(),
+        rayon::current_num_threads(),
+        env!("CARGO_PKG_VERSION")
+    )
+}
+
+/// Measures on a thread of its own; false where that is under way, or was done since the start.
+fn measure_when_quiet() -> bool {
+    static IS_MEASURED: AtomicBool = AtomicBool::new(false);
+    if IS_MEASURED.swap(true, Ordering::Relaxed) {
+        return false;
+    }
+    let work = || {
+        super::priority::lower_thread_priority();
+        let device = GpuDevice::open(AdapterKind::Software).ok()?;
+        let machine = machine(&device);
+        let mut software = gpu(device, String::new()).ok()?;
+        let verdict = measured(&mut software.0, machine, quiet::common())?;
+        log::info!("{}", verdict.reason());
+        Some(())
+    };
+    // Without a thread the next start tries again.
+    let spawned = std::thread::Builder::new().name("calibration".to_owned()).spawn(work);
+    spawned.is_ok()
 }
 
 /// What was measured.
@@ -81,28 +129,62 @@ impl Verdict {
 }
 
 /// Measures, and remembers it; `None` where one of the engines fails.
-fn measured(software: &mut Engine, machine: String) -> Option<Verdict> {
+fn measured(software: &mut Engine, machine: String, quiet: &Quiet) -> Option<Verdict> {
     let mut document = Document::default();
     (document.render.width, document.render.height) = (SIZE, SIZE);
     let job = Arc::new(Compiler::default().compile(&document, &Assets::default()).ok()?);
     let (mut processor, _) = cpu(String::new());
-    // On threads of its own, as software Vulkan has its own: the window may be rendering on the common ones.
+    // On threads of its own, as software Vulkan has its own, of the same priority.
     let threads = rayon::ThreadPoolBuilder::new().build().ok()?;
     threads.install(|| warm(&mut processor, &job))?;
     warm(software, &job)?;
-    let mut ratios = Vec::new();
-    for _ in 0..TURNS {
-        let own = threads.install(|| samples_per_second(&mut processor, &job))?;
-        ratios.push(own / samples_per_second(software, &job)?);
-    }
-    // The middle one, as other work may come in between.
-    ratios.sort_by(f64::total_cmp);
-    let verdict = Verdict {
-        machine,
-        ratio: ratios[TURNS / 2],
-    };
+    let own = || threads.install(|| samples_per_second(&mut processor, &job));
+    let ratio = ratio_by_turns(quiet, own, || samples_per_second(software, &job))?;
+    let verdict = Verdict { machine, ratio };
     write_verdict(&verdict);
     Some(verdict)
+}
+
+/// The middle one of the ratios of two rates, which are measured by turns, each of them first in every other turn. Turns
+/// wait until it has been quiet for a while, and those that work fell into do not count.
+fn ratio_by_turns(
+    quiet: &Quiet,
+    mut own: impl FnMut() -> Option<f64>,
+    mut other: impl FnMut() -> Option<f64>,
+) -> Option<f64> {
+    let mut ratios = Vec::new();
+    while ratios.len() < TURNS {
+        let span = rested(quiet);
+        let ratio = if ratios.len() % 2 == 0 {
+            let own = own()?;
+            own / other()?
+        } else {
+            let other = other()?;
+            own()? / other
+        };
+        if quiet.span() == Some(span) {
+            ratios.push(ratio);
+        }
+    }
+    ratios.sort_by(f64::total_cmp);
+    Some(ratios[TURNS / 2])
+}
+
+/// Waits until it has been quiet for a while; the number of the quiet time.
+fn rested(quiet: &Quiet) -> u64 {
+    let mut since: Option<(u64, Instant)> = None;
+    loop {
+        match (quiet.span(), since) {
+            (Some(span), Some((known, at))) if span == known => {
+                if at.elapsed() >= REST {
+                    return span;
+                }
+            }
+            (Some(span), _) => since = Some((span, Instant::now())),
+            (None, _) => since = None,
+        }
+        std::thread::sleep(GLANCE);
+    }
 }
 
 /// Renders a sample of every pixel: the first one compiles.
@@ -145,5 +227,45 @@ fn write_verdict(verdict: &Verdict) {
     };
     if write().is_none() {
         log::debug!("the engine's measurement could not be cached");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    /// The processor's engine does twice what the other one does, but a quarter while the window renders on its cores.
+    #[test]
+    fn what_is_measured_beside_other_work_does_not_count() {
+        let quiet = Quiet::new();
+        let turn = Cell::new(0);
+        let order = std::cell::RefCell::new(String::new());
+        let own = || {
+            order.borrow_mut().push('o');
+            // Somebody renders during more than half of the turns.
+            let is_disturbed = turn.get() < TURNS + 2;
+            turn.set(turn.get() + 1);
+            let _work = is_disturbed.then(|| quiet.work());
+            Some(if is_disturbed { 0.5 } else { 2.0 })
+        };
+        let other = || {
+            order.borrow_mut().push('s');
+            Some(1.0)
+        };
+        assert_eq!(ratio_by_turns(&quiet, own, other), Some(2.0));
+        assert!(
+            order.borrow().ends_with("ossoossoossoos"),
+            "by turns: {}",
+            order.borrow()
+        );
+    }
+
+    #[test]
+    fn a_rate_far_below_the_processors_is_doubted() {
+        assert!(is_doubtful(1.0e6, 2.0e6));
+        assert!(!is_doubtful(1.0e6, 1.05e6) && !is_doubtful(2.0e6, 1.0e6));
+        assert!(!is_doubtful(0.0, 1.0e6), "nothing is known of it");
     }
 }

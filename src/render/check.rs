@@ -1,5 +1,6 @@
 //! Proof on the user's own machine: samples against densities, energy, engines and strategies against each other.
 
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use rayon::prelude::*;
@@ -24,6 +25,9 @@ const LEVEL: f64 = 1e-3;
 /// Roughness and view angles of the full grid.
 const ROUGHNESS: [f32; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
 const VIEW_ANGLES_DEG: [f32; 5] = [0.0, 30.0, 60.0, 80.0, 89.0];
+
+/// How long pictures are rendered before it is asked whether to stop.
+const STEP: Duration = Duration::from_millis(200);
 
 /// What the weight of an f64 sample may differ from evaluate / density, relative to itself.
 const WEIGHT_ERROR: f64 = 1e-9;
@@ -213,37 +217,54 @@ pub fn chi_square(
     test_samples(&grid, &samples, &[frame.normal], density).p_value
 }
 
-/// Runs the checks; `progress` is told the name of each group before it starts.
+/// Runs the checks; `progress` is told the name of each group before it starts. `None` where `stop` was set meanwhile.
 ///
 /// # Errors
 /// Where the engine can't be opened or fails.
-pub fn run(options: CheckOptions, progress: impl Fn(&str)) -> Result<Vec<Check>, SessionError> {
+pub fn run(
+    options: CheckOptions,
+    stop: &AtomicBool,
+    progress: impl Fn(&str),
+) -> Result<Option<Vec<Check>>, SessionError> {
+    type Group = fn(CheckOptions, &AtomicBool) -> Result<Vec<Check>, SessionError>;
+    let groups: [(&str, Group); 5] = [
+        ("samples against densities", samples),
+        ("energy", |_, stop| Ok(energy(stop))),
+        ("weights", |_, stop| Ok(weights(stop))),
+        ("white furnace", furnace),
+        ("engines and strategies", pictures),
+    ];
     let mut checks = Vec::new();
-    progress("samples against densities");
-    checks.extend(samples(options)?);
-    progress("energy");
-    checks.extend(energy());
-    checks.extend(weights());
-    progress("white furnace");
-    checks.extend(furnace(options)?);
-    progress("engines and strategies");
-    checks.extend(pictures(options)?);
-    Ok(checks)
+    for (name, group) in groups {
+        progress(name);
+        checks.extend(group(options, stop)?);
+        if stop.load(Ordering::Relaxed) {
+            return Ok(None);
+        }
+    }
+    Ok(Some(checks))
 }
 
-fn samples(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
+/// What is done with each case, unless the checks are stopped.
+fn unless_stopped<T>(stop: &AtomicBool, work: impl FnOnce() -> T) -> Option<T> {
+    (!stop.load(Ordering::Relaxed)).then(work)
+}
+
+fn samples(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, SessionError> {
     let cases = sample_cases(options.thorough);
     let sampler = Sampler::open(options.engine)?;
     let clouds = cases
         .iter()
-        .map(|case| sampler.draw(case))
+        .map_while(|case| unless_stopped(stop, || sampler.draw(case)))
         .collect::<Result<Vec<_>, _>>()?;
     let limit = sidak_level(LEVEL, cases.len());
     let check = |(case, cloud): (&ScatterRequest, &ScatterCloud)| {
-        let value = chi_square(case, cloud, |_| 1.0);
-        Check::new("samples", describe(case), "p", value, limit)
+        unless_stopped(stop, || {
+            let value = chi_square(case, cloud, |_| 1.0);
+            Check::new("samples", describe(case), "p", value, limit)
+        })
     };
-    Ok(cases.par_iter().zip(&clouds).map(check).collect())
+    Ok(cases.par_iter().zip(&clouds).filter_map(check).collect())
 }
 
 /// The name of a case.
@@ -293,7 +314,7 @@ fn twin_samples(case: &ScatterRequest, count: u32) -> impl Iterator<Item = LobeS
 }
 
 /// The mean weight of the samples: 1 for lobes that weigh 1 under the mirror policy, never above 1.
-fn energy() -> Vec<Check> {
+fn energy(stop: &AtomicBool) -> Vec<Check> {
     let check = |case: &ScatterRequest| {
         let mean = twin_samples(case, 4096).map(|drawn| drawn.weight).sum::<f64>() / 4096.0;
         let is_conserving = case.lobe.traits().weighs_one && case.horizon == Horizon::Mirror;
@@ -306,15 +327,17 @@ fn energy() -> Vec<Check> {
         let limit = if case.lobe.facets() == Facets::All { 0.15 } else { 2e-3 };
         Check::new("energy", describe(case), "error", value, limit)
     };
-    summed_up(
-        "energy",
-        "mean weight",
-        sample_cases(true).par_iter().map(check).collect(),
-    )
+    summed_up("energy", "mean weight", of_all_cases(stop, check))
+}
+
+/// A check of every case of the whole grid.
+fn of_all_cases(stop: &AtomicBool, check: impl Fn(&ScatterRequest) -> Check + Sync) -> Vec<Check> {
+    let checked = |case: &ScatterRequest| unless_stopped(stop, || check(case));
+    sample_cases(true).par_iter().filter_map(checked).collect()
 }
 
 /// That a sample's weight is evaluate / density where it landed.
-fn weights() -> Vec<Check> {
+fn weights(stop: &AtomicBool) -> Vec<Check> {
     let check = |case: &ScatterRequest| {
         let frame = ScatterRequest::frame::<f64>();
         let error = |drawn: LobeSample<f64>| {
@@ -330,7 +353,7 @@ fn weights() -> Vec<Check> {
     summed_up(
         "weights",
         "weight against evaluate / density",
-        sample_cases(true).par_iter().map(check).collect(),
+        of_all_cases(stop, check),
     )
 }
 
@@ -348,19 +371,20 @@ fn document(model: ModelSource, light: EnvironmentSource, samples: u32) -> Docum
     document
 }
 
-fn film(engine: EngineChoice, document: &Document) -> Result<Film, SessionError> {
+/// What has been rendered when it is done, or the checks are stopped.
+fn film(engine: EngineChoice, document: &Document, stop: &AtomicBool) -> Result<Film, SessionError> {
     let mut session = Session::open(engine)?;
     session.submit(document)?;
-    while !session.step(Duration::from_secs(1))?.is_done {}
+    while !stop.load(Ordering::Relaxed) && !session.step(STEP)?.is_done {}
     Ok(session.film()?.clone())
 }
 
-fn furnace(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
+fn furnace(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, SessionError> {
     let check = |roughness: f32| {
         let mut document = document(ModelSource::Teapot, EnvironmentSource::Furnace, 4);
         document.materials[0].roughness = roughness;
         document.materials[0].fresnel = crate::optics::fresnel::Fresnel::None;
-        let image = film(options.engine, &document)?.image();
+        let image = film(options.engine, &document, stop)?.image();
         let error = |pixel: &[f32; 4]| f64::from((pixel[1] - 1.0).abs());
         let value = image.pixels.iter().map(error).fold(0.0, f64::max);
         let name = format!("teapot, geometric, roughness {roughness}: worst pixel");
@@ -369,7 +393,7 @@ fn furnace(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
     [0.0, 0.1, 0.5, 1.0].into_iter().map(check).collect()
 }
 
-fn pictures(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
+fn pictures(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, SessionError> {
     let samples = if options.thorough { 1024 } else { 128 };
     let mut subject = document(ModelSource::Teapot, EnvironmentSource::Studio, samples);
     subject.materials[0].roughness = 0.5;
@@ -386,10 +410,11 @@ fn pictures(options: CheckOptions) -> Result<Vec<Check>, SessionError> {
         (document.render.strategy, document.render.seed) = (strategy, seed);
         document
     };
-    let mis = film(options.engine, &with(Strategy::Mis, 0))?;
-    let lobe = film(options.engine, &with(Strategy::Lobe, 1))?;
-    let light = film(options.engine, &with(Strategy::Light, 2))?;
-    let processor = film(EngineChoice::Cpu, &with(Strategy::Mis, 3))?;
+    let film = |engine, strategy, seed| film(engine, &with(strategy, seed), stop);
+    let mis = film(options.engine, Strategy::Mis, 0)?;
+    let lobe = film(options.engine, Strategy::Lobe, 1)?;
+    let light = film(options.engine, Strategy::Light, 2)?;
+    let processor = film(EngineChoice::Cpu, Strategy::Mis, 3)?;
     let compare = |group, name: &str, other: &Film| {
         let value = mis.difference_in_sigma(other).abs();
         Check::new(group, name, "sigma", value, 4.0)

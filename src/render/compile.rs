@@ -38,7 +38,13 @@ impl Compiler {
         let (source, options) = (&document.model, &document.import);
         let model = assets.model(source, options)?;
         let shapes = document.lighting.area_lights.iter().map(AreaLight::shape).collect();
-        let geometry = assets.geometry(source, options, document.ground, shapes)?;
+        let geometry = assets.geometry(
+            source,
+            options,
+            document.ground,
+            shapes,
+            document.hidden_objects.clone(),
+        )?;
         let lighting = &document.lighting;
         let environment = assets.environment(&lighting.environment, lighting.environment_encoding)?;
         let textures = assets.textures(source, options)?;

@@ -88,13 +88,16 @@ pub(super) enum Engine {
     Gpu(Box<GpuEngine>),
 }
 
+/// Why an engine renders that was not chosen automatically.
+const CHOSEN: &str = "chosen by you";
+
 impl Engine {
     /// Opens what was asked for. Where it is not known yet which engine is faster it is measured, for seconds, or else
     /// (`may_wait` false) beside the processor's engine and for the next time.
     pub(super) fn open(choice: EngineChoice, may_wait: bool) -> Result<(Self, EngineInfo), GpuError> {
         match choice {
-            EngineChoice::Cpu => Ok(cpu("asked for".to_owned())),
-            EngineChoice::Gpu => gpu(GpuDevice::open(AdapterKind::Any)?, "asked for".to_owned()),
+            EngineChoice::Cpu => Ok(cpu(CHOSEN.to_owned())),
+            EngineChoice::Gpu => gpu(GpuDevice::open(AdapterKind::Any)?, CHOSEN.to_owned()),
             EngineChoice::Auto => Ok(auto(may_wait)),
         }
     }

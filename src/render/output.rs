@@ -1,19 +1,22 @@
 //! Pictures written to files.
 
-use std::fs::File;
-use std::io::{BufWriter, Write as _};
+use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, WritableImage as _};
 use image::Rgb;
 use image::codecs::hdr::HdrEncoder;
 
 use super::display::display;
+use super::sums::KeptFilm;
 use crate::document::Document;
 use crate::job::features::Features;
-use crate::job::film::Image;
+use crate::job::film::{Film, Image};
+use crate::store::FileError;
 use crate::store::picture::png_bytes;
 use crate::store::project::document_text;
+use crate::store::replace::save_by;
 
 /// Why a picture can't be written.
 #[derive(Debug, thiserror::Error)]
@@ -25,13 +28,8 @@ pub enum OutputError {
         path: PathBuf,
     },
     /// The file could not be written.
-    #[error("{}: could not be written: {reason}. Is there room, and may the folder be written to?", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        reason: String,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 /// A picture to write.
@@ -41,11 +39,30 @@ pub struct Rendered<'a> {
     pub image: &'a Image,
     /// The same denoised: what is shown, where it is there.
     pub denoised: Option<&'a Image>,
+    /// What stands beside the colours in an .exr file.
+    pub layers: Option<&'a Layers>,
+    /// The sums that an .exr file keeps, to be joined with others.
+    pub sums: Option<&'a KeptFilm>,
 }
 
 impl<'a> From<&'a Image> for Rendered<'a> {
     fn from(image: &'a Image) -> Self {
-        Self { image, denoised: None }
+        Self {
+            image,
+            denoised: None,
+            layers: None,
+            sums: None,
+        }
+    }
+}
+
+impl<'a> From<&'a Layers> for Rendered<'a> {
+    fn from(layers: &'a Layers) -> Self {
+        Self {
+            denoised: layers.denoised.as_deref(),
+            layers: Some(layers),
+            ..Self::from(&layers.image)
+        }
     }
 }
 
@@ -62,6 +79,20 @@ pub struct Layers {
     pub samples: Vec<f32>,
     /// Variance of each pixel's mean luminance; infinite below two samples.
     pub variance: Vec<f32>,
+}
+
+impl Layers {
+    /// What a film knows of its pixels, beside what is seen there.
+    pub fn of(film: &Film, features: Features) -> Self {
+        let pixels = 0..film.pixel_count();
+        Self {
+            image: film.image(),
+            denoised: None,
+            features,
+            samples: pixels.clone().map(|pixel| film.samples_of(pixel) as f32).collect(),
+            variance: pixels.map(|pixel| film.variance_of_mean_at(pixel) as f32).collect(),
+        }
+    }
 }
 
 /// The formats, by a file's ending.
@@ -95,70 +126,81 @@ pub fn format_of(path: &Path) -> Result<Format, OutputError> {
 
 /// Writes a picture of a document in the format of the file's ending. A .png has the document's exposure and tone curve,
 /// and the document itself inside. A denoised picture takes the samples' place; in an .exr file it stands beside them, as
-/// `denoised.R`, `.G`, `.B`.
+/// `denoised.R`, `.G`, `.B`, and so do layers (`albedo.R`, `.G`, `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`; `samples.Y`;
+/// `variance.Y`) and sums.
 ///
 /// # Errors
 /// [`OutputError`] naming the file.
 pub fn write(path: &Path, rendered: Rendered<'_>, document: &Document) -> Result<(), OutputError> {
     let shown = rendered.denoised.unwrap_or(rendered.image);
-    let written = match (format_of(path)?, rendered.denoised) {
-        (Format::Png, _) => write_png(path, shown, document),
-        (Format::Exr, None) => write_exr(path, shown),
-        (Format::Exr, Some(denoised)) => {
-            write_channels(path, rendered.image, color_channels(rendered.image, Some(denoised)))
-        }
-        (Format::Hdr, _) => write_hdr(path, shown),
-    };
-    written.map_err(|reason| OutputError::Write {
-        path: path.to_owned(),
-        reason,
-    })
+    let format = format_of(path)?;
+    let sums = rendered.sums.filter(|_| format == Format::Exr);
+    let attributes = sums.map(|sums| sums.attributes(path)).transpose()?;
+    Ok(save_by(path, |file| match format {
+        Format::Png => file.write_all(&png(path, shown, document)?),
+        Format::Exr => write_exr(file, rendered, attributes.unwrap_or_default()),
+        Format::Hdr => write_hdr(file, shown),
+    })?)
 }
 
-fn write_png(path: &Path, image: &Image, document: &Document) -> Result<(), String> {
+/// Writes an .exr file with layers.
+///
+/// # Errors
+/// [`OutputError`] naming the file.
+pub fn write_layers(path: &Path, layers: &Layers) -> Result<(), OutputError> {
+    Ok(save_by(path, |file| {
+        write_exr(file, layers.into(), LayerAttributes::default())
+    })?)
+}
+
+/// The bytes of a .png to lie at `path`, beside the files that the document inside names.
+fn png(path: &Path, image: &Image, document: &Document) -> io::Result<Vec<u8>> {
     let text = document_text(path, document);
     if let Err(error) = &text {
         log::warn!("the picture is saved without its document: {error}");
     }
     let pixels = display(image, &document.view);
-    let bytes = png_bytes([image.width, image.height], &pixels, text.as_deref().ok())?;
-    std::fs::write(path, bytes).map_err(|error| error.to_string())
+    png_bytes([image.width, image.height], &pixels, text.as_deref().ok()).map_err(io::Error::other)
 }
 
-/// Writes a file through a buffer, and notices where the last of it does not fit on the disc.
-fn write_buffered(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<File>) -> image::ImageResult<()>,
-) -> Result<(), String> {
-    let mut file = BufWriter::new(File::create(path).map_err(|error| error.to_string())?);
-    write(&mut file).map_err(|error| error.to_string())?;
-    file.flush().map_err(|error| error.to_string())
-}
-
-fn write_exr(path: &Path, image: &Image) -> Result<(), String> {
-    let pixel = |x: usize, y: usize| {
-        let [r, g, b, a] = image.pixels[y * image.width as usize + x];
-        (r, g, b, a)
+/// Writes what is known of a picture as named channels.
+fn write_exr(file: &mut (impl Write + Seek), rendered: Rendered<'_>, attributes: LayerAttributes) -> io::Result<()> {
+    let mut channels = color_channels("", rendered.image, &COLORS);
+    if let Some(denoised) = rendered.denoised {
+        channels.extend(color_channels("denoised.", denoised, &COLORS[..3]));
+    }
+    channels.extend(rendered.layers.into_iter().flat_map(layer_channels));
+    let numbers = channels
+        .into_iter()
+        .map(|(name, values)| (name, FlatSamples::F32(values)));
+    let sums = rendered.sums.into_iter().flat_map(KeptFilm::channels);
+    let all = numbers.chain(sums);
+    let all = all
+        .map(|(name, samples)| AnyChannel::new(name.as_str(), samples))
+        .collect();
+    let size = (rendered.image.width as usize, rendered.image.height as usize);
+    let encoding = if rendered.sums.is_some() {
+        Encoding::SMALL_FAST_LOSSLESS
+    } else {
+        Encoding::FAST_LOSSLESS
     };
-    exr::prelude::write_rgba_file(path, image.width as usize, image.height as usize, pixel)
-        .map_err(|error| error.to_string())
+    let layer = Layer::new(size, attributes, encoding, AnyChannels::sort(all));
+    let written = exr::prelude::Image::from_layer(layer).write().to_buffered(file);
+    written.map_err(io::Error::other)
 }
 
-/// Writes an EXR file with layers beside the colour: `denoised.R`, `.G`, `.B` where it was denoised; `albedo.R`, `.G`,
-/// `.B`; `normal.X`, `.Y`, `.Z`; `depth.Z`; `samples.Y`; `variance.Y`.
-///
-/// # Errors
-/// [`OutputError`] naming the file.
-pub fn write_layers(path: &Path, layers: &Layers) -> Result<(), OutputError> {
-    write_exr_layers(path, layers).map_err(|reason| OutputError::Write {
-        path: path.to_owned(),
-        reason,
-    })
+const COLORS: [&str; 4] = ["R", "G", "B", "A"];
+
+/// The first of a picture's colours and its opacity, as named channels.
+fn color_channels(prefix: &str, image: &Image, names: &[&str]) -> Vec<(String, Vec<f32>)> {
+    let values = |i: usize| image.pixels.iter().map(|pixel| pixel[i]).collect();
+    let named = names.iter().enumerate();
+    named.map(|(i, name)| (format!("{prefix}{name}"), values(i))).collect()
 }
 
-fn write_exr_layers(path: &Path, layers: &Layers) -> Result<(), String> {
+fn layer_channels(layers: &Layers) -> Vec<(String, Vec<f32>)> {
     let features = &layers.features;
-    let mut channels = color_channels(&layers.image, layers.denoised.as_deref());
+    let mut channels = Vec::new();
     for i in 0..3 {
         let vector = |values: &[[f32; 3]]| values.iter().map(|value| value[i]).collect();
         channels.push((format!("albedo.{}", COLORS[i]), vector(&features.albedo)));
@@ -167,36 +209,13 @@ fn write_exr_layers(path: &Path, layers: &Layers) -> Result<(), String> {
     channels.push(("depth.Z".to_owned(), features.depth.clone()));
     channels.push(("samples.Y".to_owned(), layers.samples.clone()));
     channels.push(("variance.Y".to_owned(), layers.variance.clone()));
-    write_channels(path, &layers.image, channels)
+    channels
 }
 
-const COLORS: [&str; 4] = ["R", "G", "B", "A"];
-
-/// A picture's colours and opacity, and the colours of the denoised one, as named channels.
-fn color_channels(image: &Image, denoised: Option<&Image>) -> Vec<(String, Vec<f32>)> {
-    let channel = |image: &Image, i: usize| image.pixels.iter().map(|pixel| pixel[i]).collect();
-    let own = (0..4).map(|i| (COLORS[i].to_owned(), channel(image, i)));
-    let of_denoised = |denoised| (0..3).map(move |i| (format!("denoised.{}", COLORS[i]), channel(denoised, i)));
-    own.chain(denoised.into_iter().flat_map(of_denoised)).collect()
-}
-
-/// Writes channels of the size of `image`.
-fn write_channels(path: &Path, image: &Image, channels: Vec<(String, Vec<f32>)>) -> Result<(), String> {
-    use exr::prelude::{
-        AnyChannel, AnyChannels, Encoding, FlatSamples, Image, Layer, LayerAttributes, WritableImage as _,
-    };
-    let channel = |(name, values): (String, Vec<f32>)| AnyChannel::new(name.as_str(), FlatSamples::F32(values));
-    let size = (image.width as usize, image.height as usize);
-    let channels = AnyChannels::sort(channels.into_iter().map(channel).collect());
-    let layer = Layer::new(size, LayerAttributes::default(), Encoding::FAST_LOSSLESS, channels);
-    Image::from_layer(layer)
-        .write()
-        .to_file(path)
-        .map_err(|error| error.to_string())
-}
-
-fn write_hdr(path: &Path, image: &Image) -> Result<(), String> {
+fn write_hdr(file: &mut impl Write, image: &Image) -> io::Result<()> {
     let pixels: Vec<_> = image.pixels.iter().map(|&[r, g, b, _]| Rgb([r, g, b])).collect();
     let (width, height) = (image.width as usize, image.height as usize);
-    write_buffered(path, |file| HdrEncoder::new(file).encode(&pixels, width, height))
+    HdrEncoder::new(file)
+        .encode(&pixels, width, height)
+        .map_err(io::Error::other)
 }

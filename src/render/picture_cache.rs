@@ -5,7 +5,7 @@ use std::path::Path;
 
 use image::{ImageFormat, RgbaImage};
 
-use crate::store::file::save_atomically;
+use crate::store::replace::save_atomically;
 
 /// The picture that was kept, or else the one that is made, which is kept then; `None` where none could be made. A cache:
 /// where it can't be written, the next start makes it again.

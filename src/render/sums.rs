@@ -1,17 +1,20 @@
 //! Films in `.exr` files: the sums behind a picture, so that parts of its samples can be rendered apart and joined.
 //!
 //! Beside the picture's own channels a file has, for each half of the samples, `sums.even.R.high` and `.low` and so on: the
-//! upper and lower 32 bits of the f64 sum, as EXR's unsigned integers. Two f32 would hold 48 of its 53 bits. The document and
-//! the numbers of the samples are attributes.
+//! upper and lower 32 bits of the f64 sum, as EXR's unsigned integers. Two f32 would hold 48 of its 53 bits. The sums of
+//! what the first samples saw first are f32 (`sums.guides.…`), with their number. The document and the numbers of the samples
+//! are attributes.
 
 use std::path::{Path, PathBuf};
 
 use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image as ExrImage, Layer, LayerAttributes,
-    ReadChannels as _, ReadLayers as _, Text, WritableImage as _, read,
+    AnyChannel, AnyChannels, AttributeValue, FlatSamples, Layer, LayerAttributes, ReadChannels as _, ReadLayers as _,
+    Text, read,
 };
 
 use crate::document::Document;
+use crate::document::change::Change;
+use crate::job::features::{Features, GUIDE_SAMPLES, GuideSums};
 use crate::job::film::{Extras, Film, HalfSums};
 use crate::store::FileError;
 use crate::store::project::{document_text, parse_document};
@@ -19,8 +22,13 @@ use crate::store::project::{document_text, parse_document};
 /// The attributes of a file with sums.
 const DOCUMENT: &str = "glossmithDocument";
 const SAMPLES: &str = "glossmithSamples";
+const UNITS: &str = "glossmithWorldUnits";
 const HALVES: [&str; 2] = ["even", "odd"];
 const COLORS: [&str; 3] = ["R", "G", "B"];
+/// The channels of what is seen first, in the order of [`GuideSums`].
+const GUIDES: [&str; 8] = [
+    "albedo.R", "albedo.G", "albedo.B", "hits", "normal.X", "normal.Y", "normal.Z", "depth",
+];
 
 /// A film with what it is of.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +39,10 @@ pub struct KeptFilm {
     pub document: Document,
     /// Which samples: the first and the one after the last, several where films were joined; in order.
     pub samples: Vec<[u32; 2]>,
+    /// How many of each pixel's samples are in the sums of what is seen first.
+    guide_samples: Vec<u32>,
+    /// Units of the world in one of the geometry's: depths are summed in these.
+    world_units_per_unit: f64,
 }
 
 /// Why films cannot be read, joined or written.
@@ -55,14 +67,12 @@ pub enum SumsError {
     /// The document inside is damaged.
     #[error(transparent)]
     Document(#[from] FileError),
-    /// A picture whose pixels have different numbers of samples.
+    /// Films of which none has the first samples.
     #[error(
-        "films are joined whose pixels have equally many samples, and here {reason}; give a number of samples alone"
+        "layers and the denoiser need what the first samples saw (0 to {GUIDE_SAMPLES}), and none of the films has them; \
+         join one that begins at 0"
     )]
-    Uneven {
-        /// Why.
-        reason: &'static str,
-    },
+    NotSeen,
     /// Another picture.
     #[error("{}: of another picture than {}: they differ in {differs}; render both with the same settings", path.display(), first.display())]
     Differs {
@@ -85,14 +95,6 @@ pub enum SumsError {
         /// The one after its last.
         to: u32,
     },
-    /// It cannot be written.
-    #[error("{}: could not be written: {reason}. Is there room, and may the folder be written to?", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        reason: String,
-    },
 }
 
 /// Upper and lower half of each number's bits.
@@ -103,85 +105,89 @@ fn bits(values: impl Iterator<Item = f64> + Clone) -> [FlatSamples; 2] {
 }
 
 impl KeptFilm {
-    /// A film that was just rendered.
-    pub fn of(film: Film, document: &Document) -> Self {
+    /// A film of up to `samples` samples a pixel that was just rendered.
+    pub fn of(film: Film, document: Document, samples: u32, world_units_per_unit: f64) -> Self {
         let first = document.render.first_sample;
-        Self {
-            samples: vec![[first, first + film.samples_max()]],
-            film,
-            document: document.clone(),
-        }
-    }
-
-    /// Whether films of this document can be joined: each pixel must have as many samples as any other, and how many must
-    /// be known before.
-    ///
-    /// # Errors
-    /// [`SumsError::Uneven`].
-    pub fn check(document: &Document) -> Result<(), SumsError> {
-        let render = &document.render;
-        let reasons = [
-            (render.is_adaptive(), "samples go where the error is (adaptive)"),
-            (render.noise.is_some(), "it ends at a noise"),
-            (render.time_s.is_some(), "it ends with a time"),
-        ];
-        match reasons.into_iter().find(|(is_so, _)| *is_so) {
-            Some((_, reason)) => Err(SumsError::Uneven { reason }),
-            None => Ok(()),
-        }
-    }
-
-    /// Writes the picture with its sums.
-    ///
-    /// # Errors
-    /// [`SumsError::Write`].
-    pub fn write(&self, path: &Path) -> Result<(), SumsError> {
-        let write = |reason: String| SumsError::Write {
-            path: path.to_owned(),
-            reason,
+        let guide_samples = match film.extras().guides {
+            true => (0..film.pixel_count())
+                .map(|pixel| (first.saturating_add(film.samples_of(pixel) as u32)).min(GUIDE_SAMPLES))
+                .map(|last| last.saturating_sub(first))
+                .collect(),
+            false => vec![0; film.pixel_count()],
         };
-        let text = document_text(path, &self.document)?;
+        Self {
+            samples: vec![[first, first + samples]],
+            film,
+            document,
+            guide_samples,
+            world_units_per_unit,
+        }
+    }
+
+    /// What the camera sees first.
+    ///
+    /// # Errors
+    /// [`SumsError::NotSeen`] where a pixel has samples, and none of the first among them.
+    pub fn features(&self) -> Result<Features, SumsError> {
+        let is_seen = |pixel: usize| self.guide_samples[pixel] > 0 || self.film.samples_of(pixel) == 0.0;
+        if !(0..self.film.pixel_count()).all(is_seen) {
+            return Err(SumsError::NotSeen);
+        }
+        let samples = |pixel: usize| f64::from(self.guide_samples[pixel]);
+        Ok(Features::of_samples(&self.film, samples, self.world_units_per_unit))
+    }
+
+    /// What a file at `path` tells beside its channels.
+    ///
+    /// # Errors
+    /// Where the document has no place in a file.
+    pub fn attributes(&self, path: &Path) -> Result<LayerAttributes, FileError> {
         let samples: Vec<String> = self.samples.iter().map(|[from, to]| format!("{from}-{to}")).collect();
         let mut attributes = LayerAttributes::default();
-        for (name, value) in [(DOCUMENT, text), (SAMPLES, samples.join(","))] {
+        for (name, value) in [
+            (DOCUMENT, document_text(path, &self.document)?),
+            (SAMPLES, samples.join(",")),
+            (UNITS, self.world_units_per_unit.to_string()),
+        ] {
             let value = Text::from(value.as_str());
             attributes.other.insert(Text::from(name), AttributeValue::Text(value));
         }
-        let size = (self.film.width as usize, self.film.height as usize);
-        let channels = AnyChannels::sort(self.channels().into_iter().collect());
-        let layer = Layer::new(size, attributes, Encoding::SMALL_FAST_LOSSLESS, channels);
-        let written = ExrImage::from_layer(layer).write().to_file(path);
-        written.map_err(|error| write(error.to_string()))
+        Ok(attributes)
     }
 
-    fn channels(&self) -> Vec<AnyChannel<FlatSamples>> {
+    /// The sums by the names of their channels.
+    pub fn channels(&self) -> Vec<(String, FlatSamples)> {
         let film = &self.film;
         let pixels = || 0..film.pixel_count();
-        let image = film.image();
         let mut channels = Vec::new();
-        let mut push = |name: &str, samples: FlatSamples| channels.push(AnyChannel::new(name, samples));
-        for (i, name) in ["R", "G", "B", "A"].into_iter().enumerate() {
-            push(
-                name,
-                FlatSamples::F32(image.pixels.iter().map(|pixel| pixel[i]).collect()),
-            );
-        }
+        let mut push = |name: String, samples: FlatSamples| channels.push((format!("sums.{name}"), samples));
         for (half, word) in HALVES.into_iter().enumerate() {
             for (i, color) in COLORS.into_iter().enumerate() {
                 let [high, low] = bits(pixels().map(|pixel| film.halves(pixel)[half].color[i]));
-                push(&format!("sums.{word}.{color}.high"), high);
-                push(&format!("sums.{word}.{color}.low"), low);
+                push(format!("{word}.{color}.high"), high);
+                push(format!("{word}.{color}.low"), low);
             }
             let of = |pixel: usize| film.halves(pixel)[half];
             let deviations = pixels().map(|pixel| of(pixel).squared_deviations as f32).collect();
-            push(&format!("sums.{word}.deviations"), FlatSamples::F32(deviations));
+            push(format!("{word}.deviations"), FlatSamples::F32(deviations));
             let samples = pixels().map(|pixel| of(pixel).samples as u32).collect();
-            push(&format!("sums.{word}.samples"), FlatSamples::U32(samples));
+            push(format!("{word}.samples"), FlatSamples::U32(samples));
         }
         if film.extras().coverage {
             let [high, low] = bits(pixels().map(|pixel| film.color(pixel)[3]));
-            push("sums.coverage.high", high);
-            push("sums.coverage.low", low);
+            push("coverage.high".to_owned(), high);
+            push("coverage.low".to_owned(), low);
+        }
+        if film.extras().guides {
+            let guides: &[[f32; GUIDES.len()]] = bytemuck::cast_slice(&film.guides);
+            for (i, name) in GUIDES.into_iter().enumerate() {
+                let values = guides.iter().map(|guides| guides[i]).collect();
+                push(format!("guides.{name}"), FlatSamples::F32(values));
+            }
+            push(
+                "guides.samples".to_owned(),
+                FlatSamples::U32(self.guide_samples.clone()),
+            );
         }
         channels
     }
@@ -191,98 +197,57 @@ impl KeptFilm {
     /// # Errors
     /// What is wrong with the file.
     pub fn read(path: &Path) -> Result<Self, SumsError> {
-        let wrong = |error: exr::error::Error| SumsError::Read {
-            path: path.to_owned(),
-            reason: error.to_string(),
-        };
-        let image = read()
-            .no_deep_data()
-            .largest_resolution_level()
-            .all_channels()
-            .first_valid_layer()
-            .all_attributes()
-            .from_file(path)
-            .map_err(wrong)?;
-        let layer = image.layer_data;
-        let missing = |missing: &str| SumsError::NoSums {
-            path: path.to_owned(),
-            missing: missing.to_owned(),
-        };
-        let attribute = |name: &str| match layer.attributes.other.get(&Text::from(name)) {
-            Some(AttributeValue::Text(text)) => Ok(text.to_string()),
-            _ => Err(missing(name)),
-        };
-        let find = |name: &str| {
-            let mut channels = layer.channel_data.list.iter();
-            channels
-                .find(|channel| channel.name == *name)
-                .map(|channel| &channel.sample_data)
-        };
-        let words = |name: &str| match find(name) {
-            Some(FlatSamples::U32(words)) => Ok(words),
-            _ => Err(missing(name)),
-        };
-        let doubles = |name: &str| -> Result<Vec<f64>, SumsError> {
-            let (high, low) = (words(&format!("{name}.high"))?, words(&format!("{name}.low"))?);
-            let joined = high
-                .iter()
-                .zip(low)
-                .map(|(high, low)| (u64::from(*high) << 32) | u64::from(*low));
-            Ok(joined.map(f64::from_bits).collect())
-        };
-        let document = parse_document(path, attribute(DOCUMENT)?.as_bytes())?.value;
-        let samples = ranges(&attribute(SAMPLES)?).ok_or_else(|| missing(SAMPLES))?;
+        let file = Sums::open(path)?;
+        let document = parse_document(path, file.attribute(DOCUMENT)?.as_bytes())?.value;
+        let samples = ranges(&file.attribute(SAMPLES)?).ok_or_else(|| file.missing(SAMPLES))?;
+        let units = file.attribute(UNITS)?;
+        let world_units_per_unit = units.parse().map_err(|_| file.missing(UNITS))?;
         let extras = Extras {
-            coverage: find("sums.coverage.high").is_some(),
-            guides: false,
+            coverage: file.find("coverage.high").is_some(),
+            guides: file.find("guides.samples").is_some(),
         };
-        let mut film = Film::keeping(layer.size.0 as u32, layer.size.1 as u32, extras);
-        let mut halves = vec![[HalfSums::default(); 2]; film.pixel_count()];
-        for (half, word) in HALVES.into_iter().enumerate() {
-            for (i, color) in COLORS.into_iter().enumerate() {
-                let sums = doubles(&format!("sums.{word}.{color}"))?;
-                halves
-                    .iter_mut()
-                    .zip(sums)
-                    .for_each(|(halves, sum)| halves[half].color[i] = sum);
-            }
-            let name = format!("sums.{word}.deviations");
-            let Some(FlatSamples::F32(deviations)) = find(&name) else {
-                return Err(missing(&name));
-            };
-            let counts = words(&format!("sums.{word}.samples"))?;
-            for ((halves, deviation), count) in halves.iter_mut().zip(deviations).zip(counts) {
-                halves[half].squared_deviations = f64::from(*deviation);
-                halves[half].samples = f64::from(*count);
-            }
-        }
+        let [width, height] = file.size();
+        let mut film = Film::keeping(width, height, extras);
+        let halves = file.halves(film.pixel_count())?;
         for (pixel, halves) in halves.iter().enumerate() {
             film.set_halves(pixel, halves);
         }
         if extras.coverage {
-            let coverage = doubles("sums.coverage")?;
-            coverage
-                .into_iter()
-                .enumerate()
-                .for_each(|(pixel, sum)| film.add_coverage(pixel, sum));
+            let coverage = file.doubles("coverage")?.into_iter().enumerate();
+            coverage.for_each(|(pixel, sum)| film.add_coverage(pixel, sum));
+        }
+        let mut guide_samples = vec![0; film.pixel_count()];
+        if extras.guides {
+            let guides: &mut [[f32; GUIDES.len()]] = bytemuck::cast_slice_mut(&mut film.guides);
+            for (i, name) in GUIDES.into_iter().enumerate() {
+                let values = file.numbers(&format!("guides.{name}"))?;
+                guides
+                    .iter_mut()
+                    .zip(values)
+                    .for_each(|(guides, value)| guides[i] = *value);
+            }
+            guide_samples = file.words("guides.samples")?.to_vec();
         }
         Ok(Self {
             film,
             document,
             samples,
+            guide_samples,
+            world_units_per_unit,
         })
     }
 
-    /// Samples a pixel.
+    /// Samples a pixel, of those that have most.
     pub fn sample_count(&self) -> u32 {
         self.samples.iter().map(|[from, to]| to - from).sum()
     }
 
-    /// What both must have in common.
-    fn picture(&self) -> Document {
-        let mut document = self.document.clone();
-        (document.render.samples, document.render.first_sample) = (0, 0);
-        document
+    /// Whether both are samples of the same picture.
+    fn is_alike(&self, other: &Self) -> bool {
+        let mut document = other.document.clone();
+        document.render.first_sample = self.document.render.first_sample;
+        !Change::between(&self.document, &document).restarts()
+            && self.film.extras().coverage == other.film.extras().coverage
     }
 
     /// Adds the samples of another film of the same picture. The paths are only named in messages.
@@ -298,7 +263,7 @@ impl KeptFilm {
         if (self.film.width, self.film.height) != (other.film.width, other.film.height) {
             return Err(differs("size"));
         }
-        if self.picture() != other.picture() || self.film.extras().coverage != other.film.extras().coverage {
+        if !self.is_alike(other) {
             return Err(differs("what was rendered, or how"));
         }
         for [from, to] in &other.samples {
@@ -317,12 +282,110 @@ impl KeptFilm {
                 .set_halves(pixel, &[own[0].with(&more[0]), own[1].with(&more[1])]);
             self.film.add_coverage(pixel, other.film.color(pixel)[3]);
         }
+        if other.film.extras().guides {
+            self.film.guides.resize(other.film.guides.len(), GuideSums::default());
+            let own = self.film.guides.iter_mut().zip(&mut self.guide_samples);
+            for ((guides, samples), (more, count)) in own.zip(other.film.guides.iter().zip(&other.guide_samples)) {
+                guides.add(more);
+                *samples += count;
+            }
+        }
         self.samples.extend(&other.samples);
         self.samples.sort_unstable();
         joined(&mut self.samples);
         self.document.render.first_sample = self.samples[0][0];
         self.document.render.samples = self.sample_count();
         Ok(())
+    }
+}
+
+/// The channels and attributes of a file with sums.
+struct Sums<'a> {
+    path: &'a Path,
+    layer: Layer<AnyChannels<FlatSamples>>,
+}
+
+impl<'a> Sums<'a> {
+    fn open(path: &'a Path) -> Result<Self, SumsError> {
+        let image = read()
+            .no_deep_data()
+            .largest_resolution_level()
+            .all_channels()
+            .first_valid_layer()
+            .all_attributes()
+            .from_file(path)
+            .map_err(|error| SumsError::Read {
+                path: path.to_owned(),
+                reason: error.to_string(),
+            })?;
+        let layer = image.layer_data;
+        Ok(Self { path, layer })
+    }
+
+    fn size(&self) -> [u32; 2] {
+        [self.layer.size.0 as u32, self.layer.size.1 as u32]
+    }
+
+    fn missing(&self, missing: &str) -> SumsError {
+        SumsError::NoSums {
+            path: self.path.to_owned(),
+            missing: missing.to_owned(),
+        }
+    }
+
+    fn attribute(&self, name: &str) -> Result<String, SumsError> {
+        match self.layer.attributes.other.get(&Text::from(name)) {
+            Some(AttributeValue::Text(text)) => Ok(text.to_string()),
+            _ => Err(self.missing(name)),
+        }
+    }
+
+    fn find(&self, name: &str) -> Option<&FlatSamples> {
+        let name = format!("sums.{name}");
+        let mut channels = self.layer.channel_data.list.iter();
+        let is_meant = |channel: &&AnyChannel<FlatSamples>| channel.name == *name.as_str();
+        channels.find(is_meant).map(|channel| &channel.sample_data)
+    }
+
+    fn words(&self, name: &str) -> Result<&[u32], SumsError> {
+        match self.find(name) {
+            Some(FlatSamples::U32(words)) => Ok(words),
+            _ => Err(self.missing(name)),
+        }
+    }
+
+    fn numbers(&self, name: &str) -> Result<&[f32], SumsError> {
+        match self.find(name) {
+            Some(FlatSamples::F32(numbers)) => Ok(numbers),
+            _ => Err(self.missing(name)),
+        }
+    }
+
+    fn doubles(&self, name: &str) -> Result<Vec<f64>, SumsError> {
+        let high = self.words(&format!("{name}.high"))?;
+        let low = self.words(&format!("{name}.low"))?;
+        let both = high.iter().zip(low);
+        let joined = both.map(|(high, low)| (u64::from(*high) << 32) | u64::from(*low));
+        Ok(joined.map(f64::from_bits).collect())
+    }
+
+    /// The sums of both halves of each pixel's samples.
+    fn halves(&self, pixels: usize) -> Result<Vec<[HalfSums; 2]>, SumsError> {
+        let mut halves = vec![[HalfSums::default(); 2]; pixels];
+        for (half, word) in HALVES.into_iter().enumerate() {
+            for (i, color) in COLORS.into_iter().enumerate() {
+                let sums = self.doubles(&format!("{word}.{color}"))?;
+                let of_pixels = halves.iter_mut().zip(sums);
+                of_pixels.for_each(|(halves, sum)| halves[half].color[i] = sum);
+            }
+            let deviations = self.numbers(&format!("{word}.deviations"))?;
+            let counts = self.words(&format!("{word}.samples"))?;
+            for ((halves, deviation), count) in halves.iter_mut().zip(deviations).zip(counts) {
+                halves[half].squared_deviations = f64::from(*deviation);
+                halves[half].samples = f64::from(*count);
+            }
+        }
+        Ok(halves)
     }
 }
 

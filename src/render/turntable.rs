@@ -112,9 +112,10 @@ pub fn render(
         }
         outcome.dropped += session.film()?.dropped();
         let denoised = attendant.finish(session)?;
+        let image = session.image()?;
         let rendered = Rendered {
-            image: &session.image()?,
             denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
+            ..Rendered::from(&image)
         };
         output::write(&frame_path(&table.folder, frame + 1), rendered, &document)?;
         outcome.frames = frame + 1;

@@ -99,6 +99,7 @@ impl Workshop {
         let (blank, kind) = (self.blank.take(), self.kind);
         let prepared = job.clone();
         let work = move || {
+            let _at_work = super::quiet::at_work();
             let prepare = || {
                 let mut engine = match blank {
                     Some(engine) => engine,

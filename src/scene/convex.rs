@@ -43,10 +43,10 @@ impl Cluster {
 /// A ray that leaves a face on that side then meets nothing. Most bodies that are not convex are found out by their
 /// first faces.
 pub(super) fn is_convex(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> bool {
-    let clusters: Vec<Cluster> = positions.chunks(CLUSTER).map(Cluster::new).collect();
-    if clusters.len().saturating_mul(triangles.len()) > EFFORT_MAX {
+    if positions.len().div_ceil(CLUSTER).saturating_mul(triangles.len()) > EFFORT_MAX {
         return false;
     }
+    let clusters: Vec<Cluster> = positions.chunks(CLUSTER).map(Cluster::new).collect();
     triangles.par_iter().all(|triangle| {
         let [a, b, c] = triangle.map(|vertex| DVec3::from_array(positions[vertex as usize].map(f64::from)));
         let normal = (b - a).cross(c - a).normalize_or_zero();

@@ -4,11 +4,14 @@
 use bytemuck::{Pod, Zeroable};
 use fearless_simd::Level;
 use glam::{DVec3, Vec3A};
+use rayon::prelude::*;
 
 use super::convex::is_convex;
-use super::hierarchy::{Compressed, Hierarchy, Wide};
+use super::hierarchy::{Compressed, Found, Hierarchy, PACKET, Packet, Wide};
 use super::intersect::{Hit, RayFrame};
 use super::light::AreaShape;
+use super::loading::{Cancelled, Loading};
+use super::memory::{fetch, in_large_pages};
 use super::mesh::{Mesh, any_tangent};
 use super::model::{Model, Slot};
 use super::shapes;
@@ -18,6 +21,9 @@ use crate::instructions;
 const GROUND_HALF_SIDE: f64 = 20.0;
 /// How far the ground is below the lowest point, in bounding radii: enough that flat bottoms do not flicker with it.
 const GROUND_GAP: f64 = 1e-4;
+
+/// What stands for no object of the model.
+pub const NO_OBJECT: u32 = u32::MAX;
 
 /// What shading needs of a vertex besides its position. 52 bytes, scalars only: the same layout in WGSL.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -67,6 +73,8 @@ pub struct Geometry {
     pub triangles: Vec<[u32; 3]>,
     /// The material slot of each triangle; the ground's is the number of the model's slots, those of area lights follow.
     pub slots: Vec<u32>,
+    /// The model's object that each triangle belongs to; [`NO_OBJECT`] for ground and area lights.
+    pub objects: Vec<u32>,
     /// How rays find them.
     hierarchy: Hierarchy,
     /// No ray that leaves a face on its outside meets anything: the scene is one convex body.
@@ -88,11 +96,27 @@ impl Geometry {
     /// Makes a model ready to trace; `ground` adds a horizontal square of half side 20 bounding radii at its lowest
     /// point, in the slot after the model's (see [`Geometry::ground_slot`]).
     pub fn build(model: &Model, ground: bool) -> Self {
-        Self::build_lit(model, ground, &[])
+        Self::build_lit(model, ground, &[], &[])
     }
 
-    /// The same with area lights, each in a slot of its own after the model's and the ground's.
-    pub fn build_lit(model: &Model, ground: bool, area_lights: &[AreaShape]) -> Self {
+    /// The same with area lights, each in a slot of its own after the model's and the ground's, and without the objects
+    /// whose numbers are hidden: place and scale stay those of the whole model.
+    pub fn build_lit(model: &Model, ground: bool, area_lights: &[AreaShape], hidden: &[usize]) -> Self {
+        Self::build_watched(model, ground, area_lights, hidden, &Loading::default()).expect("nobody cancels it")
+    }
+
+    /// The same for those who wait.
+    ///
+    /// # Errors
+    /// Where it was cancelled.
+    pub fn build_watched(
+        model: &Model,
+        ground: bool,
+        area_lights: &[AreaShape],
+        hidden: &[usize],
+        loading: &Loading,
+    ) -> Result<Self, Cancelled> {
+        loading.step("measuring the model")?;
         let mesh = &model.mesh;
         let Framing {
             usable,
@@ -101,42 +125,57 @@ impl Geometry {
             center_world,
             world_units_per_unit,
         } = Framing::of(mesh);
+        let is_usable = |triangle: &usize| is_usable(mesh.corners(*triangle));
         let mut geometry = Self {
             positions: Vec::new(),
             vertices: Vec::new(),
             triangles: Vec::new(),
             slots: Vec::new(),
+            objects: Vec::new(),
             hierarchy: Hierarchy::default(),
             is_convex: false,
             center_world,
             world_units_per_unit,
             bounds_world,
             dropped_not_finite,
-            dropped_no_area: mesh.triangles.len() - dropped_not_finite - usable.len(),
+            dropped_no_area: mesh.triangles.len() - dropped_not_finite - usable,
         };
         let to_units = |place: DVec3| ((place - center_world) / world_units_per_unit).as_vec3().to_array();
-        geometry.add(mesh, usable.into_iter(), to_units);
+        let is_shown = |triangle: &usize| {
+            let object = model.object_of(*triangle);
+            !hidden.iter().any(|hidden| Some(*hidden) == object)
+        };
+        let object_of = |triangle| model.object_of(triangle).map_or(NO_OBJECT, |object| object as u32);
+        let chosen = (0..mesh.triangles.len()).filter(is_usable);
+        if hidden.is_empty() {
+            geometry.add(mesh, chosen, object_of, to_units);
+        } else {
+            geometry.add(mesh, chosen.filter(is_shown), object_of, to_units);
+        }
         if ground {
             let lowest = (bounds_world[0].y - center_world.y) / world_units_per_unit - GROUND_GAP;
             let slot = model.slots.len() as u32;
             let ground = shapes::square(DVec3::Y * lowest, GROUND_HALF_SIDE, GROUND_HALF_SIDE as f32, slot);
-            geometry.add(&ground, 0..ground.triangles.len(), |place| place.as_vec3().to_array());
+            let to_units = |place: DVec3| place.as_vec3().to_array();
+            geometry.add(&ground, 0..ground.triangles.len(), |_| NO_OBJECT, to_units);
         }
         for (light, slot) in area_lights.iter().zip(model.slots.len() as u32 + u32::from(ground)..) {
             let light = light.mesh(slot);
-            geometry.add(&light, 0..light.triangles.len(), |place| place.as_vec3().to_array());
+            let to_units = |place: DVec3| place.as_vec3().to_array();
+            geometry.add(&light, 0..light.triangles.len(), |_| NO_OBJECT, to_units);
         }
-        geometry.build_hierarchy();
+        geometry.build_hierarchy(loading)?;
         geometry.is_convex = is_convex(&geometry.positions, &geometry.triangles);
-        geometry
+        Ok(geometry)
     }
 
     /// Builds the hierarchy and puts triangles into its order.
-    fn build_hierarchy(&mut self) {
-        let corners = self.triangles.iter().map(|triangle| self.corners_of(triangle));
-        let (hierarchy, order) = Hierarchy::new(corners);
+    fn build_hierarchy(&mut self, loading: &Loading) -> Result<(), Cancelled> {
+        let corners = |triangle| self.corners(triangle as usize);
+        let (hierarchy, order) = Hierarchy::new(self.triangles.len(), corners, loading)?;
         self.hierarchy = hierarchy;
         self.sort(&order);
+        Ok(())
     }
 
     /// The hierarchy as the GPU reads it, built when it is first asked for.
@@ -150,6 +189,7 @@ impl Geometry {
             + size_of_val(&self.vertices[..])
             + size_of_val(&self.triangles[..])
             + size_of_val(&self.slots[..])
+            + size_of_val(&self.objects[..])
             + self.hierarchy.bytes()
     }
 
@@ -192,6 +232,40 @@ impl Geometry {
         self.wide().any(level, &frame, t_max).is_some()
     }
 
+    /// What each ray of a packet meets, as [`Geometry::intersect`] says, the instructions forced by `level`.
+    pub fn intersect_packet(&self, level: Level, packet: &Packet) -> [Option<Hit>; PACKET] {
+        let Some(Found { t, marks }) = self.wide().nearest_of(level, packet) else {
+            let alone =
+                |lane| self.intersect_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]);
+            return std::array::from_fn(alone);
+        };
+        std::array::from_fn(|lane| {
+            let triangle = marks[lane].checked_sub(1)?;
+            let frame = RayFrame::new(packet.origin(lane).into(), packet.direction(lane).into());
+            let [u, v] = frame.weights(self.corners(triangle as usize).map(Vec3A::from_array));
+            let t = t[lane];
+            Some(Hit { t, triangle, u, v })
+        })
+    }
+
+    /// Whether any triangle is met on each ray of a packet, as [`Geometry::occluded`] says.
+    pub fn occluded_packet(&self, level: Level, packet: &Packet) -> [bool; PACKET] {
+        let Some(Found { marks, .. }) = self.wide().any_of(level, packet) else {
+            let alone = |lane| self.occluded_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]);
+            return std::array::from_fn(alone);
+        };
+        marks.map(|mark| mark != 0)
+    }
+
+    /// Has the processor fetch what shading a triangle looks up.
+    #[inline(always)]
+    pub fn fetch(&self, triangle: u32) {
+        fetch(&self.slots, triangle as usize);
+        for vertex in self.triangles[triangle as usize] {
+            fetch(&self.vertices, vertex as usize);
+        }
+    }
+
     /// The material of the ground, for the slot after the model's.
     pub fn ground_slot() -> Slot {
         Slot::neutral("ground")
@@ -220,12 +294,11 @@ impl Geometry {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
-    /// Centre and radius, in the geometry's units, of a sphere around the triangles of a slot; `None` where there are
-    /// none.
-    pub fn sphere_around(&self, slot: u32) -> Option<([f32; 3], f64)> {
-        let of_slot = || (0..self.triangles.len()).filter(|&triangle| self.slots[triangle] == slot);
+    /// Centre and radius, in the geometry's units, of a sphere around chosen triangles; `None` where there are none.
+    pub fn sphere_around(&self, is_chosen: impl Fn(usize) -> bool) -> Option<([f32; 3], f64)> {
+        let chosen = || (0..self.triangles.len()).filter(|&triangle| is_chosen(triangle));
         let places = || {
-            of_slot()
+            chosen()
                 .flat_map(|triangle| self.corners(triangle))
                 .map(|corner| DVec3::from_array(corner.map(f64::from)))
         };
@@ -246,8 +319,16 @@ impl Geometry {
     }
 
     /// Adds the chosen triangles of a mesh that have an area.
-    fn add(&mut self, mesh: &Mesh, chosen: impl Iterator<Item = usize>, to_units: impl Fn(DVec3) -> [f32; 3]) {
+    fn add(
+        &mut self,
+        mesh: &Mesh,
+        chosen: impl Iterator<Item = usize>,
+        object_of: impl Fn(usize) -> u32,
+        to_units: impl Fn(DVec3) -> [f32; 3],
+    ) {
         let base = self.positions.len() as u32;
+        self.positions.reserve_exact(mesh.positions.len());
+        self.vertices.reserve_exact(mesh.positions.len());
         for (vertex, &position) in mesh.positions.iter().enumerate() {
             self.positions.push(to_units(position));
             let (normal, tangent) = (mesh.normals[vertex], mesh.tangents[vertex]);
@@ -273,6 +354,7 @@ impl Geometry {
             ) {
                 self.triangles.push(triangle);
                 self.slots.push(mesh.slots[index]);
+                self.objects.push(object_of(index));
             } else {
                 self.dropped_no_area += 1;
             }
@@ -283,6 +365,7 @@ impl Geometry {
     /// together; drops vertices that no triangle uses.
     fn sort(&mut self, order: &[u32]) {
         self.slots = order.iter().map(|&triangle| self.slots[triangle as usize]).collect();
+        self.objects = order.iter().map(|&triangle| self.objects[triangle as usize]).collect();
         const UNUSED: u32 = u32::MAX;
         let mut new_of_old = vec![UNUSED; self.positions.len()];
         let (mut positions, mut vertices) = (Vec::new(), Vec::new());
@@ -297,16 +380,16 @@ impl Geometry {
                 *new
             })
         });
-        self.triangles = sorted.collect();
-        self.positions = positions;
-        self.vertices = vertices;
+        self.triangles = in_large_pages(sorted.collect());
+        self.positions = in_large_pages(positions);
+        self.vertices = in_large_pages(vertices);
     }
 }
 
-/// The triangles of a mesh that can be traced, and the sphere around them.
+/// How many triangles of a mesh can be traced, and the sphere around them.
 pub(super) struct Framing {
-    /// Those with finite corners and an area.
-    pub usable: Vec<usize>,
+    /// Triangles with finite corners and an area.
+    pub usable: usize,
     pub dropped_not_finite: usize,
     bounds_world: [DVec3; 2],
     pub center_world: DVec3,
@@ -316,42 +399,36 @@ pub(super) struct Framing {
 
 impl Framing {
     pub fn of(mesh: &Mesh) -> Self {
-        let is_finite = |&triangle: &usize| mesh.corners(triangle).iter().all(|corner| corner.is_finite());
-        let finite: Vec<usize> = (0..mesh.triangles.len()).filter(is_finite).collect();
-        let dropped_not_finite = mesh.triangles.len() - finite.len();
-        let has_area = |triangle: &usize| has_area(mesh.corners(*triangle));
-        let usable: Vec<usize> = finite.into_iter().filter(has_area).collect();
-        let bounds_world = bounds(mesh, &usable);
+        let corners = || {
+            let triangles = (0..mesh.triangles.len()).into_par_iter();
+            triangles.map(|triangle| mesh.corners(triangle))
+        };
+        let usable = || corners().filter(|corners| is_usable(*corners));
+        let low = usable().flatten_iter().reduce(|| DVec3::INFINITY, DVec3::min);
+        let high = usable().flatten_iter().reduce(|| DVec3::NEG_INFINITY, DVec3::max);
+        let has_any = low.x <= high.x;
+        let bounds_world = if has_any { [low, high] } else { [DVec3::ZERO; 2] };
         let center_world = bounds_world[0].midpoint(bounds_world[1]);
+        let distances = usable().flatten_iter().map(|corner| corner.distance(center_world));
+        let radius = distances.reduce(|| 0.0, f64::max);
+        let has_radius = radius > 0.0 && radius.is_finite();
         Self {
-            dropped_not_finite,
+            usable: usable().count(),
+            dropped_not_finite: corners().filter(|corners| !is_finite(corners)).count(),
             bounds_world,
             center_world,
-            world_units_per_unit: bounding_radius(mesh, &usable, center_world),
-            usable,
+            world_units_per_unit: if has_radius { radius } else { 1.0 },
         }
     }
 }
 
-/// Lowest and highest coordinates of the chosen triangles; zero where there are none.
-fn bounds(mesh: &Mesh, chosen: &[usize]) -> [DVec3; 2] {
-    let corners = || chosen.iter().flat_map(|&triangle| mesh.corners(triangle));
-    match (corners().reduce(DVec3::min), corners().reduce(DVec3::max)) {
-        (Some(low), Some(high)) => [low, high],
-        _ => [DVec3::ZERO; 2],
-    }
+fn is_finite(corners: &[DVec3; 3]) -> bool {
+    corners.iter().all(|corner| corner.is_finite())
 }
 
-/// From `center` to the farthest corner; 1 where that is nothing.
-fn bounding_radius(mesh: &Mesh, chosen: &[usize], center: DVec3) -> f64 {
-    let distances = chosen
-        .iter()
-        .flat_map(|&triangle| mesh.corners(triangle))
-        .map(|corner| corner.distance(center));
-    match distances.fold(0.0, f64::max) {
-        radius if radius > 0.0 && radius.is_finite() => radius,
-        _ => 1.0,
-    }
+/// Whether a triangle can be traced.
+fn is_usable(corners: [DVec3; 3]) -> bool {
+    is_finite(&corners) && has_area(corners)
 }
 
 /// Whether a triangle covers anything.

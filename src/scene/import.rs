@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use super::files::Files;
+use super::files::{Files, Seen};
 use super::geometry::Framing;
-use super::model::{Filter, Model, ModelError, ModelOptions, SlotPicture, TextureRef, Wrap};
+use super::loading::Loading;
+use super::model::{Filter, Model, ModelError, ModelOptions, SlotPicture, Texture, TextureRef, Wrap};
 use super::picture::decode_bytes;
 use super::report::Fate;
-use super::texture::scaled_to;
+use super::texture_scale::scaled_to;
 use super::{gltf, obj, ply, stl};
 
 /// Endings of the model files that can be read, without their dots.
@@ -16,31 +17,46 @@ pub const MODEL_ENDINGS: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "zip"]
 /// Endings of models in the order in which they are looked for in folders and archives.
 const PREFERRED: [&str; 5] = ["gltf", "glb", "obj", "ply", "stl"];
 
-/// Loads the model in a file, a folder or an archive.
-pub(super) fn load(path: &Path, options: &ModelOptions) -> Result<Model, ModelError> {
-    let mut model = if path.is_dir() {
-        load_inside(path, Files::Folder(path.to_owned()), options)?
-    } else if ending(path) == "zip" {
-        let files = Files::in_archive(path).map_err(|source| ModelError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
-        load_inside(path, files, options)?
-    } else {
-        let bytes = std::fs::read(path).map_err(|source| ModelError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
-        load_file(path, Files::beside(path), bytes, options)?
-    };
+/// Loads the model in a file, a folder or an archive, and those that were given with it.
+pub(super) fn load(path: &Path, options: &ModelOptions, loading: &Loading) -> Result<Model, ModelError> {
+    let seen = Seen::default();
+    let mut model = load_one(path, options, &seen, loading)?;
     let stem = if path.is_dir() {
         path.file_name()
     } else {
         path.file_stem()
     };
     model.name = stem.map_or_else(|| "model".into(), |stem| stem.to_string_lossy().into_owned());
+    for part in options.beside.iter().filter(|file| is_model(file)) {
+        let other = load_one(part, options, &seen, loading)?;
+        let name = part.file_name().unwrap_or_default().to_string_lossy();
+        model.report.note(Fate::Used, "models shown together with it", &name);
+        model.join(other);
+    }
     finish(&mut model);
+    model.files = seen.take();
     Ok(model)
+}
+
+/// Loads one model.
+fn load_one(path: &Path, options: &ModelOptions, seen: &Seen, loading: &Loading) -> Result<Model, ModelError> {
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    loading.step(format!("reading {name}"))?;
+    let read = |source| ModelError::Read {
+        path: path.to_owned(),
+        source,
+    };
+    let in_folder = |folder: &Path| Files::in_folder(folder, &options.beside, seen, loading);
+    if path.is_dir() {
+        return load_inside(path, in_folder(path), options);
+    }
+    seen.note(path);
+    if ending(path) == "zip" {
+        let files = Files::in_archive(path, seen, loading).map_err(read)?;
+        return load_inside(path, files, options);
+    }
+    let bytes = std::fs::read(path).map_err(read)?;
+    load_file(path, in_folder(path.parent().unwrap_or(Path::new(""))), bytes, options)
 }
 
 /// Lower-case ending of a file's name, without its dot.
@@ -51,6 +67,12 @@ fn ending(path: &Path) -> String {
 /// Whether a file's ending is that of a model.
 pub fn is_model(path: &Path) -> bool {
     MODEL_ENDINGS.contains(&ending(path).as_str())
+}
+
+/// Whether a folder has a model in it.
+pub fn holds_model(folder: &Path) -> bool {
+    let entries = std::fs::read_dir(folder);
+    entries.is_ok_and(|mut entries| entries.any(|entry| entry.is_ok_and(|entry| is_model(&entry.path()))))
 }
 
 /// Loads the model among files: of the first format that there is, the file that is nearest to the top.
@@ -99,13 +121,14 @@ fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) 
 /// Gives slots the pictures that were chosen for them, in the first set of texture coordinates.
 pub(super) fn put_pictures(model: &mut Model, options: &ModelOptions) {
     for SlotPicture { slot, file } in &options.pictures {
+        model.files.push(file.clone());
         let name = file.display().to_string();
         let picture = std::fs::read(file)
             .map_err(|error| error.to_string())
             .and_then(|bytes| decode_bytes(name.clone(), &bytes));
         match (picture, model.slots.get_mut(*slot)) {
             (Ok(picture), Some(slot)) => {
-                let (picture, _) = scaled_to(picture, options.texture_side_max, true);
+                let (picture, _) = scaled_to(picture.texture(true), options.texture_side_max, true);
                 slot.base_color = [1.0; 3];
                 slot.base_color_texture = Some(TextureRef {
                     texture: model.textures.len(),
@@ -136,8 +159,9 @@ fn finish(model: &mut Model) {
     }
     (model.center, model.radius) = (framing.center_world.to_array(), framing.world_units_per_unit);
     let all = model.mesh.triangles.len();
-    let no_area = all - framing.dropped_not_finite - framing.usable.len();
+    let no_area = all - framing.dropped_not_finite - framing.usable;
     let (lights, cameras) = (model.lights.len(), model.cameras.len());
+    let texture_bytes: usize = model.textures.iter().map(Texture::bytes).sum();
     let report = &mut model.report;
     report.count(
         Fate::Approximated,
@@ -146,7 +170,14 @@ fn finish(model: &mut Model) {
         lights,
     );
     report.count(Fate::Used, "cameras, as bookmarks", "", cameras);
-    report.count(Fate::Used, "triangles", "", framing.usable.len());
+    report.count(Fate::Used, "triangles", "", framing.usable);
+    if texture_bytes > 0 {
+        let what = format!(
+            "textures, {:.1} MiB in memory",
+            texture_bytes as f64 / f64::from(1 << 20)
+        );
+        report.note(Fate::Used, what, "");
+    }
     report.count(Fate::Ignored, "triangles without area", "", no_area);
     report.count(
         Fate::Ignored,

@@ -6,13 +6,16 @@ mod convex;
 pub mod environment;
 pub mod facing;
 mod files;
+mod float_tiff;
 mod geometry;
 mod gltf;
+mod gpu_picture;
 mod hierarchy;
 mod import;
 mod intersect;
-mod ktx2;
 pub mod light;
+mod loading;
+mod memory;
 pub mod mesh;
 mod model;
 mod obj;
@@ -25,14 +28,16 @@ pub mod surface;
 mod tangents;
 pub mod teapot;
 pub mod texture;
+mod texture_scale;
 
-pub use geometry::{Geometry, Vertex};
+pub use geometry::{Geometry, NO_OBJECT, Vertex};
 pub use gltf::{Widths, gltf_from_widths, kept_keys, widths_from_gltf};
-pub use hierarchy::Compressed;
-pub use import::{MODEL_ENDINGS, is_model};
+pub use hierarchy::{Compressed, PACKET, Packet, WAYS, ray_way};
+pub use import::{MODEL_ENDINGS, holds_model, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
+pub use loading::{Cancelled, Loading};
 pub use model::{
-    AlphaMode, Filter, LightKind, Model, ModelCamera, ModelError, ModelLight, ModelOptions, ModelSource, Slot,
-    SlotPicture, Texture, TextureRef, Wrap, load, load_with,
+    AlphaMode, Filter, LightKind, Model, ModelCamera, ModelError, ModelLight, ModelObject, ModelOptions, ModelSource,
+    Slot, SlotPicture, Texture, TextureRef, Wrap, load, load_watched, load_with,
 };
 pub use report::{Entry, Fate, ImportReport};

@@ -2,10 +2,12 @@
 
 use std::fmt;
 use std::io;
+use std::ops::Range;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
+use super::loading::{Cancelled, Loading};
 use super::mesh::Mesh;
 use super::report::ImportReport;
 use super::{import, shapes, teapot};
@@ -89,6 +91,8 @@ pub struct Model {
     pub slots: Vec<Slot>,
     /// The pictures that the slots refer to.
     pub textures: Vec<Texture>,
+    /// The objects that its triangles belong to, in the triangles' order.
+    pub objects: Vec<ModelObject>,
     /// What became of the parts of its file.
     pub report: ImportReport,
     /// The middle of its bounding box; 0 for built-in models, whose file has no lights or cameras.
@@ -105,12 +109,69 @@ pub struct Model {
     pub scenes: Vec<String>,
     /// How long its first animation takes, seconds; 0 where there is none.
     pub duration_s: f32,
+    /// The files that it was read from, and those that it names and that are not there.
+    pub files: Vec<PathBuf>,
+}
+
+/// A part of a model that has a name: a node of a glTF file, an object or group of an OBJ file, else the whole.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ModelObject {
+    /// What the file calls it.
+    pub name: String,
+    /// Its triangles in the mesh.
+    pub triangles: Range<usize>,
 }
 
 impl Model {
+    /// The number of the object that a triangle of the mesh belongs to.
+    pub fn object_of(&self, triangle: usize) -> Option<usize> {
+        let object = self.objects.partition_point(|object| object.triangles.end <= triangle);
+        let is_it = |found: &ModelObject| found.triangles.contains(&triangle);
+        self.objects.get(object).is_some_and(is_it).then_some(object)
+    }
+
+    /// The slots whose materials an object shows, each once.
+    pub fn slots_of(&self, object: usize) -> Vec<usize> {
+        let triangles = self.objects.get(object).map(|object| object.triangles.clone());
+        let slots = self.mesh.slots.get(triangles.unwrap_or_default()).unwrap_or_default();
+        let mut slots: Vec<usize> = slots.iter().map(|slot| *slot as usize).collect();
+        slots.sort_unstable();
+        slots.dedup();
+        slots
+    }
+
+    /// Adds all of another model, as it lies in its own file's space, to this one.
+    pub(super) fn join(&mut self, mut other: Self) {
+        let (slots, textures) = (self.slots.len() as u32, self.textures.len());
+        other.mesh.slots.iter_mut().for_each(|slot| *slot += slots);
+        for slot in &mut other.slots {
+            slot.texture_refs_mut()
+                .for_each(|reference| reference.texture += textures);
+        }
+        let first = self.mesh.triangles.len();
+        let triangles = other.mesh.triangles.len();
+        if other.objects.is_empty() {
+            other.objects = vec![ModelObject {
+                name: other.name.clone(),
+                triangles: 0..triangles,
+            }];
+        }
+        self.objects.extend(other.objects.into_iter().map(|object| ModelObject {
+            triangles: first + object.triangles.start..first + object.triangles.end,
+            ..object
+        }));
+        self.mesh.append(other.mesh);
+        self.slots.extend(other.slots);
+        self.textures.extend(other.textures);
+        self.report.append(other.report);
+        self.cameras.extend(other.cameras);
+        self.lights.extend(other.lights);
+        self.duration_s = self.duration_s.max(other.duration_s);
+    }
+
     /// Bytes in memory, near enough.
     pub fn bytes(&self) -> usize {
-        let pictures: usize = self.textures.iter().map(|texture| texture.rgba8.len()).sum();
+        let pictures: usize = self.textures.iter().map(Texture::bytes).sum();
         self.mesh.bytes() + pictures
     }
 }
@@ -129,6 +190,10 @@ pub struct ModelOptions {
     pub texture_side_max: u32,
     /// Pictures that take the place of the base colours of slots.
     pub pictures: Vec<SlotPicture>,
+    /// Other files that were given with it. Models are shown together with it; what it names and lacks beside itself is
+    /// looked for among the others.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub beside: Vec<PathBuf>,
 }
 
 /// A picture for the base colour of a slot.
@@ -148,6 +213,7 @@ impl Default for ModelOptions {
             time_s: None,
             texture_side_max: 8192,
             pictures: Vec::new(),
+            beside: Vec::new(),
         }
     }
 }
@@ -309,6 +375,17 @@ impl Slot {
         ];
         refs.into_iter().flatten()
     }
+
+    /// The same to be changed.
+    fn texture_refs_mut(&mut self) -> impl Iterator<Item = &mut TextureRef> {
+        let refs = [
+            &mut self.base_color_texture,
+            &mut self.metallic_roughness_texture,
+            &mut self.normal_texture,
+            &mut self.emissive_texture,
+        ];
+        refs.into_iter().flatten()
+    }
 }
 
 /// What a slot's opacity means.
@@ -362,7 +439,7 @@ pub enum Wrap {
 }
 
 /// A picture, encoded as in the file: whether the values are sRGB or linear depends on what refers to it.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, Default, PartialEq)]
 pub struct Texture {
     /// The image's name, its file or its number.
     pub name: String,
@@ -372,6 +449,15 @@ pub struct Texture {
     pub height: u32,
     /// Red, green, blue, opacity of each texel, row by row from the top.
     pub rgba8: Vec<u8>,
+    /// The same with 16 bits a channel, where the file has more than 8 and the picture holds no colours; else empty.
+    pub rgba16: Vec<u16>,
+}
+
+impl Texture {
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.rgba8[..]) + size_of_val(&self.rgba16[..])
+    }
 }
 
 impl fmt::Debug for Texture {
@@ -443,6 +529,9 @@ pub enum ModelError {
         /// The folder or archive.
         path: PathBuf,
     },
+    /// It is not wanted any more.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// Nothing to draw.
     #[error("{}: no triangles in its scene; export a mesh with faces", path.display())]
     NoTriangles {
@@ -464,6 +553,14 @@ pub fn load(source: &ModelSource) -> Result<Model, ModelError> {
 /// # Errors
 /// As [`load`].
 pub fn load_with(source: &ModelSource, options: &ModelOptions) -> Result<Model, ModelError> {
+    load_watched(source, options, &Loading::default())
+}
+
+/// The same for those who wait.
+///
+/// # Errors
+/// As [`load`], and where it was cancelled.
+pub fn load_watched(source: &ModelSource, options: &ModelOptions, loading: &Loading) -> Result<Model, ModelError> {
     let built_in = |mesh: Mesh, slots: &[&str]| Model {
         name: source.to_string(),
         mesh,
@@ -475,8 +572,14 @@ pub fn load_with(source: &ModelSource, options: &ModelOptions) -> Result<Model, 
         ModelSource::Sphere => built_in(shapes::sphere(192, 96), &["sphere"]),
         ModelSource::Plane => built_in(shapes::plane(), &["plane"]),
         ModelSource::Shaderball => built_in(shapes::shaderball(), &["body", "stand"]),
-        ModelSource::File(path) => import::load(path, options)?,
+        ModelSource::File(path) => import::load(path, options, loading)?,
     };
+    if model.objects.is_empty() {
+        model.objects = vec![ModelObject {
+            name: model.name.clone(),
+            triangles: 0..model.mesh.triangles.len(),
+        }];
+    }
     import::put_pictures(&mut model, options);
     Ok(model)
 }

@@ -12,10 +12,10 @@ use tobj::{LoadError, LoadOptions, Material};
 
 use super::files::Files;
 use super::mesh::Mesh;
-use super::model::{AlphaMode, Filter, Model, ModelError, ModelOptions, Slot, Texture, TextureRef, Wrap};
+use super::model::{AlphaMode, Filter, Model, ModelError, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap};
 use super::picture::decode_bytes;
 use super::report::{Fate, ImportReport};
-use super::texture::scaled_to;
+use super::texture_scale::scaled_to;
 use crate::panics::contained;
 
 /// Loads the contents of an OBJ file.
@@ -44,7 +44,9 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
     let mut report = report.into_inner();
     let mut slots = Slots::new(files, options, &materials);
     let mut mesh = Mesh::default();
-    for part in &parts {
+    let mut objects: Vec<ModelObject> = Vec::new();
+    for (place, part) in parts.iter().enumerate() {
+        files.loading.step(format!("mesh {} of {}", place + 1, parts.len()))?;
         let slot = slots.slot(part.mesh.material_id, &mut report);
         let is_exact = slots.slots[slot as usize].normal_texture.is_some();
         let read = read_part(&part.mesh, slot, is_exact);
@@ -52,13 +54,24 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
             slots.slots[slot as usize].has_vertex_colors = true;
             report.note(Fate::Used, "vertex colours", &part.name);
         }
+        let first = mesh.triangles.len();
         mesh.append(read);
+        let triangles = first..mesh.triangles.len();
+        match objects.last_mut() {
+            // A part for each of its materials.
+            Some(last) if last.name == part.name => last.triangles.end = triangles.end,
+            _ => objects.push(ModelObject {
+                name: part.name.clone(),
+                triangles,
+            }),
+        }
     }
     report.count(Fate::Used, "meshes", "", parts.len());
     Ok(Model {
         mesh,
         slots: slots.slots,
         textures: slots.textures,
+        objects,
         report,
         ..Model::default()
     })
@@ -275,7 +288,7 @@ impl<'a> Slots<'a> {
             match decoded {
                 Ok(texture) => {
                     report.note(Fate::Used, "textures", name);
-                    let (texture, scaled_from) = scaled_to(texture, self.side_max, is_color);
+                    let (texture, scaled_from) = scaled_to(texture.texture(is_color), self.side_max, is_color);
                     if let Some([width, height]) = scaled_from {
                         let what = format!(
                             "a picture of {width} × {height}, used at {} × {}",

@@ -1,7 +1,7 @@
 //! The pictures of a model as the integrators read them: all texels in one array, filtered by hand, so that both engines
 //! find the same numbers. Twin of `shaders/scene/texture.wgsl`.
 //!
-//! Texels are RGBA of 8 bits in words of 32. The array begins with the linear values of the 256 sRGB codes as the bits of
+//! Texels are RGBA of 8 bits in words of 32, or of 16 bits in two words each. The array begins with the linear values of the 256 sRGB codes as the bits of
 //! f32: colours are decoded before they are filtered, by a look-up that has no rounding of its own.
 
 use std::ops::Range;
@@ -12,10 +12,11 @@ use bytemuck::{Pod, Zeroable};
 use super::geometry::{Geometry, Vertex};
 use super::model::{AlphaMode, Filter, Model, Slot, Texture, TextureRef, Wrap};
 use super::picture::decode_bytes;
+use super::texture_scale::{fraction, halved};
 use crate::optics::albedo::table_lookup;
 use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
 use crate::optics::real::Real;
-use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
+use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::{Vec3, vec3};
 
 /// Words before the first texel: the linear values of sRGB codes.
@@ -35,6 +36,8 @@ pub const IS_SRGB: u32 = 1;
 pub const IS_NEAREST: u32 = 2;
 /// [`TextureRecord::flags`]: the second set of texture coordinates is meant.
 pub const IS_SECOND_SET: u32 = 4;
+/// [`TextureRecord::flags`]: channels have 16 bits, a texel two words.
+pub const IS_FINE: u32 = 8;
 
 /// One use of a picture. What the GPU reads, byte for byte (`shaders/scene/layout.wgsl`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -143,7 +146,7 @@ impl Textures {
             warnings: Vec::new(),
         };
         let pictures = fitting(model, words_max.saturating_sub(DECODED), &mut textures.warnings);
-        let mut first_texels = vec![None; pictures.len()];
+        let mut first_texels = vec![[None; 2]; pictures.len()];
         for slot in &model.slots {
             let constant = |reference: Option<TextureRef>, channels| {
                 reference.and_then(|reference| one_value(&pictures[reference.texture], channels))
@@ -201,13 +204,20 @@ impl Textures {
         &mut self,
         reference: &TextureRef,
         picture: &Texture,
-        first_texels: &mut [Option<u32>],
+        first_texels: &mut [[Option<u32>; 2]],
         is_srgb: bool,
     ) -> u32 {
-        let first_texel = *first_texels[reference.texture].get_or_insert_with(|| {
+        let is_fine = !is_srgb && !picture.rgba16.is_empty();
+        let first_texel = *first_texels[reference.texture][usize::from(is_fine)].get_or_insert_with(|| {
             let first = self.words.len() as u32;
-            let texels = picture.rgba8.as_chunks::<4>().0.iter();
-            self.words.extend(texels.map(|texel| u32::from_le_bytes(*texel)));
+            if is_fine {
+                let pairs = picture.rgba16.as_chunks::<2>().0.iter();
+                self.words
+                    .extend(pairs.map(|[low, high]| u32::from(*low) | u32::from(*high) << 16));
+            } else {
+                let texels = picture.rgba8.as_chunks::<4>().0.iter();
+                self.words.extend(texels.map(|texel| u32::from_le_bytes(*texel)));
+            }
             first
         });
         let flag = |is_on: bool, flag: u32| if is_on { flag } else { 0 };
@@ -225,7 +235,8 @@ impl Textures {
             }),
             flags: flag(is_srgb, IS_SRGB)
                 | flag(reference.filter == Filter::Nearest, IS_NEAREST)
-                | flag(reference.uv_set == 1, IS_SECOND_SET),
+                | flag(reference.uv_set == 1, IS_SECOND_SET)
+                | flag(is_fine, IS_FINE),
         };
         let known = self.records.iter().position(|known| *known == record);
         let place = known.unwrap_or_else(|| {
@@ -238,10 +249,16 @@ impl Textures {
 
 /// The value of a picture, each channel in [0, 1], where these channels are the same everywhere.
 fn one_value(picture: &Texture, channels: Range<usize>) -> Option<[f64; 4]> {
-    let mut texels = picture.rgba8.as_chunks::<4>().0.iter();
-    let first = texels.next()?;
-    let is_same = texels.all(|texel| texel[channels.clone()] == first[channels.clone()]);
-    is_same.then(|| first.map(|code| f64::from(code) / 255.0))
+    fn same<C: PartialEq>(texels: &[C], channels: Range<usize>) -> bool {
+        let mut texels = texels.as_chunks::<4>().0.iter();
+        let first = texels.next();
+        first.is_some_and(|first| texels.all(|texel| texel[channels.clone()] == first[channels.clone()]))
+    }
+    let is_same = match picture.rgba16.is_empty() {
+        true => same(&picture.rgba8, channels),
+        false => same(&picture.rgba16, channels),
+    };
+    is_same.then(|| [0, 1, 2, 3].map(|channel| fraction(picture, channel)))
 }
 
 /// Whether the base colour's picture says where a slot's surface is.
@@ -278,20 +295,24 @@ fn fitting(model: &Model, words_max: usize, warnings: &mut Vec<String>) -> Vec<T
             width: side,
             height: side,
             rgba8: picture.rgba8[..4 * side as usize].to_vec(),
+            rgba16: picture.rgba16.iter().take(4 * side as usize).copied().collect(),
         }
     };
     let mut pictures: Vec<Texture> = model.textures.iter().enumerate().map(used).collect();
-    let texels = |picture: &Texture| picture.rgba8.len() / 4;
-    let whole: Vec<usize> = pictures.iter().map(texels).collect();
-    while pictures.iter().map(texels).sum::<usize>() > words_max {
-        let largest = (0..pictures.len()).max_by_key(|&index| texels(&pictures[index]));
-        let Some(index) = largest.filter(|&index| texels(&pictures[index]) > 1) else {
+    let words = |picture: &Texture| match picture.rgba16.len() {
+        0 => picture.rgba8.len() / 4,
+        channels => channels / 2,
+    };
+    let whole: Vec<usize> = pictures.iter().map(words).collect();
+    while pictures.iter().map(words).sum::<usize>() > words_max {
+        let largest = (0..pictures.len()).max_by_key(|&index| words(&pictures[index]));
+        let Some(index) = largest.filter(|&index| pictures[index].rgba8.len() > 4) else {
             break;
         };
         pictures[index] = halved(&pictures[index], is_color(index));
     }
     for ((picture, original), whole) in pictures.iter().zip(&model.textures).zip(whole) {
-        if texels(picture) < whole {
+        if words(picture) < whole {
             warnings.push(format!(
                 "{}: the picture {} is used at {} × {} instead of {} × {}: together the pictures are more than {} \
                  MiB; export smaller ones to choose which",
@@ -306,51 +327,6 @@ fn fitting(model: &Model, words_max: usize, warnings: &mut Vec<String>) -> Vec<T
         }
     }
     pictures
-}
-
-/// A picture of half the width and height, each texel the mean of those that it covers; of light, where it holds colours.
-fn halved(picture: &Texture, is_color: bool) -> Texture {
-    let (width, height) = ((picture.width / 2).max(1), (picture.height / 2).max(1));
-    let decode = |texel: [u8; 4]| {
-        let [r, g, b, a] = texel.map(|code| f64::from(code) / 255.0);
-        let color = vec3(r, g, b);
-        (if is_color { linear_from_srgb(color) } else { color }, a)
-    };
-    let span = |i: u32, from: u32, to: u32| (i * from / to)..((i + 1) * from / to).max(i * from / to + 1);
-    let mut rgba8 = Vec::with_capacity((4 * width * height) as usize);
-    for y in 0..height {
-        for x in 0..width {
-            let (mut color, mut alpha, mut count) = (Vec3::zero(), 0.0, 0.0);
-            for row in span(y, picture.height, height) {
-                for column in span(x, picture.width, width) {
-                    let place = 4 * (row * picture.width + column) as usize;
-                    let texel = [0, 1, 2, 3].map(|channel| picture.rgba8[place + channel]);
-                    let (c, a) = decode(texel);
-                    (color, alpha, count) = (color + c, alpha + a, count + 1.0);
-                }
-            }
-            let mean = color / count;
-            let [r, g, b] = if is_color { srgb_from_linear(mean) } else { mean }.to_f64();
-            rgba8.extend([r, g, b, alpha / count].map(|value| (255.0 * value).round().clamp(0.0, 255.0) as u8));
-        }
-    }
-    Texture {
-        name: picture.name.clone(),
-        width,
-        height,
-        rgba8,
-    }
-}
-
-/// A picture whose sides are at most `side_max`, halved until they are; and the size that it had, where that was more.
-pub(super) fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, Option<[u32; 2]>) {
-    let whole = [picture.width, picture.height];
-    let mut scaled = picture;
-    while scaled.width.max(scaled.height) > side_max.max(1) {
-        scaled = halved(&scaled, is_color);
-    }
-    let is_scaled = [scaled.width, scaled.height] != whole;
-    (scaled, is_scaled.then_some(whole))
 }
 
 /// The mean of a picture.
@@ -383,7 +359,7 @@ pub fn texture_mean(picture: &Texture) -> TextureMean {
 /// What is wrong with the file.
 pub fn mean_of_file(path: &Path) -> Result<TextureMean, String> {
     let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
-    Ok(texture_mean(&decode_bytes(String::new(), &bytes)?))
+    Ok(texture_mean(&decode_bytes(String::new(), &bytes)?.texture(true)))
 }
 
 /// The mean of a picture of sRGB codes, linear.
@@ -460,7 +436,14 @@ fn neighbours<T: Real>(low: T, size: u32, wrap: u32) -> [u32; 2] {
 }
 
 fn texel<T: Real>(textures: &Textures, record: &TextureRecord, column: u32, row: u32) -> (Vec3<T>, T) {
-    let word = textures.words[(record.first_texel + row * record.width + column) as usize];
+    let place = row * record.width + column;
+    if record.flags & IS_FINE != 0 {
+        let first = (record.first_texel + 2 * place) as usize;
+        let fraction = |code: u32| T::from_f64(f64::from((code & 0xffff) as f32 / 65535.0));
+        let [rg, ba] = [textures.words[first], textures.words[first + 1]];
+        return (vec3(fraction(rg), fraction(rg >> 16), fraction(ba)), fraction(ba >> 16));
+    }
+    let word = textures.words[(record.first_texel + place) as usize];
     let [r, g, b, a] = word.to_le_bytes();
     let channel = |code: u8| {
         let linear = if record.flags & IS_SRGB != 0 {

@@ -1,7 +1,7 @@
-//! Reading and writing JSON files with care: errors that say what to do, and saving that never leaves half a file.
+//! Reading and writing JSON files with care: errors that say what to do.
 
-use std::fs::{self, File, OpenOptions};
-use std::io::{self, Read as _, Write as _};
+use std::fs::File;
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value as Json};
@@ -211,75 +211,5 @@ fn has_object(value: &Json) -> bool {
         Json::Object(_) => true,
         Json::Array(list) => list.iter().any(has_object),
         _ => false,
-    }
-}
-
-/// Replaces a file's contents at once: whoever reads it, or whatever fails meanwhile, finds the old or the new contents,
-/// never a part. Permissions stay; a link is followed.
-///
-/// # Errors
-/// [`FileError::Write`]; the old file is then untouched.
-pub fn save_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    replace(&target, bytes).map_err(|source| FileError::Write {
-        path: path.to_owned(),
-        source,
-    })
-}
-
-/// Replaces a file at once by what `write` writes: it is given the name of another one beside it, with the same ending.
-///
-/// # Errors
-/// [`FileError::Write`] where that cannot take the file's place; and those of `write`.
-pub fn save_by<E>(path: &Path, write: impl FnOnce(&Path) -> Result<(), E>) -> Result<Result<(), E>, FileError> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let temporary = path.with_file_name(format!(".{}.{name}", std::process::id()));
-    if let Err(error) = write(&temporary) {
-        let _ = fs::remove_file(&temporary);
-        return Ok(Err(error));
-    }
-    let renamed = fs::rename(&temporary, path);
-    renamed.map(Ok).map_err(|source| FileError::Write {
-        path: path.to_owned(),
-        source,
-    })
-}
-
-fn replace(target: &Path, bytes: &[u8]) -> io::Result<()> {
-    let name = target.file_name().ok_or(io::ErrorKind::IsADirectory)?;
-    let folder = target
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
-    let (temporary, mut file) = create_beside(folder, &name.to_string_lossy())?;
-    let written = (|| {
-        file.write_all(bytes)?;
-        if let Ok(old) = fs::metadata(target) {
-            file.set_permissions(old.permissions())?;
-        }
-        file.sync_all()?;
-        drop(file);
-        fs::rename(&temporary, target)
-    })();
-    if written.is_err() {
-        // What failed is the error to report, not that this fails too.
-        let _ = fs::remove_file(&temporary);
-        return written;
-    }
-    // Makes the new name last through a power cut; not every file system can.
-    #[cfg(unix)]
-    let _ = File::open(folder).and_then(|folder| folder.sync_all());
-    Ok(())
-}
-
-/// A new file in the folder, so that renaming it does not cross file systems.
-fn create_beside(folder: &Path, name: &str) -> io::Result<(PathBuf, File)> {
-    let mut attempt = 0;
-    loop {
-        let path = folder.join(format!(".{name}.{}-{attempt}.tmp", std::process::id()));
-        match OpenOptions::new().write(true).create_new(true).open(&path) {
-            Err(error) if error.kind() == io::ErrorKind::AlreadyExists && attempt < 100 => attempt += 1,
-            result => return result.map(|file| (path, file)),
-        }
     }
 }

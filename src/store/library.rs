@@ -4,8 +4,9 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::file::{FileError, save_atomically};
+use super::file::FileError;
 use super::preset::{command_line_name, load_material, save_material};
+use super::replace::save_atomically;
 use crate::document::MaterialSettings;
 
 /// A file of the folder.

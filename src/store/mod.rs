@@ -1,6 +1,7 @@
 //! What is kept in files: projects, presets and the user's folder of them, pictures with a document inside, copies of
-//! unsaved documents, pinned states; materials in other programs' formats.
+//! unsaved documents, pinned states; materials in other programs' formats; examples to begin with.
 
+pub mod examples;
 pub mod exchange;
 pub mod file;
 pub mod library;
@@ -8,6 +9,7 @@ pub mod picture;
 pub mod preset;
 pub mod project;
 pub mod recovery;
+pub mod replace;
 pub mod snapshots;
 
 pub use file::{FileError, Loaded};

@@ -10,6 +10,7 @@ use std::sync::LazyLock;
 use serde_json::{Map, Value as Json, json};
 
 use super::file::{self, FileError, Loaded};
+use super::replace::save_atomically;
 use crate::document::parameter::nearest_key;
 use crate::document::{MaterialSettings, PARAMETERS, ParameterError};
 use crate::scene::kept_keys;
@@ -176,7 +177,7 @@ pub(super) fn unknown_keys(material: &MaterialSettings) -> impl Iterator<Item = 
 /// # Errors
 /// [`FileError::Write`]; the old file is then untouched.
 pub fn save_material(path: &Path, material: &MaterialSettings) -> Result<(), FileError> {
-    file::save_atomically(path, material_text(material).as_bytes())
+    save_atomically(path, material_text(material).as_bytes())
 }
 
 /// The contents of a material's file.

@@ -8,6 +8,7 @@ use serde_json::{Map, Value as Json, json};
 
 use super::file::{self, FileError, Loaded};
 use super::preset;
+use super::replace::save_atomically;
 use crate::document::Document;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
@@ -77,7 +78,7 @@ fn document_from_json(object: &Map<String, Json>) -> Result<Document, String> {
 /// # Errors
 /// [`FileError::Write`]; the old file is then untouched.
 pub fn save_document(path: &Path, document: &Document) -> Result<(), FileError> {
-    file::save_atomically(path, document_text(path, document)?.as_bytes())
+    save_atomically(path, document_text(path, document)?.as_bytes())
 }
 
 /// The contents of a document's file at `path`.
@@ -160,6 +161,9 @@ fn map_paths(document: &mut Document, map: impl Fn(&Path) -> PathBuf) {
     }
     for picture in &mut document.import.pictures {
         picture.file = map(&picture.file);
+    }
+    for file in &mut document.import.beside {
+        *file = map(file);
     }
 }
 

@@ -4,10 +4,11 @@ use std::fs;
 use std::io::{self, Cursor};
 use std::path::{Path, PathBuf};
 
-use super::file::{FileError, save_atomically};
+use super::file::FileError;
 use super::library::free_path;
 use super::picture::{parse_picture_document, png_bytes};
 use super::project::document_text;
+use super::replace::save_atomically;
 use crate::document::Document;
 
 /// Longest side of a pinned picture, pixels.

@@ -515,6 +515,7 @@ fn tilts() -> Vec<Case> {
         width: 2,
         height: 2,
         rgba8: [codes[0], codes[1], codes[2], 255].repeat(4),
+        rgba16: Vec::new(),
     }];
     model.slots[0].normal_texture = Some(TextureRef {
         texture: 0,

@@ -29,7 +29,13 @@ fn lit(assets: &Assets, yaw_deg: f64) -> Arc<Geometry> {
         height: 1.0,
         is_triangle: false,
     };
-    let made = assets.geometry(&ModelSource::Sphere, &ModelOptions::default(), true, vec![light]);
+    let made = assets.geometry(
+        &ModelSource::Sphere,
+        &ModelOptions::default(),
+        true,
+        vec![light],
+        Vec::new(),
+    );
     made.expect("it is built in")
 }
 

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use glossmith::store::PRESETS;
 use serde_json::Value as Json;
 
-use crate::cli_support::{Run, Workplace};
+use crate::cli_support::{Run, Workplace, channels};
 
 const SMALL: &str = "\n[common]\nsize = \"16x16\"\nsamples = 4\nmodel = \"sphere\"\n";
 
@@ -106,6 +106,14 @@ fn a_batch_that_was_killed_goes_on_where_it_was() {
         .unwrap();
     child.kill().unwrap();
     child.wait().unwrap();
+    // As a kill in the middle of writing leaves it; what another worker is writing is locked.
+    let [left, held] = ["silver-0001.exr", "silver-0002.exr"].map(|name| {
+        let name = format!("pictures/.{name}.1-0.glossmith-part");
+        place.write(&name, b"half of a picture");
+        place.path(&name)
+    });
+    let other = std::fs::OpenOptions::new().write(true).open(&held).unwrap();
+    other.lock().unwrap();
     assert!(first.contains("gold-0001"), "{first}");
     assert!(
         !place.path("pictures/contact-sheet.png").exists(),
@@ -115,6 +123,7 @@ fn a_batch_that_was_killed_goes_on_where_it_was() {
     assert_eq!(outcomes.len(), 6);
     assert_eq!(outcomes["gold-0001"], "kept");
     assert_eq!(outcomes["car-paint-red-0002"], "rendered");
+    assert!(!left.exists() && held.exists());
     for name in outcomes.keys() {
         let [whole, resumed] = ["whole", "pictures"].map(|folder| bytes(&place, &format!("{folder}/{name}.exr")));
         assert!(whole == resumed, "{name}");
@@ -194,12 +203,25 @@ fn parts_of_the_samples_join_to_the_whole_pictures() {
     );
     let run = place.run("batch b.toml --engine cpu --slice 1/2");
     assert_eq!(run.code, Some(1));
-    assert!(
-        lines(&run)[0]["error"]
-            .as_str()
-            .unwrap()
-            .contains("equally many samples")
-    );
+    assert!(lines(&run)[0]["error"].as_str().unwrap().contains("its own noise"));
+}
+
+/// Parts are not denoised, what they are joined to is.
+#[test]
+fn a_joined_picture_is_denoised() {
+    let place = Workplace::new();
+    let text = format!("materials = [\"gold\"]\nformats = [\"exr\"]\n{SMALL}denoise = \"high\"\n");
+    place.write("a.toml", text.as_bytes());
+    place.done("batch a.toml --engine cpu --folder whole");
+    for slice in 1..=2 {
+        place.done(&format!("batch a.toml --engine cpu --slice {slice}/2"));
+    }
+    place.done("batch a.toml --merge");
+    let [whole, joined] = ["whole", "pictures"].map(|folder| channels(&place.path(&format!("{folder}/gold.exr"))));
+    assert!(whole["R"] == joined["R"]);
+    for (a, b) in whole["denoised.R"].iter().zip(&joined["denoised.R"]) {
+        assert!((a - b).abs() < 1e-3 * (1.0 + a.abs()), "{a} and {b}");
+    }
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! The checks that `glossmith check` runs: χ² of every sampler on both engines, and that the tests can fail.
 
+use std::sync::atomic::AtomicBool;
+
 use glossmith::analysis::chi_square::sidak_level;
 use glossmith::cpu;
 use glossmith::job::scatter::{ScatterCloud, ScatterRequest};
@@ -90,13 +92,35 @@ fn the_whole_check_passes() {
                 engine,
                 thorough: false,
             },
+            &AtomicBool::new(false),
             |_| {},
         )
-        .unwrap();
+        .unwrap()
+        .expect("nobody stops it");
         let failed: Vec<_> = checks.iter().filter(|check| !check.passed).collect();
         assert!(failed.is_empty(), "{engine:?}: {failed:#?}");
         assert!(checks.len() > 100);
     }
+}
+
+#[test]
+fn a_stopped_check_has_no_verdict() {
+    let stop = AtomicBool::new(false);
+    let options = CheckOptions {
+        engine: EngineChoice::Cpu,
+        thorough: true,
+    };
+    let told = std::cell::RefCell::new(Vec::new());
+    let checks = run(options, &stop, |group| {
+        told.borrow_mut().push(group.to_owned());
+        stop.store(true, std::sync::atomic::Ordering::Relaxed);
+    });
+    assert!(checks.expect("the processor").is_none());
+    assert_eq!(
+        told.into_inner(),
+        ["samples against densities"],
+        "nothing is begun any more"
+    );
 }
 
 /// The geometric lobe's density integrates to 1, at every curve: by midpoints in polar coordinates around the mirror

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 use std::process::Command;
-use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use glossmith::analysis::halves::Halves;
 use glossmith::document::{Background, Denoise, DenoiseWhen, Document};
@@ -389,7 +390,7 @@ const OLD_LIBRARY: &str = "
     void oidnNewBuffer() {} void oidnReleaseBuffer() {} void oidnWriteBuffer() {} void oidnReadBuffer() {}
     void oidnNewFilter() {} void oidnReleaseFilter() {} void oidnSetFilterImage() {} void oidnSetFilterBool() {}
     void oidnSetFilterInt() {} void oidnGetFilterInt() {} void oidnSetFilterFloat() {} void oidnCommitFilter() {}
-    void oidnExecuteFilter() {}
+    void oidnExecuteFilter() {} void oidnSetFilterProgressMonitorFunction() {}
 ";
 
 #[test]
@@ -474,6 +475,52 @@ fn the_window_s_pictures_are_denoised_from_the_first_to_the_last() {
     let seen = pictures(&worker, worker.submit(&document, Pace::Still));
     let (last, before) = seen.split_last().unwrap();
     assert!(last.is_denoised() && before.iter().all(|picture| !picture.is_denoised()));
+}
+
+/// On the same cores the denoiser goes first: the engine has made no sample more when a denoised picture is shown than are
+/// in it, be it the first of one sample or the last.
+#[test]
+fn the_engine_waits_for_the_denoiser_on_the_same_cores() {
+    let desk: Arc<OnceLock<Worker>> = Arc::default();
+    let shown: Arc<Mutex<Vec<[u32; 2]>>> = Arc::default();
+    // Called by the worker's own thread: nothing happens in between.
+    let look = {
+        let (desk, shown) = (Arc::downgrade(&desk), shown.clone());
+        let last_serial = AtomicU64::new(0);
+        move || {
+            let Some(desk) = desk.upgrade() else { return };
+            let Some(snapshot) = desk.get().map(Worker::snapshot) else {
+                return;
+            };
+            if let Some(picture) = &snapshot.picture
+                && last_serial.swap(picture.serial, Relaxed) != picture.serial
+            {
+                let samples = [picture.samples_per_pixel, snapshot.progress.samples_per_pixel];
+                shown.lock().unwrap().push(samples);
+            }
+        }
+    };
+    desk.set(Worker::spawn(EngineChoice::Cpu, look).unwrap()).ok().unwrap();
+    let worker = desk.get().unwrap();
+    let mut document = small_document();
+    (document.render.width, document.render.height, document.render.samples) = (128, 96, 8);
+    document.view.denoise = Denoise::High;
+    pictures(worker, worker.submit(&document, Pace::Still));
+    let shown = shown.lock().unwrap();
+    assert!(shown.len() >= 2, "{shown:?}");
+    assert!(shown.iter().all(|[shown, made]| shown == made), "{shown:?}");
+}
+
+/// What nobody waits for any more is given up, and the next picture is as if it had not been begun.
+#[test]
+fn denoising_can_be_given_up() {
+    let film = film([64, 64], 4, 0.2, |x, y| [[checker(8, x, y); 3]; 2]);
+    let noisy = Noisy::of(&film, None);
+    let mut denoiser = denoiser();
+    let before = denoiser.denoise(&noisy, Denoise::High).unwrap();
+    let stopped = denoiser.denoise_unless(&noisy, Denoise::High, &AtomicBool::new(true));
+    assert_eq!(stopped.unwrap_err(), LibraryError::Stopped);
+    assert_eq!(denoiser.denoise(&noisy, Denoise::High).unwrap().image, before.image);
 }
 
 /// Edits come faster than pictures are denoised: what is shown in the end is the last one, and no picture bears another's

@@ -87,7 +87,7 @@ fn old_run_lengths_and_xyz_are_read() {
 }
 
 /// The colours of the faces +X, −X, +Y, −Y, +Z, −Z of OpenGL's order.
-const FACES: [[f32; 3]; 6] = [
+pub(super) const FACES: [[f32; 3]; 6] = [
     [1.0, 0.0, 0.0],
     [0.0, 1.0, 0.0],
     [0.0, 0.0, 1.0],
@@ -97,7 +97,7 @@ const FACES: [[f32; 3]; 6] = [
 ];
 
 /// Ahead, to the right, above and so on of somebody who looks along +Z of our world, whose right is −X.
-fn assert_is_that_cube(environment: &Environment, what: &str) {
+pub(super) fn assert_is_that_cube(environment: &Environment, what: &str) {
     let looks = [
         ([-1.0, 0.0, 0.0], 0),
         ([1.0, 0.0, 0.0], 1),

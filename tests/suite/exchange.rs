@@ -1,13 +1,10 @@
 //! Materials to other programs' formats and back, through the command line.
 
-use std::process::Command;
-
+use glossmith::analysis::lobe_model::LobeModel;
+use glossmith::document::MaterialSettings;
 use glossmith::document::match_look::lobe_of_material;
-use glossmith::document::{CustomCurve, MaterialSettings};
-use glossmith::optics::curve::Curve;
-use glossmith::optics::frame::frame_from_normal;
-use glossmith::optics::lobe::raw_sample;
-use glossmith::optics::vector::vec3;
+use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel};
+use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::store::exchange::FORMATS;
 use glossmith::store::preset::{command_line_name, load_material, material_text};
 use glossmith::store::{PRESETS, save_material};
@@ -138,6 +135,106 @@ fn without_the_exact_parameters_what_is_shown_comes_back() {
     }
 }
 
+/// The share of the light that goes elsewhere, seen along the normal; by a grid of its own.
+fn total_variation(a: &LobeModel, b: &LobeModel) -> f64 {
+    const RINGS: usize = 400;
+    const TURNS: usize = 24;
+    let wo = vec3(0.0, 0.0, 1.0);
+    let mut values = [Vec::new(), Vec::new()];
+    for ring in 0..RINGS {
+        // Finer towards the middle, where narrow highlights lie.
+        let t = (ring as f64 + 0.5) / RINGS as f64;
+        let (sin, cos) = (std::f64::consts::FRAC_PI_2 * t.powi(3)).sin_cos();
+        for turn in 0..TURNS {
+            let (sin_turn, cos_turn) = (std::f64::consts::TAU * (turn as f64 + 0.5) / TURNS as f64).sin_cos();
+            let wi = vec3(sin * cos_turn, sin * sin_turn, cos);
+            let weight = sin * t * t;
+            values[0].push(weight * a.evaluate(wo, wi)[0]);
+            values[1].push(weight * b.evaluate(wo, wi)[0]);
+        }
+    }
+    let [a_sum, b_sum] = [0, 1].map(|i| values[i].iter().sum::<f64>());
+    let pairs = values[0].iter().zip(&values[1]);
+    0.5 * pairs.map(|(a, b)| (a / a_sum - b / b_sum).abs()).sum::<f64>()
+}
+
+/// The largest difference of the reflectances by the angle at the half vector.
+fn reflectance_apart(a: &MaterialSettings, b: &MaterialSettings) -> f64 {
+    let terms = |m: &MaterialSettings| FresnelTerms {
+        // Only the exact equations know total reflection.
+        model: match m.transmission_weight > 0.0 && m.metalness < 1.0 {
+            true => Fresnel::Dielectric,
+            false => m.fresnel,
+        },
+        metal_f0: Vec3::from_f32(m.base_color) * f64::from(m.base_weight),
+        metalness: f64::from(m.metalness),
+        tint: Vec3::from_f32(m.specular_color),
+        edge_tint: Vec3::from_f32(m.edge_tint),
+        weight: f64::from(m.specular_weight),
+        ior: f64::from(m.ior),
+        eta: Vec3::from_f32(m.eta),
+        k: Vec3::from_f32(m.k),
+    };
+    let (a, b) = (terms(a), terms(b));
+    let apart = (0..=64).map(|i| {
+        let cosine = f64::from(i) / 64.0;
+        (fresnel(&a, cosine) - fresnel(&b, cosine))
+            .map(f64::abs)
+            .max_component()
+    });
+    apart.fold(0.0, f64::max)
+}
+
+#[test]
+fn every_preset_comes_back_within_the_stated_loss_from_what_a_file_shows() {
+    let place = Workplace::new();
+    let names: Vec<String> = PRESETS
+        .iter()
+        .map(|material| command_line_name(&material.name))
+        .collect();
+    for (format, ending) in [("materialx", "mtlx"), ("standard-surface", "mtlx"), ("gltf", "glb")] {
+        let told = place.done(&format!("convert {} {format} --to {format} --json -", names.join(" ")));
+        let told: Json = serde_json::from_str(&told.stdout).unwrap();
+        let files: Vec<String> = names.iter().map(|name| format!("{format}/{name}.{ending}")).collect();
+        place.done(&format!(
+            "convert {} {format}-back --to glossmith --without-exact --import-lobe ggx",
+            files.join(" ")
+        ));
+        for (index, (material, name)) in PRESETS.iter().zip(&names).enumerate() {
+            let back = load_material(&place.path(&format!("{format}-back/{name}.json")))
+                .unwrap()
+                .value;
+            let entries = told[index]["materials"][0]["entries"].as_array().unwrap();
+            let stated = |what: &str| {
+                let entry = entries.iter().find(|entry| entry["what"] == what);
+                entry.and_then(|entry| entry["residual"].as_f64())
+            };
+            let [own, shown] = [material, &back].map(lobe_of_material);
+            if let Some(stated) = stated("highlight") {
+                let found = total_variation(&own, &shown);
+                assert!(
+                    (found - stated).abs() < 0.02,
+                    "{format}, {name}: {found} and {stated} stated"
+                );
+            }
+            let is_specular = material.specular_weight > 0.0 || material.transmission_weight > 0.0;
+            if is_specular {
+                let found = reflectance_apart(material, &back);
+                let stated = stated("reflectance by angle").unwrap_or(0.0);
+                assert!(found < stated + 0.005, "{format}, {name}: {found} and {stated} stated");
+            }
+            for (a, b) in [
+                (material.coat_weight, back.coat_weight),
+                (material.transmission_weight, back.transmission_weight),
+                (material.anisotropy, back.anisotropy),
+                (material.opacity, back.opacity),
+            ] {
+                assert!((a - b).abs() < 2e-3, "{format}, {name}: {a} came back as {b}");
+            }
+        }
+    }
+}
+
 #[test]
 fn widths_that_a_format_does_not_reach_are_no_exact_ones() {
     let place = Workplace::new();
@@ -207,7 +304,7 @@ fn documents_of_materialx_are_read_and_graphs_are_named() {
   <nodegraph name="graph">
     <input name="file" type="filename" value="checker.png" colorspace="srgb_texture" />
     <image name="picture" type="color3"><input name="file" type="filename" interfacename="file" /></image>
-    <noise3d name="noise" type="float" />
+    <wobble name="noise" type="float" />
     <output name="color" type="color3" nodename="picture" />
     <output name="rough" type="float" nodename="noise" />
   </nodegraph>
@@ -222,7 +319,7 @@ fn documents_of_materialx_are_read_and_graphs_are_named() {
 </materialx>"#;
     place.write("fabric.mtlx", document.as_bytes());
     let run = place.done("convert fabric.mtlx fabric.json --import-lobe ggx");
-    for words in ["the mean of checker.png", "noise3d", "sheen"] {
+    for words in ["the mean of checker.png", "wobble", "sheen"] {
         assert!(run.stderr.contains(words), "{words}: {}", run.stderr);
     }
     let material = load_material(&place.path("fabric.json")).unwrap().value;
@@ -234,6 +331,51 @@ fn documents_of_materialx_are_read_and_graphs_are_named() {
         material.specular_color
     );
     assert_eq!(material.roughness, 0.2, "the default stands in");
+}
+
+#[test]
+fn documents_that_include_others_are_read_whole() {
+    let place = Workplace::new();
+    std::fs::create_dir_all(place.path("parts/maps")).unwrap();
+    image::RgbImage::from_pixel(2, 2, image::Rgb([51, 102, 153]))
+        .save(place.path("parts/maps/a.png"))
+        .unwrap();
+    let include = |name: &str| {
+        format!(
+            "<?xml version=\"1.0\"?>\n<materialx version=\"1.39\" xmlns:xi=\"http://www.w3.org/2001/XInclude\">\n  \
+             <xi:include href=\"{name}\" />\n  <look name=\"l\"/>\n</materialx>"
+        )
+    };
+    let part = r#"<materialx version="1.39" colorspace="srgb_texture" fileprefix="maps/" xmlns:xi="http://www.w3.org/2001/XInclude">
+  <xi:include href="colours.mtlx" />
+  <standard_surface name="s" type="surfaceshader">
+    <input name="base_color" type="color3" nodename="picture" />
+    <input name="specular_color" type="color3" nodename="grey" />
+    <input name="metalness" type="float" value="0" />
+  </standard_surface>
+  <image name="picture" type="color3"><input name="file" type="filename" value="a.png" colorspace="lin_rec709" /></image>
+  <surfacematerial name="M" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s" /></surfacematerial>
+</materialx>"#;
+    let colours = r#"<materialx><constant name="grey" type="color3" colorspace="lin_rec709"><input name="value" type="color3" value="0.5, 0.5, 0.5" /></constant></materialx>"#;
+    place.write("whole.mtlx", include("parts/part.mtlx").as_bytes());
+    place.write("parts/part.mtlx", part.as_bytes());
+    place.write("parts/colours.mtlx", colours.as_bytes());
+    place.done("convert whole.mtlx m.json --import-lobe ggx");
+    let material = load_material(&place.path("m.json")).unwrap().value;
+    assert_eq!(material.base_color, [0.2, 0.4, 0.6]);
+    assert_eq!(material.specular_color, [0.5; 3]);
+    // What cannot be had is named; nothing is fetched from elsewhere.
+    for (name, words) in [
+        ("none.mtlx", "none.mtlx"),
+        ("/etc/hostname", "from the document's folder"),
+        ("http://x.y/z.mtlx", "from the document's folder"),
+    ] {
+        place.write("whole.mtlx", include(name).as_bytes());
+        place.refused(1, "convert whole.mtlx m.json", &["whole.mtlx", words]);
+    }
+    // A document that includes itself is read once.
+    place.write("whole.mtlx", include("whole.mtlx").as_bytes());
+    place.refused(1, "convert whole.mtlx m.json", &["whole.mtlx", "no <surfacematerial>"]);
 }
 
 #[test]
@@ -353,128 +495,4 @@ fn a_measurement_looks_like_the_material_that_it_was_made_of() {
         assert!((like - gold).abs() < 0.03, "{}", run.stdout);
     }
     assert_eq!(like.metalness, 1.0);
-}
-
-/// Every curve with roughness, anisotropy and policy in the language C, compiled and run beside the lobe.
-#[test]
-fn the_function_in_c_draws_the_lobes_own_directions() {
-    let place = Workplace::new();
-    let points = vec![[0.0, 0.1], [0.3, 0.25], [0.7, 1.2], [1.0, 2.0]];
-    for curve in Curve::ALL.iter().copied() {
-        let material = MaterialSettings {
-            curve,
-            custom_curve: CustomCurve::try_from(points.clone()).unwrap(),
-            roughness: 0.37,
-            anisotropy: 0.6,
-            ..MaterialSettings::default()
-        };
-        save_material(&place.path("m.json"), &material).unwrap();
-        place.done("convert m.json lobe.h --to c");
-        let main = r#"#include <stdio.h>
-#include "lobe.h"
-int main(void) {
-    for (int i = 0; i < 200; i++) {
-        float a = (i + 0.5f) / 200.0f, b = fmodf(a * 37.3f, 1.0f), c = fmodf(a * 91.7f, 1.0f);
-        vec3 wi = glossmith_sample((vec3){-0.6f, 0.0f, 0.8f}, (vec3){a, b, c});
-        printf("%.9g %.9g %.9g %.9g %.9g %.9g\n", a, b, c, wi.x, wi.y, wi.z);
-    }
-}
-"#;
-        place.write("main.c", main.as_bytes());
-        let gcc = |arguments: &[&str]| {
-            let output = Command::new("gcc")
-                .args(arguments)
-                .current_dir(place.path(""))
-                .output()
-                .unwrap();
-            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        };
-        gcc(&["-std=c99", "-Wall", "-Werror", "-O1", "main.c", "-o", "main", "-lm"]);
-        let output = Command::new(place.path("main")).output().unwrap();
-        let lines = String::from_utf8(output.stdout).unwrap();
-        let model = lobe_of_material(&material);
-        let frame = frame_from_normal(vec3(0.0, 0.0, 1.0));
-        assert_eq!(lines.lines().count(), 200);
-        for line in lines.lines() {
-            let x: Vec<f64> = line.split(' ').map(|x| x.parse().unwrap()).collect();
-            let local = |v: glossmith::optics::vector::Vec3<f64>| [frame.tangent.dot(v), frame.bitangent.dot(v), v.z];
-            let wo = frame.tangent * -0.6 + frame.normal * 0.8;
-            let drawn = local(raw_sample(&model.shape(), &frame, wo, [x[0], x[1], x[2]]));
-            let expected = [drawn[0], drawn[1], drawn[2].abs()];
-            for (a, b) in expected.iter().zip(&x[3..]) {
-                assert!((a - b).abs() < 2e-5, "{}: {expected:?} and {line}", curve.name());
-            }
-        }
-    }
-}
-
-#[test]
-fn the_functions_in_shaders_languages_are_valid() {
-    let place = Workplace::new();
-    let names: Vec<_> = Curve::ALL.iter().map(|curve| curve.name()).collect();
-    for (curve, name) in Curve::ALL.iter().copied().zip(names) {
-        let material = MaterialSettings {
-            curve,
-            anisotropy: 0.5,
-            rotation_deg: 20.0,
-            ..MaterialSettings::default()
-        };
-        save_material(&place.path("m.json"), &material).unwrap();
-        place.done("convert m.json m.wgsl");
-        let module = naga::front::wgsl::parse_str(&place.read("m.wgsl")).unwrap_or_else(|error| {
-            panic!("{name}: {}", error.emit_to_string(&place.read("m.wgsl")));
-        });
-        let flags = naga::valid::ValidationFlags::all();
-        naga::valid::Validator::new(flags, naga::valid::Capabilities::empty())
-            .validate(&module)
-            .unwrap();
-        // The others are C but for the names of types and functions.
-        let shims = [
-            ("glsl", "#define vec3(...) ((vec3){__VA_ARGS__})\n"),
-            (
-                "hlsl",
-                "#define float3(...) ((vec3){__VA_ARGS__})\ntypedef vec3 float3;\n",
-            ),
-            (
-                "osl",
-                "#define vector(...) ((vec3){__VA_ARGS__})\ntypedef vec3 vector;\n",
-            ),
-        ];
-        for (language, shim) in shims {
-            place.done(&format!("convert m.json m.{language}"));
-            let mut text = place.read(&format!("m.{language}"));
-            if language == "glsl" {
-                text = text
-                    .replace("float[131](", "{")
-                    .replace(");\n", if text.contains("float[131]") { "};\n" } else { ");\n" });
-                text = restored(&text);
-            }
-            let head = format!(
-                "#include <tgmath.h>\ntypedef struct {{ float x, y, z; }} vec3;\n{shim}#define max fmax\n#define min fmin\n#define abs fabs\n"
-            );
-            place.write("shim.c", format!("{head}{text}").as_bytes());
-            let output = Command::new("gcc")
-                .args(["-std=c99", "-c", "shim.c"])
-                .current_dir(place.path(""))
-                .output()
-                .unwrap();
-            assert!(
-                output.status.success(),
-                "{language} {name}: {}",
-                String::from_utf8_lossy(&output.stderr)
-            );
-        }
-    }
-}
-
-/// GLSL's list as C's: only the line of the list ends with a brace.
-fn restored(text: &str) -> String {
-    let line = |line: &str| {
-        if line.starts_with("const float glossmith_curve") {
-            line.to_owned()
-        } else {
-            line.replace("};", ");")
-        }
-    };
-    text.lines().map(line).collect::<Vec<_>>().join("\n")
 }

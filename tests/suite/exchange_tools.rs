@@ -6,7 +6,7 @@ use std::process::Command;
 use glossmith::document::MaterialSettings;
 use glossmith::optics::lobe::Lobe;
 use glossmith::store::preset::command_line_name;
-use glossmith::store::{PRESETS, save_material};
+use glossmith::store::{PRESETS, load_material, save_material};
 
 use crate::cli_support::Workplace;
 
@@ -132,6 +132,59 @@ fn mitsuba_renders_what_we_render() {
             );
         }
     }
+}
+
+/// What our own reader does not compute, MaterialX bakes.
+#[test]
+fn graphs_that_compute_are_baked() {
+    let place = Workplace::new();
+    let document = r#"<?xml version="1.0"?>
+<materialx version="1.39" colorspace="lin_rec709">
+  <nodegraph name="graph">
+    <texcoord name="place" type="vector2" />
+    <ramplr name="ramp" type="color3">
+      <input name="valuel" type="color3" value="0, 0.25, 1" />
+      <input name="valuer" type="color3" value="1, 0.75, 1" />
+      <input name="texcoord" type="vector2" nodename="place" />
+    </ramplr>
+    <output name="color" type="color3" nodename="ramp" />
+  </nodegraph>
+  <standard_surface name="s" type="surfaceshader">
+    <input name="base_color" type="color3" nodegraph="graph" output="color" />
+    <input name="metalness" type="float" value="0" />
+  </standard_surface>
+  <surfacematerial name="Ramp" type="material"><input name="surfaceshader" type="surfaceshader" nodename="s" /></surfacematerial>
+</materialx>"#;
+    place.write("ramp.mtlx", document.as_bytes());
+    let convert = |more: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_glossmith"));
+        command.args(["convert", "ramp.mtlx", "ramp.json", "--import-lobe", "ggx"]);
+        command.current_dir(place.path("")).env("GLOSSMITH_TOOLS", tools());
+        if more.is_empty() {
+            // The program draws on a virtual display where there is none.
+            command.env_remove("DISPLAY");
+        } else {
+            let nowhere = place.path(more);
+            for variable in ["GLOSSMITH_TOOLS", "XDG_DATA_HOME", "PATH"] {
+                command.env(variable, &nowhere);
+            }
+        }
+        let output = command.output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let told = convert("");
+    assert!(told.contains("ramplr") && told.contains("baked by MaterialX"), "{told}");
+    let color = load_material(&place.path("ramp.json")).unwrap().value.base_color;
+    for (found, expected) in color.into_iter().zip([0.5, 0.5, 1.0]) {
+        assert!((found - expected).abs() < 0.01, "{color:?}");
+    }
+    // Without its tools the graph is named.
+    let told = convert("nowhere");
+    assert!(
+        told.contains("ramplr") && told.contains("pip install materialx"),
+        "{told}"
+    );
 }
 
 /// What the report says that the highlight loses is what Mitsuba shows otherwise than we do.

@@ -268,10 +268,10 @@ fn ktx2_pictures_of_plain_bytes_are_read() {
     assert_eq!(rgb.textures[0].rgba8, [1, 2, 3, 255, 4, 5, 6, 255]);
     let bgra = of(&ktx2(44, [1, 2], &[1, 2, 3, 4, 5, 6, 7, 8]));
     assert_eq!(bgra.textures[0].rgba8, [3, 2, 1, 4, 7, 6, 5, 8]);
-    // Too few bytes, a format of floats, Basis Universal that is none.
+    // Too few bytes, a format of depths, Basis Universal that is none.
     for broken in [
         ktx2(37, [2, 2], &[0; 12]),
-        ktx2(109, [1, 1], &[0; 16]),
+        ktx2(126, [1, 1], &[0; 16]),
         ktx2(0, [4, 4], &[0; 16]),
     ] {
         let grey = of(&broken);

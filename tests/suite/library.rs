@@ -63,7 +63,7 @@ fn own_presets_are_saved_found_again_used_renamed_and_deleted() {
     press(&mut harness, "Zebra");
     assert_eq!(harness.state().document().materials[0], own);
 
-    press(&mut harness, "Rename or delete Zebra");
+    press(&mut harness, "Rename, export or delete Zebra");
     press(&mut harness, "Rename");
     let field = harness.get_by_role_and_label(Role::TextInput, "New name");
     field.set_text_value_accesskit("Zinc");
@@ -74,16 +74,16 @@ fn own_presets_are_saved_found_again_used_renamed_and_deleted() {
     own.name = "Zinc".to_owned();
     assert_eq!(files(&folder.path().join("materials")), [own.clone()]);
 
-    press(&mut harness, "Rename or delete Zinc");
+    press(&mut harness, "Rename, export or delete Zinc");
     press(&mut harness, "Duplicate");
     see(&mut harness, "the copy", |harness| has_button(harness, "Zinc copy"));
-    press(&mut harness, "Rename or delete Zinc copy");
+    press(&mut harness, "Rename, export or delete Zinc copy");
     press(&mut harness, "Delete");
     see(&mut harness, "the copy to go", |harness| {
         !has_button(harness, "Zinc copy")
     });
 
-    press(&mut harness, "Rename or delete Zinc");
+    press(&mut harness, "Rename, export or delete Zinc");
     press(&mut harness, "Delete");
     see(&mut harness, "it to go", |harness| !has_button(harness, "Zinc"));
     assert_eq!(files(&folder.path().join("materials")), []);

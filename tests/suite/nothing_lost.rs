@@ -1,6 +1,5 @@
 //! Unsaved edits: put aside, offered after a crash, asked about before they go; and the files opened last.
 
-use std::collections::HashMap;
 use std::path::Path;
 use std::time::Duration;
 
@@ -14,7 +13,7 @@ use glossmith::document::Document;
 use glossmith::scene::ModelSource;
 use glossmith::store::{PRESETS, load_document, save_document};
 
-use super::ui::{Editor, editor_of, options, request, see, wait};
+use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, wait};
 
 /// An editor that keeps unsaved edits in a folder.
 pub(super) fn keeping_editor(data: &Path) -> Editor {
@@ -298,34 +297,6 @@ fn new_and_open_ask_and_what_can_be_undone_does_not() {
     assert!(!asks(&harness), "a new document holds nothing to lose");
 }
 
-/// What eframe keeps from one start to the next.
-#[derive(Default)]
-struct Memory(HashMap<String, String>);
-
-impl eframe::Storage for Memory {
-    fn get_string(&self, key: &str) -> Option<String> {
-        self.0.get(key).cloned()
-    }
-    fn set_string(&mut self, key: &str, value: String) {
-        self.0.insert(key.to_owned(), value);
-    }
-    fn remove_string(&mut self, key: &str) {
-        self.0.remove(key);
-    }
-    fn flush(&mut self) {}
-}
-
-fn editor_remembering(memory: Memory) -> Editor {
-    // The window borrows it for as long as it lives.
-    let memory: &'static Memory = Box::leak(Box::new(memory));
-    Harness::builder()
-        .with_size(egui::Vec2::new(1400.0, 1000.0))
-        .build_eframe(move |creation| {
-            creation.storage = Some(memory);
-            App::new(creation, options()).expect("a thread to render on")
-        })
-}
-
 #[test]
 fn recent_files_are_kept_and_missing_ones_are_greyed() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -350,7 +321,7 @@ fn recent_files_are_kept_and_missing_ones_are_greyed() {
     eframe::App::save(harness.state_mut(), &mut memory);
     drop(harness);
     std::fs::remove_file(&gone).expect("it is there");
-    let mut harness = editor_remembering(memory);
+    let mut harness = editor_remembering(memory, options());
     harness.run_steps(2);
     press(&mut harness, "File");
     harness.run_steps(2);

@@ -3,10 +3,11 @@
 use std::collections::HashSet;
 use std::time::Duration;
 
-use glossmith::cpu::integrator::Integrator;
+use glossmith::cpu::integrator::{Integrator, PathResult};
 use glossmith::cpu::recorder::{Event, Purpose};
 use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{AreaLight, Document, Strategy};
+use glossmith::job::tiles::TileGrid;
 use glossmith::optics::random::Sequence;
 use glossmith::render::explain::explain;
 use glossmith::render::{EngineChoice, Session};
@@ -14,6 +15,7 @@ use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{Model, ModelSource, Slot};
 
 use crate::analytic_scenes::room;
+use crate::lights::lit_scenes;
 use crate::random_documents::random_document;
 use crate::renders::document;
 use crate::support::Random;
@@ -226,6 +228,57 @@ fn no_number_of_a_path_is_drawn_twice() {
         }
     }
     assert_eq!(met.len(), 9, "of nine purposes only {met:?} were met");
+}
+
+/// All numbers of a path, as bits.
+fn bits(path: &PathResult<f32>) -> Vec<u32> {
+    let seen = &path.seen;
+    let numbers = [path.alpha, path.clamped, seen.hits, seen.depth];
+    let colors = [path.radiance.to_f32(), seen.albedo, seen.normal];
+    let numbers = numbers.into_iter().chain(colors.into_iter().flatten());
+    numbers.map(f32::to_bits).chain([path.rays]).collect()
+}
+
+/// The engine has the paths of a tile go on together: each must find what it finds alone, as it is told of by `explain`.
+#[test]
+fn paths_find_the_same_together_as_alone_to_the_last_bit() {
+    let mut random = Random::new(29);
+    let random_scenes = (0..40).map(|_| Scene {
+        name: "random",
+        document: random_document(&mut random),
+        model: None,
+    });
+    let lit = lit_scenes().into_iter().map(|(name, document)| Scene {
+        name,
+        document,
+        model: None,
+    });
+    let mut rays = 0;
+    for scene in scenes().into_iter().chain(random_scenes).chain(lit) {
+        let session = submitted(&scene, &scene.document);
+        let job = session.job().unwrap();
+        let integrator = Integrator::<f32>::new(job);
+        let [width, height] = job.settings.image_size;
+        let grid = TileGrid { width, height };
+        for tile in (0..grid.tiles()).step_by(3) {
+            let ([left, top], size) = (grid.origin(tile), grid.size(tile));
+            let sample = tile as u32 % 3;
+            let together = integrator.trace_tile([left, top], size, sample);
+            assert_eq!(together.len() as u64, grid.pixels(tile));
+            for (pixel, path) in (0..).zip(&together) {
+                let place = [left + pixel % size[0], top + pixel / size[0]];
+                let alone = integrator.trace_path(place, sample);
+                assert_eq!(
+                    bits(path),
+                    bits(&alone),
+                    "{}, {place:?}: {path:?} instead of {alone:?}",
+                    scene.name
+                );
+                rays += path.rays;
+            }
+        }
+    }
+    assert!(rays > 10_000, "{rays} rays tell nothing");
 }
 
 #[test]

@@ -246,6 +246,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("IS_SRGB", f64::from(texture::IS_SRGB)),
         ("IS_NEAREST", f64::from(texture::IS_NEAREST)),
         ("IS_SECOND_SET", f64::from(texture::IS_SECOND_SET)),
+        ("IS_FINE", f64::from(texture::IS_FINE)),
         ("FACETS_NONE", f64::from(Facets::None as u32)),
         ("FACETS_VISIBLE", f64::from(Facets::Visible as u32)),
         ("FACETS_ALL", f64::from(Facets::All as u32)),

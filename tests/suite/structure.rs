@@ -12,7 +12,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("optics", &["named"]),
     ("scene", &["named", "panics", "instructions", "optics"]),
     ("job", &["named", "optics", "scene"]),
-    ("cpu", &["named", "optics", "scene", "job"]),
+    ("cpu", &["named", "instructions", "optics", "scene", "job"]),
     ("gpu", &["named", "optics", "scene", "job"]),
     ("analysis", &["named", "panics", "optics", "scene", "job"]),
     ("plot", &["named", "optics", "job", "analysis"]),

@@ -24,7 +24,7 @@ use super::worker::small_document;
 /// The window without a screen.
 pub(super) type Editor = Harness<'static, App>;
 
-const PATIENCE: Duration = Duration::from_secs(600);
+pub const PATIENCE: Duration = Duration::from_secs(600);
 
 /// The options of an editor that is tested: nothing of the user's is read or written.
 pub(super) fn options() -> Options {
@@ -54,6 +54,37 @@ pub(super) fn editor_of(options: Options) -> Editor {
 pub(super) fn editor() -> Editor {
     let mut harness = editor_with(small_document(), Vec::new());
     settle(&mut harness);
+    harness
+}
+
+/// What eframe keeps from one start to the next.
+#[derive(Default)]
+pub(super) struct Memory(pub(super) HashMap<String, String>);
+
+impl eframe::Storage for Memory {
+    fn get_string(&self, key: &str) -> Option<String> {
+        self.0.get(key).cloned()
+    }
+    fn set_string(&mut self, key: &str, value: String) {
+        self.0.insert(key.to_owned(), value);
+    }
+    fn remove_string(&mut self, key: &str) {
+        self.0.remove(key);
+    }
+    fn flush(&mut self) {}
+}
+
+/// A window that finds what another one left.
+pub(super) fn editor_remembering(memory: Memory, options: Options) -> Editor {
+    // The window borrows it for as long as it lives.
+    let memory: &'static Memory = Box::leak(Box::new(memory));
+    let mut harness = Harness::builder()
+        .with_size(egui::Vec2::new(1400.0, 1000.0))
+        .build_eframe(move |creation| {
+            creation.storage = Some(memory);
+            App::new(creation, options).expect("a thread to render on")
+        });
+    harness.run_steps(3);
     harness
 }
 

@@ -11,6 +11,10 @@ use crate::ui::{Editor, editor, request, see, see_label, wait};
 /// Chooses *Export…* and types a path.
 fn ask_for(harness: &mut Editor, path: &std::path::Path) {
     request(harness, Action::Do(Command::Export));
+    type_path(harness, path);
+}
+
+fn type_path(harness: &mut Editor, path: &std::path::Path) {
     see(harness, "the path field", |harness| {
         harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
     });
@@ -72,4 +76,71 @@ fn what_has_no_place_in_a_format_is_said() {
             .any(|text| text.contains("no format has this ending"))
     });
     assert!(!folder.path().join("out.xyz").exists());
+}
+
+/// Opens the menu of a shipped preset.
+fn open_menu_of(harness: &mut Editor, name: &str) {
+    harness.run_steps(3);
+    let search = harness.get_by_role_and_label(Role::TextInput, "Search presets");
+    search.set_text_value_accesskit(name);
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, name).click_secondary();
+    see_label(harness, "Copy as");
+}
+
+#[test]
+fn a_preset_is_exported_without_being_used() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let mut harness = editor();
+    open_menu_of(&mut harness, "Copper");
+    harness.check_accessibility();
+    let before = harness.state().document().clone();
+    harness.get_by_role_and_label(Role::Button, "Export…").click();
+    let path = folder.path().join("out.mtlx");
+    type_path(&mut harness, &path);
+    see_label(&mut harness, "Write the file");
+    // The sheet finds its size first.
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::Button, "Write the file").click();
+    wait(&mut harness, "the file", |app| {
+        app.messages().iter().any(|text| text.contains("exported"))
+    });
+    let text = std::fs::read_to_string(&path).expect("the file");
+    assert!(text.contains("uiname=\"Copper\""), "{text}");
+    assert_eq!(*harness.state().document(), before, "it was used");
+    // What is exported by the menu of the window is the document's material again.
+    ask_for(&mut harness, &path);
+    see_label(&mut harness, "Write the file");
+    let name = &before.materials[0].name;
+    assert!(harness.query_all_by_label(name).count() > 0, "{name}");
+}
+
+#[test]
+fn a_preset_is_copied_as_another_programs_text() {
+    let mut harness = editor();
+    open_menu_of(&mut harness, "Copper");
+    harness.get_by_label("Copy as").click();
+    see_label(&mut harness, "Sampler in GLSL");
+    harness.get_by_label("Sampler in GLSL").click();
+    let mut copied = None;
+    let begun = std::time::Instant::now();
+    while copied.is_none() {
+        assert!(begun.elapsed() < crate::ui::PATIENCE, "nothing was copied");
+        harness.run_steps(1);
+        let commands = &harness.output().platform_output.commands;
+        copied = commands.iter().find_map(|command| match command {
+            egui::OutputCommand::CopyText(text) => Some(text.clone()),
+            _ => None,
+        });
+    }
+    let place = crate::cli_support::Workplace::new();
+    place.done("convert copper copper.glsl");
+    assert_eq!(copied.as_deref(), Some(place.read("copper.glsl").as_str()));
+    let messages = harness.state().messages();
+    assert!(
+        messages
+            .iter()
+            .any(|text| text.contains("copied Copper: Sampler in GLSL")),
+        "{messages:?}"
+    );
 }

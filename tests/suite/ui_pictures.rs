@@ -82,3 +82,11 @@ fn two_compared_beside_effects() {
     });
     compare(&mut harness, "compared-and-effects");
 }
+
+#[test]
+fn the_scene_as_a_tree() {
+    let mut harness = editor(options());
+    harness.state_mut().reveal(Pane::Scene);
+    settle(&mut harness);
+    compare(&mut harness, "scene");
+}

@@ -9,7 +9,7 @@ use glossmith::document::Denoise;
 use glossmith::document::effect::Switch;
 use glossmith::job::effect::EffectId;
 use glossmith::optics::tone::ToneCurve;
-use glossmith::render::display::Shown;
+use glossmith::render::shown::Shown;
 use glossmith::scene::ModelSource;
 
 use super::ui::{Editor, editor, editor_of, options, picture, request, see_label, settle, undo};

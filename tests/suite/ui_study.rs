@@ -17,6 +17,22 @@ fn sphere() -> Document {
     }
 }
 
+/// Has the strategies alone race, for so many seconds each.
+pub(super) fn race_strategies(harness: &mut Editor, seconds_each: f64) {
+    harness.state_mut().reveal(Pane::Race);
+    harness.run_steps(2);
+    for kind in ["Bounces", "Fresnel term"] {
+        harness.get_by_role_and_label(Role::CheckBox, kind).click_accesskit();
+        harness.run_steps(2);
+    }
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Time per technique")
+        .set_value_accesskit(seconds_each);
+    harness.run_steps(2);
+    harness.get_by_label("Run the race").click_accesskit();
+    harness.run_steps(2);
+}
+
 #[test]
 fn a_race_is_run_and_its_winner_taken() {
     let mut harness = editor_of(glossmith::app::Options {
@@ -24,19 +40,7 @@ fn a_race_is_run_and_its_winner_taken() {
         ..options()
     });
     settle(&mut harness);
-    harness.state_mut().reveal(Pane::Race);
-    harness.run_steps(2);
-    // The strategies alone, and briefly.
-    for kind in ["Bounces", "Fresnel term"] {
-        harness.get_by_role_and_label(Role::CheckBox, kind).click_accesskit();
-        harness.run_steps(2);
-    }
-    harness
-        .get_by_role_and_label(Role::SpinButton, "Time per technique")
-        .set_value_accesskit(0.05);
-    harness.run_steps(2);
-    harness.get_by_label("Run the race").click_accesskit();
-    harness.run_steps(2);
+    race_strategies(&mut harness, 0.05);
     see_label(&mut harness, "Use Light by: light");
     assert!(
         harness.query_by_label("Time against bias").is_some(),

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glossmith::document::Document;
-use glossmith::render::display::Shown;
+use glossmith::render::shown::Shown;
 use glossmith::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
 use glossmith::render::{EngineChoice, EngineKind};
 use glossmith::scene::{ModelOptions, ModelSource};
@@ -121,7 +121,10 @@ fn maps_are_shown_without_rendering_again() {
             (shown != Shown::Picture).then_some(shown)
         );
         if shown == Shown::Samples {
-            assert_eq!(picture.map.map(|(_, scale)| scale.high), Some(8.0));
+            assert_eq!(
+                picture.map.and_then(|(_, scale)| scale).map(|scale| scale.high),
+                Some(8.0)
+            );
         }
         seen.push(picture.rgba.clone());
     }
@@ -272,7 +275,7 @@ fn files_are_opened_beside_the_document() {
         for event in worker.take_events() {
             match event {
                 Event::ModelOpened(ModelSource::Shaderball, _, model) => slots = model.slots.len(),
-                Event::OpenFailed(_, text) => why = text,
+                Event::OpenFailed(_, _, text) => why = text,
                 _ => {}
             }
         }

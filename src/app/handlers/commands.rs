@@ -7,11 +7,15 @@ use crate::app::layout::{self, Pane};
 use crate::app::services::{library, snapshots};
 use crate::app::sheets::menu::Sheet;
 use crate::app::sheets::palette;
-use crate::app::{App, is_dragging};
+use crate::app::{App, example, is_dragging};
 use crate::document::{CameraSettings, Denoise, Document, MaterialSettings, parameter, setting};
 use crate::render::explain::explain;
 use crate::scene::ModelOptions;
 use crate::scene::camera::framing_distance;
+use crate::store::examples::{EXAMPLES, Example};
+
+/// How many times larger one step of magnification shows the picture.
+const MAGNIFICATION: f32 = 2.0;
 
 impl App {
     pub(in crate::app) fn apply(&mut self, ctx: &egui::Context, action: Action) {
@@ -21,15 +25,19 @@ impl App {
             Action::Open(path) => {
                 self.open(path);
             }
-            Action::Drop(path) => self.drop_file(path),
+            Action::Drop(paths) => self.drop_files(paths),
+            Action::CancelLoading => self.worker.cancel_loading(),
             Action::Paste(text) => self.paste(&text),
             Action::UseModel(source) => self.worker.open_model(source, ModelOptions::default()),
             Action::ImportModel(source, options) => self.worker.open_model(source, options),
             Action::UseEnvironment(source) => self.worker.open_environment(source),
             Action::ImportAs(lobe) => self.shared.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
+            Action::Export(material) => self.ask_export(ctx, Some(*material)),
+            Action::CopyAs(material, format) => self.copy_as(*material, format),
             Action::SelectSlot(slot) => {
                 self.shared.slot = slot;
+                self.shared.selection.also.clear();
                 self.edits.seal();
             }
             Action::Explain(pixel, sample) => self.explain(pixel, sample),
@@ -42,14 +50,33 @@ impl App {
                 (camera.yaw_deg, camera.pitch_deg, camera.position) = (yaw_deg, pitch_deg, None);
                 self.edits.note("Look from a side", "");
             }
+            Action::OpenExample(number) => self.open_example(number),
             Action::Reveal(pane) => self.reveal(pane),
             Action::Close(pane) => layout::close(&mut self.layout, pane),
             Action::Edit(key) => self.edit_parameter(ctx, key),
-            Action::UseEngine(choice) => self.worker.use_engine(choice),
+            Action::UseEngine(choice) => {
+                (self.shared.engine, self.shared.kept_engine) = (choice, choice);
+                self.worker.use_engine(choice);
+            }
             Action::Show(shown) => {
                 self.shared.shown = shown;
                 self.worker.show(shown);
             }
+        }
+    }
+
+    /// Takes an example over, as an edit that can be taken back, and shows the panel that tells of it.
+    fn open_example(&mut self, number: usize) {
+        let Some(document) = example(number, self.document.view.denoise) else {
+            return;
+        };
+        let Example { label, panel, .. } = EXAMPLES[number];
+        self.shared.selection.forget();
+        self.shared.slot = 0;
+        self.document = document;
+        self.edits.note(format!("Open the example {label}"), "");
+        if let Some(pane) = Pane::ALL.into_iter().find(|pane| pane.title() == panel) {
+            self.reveal(pane);
         }
     }
 
@@ -110,6 +137,14 @@ impl App {
                 (camera.target, camera.distance, camera.position) = (None, None, None);
                 self.edits.note("Frame all", "");
             }
+            Command::Inspect => {
+                let look = &mut self.shared.look;
+                look.is_pinned = look.at.is_some() && !look.is_pinned;
+                self.reveal(Pane::Inspector);
+            }
+            Command::ZoomIn => self.viewport.magnify(MAGNIFICATION),
+            Command::ZoomOut => self.viewport.magnify(1.0 / MAGNIFICATION),
+            Command::ZoomFit => self.viewport.magnify(0.0),
             Command::Denoise => {
                 let denoise = &mut self.document.view.denoise;
                 *denoise = match *denoise {
@@ -119,6 +154,16 @@ impl App {
                 self.edits.note("Denoise", "view.denoise");
             }
             Command::FrameSelected => self.frame_selected(),
+            Command::CopyMaterial => self.shared.selection.copied = Some(self.desk_material()),
+            Command::PasteMaterial => {
+                if let Some(material) = self.shared.selection.copied.clone() {
+                    self.use_material(material);
+                }
+            }
+            Command::ShowObjects => {
+                self.document.hidden_objects.clear();
+                self.edits.note("Show all objects", "");
+            }
             Command::Maximise => {
                 self.is_maximised = !self.is_maximised;
                 layout::set_maximised(&mut self.layout, self.is_maximised);
@@ -192,6 +237,7 @@ impl App {
     fn step_to(&mut self, document: Option<Document>) {
         let Some(document) = document else { return };
         if document.model != self.document.model {
+            self.shared.selection.forget();
             let left = std::mem::replace(&mut self.document.model, document.model.clone());
             self.shared.slots_of.retain(|(model, _)| *model != left);
             self.shared.slots_of.push((left, self.shared.slot));
@@ -203,16 +249,24 @@ impl App {
 
     pub(in crate::app) fn use_material(&mut self, material: MaterialSettings) {
         let label = format!("Use {}", material.name);
-        *self.document.material_mut(self.shared.slot) = material;
+        for slot in self.shared.selection.slots(self.shared.slot) {
+            *self.document.material_mut(slot) = material.clone();
+        }
         self.edits.note(label, "");
     }
 
-    /// Looks at the surfaces of the selected slot from where the camera is.
+    /// Looks at the chosen objects, or the surfaces of the selected slots, from where the camera is.
     fn frame_selected(&mut self) {
         let snapshot = self.worker.snapshot();
         let Some(scene) = &snapshot.scene else { return };
         let geometry = &scene.job.geometry;
-        let Some((center, radius)) = geometry.sphere_around(self.shared.slot as u32) else {
+        let selection = &self.shared.selection;
+        let slots = selection.slots(self.shared.slot);
+        let is_chosen = |triangle: usize| match selection.objects.is_empty() {
+            true => slots.contains(&(geometry.slots[triangle] as usize)),
+            false => selection.objects.contains(&(geometry.objects[triangle] as usize)),
+        };
+        let Some((center, radius)) = geometry.sphere_around(is_chosen) else {
             return;
         };
         let size = scene.job.settings.image_size.map(f64::from);

@@ -5,19 +5,36 @@ use std::path::PathBuf;
 use crate::app::App;
 use crate::app::services::disk::Done;
 use crate::app::services::export::{Ready, ready};
+use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::export::Answer;
+use crate::document::MaterialSettings;
 use crate::render::worker::Level;
-use crate::store::exchange::{self, Subject};
+use crate::store::exchange::report::Outcome;
+use crate::store::exchange::{self, Registered, Subject};
+use crate::store::preset;
 
 impl App {
+    /// Asks for the file that a preset is exported to, or the selected material.
+    pub(in crate::app) fn ask_export(&mut self, ctx: &egui::Context, preset: Option<MaterialSettings>) {
+        let material = preset.clone().unwrap_or_else(|| self.desk_material());
+        let name = format!("{}.mtlx", preset::command_line_name(&material.name));
+        self.files.exported = preset;
+        self.dialogs.ask(Purpose::Export, name, ctx);
+    }
+
     /// Makes the file beside the window, to be shown before it is written: of a format that takes a model all of it, else
-    /// the selected material.
+    /// the selected material; or the preset that was chosen.
     pub(in crate::app) fn prepare_export(&mut self, path: PathBuf) {
         let format = match exchange::by_ending(&path) {
             Ok(format) => format,
             Err(error) => return self.say(Level::Error, error.to_string()),
         };
-        let takes_model = exchange::takes_models(format);
+        let preset = self.files.exported.take();
+        let takes_model = format.format.takes_models() && preset.is_none();
+        let material = preset.unwrap_or_else(|| self.desk_material());
+        let name = material.name.clone();
+        let file = path.file_name().unwrap_or_default().to_string_lossy();
+        self.say(Level::Info, format!("{file}: rendering balls to show what it loses …"));
         let subject = if takes_model {
             Subject {
                 materials: self.document.materials.clone(),
@@ -25,12 +42,32 @@ impl App {
                 losses: Vec::new(),
             }
         } else {
-            Subject::of(self.desk_material())
+            Subject::of(material)
         };
-        let name = self.desk_material().name;
         self.files
             .disk
             .open_beside(move || Done::Prepared(Box::new(ready(&subject, &name, &path, format))));
+    }
+
+    /// Makes the text of a material in a format beside the window, for the clipboard.
+    pub(in crate::app) fn copy_as(&mut self, material: MaterialSettings, format: &str) {
+        let Some(format) = exchange::by_name(format) else {
+            return;
+        };
+        self.files
+            .disk
+            .open_beside(move || Done::Copied(as_text(material, format)));
+    }
+
+    /// Puts a text that is ready on the clipboard.
+    pub(in crate::app) fn take_copied(&mut self, ctx: &egui::Context, copied: Result<(String, String), String>) {
+        match copied {
+            Ok((text, words)) => {
+                ctx.copy_text(text);
+                self.say(Level::Info, words);
+            }
+            Err(error) => self.say(Level::Error, error),
+        }
     }
 
     /// Shows what is lost, and writes where that was agreed to.
@@ -53,4 +90,19 @@ impl App {
             Err(error) => self.say(Level::Error, error),
         }
     }
+}
+
+/// A material as a format's text, and what to say about it.
+fn as_text(material: MaterialSettings, format: &Registered) -> Result<(String, String), String> {
+    let name = material.name.clone();
+    let path = PathBuf::from(&name).with_extension(format.extensions[0]);
+    let prepared =
+        exchange::prepare(&Subject::of(material), &name, &path, format).map_err(|error| error.to_string())?;
+    let count = |outcome: Outcome| prepared.report.count(outcome);
+    let words = match [count(Outcome::Approximated), count(Outcome::Dropped)] {
+        [0, 0] => format!("copied {name}: {}, nothing is lost", format.label),
+        [near, gone] => format!("copied {name}: {}, {near} approximated, {gone} dropped", format.label),
+    };
+    let text = prepared.text().ok_or("this format is no text; export it to a file")?;
+    Ok((text.to_owned(), words))
 }

@@ -6,16 +6,20 @@ use crate::app::actions::Command;
 use crate::app::handlers::take_picture::Destination;
 use crate::app::services::disk::{Disk, Done, Task, words};
 use crate::app::services::edits::Edits;
+use crate::app::services::watched::{self, Watched};
 use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::unsaved::Then;
 use crate::app::{App, new_document};
-use crate::document::Document;
+use crate::document::{Document, MaterialSettings};
 use crate::render::worker::Level;
 use crate::scene::environment::{ENDINGS, EnvironmentSource};
-use crate::scene::{ModelOptions, ModelSource, SlotPicture, is_model};
+use crate::scene::{ModelOptions, ModelSource, SlotPicture, holds_model, is_model};
 use crate::store::exchange::{self, ExchangeError, ReadOptions};
 use crate::store::file::Opened;
 use crate::store::{FileError, Loaded, preset, save_document, save_material};
+
+/// What the names of projects end with before .json: by it desktops know them from other files.
+const KIND: &str = ".glossmith";
 
 /// The project's file, and the thread that reads and writes.
 pub(in crate::app) struct Files {
@@ -23,24 +27,35 @@ pub(in crate::app) struct Files {
     pub(in crate::app) project: Option<PathBuf>,
     /// A picture that was dropped on the window and may hold a document.
     pub(in crate::app) dropped: Option<PathBuf>,
+    /// Pictures and buffers that were dropped together with a model that is still being opened.
+    pub(in crate::app) dropped_with: Vec<PathBuf>,
+    /// The files that are shown, looked at for changes.
+    pub(in crate::app) watched: Watched,
     /// Where the next whole picture goes.
     pub(in crate::app) wanted_pictures: Vec<Destination>,
+    /// The preset that is exported; the document's materials where there is none.
+    pub(in crate::app) exported: Option<MaterialSettings>,
 }
 
 impl Files {
     pub(in crate::app) fn new(ctx: egui::Context) -> std::io::Result<Self> {
+        let repaint = ctx.clone();
         Ok(Self {
+            watched: Watched::new(watched::INTERVAL, move || repaint.request_repaint())?,
             disk: Disk::new(ctx)?,
             project: None,
             dropped: None,
+            dropped_with: Vec::new(),
             wanted_pictures: Vec::new(),
+            exported: None,
         })
     }
 
     /// What to call the project.
     pub(in crate::app) fn project_name(&self) -> String {
         let stem = self.project.as_ref().and_then(|path| path.file_stem());
-        stem.map_or_else(|| "untitled".to_owned(), |stem| stem.to_string_lossy().into_owned())
+        let name = stem.map_or_else(|| "untitled".to_owned(), |stem| stem.to_string_lossy().into_owned());
+        name.strip_suffix(KIND).map_or(name.clone(), str::to_owned)
     }
 
     /// Whether something is still to be written.
@@ -70,7 +85,9 @@ fn kind_of(path: &Path) -> FileKind {
         .unwrap_or_default()
         .to_ascii_lowercase();
     match ending.as_str() {
-        _ if is_model(path) || path.is_dir() => FileKind::Model,
+        _ if is_model(path) => FileKind::Model,
+        _ if path.is_dir() && holds_model(path) => FileKind::Model,
+        _ if path.is_dir() => FileKind::Environment,
         "json" | "png" => FileKind::Document,
         _ if exchange::holds_materials(path) => FileKind::Document,
         ending if ENDINGS.contains(&ending) => FileKind::Environment,
@@ -95,8 +112,8 @@ impl App {
                 });
             }
             FileKind::Unknown => {
-                let text = "opened are models (.glb, .gltf, .obj, .ply, .stl, .zip), environments (.hdr, .exr, .jpg, \
-                            .tif, .webp), materials (.json, .mtlx, and other programs' with exact parameters), projects (.json), and pictures \
+                let text = "opened are models (.glb, .gltf, .obj, .ply, .stl, .zip), environments (.hdr, .exr, .ktx2, \
+                            .dds, .jpg, .tif, .webp), materials (.json, .mtlx, and other programs' with exact parameters), projects (.json), and pictures \
                             saved here (.png)";
                 self.say(
                     Level::Error,
@@ -108,44 +125,13 @@ impl App {
         true
     }
 
-    /// Takes a file that was dropped: a picture for the selected material, anything else is opened.
-    pub(in crate::app) fn drop_file(&mut self, path: PathBuf) {
-        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        let is_picture =
-            !["hdr", "exr", "pic", "rgbe", "png"].contains(&ending.as_str()) && ENDINGS.contains(&ending.as_str());
-        if is_picture {
-            self.paint(path);
-        } else {
-            // A .png may hold a document: that is looked for first.
-            self.files.dropped = (ending == "png").then(|| path.clone());
-            self.open(path);
-        }
-    }
-
     /// Makes a picture the base colour of the selected material.
-    fn paint(&mut self, file: PathBuf) {
+    pub(in crate::app) fn paint(&mut self, file: PathBuf) {
         let slot = self.shared.slot;
         let mut options = self.document.import.clone();
         options.pictures.retain(|picture| picture.slot != slot);
         options.pictures.push(SlotPicture { slot, file });
         self.worker.open_model(self.document.model.clone(), options);
-    }
-
-    /// Opens the file whose name was pasted.
-    pub(in crate::app) fn paste(&mut self, text: &str) {
-        let name = text.strip_prefix("file://").unwrap_or(text);
-        let path = PathBuf::from(name);
-        if text.contains("://") && !text.starts_with("file://") {
-            self.say(
-                Level::Error,
-                format!("{text}: web addresses are not opened; save the file and open it here"),
-            );
-        } else if path.exists() {
-            self.drop_file(path);
-        } else {
-            let shown: String = text.chars().take(80).collect();
-            self.say(Level::Warning, format!("the pasted text is not a file name: {shown}"));
-        }
     }
 
     /// Takes what has been read and written.
@@ -155,6 +141,7 @@ impl App {
             match done {
                 Done::Read(path, opened) => self.take_opened(ctx, path, opened),
                 Done::Prepared(ready) => self.take_prepared(ctx, *ready),
+                Done::Copied(copied) => self.take_copied(ctx, copied),
                 Done::SavedProject(path, document, saved) => {
                     has_failed |= saved.is_err();
                     if saved.is_ok() {
@@ -288,19 +275,22 @@ impl App {
                     self.save_project(path);
                     return;
                 }
-                None => (Purpose::SaveProject, "untitled.json".to_owned()),
+                None => (Purpose::SaveProject, format!("untitled{KIND}.json")),
             },
-            Command::SaveAs => (Purpose::SaveProject, format!("{}.json", self.files.project_name())),
+            Command::SaveAs => (
+                Purpose::SaveProject,
+                format!("{}{KIND}.json", self.files.project_name()),
+            ),
             Command::Open => (Purpose::Open, String::new()),
             Command::OpenModel => (Purpose::OpenModel, String::new()),
             Command::OpenEnvironment => (Purpose::OpenEnvironment, String::new()),
             Command::OpenMaterial => (Purpose::OpenMaterial, String::new()),
             Command::OpenMeasured => (Purpose::OpenMeasured, String::new()),
             Command::SaveMaterial => (Purpose::SaveMaterial, material_file()),
-            Command::Export => (
-                Purpose::Export,
-                format!("{}.mtlx", preset::command_line_name(&self.desk_material().name)),
-            ),
+            Command::Export => {
+                self.ask_export(ctx, None);
+                return;
+            }
             Command::SaveLayers => (Purpose::SaveLayers, format!("{}.exr", self.files.project_name())),
             Command::SaveWindow => (Purpose::SaveWindow, "glossmith-window.png".to_owned()),
             Command::SavePicture => (Purpose::SavePicture, format!("{}.png", self.files.project_name())),

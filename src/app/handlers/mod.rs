@@ -2,9 +2,11 @@
 
 mod commands;
 mod compare;
+pub(super) mod dropped;
 mod export;
 pub(super) mod files;
 mod library;
+pub(super) mod models;
 mod recovery;
 mod snapshots;
 mod take_picture;

@@ -8,8 +8,8 @@ use std::time::Duration;
 use egui::ColorImage;
 
 use crate::app::App;
-use crate::store::file::save_atomically;
 use crate::store::picture::png_bytes;
+use crate::store::replace::save_atomically;
 
 /// How long the picture may take to come.
 const PATIENCE: Duration = Duration::from_secs(20);

@@ -2,33 +2,62 @@
 
 use std::ops::RangeInclusive;
 
-use egui_plot::{GridInput, GridMark, Plot};
+use egui_plot::{AxisHints, GridInput, GridMark, Plot};
 
 use crate::app::kit::words::{duration, percent_short};
 
-/// The share of an axis at either end in which there are no labels: half of a label's height in a low chart.
+/// The share of an axis at either end in which there are no labels: half of a label in a small chart.
 const LABEL_GAP: f64 = 0.05;
+/// Least distances between two labels of an axis, points. What is not drawn in full is not drawn at all: egui's own labels
+/// fade where they come near to each other, until nobody can read them.
+const LABEL_SPACING: [f32; 2] = [36.0, 19.0];
+/// The margin around what is drawn, as shares of it: the first and the last label stay within the chart.
+const MARGIN: [f32; 2] = [0.07, 0.07];
 
-/// A plot that stands still, of logarithms to base 10: seconds to the right, shares upwards; `axes` are the titles.
-pub(in crate::app) fn log_log(name: &str, axes: [&str; 2], height: f32, margin: [f32; 2]) -> Plot<'static> {
-    Plot::new(name)
+/// A plot that stands still; what a number on either axis is called is up to the chart.
+pub(in crate::app) fn still<'a>(name: &str, height: f32, in_words: [fn(f64) -> String; 2]) -> Plot<'a> {
+    let formatter = |axis: usize| {
+        move |mark: GridMark, range: &RangeInclusive<f64>| {
+            label_within(mark.value, range, || in_words[axis](mark.value))
+        }
+    };
+    let spacing = |axis: usize| egui::Rangef::new(LABEL_SPACING[axis] - 0.5, LABEL_SPACING[axis]);
+    let across = AxisHints::new_x().label_spacing(spacing(0)).formatter(formatter(0));
+    let upwards = AxisHints::new_y().label_spacing(spacing(1)).formatter(formatter(1));
+    Plot::new(name.to_owned())
         .height(height)
         .allow_drag(false)
         .allow_scroll(false)
         .allow_zoom(false)
         .allow_boxed_zoom(false)
+        .allow_double_click_reset(false)
         .show_background(false)
-        .x_axis_label(axes[0])
-        .y_axis_label(axes[1])
-        .x_grid_spacer(decades)
-        .y_grid_spacer(decades)
-        .x_axis_formatter(|mark: GridMark, range: &RangeInclusive<f64>| {
-            label_within(mark.value, range, || duration(10.0_f64.powf(mark.value)))
-        })
-        .y_axis_formatter(|mark: GridMark, range: &RangeInclusive<f64>| {
-            label_within(mark.value, range, || percent_short(10.0_f64.powf(mark.value)))
-        })
-        .set_margin_fraction(margin.into())
+        .custom_x_axes(vec![across])
+        .custom_y_axes(vec![upwards])
+        .set_margin_fraction(MARGIN.into())
+}
+
+/// A plot of logarithms to base 10 that stands still: seconds to the right, shares upwards; `axes` are the titles.
+pub(in crate::app) fn log_log(name: &str, axes: [&str; 2], height: f32, margin: [f32; 2]) -> Plot<'static> {
+    still(
+        name,
+        height,
+        [|x| duration(10.0_f64.powf(x)), |y| percent_short(10.0_f64.powf(y))],
+    )
+    .x_axis_label(axes[0])
+    .y_axis_label(axes[1])
+    .x_grid_spacer(decades)
+    .y_grid_spacer(decades)
+    .set_margin_fraction(margin.into())
+}
+
+/// A number on an axis.
+pub(in crate::app) fn short(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
+        format!("{}", (value * 1e4).round() / 1e4)
+    } else {
+        format!("{value:.0e}")
+    }
 }
 
 /// A mark's label, unless it is so near an end of the axis that it would be drawn over what stands beside the chart.

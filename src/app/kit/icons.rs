@@ -11,6 +11,10 @@ pub(in crate::app) enum Icon {
     Play,
     More,
     Close,
+    /// An eye.
+    Shown,
+    /// A closed one.
+    Hidden,
 }
 
 /// A square button with an icon, which has a name and explains itself.
@@ -51,6 +55,17 @@ fn paint(painter: &Painter, icon: Icon, rect: Rect, color: egui::Color32) {
         Icon::Close => {
             painter.line_segment([at(-4.0, -4.0), at(4.0, 4.0)], stroke);
             painter.line_segment([at(-4.0, 4.0), at(4.0, -4.0)], stroke);
+        }
+        Icon::Shown => {
+            let lid = |side: f32| vec![at(-6.5, 0.0), at(-3.0, side * 3.6), at(3.0, side * 3.6), at(6.5, 0.0)];
+            [1.0, -1.0].into_iter().for_each(|side| {
+                painter.add(Shape::line(lid(side), stroke));
+            });
+            painter.circle_filled(at(0.0, 0.0), 2.0, color);
+        }
+        Icon::Hidden => {
+            let lid = vec![at(-6.5, 0.0), at(-3.0, 3.0), at(3.0, 3.0), at(6.5, 0.0)];
+            painter.add(Shape::line(lid, stroke));
         }
     }
 }

@@ -3,6 +3,7 @@
 pub(super) mod charts;
 pub(super) mod icons;
 pub(super) mod parameter_row;
+pub(super) mod start_stop;
 pub(super) mod theme;
 pub(super) mod widgets;
 pub(super) mod words;

@@ -500,7 +500,7 @@ pub(in crate::app) struct PictureRow<'a> {
 impl PictureRow<'_> {
     pub(in crate::app) fn show(&self, ui: &mut Ui) -> Response {
         let size = Vec2::new(ui.available_width(), self.size.y + 4.0);
-        let (rect, response) = ui.allocate_exact_size(size, Sense::click());
+        let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, self.is_current, self.name));
         let visuals = ui.style().interact_selectable(&response, self.is_current);
         if self.is_current || response.hovered() || response.has_focus() {

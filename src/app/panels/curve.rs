@@ -1,10 +1,11 @@
 //! The D(ξ) curve of the geometric lobe: looked at, and drawn by dragging points.
 
-use egui::{Key, Modifiers, Pos2, Ui, Vec2b};
+use egui::{Key, Modifiers, Pos2, Ui};
 use egui_plot::{Line, Plot, PlotPoint, PlotPoints, PlotUi, Points};
 
 use super::Panel;
 use crate::app::desk::Desk;
+use crate::app::kit::charts::{short, still};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
@@ -141,17 +142,7 @@ fn from_named(curve: Curve) -> CustomCurve {
 }
 
 fn plot<'a>(id: &str, label: &'a str, height: f32) -> Plot<'a> {
-    Plot::new(id.to_owned())
-        .height(height)
-        .allow_drag(false)
-        .allow_zoom(false)
-        .allow_scroll(false)
-        .allow_boxed_zoom(false)
-        .allow_double_click_reset(false)
-        .show_background(false)
-        .show_axes(Vec2b::TRUE)
-        .x_axis_label(label)
-        .set_margin_fraction(egui::vec2(0.03, 0.06))
+    still(id, height, [short, short]).x_axis_label(label)
 }
 
 fn plot_height(ui: &Ui) -> f32 {

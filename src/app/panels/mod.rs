@@ -5,6 +5,7 @@ mod check;
 mod convergence;
 mod curve;
 mod effects;
+mod inspector;
 mod lighting;
 mod lobe;
 mod log;
@@ -12,6 +13,7 @@ mod material;
 mod presets;
 mod race;
 mod samples;
+mod scene;
 mod snapshots;
 
 use egui::Ui;

@@ -10,6 +10,7 @@ use crate::app::kit::widgets::{self, PictureRow};
 use crate::app::services::library::{Change, Library, Shown};
 use crate::document::MaterialSettings;
 use crate::store::PRESETS;
+use crate::store::exchange::FORMATS;
 
 /// Side of a material's picture, points.
 const PICTURE: f32 = 36.0;
@@ -61,9 +62,11 @@ fn entries(ui: &mut Ui, desk: &mut Desk<'_>, search: &str) {
         }
         found = true;
         let picture = desk.shared.library.shipped_picture(index);
-        if entry(ui, material, picture, *material == current).clicked() {
+        let response = entry(ui, material, picture, *material == current);
+        if response.clicked() {
             desk.actions.push(Action::UseMaterial(Box::new(material.clone())));
         }
+        response.context_menu(|ui| taking_along(ui, material, desk.actions));
     }
     let library = &mut desk.shared.library;
     let own: Vec<Shown> = std::mem::take(&mut library.own);
@@ -84,6 +87,23 @@ fn entries(ui: &mut Ui, desk: &mut Desk<'_>, search: &str) {
     }
 }
 
+/// The ways of a material into other programs: nothing can be dragged out of the window on every system that it runs on.
+fn taking_along(ui: &mut Ui, material: &MaterialSettings, actions: &mut Vec<Action>) {
+    if ui.button(Command::Export.label()).clicked() {
+        actions.push(Action::Export(Box::new(material.clone())));
+    }
+    ui.menu_button("Copy as", |ui| {
+        for format in FORMATS
+            .iter()
+            .filter(|format| format.is_written && format.format.is_text())
+        {
+            if ui.button(format.label).on_hover_text(format.help).clicked() {
+                actions.push(Action::CopyAs(Box::new(material.clone()), format.name));
+            }
+        }
+    });
+}
+
 /// A material of the user's, with what can be done to its file.
 fn own_entry(ui: &mut Ui, shown: &Shown, library: &mut Library, current: &MaterialSettings, actions: &mut Vec<Action>) {
     let path = &shown.entry.path;
@@ -100,6 +120,10 @@ fn own_entry(ui: &mut Ui, shown: &Shown, library: &mut Library, current: &Materi
     let name = shown.entry.name();
     let mut is_renaming = false;
     let mut more = |ui: &mut Ui| {
+        if let Ok(material) = &shown.entry.material {
+            taking_along(ui, material, actions);
+            ui.separator();
+        }
         if ui
             .add_enabled(shown.entry.material.is_ok(), egui::Button::new("Rename"))
             .clicked()
@@ -130,7 +154,7 @@ fn own_entry(ui: &mut Ui, shown: &Shown, library: &mut Library, current: &Materi
         is_chosen = response.clicked();
         response.context_menu(&mut more);
         let button = ui.menu_button("…", &mut more).response;
-        button.accessible_name(format!("Rename or delete {name}"));
+        button.accessible_name(format!("Rename, export or delete {name}"));
     });
     if is_chosen && let Ok(material) = &shown.entry.material {
         actions.push(Action::UseMaterial(Box::new(material.clone())));
@@ -150,5 +174,8 @@ fn entry(ui: &mut Ui, material: &MaterialSettings, picture: Option<&TextureHandl
         color: egui::Color32::from_rgb(r, g, b),
         is_current,
     };
-    row.show(ui)
+    let response = row.show(ui);
+    // Onto an object in the viewport, or a material in the tree of the scene.
+    response.dnd_set_drag_payload(material.clone());
+    response
 }

@@ -136,6 +136,7 @@ fn choices(ui: &mut Ui, state: &mut RacePanel) {
 }
 
 fn outcome(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut RacePanel, race: &Arc<Race>) {
+    let is_stale = state.worker.is_stale(desk);
     let mut taken = chart(ui, race);
     widgets::note(
         ui,
@@ -145,9 +146,10 @@ fn outcome(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut RacePanel, race: &Arc<R
             percent(race.noise)
         ),
     );
-    taken = table(ui, race).or(taken);
-    if let Some(index) = taken {
+    taken = table(ui, race, is_stale).or(taken);
+    if let Some(index) = taken.filter(|_| !is_stale) {
         take(desk, &race.runners[index].technique, &race.runners[index].label);
+        state.worker.holds_for(desk.document);
     }
     pictures(ui, desk, state, race);
 }
@@ -219,7 +221,7 @@ fn is_setting(runner: &Runner) -> bool {
 }
 
 /// The same as a table, the soonest first; the one that was chosen.
-fn table(ui: &mut Ui, race: &Race) -> Option<usize> {
+fn table(ui: &mut Ui, race: &Race, is_stale: bool) -> Option<usize> {
     let mut order: Vec<usize> = (0..race.runners.len()).collect();
     order.sort_by(|a, b| {
         race.runners[*a]
@@ -248,8 +250,14 @@ fn table(ui: &mut Ui, race: &Race) -> Option<usize> {
                 runner.samples_per_pixel
             ));
             ui.label(bias(runner));
-            let button = ui.add_enabled(is_setting(runner), egui::Button::new("Use").small());
+            let is_usable = is_setting(runner) && !is_stale;
+            let button = ui.add_enabled(is_usable, egui::Button::new("Use").small());
             let button = button.on_hover_text("Gives the document these settings. Undo takes it back.");
+            let button = button.on_disabled_hover_text(if is_stale {
+                "The race was run before the last changes: run it again."
+            } else {
+                "Not a setting of a document."
+            });
             button.clone().accessible_name(format!("Use {}", runner.label));
             if button.clicked() {
                 taken = Some(index);

@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use egui::{Color32, ColorImage, Pos2, Rect, Sense, Stroke, TextureHandle, TextureOptions, Ui, Vec2, pos2, vec2};
-use egui_plot::{Bar, BarChart, Legend, Line, Plot, PlotPoints};
+use egui_plot::{Bar, BarChart, Legend, Line, PlotPoints};
 
 use super::Panel;
 use crate::app::desk::Desk;
+use crate::app::kit::charts::{short, still};
 use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, Name};
 use crate::app::kit::words::short_number;
@@ -15,6 +16,9 @@ use crate::optics::lobe::Horizon;
 use crate::optics::vector::Vec3;
 use crate::render::EngineChoice;
 use crate::render::samples::{SampleQuery, SampleReport, SampleWorker, spawn_samples};
+
+/// The plot of angles goes on beyond its ends by this share, so that its labels stay within it.
+const ANGLE_MARGIN: f64 = 0.07;
 
 /// From where the samples are looked at.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -324,20 +328,14 @@ fn angle_plot(ui: &mut Ui, report: &SampleReport) {
         .find(|[_, y]| *y > 0.0)
         .map_or(90.0, |[x, _]| (1.15 * x).clamp(5.0, 180.0));
     let height = (0.8 * ui.available_width()).clamp(160.0, 320.0);
-    let shown = Plot::new("angle")
-        .height(height)
-        .allow_drag(false)
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .show_background(false)
+    let margin = ANGLE_MARGIN * last;
+    let shown = still("angle", height, [short, short])
         .x_axis_label("α: angle to the mirror direction, degrees")
         .legend(Legend::default().follow_insertion_order(true))
         .include_y(0.0)
         .include_x(0.0)
-        .default_x_bounds(0.0, last)
         .show(ui, |plot_ui| {
-            plot_ui.set_plot_bounds_x(0.0..=last);
+            plot_ui.set_plot_bounds_x(-margin..=last + margin);
             plot_ui.bar_chart(BarChart::new("drawn", bars).color(accent.gamma_multiply(0.45)));
             let analytic = degrees(&report.angle.analytic);
             // Empty for a mirror: what stands below it in the legend stays where it is.

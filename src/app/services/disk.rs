@@ -19,6 +19,8 @@ pub(in crate::app) enum Done {
     Read(PathBuf, Result<Opened, ExchangeError>),
     /// A file for another program is ready to be written.
     Prepared(Box<Result<Ready, String>>),
+    /// A material as text for another program, and what to say about it.
+    Copied(Result<(String, String), String>),
     /// The document was written, such as it was then.
     SavedProject(PathBuf, Box<Document>, Result<(), FileError>),
     /// The user's materials were listed.
@@ -150,6 +152,7 @@ impl Disk {
             match done {
                 Done::Read(..)
                 | Done::Prepared(_)
+                | Done::Copied(_)
                 | Done::Listed(_)
                 | Done::ListedPins(_)
                 | Done::Broke(Task::Open | Task::List, _) => self.reads = self.reads.saturating_sub(1),

@@ -14,6 +14,7 @@ use crate::app::sheets::palette;
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::render::EngineChoice;
 use crate::scene::Model;
+use crate::store::examples::EXAMPLES;
 
 /// Width of the account of a path where there is room, points.
 const PATH_WIDTH: f32 = 900.0;
@@ -40,7 +41,7 @@ pub(in crate::app) fn bar(
     ui: &mut Ui,
     edits: &Edits,
     recent: &mut Recent,
-    import_lobe: ImportLobe,
+    (import_lobe, engine): (ImportLobe, EngineChoice),
     is_open: impl Fn(Pane) -> bool,
     actions: &mut Vec<Action>,
 ) {
@@ -61,8 +62,9 @@ pub(in crate::app) fn bar(
                 }
                 match menu {
                     Menu::View => panes(ui, &is_open, actions),
-                    Menu::Render => engines(ui, actions),
+                    Menu::Render => engines(ui, engine, actions),
                     Menu::File => import_lobes(ui, import_lobe, actions),
+                    Menu::Help => examples(ui, actions),
                     _ => {}
                 }
             });
@@ -154,14 +156,26 @@ fn panes(ui: &mut Ui, is_open: impl Fn(Pane) -> bool, actions: &mut Vec<Action>)
     }
 }
 
-fn engines(ui: &mut Ui, actions: &mut Vec<Action>) {
+fn engines(ui: &mut Ui, chosen: EngineChoice, actions: &mut Vec<Action>) {
     ui.separator();
     for &choice in EngineChoice::ALL {
         let label = format!("Engine: {}", choice.label());
-        if ui.button(label).on_hover_text(choice.help()).clicked() {
+        if ui.radio(choice == chosen, label).on_hover_text(choice.help()).clicked() {
             do_and_close(ui, actions, Action::UseEngine(choice));
         }
     }
+}
+
+/// Scenes to begin with.
+fn examples(ui: &mut Ui, actions: &mut Vec<Action>) {
+    ui.separator();
+    ui.menu_button("Examples", |ui| {
+        for (number, example) in EXAMPLES.iter().enumerate() {
+            if ui.button(example.label).on_hover_text(example.help).clicked() {
+                do_and_close(ui, actions, Action::OpenExample(number));
+            }
+        }
+    });
 }
 
 fn import_lobes(ui: &mut Ui, mut chosen: ImportLobe, actions: &mut Vec<Action>) {

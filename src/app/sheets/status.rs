@@ -4,10 +4,13 @@ use std::time::{Duration, Instant};
 
 use egui::{RichText, Ui};
 
+use crate::app::actions::Action;
 use crate::app::kit::words::{percent, short_number};
 use crate::render::Progress;
 use crate::render::worker::{Activity, Snapshot};
 
+/// How often what is being loaded is told anew.
+const LOADING_REPAINT: Duration = Duration::from_millis(200);
 /// How long a frame counts as recent.
 const RECENT: Duration = Duration::from_secs(10);
 /// Frames left out of the worst: at the start, fonts and pipelines are made.
@@ -97,103 +100,221 @@ fn ms(duration: Duration) -> f64 {
     1e3 * duration.as_secs_f64()
 }
 
-/// Shows the bar's contents.
-pub(in crate::app) fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter) {
+/// What the bar keeps longest where it is narrow, first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    Engine,
+    Activity,
+    Samples,
+    Error,
+    Denoised,
+    Share,
+    Time,
+    Size,
+    Rate,
+    Adapter,
+    Window,
+}
+
+/// A part of the bar.
+struct Part<'a> {
+    rank: Rank,
+    /// Points, with the space behind it.
+    width: f32,
+    show: Box<dyn FnOnce(&mut Ui) + 'a>,
+}
+
+/// Space between two parts, points.
+const SPACING: f32 = 16.0;
+/// Widths are taken for multiples of this, so that parts do not come and go with each digit.
+const WIDTH_STEP: f32 = 8.0;
+/// Side of a spinner, and length of the bar of what has been done, points.
+const SPINNER: f32 = 12.0;
+const SHARE_LENGTH: f32 = 90.0;
+/// Width of the button that gives up loading, points.
+const CANCEL_WIDTH: f32 = 56.0;
+
+impl<'a> Part<'a> {
+    fn new(rank: Rank, width: f32, show: impl FnOnce(&mut Ui) + 'a) -> Self {
+        let width = SPACING + (width / WIDTH_STEP).ceil() * WIDTH_STEP;
+        let show = Box::new(show);
+        Self { rank, width, show }
+    }
+
+    /// A text that explains itself under the pointer.
+    fn text(ui: &Ui, rank: Rank, text: impl Into<RichText>, help: impl FnOnce(&mut Ui) + 'a) -> Self {
+        let text = text.into();
+        let font = egui::FontSelection::Default;
+        let layout = egui::WidgetText::from(text.clone());
+        let galley = layout.into_galley(ui, Some(egui::TextWrapMode::Extend), f32::INFINITY, font);
+        Self::new(rank, galley.size().x, move |ui| {
+            ui.label(text).on_hover_ui(help);
+        })
+    }
+}
+
+/// Shows the bar's contents: what there is room for.
+pub(in crate::app) fn show(ui: &mut Ui, snapshot: &Snapshot, meter: &FrameMeter, actions: &mut Vec<Action>) {
     ui.horizontal_centered(|ui| {
-        ui.spacing_mut().item_spacing.x = 16.0;
-        engine(ui, snapshot);
-        activity(ui, snapshot);
-        let progress = &snapshot.progress;
-        if progress.samples_wanted > 0 {
-            ui.label(samples(progress))
-                .on_hover_text("Samples a pixel: rendered (in the mean, where some rest), and to be rendered");
-            if let Some(noise) = progress.noise {
-                ui.label(format!("error {}", percent(noise.relative)))
-                    .on_hover_ui(|ui| {
-                        ui.label("Standard error of a pixel, root mean square, relative to the mean luminance");
-                        let (low, high) = (percent(noise.low), percent(noise.high));
-                        ui.label(format!("The true one lies between {low} and {high} (95 %)."));
-                    });
+        ui.spacing_mut().item_spacing.x = SPACING;
+        let mut parts = engine(ui, snapshot);
+        parts.extend(activity(ui, snapshot, actions));
+        parts.extend(progress(ui, snapshot));
+        parts.push(window_time(ui, meter, snapshot));
+        let widths: Vec<_> = parts.iter().map(|part| (part.rank, part.width)).collect();
+        let fits = fitting(&widths, ui.available_width() + SPACING);
+        for part in parts.into_iter().filter(|part| fits.contains(&part.rank)) {
+            if part.rank == Rank::Window {
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), part.show);
+            } else {
+                (part.show)(ui);
             }
-            if let Some(told) = snapshot.denoised {
-                ui.label(format!("denoised {}", percent(told.value))).on_hover_ui(|ui| {
-                    ui.label(
-                        "Error of the denoised picture, its bias included: root mean square over the mean luminance",
-                    );
-                    let (low, high) = (percent(told.low), percent(told.high));
-                    ui.label(format!("The true one lies between {low} and {high} (95 %)."));
-                });
-            }
-            ui.label(format!("{:.1} s", progress.render_seconds))
-                .on_hover_text("Render time of this picture");
-            ui.label(format!("{} samples/s", short_number(snapshot.samples_per_second)))
-                .on_hover_text("Pixel samples a second, over the whole of this picture");
         }
-        if let Some(picture) = &snapshot.picture {
-            let size = format!("{} × {}", picture.width, picture.height);
-            let reduced = format!("{size} (1/{})", picture.reduction);
-            ui.label(if picture.reduction > 1 { reduced } else { size })
-                .on_hover_text("Size of the picture shown");
-        }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            window_time(ui, meter, snapshot)
-        });
     });
 }
 
-fn engine(ui: &mut Ui, snapshot: &Snapshot) {
-    let Some(engine) = &snapshot.engine else {
-        ui.weak("no engine yet");
-        return;
+/// What there is room for, points: what ranks higher goes first.
+fn fitting(parts: &[(Rank, f32)], room: f32) -> Vec<Rank> {
+    let mut ranked = parts.to_vec();
+    ranked.sort_by_key(|(rank, _)| *rank);
+    let mut left = room;
+    let fits = |of_rank: &&[(Rank, f32)]| {
+        left -= of_rank.iter().map(|(_, width)| width).sum::<f32>();
+        left >= 0.0
     };
-    let label = ui.label(RichText::new(engine.kind.label()).strong());
-    let name = ui.label(&engine.adapter);
-    label.union(name).on_hover_ui(|ui| {
+    let of_ranks = ranked.chunk_by(|a, b| a.0 == b.0);
+    of_ranks.take_while(fits).map(|of_rank| of_rank[0].0).collect()
+}
+
+fn engine<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
+    let Some(engine) = &snapshot.engine else {
+        let text = RichText::new("no engine yet").weak();
+        return vec![Part::text(ui, Rank::Engine, text, |_| {})];
+    };
+    let help = |ui: &mut Ui| {
         ui.label(format!("Engine: {}", engine.kind.name()));
         ui.label(&engine.adapter);
         if !engine.driver.is_empty() {
             ui.label(&engine.driver);
         }
         ui.label(format!("Chosen because: {}", engine.reason));
-    });
+    };
+    let kind = RichText::new(engine.kind.label()).strong();
+    vec![
+        Part::text(ui, Rank::Engine, kind, help),
+        Part::text(ui, Rank::Adapter, &engine.adapter, help),
+    ]
 }
 
-fn activity(ui: &mut Ui, snapshot: &Snapshot) {
+fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -> Vec<Part<'a>> {
+    let spinner = || {
+        Part::new(Rank::Activity, SPINNER, |ui| {
+            _ = ui.add(egui::Spinner::new().size(SPINNER))
+        })
+    };
     let is_busy = matches!(
         snapshot.activity,
         Activity::Starting | Activity::Loading(_) | Activity::Preparing
     );
-    if is_busy {
-        ui.add(egui::Spinner::new().size(12.0));
+    let mut parts: Vec<Part<'a>> = is_busy.then(spinner).into_iter().collect();
+    let doing = snapshot.loading.doing();
+    let is_loading = matches!(snapshot.activity, Activity::Loading(_) | Activity::Preparing);
+    let text = if is_loading && !doing.is_empty() {
+        format!("{}: {doing}", snapshot.activity)
+    } else {
+        snapshot.activity.to_string()
+    };
+    parts.push(Part::text(ui, Rank::Activity, text, |_| {}));
+    if is_loading {
+        ui.ctx().request_repaint_after(LOADING_REPAINT);
+        parts.push(Part::new(Rank::Engine, CANCEL_WIDTH, move |ui| {
+            // By a name, as what stands before it comes and goes.
+            let builder = egui::UiBuilder::new().scope_id(egui::Id::unique("cancel loading"));
+            let cancel = ui.scope_builder(builder, |ui| ui.small_button("Cancel")).inner;
+            let cancel = cancel.on_hover_text("Gives up what is being loaded; what is shown stays");
+            if cancel.clicked() {
+                actions.push(Action::CancelLoading);
+            }
+        }));
     }
-    ui.label(snapshot.activity.to_string());
     if snapshot.activity == Activity::Rendering {
         if snapshot.progress.is_standing_in {
-            ui.add(egui::Spinner::new().size(12.0));
-            ui.weak("compiling the kernel")
-                .on_hover_text("The processor draws until the GPU's kernel for this scene is compiled.");
+            let text = RichText::new("compiling the kernel").weak();
+            parts.push(spinner());
+            parts.push(Part::text(ui, Rank::Activity, text, |ui| {
+                ui.label("The processor draws until the GPU's kernel for this scene is compiled.");
+            }));
         }
         let limit = snapshot.scene.as_ref().and_then(|scene| scene.document.render.time_s);
-        let share = snapshot.progress.share_done(limit);
-        ui.add(
-            egui::ProgressBar::new(share as f32)
-                .desired_width(90.0)
-                .desired_height(6.0),
-        );
+        let share = snapshot.progress.share_done(limit) as f32;
+        parts.push(Part::new(Rank::Share, SHARE_LENGTH, move |ui| {
+            let bar = egui::ProgressBar::new(share)
+                .desired_width(SHARE_LENGTH)
+                .desired_height(6.0);
+            ui.add(bar);
+        }));
     }
+    parts
 }
 
-fn window_time(ui: &mut Ui, meter: &FrameMeter, snapshot: &Snapshot) {
-    ui.weak(format!("window {:.0} ms", ms(meter.work.last)))
-        .on_hover_ui(|ui| {
-            meter.describe(ui);
-            if let Some(first) = snapshot.first_picture {
-                ui.label(format!(
-                    "From the last change to its first picture: {:.0} ms",
-                    ms(first)
-                ));
-            }
-        });
+/// How far the picture has come, in numbers.
+fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
+    let progress = &snapshot.progress;
+    let mut parts = Vec::new();
+    if progress.samples_wanted > 0 {
+        parts.push(Part::text(ui, Rank::Samples, samples(progress), |ui| {
+            ui.label("Samples a pixel: rendered (in the mean, where some rest), and to be rendered");
+        }));
+        if let Some(noise) = progress.noise {
+            let text = format!("error {}", percent(noise.relative));
+            parts.push(Part::text(ui, Rank::Error, text, move |ui| {
+                ui.label("Standard error of a pixel, root mean square, relative to the mean luminance");
+                band(ui, noise.low, noise.high);
+            }));
+        }
+        if let Some(told) = snapshot.denoised {
+            let text = format!("denoised {}", percent(told.value));
+            parts.push(Part::text(ui, Rank::Denoised, text, move |ui| {
+                ui.label("Error of the denoised picture, its bias included: root mean square over the mean luminance");
+                band(ui, told.low, told.high);
+            }));
+        }
+        let time = format!("{:.1} s", progress.render_seconds);
+        parts.push(Part::text(ui, Rank::Time, time, |ui| {
+            ui.label("Render time of this picture");
+        }));
+        let rate = format!("{} samples/s", short_number(snapshot.samples_per_second));
+        parts.push(Part::text(ui, Rank::Rate, rate, |ui| {
+            ui.label("Pixel samples a second, over the whole of this picture");
+        }));
+    }
+    if let Some(picture) = &snapshot.picture {
+        let size = format!("{} × {}", picture.width, picture.height);
+        let reduced = format!("{size} (1/{})", picture.reduction);
+        let text = if picture.reduction > 1 { reduced } else { size };
+        parts.push(Part::text(ui, Rank::Size, text, |ui| {
+            ui.label("Size of the picture shown");
+        }));
+    }
+    parts
+}
+
+fn band(ui: &mut Ui, low: f64, high: f64) {
+    let (low, high) = (percent(low), percent(high));
+    ui.label(format!("The true one lies between {low} and {high} (95 %)."));
+}
+
+fn window_time<'a>(ui: &Ui, meter: &'a FrameMeter, snapshot: &'a Snapshot) -> Part<'a> {
+    let text = RichText::new(format!("window {:.0} ms", ms(meter.work.last))).weak();
+    Part::text(ui, Rank::Window, text, |ui| {
+        meter.describe(ui);
+        if let Some(first) = snapshot.first_picture {
+            ui.label(format!(
+                "From the last change to its first picture: {:.0} ms",
+                ms(first)
+            ));
+        }
+    })
 }
 
 fn samples(progress: &Progress) -> String {
@@ -210,6 +331,20 @@ fn samples(progress: &Progress) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_narrow_bar_keeps_what_matters_most() {
+        let parts = [
+            (Rank::Adapter, 300.0),
+            (Rank::Activity, 60.0),
+            (Rank::Samples, 100.0),
+            (Rank::Engine, 50.0),
+        ];
+        assert_eq!(fitting(&parts, 600.0).len(), 4);
+        assert_eq!(fitting(&parts, 220.0), [Rank::Engine, Rank::Activity, Rank::Samples]);
+        assert_eq!(fitting(&parts, 120.0), [Rank::Engine, Rank::Activity]);
+        assert_eq!(fitting(&parts, 20.0), []);
+    }
 
     #[test]
     fn work_counts_every_frame_and_intervals_only_those_without_a_pause() {

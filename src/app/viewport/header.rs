@@ -9,7 +9,7 @@ use crate::app::kit::{theme, widgets};
 use crate::app::services::environments;
 use crate::document::Denoise;
 use crate::optics::tone::ToneCurve;
-use crate::render::display::Shown;
+use crate::render::shown::Shown;
 use crate::scene::ModelSource;
 
 /// What stands in the bar beside model and environment.

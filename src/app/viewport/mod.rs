@@ -6,28 +6,33 @@
 
 mod compare;
 mod header;
+mod hints;
 mod legend;
+mod look;
+mod magnifier;
 mod orbit;
+mod outline;
+mod picking;
 mod precision;
 mod region;
+mod seen;
 
 use egui::{
     Color32, ColorImage, Key, Modifiers, PointerButton, Pos2, Rect, Response, Sense, TextureHandle, TextureOptions, Ui,
     Vec2, pos2, vec2,
 };
 
+use magnifier::Magnifier;
 use orbit::Orbit;
+use seen::{hit_at, pixel_at};
 
 use super::actions::Action;
 use super::desk::{Desk, Resolution};
 use super::kit::icons::{self, Icon};
 use super::kit::theme;
 use super::services::compare::View;
-use crate::optics::material::Material;
-use crate::render::display;
-use crate::render::worker::{Level, Picture, Scene};
-use crate::scene::camera::camera_ray;
-use crate::scene::surface::surface_at;
+use crate::render::shown;
+use crate::render::worker::{Activity, Level, Picture, Scene};
 
 /// Degrees of the environment's turn for a drag of one point.
 const LIGHT_DEG_PER_POINT: f32 = 0.35;
@@ -35,6 +40,12 @@ const LIGHT_DEG_PER_POINT: f32 = 0.35;
 const ZOOM_PER_POINT: f64 = 0.004;
 /// Points of a drag that an arrow key stands for.
 const KEY_POINTS: f64 = 14.0;
+/// From how many points a pixel on it has edges, points.
+const PIXEL_SEEN: f32 = 2.0;
+/// Width of the button that shows the whole picture, points.
+const WHOLE_WIDTH: f32 = 64.0;
+/// From the viewport's corner to what stands in it, points.
+const LOADING_MARGIN: f32 = 12.0;
 /// Sides of the squares behind transparent pictures, points.
 const CHECKER: f32 = 12.0;
 /// How long a message stays, seconds.
@@ -60,13 +71,19 @@ pub(super) struct Viewport {
     is_software: bool,
     id: Option<egui::Id>,
     region: region::RegionTool,
+    magnifier: Magnifier,
+    outline: outline::Outline,
+    /// By how much the picture is to be shown larger; 0 is back to all of it.
+    magnifies: Option<f32>,
 }
 
 /// A texture, and what it shows.
 #[derive(Default)]
 struct Shown {
     texture: Option<TextureHandle>,
-    key: Option<[u64; 2]>,
+    /// What it stands for, and whether its pixels have edges.
+    key: Option<([u64; 2], bool)>,
+    shows_pixels: bool,
     /// Some of it lets through what is behind.
     is_transparent: bool,
 }
@@ -74,16 +91,22 @@ struct Shown {
 impl Shown {
     /// Makes the texture show what the key stands for.
     fn upload(&mut self, ui: &Ui, key: [u64; 2], image: impl FnOnce() -> ColorImage) {
-        if self.key == Some(key) {
+        let options = if self.shows_pixels {
+            TextureOptions::NEAREST
+        } else {
+            TextureOptions::LINEAR
+        };
+        let uploaded = (key, self.shows_pixels);
+        if self.key == Some(uploaded) {
             return;
         }
         let image = image();
         self.is_transparent = is_transparent(&image);
         match &mut self.texture {
-            Some(texture) => texture.set(image, TextureOptions::LINEAR),
-            None => self.texture = Some(ui.ctx().load_texture("picture", image, TextureOptions::LINEAR)),
+            Some(texture) => texture.set(image, options),
+            None => self.texture = Some(ui.ctx().load_texture("picture", image, options)),
         }
-        self.key = Some(key);
+        self.key = Some(uploaded);
     }
 
     fn show(&self, ui: &Ui, clip: Rect, place: Rect) {
@@ -116,6 +139,11 @@ impl Viewport {
     /// The next drag says which part of the picture is rendered.
     pub(super) fn draw_region(&mut self) {
         self.region.arm();
+    }
+
+    /// Shows the picture so many times larger from the next frame on; all of it where that is 0.
+    pub(super) fn magnify(&mut self, by: f32) {
+        self.magnifies = Some(by);
     }
 
     /// The size that a picture that fills the viewport has; `None` before the viewport was laid out, or where the
@@ -162,10 +190,10 @@ impl Viewport {
             let place = if is_compared {
                 self.compared(ui, area, picture, desk)
             } else {
-                let place = placed(area, picture, desk.shared.resolution);
-                self.picture.paint(ui, place, place, picture, 0);
+                let place = self.magnified(ui, &response, area, picture, desk.shared.resolution);
+                self.picture.paint(ui, area.intersect(place), place, picture, 0);
                 if let Some(scene) = &desk.snapshot.scene
-                    && desk.shared.shown == display::Shown::Precision
+                    && desk.shared.shown == shown::Shown::Precision
                 {
                     self.precision.show(ui, area, place, &scene.job);
                 }
@@ -179,8 +207,20 @@ impl Viewport {
             }
             // Where two are compared, both are shown whole.
             let is_drawing = !is_compared && self.region.show(ui, &response, place, desk);
-            if let Some(scene) = desk.snapshot.scene.clone().filter(|_| !is_drawing) {
-                self.navigate(ui, &response, place, &scene, desk);
+            if let Some(scene) = desk.snapshot.scene.clone() {
+                if !is_compared {
+                    picking::hover(ui, &response, place, &scene, desk);
+                    self.outline.show(ui, area, place, &scene.job, desk);
+                }
+                if !is_drawing {
+                    self.navigate(ui, &response, place, &scene, desk);
+                }
+                if desk.shared.look.was_shown {
+                    look::follow(ui, &response, area, place, &scene, picture, desk);
+                }
+            }
+            if !is_compared {
+                self.whole_picture(ui, area, place, picture);
             }
         } else {
             waiting(ui, area, desk);
@@ -189,8 +229,63 @@ impl Viewport {
             let stroke = egui::Stroke::new(1.0, theme::accent(is_dark));
             ui.painter().rect_stroke(area, 0.0, stroke, egui::StrokeKind::Inside);
         }
+        if picture.is_some() {
+            loading(ui, area, desk);
+        }
+        hints::show(ui, area, desk);
         messages(ui, area, desk);
         drop_hint(ui, area);
+    }
+
+    /// Where the picture is, after what the user does to magnify it.
+    fn magnified(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        area: Rect,
+        picture: &Picture,
+        resolution: Resolution,
+    ) -> Rect {
+        let fitted = placed(area, picture, resolution);
+        let modifiers = ui.input(|input| input.modifiers);
+        let pointer = response.hover_pos();
+        if let Some(by) = self.magnifies.take() {
+            let at = pointer.unwrap_or(area.center());
+            self.magnifier.zoom(by, at, area, fitted, picture.width);
+        }
+        if let Some(at) = pointer.filter(|_| modifiers.command) {
+            let by = ui.input(egui::InputState::zoom_delta);
+            if by != 1.0 {
+                self.magnifier.zoom(by, at, area, fitted, picture.width);
+            }
+        }
+        let pans = response.dragged_by(PointerButton::Middle)
+            || (response.dragged_by(PointerButton::Primary) && modifiers.command);
+        if pans && self.magnifier.is_on() {
+            self.magnifier.pan(response.drag_delta(), fitted);
+        }
+        let place = self.magnifier.place(area, fitted);
+        self.picture.shows_pixels = self.magnifier.is_on() && place.width() >= PIXEL_SEEN * picture.width as f32;
+        place
+    }
+
+    /// How much the picture is magnified, and a way back.
+    fn whole_picture(&mut self, ui: &mut Ui, area: Rect, place: Rect, picture: &Picture) {
+        if !self.magnifier.is_on() {
+            return;
+        }
+        let percent = 100.0 * place.width() * self.pixels_per_point / picture.width.max(1) as f32;
+        let corner = area.max - vec2(WHOLE_WIDTH, theme::ROW_HEIGHT) - Vec2::splat(LOADING_MARGIN);
+        let builder = egui::UiBuilder::new()
+            .scope_id(egui::Id::unique("whole picture"))
+            .max_rect(Rect::from_min_size(corner, vec2(WHOLE_WIDTH, theme::ROW_HEIGHT)));
+        let mut inside = ui.new_child(builder);
+        let button = egui::Button::new(format!("{percent:.0} %")).min_size(vec2(WHOLE_WIDTH, theme::ROW_HEIGHT));
+        let button = inside.add(button).on_hover_text("Shows the whole picture again (0)");
+        if button.clicked() {
+            self.magnify(0.0);
+        }
+        button.accessible_name("Show the whole picture");
     }
 
     fn navigate(&self, ui: &mut Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
@@ -199,10 +294,11 @@ impl Viewport {
         let mut orbit = before;
         let moved = response.drag_delta();
         let points = [f64::from(moved.x), f64::from(moved.y)];
-        if moved != Vec2::ZERO {
+        let pans = response.dragged_by(PointerButton::Middle)
+            || (response.dragged_by(PointerButton::Primary) && modifiers.command);
+        // What is magnified is moved itself, see `magnified`.
+        if moved != Vec2::ZERO && !(pans && self.magnifier.is_on()) {
             let height = f64::from(place.height().max(1.0));
-            let pans = response.dragged_by(PointerButton::Middle)
-                || (response.dragged_by(PointerButton::Primary) && modifiers.command);
             if pans {
                 orbit.pan(points.map(|p| p / height));
                 desk.edits.note("Pan", "pan");
@@ -218,7 +314,8 @@ impl Viewport {
                 desk.edits.note("Zoom", "zoom");
             }
         }
-        if response.hovered() {
+        // With ctrl the wheel magnifies.
+        if response.hovered() && !modifiers.command {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
             if scroll != 0.0 || pinch != 1.0 {
                 orbit.zoom((-ZOOM_PER_POINT * f64::from(scroll)).exp() / f64::from(pinch));
@@ -262,9 +359,7 @@ impl Viewport {
             return;
         }
         desk.shared.view_angle_deg = hit.view_angle_deg;
-        if let Some(slot) = hit.slot {
-            desk.actions.push(Action::SelectSlot(slot));
-        }
+        picking::choose(&hit, modifiers.shift, desk);
     }
 
     /// Arrows turn, with ctrl they pan; page up and down zoom.
@@ -331,40 +426,6 @@ fn placed_size(area: Rect, size: [u32; 2], resolution: Resolution) -> Rect {
     Rect::from_center_size(area.center(), size * scale)
 }
 
-/// What is seen at a place of the window.
-struct SeenSurface {
-    /// The material slot; `None` for the ground and area lights, which are no materials of the document.
-    slot: Option<usize>,
-    /// Along the camera's viewing direction, scene units.
-    depth: f64,
-    /// Between view and shading normal, degrees.
-    view_angle_deg: f32,
-}
-
-/// The place in the picture, in pixels, below its size.
-fn pixel_at(at: Pos2, place: Rect, scene: &Scene) -> Option<[f64; 2]> {
-    let share = (at - place.min) / place.size();
-    let is_inside = (0.0..1.0).contains(&share.x) && (0.0..1.0).contains(&share.y);
-    let [width, height] = scene.job.settings.image_size.map(f64::from);
-    is_inside.then(|| [f64::from(share.x) * width, f64::from(share.y) * height])
-}
-
-fn hit_at(pixel: [f64; 2], scene: &Scene) -> Option<SeenSurface> {
-    let size = scene.job.settings.image_size;
-    let (camera, geometry) = (&scene.job.settings.camera, &scene.job.geometry);
-    let [origin, direction] = camera_ray(camera, pixel, size, [0.5; 2]);
-    let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::INFINITY)?;
-    let slot = *geometry.slots.get(hit.triangle as usize)? as usize;
-    let materials: Vec<_> = scene.job.materials.iter().map(Material::cast).collect();
-    let point = surface_at(geometry, &materials, &scene.job.textures, &hit, direction);
-    let cosine: f64 = point.surface.frame.normal.dot(point.surface.wo);
-    Some(SeenSurface {
-        slot: (slot < scene.model.slots.len()).then_some(slot),
-        depth: f64::from(hit.t) * direction.dot(camera.forward) * geometry.world_units_per_unit,
-        view_angle_deg: cosine.clamp(0.0, 1.0).acos().to_degrees() as f32,
-    })
-}
-
 /// Squares that show through where the picture is transparent.
 fn checker(ui: &Ui, place: Rect) {
     let painter = ui.painter().with_clip_rect(place.intersect(ui.clip_rect()));
@@ -396,6 +457,25 @@ fn waiting(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
     let color = ui.visuals().text_color();
     ui.painter()
         .text(center + vec2(0.0, 16.0), egui::Align2::CENTER_CENTER, text, font, color);
+}
+
+/// What is being loaded while the picture before it stays.
+fn loading(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
+    let text = match &desk.snapshot.activity {
+        Activity::Loading(what) => format!("Loading {what} …"),
+        Activity::Starting => "Starting the engine …".to_owned(),
+        _ => return,
+    };
+    let corner = area.min + Vec2::splat(LOADING_MARGIN);
+    let builder = egui::UiBuilder::new()
+        .scope_id(egui::Id::unique("loading"))
+        .max_rect(Rect::from_min_max(corner, area.max))
+        .layout(egui::Layout::left_to_right(egui::Align::Min));
+    let mut inside = ui.new_child(builder);
+    egui::Frame::popup(inside.style()).show(&mut inside, |ui| {
+        ui.add(egui::Spinner::new().size(14.0));
+        ui.add(egui::Label::new(text).truncate())
+    });
 }
 
 /// The latest warnings and errors, until they are old or closed.
@@ -456,7 +536,7 @@ fn drop_hint(ui: &Ui, area: Rect) {
     );
     let font = egui::TextStyle::Heading.resolve(ui.style());
     let text =
-        "Drop a model (.glb, .gltf), an environment (.hdr, .exr), a material or project (.json), a picture (.png)";
+        "Drop a model with its files, an environment, a material, a project, or a picture for what it is dropped on";
     ui.painter()
         .text(area.center(), egui::Align2::CENTER_CENTER, text, font, Color32::WHITE);
 }

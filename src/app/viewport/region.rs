@@ -43,7 +43,7 @@ impl RegionTool {
             return true;
         }
         if let Some(region) = desk.document.render.region {
-            outline(ui, place_of(region, place), desk);
+            outline(ui, response.rect, place_of(region, place), desk);
         }
         false
     }
@@ -70,7 +70,7 @@ impl RegionTool {
         let drawn = Rect::from_two_pos(from, to).intersect(place);
         let is_large = drawn.width() >= SIDE_MIN && drawn.height() >= SIDE_MIN;
         if is_large {
-            frame(ui, drawn);
+            frame(ui, response.rect, drawn);
         }
         if response.drag_stopped() {
             self.from = None;
@@ -99,8 +99,8 @@ fn place_of([left, top, right, bottom]: [f64; 4], place: Rect) -> Rect {
 }
 
 /// Light and dark, so that it is seen against everything.
-fn frame(ui: &Ui, at: Rect) {
-    let painter = ui.painter();
+fn frame(ui: &Ui, area: Rect, at: Rect) {
+    let painter = ui.painter().with_clip_rect(area);
     painter.rect_stroke(
         at.expand(1.0),
         0.0,
@@ -111,9 +111,13 @@ fn frame(ui: &Ui, at: Rect) {
     painter.rect_stroke(at, 0.0, Stroke::new(1.0, accent), StrokeKind::Inside);
 }
 
-fn outline(ui: &mut Ui, at: Rect, desk: &mut Desk<'_>) {
-    frame(ui, at);
-    let corner = Rect::from_min_size(at.right_top() + vec2(-26.0, 4.0), egui::Vec2::splat(theme::ROW_HEIGHT));
+fn outline(ui: &mut Ui, area: Rect, at: Rect, desk: &mut Desk<'_>) {
+    frame(ui, area, at);
+    let seen = at.intersect(area);
+    let corner = Rect::from_min_size(
+        seen.right_top() + vec2(-26.0, 4.0),
+        egui::Vec2::splat(theme::ROW_HEIGHT),
+    );
     let builder = egui::UiBuilder::new().max_rect(corner).id_salt("clear region");
     let mut inside = ui.new_child(builder);
     let help = "Render the whole picture again (escape)";

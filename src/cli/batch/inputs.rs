@@ -13,7 +13,7 @@ use crate::scene::environment::EnvironmentSource;
 use crate::store::project::document_text;
 
 /// To be raised where the same inputs make other files than before.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// A hash that grows; its numbers are the same on every machine and with every compiler.
 pub(super) struct Inputs(SipHasher13);
@@ -65,6 +65,7 @@ impl Inputs {
         for texture in &model.textures {
             self.text(&format!("{texture:?}"));
             self.bytes(&texture.rgba8);
+            self.bytes(bytemuck::cast_slice(&texture.rgba16));
         }
     }
 

@@ -9,6 +9,7 @@ use super::Part;
 use super::file::{BatchFile, Picture, Scene};
 use super::inputs::Inputs;
 use super::sheet;
+use crate::cli::merge::denoised;
 use crate::cli::render::render_to_end;
 use crate::document::turntable::turned;
 use crate::document::{Denoise, Document};
@@ -16,7 +17,7 @@ use crate::job::film::Image;
 use crate::render::output::{self, Rendered};
 use crate::render::sums::{self, KeptFilm};
 use crate::render::{EngineChoice, Progress, Session};
-use crate::store::file::{save_atomically, save_by};
+use crate::store::replace::{remove_leftovers, save_atomically};
 
 /// What became of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -120,8 +121,15 @@ struct Wanted<'a> {
 }
 
 impl<'a> Maker<'a> {
-    pub(super) fn open(file: &'a BatchFile, engine: EngineChoice) -> anyhow::Result<Self> {
-        let session = Session::open(engine)?;
+    /// A session for pictures, or for a part of the samples of each; removes what a batch that was killed has left half
+    /// written.
+    pub(super) fn open(file: &'a BatchFile, engine: EngineChoice, part: Part) -> anyhow::Result<Self> {
+        let mut session = Session::open(engine)?;
+        if part != Part::Whole {
+            session.keep_guides("sums of the picture are kept");
+        }
+        remove_leftovers(&file.folder);
+        remove_leftovers(&file.folder.join(sheet::THUMBNAILS));
         Ok(Self { file, engine, session })
     }
 
@@ -155,12 +163,26 @@ impl<'a> Maker<'a> {
 
     /// A picture, or a part of its samples: rendered, unless it is there.
     pub(super) fn make(&mut self, number: usize, picture: &Picture, part: Part) -> Row {
-        let made = self
-            .wanted(number, picture, part)
-            .and_then(|wanted| match self.kept(&wanted) {
-                Some(row) => Ok(row),
-                None => self.rendered(wanted),
-            });
+        self.made_by(number, picture, part, Self::rendered)
+    }
+
+    /// A picture of the parts in the folder that were made of the same inputs, unless it is there.
+    pub(super) fn join(&mut self, number: usize, picture: &Picture) -> Row {
+        self.made_by(number, picture, Part::Whole, Self::joined)
+    }
+
+    fn made_by<'p>(
+        &mut self,
+        number: usize,
+        picture: &'p Picture,
+        part: Part,
+        make: impl FnOnce(&mut Self, Wanted<'p>) -> anyhow::Result<Row>,
+    ) -> Row {
+        let wanted = self.wanted(number, picture, part);
+        let made = wanted.and_then(|wanted| match self.kept(&wanted) {
+            Some(row) => Ok(row),
+            None => make(self, wanted),
+        });
         made.unwrap_or_else(|error| Row::failed(number, picture, &error))
     }
 
@@ -177,25 +199,22 @@ impl<'a> Maker<'a> {
         })
     }
 
-    fn stem(&self, wanted: &Wanted<'_>) -> String {
-        match wanted.part {
-            Some([from, to]) => format!("{}.{from}-{to}", wanted.picture.name),
-            None => wanted.picture.name.clone(),
-        }
+    /// The file of a picture or a part of it.
+    fn path(&self, picture: &Picture, part: Option<[u32; 2]>, ending: &str) -> PathBuf {
+        let part = part.map_or_else(String::new, |[from, to]| format!(".{from}-{to}"));
+        self.file.folder.join(format!("{}{part}.{ending}", picture.name))
     }
 
     fn record(&self, wanted: &Wanted<'_>) -> PathBuf {
-        self.file.folder.join(format!("{}.json", self.stem(wanted)))
+        self.path(wanted.picture, wanted.part, "json")
     }
 
     fn files(&self, wanted: &Wanted<'_>) -> Vec<PathBuf> {
-        let stem = self.stem(wanted);
-        let endings = match wanted.part {
-            Some(_) => vec!["exr".to_owned()],
-            None => self.file.formats.clone(),
-        };
-        let named = |ending: &String| self.file.folder.join(format!("{stem}.{ending}"));
-        endings.iter().map(named).collect()
+        let path = |ending: &str| self.path(wanted.picture, wanted.part, ending);
+        match wanted.part {
+            Some(_) => vec![path("exr")],
+            None => self.file.formats.iter().map(|ending| path(ending)).collect(),
+        }
     }
 
     fn rendered(&mut self, wanted: Wanted<'_>) -> anyhow::Result<Row> {
@@ -215,15 +234,15 @@ impl<'a> Maker<'a> {
         };
         let (progress, denoised) = render_to_end(&mut self.session, self.engine, &document)?;
         let mut row = self.told(&wanted, Status::Rendered, &progress);
+        let image = self.session.image()?;
+        let rendered = Rendered {
+            denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
+            ..Rendered::from(&image)
+        };
         if wanted.part.is_some() {
-            let kept = KeptFilm::of(self.session.film()?.clone(), &document);
-            save_by(&row.files[0], |path| kept.write(path))??;
+            let sums = Some(&self.session.kept_film()?);
+            output::write(&row.files[0], Rendered { sums, ..rendered }, &document)?;
         } else {
-            let image = self.session.image()?;
-            let rendered = Rendered {
-                image: &image,
-                denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
-            };
             self.write(&row.files, rendered, &document, wanted.picture)?;
         }
         row.hash = Some(wanted.hash.clone());
@@ -250,7 +269,7 @@ impl<'a> Maker<'a> {
         picture: &Picture,
     ) -> anyhow::Result<()> {
         for file in files {
-            save_by(file, |path| output::write(path, rendered, document))??;
+            output::write(file, rendered, document)?;
         }
         let shown: &Image = rendered.denoised.unwrap_or(rendered.image);
         sheet::write_thumbnail(&self.file.folder, &picture.name, shown, &document.view)
@@ -263,17 +282,6 @@ impl<'a> Maker<'a> {
         Ok(row)
     }
 
-    /// A picture of the parts in the folder that were made of the same inputs.
-    pub(super) fn join(&mut self, number: usize, picture: &Picture) -> Row {
-        let made = self
-            .wanted(number, picture, Part::Whole)
-            .and_then(|wanted| match self.kept(&wanted) {
-                Some(row) => Ok(row),
-                None => self.joined(wanted),
-            });
-        made.unwrap_or_else(|error| Row::failed(number, picture, &error))
-    }
-
     fn joined(&mut self, wanted: Wanted<'_>) -> anyhow::Result<Row> {
         let samples = wanted.document.render.samples;
         let mut done = 0;
@@ -284,10 +292,7 @@ impl<'a> Maker<'a> {
             if range[0] != done || range[1] > samples {
                 continue;
             }
-            let path = self
-                .file
-                .folder
-                .join(format!("{}.{}-{}.exr", wanted.picture.name, range[0], range[1]));
+            let path = self.path(wanted.picture, Some(range), "exr");
             let film = KeptFilm::read(&path)?;
             match &mut whole {
                 Some((first, whole)) => whole.add(&film, &path, first)?,
@@ -296,13 +301,20 @@ impl<'a> Maker<'a> {
             done = range[1];
             seconds += row.render_seconds.unwrap_or_default();
         }
-        let Some((_, whole)) = whole.filter(|_| done == samples) else {
+        let Some((_, mut whole)) = whole.filter(|_| done == samples) else {
             bail!(
                 "{}: samples {done} to {samples} of {} are missing or of other settings; render them by --slice or \
                  --samples-from and --samples-to, then join again",
                 self.file.folder.display(),
                 wanted.picture.name
             );
+        };
+        whole.document.view.denoise = wanted.document.view.denoise;
+        let denoised = denoised(&whole)?;
+        let image = whole.film.image();
+        let rendered = Rendered {
+            denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
+            ..Rendered::from(&image)
         };
         let row = Row {
             files: self.files(&wanted),
@@ -312,12 +324,7 @@ impl<'a> Maker<'a> {
             ..Row::new(wanted.number, wanted.picture, Status::Merged)
         };
         // The frame that was rendered, with the number of all samples.
-        self.write(
-            &row.files,
-            Rendered::from(&whole.film.image()),
-            &whole.document,
-            wanted.picture,
-        )?;
+        self.write(&row.files, rendered, &whole.document, wanted.picture)?;
         self.finish(&wanted, row)
     }
 
@@ -351,10 +358,21 @@ fn put_part(document: &mut Document, [from, to]: [u32; 2]) -> anyhow::Result<()>
     if from >= to {
         bail!("the part from sample {from} to {to} is empty; take fewer slices, or more samples");
     }
-    if document.view.denoise != Denoise::Off {
-        bail!("a part of the samples cannot be denoised; take denoise away");
+    let render = &mut document.render;
+    let reasons = [
+        // A noise to reach has samples go where the error is, too: what was asked for is named first.
+        (render.noise.is_some(), "a part ends at its own noise"),
+        (render.time_s.is_some(), "a part ends with its own time"),
+        (
+            render.is_adaptive(),
+            "samples go where a part's own error is (adaptive)",
+        ),
+    ];
+    if let Some((_, reason)) = reasons.into_iter().find(|(is_so, _)| *is_so) {
+        bail!("parts have a number of samples that is known before, and here {reason}; give a number of samples alone");
     }
-    (document.render.first_sample, document.render.samples) = (from, to - from);
-    KeptFilm::check(document)?;
+    (render.first_sample, render.samples) = (from, to - from);
+    // That comes when they are joined.
+    document.view.denoise = Denoise::Off;
     Ok(())
 }

@@ -17,6 +17,7 @@ use self::maker::{Maker, Row, Status};
 use super::answer::{Destination, Lines};
 use super::{PartialFailure, parse};
 use crate::render::EngineChoice;
+use crate::store::replace::save_atomically;
 
 /// Arguments of `glossmith batch`.
 #[derive(Debug, Args)]
@@ -91,6 +92,17 @@ enum Part {
 }
 
 impl Part {
+    /// What the arguments ask for.
+    fn of(arguments: &BatchArguments) -> anyhow::Result<Self> {
+        let from = arguments.samples_from.unwrap_or(0);
+        Ok(match (arguments.slice, arguments.samples_to) {
+            (Some(slice), _) => Self::Slice(slice),
+            (None, Some(to)) if to <= from => bail!("--samples-to {to} must be above --samples-from {from}"),
+            (None, Some(to)) => Self::Numbers([from, to]),
+            (None, None) => Self::Whole,
+        })
+    }
+
     /// The first number and the one after the last of a picture of so many samples.
     fn range(self, samples: u32) -> Option<[u32; 2]> {
         match self {
@@ -117,8 +129,10 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
     let all = file.pictures();
     if let Some(path) = &arguments.job_template {
         parse::check_writable(path)?;
-        std::fs::write(path, template::text(path, &file, all.len(), arguments.slices))
-            .with_context(|| format!("{}: the template could not be written", path.display()))?;
+        save_atomically(
+            path,
+            template::text(path, &file, all.len(), arguments.slices).as_bytes(),
+        )?;
         eprintln!(
             "wrote {}: {} pictures, {} tasks each",
             path.display(),
@@ -128,19 +142,15 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
         return Ok(());
     }
     let chosen = chosen(&file, &all, arguments)?;
+    let part = Part::of(arguments)?;
     std::fs::create_dir_all(&file.folder).with_context(|| {
         format!(
             "{}: the folder cannot be made; give another by --folder",
             file.folder.display()
         )
     })?;
-    let part = match (arguments.slice, arguments.samples_to) {
-        (Some(slice), _) => Part::Slice(slice),
-        (None, Some(to)) => Part::Numbers([arguments.samples_from.unwrap_or(0), to]),
-        (None, None) => Part::Whole,
-    };
     let mut lines = Lines::open(&arguments.json)?;
-    let mut maker = Maker::open(&file, arguments.engine)?;
+    let mut maker = Maker::open(&file, arguments.engine, part)?;
     let mut failed = 0;
     for (number, picture) in &chosen {
         let row = match arguments.merge {
@@ -185,11 +195,6 @@ fn chosen<'a>(
         ),
         (Some(frames), range) => within(range, "--frame-range", frames as usize)?,
         (None, None) => {}
-    }
-    if let (Some(from), Some(to)) = (arguments.samples_from.or(Some(0)), arguments.samples_to)
-        && to <= from
-    {
-        bail!("--samples-to {to} must be above --samples-from {from}");
     }
     let is_chosen = |(number, picture): &(usize, &Picture)| {
         let frame = picture.frame.map_or(1, |frame| frame as usize + 1);

@@ -11,15 +11,15 @@ use super::file::{BatchFile, Picture};
 use super::maker::Row;
 use crate::document::ViewSettings;
 use crate::job::film::Image;
-use crate::plot::{PictureSheet, picture_sheet_file};
+use crate::plot::{PictureSheet, write_picture_sheet};
 use crate::render::display::display;
-use crate::store::file::{save_atomically, save_by};
 use crate::store::picture::png_bytes;
+use crate::store::replace::{save_atomically, save_by};
 
 /// Longest side of a small picture, pixels.
 const SIDE: u32 = 192;
 /// The folder of the small pictures, and the names of the sheets.
-const THUMBNAILS: &str = "thumbnails";
+pub(super) const THUMBNAILS: &str = "thumbnails";
 const SHEET: &str = "contact-sheet";
 /// Codes of the paper where a picture is missing or lets light through.
 const PAPER: u8 = 230;
@@ -70,7 +70,7 @@ pub(super) fn write(file: &BatchFile, pictures: &[Picture]) -> anyhow::Result<()
         pictures: cells.collect(),
     };
     let path = folder.join(format!("{SHEET}.png"));
-    save_by(&path, |path| picture_sheet_file(path, &sheet))??;
+    save_by(&path, |file| write_picture_sheet(file, &sheet))?;
     let page = folder.join(format!("{SHEET}.html"));
     save_atomically(&page, html(folder, &title, pictures).as_bytes())?;
     eprintln!("wrote {} and {}", path.display(), page.display());

@@ -1,21 +1,21 @@
 //! `glossmith study accuracy`: the race.
 
-use std::path::Path;
 use std::time::Duration;
 
 use clap::Args;
 use image::RgbImage;
 
 use super::folder::Folder;
-use super::{Bar, CacheArguments, CommonArguments, digits, make_folder};
+use super::{Bar, CacheArguments, CommonArguments, digits};
 use crate::document::technique::{Technique, TechniqueError, check_techniques, techniques};
 use crate::document::{Document, ViewSettings};
 use crate::job::film::Image;
 use crate::plot::lobe_view::Axis;
-use crate::plot::{NamedPoint, PictureSheet, PointPlot, picture_sheet_file, point_plot_file};
+use crate::plot::{NamedPoint, PictureSheet, PointPlot, point_plot_file, write_picture_sheet};
 use crate::render::display::display;
 use crate::render::study::race::{Race, RaceOptions, Runner, race};
 use crate::render::{EngineChoice, Session};
+use crate::store::replace::save_by;
 
 /// Those that take part where none are named.
 const DEFAULT: [&str; 6] = ["strategy", "sequence", "adaptive", "bounces", "fresnel", "lobe"];
@@ -49,7 +49,7 @@ fn parse_techniques(text: &str) -> Result<String, TechniqueError> {
 
 pub(super) fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
-    make_folder(&common.output)?;
+    common.prepare()?;
     let mut document = common.document()?;
     // They say how long is raced, not how the scene is rendered.
     let (time_s, noise) = (document.render.time_s.take(), document.render.noise.take());
@@ -76,8 +76,10 @@ pub(super) fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
         let bar = Bar::new()?;
         race(&document, &options, &mut |progress| bar.show(progress))?
     };
-    write(&common.output, &document, &found)?;
-    print(&found);
+    write(common, &document, &found)?;
+    if common.answer.has_words() {
+        print(&found);
+    }
     Ok(())
 }
 
@@ -110,9 +112,10 @@ fn print(race: &Race) {
     }
 }
 
-fn write(path: &Path, document: &Document, race: &Race) -> anyhow::Result<()> {
+fn write(common: &CommonArguments, document: &Document, race: &Race) -> anyhow::Result<()> {
+    let path = &common.output;
     let folder = Folder { path, name: "accuracy" };
-    folder.json(race)?;
+    folder.json(race, &common.answer)?;
     let head = [
         "technique",
         "label",
@@ -162,7 +165,9 @@ fn write(path: &Path, document: &Document, race: &Race) -> anyhow::Result<()> {
         };
         let pictures = race.runners.iter().filter_map(of_runner).collect();
         let path = path.join(format!("{name}.png"));
-        picture_sheet_file(&path, &PictureSheet { title, pictures })?;
+        save_by(&path, |file| {
+            write_picture_sheet(file, &PictureSheet { title, pictures })
+        })?;
         eprintln!("wrote {}", path.display());
         anyhow::Ok(())
     };

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::folder::Folder;
-use super::{Bar, CacheArguments, CommonArguments, digits, make_folder};
+use super::{Bar, CacheArguments, CommonArguments, digits};
 use crate::plot::line_plot_file;
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
 use crate::render::study::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
@@ -25,7 +25,7 @@ pub(super) struct ConvergenceArguments {
 
 pub(super) fn run(arguments: &ConvergenceArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
-    make_folder(&common.output)?;
+    common.prepare()?;
     let mut document = common.document()?;
     if common.quick {
         document.render.samples = document.render.samples.min(QUICK_SAMPLES);
@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &ConvergenceArguments) -> anyhow::Result<()> {
         path: &common.output,
         name: "convergence",
     };
-    folder.json(&report)?;
+    folder.json(&report, &common.answer)?;
     let head = [
         "seconds",
         "samples_per_pixel",
@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &ConvergenceArguments) -> anyhow::Result<()> {
     };
     folder.csv(&head, report.points.iter().map(row))?;
     folder.plots(&plot(&report), line_plot_file)?;
-    if let (Some(last), Some(slope)) = (report.points.last(), report.slope) {
+    if let (true, Some(last), Some(slope)) = (common.answer.has_words(), report.points.last(), report.slope) {
         println!(
             "error {:.3} % ({:.3} to {:.3}) after {:.2} s; against a reference {:.3} %; it falls with the time to the \
              power of {slope:.2}",

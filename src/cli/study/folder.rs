@@ -1,10 +1,11 @@
-//! The files of a study.
+//! The files of a study, and its answer to the program that called.
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
 use serde::Serialize;
 
+use crate::cli::answer::Answer;
 use crate::plot::PlotError;
 
 /// The folder that a study writes into, and the name that its files begin with.
@@ -13,10 +14,25 @@ pub(super) struct Folder<'a> {
     pub(super) name: &'a str,
 }
 
+/// Makes the folder, and asks whether the answer can be written, before the work that fills both.
+///
+/// # Errors
+/// What the system says.
+pub(super) fn prepare(path: &Path, answer: &Answer) -> anyhow::Result<()> {
+    std::fs::create_dir_all(path).with_context(|| {
+        format!(
+            "{}: the folder could not be made; check its name and permissions",
+            path.display()
+        )
+    })?;
+    answer.check_writable()
+}
+
 impl Folder<'_> {
-    /// The numbers, whole.
-    pub(super) fn json(&self, value: &impl Serialize) -> anyhow::Result<()> {
-        self.write("json", serde_json::to_string_pretty(value)? + "\n")
+    /// The numbers, whole; they are the answer, too.
+    pub(super) fn json(&self, value: &impl Serialize, answer: &Answer) -> anyhow::Result<()> {
+        self.write("json", serde_json::to_string_pretty(value)? + "\n")?;
+        answer.write(value)
     }
 
     /// The numbers as a table.

@@ -5,7 +5,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::folder::Folder;
-use super::{Bar, CommonArguments, digits, make_folder};
+use super::{Bar, CommonArguments, digits};
 use crate::plot::{BarPlot, bar_plot_file};
 use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
 
@@ -18,7 +18,7 @@ pub(super) struct LedgerArguments {
 
 pub(super) fn run(arguments: &LedgerArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
-    make_folder(&common.output)?;
+    common.prepare()?;
     let document = common.document()?;
     let mut options = LedgerOptions::new(common.scene.engine);
     if common.quick {
@@ -32,7 +32,7 @@ pub(super) fn run(arguments: &LedgerArguments) -> anyhow::Result<()> {
         path: &common.output,
         name: "ledger",
     };
-    folder.json(&found)?;
+    folder.json(&found, &common.answer)?;
     let head = [
         "name",
         "label",
@@ -66,6 +66,13 @@ pub(super) fn run(arguments: &LedgerArguments) -> anyhow::Result<()> {
     };
     folder.csv(&head, found.entries.iter().map(row))?;
     folder.plots(&plot(&found), bar_plot_file)?;
+    if common.answer.has_words() {
+        print(&found);
+    }
+    Ok(())
+}
+
+fn print(found: &Ledger) {
     println!(
         "{} on {}, {} x {}: {:.2} ms for one sample of every pixel",
         found.machine.engine, found.machine.adapter, found.width, found.height, found.ms_per_sample
@@ -79,7 +86,6 @@ pub(super) fn run(arguments: &LedgerArguments) -> anyhow::Result<()> {
             entry.words
         );
     }
-    Ok(())
 }
 
 fn plot(ledger: &Ledger) -> BarPlot {

@@ -9,10 +9,10 @@ mod scaling;
 
 use std::path::PathBuf;
 
-use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use indicatif::ProgressBar;
 
+use super::answer::Answer;
 use super::render::bar;
 use super::scene::SceneArguments;
 use crate::document::Document;
@@ -70,10 +70,17 @@ struct CommonArguments {
     #[arg(long)]
     quick: bool,
     #[command(flatten)]
+    answer: Answer,
+    #[command(flatten)]
     scene: SceneArguments,
 }
 
 impl CommonArguments {
+    /// Makes sure that there is a place for what is measured.
+    fn prepare(&self) -> anyhow::Result<()> {
+        folder::prepare(&self.output, &self.answer)
+    }
+
     /// What the arguments describe, no larger than is quick where that is asked for.
     fn document(&self) -> anyhow::Result<Document> {
         let mut session = Session::open(EngineChoice::Cpu)?;
@@ -133,14 +140,4 @@ impl Drop for Bar {
 /// The value as text for a table: enough digits to calculate with.
 fn digits(value: f64) -> String {
     format!("{value:.6e}")
-}
-
-/// Makes the folder before the work that fills it.
-fn make_folder(path: &std::path::Path) -> anyhow::Result<()> {
-    std::fs::create_dir_all(path).with_context(|| {
-        format!(
-            "{}: the folder could not be made; check its name and permissions",
-            path.display()
-        )
-    })
 }

@@ -5,8 +5,9 @@ use std::time::Duration;
 
 use clap::Args;
 
-use super::folder::Folder;
-use super::{Bar, digits, make_folder};
+use super::folder::{self, Folder};
+use super::{Bar, digits};
+use crate::cli::answer::Answer;
 use crate::plot::{BarPlot, bar_plot_file};
 use crate::render::EngineChoice;
 use crate::render::study::sampling::{PAPER, SAMPLES, SamplingOptions, SamplingReport, SamplingRow, sampling};
@@ -32,10 +33,12 @@ pub(super) struct SamplingArguments {
     /// The engine: a hardware GPU if there is one, else the faster one here; the GPU; the processor.
     #[arg(long, default_value = "auto", value_name = "auto|gpu|cpu")]
     engine: EngineChoice,
+    #[command(flatten)]
+    answer: Answer,
 }
 
 pub(super) fn run(arguments: &SamplingArguments) -> anyhow::Result<()> {
-    make_folder(&arguments.output)?;
+    folder::prepare(&arguments.output, &arguments.answer)?;
     let mut options = SamplingOptions {
         size: arguments.size,
         roughness: arguments.roughness as f32,
@@ -60,7 +63,7 @@ pub(super) fn run(arguments: &SamplingArguments) -> anyhow::Result<()> {
         .collect();
     let mut json = serde_json::to_value(&report)?;
     json["paper"] = paper.into();
-    folder.json(&json)?;
+    folder.json(&json, &arguments.answer)?;
     let head = [
         "name",
         "samples",
@@ -77,7 +80,9 @@ pub(super) fn run(arguments: &SamplingArguments) -> anyhow::Result<()> {
     };
     folder.csv(&head, report.rows.iter().map(row))?;
     folder.plots(&plot(&report), bar_plot_file)?;
-    print(&report);
+    if arguments.answer.has_words() {
+        print(&report);
+    }
     Ok(())
 }
 

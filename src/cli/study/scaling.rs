@@ -5,7 +5,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::folder::Folder;
-use super::{Bar, CommonArguments, digits, make_folder};
+use super::{Bar, CommonArguments, digits};
 use crate::plot::line_plot_file;
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
 use crate::render::study::scaling::{Growing, ScalingOptions, ScalingPoint, ScalingReport, scaling};
@@ -19,7 +19,7 @@ pub(super) struct ScalingArguments {
 
 pub(super) fn run(arguments: &ScalingArguments) -> anyhow::Result<()> {
     let common = &arguments.common;
-    make_folder(&common.output)?;
+    common.prepare()?;
     let document = common.document()?;
     let mut options = ScalingOptions::new(common.scene.engine);
     if common.quick {
@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &ScalingArguments) -> anyhow::Result<()> {
     };
     let path = &common.output;
     let folder = Folder { path, name: "scaling" };
-    folder.json(&report)?;
+    folder.json(&report, &common.answer)?;
     let head = ["growing", "size", "ns_per_sample", "ns_low", "ns_high", "setup_seconds"];
     let row = |point: &ScalingPoint| {
         let numbers = [
@@ -49,6 +49,13 @@ pub(super) fn run(arguments: &ScalingArguments) -> anyhow::Result<()> {
         let name = format!("scaling-{}", growing.name());
         Folder { path, name: &name }.plots(&plot(&report, growing), line_plot_file)?;
     }
+    if common.answer.has_words() {
+        print(&report);
+    }
+    Ok(())
+}
+
+fn print(report: &ScalingReport) {
     for point in &report.points {
         println!(
             "{:10} {:>9}  {:9.1} ns a sample  {:7.3} s to set up",
@@ -58,7 +65,6 @@ pub(super) fn run(arguments: &ScalingArguments) -> anyhow::Result<()> {
             point.setup_seconds
         );
     }
-    Ok(())
 }
 
 fn plot(report: &ScalingReport, growing: Growing) -> LinePlot {

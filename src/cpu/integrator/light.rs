@@ -1,7 +1,7 @@
 //! Light on a path: what it meets by itself, and what is drawn towards.
 
 use super::path::{Path, Ray};
-use super::{FIRST_DIMENSION, Integrator};
+use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source, single};
 use crate::job::{BackgroundKind, Strategy};
 use crate::optics::frame::{frame_from_normal, world_from_local};
@@ -10,27 +10,70 @@ use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_disc;
 use crate::scene::environment::{
-    environment_density, environment_local_from_world, environment_radiance, environment_sample,
-    environment_world_from_local,
+    environment_density_at, environment_local_from_world, environment_radiance_at, environment_sample, environment_uv,
+    environment_world_from_local, fetch_cell, fetch_chosen, fetch_place,
 };
 use crate::scene::light::{Emitters, LightSample, light_density, light_sample};
 use crate::scene::surface::SurfacePoint;
 
 impl<T: Real> Integrator<'_, T> {
-    /// Radiance of the environment in a world direction.
-    fn far_radiance(&self, direction: Vec3<T>) -> Vec3<T> {
-        let local = environment_local_from_world(direction, self.rotation);
-        environment_radiance(self.environment, local) * T::from_f64(self.settings.environment_strength)
+    /// Where a world direction lies in the environment's map.
+    #[inline(always)]
+    pub(super) fn far_place(&self, direction: Vec3<T>) -> [T; 2] {
+        environment_uv(environment_local_from_world(direction, self.rotation))
     }
 
-    /// What a path that left the scene sees, weighed against light sampling.
-    pub(super) fn far_light<R: Recorder>(&self, ray: &Ray<T>, path: &mut Path<'_, T, R>) -> Vec3<T> {
-        let radiance = self.far_radiance(ray.direction);
-        let light_density = || {
-            let local = environment_local_from_world(ray.direction, self.rotation);
-            self.environment_probability * environment_density(self.environment, local)
-        };
+    /// Radiance of the environment at a place in its map.
+    #[inline(always)]
+    fn far_radiance(&self, place: [T; 2]) -> Vec3<T> {
+        environment_radiance_at(self.environment, place) * T::from_f64(self.settings.environment_strength)
+    }
+
+    /// What a path that left the scene sees at a place in the environment's map, weighed against light sampling.
+    pub(super) fn far_light<R: Recorder>(&self, ray: &Ray<T>, place: [T; 2], path: &mut Path<'_, T, R>) -> Vec3<T> {
+        let radiance = self.far_radiance(place);
+        let light_density = || self.environment_probability * environment_density_at(self.environment, place);
         self.weighed(Source::Environment, radiance, ray, light_density, path)
+    }
+
+    /// Where what a ray that met nothing sees lies in the environment's map; 0 where it does not see the map as it is.
+    #[inline(always)]
+    pub(super) fn left_place(&self, ray: &Ray<T>, bounce: u32) -> [T; 2] {
+        if bounce > 0 || self.settings.background == BackgroundKind::Environment {
+            self.far_place(ray.direction)
+        } else {
+            [T::zero(); 2]
+        }
+    }
+
+    /// Has the processor fetch what is looked up at a place in the environment's map, the density too where one is.
+    #[inline(always)]
+    pub(super) fn fetch_far(&self, place: [T; 2], with_density: bool) {
+        fetch_place(self.environment, place, with_density && self.samples_environment);
+    }
+
+    /// The numbers with which a direction to a light is drawn.
+    #[inline(always)]
+    pub(super) fn light_numbers<R: Recorder>(&self, bounce: u32, path: &mut Path<'_, T, R>) -> Vec3<T> {
+        if !self.samples_light() {
+            return Vec3::zero();
+        }
+        let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 2;
+        let [a, b] = path.pair(dimension, [Purpose::Light; 2]);
+        let [c, _] = path.pair(dimension + 1, [Purpose::Light, Purpose::Unused]);
+        vec3(a, b, c)
+    }
+
+    /// Has the processor fetch what drawing with these numbers looks up first, or once that is there, what it looks up then.
+    #[inline(always)]
+    pub(super) fn fetch_light(&self, numbers: Vec3<T>, is_first_there: bool) {
+        // Where there are emitters, too, the last number chooses between them and the environment first.
+        let numbers = vec3(numbers.x, numbers.y, numbers.z / self.environment_probability);
+        if self.samples_environment && is_first_there {
+            fetch_chosen(self.environment, numbers);
+        } else if self.samples_environment {
+            fetch_cell(self.environment, [numbers.x, numbers.y]);
+        }
     }
 
     /// What a surface emits that a path met at `distance`, weighed against light sampling.
@@ -114,68 +157,108 @@ impl<T: Real> Integrator<'_, T> {
         (sample, true)
     }
 
-    /// Light that arrives straight from the environment or from what emits, one direction drawn, and where it is from.
-    pub(super) fn direct_light<R: Recorder>(
+    /// One direction drawn towards the environment or what emits; `None` where nothing can come from there.
+    #[inline(always)]
+    pub(super) fn aim<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
-        dimension: u32,
+        numbers: Vec3<T>,
         path: &mut Path<'_, T, R>,
-    ) -> (Vec3<T>, Source) {
-        let [a, b] = path.pair(dimension, [Purpose::Light; 2]);
-        let [c, _] = path.pair(dimension + 1, [Purpose::Light, Purpose::Unused]);
-        let (light, is_far) = self.draw_light(point, vec3(a, b, c));
-        let (wi, density) = (light.direction, light.density);
-        let source = if is_far { Source::Environment } else { Source::Surface };
-        let evaluate = |competing| material_evaluate(material, self.tables, &point.surface, wi, density, competing);
-        let told = |value: Vec3<T>, visible: T, radiance: Vec3<T>| {
-            let whole = if density.to_f64() > 0.0 {
-                evaluate(T::zero())
-            } else {
-                value
-            }
-            .to_f32();
-            let kept = value.to_f32();
-            Event::Light {
-                source,
-                direction: wi.to_f32(),
-                density: single(density),
-                value: whole,
-                weight: [0, 1, 2].map(|i| if kept[i] > 0.0 { kept[i] / whole[i] } else { 0.0 }),
-                visible: single(visible),
-                radiance: radiance.to_f32(),
-            }
-        };
-        let dark = Vec3::zero();
+    ) -> Option<LightRay<T>> {
+        if !self.samples_light() {
+            return None;
+        }
+        let (drawn, is_far) = self.draw_light(point, numbers);
+        let wi = drawn.direction;
         let is_behind = point.surface.normal.dot(wi).to_f64() <= 0.0;
-        if density.to_f64() <= 0.0 || (is_behind && !material.transmits()) {
-            path.record(|| told(dark, T::zero(), dark));
-            return (dark, source);
+        let mut light = LightRay {
+            drawn,
+            is_far,
+            value: Vec3::zero(),
+            throughput: path.throughput,
+            origin: point.position,
+            meets_nothing: true,
+        };
+        if light.drawn.density.to_f64() > 0.0 && (!is_behind || material.transmits()) {
+            let competing = match self.settings.strategy {
+                Strategy::Mis => T::one(),
+                _ => T::zero(),
+            };
+            let density = light.drawn.density;
+            light.value = material_evaluate(material, self.tables, &point.surface, wi, density, competing);
         }
-        let is_weighed = self.settings.strategy == Strategy::Mis;
-        let value = evaluate(if is_weighed { T::one() } else { T::zero() });
-        if value.max_component().to_f64() <= 0.0 {
-            path.record(|| told(dark, T::zero(), dark));
-            return (dark, source);
+        if light.value.max_component().to_f64() <= 0.0 {
+            path.record(|| light.told(self.unweighed(point, material, &light), T::zero(), Vec3::zero()));
+            return None;
         }
-        let mut visible = T::one();
-        if !self.meets_nothing(point, wi) {
-            let origin = point.ray_origin(wi, material.transmits());
-            visible = self.transmittance(origin, wi, light.distance, &mut path.rays);
+        light.meets_nothing = self.meets_nothing(point, wi);
+        light.origin = point.ray_origin(wi, material.transmits());
+        Some(light)
+    }
+
+    /// What the material reflects or refracts of a direction that was drawn, without the weight.
+    pub(super) fn unweighed(&self, point: &SurfacePoint<T>, material: &Material<T>, light: &LightRay<T>) -> Vec3<T> {
+        let LightSample { direction, density, .. } = light.drawn;
+        if density.to_f64() > 0.0 {
+            material_evaluate(material, self.tables, &point.surface, direction, density, T::zero())
+        } else {
+            Vec3::zero()
         }
+    }
+
+    /// The share of the light that is not stopped on its way.
+    #[inline(always)]
+    pub(super) fn visible(&self, light: &LightRay<T>, rays: &mut u32) -> T {
+        if light.meets_nothing {
+            return T::one();
+        }
+        self.transmittance(light.origin, light.drawn.direction, light.drawn.distance, rays)
+    }
+
+    /// Where a light that was drawn lies in the environment's map; 0 where it is not there.
+    #[inline(always)]
+    pub(super) fn light_place(&self, light: &LightRay<T>) -> [T; 2] {
+        if light.is_far {
+            self.far_place(light.drawn.direction)
+        } else {
+            [T::zero(); 2]
+        }
+    }
+
+    /// Adds what arrives from a light, at this place in the environment's map, of which this share is visible; `unweighed` is called for only where it is told.
+    #[inline(always)]
+    pub(super) fn arrive<R: Recorder>(
+        &self,
+        light: &LightRay<T>,
+        (visible, place): (T, [T; 2]),
+        bounce: u32,
+        path: &mut Path<'_, T, R>,
+        unweighed: impl FnOnce() -> Vec3<T>,
+    ) {
         if visible.to_f64() <= 0.0 {
-            path.record(|| told(value, visible, dark));
-            return (dark, source);
+            path.record(|| light.told(unweighed(), visible, Vec3::zero()));
+            return;
         }
-        let radiance = if is_far { self.far_radiance(wi) } else { light.radiance };
-        path.record(|| told(value, visible, radiance));
-        (value * radiance * (visible / density), source)
+        let radiance = if light.is_far {
+            self.far_radiance(place)
+        } else {
+            light.drawn.radiance
+        };
+        path.record(|| light.told(unweighed(), visible, radiance));
+        let found = light.throughput * (light.value * radiance * (visible / light.drawn.density));
+        self.add(light.source(), found, bounce + 1, path);
     }
 
     /// What the camera sees where it meets nothing, and its alpha.
-    pub(super) fn camera_background<R: Recorder>(&self, direction: Vec3<T>, path: &mut Path<'_, T, R>) -> (Vec3<T>, T) {
+    pub(super) fn camera_background<R: Recorder>(
+        &self,
+        direction: Vec3<T>,
+        place: [T; 2],
+        path: &mut Path<'_, T, R>,
+    ) -> (Vec3<T>, T) {
         match self.settings.background {
-            BackgroundKind::Environment => (self.far_radiance(direction), T::one()),
+            BackgroundKind::Environment => (self.far_radiance(place), T::one()),
             BackgroundKind::Blurred(sine) => {
                 // The numbers of the first bounce, which there is none of.
                 let disc: [T; 2] = uniform_disc(path.pair(FIRST_DIMENSION, [Purpose::Blur; 2]));
@@ -183,10 +266,50 @@ impl<T: Real> Integrator<'_, T> {
                 let height = (T::one() - disc[0] * disc[0] - disc[1] * disc[1]).safe_sqrt();
                 let around = frame_from_normal(direction);
                 let blurred = world_from_local(&around, vec3(disc[0], disc[1], height));
-                (self.far_radiance(blurred), T::one())
+                (self.far_radiance(self.far_place(blurred)), T::one())
             }
             BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
             BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
+        }
+    }
+}
+
+/// A ray towards a light.
+pub(super) struct LightRay<T> {
+    /// How it was drawn.
+    pub drawn: LightSample<T>,
+    /// True where it was drawn from the environment, whose radiance is looked up once it is known to arrive.
+    is_far: bool,
+    /// What the material reflects or refracts from there, weighed against sampling the lobe.
+    value: Vec3<T>,
+    /// Of the path before the surface.
+    throughput: Vec3<T>,
+    /// Where it starts.
+    pub origin: Vec3<T>,
+    /// True where it is proven that nothing lies ahead.
+    pub meets_nothing: bool,
+}
+
+impl<T: Real> LightRay<T> {
+    fn source(&self) -> Source {
+        if self.is_far {
+            Source::Environment
+        } else {
+            Source::Surface
+        }
+    }
+
+    /// The event of this light: `whole` is its value without the weight.
+    fn told(&self, whole: Vec3<T>, visible: T, radiance: Vec3<T>) -> Event {
+        let (whole, kept) = (whole.to_f32(), self.value.to_f32());
+        Event::Light {
+            source: self.source(),
+            direction: self.drawn.direction.to_f32(),
+            density: single(self.drawn.density),
+            value: whole,
+            weight: [0, 1, 2].map(|i| if kept[i] > 0.0 { kept[i] / whole[i] } else { 0.0 }),
+            visible: single(visible),
+            radiance: radiance.to_f32(),
         }
     }
 }

@@ -3,6 +3,7 @@
 mod light;
 mod path;
 mod rays;
+mod wave;
 
 use std::borrow::Cow;
 
@@ -40,7 +41,7 @@ pub const ROULETTE_START: u32 = 3;
 pub const RADIANCE_MAX: f64 = 1e18;
 
 /// What one path found.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PathResult<T> {
     /// Linear RGB.
     pub radiance: Vec3<T>,
@@ -121,35 +122,22 @@ impl<'a, T: Real> Integrator<'a, T> {
 
     /// The same path, its events told to a recorder.
     pub fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<T> {
-        let settings = self.settings;
-        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        let mut path = Path::new(state, sample < self.guide_samples, recorder);
+        let mut path = self.begin(pixel, sample, recorder);
         let mut ray = self.first_ray(pixel, &mut path);
         for bounce in 0.. {
-            let mut met = None;
-            if !ray.leaves {
-                met = self.stop(&ray, bounce, &mut path);
-            }
-            let Some((point, distance)) = met else {
-                return self.left(&ray, bounce, path);
+            let Some((point, distance)) = self.stop(&ray, bounce, &mut path) else {
+                return self.left(&ray, self.left_place(&ray, bounce), bounce, &mut path);
             };
             let material = &*self.material(&point);
-            if point.surface.is_inside && material.transmits() {
-                self.absorb(material, distance, &mut path);
-            }
-            if path.is_looking {
-                self.look(&point, material, distance, &ray, bounce, &mut path);
-            }
-            let found = path.throughput * self.emitted_light(&point, material, distance, &ray, &mut path);
-            self.add(Source::Surface, found, bounce, &mut path);
-            if bounce >= settings.bounces {
-                path.record(|| Event::Ended { why: End::Bounces });
+            if !self.meet(&point, material, distance, &ray, bounce, &mut path) {
                 break;
             }
-            let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
-            if self.samples_light() {
-                let (light, source) = self.direct_light(&point, material, dimension + 2, &mut path);
-                self.add(source, path.throughput * light, bounce + 1, &mut path);
+            let numbers = self.light_numbers(bounce, &mut path);
+            if let Some(light) = self.aim(&point, material, numbers, &mut path) {
+                let visible = (self.visible(&light, &mut path.rays), self.light_place(&light));
+                self.arrive(&light, visible, bounce, &mut path, || {
+                    self.unweighed(&point, material, &light)
+                });
             }
             let Some(next) = self.scatter(&point, material, bounce, &mut path) else {
                 break;
@@ -157,6 +145,40 @@ impl<'a, T: Real> Integrator<'a, T> {
             ray = next;
         }
         path.result(T::one())
+    }
+
+    /// A path before its first ray.
+    #[inline(always)]
+    fn begin<'r, R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &'r mut R) -> Path<'r, T, R> {
+        let settings = self.settings;
+        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
+        Path::new(state, sample < self.guide_samples, recorder)
+    }
+
+    /// What a path finds at the surface that stopped it, by itself; false where it ends there.
+    #[inline(always)]
+    fn meet<R: Recorder>(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        distance: T,
+        ray: &Ray<T>,
+        bounce: u32,
+        path: &mut Path<'_, T, R>,
+    ) -> bool {
+        if point.surface.is_inside && material.transmits() {
+            self.absorb(material, distance, path);
+        }
+        if path.is_looking {
+            self.look(point, material, distance, ray, bounce, path);
+        }
+        let found = path.throughput * self.emitted_light(point, material, distance, ray, path);
+        self.add(Source::Surface, found, bounce, path);
+        let goes_on = bounce < self.settings.bounces;
+        if !goes_on {
+            path.record(|| Event::Ended { why: End::Bounces });
+        }
+        goes_on
     }
 
     /// Whether directions to lights are drawn at all.
@@ -210,16 +232,16 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
     }
 
-    /// The end of a path that met nothing.
-    fn left<R: Recorder>(&self, ray: &Ray<T>, bounce: u32, mut path: Path<'_, T, R>) -> PathResult<T> {
+    /// The end of a path that met nothing, and sees this place in the environment's map.
+    fn left<R: Recorder>(&self, ray: &Ray<T>, place: [T; 2], bounce: u32, path: &mut Path<'_, T, R>) -> PathResult<T> {
         let mut alpha = T::one();
         if bounce == 0 {
-            let (radiance, seen) = self.camera_background(ray.direction, &mut path);
-            self.add(Source::Background, radiance, 0, &mut path);
+            let (radiance, seen) = self.camera_background(ray.direction, place, path);
+            self.add(Source::Background, radiance, 0, path);
             alpha = seen;
         } else {
-            let found = path.throughput * self.far_light(ray, &mut path);
-            self.add(Source::Environment, found, bounce, &mut path);
+            let found = path.throughput * self.far_light(ray, place, path);
+            self.add(Source::Environment, found, bounce, path);
         }
         path.record(|| Event::Ended { why: End::Left });
         path.result(alpha)

@@ -14,11 +14,13 @@ impl<T: Real> Integrator<'_, T> {
     #[inline(always)]
     pub(super) fn first_ray<R: Recorder>(&self, pixel: [u32; 2], path: &mut Path<'_, T, R>) -> Ray<T> {
         let has_lens = self.camera.lens_radius.to_f64() > 0.0;
-        let for_lens = if has_lens { Purpose::Lens } else { Purpose::Unused };
-        let numbers = [
-            path.pair(PIXEL_DIMENSION, [Purpose::Pixel; 2]),
-            path.pair(LENS_DIMENSION, [for_lens; 2]),
-        ];
+        let for_pixel = path.pair(PIXEL_DIMENSION, [Purpose::Pixel; 2]);
+        let for_lens = if has_lens {
+            path.pair(LENS_DIMENSION, [Purpose::Lens; 2])
+        } else {
+            [T::zero(); 2]
+        };
+        let numbers = [for_pixel, for_lens];
         let [origin, direction] = pixel_ray(&self.camera, pixel, self.settings.image_size, numbers);
         path.record(|| Event::Camera {
             origin: origin.to_f32(),
@@ -66,6 +68,9 @@ impl<T: Real> Integrator<'_, T> {
         bounce: u32,
         path: &mut Path<'_, T, R>,
     ) -> Option<(SurfacePoint<T>, T)> {
+        if ray.leaves {
+            return None;
+        }
         let (mut origin, direction) = (ray.origin, ray.direction);
         let mut xi = T::zero();
         if self.has_holes {
@@ -100,8 +105,9 @@ impl<T: Real> Integrator<'_, T> {
         !self.is_interreflecting && !point.surface.is_inside && point.surface.normal.dot(wi).to_f64() > 0.0
     }
 
+    /// The surface that a ray met at this distance from its origin.
     #[inline(always)]
-    fn met<R: Recorder>(
+    pub(super) fn met<R: Recorder>(
         &self,
         hit: &Hit,
         ray: &Ray<T>,

@@ -3,6 +3,7 @@
 use std::ffi::{CStr, c_int, c_void};
 use std::ptr;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 use super::library::{BufferHandle, DeviceHandle, FilterHandle, Functions, Library, LibraryError, message};
 
@@ -11,6 +12,8 @@ const FLOAT3: c_int = 3;
 /// `OIDN_QUALITY_FAST` and `OIDN_QUALITY_HIGH`.
 const QUALITY_FAST: c_int = 4;
 const QUALITY_HIGH: c_int = 6;
+/// `OIDN_ERROR_CANCELLED`.
+const STOPPED: c_int = 6;
 /// Memory that the library is asked not to exceed, MB: larger pictures it cuts into tiles.
 const MEMORY_MB: c_int = 1500;
 /// Pixels that a picture is continued by beyond its border, as in a mirror: the library tints what lies at the border, in
@@ -78,6 +81,7 @@ impl<'a> Device<'a> {
         };
         match (code, self.handle.is_null()) {
             (0, false) => Ok(()),
+            (STOPPED, _) => Err(LibraryError::Stopped),
             (0, true) => Err(LibraryError::Device("there is no device for it".to_owned())),
             _ => Err(LibraryError::Device(text)),
         }
@@ -225,6 +229,11 @@ impl<'a> Filter<'a> {
         (self.size, self.quality) == (size, quality)
     }
 
+    /// Of its pictures.
+    pub(super) fn pixels(&self) -> usize {
+        self.size.iter().product()
+    }
+
     /// By how many pixels parts of a picture must overlap that are filtered by themselves, and what their places must be
     /// multiples of.
     pub(super) fn overlap_and_alignment(&self) -> [usize; 2] {
@@ -246,21 +255,36 @@ impl<'a> Filter<'a> {
     }
 
     /// A picture without its noise. `input_scale` brings its values to where the filter works best: middle grey to 0.18.
-    pub(super) fn run(&mut self, color: &[[f32; 3]], input_scale: f32) -> Result<Vec<[f32; 3]>, LibraryError> {
+    /// Ends soon after `stops` has become true, with [`LibraryError::Stopped`].
+    pub(super) fn run(
+        &mut self,
+        color: &[[f32; 3]],
+        input_scale: f32,
+        stops: &AtomicBool,
+    ) -> Result<Vec<[f32; 3]>, LibraryError> {
         let functions = self.device.functions;
         self.color.write(&continued(color, self.size));
-        // SAFETY: the filter and what it refers to are live.
+        // SAFETY: the filter and what it refers to are live; the flag outlives the monitor, which is taken away again.
         unsafe {
             if self.input_scale != input_scale {
                 (functions.set_filter_float)(self.handle, c"inputScale".as_ptr(), input_scale);
                 (functions.commit_filter)(self.handle);
                 self.input_scale = input_scale;
             }
+            let flag = ptr::from_ref(stops).cast_mut().cast();
+            (functions.set_filter_progress_monitor)(self.handle, Some(goes_on), flag);
             (functions.execute_filter)(self.handle);
+            (functions.set_filter_progress_monitor)(self.handle, None, ptr::null_mut());
         }
         self.device.check()?;
         Ok(inner(&self.output.read(), self.size))
     }
+}
+
+/// Whether a filter goes on: a [`ProgressMonitor`](super::library::ProgressMonitor) over a flag.
+unsafe extern "C" fn goes_on(stops: *mut c_void, _share: f64) -> bool {
+    // SAFETY: the pointer is that of the flag which `Filter::run` was given.
+    !unsafe { &*stops.cast::<AtomicBool>() }.load(Relaxed)
 }
 
 /// The size of a picture with its border.

@@ -56,6 +56,9 @@ pub enum LibraryError {
     /// The library refuses to work here.
     #[error("the denoiser can't be used here: {0}")]
     Device(String),
+    /// Whoever asked for the picture does not want it any more.
+    #[error("denoising was stopped")]
+    Stopped,
 }
 
 /// The C library's handle of a device (`OIDNDevice`).
@@ -64,6 +67,9 @@ pub(super) type DeviceHandle = *mut c_void;
 pub(super) type FilterHandle = *mut c_void;
 /// The C library's handle of a buffer (`OIDNBuffer`).
 pub(super) type BufferHandle = *mut c_void;
+/// What the C library calls while it filters (`OIDNProgressMonitorFunction`), with a pointer of the caller's and the share
+/// done, in [0, 1]; it stops at `false`.
+pub(super) type ProgressMonitor = unsafe extern "C" fn(*mut c_void, f64) -> bool;
 
 macro_rules! functions {
     ($($field:ident = $symbol:literal: fn($($argument:ty),*) $(-> $result:ty)?;)*) => {
@@ -102,6 +108,8 @@ functions! {
     set_filter_int = b"oidnSetFilterInt\0": fn(FilterHandle, *const c_char, c_int);
     get_filter_int = b"oidnGetFilterInt\0": fn(FilterHandle, *const c_char) -> c_int;
     set_filter_float = b"oidnSetFilterFloat\0": fn(FilterHandle, *const c_char, f32);
+    set_filter_progress_monitor = b"oidnSetFilterProgressMonitorFunction\0":
+        fn(FilterHandle, Option<ProgressMonitor>, *mut c_void);
     commit_filter = b"oidnCommitFilter\0": fn(FilterHandle);
     execute_filter = b"oidnExecuteFilter\0": fn(FilterHandle);
 }

@@ -9,6 +9,7 @@ mod library;
 mod picture;
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 pub use attendant::Attendant;
@@ -22,10 +23,16 @@ use crate::document::Denoise;
 
 /// Pixels that are filtered at once: larger pictures in bands, so that the memory that it takes is bounded.
 const PIXELS_MAX: usize = 1 << 22;
+/// Filters that are kept for the next picture besides the latest, and the most pixels of such: the window goes to and fro
+/// between a small picture and the full one, fast and high, and making a filter ready takes a tenth of the first look's time.
+const FILTERS_KEPT: usize = 3;
+const PIXELS_KEPT: usize = 1 << 19;
+
 /// Makes denoised pictures, one at a time.
 pub struct Denoiser {
     device: Arc<Device<'static>>,
-    filter: Option<Filter<'static>>,
+    /// The latest first.
+    filters: Vec<Filter<'static>>,
     pixels_max: usize,
 }
 
@@ -38,7 +45,7 @@ impl Denoiser {
         let device = Arc::new(Device::of(Library::get()?)?);
         Ok(Self {
             device,
-            filter: None,
+            filters: Vec::new(),
             pixels_max: PIXELS_MAX,
         })
     }
@@ -53,6 +60,19 @@ impl Denoiser {
     /// # Errors
     /// Where the library fails.
     pub fn denoise(&mut self, noisy: &Noisy, how: Denoise) -> Result<Denoised, LibraryError> {
+        self.denoise_unless(noisy, how, &AtomicBool::new(false))
+    }
+
+    /// The same, given up soon after `stops` has become true.
+    ///
+    /// # Errors
+    /// [`LibraryError::Stopped`] then; where the library fails.
+    pub fn denoise_unless(
+        &mut self,
+        noisy: &Noisy,
+        how: Denoise,
+        stops: &AtomicBool,
+    ) -> Result<Denoised, LibraryError> {
         let begun = Instant::now();
         let quality = match how {
             Denoise::Off => return Ok(Denoised::untouched(noisy)),
@@ -64,11 +84,20 @@ impl Denoiser {
             return Ok(Denoised::untouched(noisy));
         }
         let scale = picture::input_scale(present[0], noisy.size());
-        let mut clean = |color: &[[f32; 3]]| self.clean(color, noisy, quality, scale);
+        let mut clean = |color: &[[f32; 3]], scale: f32| {
+            let mut pass = Pass {
+                denoiser: &mut *self,
+                noisy,
+                quality,
+                scale,
+                stops,
+            };
+            pass.clean(color)
+        };
         let mut done = Denoised::untouched(noisy);
         let colors = match present[..] {
             [even, odd] => {
-                let denoised = [clean(even)?, clean(odd)?];
+                let denoised = [clean(even, scale)?, clean(odd, scale)?];
                 let errors = Errors::of(&DenoisedHalves {
                     noisy: [even, odd],
                     denoised: [&denoised[0], &denoised[1]],
@@ -80,12 +109,12 @@ impl Denoiser {
                 done.error_map = noisy.spread(&errors.map(shares.as_deref()));
                 noisy.mixed(&denoised, shares.as_deref())
             }
-            _ => clean(present[0])?,
+            _ => clean(present[0], scale)?,
         };
         let alpha = noisy.alphas();
         let alpha = if alpha.iter().any(|alpha| *alpha < 1.0) {
             let grey: Colors = alpha.iter().map(|alpha| [*alpha; 3]).collect();
-            let clean = self.clean(&grey, noisy, quality, 1.0)?;
+            let clean = clean(&grey, 1.0)?;
             clean.iter().map(|[alpha, ..]| alpha.clamp(0.0, 1.0)).collect()
         } else {
             alpha
@@ -95,61 +124,66 @@ impl Denoiser {
         Ok(done)
     }
 
+    fn filter(&mut self, size: [usize; 2], quality: Quality) -> Result<&mut Filter<'static>, LibraryError> {
+        let known = self.filters.iter().position(|filter| filter.fits(size, quality));
+        let filter = match known {
+            Some(place) => self.filters.remove(place),
+            None => {
+                self.filters.retain(|filter| filter.pixels() <= PIXELS_KEPT);
+                self.filters.truncate(FILTERS_KEPT);
+                Filter::new(&self.device, size, quality)?
+            }
+        };
+        self.filters.insert(0, filter);
+        Ok(&mut self.filters[0])
+    }
+}
+
+/// One filtering of a picture.
+struct Pass<'a> {
+    denoiser: &'a mut Denoiser,
+    noisy: &'a Noisy,
+    quality: Quality,
+    scale: f32,
+    stops: &'a AtomicBool,
+}
+
+impl Pass<'_> {
     /// A picture without its noise, in bands where it is large.
-    fn clean(
-        &mut self,
-        color: &[[f32; 3]],
-        noisy: &Noisy,
-        quality: Quality,
-        scale: f32,
-    ) -> Result<Colors, LibraryError> {
-        let [width, height] = noisy.size();
-        if width * height <= self.pixels_max {
-            return self.clean_rows(color, noisy, quality, scale, 0..height);
+    fn clean(&mut self, color: &[[f32; 3]]) -> Result<Colors, LibraryError> {
+        let [width, height] = self.noisy.size();
+        let pixels_max = self.denoiser.pixels_max;
+        if width * height <= pixels_max {
+            return self.clean_rows(color, 0..height);
         }
-        let [overlap, alignment] = self.filter([width, 1], quality)?.overlap_and_alignment();
-        let rows = ((self.pixels_max / width).saturating_sub(2 * overlap) / alignment).max(1) * alignment;
+        let filter = self.denoiser.filter([width, 1], self.quality)?;
+        let [overlap, alignment] = filter.overlap_and_alignment();
+        let rows = ((pixels_max / width).saturating_sub(2 * overlap) / alignment).max(1) * alignment;
         let mut clean = Colors::with_capacity(color.len());
         for first in (0..height).step_by(rows) {
             let last = (first + rows).min(height);
             // From an aligned row on, whatever the overlap.
             let from = first.saturating_sub(overlap) / alignment * alignment;
             let to = (last + overlap).min(height);
-            let band = self.clean_rows(color, noisy, quality, scale, from..to)?;
+            let band = self.clean_rows(color, from..to)?;
             clean.extend_from_slice(&band[(first - from) * width..(last - from) * width]);
         }
         Ok(clean)
     }
 
-    fn clean_rows(
-        &mut self,
-        color: &[[f32; 3]],
-        noisy: &Noisy,
-        quality: Quality,
-        scale: f32,
-        rows: std::ops::Range<usize>,
-    ) -> Result<Colors, LibraryError> {
-        let [width, _] = noisy.size();
+    fn clean_rows(&mut self, color: &[[f32; 3]], rows: std::ops::Range<usize>) -> Result<Colors, LibraryError> {
+        let [width, _] = self.noisy.size();
         let pixels = rows.start * width..rows.end * width;
-        let filter = self.filter([width, rows.len()], quality)?;
+        let filter = self.denoiser.filter([width, rows.len()], self.quality)?;
         filter.guide(Guides {
-            albedo: &noisy.albedo[pixels.clone()],
-            normal: &noisy.normal[pixels.clone()],
+            albedo: &self.noisy.albedo[pixels.clone()],
+            normal: &self.noisy.normal[pixels.clone()],
         });
-        let mut clean = filter.run(&color[pixels], scale)?;
+        let mut clean = filter.run(&color[pixels], self.scale, self.stops)?;
         // No picture of ours has such numbers; the filter promises nothing.
         for value in clean.iter_mut().flatten() {
             *value = if value.is_finite() { value.max(0.0) } else { 0.0 };
         }
         Ok(clean)
-    }
-
-    fn filter(&mut self, size: [usize; 2], quality: Quality) -> Result<&mut Filter<'static>, LibraryError> {
-        let kept = self.filter.take().filter(|filter| filter.fits(size, quality));
-        let filter = match kept {
-            Some(filter) => filter,
-            None => Filter::new(&self.device, size, quality)?,
-        };
-        Ok(self.filter.insert(filter))
     }
 }

@@ -34,9 +34,13 @@ pub struct Noisy {
 impl Noisy {
     /// Reads a film; `region` is the part that is rendered: left, top, right, bottom as shares of width and height.
     pub fn of(film: &Film, region: Option<[f64; 4]>) -> Self {
+        Self::led_by(&Features::of(film, 1.0), film, region)
+    }
+
+    /// The same with what is seen in it.
+    pub fn led_by(features: &Features, film: &Film, region: Option<[f64; 4]>) -> Self {
         let rect = rendered_rect(film, region);
         let pixels = pixels_of(rect, film.width as usize);
-        let features = Features::of(film, 1.0);
         let half = |number: usize| -> Option<Colors> {
             let missing = pixels.iter().filter(|pixel| film.halves(**pixel)[number].samples < 1.0);
             if missing.count() as f64 > MISSING_SHARE * pixels.len() as f64 {

@@ -14,7 +14,7 @@ use crate::job::film::Image;
 use crate::render::{Precision, Session};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
-use crate::store::file::save_atomically;
+use crate::store::replace::save_atomically;
 
 /// To be raised where the format or the pictures change within a version of the program.
 const FORMAT: u32 = 1;

@@ -1,19 +1,20 @@
 //! The denoiser's thread behind the worker's: takes what has been rendered, the latest wins, and gives pictures back.
 
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Condvar, Mutex};
-use std::time::Duration;
 
 use super::lock;
 use crate::document::{Denoise, DenoiseWhen, Document};
 use crate::panics::caught;
-use crate::render::denoise::{Denoised, Denoiser, Noisy};
-use crate::render::priority::lower_thread_priority;
+use crate::render::denoise::{Denoised, Denoiser, LibraryError, Noisy};
+use crate::render::quiet::at_work;
 use crate::render::session::Progress;
 
 /// By how much samples grow from one denoised picture to the next.
 const GROWTH: u32 = 2;
-/// Age of a picture up to which denoising may take all the time that it likes, and its share from then on.
-const YOUNG: Duration = Duration::from_secs(1);
+/// Age of a picture, in seconds of rendering, up to which denoising may take all the time that it likes, and its share from
+/// then on.
+const YOUNG_S: f64 = 1.0;
 const SHARE: f64 = 0.2;
 
 /// A picture to be denoised.
@@ -22,6 +23,10 @@ struct Request {
     how: Denoise,
     stage: u64,
     samples_per_pixel: u32,
+    /// Its time does not count.
+    is_early: bool,
+    /// Becomes true when it is of no interest any more.
+    stops: Arc<AtomicBool>,
 }
 
 /// What came of it.
@@ -33,6 +38,7 @@ pub(super) struct Outcome {
     /// How many a pixel.
     pub(super) samples_per_pixel: u32,
     stage: u64,
+    is_early: bool,
 }
 
 #[derive(Default)]
@@ -51,8 +57,12 @@ pub(super) struct Denoising {
     pending_samples: Option<u32>,
     /// Samples of the latest picture that was asked for in this stage; 0 before the first.
     asked_samples: u32,
-    /// What the stage's pictures took, and what the latest took, seconds.
-    seconds: [f64; 2],
+    /// Gives up what was asked for in this stage.
+    stops: Arc<AtomicBool>,
+    /// What the stage's pictures took that were asked for after [`YOUNG_S`], seconds.
+    late_seconds: f64,
+    /// What the latest took, seconds.
+    latest_seconds: f64,
     /// Why nothing can be denoised.
     failure: Option<String>,
 }
@@ -62,26 +72,27 @@ impl Denoising {
     pub(super) fn spawn(wake: impl Fn() + Send + 'static) -> Self {
         let desk = Arc::new((Mutex::new(Desk::default()), Condvar::new()));
         let of_thread = desk.clone();
-        let spawned = std::thread::Builder::new().name("denoise".to_owned()).spawn(move || {
-            lower_thread_priority();
-            work(&of_thread, &wake);
-        });
+        let thread = std::thread::Builder::new().name("denoise".to_owned());
+        let spawned = thread.spawn(move || work(&of_thread, &wake));
         Self {
             desk,
             stage: 0,
             pending_samples: None,
             asked_samples: 0,
-            seconds: [0.0; 2],
+            stops: Arc::default(),
+            late_seconds: 0.0,
+            latest_seconds: 0.0,
             failure: spawned.err().map(|error| error.to_string()),
         }
     }
 
-    /// Another picture is begun: what is under way is of the one before.
+    /// Another picture is begun: what is under way is of the one before, and given up.
     pub(super) fn begin(&mut self) {
         self.stage += 1;
+        std::mem::take(&mut self.stops).store(true, Relaxed);
         self.pending_samples = None;
         self.asked_samples = 0;
-        self.seconds[0] = 0.0;
+        self.late_seconds = 0.0;
         lock(&self.desk.0).request = None;
     }
 
@@ -91,6 +102,12 @@ impl Denoising {
         document.view.denoise != Denoise::Off && self.failure.is_none() && is_time
     }
 
+    /// Whether a denoised picture may cost what it likes: of a young render, and the first of two halves, by which alone it
+    /// can be told how wrong it is.
+    fn is_early(&self, progress: &Progress) -> bool {
+        progress.render_seconds < YOUNG_S || self.asked_samples < 2
+    }
+
     /// Whether a denoised picture is due: the first, then at twice the samples of the one before as long as that takes no
     /// more than its share of the time, and the last.
     pub(super) fn is_due(&self, progress: &Progress) -> bool {
@@ -98,8 +115,8 @@ impl Denoising {
         if samples <= self.asked_samples {
             return false;
         }
-        let age = progress.render_seconds;
-        let is_cheap = age < YOUNG.as_secs_f64() || self.seconds[0] + self.seconds[1] <= SHARE * age;
+        let spent_and_next = self.late_seconds + self.latest_seconds;
+        let is_cheap = self.is_early(progress) || spent_and_next <= SHARE * (progress.render_seconds - YOUNG_S);
         let is_free = self.pending_samples.is_none();
         progress.is_done || self.asked_samples == 0 || (is_free && is_cheap && samples >= GROWTH * self.asked_samples)
     }
@@ -115,7 +132,9 @@ impl Denoising {
     }
 
     /// Asks for a denoised picture, instead of any that is waiting.
-    pub(super) fn ask(&mut self, noisy: Noisy, how: Denoise, samples_per_pixel: u32) {
+    pub(super) fn ask(&mut self, noisy: Noisy, how: Denoise, progress: &Progress) {
+        let samples_per_pixel = progress.samples_per_pixel;
+        let is_early = self.is_early(progress);
         self.pending_samples = Some(samples_per_pixel);
         self.asked_samples = samples_per_pixel;
         lock(&self.desk.0).request = Some(Request {
@@ -123,6 +142,8 @@ impl Denoising {
             how,
             stage: self.stage,
             samples_per_pixel,
+            is_early,
+            stops: self.stops.clone(),
         });
         self.desk.1.notify_one();
     }
@@ -141,7 +162,10 @@ impl Denoising {
             self.pending_samples = None;
         }
         if let Ok(denoised) = &outcome.denoised {
-            self.seconds = [self.seconds[0] + denoised.seconds, denoised.seconds];
+            self.latest_seconds = denoised.seconds;
+            if !outcome.is_early {
+                self.late_seconds += denoised.seconds;
+            }
         }
         Some(outcome)
     }
@@ -150,6 +174,7 @@ impl Denoising {
 impl Drop for Denoising {
     /// Tells the thread to end; it is not waited for, as it may be in the middle of a picture.
     fn drop(&mut self) {
+        self.stops.store(true, Relaxed);
         lock(&self.desk.0).quits = true;
         self.desk.1.notify_one();
     }
@@ -172,25 +197,28 @@ fn work((desk, asked): &(Mutex<Desk>, Condvar), wake: &dyn Fn()) {
             }
         };
         drop(desk_now);
-        let denoised = caught(|| denoise(&mut denoiser, &request)).flatten();
+        let _at_work = at_work();
+        let denoised = match caught(|| denoise(&mut denoiser, &request)) {
+            Ok(Err(LibraryError::Stopped)) => continue,
+            Ok(done) => done.map_err(|error| error.to_string()),
+            Err(panic) => Err(panic),
+        };
         lock(desk).outcome = Some(Outcome {
             denoised,
             noisy: request.noisy,
             samples_per_pixel: request.samples_per_pixel,
             stage: request.stage,
+            is_early: request.is_early,
         });
         wake();
     }
 }
 
-fn denoise(denoiser: &mut Option<Denoiser>, request: &Request) -> Result<Denoised, String> {
-    let text = |error: crate::render::denoise::LibraryError| error.to_string();
+fn denoise(denoiser: &mut Option<Denoiser>, request: &Request) -> Result<Denoised, LibraryError> {
     let opened = match denoiser.take() {
         Some(opened) => opened,
-        None => Denoiser::open().map_err(text)?,
+        None => Denoiser::open()?,
     };
-    denoiser
-        .insert(opened)
-        .denoise(&request.noisy, request.how)
-        .map_err(text)
+    let denoiser = denoiser.insert(opened);
+    denoiser.denoise_unless(&request.noisy, request.how, &request.stops)
 }

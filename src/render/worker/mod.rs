@@ -16,18 +16,18 @@ use std::time::{Duration, Instant};
 
 use super::assets::Assets;
 use super::convergence::Measurement;
-use super::display::{Scale, Shown};
 use super::engine::{EngineChoice, EngineInfo};
 use super::output::{Layers, Rendered};
 use super::priority::lower_thread_priority;
 use super::session::Progress;
+use super::shown::{Facts, Scale, Shown};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
 use crate::gpu::GpuDevice;
 use crate::job::Job;
 use crate::job::film::Image;
 use crate::scene::environment::{Environment, EnvironmentSource};
-use crate::scene::{Model, ModelOptions, ModelSource};
+use crate::scene::{Loading, Model, ModelOptions, ModelSource};
 
 /// Longest that the worker does not look at its orders while rendering; and before the first picture, which is not to
 /// wait for the samples that come after it.
@@ -110,8 +110,10 @@ pub struct Picture {
     pub reduction: u32,
     /// Samples a pixel in it.
     pub samples_per_pixel: u32,
-    /// What `rgba` is a map of, with its colours' meaning; `None` for the picture itself.
-    pub map: Option<(Shown, Scale)>,
+    /// What `rgba` is a map of, with its colours' meaning where they stand for numbers; `None` for the picture itself.
+    pub map: Option<(Shown, Option<Scale>)>,
+    /// What is known of each pixel, where somebody looks closer.
+    pub facts: Option<Arc<Facts>>,
     /// What it shows, with the size at the full resolution.
     pub document: Arc<Document>,
 }
@@ -125,8 +127,8 @@ impl Picture {
     /// As it is written to files.
     pub fn rendered(&self) -> Rendered<'_> {
         Rendered {
-            image: &self.samples,
             denoised: self.is_denoised().then_some(&*self.image),
+            ..Rendered::from(&*self.samples)
         }
     }
 }
@@ -165,6 +167,8 @@ pub struct Snapshot {
     pub denoised: Option<Distance>,
     /// From the latest submission to its first picture.
     pub first_picture: Option<Duration>,
+    /// What is being done while something is loaded or made ready.
+    pub loading: Loading,
 }
 
 /// How bad a message is.
@@ -187,8 +191,13 @@ pub enum Event {
     ModelOpened(ModelSource, ModelOptions, Arc<Model>),
     /// An environment that was asked for by [`Worker::open_environment`].
     EnvironmentOpened(EnvironmentSource, Arc<Environment>),
+    /// What was asked for by [`Worker::reload`]: the model as it was, where it is known, and as it is; nothing where
+    /// nothing is rendered.
+    Reloaded(Option<Arc<Model>>, Option<Arc<Model>>),
     /// A file that could not be opened, and why.
-    OpenFailed(PathBuf, String),
+    OpenFailed(PathBuf, Level, String),
+    /// What was asked for is not wanted any more.
+    Cancelled,
     /// What was asked for by [`Worker::make_layers`], for this file.
     LayersMade(PathBuf, Box<Layers>),
 }
@@ -219,21 +228,22 @@ struct Orders {
     layers: Vec<PathBuf>,
     engine: Option<EngineChoice>,
     shown: Option<Shown>,
-    reload: bool,
+    looks_closer: Option<bool>,
+    reloads: u32,
     restart: bool,
     mishaps: Vec<Mishap>,
     quit: bool,
 }
 
 impl Orders {
-    fn is_empty(&self) -> bool {
-        self.submission.is_none()
-            && self.models.is_empty()
+    fn is_empty_beside_submission(&self) -> bool {
+        self.models.is_empty()
             && self.environments.is_empty()
             && self.layers.is_empty()
             && self.engine.is_none()
             && self.shown.is_none()
-            && !self.reload
+            && self.looks_closer.is_none()
+            && self.reloads == 0
             && !self.restart
             && self.mishaps.is_empty()
             && !self.quit
@@ -347,9 +357,11 @@ impl Worker {
         self.order(|orders| orders.layers.push(path));
     }
 
-    /// Reads all files again.
+    /// Reads the files of what is rendered again; an [`Event`] tells how it went. Where they cannot be read, what is
+    /// rendered goes on.
     pub fn reload(&self) {
-        self.order(|orders| orders.reload = true);
+        self.opening.fetch_add(1, Relaxed);
+        self.order(|orders| orders.reloads += 1);
     }
 
     /// Renders the picture anew.
@@ -377,6 +389,16 @@ impl Worker {
         self.order(|orders| orders.shown = Some(shown));
     }
 
+    /// Has pictures tell what is known of each pixel, or no more.
+    pub fn look_closer(&self, looks_closer: bool) {
+        self.order(|orders| orders.looks_closer = Some(looks_closer));
+    }
+
+    /// Calls off what is being loaded or made ready; what is rendered goes on.
+    pub fn cancel_loading(&self) {
+        self.assets.loading().cancel();
+    }
+
     fn order(&self, change: impl FnOnce(&mut Orders)) {
         change(&mut lock(&self.shared.orders).orders);
         self.shared.ordered.notify_one();
@@ -393,7 +415,7 @@ impl Worker {
         let ends_opening = |event: &&Event| {
             matches!(
                 event,
-                Event::ModelOpened(..) | Event::EnvironmentOpened(..) | Event::OpenFailed(..)
+                Event::ModelOpened(..) | Event::EnvironmentOpened(..) | Event::OpenFailed(..) | Event::Reloaded(..)
             )
         };
         self.opening

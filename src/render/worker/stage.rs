@@ -98,7 +98,12 @@ impl Stage {
     /// Whether another submission may take its place. One that moves is shown first: otherwise a steady stream of
     /// changes would never show anything.
     pub(super) fn may_be_replaced(&self, taken_at: Instant) -> bool {
-        self.is_shown || self.submission.pace == Pace::Still || taken_at.elapsed() >= STALE
+        self.is_shown || self.submission.pace == Pace::Still || self.patience_left(taken_at).is_zero()
+    }
+
+    /// How long a submission that moves is waited for at most.
+    pub(super) fn patience_left(&self, taken_at: Instant) -> Duration {
+        STALE.saturating_sub(taken_at.elapsed())
     }
 }
 

@@ -5,8 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::file::{self, MAX_HEIGHT, Picture};
-use super::{EnvironmentEncoding, EnvironmentError, environment_direction};
+use super::file::{self, MAX_HEIGHT, Picture, Source};
+use super::{EnvironmentError, environment_direction};
 
 /// Where the faces of a horizontal cross are, in faces from its top left.
 const HORIZONTAL_CROSS: [[u32; 2]; 6] = [[2, 1], [0, 1], [1, 0], [1, 2], [1, 1], [3, 1]];
@@ -83,28 +83,21 @@ pub(super) fn unfolded(picture: Picture) -> Picture {
 ///
 /// # Errors
 /// What is wrong with a file; [`EnvironmentError::NoFaces`] where they are not there.
-pub(super) fn read_folder(path: &Path, encoding: EnvironmentEncoding) -> Result<Picture, EnvironmentError> {
+pub(super) fn read_folder(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+    let path = source.path;
     let files: Vec<PathBuf> = file::io(path, std::fs::read_dir(path))?
         .flatten()
         .map(|entry| entry.path())
         .filter(|file| file::is_readable(file))
         .collect();
-    let ends_in = |file: &Path, name: &str| {
-        let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
-        let before = stem.strip_suffix(name);
-        before.is_some_and(|before| !before.ends_with(|last: char| last.is_alphanumeric()))
-    };
-    let faces = NAMES.iter().find_map(|names| {
-        let found: Vec<&PathBuf> = names
-            .iter()
-            .filter_map(|name| files.iter().find(|file| ends_in(file, name)))
-            .collect();
-        (found.len() == names.len()).then_some(found)
-    });
-    let faces = faces.ok_or_else(|| EnvironmentError::NoFaces { path: path.to_owned() })?;
+    let faces = faces(&files).ok_or_else(|| EnvironmentError::NoFaces { path: path.to_owned() })?;
     let pictures: Vec<Picture> = faces
         .iter()
-        .map(|face| file::decode(face, encoding))
+        .map(|face| {
+            let name = face.file_name().unwrap_or_default().to_string_lossy();
+            source.loading.step(format!("reading {name}"))?;
+            file::decode(Source { path: face, ..source })
+        })
         .collect::<Result<_, _>>()?;
     let side = pictures
         .iter()
@@ -124,6 +117,27 @@ pub(super) fn read_folder(path: &Path, encoding: EnvironmentEncoding) -> Result<
         unfolded.warnings.push(text.to_owned());
     }
     Ok(unfolded)
+}
+
+/// Whether files are the six faces of a cube, by their names.
+pub fn are_faces(files: &[PathBuf]) -> bool {
+    faces(files).is_some()
+}
+
+/// Those of the files that are the faces of a cube, by the ends of their names.
+fn faces(files: &[PathBuf]) -> Option<Vec<&PathBuf>> {
+    let ends_in = |file: &Path, name: &str| {
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+        let before = stem.strip_suffix(name);
+        before.is_some_and(|before| !before.ends_with(|last: char| last.is_alphanumeric()))
+    };
+    NAMES.iter().find_map(|names| {
+        let found: Vec<&PathBuf> = names
+            .iter()
+            .filter_map(|name| files.iter().find(|file| ends_in(file, name)))
+            .collect();
+        (found.len() == names.len()).then_some(found)
+    })
 }
 
 /// Whether the part of a picture that no face covers has one colour.

@@ -2,42 +2,103 @@
 
 use std::path::Path;
 
-use image::{DynamicImage, ImageError, ImageReader};
+use image::{DynamicImage, ImageError};
 
 use super::canvas::Canvas;
-use super::file::{Picture, io};
+use super::file::{Picture, Source, io};
 use super::{EnvironmentEncoding, EnvironmentError};
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
+use crate::panics::contained;
+use crate::scene::float_tiff;
+use crate::scene::picture::decode_image;
 
-/// Reads a panorama. Whole numbers are sRGB codes or linear, as `encoding` says; numbers with a point are linear.
-pub(super) fn read(path: &Path, encoding: EnvironmentEncoding) -> Result<Picture, EnvironmentError> {
-    let reader = io(path, ImageReader::open(path))?;
-    let reader = io(path, reader.with_guessed_format())?;
-    let image = reader.decode().map_err(|error| image_error(path, error))?;
-    let is_float = matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_));
-    let is_display = encoding == EnvironmentEncoding::Display && !is_float;
-    let linear = |value: f32| {
-        if is_display {
-            linear_from_srgb(Vec3::splat(value)).x
-        } else {
-            value
+/// How a JPEG's XMP names its gain map (Android's Ultra HDR image format, version 1).
+const GAIN_MAP: &[u8] = b"http://ns.adobe.com/hdr-gain-map/";
+/// How far into the file that is looked for: it stands before the pixels.
+const GAIN_MAP_WITHIN: usize = 1 << 17;
+
+/// What whole numbers stand for.
+pub(super) struct Codes {
+    encoding: EnvironmentEncoding,
+    /// The linear values of codes of 16 bits, among which are those of 8.
+    linear: Vec<f32>,
+}
+
+impl Codes {
+    pub fn new(encoding: EnvironmentEncoding) -> Self {
+        let linear = |code: u16| match f32::from(code) / 65535.0 {
+            value if encoding == EnvironmentEncoding::Display => linear_from_srgb(Vec3::splat(value)).x,
+            value => value,
+        };
+        Self {
+            encoding,
+            linear: (0..=u16::MAX).map(linear).collect(),
         }
+    }
+
+    pub fn of_8(&self, code: u8) -> f32 {
+        self.of_16(257 * u16::from(code))
+    }
+
+    pub fn of_16(&self, code: u16) -> f32 {
+        self.linear[usize::from(code)]
+    }
+
+    /// What is to be said of a picture of such numbers.
+    pub fn warning(&self) -> Option<String> {
+        let text = "A picture for screens: nothing in it is brighter than 1, so that lamps and the sun are too dark.";
+        (self.encoding == EnvironmentEncoding::Display).then(|| text.to_owned())
+    }
+}
+
+/// Reads a panorama. Whole numbers are sRGB codes or linear, as the source's encoding says; numbers with a point are linear.
+pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+    let path = source.path;
+    let bytes = io(path, std::fs::read(path))?;
+    let damaged = |detail: String| EnvironmentError::Damaged {
+        path: path.to_owned(),
+        detail,
     };
+    // Some damaged files make the decoders panic.
+    let floats =
+        contained(|| float_tiff::decode(&bytes)).unwrap_or_else(|| Err("its pixels contradict each other".into()));
+    if let Some(floats) = floats.map_err(damaged)? {
+        let mut canvas = Canvas::new(path, floats.width.into(), floats.height.into())?;
+        for row in 0..floats.height {
+            (0..floats.width).for_each(|column| canvas.add_color(column, row, floats.rgb(column, row)));
+        }
+        return Ok(canvas.finish());
+    }
+    source.loading.step("decoding the picture")?;
+    let image = contained(|| decode_image(&path.to_string_lossy(), &bytes).map_err(|error| image_error(path, error)));
+    let image = image.unwrap_or_else(|| Err(damaged("its pixels contradict each other".to_owned())))?;
+    let has_gain_map = bytes
+        .windows(GAIN_MAP.len())
+        .take(GAIN_MAP_WITHIN)
+        .any(|part| part == GAIN_MAP);
+    drop(bytes);
     let mut canvas = Canvas::new(path, image.width().into(), image.height().into())?;
+    if matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)) {
+        for (column, row, pixel) in image.into_rgb32f().enumerate_pixels() {
+            canvas.add_color(column, row, pixel.0);
+        }
+        return Ok(canvas.finish());
+    }
+    let codes = Codes::new(source.encoding);
     if image.color().bytes_per_pixel() == image.color().channel_count() {
-        let codes: Vec<f32> = (0..=255u8).map(|code| linear(f32::from(code) / 255.0)).collect();
         for (column, row, pixel) in image.into_rgb8().enumerate_pixels() {
-            canvas.add_color(column, row, pixel.0.map(|code| codes[usize::from(code)]));
+            canvas.add_color(column, row, pixel.0.map(|code| codes.of_8(code)));
         }
     } else {
-        for (column, row, pixel) in image.into_rgb32f().enumerate_pixels() {
-            canvas.add_color(column, row, pixel.0.map(linear));
+        for (column, row, pixel) in image.into_rgb16().enumerate_pixels() {
+            canvas.add_color(column, row, pixel.0.map(|code| codes.of_16(code)));
         }
     }
     let mut picture = canvas.finish();
-    if is_display {
-        let text = "A picture for screens: nothing in it is brighter than 1, so that lamps and the sun are too dark.";
+    picture.warnings.extend(codes.warning());
+    if has_gain_map {
+        let text = "Its gain map (Ultra HDR) is not read: save it as .exr or .hdr to have all of its light.";
         picture.warnings.push(text.to_owned());
     }
     Ok(picture)

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::scene::loading::Cancelled;
+
 /// Why an environment cannot be shown. The message names the file, what is wrong with it and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum EnvironmentError {
@@ -18,8 +20,8 @@ pub enum EnvironmentError {
     },
     /// An ending that is not known.
     #[error(
-        "the environment {} is neither a .hdr nor an .exr file, nor a PNG, JPEG, TIFF or WebP picture: convert it to one \
-         of them, or use studio, sky or furnace",
+        "the environment {} is neither a .hdr nor an .exr, .ktx2 or .dds file, nor a PNG, JPEG, TIFF or WebP picture: convert it \
+         to one of them, or use studio, sky or furnace",
         path.display()
     )]
     UnknownExtension {
@@ -86,6 +88,9 @@ pub enum EnvironmentError {
         /// Its rows.
         height: u64,
     },
+    /// It is not wanted any more.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
     /// No pixels.
     #[error("the environment {name} has no pixels: it needs at least one; save it again at its full size")]
     Empty {

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use super::{Environment, EnvironmentEncoding, EnvironmentError, cube, display_referred, open_exr, radiance_hdr};
+use super::{Environment, EnvironmentEncoding, EnvironmentError};
+use super::{container, cube, display_referred, open_exr, radiance_hdr};
+use crate::scene::loading::Loading;
 
 /// The most columns that are kept of a file's picture; larger ones are made smaller.
 pub const MAX_WIDTH: u32 = 8192;
@@ -14,7 +16,19 @@ pub const SOURCE_MAX_WIDTH: u32 = 32768;
 pub const SOURCE_MAX_HEIGHT: u32 = 32768;
 
 /// Endings of the files that can be read, without their dots.
-pub const ENDINGS: [&str; 10] = ["hdr", "exr", "png", "jpg", "jpeg", "tif", "tiff", "webp", "pic", "rgbe"];
+pub const ENDINGS: [&str; 12] = [
+    "hdr", "exr", "ktx2", "dds", "png", "jpg", "jpeg", "tif", "tiff", "webp", "pic", "rgbe",
+];
+
+/// A file to be read.
+#[derive(Clone, Copy)]
+pub(super) struct Source<'a> {
+    pub path: &'a Path,
+    /// What the numbers of pictures for screens stand for.
+    pub encoding: EnvironmentEncoding,
+    /// Who waits.
+    pub loading: &'a Loading,
+}
 
 /// A decoded picture: `width` × `height` texels, rows from the top, numbers as they were in the file.
 pub(super) struct Picture {
@@ -27,14 +41,25 @@ pub(super) struct Picture {
 }
 
 /// Loads a picture of the whole sphere: a lat-long map or a cube map in a file, or the six faces of one in a folder.
-pub(super) fn load(path: &Path, encoding: EnvironmentEncoding) -> Result<Environment, EnvironmentError> {
-    let mut picture = if path.is_dir() {
-        cube::read_folder(path, encoding)?
-    } else {
-        cube::unfolded(decode(path, encoding)?)
-    };
-    mend(&mut picture);
+pub(super) fn load(
+    path: &Path,
+    encoding: EnvironmentEncoding,
+    loading: &Loading,
+) -> Result<Environment, EnvironmentError> {
     let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    loading.step(format!("reading {name}"))?;
+    let source = Source {
+        path,
+        encoding,
+        loading,
+    };
+    let mut picture = if path.is_dir() {
+        cube::read_folder(source)?
+    } else {
+        cube::unfolded(decode(source)?)
+    };
+    loading.step("the environment's distribution")?;
+    mend(&mut picture);
     let mut environment = Environment::from_texels(name, picture.width, picture.height, picture.texels)?;
     environment.warnings = picture.warnings;
     Ok(environment)
@@ -51,12 +76,15 @@ pub(super) fn is_readable(path: &Path) -> bool {
 }
 
 /// The picture in a file.
-pub(super) fn decode(path: &Path, encoding: EnvironmentEncoding) -> Result<Picture, EnvironmentError> {
-    match ending(path).as_str() {
-        "hdr" | "pic" | "rgbe" => radiance_hdr::read(path),
-        "exr" => open_exr::read(path),
-        _ if is_readable(path) => display_referred::read(path, encoding),
-        _ => Err(EnvironmentError::UnknownExtension { path: path.to_owned() }),
+pub(super) fn decode(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+    match ending(source.path).as_str() {
+        "hdr" | "pic" | "rgbe" => radiance_hdr::read(source),
+        "exr" => open_exr::read(source),
+        "ktx2" | "dds" => container::read(source),
+        _ if is_readable(source.path) => display_referred::read(source),
+        _ => Err(EnvironmentError::UnknownExtension {
+            path: source.path.to_owned(),
+        }),
     }
 }
 

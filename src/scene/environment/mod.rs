@@ -8,6 +8,7 @@
 //! The functions whose names start with `environment_` have WGSL twins in `shaders/scene/environment.wgsl`.
 
 mod canvas;
+mod container;
 mod cube;
 mod display_referred;
 mod distribution;
@@ -28,7 +29,10 @@ use serde::{Deserialize, Serialize};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::alias::grid_place;
+use crate::scene::loading::Loading;
+use crate::scene::memory::{fetch, in_large_pages};
 
+pub use cube::are_faces;
 pub use distribution::AliasCell;
 pub use error::EnvironmentError;
 pub use file::{ENDINGS, MAX_HEIGHT, MAX_WIDTH};
@@ -151,8 +155,8 @@ impl Environment {
             max_luminance: summary.max_luminance,
             width,
             height,
-            texels,
-            cells,
+            texels: in_large_pages(texels),
+            cells: in_large_pages(cells),
             cells_width,
             cells_height,
             name,
@@ -177,11 +181,23 @@ pub fn load_encoded(
     source: &EnvironmentSource,
     encoding: EnvironmentEncoding,
 ) -> Result<Environment, EnvironmentError> {
+    load_watched(source, encoding, &Loading::default())
+}
+
+/// The same for those who wait.
+///
+/// # Errors
+/// As [`load`], and where it was cancelled.
+pub fn load_watched(
+    source: &EnvironmentSource,
+    encoding: EnvironmentEncoding,
+    loading: &Loading,
+) -> Result<Environment, EnvironmentError> {
     match source {
         EnvironmentSource::Studio => studio(),
         EnvironmentSource::Sky => sky(&SkyParams::default()),
         EnvironmentSource::Furnace => furnace(),
-        EnvironmentSource::File(path) => file::load(Path::new(path), encoding),
+        EnvironmentSource::File(path) => file::load(Path::new(path), encoding, loading),
     }
 }
 
@@ -233,22 +249,75 @@ fn environment_direction_from_angles<T: Real>(u: T, cos_polar: T, sin_polar: T) 
 
 /// Radiance from a unit direction: bilinear, wrapping in u, clamped at the poles in v.
 pub fn environment_radiance<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> Vec3<T> {
-    let uv = environment_uv(direction_local);
+    environment_radiance_at(environment, environment_uv(direction_local))
+}
+
+/// The same from a place in the map ([`environment_uv`]).
+#[inline]
+pub fn environment_radiance_at<T: Real>(environment: &Environment, uv: [T; 2]) -> Vec3<T> {
+    let Bilinear { texels, shares } = bilinear(environment, uv);
+    let texel = |index: usize| {
+        let [red, green, blue, _] = environment.texels[texels[index]];
+        Vec3::from_f32([red, green, blue])
+    };
+    let upper = texel(0).mix(texel(1), shares[0]);
+    let lower = texel(2).mix(texel(3), shares[0]);
+    upper.mix(lower, shares[1])
+}
+
+/// The texels around a place in the map.
+struct Bilinear<T> {
+    /// Which they are: two above, two below.
+    texels: [usize; 4],
+    /// The shares of the right ones and of those below.
+    shares: [T; 2],
+}
+
+#[inline(always)]
+fn bilinear<T: Real>(environment: &Environment, uv: [T; 2]) -> Bilinear<T> {
     let half = T::from_f64(0.5);
     let x = uv[0] * T::from_f64(f64::from(environment.width)) - half;
     let y = uv[1] * T::from_f64(f64::from(environment.height)) - half;
     let (left, top) = (x.floor(), y.floor());
-    let (right_share, bottom_share) = (x - left, y - top);
     let (width, height) = (i64::from(environment.width), i64::from(environment.height));
-    let texel = |column: i64, row: i64| {
-        let index = row.clamp(0, height - 1) * width + column.rem_euclid(width);
-        let [red, green, blue, _] = environment.texels[index as usize];
-        Vec3::from_f32([red, green, blue])
+    // u is below 1: one step at most around the map.
+    let around = |column: i64| match column {
+        -1 => width - 1,
+        _ if column >= width => 0,
+        _ => column,
     };
+    let line = |row: i64| row.clamp(0, height - 1) * width;
     let (column, row) = (left.to_f64() as i64, top.to_f64() as i64);
-    let upper = texel(column, row).mix(texel(column + 1, row), right_share);
-    let lower = texel(column, row + 1).mix(texel(column + 1, row + 1), right_share);
-    upper.mix(lower, bottom_share)
+    let (left_column, right_column) = (around(column), around(column + 1));
+    let (upper, lower) = (line(row), line(row + 1));
+    let places = [
+        upper + left_column,
+        upper + right_column,
+        lower + left_column,
+        lower + right_column,
+    ];
+    Bilinear {
+        texels: places.map(|place| place as usize),
+        shares: [x - left, y - top],
+    }
+}
+
+/// Has the processor fetch what is looked up at a place in the map, so that it is there when it is needed.
+#[inline(always)]
+pub fn fetch_place<T: Real>(environment: &Environment, uv: [T; 2], with_density: bool) {
+    for texel in bilinear(environment, uv).texels {
+        fetch(&environment.texels, texel);
+    }
+    if with_density {
+        fetch_cell(environment, uv);
+    }
+}
+
+/// The same for the cell at a place: what [`environment_sample`] looks up first for `xi.x` and `xi.y`.
+#[inline(always)]
+pub fn fetch_cell<T: Real>(environment: &Environment, place: [T; 2]) {
+    let (cell, _) = grid_place(place, [environment.cells_width, environment.cells_height]);
+    fetch(&environment.cells, cell as usize);
 }
 
 /// A direction in the map's frame drawn with the density that is returned with it, per steradian, from three uniform
@@ -259,15 +328,28 @@ pub fn environment_radiance<T: Real>(environment: &Environment, direction_local:
 /// of 2 million cells leaves three, and a table whose size is no power of two would be off by several per cent.
 pub fn environment_sample<T: Real>(environment: &Environment, xi: Vec3<T>) -> (Vec3<T>, T) {
     let (width, height) = (environment.cells_width, environment.cells_height);
-    let (drawn, place) = grid_place([xi.x, xi.y], [width, height]);
-    let cell = environment.cells[drawn as usize];
-    let keep = xi.z.less(T::from_f64(f64::from(cell.threshold)));
-    let chosen = if keep.any() { drawn } else { cell.alias_index };
+    let (chosen, place) = choose_cell(environment, xi);
     let density = T::from_f64(f64::from(environment.cells[chosen as usize].density));
     (
         environment_direction_in_cell(chosen % width, chosen / width, place, width, height),
         density,
     )
+}
+
+/// The cell that is drawn, and the place in it.
+#[inline(always)]
+fn choose_cell<T: Real>(environment: &Environment, xi: Vec3<T>) -> (u32, [T; 2]) {
+    let size = [environment.cells_width, environment.cells_height];
+    let (drawn, place) = grid_place([xi.x, xi.y], size);
+    let cell = environment.cells[drawn as usize];
+    let keep = xi.z.less(T::from_f64(f64::from(cell.threshold)));
+    (if keep.any() { drawn } else { cell.alias_index }, place)
+}
+
+/// Has the processor fetch the cell that [`environment_sample`] draws, once that which it looks up first is there.
+#[inline(always)]
+pub fn fetch_chosen<T: Real>(environment: &Environment, xi: Vec3<T>) {
+    fetch(&environment.cells, choose_cell(environment, xi).0 as usize);
 }
 
 /// The direction at `place` (in [0, 1]², from the top left) of a cell, uniform in solid angle.
@@ -300,7 +382,13 @@ fn environment_direction_in_cell<T: Real>(
 
 /// The density, per steradian, with which [`environment_sample`] draws a unit direction in the map's frame.
 pub fn environment_density<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> T {
+    environment_density_at(environment, environment_uv(direction_local))
+}
+
+/// The same at a place in the map ([`environment_uv`]).
+#[inline]
+pub fn environment_density_at<T: Real>(environment: &Environment, uv: [T; 2]) -> T {
     let size = [environment.cells_width, environment.cells_height];
-    let (cell, _) = grid_place(environment_uv(direction_local), size);
+    let (cell, _) = grid_place(uv, size);
     T::from_f64(f64::from(environment.cells[cell as usize].density))
 }

@@ -18,7 +18,7 @@ use exr::prelude::f16;
 use rayon::prelude::*;
 
 use super::canvas::Canvas;
-use super::file::{Picture, io};
+use super::file::{Picture, Source, io};
 use super::{EnvironmentError, luminance_chroma};
 use crate::panics::contained;
 
@@ -40,9 +40,10 @@ struct Layer {
 }
 
 /// Reads the first layer that has colour or luminance, at its largest size, into its display window.
-pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
+pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+    let path = source.path;
     // Some damaged files fail assertions inside the crate instead of giving errors.
-    contained(|| read_guarded(path)).unwrap_or_else(|| {
+    contained(|| read_guarded(source)).unwrap_or_else(|| {
         let detail = "its pixels contradict each other".to_owned();
         Err(EnvironmentError::Damaged {
             path: path.to_owned(),
@@ -52,7 +53,8 @@ pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
 }
 
 /// [`read`], where the crate may panic.
-fn read_guarded(path: &Path) -> Result<Picture, EnvironmentError> {
+fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+    let path = source.path;
     let file_bytes = check_preamble(path)?;
     let file = BufReader::new(io(path, File::open(path))?);
     let reader = match Reader::read_from_buffered(file, false) {
@@ -70,14 +72,13 @@ fn read_guarded(path: &Path) -> Result<Picture, EnvironmentError> {
         })
         .map_err(|error| exr_error(path, error))?;
     let meta_data = chunks.meta_data().clone();
-    for_each_block(chunks, &meta_data, |block| {
+    for_each_block(source, chunks, &meta_data, |block| {
         for line in block.lines(&header.channels) {
             let channel = line.location.channel;
             let sample_type = header.channels.list[channel].sample_type;
             write_line(&line, sample_type, &layer.components[channel], offset, &mut canvas);
         }
-    })
-    .map_err(|error| exr_error(path, error))?;
+    })?;
     let mut picture = canvas.finish();
     picture.warnings.extend(layer.warnings);
     let layout = header.shared_attributes.other.get(&Text::from("envmap"));
@@ -219,19 +220,26 @@ pub(super) fn window(path: &Path, header: &Header) -> Result<(Canvas, [i64; 2]),
 /// Decompresses all chunks, on all cores, and hands the blocks on in order. (The crate's own parallel reader runs them
 /// as detached tasks, where a panic would end the program.)
 fn for_each_block(
+    source: Source<'_>,
     mut chunks: impl ChunksReader,
     meta_data: &MetaData,
     mut use_block: impl FnMut(&UncompressedBlock),
-) -> Result<(), ExrError> {
+) -> Result<(), EnvironmentError> {
+    let failed = |error| exr_error(source.path, error);
+    let count = chunks.len();
     loop {
-        let batch: Vec<Chunk> = chunks.by_ref().take(CHUNKS_AT_ONCE).collect::<Result<_, _>>()?;
+        let left = chunks.len();
+        source.loading.step(format!("block {} of {count}", count - left))?;
+        let batch: Result<Vec<Chunk>, _> = chunks.by_ref().take(CHUNKS_AT_ONCE).collect();
+        let batch = batch.map_err(failed)?;
         if batch.is_empty() {
             return Ok(());
         }
         let blocks: Vec<UncompressedBlock> = batch
             .into_par_iter()
             .map(|chunk| UncompressedBlock::decompress_chunk(chunk, meta_data, false))
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<_, _>>()
+            .map_err(failed)?;
         blocks.iter().for_each(&mut use_block);
     }
 }

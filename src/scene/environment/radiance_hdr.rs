@@ -9,7 +9,10 @@ use image::{ImageDecoder, ImageError};
 
 use super::EnvironmentError;
 use super::canvas::Canvas;
-use super::file::{Picture, io};
+use super::file::{Picture, Source, io};
+
+/// Lines after which those who wait hear of it.
+const LINES_A_STEP: u32 = 256;
 
 /// Columns: linear Rec. 709 red, green and blue of CIE X, Y and Z relative to the white D65.
 const RGB_FROM_XYZ: [[f32; 3]; 3] = [
@@ -19,7 +22,8 @@ const RGB_FROM_XYZ: [[f32; 3]; 3] = [
 ];
 
 /// Reads a file line by line, so that memory grows with the lines that are really there and a cut is found where it is.
-pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
+pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
+    let path = source.path;
     let bytes = io(path, std::fs::read(path))?;
     if bytes.is_empty() {
         return Err(EnvironmentError::Truncated {
@@ -38,6 +42,9 @@ pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
     let mut canvas = Canvas::new(path, layout.width.into(), layout.height.into())?;
     let mut line = vec![0.0_f32; 3 * layout.line_length() as usize];
     for number in 0..layout.lines() {
+        if number % LINES_A_STEP == 0 {
+            source.loading.step(format!("line {number} of {}", layout.lines()))?;
+        }
         read_line(&mut rest, &mut line).map_err(|error| line_error(path, error, number, layout))?;
         for (element, color) in (0..).zip(line.as_chunks::<3>().0) {
             let [column, row] = layout.place(number, element);

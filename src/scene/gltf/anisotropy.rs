@@ -70,6 +70,7 @@ pub(super) fn convert_widths(slot: &mut Slot, textures: &mut Vec<Texture>) -> bo
     };
     let mut widened = textures[place.texture].clone();
     let mean = widths_from_gltf(slot.roughness * texture_mean(&widened).codes[1], strength);
+    widened.rgba16.clear();
     for texel in widened.rgba8.as_chunks_mut::<4>().0 {
         let roughness = slot.roughness * f32::from(texel[1]) / 255.0;
         texel[1] = (255.0 * widths_from_gltf(roughness, strength).roughness).round() as u8;

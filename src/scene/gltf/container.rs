@@ -57,7 +57,8 @@ const TEXTURE_SOURCES: [&str; 4] = [
 /// A file whose JSON can be read, with its buffers.
 pub(super) struct Document {
     path: PathBuf,
-    files: Files,
+    /// The files beside it, and who waits.
+    pub files: Files,
     /// The JSON. Its indices may be out of range.
     pub root: json::Root,
     /// The JSON once more, for what the crate does not know.

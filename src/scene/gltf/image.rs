@@ -1,8 +1,8 @@
 //! The pictures of a file or beside it.
 
 use super::container::Document;
-use crate::scene::model::{ModelError, Texture};
-use crate::scene::picture::decode_bytes;
+use crate::scene::model::ModelError;
+use crate::scene::picture::{Decoded, decode_bytes};
 
 /// What to call a picture: its name, its file or its number.
 pub(super) fn name(document: &Document, index: usize) -> String {
@@ -20,7 +20,7 @@ pub(super) fn name(document: &Document, index: usize) -> String {
 ///
 /// # Errors
 /// Why it cannot be had, in a few words.
-pub(super) fn decode(document: &Document, index: usize) -> Result<Texture, String> {
+pub(super) fn decode(document: &Document, index: usize) -> Result<Decoded, String> {
     let image = document.root.images.get(index).ok_or("it is out of bounds")?;
     let name = name(document, index);
     let owned;

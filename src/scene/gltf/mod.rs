@@ -31,7 +31,7 @@ use self::pose::Pose;
 use self::primitive::Bending;
 use super::files::Files;
 use super::mesh::Mesh;
-use super::model::{Model, ModelError, ModelOptions};
+use super::model::{Model, ModelError, ModelObject, ModelOptions};
 use super::report::{Fate, ImportReport};
 
 /// More vertices than this are refused, so that indices of 32 bits suffice with the ground and split vertices added.
@@ -46,15 +46,17 @@ pub(super) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOpt
     let pose = Pose::new(&document, options.time_s);
     let contents = nodes::contents(&document, &pose, options.scene, &mut report);
     let mut materials = Materials::new(&document, options);
-    let mesh = assemble(&document, &pose, &contents.meshes, &mut materials, &mut report)?;
+    let (mesh, objects) = assemble(&document, &pose, &contents.meshes, &mut materials, &mut report)?;
     if mesh.triangles.is_empty() {
         return Err(nothing_to_show(&document, path, &report));
     }
     let (slots, textures) = materials.finish(&mut report);
+    document.files.loading.check()?;
     Ok(Model {
         mesh,
         slots,
         textures,
+        objects,
         report,
         cameras: contents.cameras,
         lights: contents.lights,
@@ -72,7 +74,7 @@ fn assemble(
     nodes: &[MeshNode],
     materials: &mut Materials,
     report: &mut ImportReport,
-) -> Result<Mesh, ModelError> {
+) -> Result<(Mesh, Vec<ModelObject>), ModelError> {
     let mut kept: Vec<Option<Mesh>> = vec![None; document.root.meshes.len()];
     let mut is_first_use = vec![true; document.root.meshes.len()];
     let mut uses_left = vec![0_usize; document.root.meshes.len()];
@@ -82,8 +84,14 @@ fn assemble(
         }
     }
     let mut whole = Mesh::default();
+    let mut objects: Vec<ModelObject> = Vec::new();
+    let mut last_node = None;
     let mut left_out = 0;
-    for node in nodes {
+    for (place, node) in nodes.iter().enumerate() {
+        document
+            .files
+            .loading
+            .step(format!("mesh {} of {}", place + 1, nodes.len()))?;
         let name = nodes::node_name(&document.root, node.node);
         let Some(uses_left) = uses_left.get_mut(node.mesh) else {
             report.note(Fate::Missing, "a mesh that is out of bounds", &name);
@@ -127,11 +135,19 @@ fn assemble(
         if !is_bent && *uses_left > 0 {
             kept[node.mesh] = Some(local.clone());
         }
+        let first = whole.triangles.len();
         whole.append(transform::transformed(local, world_from_mesh));
+        let triangles = first..whole.triangles.len();
+        match objects.last_mut() {
+            // Instances of a node come one after the other: they are one object.
+            Some(last) if last_node == Some(node.node) => last.triangles.end = triangles.end,
+            _ => objects.push(ModelObject { name, triangles }),
+        }
+        last_node = Some(node.node);
     }
     report.count(Fate::Used, "meshes", "", nodes.len() - left_out);
     report.count(Fate::Ignored, "repeated meshes, too many for the memory", "", left_out);
-    Ok(whole)
+    Ok((whole, objects))
 }
 
 /// Why a file shows nothing.

@@ -74,6 +74,7 @@ pub(super) fn convert_textures(
         width,
         height,
         rgba8: Vec::with_capacity(4 * width as usize * height as usize),
+        rgba16: Vec::new(),
     };
     let mut color = empty("base colour");
     let mut surface = empty("metalness and roughness");

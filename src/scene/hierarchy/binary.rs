@@ -8,13 +8,90 @@ use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::{PlocBuilder, PlocSearchDistance, SortPrecision};
 use rayon::prelude::*;
 
+use super::tree::Tree;
+use crate::scene::loading::{Cancelled, Loading};
+
 /// From this many triangles on the time to build counts more than the last 3 % of nodes visited.
 const MANY: usize = 200_000;
+
+/// The tree over triangles, and the order of its leaves. More triangles than `part_max` are halved along the longest side
+/// of their bounds until they are parts, of which each is built by itself: building takes several hundred bytes a triangle.
+pub(super) fn tree(
+    count: u32,
+    part_max: u32,
+    box_of: impl Fn(u32) -> Aabb + Sync,
+    loading: &Loading,
+) -> Result<(Tree, Vec<u32>), Cancelled> {
+    let mut order: Vec<u32> = (0..count).collect();
+    let mut tree = Tree {
+        left_leaves: Vec::with_capacity(count.saturating_sub(1) as usize),
+    };
+    let mut parts = Parts {
+        tree: &mut tree,
+        count,
+        part_max: part_max as usize,
+        box_of,
+        loading,
+    };
+    parts.build(&mut order)?;
+    Ok((tree, order))
+}
+
+/// A tree in the making, part by part.
+struct Parts<'a, F> {
+    tree: &'a mut Tree,
+    /// Triangles in the whole tree.
+    count: u32,
+    part_max: usize,
+    box_of: F,
+    loading: &'a Loading,
+}
+
+impl<F: Fn(u32) -> Aabb + Sync> Parts<'_, F> {
+    /// Adds the nodes over triangles, and puts these into its order.
+    fn build(&mut self, triangles: &mut [u32]) -> Result<(), Cancelled> {
+        let percent = 100 * self.tree.left_leaves.len() / self.count as usize;
+        self.loading.step(format!("hierarchy of triangles, {percent} %"))?;
+        let box_of = &self.box_of;
+        if triangles.len() <= self.part_max {
+            let boxes: Vec<Aabb> = triangles.par_iter().map(|&triangle| box_of(triangle)).collect();
+            let (part, order) = Tree::of(&build(&boxes));
+            let sorted: Vec<u32> = order.into_iter().map(|place| triangles[place as usize]).collect();
+            triangles.copy_from_slice(&sorted);
+            self.tree.left_leaves.extend(part.left_leaves);
+            return Ok(());
+        }
+        let middle = triangles.len() / 2;
+        halve(triangles, middle, box_of);
+        let (left, right) = triangles.split_at_mut(middle);
+        self.tree.left_leaves.push(middle as u32);
+        self.build(left)?;
+        self.build(right)
+    }
+}
+
+/// Puts those triangles first whose centres come first along the longest side of the bounds of all centres.
+fn halve(triangles: &mut [u32], middle: usize, box_of: &(impl Fn(u32) -> Aabb + Sync)) {
+    let centers = || triangles.par_iter().map(|&triangle| box_of(triangle).center());
+    let low = centers().reduce(|| Vec3A::INFINITY, Vec3A::min);
+    let high = centers().reduce(|| Vec3A::NEG_INFINITY, Vec3A::max);
+    let axis = (high - low).max_position();
+    let mut keyed: Vec<(f32, u32)> = triangles
+        .par_iter()
+        .map(|&triangle| (box_of(triangle).center()[axis], triangle))
+        .collect();
+    // Equal places by their numbers, so that the order is always the same.
+    keyed.select_nth_unstable_by(middle, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+    triangles
+        .iter_mut()
+        .zip(keyed)
+        .for_each(|(place, (_, triangle))| *place = triangle);
+}
 
 /// The hierarchy over the boxes of triangles, in units of the bounding radius, with one triangle a leaf.
 ///
 /// Not by spatial splits: each triangle is in one leaf, so triangles can be stored in the order of leaves.
-pub(super) fn build(boxes: &[Aabb]) -> Bvh2 {
+fn build(boxes: &[Aabb]) -> Bvh2 {
     let clusters = Clusters::new(boxes);
     let mut binary = clusters.build_binary(boxes);
     let reinsertion = if boxes.len() < MANY { 0.2 } else { 0.02 };

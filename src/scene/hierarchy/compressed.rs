@@ -13,7 +13,7 @@ const LEAF_TRIANGLES: u32 = 3;
 
 /// The hierarchy over a tree's triangles; its `primitive_indices` say which triangle each entry of a leaf is.
 pub(super) fn compress(tree: &BoxedTree<'_>) -> CwBvh {
-    let root = tree.tree.root();
+    let root = tree.root;
     let mut nodes = vec![Bvh2Node::default()];
     let mut open = vec![(root, 0)];
     while let Some((node, place)) = open.pop() {

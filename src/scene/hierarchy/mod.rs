@@ -2,6 +2,9 @@
 
 mod binary;
 mod compressed;
+mod packet;
+#[cfg(test)]
+mod tests;
 mod traverse;
 mod tree;
 mod wide;
@@ -13,8 +16,12 @@ use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::node::CwBvhNode;
 
+pub(in crate::scene) use packet::Found;
+pub use packet::{PACKET, Packet, WAYS, ray_way};
 use tree::{BoxedTree, Tree};
 pub(in crate::scene) use wide::Wide;
+
+use super::loading::{Cancelled, Loading};
 
 /// Boxes are grown by this on every side, in units of the bounding radius (some 16 roundings of a coordinate of 1), so
 /// that rounding in a ray's test against a box never loses a triangle in it.
@@ -22,6 +29,10 @@ const BOX_MARGIN: f32 = 1.0 / (1 << 20) as f32;
 
 /// Deepest hierarchy that a ray's stack has room for (`STACK_SIZE` in `shaders/scene/bvh.wgsl`).
 const DEPTH_MAX: usize = 32;
+
+/// Triangles of which a hierarchy is built at once: what it takes meanwhile, some 300 bytes a triangle, is not asked for all
+/// of a large model.
+const PART_MAX: u32 = 1 << 20;
 
 /// How triangles, in the order in which it wants them stored, are found by rays.
 #[derive(Clone, Debug, Default)]
@@ -53,19 +64,23 @@ impl Compressed {
 }
 
 impl Hierarchy {
-    /// The hierarchy over triangles, and the order in which they are to be stored. Corners are in units of the bounding
-    /// radius.
-    pub(super) fn new(corners: impl ExactSizeIterator<Item = [[f32; 3]; 3]>) -> (Self, Vec<u32>) {
-        let boxes: Vec<Aabb> = corners.map(triangle_box).collect();
-        if boxes.is_empty() {
-            return Default::default();
+    /// The hierarchy over so many triangles, and the order in which they are to be stored. Corners are in units of the
+    /// bounding radius.
+    pub(super) fn new(
+        count: usize,
+        corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync,
+        loading: &Loading,
+    ) -> Result<(Self, Vec<u32>), Cancelled> {
+        if count == 0 {
+            return Ok(Default::default());
         }
-        let (tree, order) = Tree::of(&binary::build(&boxes));
+        let box_of = |triangle| triangle_box(corners(triangle));
+        let (tree, order) = binary::tree(count as u32, PART_MAX, box_of, loading)?;
         let hierarchy = Self {
             tree: Some(tree),
             ..Self::default()
         };
-        (hierarchy, order)
+        Ok((hierarchy, order))
     }
 
     /// Bytes in memory of what has been built.
@@ -77,19 +92,18 @@ impl Hierarchy {
     }
 
     /// The processor's; `corners` of the triangles as they are stored.
-    pub(super) fn wide(&self, corners: impl Fn(u32) -> [[f32; 3]; 3]) -> &Wide {
+    pub(super) fn wide(&self, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> &Wide {
         self.wide.get_or_init(|| {
-            let make = |tree: &BoxedTree<'_>| Wide::new(tree, &corners);
-            self.made(&corners, make, |wide| wide.depth).unwrap_or_default()
+            let make = |tree: &Tree| Wide::new(tree, PART_MAX, &corners);
+            self.made(make, |wide| wide.depth).unwrap_or_default()
         })
     }
 
     /// The GPU's; `corners` of the triangles as they are stored.
-    pub(super) fn compressed(&self, corners: impl Fn(u32) -> [[f32; 3]; 3]) -> &Compressed {
+    pub(super) fn compressed(&self, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> &Compressed {
         self.compressed.get_or_init(|| {
-            let made: CwBvh = self
-                .made(&corners, compressed::compress, compressed::depth)
-                .unwrap_or_default();
+            let make = |tree: &Tree| compressed::compress(&BoxedTree::new(tree, tree.root(), &corners));
+            let made: CwBvh = self.made(make, compressed::depth).unwrap_or_default();
             Compressed {
                 nodes: made.nodes,
                 triangles: made.primitive_indices,
@@ -99,25 +113,16 @@ impl Hierarchy {
 
     /// A hierarchy made of the tree; where that is too deep, of the tree that halves the triangles, whose depth is a third
     /// of the binary logarithm of their number.
-    fn made<H>(
-        &self,
-        corners: impl Fn(u32) -> [[f32; 3]; 3],
-        make: impl Fn(&BoxedTree<'_>) -> H,
-        depth: impl Fn(&H) -> usize,
-    ) -> Option<H> {
+    fn made<H>(&self, make: impl Fn(&Tree) -> H, depth: impl Fn(&H) -> usize) -> Option<H> {
         let tree = self.tree.as_ref()?;
-        let boxes: Vec<Aabb> = (0..tree.root().count)
-            .map(|triangle| triangle_box(corners(triangle)))
-            .collect();
-        let boxed = BoxedTree::new(tree, boxes);
-        let made = make(&boxed);
+        let made = make(tree);
         if depth(&made) <= DEPTH_MAX {
             return Some(made);
         }
         // Triangles each a fraction of the last make a chain: halves instead, which rays pass more slowly but never in vain.
         log::debug!("a hierarchy of {} levels is built anew in halves", depth(&made));
-        let halves = tree.of_halves();
-        Some(make(&BoxedTree::new(&halves, boxed.leaf_boxes)))
+        drop(made);
+        Some(make(&tree.of_halves()))
     }
 }
 

@@ -16,14 +16,14 @@ use crate::scene::intersect::RayFrame;
 
 /// Boxes are met up to this part farther than a ray goes (1 + 2γ₃ of Ize, "Robust BVH Ray Traversal", JCGT 2013, rounded
 /// up): makes up for the rounding of the distance of the triangle that ended it.
-const FAR_MARGIN: f32 = 1.000_000_5;
+pub(super) const FAR_MARGIN: f32 = 1.000_000_5;
 
 /// Places relative to the ray's origin are off by at most this part of both: eleven roundings, five of a box's plane and
 /// six of a triangle's projected corner. So a far eye loses nothing.
-const PLACE_ERROR: f32 = 7e-7;
+pub(super) const PLACE_ERROR: f32 = 7e-7;
 
 /// Inverse directions are at most this, so that their products with distances stay finite.
-const INVERSE_MAX: f32 = 1e18;
+pub(super) const INVERSE_MAX: f32 = 1e18;
 
 /// A level adds all but one of a node's children, at most.
 const STACK_SIZE: usize = DEPTH_MAX * WIDTH;
@@ -66,10 +66,12 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max
             while met != 0 {
                 let lane = met.trailing_zeros() % WIDTH as u32;
                 met &= met - 1;
-                let t = distances[lane as usize];
-                if t < t_max {
+                let (t, triangle) = (distances[lane as usize], wide.firsts[block] + lane);
+                // Of two as far away the first: so it does not matter in which order they are found.
+                let is_first = || t == t_max && nearest.is_some_and(|(_, other)| triangle < other);
+                if t < t_max || is_first() {
                     t_max = t;
-                    nearest = Some((t, wide.firsts[block] + lane));
+                    nearest = Some((t, triangle));
                 }
             }
             if ANY && nearest.is_some() {
@@ -216,7 +218,7 @@ impl<S: Simd> TriangleRay<S> {
         }
     }
 
-    /// Which triangles of a block are met with 0 < t < `t_max`, as bits, and t.
+    /// Which triangles of a block are met with 0 < t ≤ `t_max`, as bits, and t.
     #[inline(always)]
     fn meet(&self, block: &Block, normals: &Normals, t_max: f32) -> (u32, [f32; WIDTH]) {
         let simd = self.origin[0].token();
@@ -240,7 +242,7 @@ impl<S: Simd> TriangleRay<S> {
         ];
         let t = (x * from_origin[0] + y * from_origin[1] + z * from_origin[2]) / (x * dx + y * dy + z * dz);
         // Not where the triangle is seen from its side; nor where t is NaN.
-        let is_met = is_inside & !(u + v + w).simd_eq(zero) & t.simd_gt(zero) & t.simd_lt(f32x8::splat(simd, t_max));
+        let is_met = is_inside & !(u + v + w).simd_eq(zero) & t.simd_gt(zero) & t.simd_le(f32x8::splat(simd, t_max));
         (is_met.to_bitmask() as u32, t.to_array())
     }
 
@@ -265,11 +267,11 @@ impl<S: Simd> TriangleRay<S> {
 /// A child to be visited and how far away its box is, ordered by the distance: that is not negative, so that its bits
 /// are in its order.
 #[derive(Clone, Copy)]
-struct Entry(u64);
+pub(super) struct Entry(u64);
 
 impl Entry {
     #[inline(always)]
-    fn new(distance: f32, place: u32) -> Self {
+    pub fn new(distance: f32, place: u32) -> Self {
         Self(u64::from(distance.to_bits()) << 32 | u64::from(place))
     }
 
@@ -285,14 +287,15 @@ impl Entry {
 }
 
 /// Children to be visited, the next one last. Not filled beforehand: that would take longer than many a ray.
-struct Stack {
+pub(super) struct Stack {
     entries: [MaybeUninit<Entry>; STACK_SIZE],
-    height: usize,
+    /// How many there are.
+    pub height: usize,
 }
 
 impl Stack {
     #[inline(always)]
-    fn new() -> Self {
+    pub fn new() -> Self {
         Self {
             entries: [const { MaybeUninit::uninit() }; STACK_SIZE],
             height: 0,
@@ -314,7 +317,7 @@ impl Stack {
 
     /// The next that is nearer than `t_max`.
     #[inline(always)]
-    fn pop_before(&mut self, t_max: f32) -> Option<u32> {
+    pub fn pop_before(&mut self, t_max: f32) -> Option<u32> {
         loop {
             let entry = self.pop()?;
             if entry.distance() <= t_max {
@@ -325,7 +328,7 @@ impl Stack {
 
     /// Pushes an entry below those from `base` on that are nearer.
     #[inline(always)]
-    fn insert(&mut self, entry: Entry, base: usize) {
+    pub fn insert(&mut self, entry: Entry, base: usize) {
         let mut place = self.height;
         self.height += 1;
         while place > base {

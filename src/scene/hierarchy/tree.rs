@@ -2,13 +2,16 @@
 
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
+use rayon::prelude::*;
+
+use super::triangle_box;
 
 /// A binary tree over triangles, which are its leaves from left to right. Four bytes a triangle: boxes are found again
 /// from the triangles whenever a hierarchy is made of it.
 #[derive(Clone, Debug, Default)]
 pub(in crate::scene) struct Tree {
     /// How many leaves each inner node has on its left: parents before children, left before right.
-    left_leaves: Vec<u32>,
+    pub(super) left_leaves: Vec<u32>,
 }
 
 /// A node with all that is below it.
@@ -90,53 +93,67 @@ impl Tree {
     }
 }
 
-/// A tree with the boxes of its nodes.
+/// A part of a tree with the boxes of its nodes.
 pub(in crate::scene) struct BoxedTree<'a> {
     pub tree: &'a Tree,
-    /// The inner nodes, parents before children.
-    pub inner: Vec<Subtree>,
+    /// All of the part.
+    pub root: Subtree,
+    /// Its inner nodes, parents before children.
+    inner: Vec<Subtree>,
     /// Their boxes.
     inner_boxes: Vec<Aabb>,
     /// The triangles' boxes.
-    pub leaf_boxes: Vec<Aabb>,
+    leaf_boxes: Vec<Aabb>,
 }
 
 impl<'a> BoxedTree<'a> {
-    pub fn new(tree: &'a Tree, leaf_boxes: Vec<Aabb>) -> Self {
-        let mut inner = vec![Subtree::default(); tree.left_leaves.len()];
+    /// All below a node; `corners` of the triangles as they are stored.
+    pub fn new(tree: &'a Tree, root: Subtree, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> Self {
+        let triangles = (root.first..root.first + root.count).into_par_iter();
+        let mut inner = vec![Subtree::default(); root.count as usize - 1];
         let mut boxed = Self {
             tree,
+            root,
             inner_boxes: vec![Aabb::INVALID; inner.len()],
-            leaf_boxes,
+            leaf_boxes: triangles.map(|triangle| triangle_box(corners(triangle))).collect(),
             inner: Vec::new(),
         };
-        if let Some(root) = inner.first_mut() {
-            *root = tree.root();
+        if let Some(first) = inner.first_mut() {
+            *first = root;
         }
         for node in 0..inner.len() {
             for side in tree.sides(inner[node]).into_iter().filter(|side| side.count > 1) {
-                inner[side.inner as usize] = side;
+                inner[boxed.place(side)] = side;
             }
         }
         for node in inner.iter().rev() {
             let [left, right] = tree.sides(*node).map(|side| *boxed.bounds(side));
-            boxed.inner_boxes[node.inner as usize] = left.union(&right);
+            let place = boxed.place(*node);
+            boxed.inner_boxes[place] = left.union(&right);
         }
         Self { inner, ..boxed }
+    }
+
+    /// The inner nodes, children before parents.
+    pub fn children_first(&self) -> impl Iterator<Item = Subtree> {
+        self.inner.iter().rev().copied()
+    }
+
+    /// How many inner nodes there are.
+    pub fn inner_count(&self) -> usize {
+        self.inner.len()
+    }
+
+    /// The number of an inner node among those of the part.
+    pub fn place(&self, node: Subtree) -> usize {
+        (node.inner - self.root.inner) as usize
     }
 
     /// The box of a node.
     pub fn bounds(&self, node: Subtree) -> &Aabb {
         match node.count {
-            1 => &self.leaf_boxes[node.first as usize],
-            _ => &self.inner_boxes[node.inner as usize],
+            1 => &self.leaf_boxes[(node.first - self.root.first) as usize],
+            _ => &self.inner_boxes[self.place(node)],
         }
-    }
-}
-
-impl Subtree {
-    /// The number of an inner node: its place in [`BoxedTree::inner`].
-    pub fn inner(self) -> usize {
-        self.inner as usize
     }
 }

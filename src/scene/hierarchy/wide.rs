@@ -4,9 +4,10 @@
 use glam::Vec3A;
 use obvhs::aabb::Aabb;
 
-use super::tree::{BoxedTree, Subtree};
+use super::tree::{BoxedTree, Subtree, Tree};
 use crate::optics::vector::Vec3;
 use crate::scene::intersect::triangle_normal;
+use crate::scene::memory::in_large_pages;
 
 /// Children of a node, and triangles of a leaf at most.
 pub(super) const WIDTH: usize = 8;
@@ -75,21 +76,26 @@ pub(in crate::scene) struct Wide {
 
 impl Wide {
     /// Of the trees that put up to eight nodes of a binary tree under one, that which costs rays least (as in section
-    /// 3.1 of Ylitie, Karras and Laine 2017).
-    pub fn new(tree: &BoxedTree<'_>, corners: impl Fn(u32) -> [[f32; 3]; 3]) -> Self {
-        let root = tree.tree.root();
-        let bounds = tree.bounds(root);
-        let mut builder = Builder {
-            tree,
-            cuts: cuts(tree),
-            corners,
-            made: Self {
-                reach: bounds.min.abs().max(bounds.max.abs()),
-                ..Self::default()
-            },
+    /// 3.1 of Ylitie, Karras and Laine 2017), found for parts of at most so many triangles, one after the other: what is
+    /// needed to find it takes as much memory as what comes of it.
+    pub fn new(tree: &Tree, part_max: u32, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> Self {
+        let mut made = Self {
+            nodes: vec![Node::EMPTY],
+            ..Self::default()
         };
-        builder.build(root);
-        builder.made
+        let bounds = Parts {
+            tree,
+            part_max,
+            corners,
+        }
+        .fill(&mut made, tree.root(), 0, 1);
+        made.reach = bounds.min.abs().max(bounds.max.abs());
+        Self {
+            nodes: in_large_pages(made.nodes),
+            blocks: in_large_pages(made.blocks),
+            normals: in_large_pages(made.normals),
+            ..made
+        }
     }
 
     /// Bytes in memory.
@@ -118,15 +124,15 @@ impl Cut {
     fn cost(cuts: &[Self], tree: &BoxedTree<'_>, node: Subtree, children: usize) -> f32 {
         match node.count {
             1 => tree.bounds(node).half_area() * BLOCK_COST,
-            _ => cuts[node.inner()].costs[children - 1],
+            _ => cuts[tree.place(node)].costs[children - 1],
         }
     }
 }
 
 /// The best cut of each inner node.
 fn cuts(tree: &BoxedTree<'_>) -> Vec<Cut> {
-    let mut cuts = vec![Cut::default(); tree.inner.len()];
-    for &node in tree.inner.iter().rev() {
+    let mut cuts = vec![Cut::default(); tree.inner_count()];
+    for node in tree.children_first() {
         let [left, right] = tree.tree.sides(node);
         // Of so many children the number on the left that costs least.
         let best = |children: usize| {
@@ -155,28 +161,79 @@ fn cuts(tree: &BoxedTree<'_>) -> Vec<Cut> {
             (cut.costs[children - 1], cut.lefts[children - 1]) =
                 if cost < fewer { (cost, on_left) } else { (fewer, 0) };
         }
-        cuts[node.inner()] = cut;
+        cuts[tree.place(node)] = cut;
     }
     cuts
 }
 
+/// A hierarchy in the making, part by part.
+struct Parts<'a, F> {
+    tree: &'a Tree,
+    part_max: u32,
+    corners: F,
+}
+
+impl<F: Fn(u32) -> [[f32; 3]; 3] + Sync> Parts<'_, F> {
+    /// Fills the node at `place` with what is below a node of the binary tree; its box.
+    fn fill(&self, made: &mut Wide, root: Subtree, place: usize, depth: usize) -> Aabb {
+        if root.count <= self.part_max {
+            let boxed = BoxedTree::new(self.tree, root, &self.corners);
+            let mut builder = Builder {
+                cuts: cuts(&boxed),
+                tree: &boxed,
+                corners: &self.corners,
+                made,
+            };
+            builder.build(place, depth);
+            return *boxed.bounds(root);
+        }
+        let children = self.children(root);
+        let first = made.nodes.len();
+        made.nodes.resize(first + children.len(), Node::EMPTY);
+        let mut whole = Aabb::INVALID;
+        for (slot, child) in children.into_iter().enumerate() {
+            let bounds = self.fill(made, child, first + slot, depth + 1);
+            made.nodes[place].set(slot, &bounds, (first + slot) as u32);
+            whole = whole.union(&bounds);
+        }
+        whole
+    }
+
+    /// Up to eight children of a node that is more than a part: the largest are cut until there are eight, or all are
+    /// parts.
+    fn children(&self, root: Subtree) -> Vec<Subtree> {
+        let mut children = self.tree.sides(root).to_vec();
+        while children.len() < WIDTH {
+            let largest = (0..children.len()).max_by_key(|&child| children[child].count);
+            let Some(child) = largest.filter(|&child| children[child].count > self.part_max) else {
+                break;
+            };
+            let sides = self.tree.sides(children[child]);
+            children.splice(child..=child, sides);
+        }
+        children
+    }
+}
+
+/// A part of a hierarchy in the making.
 struct Builder<'a, F> {
     tree: &'a BoxedTree<'a>,
     cuts: Vec<Cut>,
     corners: F,
-    made: Wide,
+    made: &'a mut Wide,
 }
 
 impl<F: Fn(u32) -> [[f32; 3]; 3]> Builder<'_, F> {
-    fn build(&mut self, root: Subtree) {
-        self.made.nodes.push(Node::EMPTY);
+    /// Fills the node at `place`, on this level, with the whole part.
+    fn build(&mut self, place: usize, depth: usize) {
+        let root = self.tree.root;
         if self.is_block(root) {
             let block = self.block(root);
-            self.made.nodes[0].set(0, self.tree.bounds(root), block);
-            self.made.depth = 1;
+            self.made.nodes[place].set(0, self.tree.bounds(root), block);
+            self.made.depth = self.made.depth.max(depth);
             return;
         }
-        let mut open = vec![(root, 0, 1)];
+        let mut open = vec![(root, place, depth)];
         while let Some((node, place, depth)) = open.pop() {
             self.made.depth = self.made.depth.max(depth);
             // Siblings lie together, then what is below the first of them, and so on.
@@ -186,13 +243,13 @@ impl<F: Fn(u32) -> [[f32; 3]; 3]> Builder<'_, F> {
     }
 
     fn is_block(&self, node: Subtree) -> bool {
-        node.count == 1 || self.cuts[node.inner()].is_block
+        node.count == 1 || self.cuts[self.tree.place(node)].is_block
     }
 
     /// Fills a node; its children that are nodes, with their places.
     fn children(&mut self, node: Subtree, place: usize) -> Vec<(Subtree, usize)> {
         let [left, right] = self.tree.tree.sides(node);
-        let on_left = usize::from(self.cuts[node.inner()].lefts[0]);
+        let on_left = usize::from(self.cuts[self.tree.place(node)].lefts[0]);
         let mut children = Vec::with_capacity(WIDTH);
         self.cut(left, on_left, &mut children);
         self.cut(right, WIDTH - on_left, &mut children);
@@ -212,7 +269,7 @@ impl<F: Fn(u32) -> [[f32; 3]; 3]> Builder<'_, F> {
 
     /// Cuts a subtree into so many children, or fewer.
     fn cut(&self, node: Subtree, mut count: usize, children: &mut Vec<Subtree>) {
-        let lefts = |count: usize| usize::from(self.cuts[node.inner()].lefts[count - 1]);
+        let lefts = |count: usize| usize::from(self.cuts[self.tree.place(node)].lefts[count - 1]);
         while node.count > 1 && count > 1 && lefts(count) == 0 {
             count -= 1;
         }

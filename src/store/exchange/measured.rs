@@ -43,6 +43,10 @@ impl Format for Measured {
             materials: vec![report(material, &cells)],
         })
     }
+
+    fn is_text(&self) -> bool {
+        false
+    }
 }
 
 fn report(material: &MaterialSettings, cells: &[[Vec3<f64>; 2]]) -> MaterialReport {
@@ -65,11 +69,8 @@ fn report(material: &MaterialSettings, cells: &[[Vec3<f64>; 2]]) -> MaterialRepo
         entries.insert(0, Entry::dropped("emission and opacity", "the table is of reflectance"));
     }
     MaterialReport {
-        material: material.name.clone(),
         carries_exact_parameters: false,
-        entries,
-        looks: None,
-        difference: None,
+        ..MaterialReport::of(material, entries)
     }
 }
 

@@ -7,7 +7,6 @@ mod blender;
 pub mod carried;
 mod gltf;
 mod materialx;
-mod materialx_read;
 mod measured;
 mod mitsuba;
 mod native;
@@ -25,6 +24,7 @@ use self::report::{Entry, MaterialReport, Report};
 use self::surface::{Surface, Takes};
 use super::file::{self, FileError, Loaded, Opened};
 use super::preset;
+use super::replace::save_atomically;
 use crate::document::{Document, ImportLobe, MaterialSettings};
 use crate::scene::ModelError;
 
@@ -48,6 +48,16 @@ pub trait Format: Sync {
     fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
         let _ = options;
         Err(ExchangeError::NotRead { path: path.to_owned() })
+    }
+
+    /// Whether its files are text, which fits a clipboard.
+    fn is_text(&self) -> bool {
+        true
+    }
+
+    /// Whether it takes a model with all its materials.
+    fn takes_models(&self) -> bool {
+        false
     }
 }
 
@@ -302,14 +312,9 @@ pub fn by_ending(path: &Path) -> Result<&'static Registered, ExchangeError> {
     })
 }
 
-/// Whether a format takes a model with all its materials.
-pub fn takes_models(format: &Registered) -> bool {
-    format.name == "gltf"
-}
-
 /// Whether files of this ending hold materials of another program, and nothing else that is opened.
 pub fn holds_materials(path: &Path) -> bool {
-    by_ending(path).is_ok_and(|format| format.is_read && format.name != "glossmith" && !takes_models(format))
+    by_ending(path).is_ok_and(|format| format.is_read && format.name != "glossmith" && !format.format.takes_models())
 }
 
 /// What a file holds that is opened: one of ours, or the first material of another program's.
@@ -380,6 +385,11 @@ pub struct Prepared {
 }
 
 impl Prepared {
+    /// What the file holds, where that is text.
+    pub fn text(&self) -> Option<&str> {
+        std::str::from_utf8(&self.written.bytes).ok()
+    }
+
     /// Writes the file, replacing it at once.
     ///
     /// # Errors
@@ -387,9 +397,9 @@ impl Prepared {
     pub fn save(&self) -> Result<(), FileError> {
         let path = &self.report.output;
         if let Some((name, bytes)) = &self.written.beside {
-            file::save_atomically(&path.with_file_name(name), bytes)?;
+            save_atomically(&path.with_file_name(name), bytes)?;
         }
-        file::save_atomically(path, &self.written.bytes)
+        save_atomically(path, &self.written.bytes)
     }
 }
 

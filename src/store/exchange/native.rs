@@ -21,13 +21,7 @@ impl Format for Native {
             Some(document) if subject.materials.len() > 1 => document_text(path, document)?,
             _ => material_text(subject.only(path)?),
         };
-        let report = |material: &crate::document::MaterialSettings| MaterialReport {
-            material: material.name.clone(),
-            carries_exact_parameters: true,
-            entries: vec![Entry::exact("everything")],
-            looks: None,
-            difference: None,
-        };
+        let report = |material| MaterialReport::of(material, vec![Entry::exact("everything")]);
         Ok(Written::text(text, subject.materials.iter().map(report).collect()))
     }
 

@@ -136,6 +136,17 @@ pub struct MaterialReport {
 }
 
 impl MaterialReport {
+    /// Of a file that also has the exact parameters, and shows nothing that could be rendered.
+    pub fn of(material: &MaterialSettings, entries: Vec<Entry>) -> Self {
+        Self {
+            material: material.name.clone(),
+            carries_exact_parameters: true,
+            entries,
+            looks: None,
+            difference: None,
+        }
+    }
+
     /// The largest residual; 0 where nothing is approximated.
     pub fn residual(&self) -> f64 {
         let residuals = self.entries.iter().filter_map(|entry| entry.residual);
@@ -160,6 +171,14 @@ pub struct Report {
     pub format: &'static str,
     /// What became of the materials.
     pub materials: Vec<MaterialReport>,
+}
+
+impl Report {
+    /// How many parts came to this, over all materials.
+    pub fn count(&self, outcome: Outcome) -> usize {
+        let entries = self.materials.iter().flat_map(|material| &material.entries);
+        entries.filter(|entry| entry.outcome == outcome).count()
+    }
 }
 
 impl fmt::Display for Report {

@@ -37,17 +37,15 @@ impl Format for Language {
                 ),
             });
         }
-        let mut entries = vec![Entry::exact("the lobe's sampling")];
         let detail = "the function draws directions; multiply by your own Fresnel factor";
-        entries.insert(0, Entry::dropped("colours, base, coat, refraction", detail));
-        let report = MaterialReport {
-            material: material.name.clone(),
-            carries_exact_parameters: true,
-            entries,
-            looks: None,
-            difference: None,
-        };
-        Ok(Written::text(self.function(material), vec![report]))
+        let entries = vec![
+            Entry::dropped("colours, base, coat, refraction", detail),
+            Entry::exact("the lobe's sampling"),
+        ];
+        Ok(Written::text(
+            self.function(material),
+            vec![MaterialReport::of(material, entries)],
+        ))
     }
 
     fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {

@@ -38,22 +38,14 @@ impl Format for Table {
                 }
             }
         }
-        let mut entries = vec![Entry::exact("the lobe's values at the table's directions")];
-        entries.insert(
-            0,
+        let entries = vec![
             Entry::dropped(
                 "colours, base, coat, refraction",
                 "the table is of the specular lobe alone",
             ),
-        );
-        let report = MaterialReport {
-            material: material.name.clone(),
-            carries_exact_parameters: true,
-            entries,
-            looks: None,
-            difference: None,
-        };
-        Ok(Written::text(text, vec![report]))
+            Entry::exact("the lobe's values at the table's directions"),
+        ];
+        Ok(Written::text(text, vec![MaterialReport::of(material, entries)]))
     }
 
     fn read(&self, path: &Path, _options: ReadOptions) -> Result<Subject, ExchangeError> {

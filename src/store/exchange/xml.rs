@@ -63,7 +63,7 @@ impl Element {
 }
 
 /// Text as an attribute's value. Control characters, which XML has no place for, are left out.
-fn escaped(text: &str) -> String {
+pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

@@ -146,11 +146,16 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
 
 /// Pictures of random texels, looked up in every way.
 fn pictures(rng: &mut Rng) -> Model {
+    let mut deep = Rng::new(16);
     let textures = [[5, 3], [8, 8], [1, 4]].map(|[width, height]| Texture {
         name: format!("{width} × {height}"),
         width,
         height,
         rgba8: (0..4 * width * height).map(|_| rng.bits() as u8).collect(),
+        // One of them has 16 bits, where it holds no colours.
+        rgba16: (0..if width == 8 { 4 * width * height } else { 0 })
+            .map(|_| deep.bits() as u16)
+            .collect(),
     });
     let wraps = [Wrap::Repeat, Wrap::MirroredRepeat, Wrap::ClampToEdge];
     let slots = (0..12).map(|number| {

@@ -1,13 +1,18 @@
 //! The hard cases, a line each with its verdict and, where it renders one, its picture.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use egui::{ColorImage, TextureHandle, TextureOptions, Ui, vec2};
 
+use crate::app::kit::start_stop::{Pressed, start_or_stop};
 use crate::app::kit::widgets;
 use crate::document::ViewSettings;
 use crate::render::EngineChoice;
 use crate::render::background::Background;
 use crate::render::display::display;
 use crate::render::hard::{HardOptions, HardRow, Stage, catalogue};
+use crate::render::priority::work_apart;
 
 /// Side of a case's picture in points.
 const PICTURE_SIDE: f32 = 40.0;
@@ -24,6 +29,7 @@ struct Standing {
 #[derive(Default)]
 pub(super) struct HardState {
     worker: Option<Background<HardOptions, Standing>>,
+    stop: Arc<AtomicBool>,
     /// Pictures by case, as textures of this run.
     textures: Vec<(&'static str, TextureHandle)>,
 }
@@ -35,9 +41,11 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
         "Places where naive code breaks, each with what it does here: measured against its limit.",
     );
     if state.worker.is_none() {
-        let ctx = ui.ctx().clone();
-        let work = |options: HardOptions, desk: &crate::render::background::Desk<'_, HardOptions, Standing>| {
-            run(&options, &|standing| desk.publish(standing), &|| desk.is_superseded());
+        let (ctx, stop) = (ui.ctx().clone(), state.stop.clone());
+        let work = move |options: HardOptions, desk: &crate::render::background::Desk<'_, HardOptions, Standing>| {
+            work_apart();
+            let ends = || stop.load(Ordering::Relaxed) || desk.is_superseded();
+            run(&options, &|standing| desk.publish(standing), &ends);
         };
         state.worker = Background::spawn("hard cases", move || ctx.request_repaint(), work).ok();
     }
@@ -45,27 +53,30 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
         widgets::note(ui, "Cannot start a thread to check.");
         return;
     };
-    if ui
-        .add_enabled(!worker.is_busy(), egui::Button::new("Run the hard cases"))
-        .clicked()
-    {
-        state.textures.clear();
-        worker.ask(HardOptions {
-            engine,
-            thorough: false,
-            only: String::new(),
-        });
+    let row = ui.horizontal(|ui| start_or_stop(ui, "Run the hard cases", worker.is_busy(), true, |button| button));
+    match row.inner {
+        Pressed::Start => {
+            state.textures.clear();
+            state.stop.store(false, Ordering::Relaxed);
+            worker.ask(HardOptions {
+                engine,
+                thorough: false,
+                only: String::new(),
+            });
+        }
+        Pressed::Stop => state.stop.store(true, Ordering::Relaxed),
+        Pressed::Nothing => {}
     }
-    widgets::failure(ui, worker.failure());
+    widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
     let Some(standing) = worker.latest() else {
         return;
     };
-    if let Some(name) = standing.running.filter(|_| worker.is_busy()) {
-        ui.horizontal(|ui| {
-            ui.add(egui::Spinner::new().size(12.0));
-            ui.label(name);
-        });
-    }
+    widgets::comes_and_goes(ui, |ui| match standing.running {
+        Some(_) if worker.is_busy() && state.stop.load(Ordering::Relaxed) => widgets::note(ui, "Stopping …"),
+        Some(name) if worker.is_busy() => widgets::note(ui, name),
+        Some(_) => widgets::note(ui, "Stopped."),
+        None => {}
+    });
     if let Some(error) = &standing.error {
         ui.colored_label(ui.visuals().error_fg_color, error);
     }
@@ -80,8 +91,8 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
         });
 }
 
-/// Runs case after case, publishing after each.
-fn run(options: &HardOptions, publish: &dyn Fn(Standing), is_superseded: &dyn Fn() -> bool) {
+/// Runs case after case, publishing after each, until nobody waits for them any more.
+fn run(options: &HardOptions, publish: &dyn Fn(Standing), ends: &dyn Fn() -> bool) {
     let mut standing = Standing::default();
     let mut stage = match Stage::open(options.engine, options.thorough) {
         Ok(stage) => stage,
@@ -91,7 +102,7 @@ fn run(options: &HardOptions, publish: &dyn Fn(Standing), is_superseded: &dyn Fn
         }
     };
     for case in catalogue() {
-        if is_superseded() {
+        if ends() {
             return;
         }
         standing.running = Some(case.name);

@@ -2,22 +2,28 @@
 
 mod hard_cases;
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use egui::Ui;
 
 use hard_cases::HardState;
 
 use super::Panel;
 use crate::app::desk::Desk;
+use crate::app::kit::start_stop::{Pressed, start_or_stop};
 use crate::app::kit::widgets;
 use crate::app::study::engine;
 use crate::render::background::Background;
 use crate::render::check::{Check, CheckOptions, GroupSummary, run, summaries};
+use crate::render::priority::work_apart;
 
 /// How a run stands.
 #[derive(Clone)]
 enum Standing {
     Checking(String),
     Done(Vec<Check>),
+    Stopped,
     Failed(String),
 }
 
@@ -25,8 +31,15 @@ enum Standing {
 #[derive(Default)]
 pub(super) struct CheckPanel {
     worker: Option<Background<CheckOptions, Standing>>,
+    stop: Arc<AtomicBool>,
     thorough: bool,
     hard: HardState,
+}
+
+impl Drop for CheckPanel {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
 }
 
 impl Panel for CheckPanel {
@@ -36,48 +49,34 @@ impl Panel for CheckPanel {
         widgets::note(
             ui,
             "Proves on this machine that the picture is right: samples against densities, energy, engines and strategies \
-             against each other.",
+             against each other. The viewport goes on meanwhile.",
         );
         if state.worker.is_none() {
-            let ctx = ui.ctx().clone();
-            state.worker = Background::spawn(
-                "check",
-                move || ctx.request_repaint(),
-                |options, desk| {
-                    let progress = |group: &str| desk.publish(Standing::Checking(group.to_owned()));
-                    desk.publish(match run(options, progress) {
-                        Ok(checks) => Standing::Done(checks),
-                        Err(error) => Standing::Failed(error.to_string()),
-                    });
-                },
-            )
-            .ok();
+            state.worker = spawn(ui, &state.stop);
         }
         let Some(worker) = &state.worker else {
             widgets::note(ui, "Cannot start a thread to check.");
             return;
         };
-        ui.horizontal(|ui| {
-            let button = ui.add_enabled(!worker.is_busy(), egui::Button::new("Check this machine"));
-            if button.clicked() {
-                worker.ask(CheckOptions {
-                    engine,
-                    thorough: state.thorough,
-                });
+        ui.checkbox(&mut state.thorough, "Thorough")
+            .on_hover_text("Every lobe at every roughness and angle, with more samples: takes minutes.");
+        let row = ui.horizontal(|ui| start_or_stop(ui, "Check this machine", worker.is_busy(), true, |button| button));
+        match row.inner {
+            Pressed::Start => {
+                state.stop.store(false, Ordering::Relaxed);
+                let thorough = state.thorough;
+                worker.ask(CheckOptions { engine, thorough });
             }
-            ui.checkbox(&mut state.thorough, "Thorough")
-                .on_hover_text("Every lobe at every roughness and angle, with more samples: takes minutes.");
-        });
+            Pressed::Stop => state.stop.store(true, Ordering::Relaxed),
+            Pressed::Nothing => {}
+        }
         widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
         widgets::comes_and_goes(ui, |ui| match worker.latest() {
             None => {}
             Some(Standing::Checking(_)) if !worker.is_busy() => {}
-            Some(Standing::Checking(group)) => {
-                ui.horizontal(|ui| {
-                    ui.add(egui::Spinner::new().size(12.0));
-                    ui.label(group);
-                });
-            }
+            Some(Standing::Checking(_)) if state.stop.load(Ordering::Relaxed) => widgets::note(ui, "Stopping …"),
+            Some(Standing::Checking(group)) => widgets::note(ui, format!("Checking {group} …")),
+            Some(Standing::Stopped) => widgets::note(ui, "Stopped."),
             Some(Standing::Failed(why)) => {
                 ui.colored_label(ui.visuals().error_fg_color, why);
             }
@@ -86,6 +85,21 @@ impl Panel for CheckPanel {
         ui.separator();
         hard_cases::show(ui, &mut state.hard, engine);
     }
+}
+
+/// The thread that checks, apart from those that render.
+fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<CheckOptions, Standing>> {
+    let (ctx, stop) = (ui.ctx().clone(), stop.clone());
+    let work = move |options, desk: &crate::render::background::Desk<'_, CheckOptions, Standing>| {
+        work_apart();
+        let progress = |group: &str| desk.publish(Standing::Checking(group.to_owned()));
+        desk.publish(match run(options, &stop, progress) {
+            Ok(Some(checks)) => Standing::Done(checks),
+            Ok(None) => Standing::Stopped,
+            Err(error) => Standing::Failed(error.to_string()),
+        });
+    };
+    Background::spawn("check", move || ctx.request_repaint(), work).ok()
 }
 
 fn table(ui: &mut Ui, checks: &[Check]) {

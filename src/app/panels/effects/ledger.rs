@@ -8,7 +8,6 @@ use egui::{RichText, Ui};
 use crate::app::desk::Desk;
 use crate::app::kit::widgets;
 use crate::app::study::{StudyWorker, engine, small_document};
-use crate::document::{Change, Document};
 use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
 
 /// Longest side of the picture that is measured on, pixels: what is true of the parts is true of the whole.
@@ -18,8 +17,6 @@ const SIDE_MAX: u32 = 256;
 #[derive(Default)]
 pub(super) struct LedgerState {
     worker: StudyWorker<Ledger>,
-    /// What it was asked about last.
-    asked: Option<Document>,
     /// How long a turn lasts, where it is not the usual time.
     pub(super) slice: Option<Duration>,
 }
@@ -42,22 +39,15 @@ impl LedgerState {
 }
 
 /// The button that measures, and how far it is.
-pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState, found: Option<&Ledger>) {
+pub(super) fn controls(ui: &mut Ui, desk: &mut Desk<'_>, state: &mut LedgerState) {
     let help = "What each effect and setting costs in time, and does to noise and picture: renders this scene with and \
                 without each of them, in turns.";
-    let LedgerState { worker, asked, slice } = state;
+    let LedgerState { worker, slice } = state;
     worker.controls(ui, desk, "Measure cost of effects", help, |desk| {
-        *asked = Some(desk.document.clone());
         let document = small_document(desk, SIDE_MAX);
         let mut options = LedgerOptions::new(engine(desk));
         options.slice = slice.unwrap_or(options.slice);
         Box::new(move |watch| ledger(&document, &options, watch))
-    });
-    let is_old = |asked: &Document| Change::between(asked, desk.document).restarts();
-    widgets::comes_and_goes(ui, |ui| {
-        if found.is_some() && asked.as_ref().is_some_and(is_old) {
-            widgets::note(ui, "Measured before the last changes.");
-        }
     });
 }
 

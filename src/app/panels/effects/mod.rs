@@ -50,7 +50,7 @@ impl Panel for EffectsPanel {
             plan.left_out()
         ))
         .on_hover_text(help);
-        ledger::controls(ui, desk, &mut self.ledger, found.as_deref());
+        ledger::controls(ui, desk, &mut self.ledger);
         let switches = desk.document.render.effects;
         if switches != EffectSwitches::default() && ui.button("All automatic").clicked() {
             desk.document.render.effects = EffectSwitches::default();

@@ -1,8 +1,9 @@
 //! Line plots of lobes in the window: the data that the command line writes as files.
 
 use egui::{Color32, Ui};
-use egui_plot::{GridMark, Line, LineStyle, Plot, PlotPoints};
+use egui_plot::{Line, LineStyle, PlotPoints};
 
+use crate::app::kit::charts::{short, still};
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
 use crate::plot::series_color;
 
@@ -15,32 +16,24 @@ fn place(axis: &Axis, value: f64) -> f64 {
     }
 }
 
+/// Height of a line plot of this width, points.
+pub(super) fn plot_height(width: f32) -> f32 {
+    (0.8 * width).clamp(160.0, 420.0)
+}
+
 /// Shows a line plot over the width there is.
 pub(super) fn line_plot(ui: &mut Ui, id: &str, plot: &LinePlot) {
     let width = ui.available_width();
-    let is_logarithmic = plot.y.is_logarithmic;
-    let number = move |mark: GridMark, _: &std::ops::RangeInclusive<f64>| {
-        let value = if is_logarithmic {
-            10.0_f64.powf(mark.value)
-        } else {
-            mark.value
-        };
-        short(value)
+    let upwards: fn(f64) -> String = if plot.y.is_logarithmic {
+        |y| short(10.0_f64.powf(y))
+    } else {
+        short
     };
-    let mut shown = Plot::new(id.to_owned())
-        .height((0.8 * width).clamp(160.0, 420.0))
-        .allow_drag(false)
-        .allow_scroll(false)
-        .allow_zoom(false)
-        .allow_boxed_zoom(false)
-        .show_background(false)
-        .x_axis_label(if plot.is_polar {
-            plot.y.label.clone()
-        } else {
-            plot.x.label.clone()
-        })
-        .y_axis_formatter(number)
-        .set_margin_fraction(egui::vec2(0.03, 0.06));
+    let mut shown = still(id, plot_height(width), [short, upwards]).x_axis_label(if plot.is_polar {
+        plot.y.label.clone()
+    } else {
+        plot.x.label.clone()
+    });
     let [top, bottom] = [plot.y.range[1], plot.y.range[0]].map(|value| place(&plot.y, value));
     shown = if plot.is_polar {
         shown
@@ -110,13 +103,4 @@ fn points(plot: &LinePlot, series: &Series) -> Vec<[f64; 2]> {
 fn color(group: usize) -> Color32 {
     let [r, g, b] = series_color(group);
     Color32::from_rgb(r, g, b)
-}
-
-/// A number on an axis.
-fn short(value: f64) -> String {
-    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) {
-        format!("{}", (value * 1e4).round() / 1e4)
-    } else {
-        format!("{value:.0e}")
-    }
 }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use egui::{ColorImage, TextureHandle, TextureOptions, Ui};
 
-use line_plot::line_plot;
+use line_plot::{line_plot, plot_height};
 use matching::MatchState;
 
 use super::Panel;
@@ -25,6 +25,9 @@ use crate::render::background::Background;
 /// Pictures are drawn this much larger than they are shown on a screen of one pixel a point.
 const ZOOM: f64 = 1.5;
 
+/// How much is seen of what is being computed anew.
+const OLD_OPACITY: f32 = 0.5;
+
 /// What the lobe is compared with.
 #[derive(Clone, Debug, Default, PartialEq)]
 enum Other {
@@ -37,13 +40,13 @@ enum Other {
 /// The selected material's lobe, beside another one.
 #[derive(Default)]
 pub(super) struct LobePanel {
-    worker: Option<Background<Query, Arc<Shown>>>,
+    worker: Option<Background<Query, Arc<Answer>>>,
     asked: Option<Query>,
     kind: Option<ViewKind>,
     other: Other,
     other_roughness: Option<f32>,
     pictures: Vec<TextureHandle>,
-    pictured: Option<Arc<Shown>>,
+    pictured: Option<Arc<Answer>>,
     matching: MatchState,
 }
 
@@ -56,6 +59,20 @@ struct Query {
 }
 
 /// What came of a query.
+struct Answer {
+    query: Query,
+    shown: Shown,
+}
+
+impl Query {
+    /// Whether what is shown of one of them goes by the other's name as well: the same view of the same lobes, whose widths
+    /// may differ.
+    fn is_named_like(&self, other: &Self) -> bool {
+        let names = |query: &Self| query.lobes.iter().map(|lobe| lobe.lobe).collect::<Vec<_>>();
+        self.kind == other.kind && self.is_dark == other.is_dark && names(self) == names(other)
+    }
+}
+
 enum Shown {
     Lines(LinePlot),
     Pictures(Vec<ColorImage>),
@@ -166,7 +183,8 @@ fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
         let ctx = ui.ctx().clone();
         let repaint = move || ctx.request_repaint();
         state.worker = Background::spawn("lobe view", repaint, |query, desk| {
-            desk.publish(Arc::new(compute(&query)))
+            let shown = compute(&query);
+            desk.publish(Arc::new(Answer { query, shown }))
         })
         .ok();
     }
@@ -176,35 +194,49 @@ fn view(ui: &mut Ui, state: &mut LobePanel, query: Query) {
     };
     if state.asked.as_ref() != Some(&query) {
         worker.ask(query.clone());
-        state.asked = Some(query);
+        state.asked = Some(query.clone());
     }
     widgets::failure(ui, worker.failure());
-    let Some(shown) = worker.latest() else {
+    let answer = worker.latest().filter(|answer| answer.query.is_named_like(&query));
+    let Some(answer) = answer else {
         if worker.is_busy() {
-            ui.add(egui::Spinner::new());
+            computing(ui);
         }
         return;
     };
-    match &*shown {
+    if answer.query != query && worker.is_busy() {
+        // Of another width or angle, until the new one is there.
+        ui.multiply_opacity(OLD_OPACITY);
+    }
+    match &answer.shown {
         Shown::Lines(plot) => line_plot(ui, "lobe view", plot),
         Shown::Pictures(images) => {
             if !state
                 .pictured
                 .as_ref()
-                .is_some_and(|pictured| Arc::ptr_eq(pictured, &shown))
+                .is_some_and(|pictured| Arc::ptr_eq(pictured, &answer))
             {
                 let load = |image: &ColorImage| {
                     ui.ctx()
                         .load_texture("lobe view", image.clone(), TextureOptions::LINEAR)
                 };
                 state.pictures = images.iter().map(load).collect();
-                state.pictured = Some(shown.clone());
+                state.pictured = Some(answer.clone());
             }
             for texture in &state.pictures {
                 ui.add(egui::Image::new(texture).max_width(ui.available_width()));
             }
         }
     }
+}
+
+/// A place as large as a chart's, until that is there: nothing of another name is shown in it.
+fn computing(ui: &mut Ui) {
+    let width = ui.available_width();
+    let (place, response) = ui.allocate_exact_size(egui::vec2(width, plot_height(width)), egui::Sense::hover());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, "Computing the lobe"));
+    let spinner = egui::Rect::from_center_size(place.center(), egui::Vec2::splat(24.0));
+    egui::Spinner::new().paint_at(ui, spinner);
 }
 
 fn compute(query: &Query) -> Shown {

@@ -1,6 +1,8 @@
 //! The worker's thread: takes orders, steps the session, publishes what comes of it.
 
+mod load;
 mod publish;
+mod waiting;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -8,18 +10,18 @@ use std::time::{Duration, Instant};
 
 use super::denoising::Denoising;
 use super::stage::Stage;
-use super::{Activity, Event, FIRST_STEP, Level, Orders, STEP, Scene, Shared, Snapshot, Submission, lock};
+use super::{Activity, Event, FIRST_STEP, Level, STEP, Scene, Shared, Snapshot, Submission, lock};
 use crate::document::{Change, Document};
 use crate::job::plan::Specialisation;
 use crate::panics::caught;
 use crate::render::assets::Assets;
 use crate::render::denoise::Denoised;
-use crate::render::display::Shown;
 use crate::render::engine::{EngineChoice, EngineKind};
 use crate::render::output::Layers;
+use crate::render::quiet::AtWork;
 use crate::render::session::{Session, SessionError};
-use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
-use crate::scene::{ModelOptions, ModelSource};
+use crate::render::shown::Shown;
+use crate::scene::environment::EnvironmentSource;
 
 /// Shortest and longest time between two pictures of the same render, and between two words about its progress: without
 /// a GPU the window, which is drawn anew for either, takes its time from the renderer.
@@ -58,9 +60,13 @@ struct State<'a> {
     serial: u64,
     /// What of a render is shown.
     shown: Shown,
+    /// Pictures tell what is known of each pixel.
+    looks_closer: bool,
     denoising: Denoising,
     /// The latest denoised picture of what is being rendered.
     denoised: Option<Denoised>,
+    /// There is something to do.
+    at_work: Option<AtWork<'static>>,
 }
 
 /// A session for the window, where a denoised picture or layers may be wanted of what is there already.
@@ -74,10 +80,13 @@ impl<'a> State<'a> {
         Self {
             shared,
             repaint,
-            assets,
             wanted_layers: Vec::new(),
             session: None,
-            snapshot: Snapshot::default(),
+            snapshot: Snapshot {
+                loading: assets.loading().clone(),
+                ..Snapshot::default()
+            },
+            assets,
             stage: None,
             taken_at: Instant::now(),
             samples_per_second: 0.0,
@@ -87,11 +96,13 @@ impl<'a> State<'a> {
             told_at: Instant::now(),
             serial: 0,
             shown: Shown::default(),
+            looks_closer: false,
             denoising: Denoising::spawn({
                 let shared = shared.clone();
                 move || shared.wake()
             }),
             denoised: None,
+            at_work: None,
         }
     }
 }
@@ -110,20 +121,17 @@ impl State<'_> {
         if let Some(device) = self.session.as_ref().and_then(Session::device) {
             orders.mishaps.iter().for_each(|mishap| mishap.befall(device));
         }
-        if orders.reload || orders.restart {
+        (0..orders.reloads).for_each(|_| self.reload());
+        if orders.restart {
             self.guarded(|state| {
-                let session = state.session()?;
-                if orders.reload {
-                    session.reload();
-                } else {
-                    session.forget();
-                }
+                state.session()?.forget();
                 Ok(())
             });
             self.restart();
         }
-        if let Some(shown) = orders.shown {
-            self.shown = shown;
+        if orders.shown.is_some() || orders.looks_closer.is_some() {
+            self.shown = orders.shown.unwrap_or(self.shown);
+            self.looks_closer = orders.looks_closer.unwrap_or(self.looks_closer);
             if self.stage.as_ref().is_some_and(|stage| stage.is_shown) {
                 self.guarded(Self::show_anew);
             }
@@ -150,51 +158,6 @@ impl State<'_> {
         }
         self.make_layers();
         Some(())
-    }
-
-    /// Reads the orders; waits for some where there is nothing to render. A submission is left lying while the one
-    /// before it must still be shown.
-    fn await_orders(&self) -> (Orders, bool) {
-        let mut book = lock(&self.shared.orders);
-        loop {
-            let is_busy = self.should_render(book.is_paused);
-            let rest_left = self.stage.as_ref().and_then(Stage::rest_left);
-            let has_news = self.activity(book.is_paused) != self.snapshot.activity || self.denoising.has_news();
-            if is_busy || has_news || !book.orders.is_empty() || rest_left.is_some_and(|left| left.is_zero()) {
-                break;
-            }
-            let wait = rest_left.unwrap_or(Duration::from_secs(3600));
-            let waited = self.shared.ordered.wait_timeout(book, wait);
-            book = waited.unwrap_or_else(std::sync::PoisonError::into_inner).0;
-        }
-        let mut orders = std::mem::take(&mut book.orders);
-        let must_wait = self
-            .stage
-            .as_ref()
-            .is_some_and(|stage| !stage.may_be_replaced(self.taken_at));
-        if must_wait && self.should_render(book.is_paused) {
-            book.orders.submission = orders.submission.take();
-        }
-        (orders, book.is_paused)
-    }
-
-    /// Whether there is something to step: when paused, only what has not been shown at all.
-    fn should_render(&self, is_paused: bool) -> bool {
-        let (Some(stage), Some(session)) = (&self.stage, &self.session) else {
-            return false;
-        };
-        !session.progress().is_done && (!is_paused || !stage.is_shown)
-    }
-
-    /// What there is to do now that orders have been followed.
-    fn activity(&self, is_paused: bool) -> Activity {
-        match (&self.stage, &self.session) {
-            (Some(_), Some(_)) if self.denoising.is_pending() => Activity::Rendering,
-            (Some(_), Some(session)) if session.progress().is_done => Activity::Done,
-            (Some(_), Some(_)) if is_paused => Activity::Paused,
-            (Some(_), Some(_)) => Activity::Rendering,
-            _ => Activity::Idle,
-        }
     }
 
     /// What an order or the step before left to tell.
@@ -276,7 +239,12 @@ impl State<'_> {
             Ok(Ok(())) => return true,
             Ok(Err(SessionError::Gpu(error))) if error.is_lost() => error.to_string(),
             Ok(Err(error)) => {
-                self.say(Level::Error, error.to_string());
+                if error.is_cancelled() {
+                    self.say(Level::Info, error.to_string());
+                    lock(&self.shared.events).push(Event::Cancelled);
+                } else {
+                    self.say(Level::Error, error.to_string());
+                }
                 return false;
             }
             Err(panic) => panic,
@@ -309,47 +277,6 @@ impl State<'_> {
         self.samples_per_second = 0.0;
         self.note_engine();
         false
-    }
-
-    fn load_model(&mut self, source: ModelSource, options: ModelOptions) {
-        self.tell(Activity::Loading(source.to_string()));
-        let path = PathBuf::from(source.to_string());
-        self.loaded(path, |state| {
-            let model = state.session()?.assets().model(&source, &options)?;
-            if let Some(summary) = model.report.summary() {
-                state.say(Level::Warning, summary);
-            }
-            Ok(Event::ModelOpened(source, options, model))
-        });
-    }
-
-    fn load_environment(&mut self, source: EnvironmentSource) {
-        self.tell(Activity::Loading(source.to_string()));
-        let path = PathBuf::from(source.to_string());
-        self.loaded(path, |state| {
-            let environment = state
-                .session()?
-                .assets()
-                .environment(&source, EnvironmentEncoding::default())?;
-            for warning in &environment.warnings {
-                state.say(Level::Warning, warning.clone());
-            }
-            Ok(Event::EnvironmentOpened(source, environment))
-        });
-    }
-
-    /// Tells how loading went; what is being rendered is not touched by a failure.
-    fn loaded(&mut self, path: PathBuf, work: impl FnOnce(&mut Self) -> Result<Event, SessionError>) {
-        let event = match caught(|| work(self)) {
-            Ok(Ok(event)) => event,
-            Ok(Err(error)) => Event::OpenFailed(path, error.to_string()),
-            Err(panic) => {
-                let why = format!("{}: reading it failed: {panic}", path.display());
-                Event::OpenFailed(path, why)
-            }
-        };
-        lock(&self.shared.events).push(event);
-        (self.repaint)();
     }
 
     /// The stage's document once more, as after a change of engine.
@@ -455,13 +382,13 @@ impl State<'_> {
 
     fn hand_over(&mut self, document: &Arc<Document>) -> Result<(), SessionError> {
         if self.is_new_model(document) {
-            self.tell(Activity::Loading(document.model.to_string()));
+            self.begin_loading(document.model.to_string());
             self.session()?.assets().model(&document.model, &document.import)?;
             self.tell(Activity::Preparing);
         }
         let environment = &document.lighting.environment;
         if self.is_new_environment(environment) {
-            self.tell(Activity::Loading(environment.to_string()));
+            self.begin_loading(environment.to_string());
             let encoding = document.lighting.environment_encoding;
             self.session()?.assets().environment(environment, encoding)?;
         }
@@ -555,7 +482,8 @@ impl State<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::worker::{OrderBook, Pace};
+    use crate::render::worker::{OrderBook, Orders, Pace};
+    use crate::scene::ModelSource;
 
     #[test]
     fn a_full_resolution_that_cannot_be_had_is_tried_once() {

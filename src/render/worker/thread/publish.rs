@@ -4,10 +4,11 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use super::State;
-use crate::document::ViewSettings;
+use crate::document::{Denoise, ViewSettings};
 use crate::job::film::Image;
-use crate::render::display::{Shown, display, map, map_of_errors};
+use crate::render::display::display;
 use crate::render::session::SessionError;
+use crate::render::shown::{Facts, Shown, map, map_of_errors};
 use crate::render::worker::{Activity, Level, Picture};
 
 impl State<'_> {
@@ -25,9 +26,14 @@ impl State<'_> {
         let progress = self.session()?.progress();
         let Some(stage) = &self.stage else { return Ok(()) };
         if self.denoising.shows(&stage.submission.document, &progress) {
-            let how = stage.submission.document.view.denoise;
+            // The first look after an edit is to be there soon; what follows is as careful as was asked for.
+            let is_first_look = progress.samples_per_pixel < 2 && !progress.is_done;
+            let how = match stage.submission.document.view.denoise {
+                _ if is_first_look => Denoise::Fast,
+                chosen => chosen,
+            };
             let noisy = self.session()?.noisy()?;
-            self.denoising.ask(noisy, how, progress.samples_per_pixel);
+            self.denoising.ask(noisy, how, &progress);
             return Ok(());
         }
         let image = Arc::new(self.session()?.image()?);
@@ -73,18 +79,25 @@ impl State<'_> {
         samples_per_pixel: u32,
     ) -> Result<(), SessionError> {
         let wanted = self.shown;
-        let denoised = self.denoised.as_ref().filter(|denoised| !denoised.error_map.is_empty());
-        let map = match (wanted, denoised) {
-            (Shown::Picture, _) => None,
-            (Shown::Error, Some(denoised)) => Some(map_of_errors(&denoised.error_map)),
-            _ => map(self.session()?.film()?, wanted),
+        let looks_closer = self.looks_closer;
+        let Some(view) = self.stage.as_ref().map(|stage| stage.submission.document.view) else {
+            return Ok(());
         };
+        let denoised_errors = self.denoised.as_ref().map(|denoised| denoised.error_map.clone());
+        let denoised_errors = denoised_errors.filter(|errors| !errors.is_empty());
+        let (mut made, mut facts) = (None, None);
+        if wanted != Shown::Picture || looks_closer {
+            let source = self.session()?.source(&image, &view)?;
+            made = match (wanted, &denoised_errors) {
+                (Shown::Error, Some(errors)) => Some(map_of_errors(errors)),
+                _ => map(&source, wanted),
+            };
+            facts = looks_closer.then(|| Arc::new(Facts::of(&source, denoised_errors.as_deref())));
+        }
         let Some(stage) = &mut self.stage else { return Ok(()) };
         self.serial += 1;
-        let (rgba, scale) = match map {
-            Some((rgba, scale)) => (rgba, Some(scale)),
-            None => (shown(&image, &stage.submission.document.view), None),
-        };
+        let map = made.as_ref().map(|map| (wanted, map.scale));
+        let rgba = made.map_or_else(|| shown(&image, &view), |map| map.rgba);
         stage.is_shown = true;
         if self.snapshot.first_picture.is_none() {
             self.snapshot.first_picture = Some(stage.submission.at.elapsed());
@@ -99,7 +112,8 @@ impl State<'_> {
             revision: stage.submission.revision,
             reduction: stage.reduction,
             samples_per_pixel,
-            map: scale.map(|scale| (wanted, scale)),
+            map,
+            facts,
             document: stage.submission.document.clone(),
         }));
         self.tell(Activity::Rendering);

@@ -1,6 +1,7 @@
 //! The pictures that slots look up: which are in use, how they are placed, what becomes of those that cannot be had.
 
 use std::collections::HashMap;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use gltf::json;
 use json::extensions::texture::TextureTransform;
@@ -12,7 +13,7 @@ use super::{Materials, Reference};
 use crate::scene::gltf::image;
 use crate::scene::model::{Filter, Slot, Texture, TextureRef, Wrap};
 use crate::scene::report::Fate;
-use crate::scene::texture::scaled_to;
+use crate::scene::texture_scale::scaled_to;
 
 /// A picture that slots look up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,14 +40,19 @@ impl Materials<'_> {
             self.slots.iter().any(|(slot, _)| is_used_as_color(slot))
         };
         let side_max = self.texture_side_max;
+        let (begun, count) = (AtomicUsize::new(0), images.len());
+        let loading = &self.document.files.loading;
         let results: Vec<_> = images
             .into_par_iter()
             .map(|image| {
-                let texture = image::decode(self.document, image);
-                (
-                    image,
-                    texture.map(|texture| scaled_to(texture, side_max, is_color(image))),
-                )
+                let number = begun.fetch_add(1, Relaxed) + 1;
+                let wanted = loading.step(format!("picture {number} of {count}"));
+                let texture = wanted
+                    .map_err(|cancelled| cancelled.to_string())
+                    .and_then(|()| image::decode(self.document, image));
+                let is_color = is_color(image);
+                let scaled = texture.map(|texture| scaled_to(texture.texture(is_color), side_max, is_color));
+                (image, scaled)
             })
             .collect();
         let mut decoded = HashMap::new();

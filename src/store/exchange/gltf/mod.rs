@@ -91,6 +91,14 @@ impl Format for Gltf {
         Ok(packed(path, json, file.bytes, is_binary, reports))
     }
 
+    fn is_text(&self) -> bool {
+        false
+    }
+
+    fn takes_models(&self) -> bool {
+        true
+    }
+
     fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
         let source = ModelSource::File(path.to_owned());
         let model = load(&source)?;

@@ -1,9 +1,15 @@
 //! MaterialX 1.39: surfaces of OpenPBR, or Autodesk's Standard Surface.
 
+mod artistic;
+mod bake;
+mod graph;
+mod include;
+mod read;
+
 use std::path::Path;
 
+use self::artistic::edge_color;
 use super::carried;
-use super::materialx_read;
 use super::open_pbr::{Value, inputs};
 use super::surface::{Surface, Takes};
 use super::xml::{Element, identifier, numbers};
@@ -18,8 +24,6 @@ pub struct MaterialX {
 /// The attribute of a material that has the exact parameters.
 pub(super) const CARRIER: &str = carried::MARK;
 const STANDARD: Takes = Takes {
-    // Its specular color is a metal's tint at grazing angles by another law.
-    edge_tint: false,
     widths: standard_widths,
     ..Takes::OPEN_PBR
 };
@@ -60,7 +64,7 @@ impl Format for MaterialX {
     }
 
     fn read(&self, path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
-        materialx_read::read(path, options)
+        read::read(path, options)
     }
 }
 
@@ -151,7 +155,7 @@ fn standard_surface(surface: &Surface, name: &str) -> Element {
         .child(color(
             "specular_color",
             if surface.metalness > 0.5 {
-                [1.0; 3]
+                edge_color(surface.base_color, surface.edge_tint)
             } else {
                 surface.specular_color
             },

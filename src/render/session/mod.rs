@@ -1,15 +1,16 @@
 //! A document being rendered.
 
+mod films;
+
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use super::assets::Assets;
+use super::assets::{Assets, Reloaded};
+use super::calibration;
 use super::compile::Compiler;
 use super::convergence::{Convergence, Measurement, fewest_samples, mean_samples};
-use super::denoise::Noisy;
 use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision, cpu};
 use super::memory;
-use super::output::Layers;
 use super::workshop::Workshop;
 use crate::analysis::halves::Distance;
 use crate::analysis::noise::Noise;
@@ -18,8 +19,6 @@ use crate::document::{Denoise, Document};
 use crate::gpu::{GpuDevice, GpuError};
 use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
-use crate::job::features::Features;
-use crate::job::film::{Film, Image};
 use crate::scene::ModelError;
 use crate::scene::environment::EnvironmentError;
 
@@ -38,6 +37,16 @@ pub enum SessionError {
     /// The picture does not fit the memory; nothing has been begun.
     #[error(transparent)]
     TooLarge(#[from] memory::TooLarge),
+}
+
+impl SessionError {
+    /// Whether nothing is wrong: somebody called it off.
+    pub fn is_cancelled(&self) -> bool {
+        matches!(
+            self,
+            Self::Model(ModelError::Cancelled(_)) | Self::Environment(EnvironmentError::Cancelled(_))
+        )
+    }
 }
 
 /// What ended a render.
@@ -112,6 +121,9 @@ impl Progress {
     }
 }
 
+/// How long both must have rendered before their rates are compared, seconds.
+const RATE_SECONDS: f64 = 0.5;
+
 /// A document, what it needs, and the engine that renders it.
 pub struct Session {
     engine: Engine,
@@ -124,8 +136,11 @@ pub struct Session {
     render_time: Duration,
     /// Of it the time in the engine's steps.
     step_time: Duration,
-    /// Engine time of the stand-in, before the engine took over, seconds.
+    /// Engine time of the stand-in, before the engine took over, seconds; and what it rendered, pixel samples.
     stand_in_seconds: f64,
+    stand_in_samples: u64,
+    /// Nobody said which engine renders.
+    is_automatic: bool,
     /// Where kernels are compiled beside the picture; `None` where the session waits for them.
     workshop: Option<Workshop>,
     /// The GPU can't take over what the processor draws.
@@ -169,6 +184,8 @@ impl Session {
             render_time: Duration::ZERO,
             step_time: Duration::ZERO,
             stand_in_seconds: 0.0,
+            stand_in_samples: 0,
+            is_automatic: false,
             workshop: None,
             keeps_stand_in: false,
             is_stuck: false,
@@ -186,6 +203,7 @@ impl Session {
     /// As [`Session::open`].
     pub fn open_fluid(choice: EngineChoice, assets: Assets) -> Result<Self, SessionError> {
         let mut session = Self::around(Engine::open(choice, false)?, assets);
+        session.is_automatic = choice == EngineChoice::Auto;
         let stand_in = Engine::Cpu(Box::default());
         match std::mem::replace(&mut session.engine, stand_in) {
             Engine::Gpu(engine) => session.workshop = Some(Workshop::new(*engine)),
@@ -213,6 +231,7 @@ impl Session {
         };
         let Some(mut engine) = engine else { return Ok(()) };
         self.stand_in_seconds += self.engine_seconds();
+        self.stand_in_samples = self.engine.schedule().pixel_samples();
         self.step_time = Duration::ZERO;
         if let Engine::Cpu(stand_in) = std::mem::replace(&mut self.engine, Engine::Cpu(Box::default())) {
             let (film, schedule) = stand_in.hand_over();
@@ -259,10 +278,18 @@ impl Session {
         self.document = None;
     }
 
-    /// Forgets files, too, so that they are read again.
-    pub fn reload(&mut self) {
-        self.assets.reload();
+    /// Reads the files of a document again; what they hold now. The next submission starts over.
+    ///
+    /// # Errors
+    /// A model or environment that can't be loaded; what is rendered then goes on.
+    pub fn reload(&mut self, document: &Document) -> Result<Reloaded, SessionError> {
+        let lighting = &document.lighting;
+        let (environment, encoding) = (&lighting.environment, lighting.environment_encoding);
+        let reloaded = self
+            .assets
+            .reload(&document.model, &document.import, environment, encoding)?;
         self.forget();
+        Ok(reloaded)
     }
 
     /// The numbers being rendered.
@@ -348,7 +375,29 @@ impl Session {
         self.change_over()?;
         let outcome = self.render(budget);
         self.is_stuck = outcome.is_err();
+        if let Some([software, processor]) = self.rates() {
+            calibration::compare_rates(software, processor);
+        }
         outcome
+    }
+
+    /// Samples a second of software Vulkan and, on the same picture, of the processor that stood in for it while a kernel
+    /// was compiled on its cores; where it was found to be the faster one, and both have rendered long enough to tell.
+    fn rates(&self) -> Option<[f64; 2]> {
+        let is_of_interest = self.is_automatic && self.info.is_software && self.device().is_some();
+        let seconds = self.engine_seconds() - self.stand_in_seconds;
+        if !is_of_interest || self.stand_in_seconds.min(seconds) < RATE_SECONDS {
+            return None;
+        }
+        let samples = self
+            .engine
+            .schedule()
+            .pixel_samples()
+            .saturating_sub(self.stand_in_samples);
+        Some([
+            samples as f64 / seconds,
+            self.stand_in_samples as f64 / self.stand_in_seconds,
+        ])
     }
 
     fn render(&mut self, budget: Duration) -> Result<Progress, SessionError> {
@@ -460,51 +509,6 @@ impl Session {
     fn time_limit(&self) -> Option<Duration> {
         let seconds = self.document.as_ref()?.render.time_s?;
         Some(Duration::from_secs_f64(seconds.clamp(0.0, 1e9)))
-    }
-
-    /// The sums of what has been rendered.
-    ///
-    /// # Errors
-    /// If the GPU fails.
-    pub fn film(&mut self) -> Result<&Film, SessionError> {
-        Ok(self.engine.film()?)
-    }
-
-    /// The mean picture, linear.
-    ///
-    /// # Errors
-    /// If the GPU fails.
-    pub fn image(&mut self) -> Result<Image, SessionError> {
-        Ok(self.film()?.image())
-    }
-
-    /// The mean picture with what is known beside it about each pixel.
-    ///
-    /// # Errors
-    /// If the GPU fails.
-    pub fn layers(&mut self) -> Result<Layers, SessionError> {
-        let units = self.world_units_per_unit();
-        let film = self.engine.film()?;
-        Ok(Layers {
-            image: film.image(),
-            denoised: None,
-            features: Features::of(film, units),
-            samples: (0..film.pixel_count())
-                .map(|pixel| film.samples_of(pixel) as f32)
-                .collect(),
-            variance: (0..film.pixel_count())
-                .map(|pixel| film.variance_of_mean_at(pixel) as f32)
-                .collect(),
-        })
-    }
-
-    /// What the denoiser needs of what has been rendered.
-    ///
-    /// # Errors
-    /// If the GPU fails.
-    pub fn noisy(&mut self) -> Result<Noisy, SessionError> {
-        let region = self.document.as_ref().and_then(|document| document.render.region);
-        Ok(Noisy::of(self.film()?, region))
     }
 
     /// Takes note of the error of the denoised picture: a noise to reach is that of what is shown.

@@ -1,25 +1,34 @@
-//! Documents of MaterialX, read: the surfaces of four models with constant inputs, pictures by their mean. What a graph
-//! would compute is named in the report.
+//! Documents of MaterialX, read: the surfaces of five models with one value for each input. Pictures are taken by their mean.
+//! What a graph computes is computed ([`super::graph`]) or baked ([`super::bake`]), else named in the report.
 
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use roxmltree::{Document, Node};
 
-use super::materialx::{CARRIER, MaterialX};
-use super::open_pbr::{NITS, widening};
-use super::report::Entry;
-use super::surface::Surface;
-use super::{ExchangeError, Format as _, ReadOptions, Subject, carried};
+use super::artistic::edge_tint;
+use super::bake::Baker;
+use super::graph::{Unknown, child, shaders, source_of, worth};
+use super::include::whole_text;
+use super::{CARRIER, MaterialX};
 use crate::document::MaterialSettings;
+use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::anisotropy_from_ratio;
-use crate::optics::tone::linear_from_srgb;
-use crate::optics::vector::Vec3;
-use crate::scene::texture::mean_of_file;
 use crate::scene::widths_from_gltf;
+use crate::store::exchange::open_pbr::{NITS, widening};
+use crate::store::exchange::report::Entry;
+use crate::store::exchange::surface::Surface;
+use crate::store::exchange::{ExchangeError, Format as _, ReadOptions, Subject, carried};
 
-/// Deepest chain of nodes that is followed.
-const DEPTH_MAX: usize = 64;
+/// Inputs that vary over the surface or have no meaning in one value: nothing of a graph is taken for them.
+const DIRECTIONS: [&str; 6] = [
+    "normal",
+    "coat_normal",
+    "geometry_normal",
+    "geometry_coat_normal",
+    "clearcoat_normal",
+    "displacement",
+];
 
 /// The materials of a document.
 ///
@@ -27,12 +36,12 @@ const DEPTH_MAX: usize = 64;
 /// What is wrong with it.
 pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, ExchangeError> {
     let bytes = crate::store::file::read(path)?;
-    let text = String::from_utf8_lossy(&bytes);
     let wrong = |reason: String| ExchangeError::Contents {
         path: path.to_owned(),
         format: "MaterialX",
         reason,
     };
+    let text = whole_text(path, String::from_utf8_lossy(&bytes).into_owned()).map_err(wrong)?;
     let document = Document::parse(&text).map_err(|error| wrong(error.to_string()))?;
     let root = document.root_element();
     if !root.has_tag_name("materialx") {
@@ -40,9 +49,9 @@ pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, Exchang
     }
     let mut subject = Subject::default();
     let mut refused = Vec::new();
+    let mut baker = Baker::of(path);
     for (shader, material) in shaders(root) {
-        let folder = path.parent().unwrap_or(Path::new("."));
-        match read_surface(shader, material, folder) {
+        match read_surface(shader, material, path, &mut baker) {
             Ok((surface, losses)) => {
                 let (material, losses) = exact_or_shown(&surface, losses, material, shader, options);
                 subject.materials.push(material);
@@ -67,38 +76,6 @@ pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, Exchang
     Ok(subject)
 }
 
-/// The surface shaders with the materials that name them; those that no material names where there is no material.
-fn shaders<'a>(root: Node<'a, 'a>) -> Vec<(Node<'a, 'a>, Option<Node<'a, 'a>>)> {
-    let materials = root.descendants().filter(|node| node.has_tag_name("surfacematerial"));
-    let named: Vec<_> = materials
-        .filter_map(|material| {
-            let place = child(material, "surfaceshader")?;
-            let shader = sibling(material, place.attribute("nodename")?)?;
-            Some((shader, Some(material)))
-        })
-        .collect();
-    if !named.is_empty() {
-        return named;
-    }
-    let is_shader =
-        |node: &Node<'_, '_>| node.attribute("type") == Some("surfaceshader") && !node.has_tag_name("input");
-    let alone = root.children().filter(is_shader);
-    alone.map(|shader| (shader, None)).collect()
-}
-
-/// The input of that name.
-fn child<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
-    let is_meant = |child: &Node<'_, '_>| child.has_tag_name("input") && child.attribute("name") == Some(name);
-    node.children().find(is_meant)
-}
-
-/// The element of that name beside a node.
-fn sibling<'a>(node: Node<'a, 'a>, name: &str) -> Option<Node<'a, 'a>> {
-    node.parent()?
-        .children()
-        .find(|other| other.attribute("name") == Some(name))
-}
-
 /// The exact parameters where the file has them and shows what they would show; else what it shows.
 fn exact_or_shown(
     surface: &Surface,
@@ -117,7 +94,17 @@ fn exact_or_shown(
             "the file was changed since it was exported",
         ));
     }
-    (surface.material(options.lobe), losses)
+    let mut material = surface.material(options.lobe);
+    if reflects_exactly(shader) && material.metalness < 1.0 {
+        material.fresnel = Fresnel::Dielectric;
+    }
+    (material, losses)
+}
+
+/// Whether a surface's dielectric reflects by the exact equations; the others' by Schlick's approximation.
+fn reflects_exactly(shader: Node<'_, '_>) -> bool {
+    let exact = ["open_pbr_surface", "standard_surface", "disney_principled"];
+    exact.iter().any(|kind| shader.has_tag_name(*kind))
 }
 
 /// What a file would show into which a material is written.
@@ -127,7 +114,8 @@ fn shown_by(material: &MaterialSettings, is_standard: bool) -> Option<Surface> {
     let text = String::from_utf8(written.bytes).ok()?;
     let document = Document::parse(&text).ok()?;
     let (shader, material) = shaders(document.root_element()).into_iter().next()?;
-    Some(read_surface(shader, material, Path::new("")).ok()?.0)
+    let nowhere = Path::new("");
+    Some(read_surface(shader, material, nowhere, &mut Baker::of(nowhere)).ok()?.0)
 }
 
 /// Whether two surfaces are the same but for the digits that other programs write.
@@ -194,18 +182,17 @@ impl Inputs {
 fn read_surface(
     shader: Node<'_, '_>,
     material: Option<Node<'_, '_>>,
-    folder: &Path,
+    path: &Path,
+    baker: &mut Baker<'_>,
 ) -> Result<(Surface, Vec<Entry>), String> {
     let mut inputs = Inputs {
         values: HashMap::new(),
         losses: Vec::new(),
     };
-    let turn_deg = read_inputs(shader, folder, &mut inputs);
     let named = material.unwrap_or(shader);
-    let name = named
-        .attribute("uiname")
-        .or(named.attribute("name"))
-        .unwrap_or("material");
+    let own_name = named.attribute("name").unwrap_or("material");
+    let turn_deg = read_inputs(shader, path, &mut inputs, &mut |input| baker.mean(own_name, input));
+    let name = named.attribute("uiname").unwrap_or(own_name);
     let mut surface = match shader.tag_name().name() {
         "open_pbr_surface" => open_pbr(&mut inputs),
         "standard_surface" => standard_surface(&mut inputs),
@@ -219,8 +206,15 @@ fn read_surface(
     Ok((surface, inputs.losses))
 }
 
-/// Fills in the inputs that have a value, by whatever way, and gives the turn of the tangent in degrees.
-fn read_inputs(shader: Node<'_, '_>, folder: &Path, inputs: &mut Inputs) -> f32 {
+/// Fills in the inputs that have a value, by whatever way, and gives the turn of the tangent in degrees. `baked` is asked for
+/// what is not computed here.
+fn read_inputs(
+    shader: Node<'_, '_>,
+    path: &Path,
+    inputs: &mut Inputs,
+    baked: &mut dyn FnMut(&str) -> Result<[f32; 3], String>,
+) -> f32 {
+    let folder = path.parent().unwrap_or(Path::new("."));
     let mut turn_deg = 0.0;
     for input in shader.children().filter(|node| node.has_tag_name("input")) {
         let Some(name) = input.attribute("name") else { continue };
@@ -232,17 +226,40 @@ fn read_inputs(shader: Node<'_, '_>, folder: &Path, inputs: &mut Inputs) -> f32 
             }
             continue;
         }
-        match constant(input, folder, 0) {
-            Ok(Constant::Value(value)) => {
-                inputs.values.insert(name.to_owned(), value);
+        if DIRECTIONS.contains(&name) {
+            if source_of(input).is_some() {
+                let reason = "textures travel with models; here each parameter has one value";
+                inputs.losses.push(Entry::dropped(name, reason));
             }
-            Ok(Constant::Mean(value, file)) => {
-                let detail = format!("the mean of {}", file.display());
-                inputs.losses.push(Entry::approximated(name, detail, None));
-                inputs.values.insert(name.to_owned(), value);
+            continue;
+        }
+        match worth(input, folder) {
+            Ok(Some(found)) => {
+                let pictures: Vec<String> = found.pictures.iter().map(|file| file.display().to_string()).collect();
+                let of = if found.is_computed {
+                    "computed of the mean of"
+                } else {
+                    "the mean of"
+                };
+                if !pictures.is_empty() {
+                    let detail = format!("{of} {}", pictures.join(", "));
+                    inputs.losses.push(Entry::approximated(name, detail, None));
+                }
+                inputs.values.insert(name.to_owned(), found.color());
             }
-            Ok(Constant::Nothing) => {}
-            Err(reason) => inputs.losses.push(Entry::dropped(name, reason)),
+            Ok(None) => {}
+            Err(Unknown::Computed(kind)) => match baked(name) {
+                Ok(mean) => {
+                    let detail = format!("what a graph computes ({kind}): its mean, baked by MaterialX");
+                    inputs.losses.push(Entry::approximated(name, detail, None));
+                    inputs.values.insert(name.to_owned(), mean);
+                }
+                Err(why) => {
+                    let detail = format!("what a graph computes ({kind}); {why}");
+                    inputs.losses.push(Entry::dropped(name, detail));
+                }
+            },
+            Err(Unknown::Missing(what)) => inputs.losses.push(Entry::dropped(name, what)),
         }
     }
     turn_deg
@@ -250,121 +267,12 @@ fn read_inputs(shader: Node<'_, '_>, folder: &Path, inputs: &mut Inputs) -> f32 
 
 /// The turn of a tangent by a node `rotate3d`, degrees.
 fn turned_tangent(input: Node<'_, '_>) -> Option<f32> {
-    let source = source_of(input)?;
+    let source = source_of(input)?.node;
     let turn = source
         .has_tag_name("rotate3d")
         .then(|| child(source, "amount"))
         .flatten()?;
     turn.attribute("value")?.trim().parse().ok()
-}
-
-/// What an input is worth everywhere.
-enum Constant {
-    /// It says so.
-    Value([f32; 3]),
-    /// The mean of a picture.
-    Mean([f32; 3], PathBuf),
-    /// It has no value of its own.
-    Nothing,
-}
-
-fn constant(input: Node<'_, '_>, folder: &Path, depth: usize) -> Result<Constant, String> {
-    if depth > DEPTH_MAX {
-        return Err("a graph that goes in a circle".to_owned());
-    }
-    if let Some(value) = input.attribute("value") {
-        return Ok(value_of(input, value).map_or(Constant::Nothing, Constant::Value));
-    }
-    if let Some(name) = input.attribute("interfacename") {
-        let graph = input.ancestors().find(|node| node.has_tag_name("nodegraph"));
-        let of_graph = graph.and_then(|graph| child(graph, name));
-        return of_graph.map_or(Ok(Constant::Nothing), |of_graph| constant(of_graph, folder, depth + 1));
-    }
-    let Some(source) = source_of(input) else {
-        let is_plain = input.attribute("nodename").or(input.attribute("nodegraph")).is_none();
-        return if is_plain {
-            Ok(Constant::Nothing)
-        } else {
-            Err("a node that is not there".to_owned())
-        };
-    };
-    match source.tag_name().name() {
-        "image" | "tiledimage" | "gltf_image" | "gltf_colorimage" | "UsdUVTexture" => picture(source, folder),
-        "constant" => child(source, "value").map_or(Ok(Constant::Nothing), |value| constant(value, folder, depth + 1)),
-        "dot" | "convert" => {
-            child(source, "in").map_or(Ok(Constant::Nothing), |inner| constant(inner, folder, depth + 1))
-        }
-        other => Err(format!("what a graph computes ({other})")),
-    }
-}
-
-/// The node that an input is connected to.
-fn source_of<'a>(input: Node<'a, 'a>) -> Option<Node<'a, 'a>> {
-    let node = input.parent()?;
-    if let Some(name) = input.attribute("nodename") {
-        return sibling(node, name);
-    }
-    let graph = sibling(node, input.attribute("nodegraph")?)?;
-    let is_meant = |output: &Node<'_, '_>| {
-        output.has_tag_name("output")
-            && input
-                .attribute("output")
-                .is_none_or(|name| output.attribute("name") == Some(name))
-    };
-    let name = graph.children().find(is_meant)?.attribute("nodename")?;
-    graph.children().find(|node| node.attribute("name") == Some(name))
-}
-
-/// The mean of a picture.
-fn picture(node: Node<'_, '_>, folder: &Path) -> Result<Constant, String> {
-    let Some(input) = child(node, "file") else {
-        return Err("a picture without a file".to_owned());
-    };
-    let of_graph = input.attribute("interfacename").and_then(|name| {
-        let graph = input.ancestors().find(|node| node.has_tag_name("nodegraph"))?;
-        child(graph, name)
-    });
-    let input = of_graph.unwrap_or(input);
-    let name = input.attribute("value").unwrap_or_default();
-    // Prefixes add up from the outside inwards.
-    let prefixes: Vec<&str> = input
-        .ancestors()
-        .filter_map(|node| node.attribute("fileprefix"))
-        .collect();
-    let prefix: String = prefixes.into_iter().rev().collect();
-    let file = PathBuf::from(format!("{prefix}{name}"));
-    let mean = mean_of_file(&folder.join(&file)).map_err(|reason| format!("{}: {reason}", file.display()))?;
-    let is_encoded = colorspace(input).is_some_and(|space| space.starts_with("srgb"));
-    let [r, g, b, _] = mean.codes;
-    Ok(Constant::Mean(if is_encoded { mean.linear } else { [r, g, b] }, file))
-}
-
-fn colorspace<'a>(node: Node<'a, 'a>) -> Option<&'a str> {
-    node.ancestors().find_map(|node| node.attribute("colorspace"))
-}
-
-/// A value as text; one number stands for three.
-fn value_of(input: Node<'_, '_>, text: &str) -> Option<[f32; 3]> {
-    match text {
-        "true" => return Some([1.0; 3]),
-        "false" => return Some([0.0; 3]),
-        _ => {}
-    }
-    let numbers: Option<Vec<f32>> = text.split(',').map(|part| part.trim().parse().ok()).collect();
-    let numbers = numbers?.into_iter().map(|x| if f32::is_finite(x) { x } else { 0.0 });
-    match numbers.collect::<Vec<_>>()[..] {
-        [x] => Some([x; 3]),
-        [r, g, b, ..] => {
-            let is_encoded = input.attribute("type").is_some_and(|kind| kind.starts_with("color"))
-                && colorspace(input).is_some_and(|space| space.starts_with("srgb"));
-            Some(if is_encoded {
-                linear_from_srgb(Vec3::<f32>::from_f32([r, g, b])).to_f32()
-            } else {
-                [r, g, b]
-            })
-        }
-        _ => None,
-    }
 }
 
 fn weighted(color: [f32; 3], weight: f32) -> [f32; 3] {
@@ -409,7 +317,7 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         coat_weight: inputs.number("coat_weight", 0.0),
         coat_roughness: inputs.number("coat_roughness", 0.0),
         coat_ior: inputs.number("coat_ior", 1.6),
-        coat_color: inputs.color("coat_color", [1.0; 3]),
+        coat_color: darkening_coat_color(inputs),
         emission: weighted(
             inputs.color("emission_color", [1.0; 3]),
             inputs.number("emission_luminance", 0.0) / NITS,
@@ -417,6 +325,27 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         opacity: luminance(inputs.color("geometry_opacity", [1.0; 3])),
         ..Surface::default()
     }
+}
+
+/// The coat's color, with what the coat takes besides by reflecting back what comes out of the base (`coat_darkening`).
+fn darkening_coat_color(inputs: &Inputs) -> [f32; 3] {
+    let color = inputs.color("coat_color", [1.0; 3]);
+    let weight = inputs.number("coat_weight", 0.0).clamp(0.0, 1.0);
+    let darkening = inputs.number("coat_darkening", 1.0).clamp(0.0, 1.0);
+    if weight * darkening == 0.0 {
+        return color;
+    }
+    let ior = inputs.number("coat_ior", 1.6);
+    let head_on = ((ior - 1.0) / (ior + 1.0)).powi(2);
+    let kept_inside = 1.0 - (1.0 - head_on) / (ior * ior);
+    let metalness = inputs.number("base_metalness", 0.0);
+    let of_metal = 1.0 + (inputs.number("specular_weight", 1.0) - 1.0) * metalness;
+    let base = weighted(inputs.color("base_color", [0.8; 3]), of_metal);
+    std::array::from_fn(|i| {
+        let darkened = (1.0 - kept_inside) / (1.0 - base[i] * kept_inside);
+        let left = (1.0 + (color[i] - 1.0) * weight) * (1.0 + (darkened - 1.0) * weight * darkening);
+        (1.0 + (left - 1.0) / weight).clamp(0.0, 1.0)
+    })
 }
 
 fn standard_surface(inputs: &mut Inputs) -> Surface {
@@ -434,11 +363,20 @@ fn standard_surface(inputs: &mut Inputs) -> Surface {
         ("coat_affect_roughness", 0.0),
     ]);
     let ratio = 1.0 - inputs.number("specular_anisotropy", 0.0).clamp(0.0, 0.98);
+    let base_color = weighted(inputs.color("base_color", [0.8; 3]), inputs.number("base", 1.0));
+    let metalness = inputs.number("metalness", 0.0);
+    let (weight, color) = (inputs.number("specular", 1.0), inputs.color("specular_color", [1.0; 3]));
+    // A metal has it towards its edge.
+    let (specular_weight, specular_color, edge_tint) = match metalness > 0.5 {
+        true => (1.0, [1.0; 3], edge_tint(base_color, weighted(color, weight))),
+        false => (weight, color, [1.0; 3]),
+    };
     Surface {
-        base_color: weighted(inputs.color("base_color", [0.8; 3]), inputs.number("base", 1.0)),
-        metalness: inputs.number("metalness", 0.0),
-        specular_weight: inputs.number("specular", 1.0),
-        specular_color: inputs.color("specular_color", [1.0; 3]),
+        base_color,
+        metalness,
+        specular_weight,
+        specular_color,
+        edge_tint,
         ior: inputs.number("specular_IOR", 1.5),
         roughness: inputs.number("specular_roughness", 0.2),
         anisotropy: anisotropy_from_ratio(f64::from(ratio)) as f32,

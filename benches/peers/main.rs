@@ -1,0 +1,281 @@
+//! Glossmith's processor engine beside Mitsuba 3 on the same scene, in turns of one run; quoted in docs/PERFORMANCE.md.
+//!
+//! `cargo bench --bench peers [-- --quick]`. Millions of samples a second, and seconds to a relative mean squared error of
+//! 0.003, each against a long render of its own. Mitsuba is run by `scripts/peers`, with the Python that `scripts/setup
+//! test` installs; where it is not there, a line says so and only Glossmith is measured.
+
+mod scene;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use glossmith::document::{Document, MaterialSettings};
+use glossmith::job::film::Image;
+use glossmith::optics::fresnel::Fresnel;
+use glossmith::optics::lobe::Lobe;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::camera::PixelFilter;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::{ModelSource, teapot};
+use serde_json::{Value, json};
+
+/// Segments of a patch of the teapot, and how many triangles these make.
+const MESHES: [(u32, &str); 3] = [(9, "6k"), (28, "60k"), (90, "600k")];
+/// What the error is to come down to.
+const GOAL: f64 = 0.003;
+/// Indices of refraction of gold.
+const GOLD: [[f32; 3]; 2] = [[0.143, 0.375, 1.442], [3.983, 2.386, 1.603]];
+const EYE: [f64; 3] = [3.744_755_1, 4.459_777_26, 7.494_526_51];
+const TARGET: [f64; 3] = [0.25, 1.45, 0.0];
+const FOV_DEG: f64 = 45.0;
+/// About as large as the ground that Glossmith adds.
+const GROUND_HALF_SIDE: f64 = 64.0;
+/// Segments of a path, the camera's ray among them.
+const DEPTH: u32 = 8;
+
+/// Seconds of a render, and its picture.
+type Render = (f64, Vec<[f32; 3]>);
+
+/// How much is measured.
+struct Extent {
+    /// Side of the picture, pixels.
+    size: u32,
+    /// Samples of the renders that are timed, and whose error is told.
+    samples: u32,
+    /// Samples of the long renders.
+    reference: u32,
+    turns: u32,
+}
+
+const FULL: Extent = Extent {
+    size: 512,
+    samples: 64,
+    reference: 4096,
+    turns: 3,
+};
+const QUICK: Extent = Extent {
+    size: 256,
+    samples: 16,
+    reference: 512,
+    turns: 1,
+};
+
+/// A line of the table.
+struct Case {
+    material: &'static str,
+    mesh: &'static str,
+    ground: bool,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let extent = if std::env::args().any(|argument| argument == "--quick") {
+        QUICK
+    } else {
+        FULL
+    };
+    let folder = tempfile::tempdir()?;
+    scene::write_sky(&folder.path().join("sky.exr"))?;
+    for (segments, name) in MESHES {
+        scene::write_ply(&folder.path().join(format!("{name}.ply")), &teapot::mesh(segments))?;
+    }
+    scene::write_ply(&folder.path().join("ground.ply"), &scene::ground(GROUND_HALF_SIDE))?;
+    let peer = mitsuba(folder.path(), &json!({ "what": "variant" }));
+    match &peer {
+        Ok(answer) => println!("Mitsuba {}, {}", answer["version"], answer["variant"]),
+        Err(reason) => println!("Mitsuba is not measured: {reason}"),
+    }
+    println!("| material | triangles | M samples/s | Mitsuba's | ratio | s to relMSE {GOAL} | Mitsuba's | ratio |");
+    println!("|{}", " --- |".repeat(8));
+    let materials = ["metal 0.09", "metal 0.25", "diffuse", "plastic", "glass"];
+    let case = |material, mesh, ground| Case { material, mesh, ground };
+    let of_materials = materials.into_iter().map(|material| case(material, "60k", false));
+    let of_meshes = ["6k", "600k"].into_iter().map(|mesh| case(materials[0], mesh, false));
+    let on_ground = [materials[0], "diffuse"]
+        .into_iter()
+        .map(|material| case(material, "60k", true));
+    for case in of_materials.chain(of_meshes).chain(on_ground) {
+        compare(folder.path(), &case, &extent, peer.is_ok())?;
+    }
+    Ok(())
+}
+
+fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Result<(), Box<dyn Error>> {
+    let mut ours = Measured::default();
+    let mut theirs = Measured::default();
+    for turn in 0..extent.turns {
+        ours.add(glossmith(folder, case, extent.size, extent.samples, turn + 1)?);
+        if with_peer {
+            theirs.add(peer(folder, case, extent.size, extent.samples, turn + 1)?);
+        }
+    }
+    let pixels = f64::from(extent.size * extent.size * extent.samples);
+    let rate = |measured: &Measured| pixels / measured.seconds / 1e6;
+    let reference = glossmith(folder, case, extent.size, extent.reference, 1000)?.1;
+    let our_time = ours.time_to_goal(&reference);
+    let ground = if case.ground { ", ground" } else { "" };
+    let mut line = format!("| {} | {}{ground} | {:.2} |", case.material, case.mesh, rate(&ours));
+    if with_peer {
+        let reference = peer(folder, case, extent.size, extent.reference, 1000)?.1;
+        let their_time = theirs.time_to_goal(&reference);
+        let [ratio, sooner] = [rate(&ours) / rate(&theirs), our_time / their_time];
+        line += &format!(
+            " {:.2} | {ratio:.2} | {our_time:.2} | {their_time:.2} | {sooner:.2} |",
+            rate(&theirs)
+        );
+    } else {
+        line += &format!(" – | – | {our_time:.2} | – | – |");
+    }
+    println!("{line}");
+    Ok(())
+}
+
+/// Renders of one renderer: the quickest one's seconds, and all pictures.
+struct Measured {
+    seconds: f64,
+    pictures: Vec<Vec<[f32; 3]>>,
+}
+
+impl Default for Measured {
+    fn default() -> Self {
+        Self {
+            seconds: f64::INFINITY,
+            pictures: Vec::new(),
+        }
+    }
+}
+
+impl Measured {
+    fn add(&mut self, (seconds, picture): Render) {
+        self.seconds = self.seconds.min(seconds);
+        self.pictures.push(picture);
+    }
+
+    /// Seconds to the goal, if the squared error falls with the number of samples.
+    fn time_to_goal(&self, reference: &[[f32; 3]]) -> f64 {
+        let errors = self.pictures.iter().map(|picture| relative_error(picture, reference));
+        let error = errors.sum::<f64>() / self.pictures.len() as f64;
+        self.seconds * error / GOAL
+    }
+}
+
+/// The mean of (x − reference)² / (reference² + 0.01).
+fn relative_error(picture: &[[f32; 3]], reference: &[[f32; 3]]) -> f64 {
+    let numbers = picture.iter().flatten().zip(reference.iter().flatten());
+    let term = |(x, right): (&f32, &f32)| {
+        let (x, right) = (f64::from(*x), f64::from(*right));
+        (x - right).powi(2) / (right * right + 0.01)
+    };
+    numbers.map(term).sum::<f64>() / (3 * picture.len()) as f64
+}
+
+fn document(folder: &Path, case: &Case, size: u32) -> Document {
+    let mut document = Document {
+        model: ModelSource::File(folder.join(format!("{}.ply", case.mesh))),
+        ground: case.ground,
+        ..Document::default()
+    };
+    let metal = MaterialSettings {
+        lobe: Lobe::Ggx,
+        fresnel: Fresnel::Conductor,
+        roughness: 0.3,
+        eta: GOLD[0],
+        k: GOLD[1],
+        ..MaterialSettings::default()
+    };
+    let dielectric = MaterialSettings {
+        metalness: 0.0,
+        fresnel: Fresnel::Dielectric,
+        ..metal.clone()
+    };
+    document.materials = vec![match case.material {
+        "metal 0.25" => MaterialSettings {
+            roughness: 0.5,
+            ..metal
+        },
+        "diffuse" => MaterialSettings::diffuse("diffuse", [0.8; 3]),
+        "plastic" => MaterialSettings {
+            roughness: 0.1_f32.sqrt(),
+            base_color: [0.6, 0.1, 0.1],
+            ..dielectric
+        },
+        "glass" => MaterialSettings {
+            transmission_weight: 1.0,
+            base_color: [1.0; 3],
+            ..dielectric
+        },
+        _ => metal,
+    }];
+    document.lighting.environment = EnvironmentSource::File(folder.join("sky.exr"));
+    document.camera.position = Some(EYE);
+    document.camera.target = Some(TARGET);
+    document.camera.fov_deg = FOV_DEG;
+    let render = &mut document.render;
+    (render.width, render.height) = (size, size);
+    render.bounces = DEPTH - 2;
+    render.filter = PixelFilter::Box;
+    render.adaptive = Some(false);
+    document
+}
+
+/// Seconds of a render, and its picture.
+fn glossmith(folder: &Path, case: &Case, size: u32, samples: u32, seed: u32) -> Result<Render, Box<dyn Error>> {
+    let mut document = document(folder, case, size);
+    document.render.samples = samples;
+    document.render.seed = seed;
+    let mut session = Session::open(EngineChoice::Cpu)?;
+    session.submit(&document)?;
+    let begun = Instant::now();
+    session.step(Duration::from_secs(3600))?;
+    let seconds = begun.elapsed().as_secs_f64();
+    let Image { pixels, .. } = session.image()?;
+    Ok((seconds, pixels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()))
+}
+
+/// The same by Mitsuba.
+fn peer(folder: &Path, case: &Case, size: u32, samples: u32, seed: u32) -> Result<Render, Box<dyn Error>> {
+    let picture = folder.join("mitsuba.exr");
+    let question = json!({
+        "what": "render", "material": case.material, "mesh": case.mesh, "size": size, "samples": samples, "seed": seed,
+        "picture": picture, "eta": GOLD[0], "k": GOLD[1], "eye": EYE, "target": TARGET, "fov_deg": FOV_DEG,
+        "depth": DEPTH, "ground": case.ground,
+    });
+    let answer = mitsuba(folder, &question)?;
+    let seconds = answer["seconds"].as_f64().ok_or("no seconds")?;
+    let image = exr::prelude::read_first_rgba_layer_from_file(
+        &picture,
+        |size, _| (vec![[0.0; 3]; size.area()], size.width()),
+        |(pixels, width): &mut (Vec<[f32; 3]>, usize), place, (r, g, b, _): (f32, f32, f32, f32)| {
+            pixels[place.y() * *width + place.x()] = [r, g, b];
+        },
+    )?;
+    Ok((seconds, image.layer_data.channel_data.pixels.0))
+}
+
+/// What `scripts/peers` answers.
+fn mitsuba(folder: &Path, question: &Value) -> Result<Value, Box<dyn Error>> {
+    let home = std::env::home_dir().unwrap_or_default();
+    let data = std::env::var_os("XDG_DATA_HOME").map_or(home.join(".local/share"), PathBuf::from);
+    let tools = std::env::var_os("GLOSSMITH_TOOLS").map_or(data.join("glossmith/format-tools"), PathBuf::from);
+    let python = tools.join("bin/python");
+    if !python.exists() {
+        return Err(format!("{} is not there: scripts/setup test installs it", python.display()).into());
+    }
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/scripts/peers");
+    let run = Command::new(python)
+        .arg(script)
+        .arg(folder)
+        .arg(question.to_string())
+        .output()?;
+    if !run.status.success() {
+        let told = String::from_utf8_lossy(&run.stderr);
+        return Err(told
+            .lines()
+            .last()
+            .unwrap_or("it failed without a word")
+            .to_owned()
+            .into());
+    }
+    Ok(serde_json::from_slice(&run.stdout)?)
+}

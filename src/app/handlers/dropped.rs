@@ -1,0 +1,303 @@
+//! Files that are dropped on the window together, and names that are pasted.
+
+use std::path::{Path, PathBuf};
+
+use crate::app::App;
+use crate::app::actions::Action;
+use crate::render::worker::Level;
+use crate::scene::environment::{self, EnvironmentSource};
+use crate::scene::{Model, ModelOptions, ModelSource, holds_model, is_model};
+
+/// Endings of pictures for screens: environments where they are opened, base colours where they are dropped.
+const PICTURES: [&str; 8] = ["png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "tga"];
+/// Endings of pictures of light: environments.
+const LIGHT: [&str; 6] = ["hdr", "exr", "pic", "rgbe", "ktx2", "dds"];
+/// Endings of what other files refer to and nothing can be seen of by itself.
+const PARTS: [&str; 2] = ["bin", "mtl"];
+/// What the names of pictures of a base colour end in.
+const COLOR_NAMES: [&str; 6] = ["basecolor", "base_color", "albedo", "diffuse", "color", "col"];
+
+/// What was dropped on the window in this frame and, where text may be taken, pasted.
+pub(in crate::app) fn handed_over(ctx: &egui::Context, takes_text: bool) -> Vec<Action> {
+    ctx.input(|input| {
+        let dropped: Vec<_> = input
+            .raw
+            .dropped_files
+            .iter()
+            .map(|file| file.path().to_owned())
+            .collect();
+        let text = |event: &egui::Event| match event {
+            egui::Event::Paste(text) if takes_text => Some(text.trim().to_owned()),
+            _ => None,
+        };
+        let pasted = input.events.iter().filter_map(text).filter(|text| !text.is_empty());
+        let files = (!dropped.is_empty()).then_some(Action::Drop(dropped));
+        files.into_iter().chain(pasted.map(Action::Paste)).collect()
+    })
+}
+
+fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    endings.contains(&ending(path).as_str())
+}
+
+fn name(path: &Path) -> String {
+    path.file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned()
+}
+
+/// Whether a picture's name says that it is a base colour.
+fn is_called_color(path: &Path) -> bool {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
+    COLOR_NAMES.iter().any(|color| stem.ends_with(color))
+}
+
+/// What was dropped, by what it is for.
+#[derive(Debug, Default, PartialEq)]
+struct Sorted {
+    models: Vec<PathBuf>,
+    environments: Vec<PathBuf>,
+    pictures: Vec<PathBuf>,
+    parts: Vec<PathBuf>,
+    others: Vec<PathBuf>,
+}
+
+impl Sorted {
+    fn of(paths: Vec<PathBuf>) -> Self {
+        let mut sorted = Self::default();
+        if environment::are_faces(&paths) && paths.len() == 6 {
+            // All lie in one folder, which is opened.
+            let folder = paths[0].parent().map(Path::to_owned);
+            sorted.environments.extend(folder);
+            return sorted;
+        }
+        for path in paths {
+            let kind = if is_model(&path) || (path.is_dir() && holds_model(&path)) {
+                &mut sorted.models
+            } else if path.is_dir() || has_ending(&path, &LIGHT) {
+                &mut sorted.environments
+            } else if has_ending(&path, &PICTURES) {
+                &mut sorted.pictures
+            } else if has_ending(&path, &PARTS) {
+                &mut sorted.parts
+            } else {
+                &mut sorted.others
+            };
+            kind.push(path);
+        }
+        sorted
+    }
+}
+
+impl App {
+    /// Takes files that were dropped together. Models are shown together; what they name is looked for among the files,
+    /// too. A picture is for the selected material, or a document where one is in it.
+    pub(in crate::app) fn drop_files(&mut self, paths: Vec<PathBuf>) {
+        if let Some(address) = paths
+            .iter()
+            .find_map(|path| path.to_str().filter(|text| is_address(text)))
+        {
+            self.refuse_address(address);
+            return;
+        }
+        let Sorted {
+            models,
+            environments,
+            pictures,
+            parts,
+            others,
+        } = Sorted::of(paths);
+        for path in others {
+            self.open(path);
+        }
+        if let [shown @ .., last] = environments.as_slice() {
+            for path in shown {
+                let text = format!("{}: one environment at a time; {} is opened", name(path), name(last));
+                self.say(Level::Warning, text);
+            }
+            self.worker.open_environment(EnvironmentSource::File(last.clone()));
+        }
+        match models.as_slice() {
+            [] => self.drop_without_model(pictures, &parts),
+            [first, rest @ ..] => {
+                let given = rest.iter().chain(&pictures).chain(&parts);
+                // What lies beside the model is found there.
+                let beside = given.filter(|path| is_model(path) || path.parent() != first.parent());
+                let options = ModelOptions {
+                    beside: beside.cloned().collect(),
+                    ..ModelOptions::default()
+                };
+                self.files.dropped_with = pictures.into_iter().chain(parts).collect();
+                self.worker.open_model(ModelSource::File(first.clone()), options);
+            }
+        }
+    }
+
+    /// Opens files given at the start, models among them together; how many there are to be waited for.
+    pub(in crate::app) fn open_all(&mut self, mut paths: Vec<PathBuf>) -> usize {
+        let models: Vec<PathBuf> = paths.extract_if(.., |path| is_model(path)).collect();
+        let mut awaited = 0;
+        if let [first, rest @ ..] = models.as_slice() {
+            let options = ModelOptions {
+                beside: rest.to_vec(),
+                ..ModelOptions::default()
+            };
+            self.worker.open_model(ModelSource::File(first.clone()), options);
+            awaited += 1;
+        }
+        awaited
+            + paths
+                .into_iter()
+                .map(|path| usize::from(self.open(path)))
+                .sum::<usize>()
+    }
+
+    /// Pictures by themselves: that of a base colour for the selected material.
+    fn drop_without_model(&mut self, mut pictures: Vec<PathBuf>, parts: &[PathBuf]) {
+        for part in parts {
+            let text = format!(
+                "{}: part of a model; drop it together with the .gltf or .obj that names it, or open that",
+                part.display()
+            );
+            self.say(Level::Error, text);
+        }
+        let painted = match pictures.len() {
+            0 => return,
+            1 => Some(0),
+            _ => pictures.iter().position(|path| is_called_color(path)),
+        };
+        if let Some(place) = painted {
+            let picture = pictures.remove(place);
+            if ending(&picture) == "png" {
+                // It may hold a document: that is looked for first.
+                self.files.dropped = Some(picture.clone());
+                self.open(picture);
+            } else {
+                self.paint(picture);
+            }
+        }
+        self.leave_out(&pictures);
+    }
+
+    /// What was dropped with a model and is not part of it: the picture of a base colour is for its first material.
+    pub(in crate::app) fn use_dropped_with(&mut self, model: &Model) {
+        let names: Vec<String> = model.files.iter().map(|path| name(path)).collect();
+        let mut left = std::mem::take(&mut self.files.dropped_with);
+        left.retain(|path| !names.iter().any(|known| known.eq_ignore_ascii_case(&name(path))));
+        let color = left
+            .iter()
+            .position(|path| has_ending(path, &PICTURES) && is_called_color(path));
+        if let Some(place) = color {
+            let picture = left.remove(place);
+            self.paint(picture);
+        }
+        self.leave_out(&left);
+    }
+
+    fn leave_out(&mut self, files: &[PathBuf]) {
+        for file in files {
+            let text = format!(
+                "{}: not used: nothing here names it; a picture dropped by itself becomes the base colour of what it is \
+                 dropped on",
+                name(file)
+            );
+            self.say(Level::Warning, text);
+        }
+    }
+
+    /// Opens the files whose names were pasted, one a line.
+    pub(in crate::app) fn paste(&mut self, text: &str) {
+        let lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+        if let Some(address) = lines.clone().find(|line| is_address(line)) {
+            self.refuse_address(address);
+            return;
+        }
+        let path = |line: &str| PathBuf::from(line.strip_prefix("file://").map_or(line.to_owned(), decoded));
+        let paths: Vec<PathBuf> = lines.map(path).collect();
+        if paths.iter().all(|path| path.exists()) {
+            self.drop_files(paths);
+        } else {
+            let shown: String = text.chars().take(80).collect();
+            self.say(Level::Warning, format!("the pasted text is not a file name: {shown}"));
+        }
+    }
+
+    fn refuse_address(&mut self, address: &str) {
+        let text = format!("{address}: web addresses are not opened; save the file and open it here");
+        self.say(Level::Error, text);
+    }
+}
+
+/// Whether a text names something that is no file of this machine.
+fn is_address(text: &str) -> bool {
+    let scheme = text.split_once(":/").map_or("", |(scheme, _)| scheme);
+    let is_scheme = scheme.len() > 1 && scheme.chars().all(|letter| letter.is_ascii_alphanumeric());
+    is_scheme && scheme != "file"
+}
+
+/// A name as file managers write it, its special characters as %20 and the like.
+fn decoded(text: &str) -> String {
+    let mut bytes = Vec::new();
+    let mut rest = text.as_bytes();
+    while let [first, after @ ..] = rest {
+        let code = after.get(..2).and_then(|digits| std::str::from_utf8(digits).ok());
+        let code = code.and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        match code {
+            Some(code) if *first == b'%' => {
+                bytes.push(code);
+                rest = &after[2..];
+            }
+            _ => {
+                bytes.push(*first);
+                rest = after;
+            }
+        }
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sorted(names: &[&str]) -> Sorted {
+        Sorted::of(names.iter().map(PathBuf::from).collect())
+    }
+
+    #[test]
+    fn files_are_sorted_by_what_they_are_for() {
+        let found = sorted(&["a.gltf", "a.bin", "wood_BaseColor.png", "light.HDR", "look.mtlx"]);
+        let paths = |names: &[&str]| names.iter().map(PathBuf::from).collect::<Vec<_>>();
+        assert_eq!(found.models, paths(&["a.gltf"]));
+        assert_eq!(found.parts, paths(&["a.bin"]));
+        assert_eq!(found.pictures, paths(&["wood_BaseColor.png"]));
+        assert_eq!(found.environments, paths(&["light.HDR"]));
+        assert_eq!(found.others, paths(&["look.mtlx"]));
+        assert!(is_called_color(Path::new("wood_BaseColor.png")) && !is_called_color(Path::new("wood_normal.png")));
+    }
+
+    #[test]
+    fn six_faces_are_one_environment() {
+        let names = ["px", "nx", "py", "ny", "pz", "nz"].map(|face| format!("sky/{face}.png"));
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let found = sorted(&names);
+        assert_eq!(found.environments, [PathBuf::from("sky")]);
+        assert!(found.pictures.is_empty());
+        // One more picture, and they are pictures like any other.
+        assert_eq!(sorted(&[&names[..], &["other.png"]].concat()).pictures.len(), 7);
+    }
+
+    #[test]
+    fn addresses_are_told_from_files() {
+        assert!(is_address("https://example.org/a.glb") && is_address("https:/example.org/a.glb"));
+        assert!(is_address("data:/x") && !is_address("file:///a.glb"));
+        assert!(!is_address("/models/a.glb") && !is_address("C:/models/a.glb") && !is_address("a.glb"));
+        assert_eq!(decoded("/my%20models/%c3%a4.glb"), "/my models/ä.glb");
+        assert_eq!(decoded("100%"), "100%");
+    }
+}

@@ -1,0 +1,74 @@
+//! What of the picture is looked at closely: a pixel, and what is seen there.
+
+/// A pixel, as shares of the picture's width and height.
+pub(in crate::app) type Place = [f64; 2];
+
+/// What is seen at a place of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::app) struct SeenSurface {
+    /// The material slot; `None` for the ground and area lights, which are no materials of the document.
+    pub(in crate::app) slot: Option<usize>,
+    /// The object of the model; `None` for the ground and area lights.
+    pub(in crate::app) object: Option<usize>,
+    /// Along the camera's viewing direction, scene units.
+    pub(in crate::app) depth: f64,
+    /// Between view and shading normal, degrees.
+    pub(in crate::app) view_angle_deg: f32,
+}
+
+/// The pixel that the inspector tells of.
+#[derive(Clone, Debug, Default)]
+pub(in crate::app) struct Look {
+    /// The inspector was shown in this frame, and in the one before: pixels need not be told of otherwise.
+    pub(in crate::app) is_shown: bool,
+    pub(in crate::app) was_shown: bool,
+    /// The pixel under the pointer, or the one that it was at last, or that it is pinned to.
+    pub(in crate::app) at: Option<Place>,
+    /// It stays where it is while the pointer moves on.
+    pub(in crate::app) is_pinned: bool,
+    /// The surface there.
+    pub(in crate::app) seen: Option<SeenSurface>,
+}
+
+impl Look {
+    /// What is drawn before the inspector goes by the frame before.
+    pub(in crate::app) fn begin_frame(&mut self) {
+        self.was_shown = std::mem::take(&mut self.is_shown);
+    }
+
+    /// Stays at a place until it is let go.
+    pub(in crate::app) fn pin(&mut self, at: Place) {
+        (self.at, self.is_pinned) = (Some(at), true);
+    }
+
+    /// The pixel of a picture of this size.
+    pub(in crate::app) fn pixel(&self, [width, height]: [u32; 2]) -> Option<[u32; 2]> {
+        let [x, y] = self.at?;
+        let index = |share: f64, side: u32| ((share * f64::from(side)) as u32).min(side.saturating_sub(1));
+        (width > 0 && height > 0).then(|| [index(x, width), index(y, height)])
+    }
+}
+
+/// The middle of a pixel of a picture of this size.
+pub(in crate::app) fn middle([x, y]: [u32; 2], [width, height]: [u32; 2]) -> Place {
+    let share = |index: u32, side: u32| (f64::from(index) + 0.5) / f64::from(side.max(1));
+    [share(x, width), share(y, height)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_come_back_from_their_middles() {
+        let size = [40, 24];
+        for pixel in [[0, 0], [39, 23], [7, 11]] {
+            let look = Look {
+                at: Some(middle(pixel, size)),
+                ..Look::default()
+            };
+            assert_eq!(look.pixel(size), Some(pixel));
+        }
+        assert_eq!(Look::default().pixel(size), None);
+    }
+}

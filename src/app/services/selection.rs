@@ -1,0 +1,101 @@
+//! What of the scene is chosen and what the pointer is over, in the tree and in the viewport alike.
+
+use std::collections::BTreeSet;
+
+use crate::document::MaterialSettings;
+
+/// A part of the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::app) enum Thing {
+    /// An object of the model, by number.
+    Object(usize),
+    /// A material slot.
+    Slot(usize),
+}
+
+/// What is chosen beside the slot that is edited, and what is lit up.
+#[derive(Clone, Debug, Default)]
+pub(in crate::app) struct Selection {
+    /// The tree was shown in this frame, and in the one before: outlines are drawn.
+    pub(in crate::app) is_shown: bool,
+    pub(in crate::app) was_shown: bool,
+    /// The objects.
+    pub(in crate::app) objects: BTreeSet<usize>,
+    /// Slots that are edited together with the selected one.
+    pub(in crate::app) also: BTreeSet<usize>,
+    /// What the pointer is over in this frame, and what it was over in the one before.
+    pub(in crate::app) hovered: Option<Thing>,
+    pub(in crate::app) lit: Option<Thing>,
+    /// The material that was copied.
+    pub(in crate::app) copied: Option<MaterialSettings>,
+}
+
+impl Selection {
+    /// What the parts of the window say about this frame comes after what they said about the last one.
+    pub(in crate::app) fn begin_frame(&mut self) {
+        self.was_shown = std::mem::take(&mut self.is_shown);
+        self.lit = self.hovered.take();
+    }
+
+    /// Whether the next frame shows something else without anything else happening.
+    pub(in crate::app) fn is_news(&self) -> bool {
+        self.hovered != self.lit || self.is_shown != self.was_shown
+    }
+
+    /// Nothing is chosen of another model.
+    pub(in crate::app) fn forget(&mut self) {
+        self.objects.clear();
+        self.also.clear();
+        self.hovered = None;
+    }
+
+    /// The slots that are edited: the selected one first.
+    pub(in crate::app) fn slots(&self, selected: usize) -> Vec<usize> {
+        let others = self.also.iter().copied().filter(|slot| *slot != selected);
+        std::iter::once(selected).chain(others).collect()
+    }
+
+    /// Chooses an object alone, or takes it in or out beside the others.
+    pub(in crate::app) fn choose_object(&mut self, object: usize, beside_others: bool) {
+        toggle(&mut self.objects, object, beside_others);
+    }
+
+    /// Takes a slot in beside the selected one, or out.
+    pub(in crate::app) fn choose_also(&mut self, slot: usize) {
+        toggle(&mut self.also, slot, true);
+    }
+}
+
+fn toggle(chosen: &mut BTreeSet<usize>, number: usize, beside_others: bool) {
+    if beside_others && chosen.remove(&number) {
+        return;
+    }
+    if !beside_others {
+        chosen.clear();
+    }
+    chosen.insert(number);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn objects_are_chosen_alone_or_beside_others() {
+        let mut selection = Selection::default();
+        for (object, beside_others, expected) in [
+            (2, false, vec![2]),
+            (5, true, vec![2, 5]),
+            (2, true, vec![5]),
+            (1, false, vec![1]),
+        ] {
+            selection.choose_object(object, beside_others);
+            assert_eq!(selection.objects.iter().copied().collect::<Vec<_>>(), expected);
+        }
+        selection.choose_also(3);
+        selection.choose_also(0);
+        assert_eq!(selection.slots(3), [3, 0]);
+        selection.forget();
+        assert_eq!(selection.slots(3), [3]);
+    }
+}

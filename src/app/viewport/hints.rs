@@ -1,0 +1,43 @@
+//! What a new user is told, one thing after the other, until it is closed.
+
+use egui::{Rect, Ui, pos2, vec2};
+
+use super::LOADING_MARGIN;
+use crate::app::desk::Desk;
+
+/// What is told, in order.
+const HINTS: [&str; 4] = [
+    "Drag to turn the camera, the wheel to come closer; shift and drag turns the light.",
+    "A click on a preset gives it to the model; dragged onto a part of it, to that part.",
+    "Ctrl+K finds every command, panel and parameter by a few letters.",
+    "Help › Examples has scenes to begin with. F1 tells what keys and mouse do.",
+];
+/// Width of the hint, points.
+const WIDTH: f32 = 380.0;
+const HEIGHT: f32 = 64.0;
+
+/// Shows the hint that is next over the lower edge of the picture.
+pub(super) fn show(ui: &mut Ui, area: Rect, desk: &mut Desk<'_>) {
+    let number = desk.shared.hints_seen;
+    let Some(hint) = HINTS.get(number) else { return };
+    let size = vec2(WIDTH.min(area.width() - 2.0 * LOADING_MARGIN), HEIGHT);
+    let at = pos2(area.center().x - 0.5 * size.x, area.bottom() - LOADING_MARGIN - size.y);
+    let builder = egui::UiBuilder::new()
+        .scope_id(egui::Id::unique("hint"))
+        .max_rect(Rect::from_min_size(at, size))
+        .layout(egui::Layout::top_down(egui::Align::Min));
+    let mut inside = ui.new_child(builder);
+    egui::Frame::popup(inside.style()).show(&mut inside, |ui| {
+        ui.set_width(size.x - 16.0);
+        ui.add(egui::Label::new(*hint).wrap());
+        ui.horizontal(|ui| {
+            if number + 1 < HINTS.len() && ui.button("Next hint").clicked() {
+                desk.shared.hints_seen += 1;
+            }
+            if ui.button("No more hints").clicked() {
+                desk.shared.hints_seen = HINTS.len();
+            }
+            ui.weak(format!("{} of {}", number + 1, HINTS.len()));
+        });
+    });
+}

@@ -1,0 +1,112 @@
+//! A closer look at the pixels that the picture has, without moving the camera.
+
+use egui::{Pos2, Rect, Vec2, pos2, vec2};
+
+/// Points that a pixel of the picture is large at most.
+const PIXEL_MAX: f32 = 48.0;
+
+/// How much larger than it fits the picture is shown, and which part of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Magnifier {
+    /// 1: as large as it fits.
+    factor: f32,
+    /// What is in the middle of the viewport, as shares of the picture.
+    center: Vec2,
+}
+
+impl Default for Magnifier {
+    fn default() -> Self {
+        Self {
+            factor: 1.0,
+            center: Vec2::splat(0.5),
+        }
+    }
+}
+
+impl Magnifier {
+    /// Whether the picture is shown larger than it fits.
+    pub(super) fn is_on(&self) -> bool {
+        self.factor > 1.0
+    }
+
+    /// Where the picture is, of which `fitted` is the place at its usual size: it covers the area where it can.
+    pub(super) fn place(&mut self, area: Rect, fitted: Rect) -> Rect {
+        if !self.is_on() {
+            *self = Self::default();
+            return fitted;
+        }
+        let size = self.factor * fitted.size();
+        let min = area.center() - self.center * size;
+        let within = |min: f32, side: f32, [low, high]: [f32; 2]| {
+            if side <= high - low {
+                0.5 * (low + high - side)
+            } else {
+                min.clamp(high - side, low)
+            }
+        };
+        let min = pos2(
+            within(min.x, size.x, [area.left(), area.right()]),
+            within(min.y, size.y, [area.top(), area.bottom()]),
+        );
+        self.center = (area.center() - min) / size;
+        Rect::from_min_size(min, size)
+    }
+
+    /// Shows it so many times larger, so that what is at a place stays there. `width_px` is the picture's width.
+    pub(super) fn zoom(&mut self, by: f32, at: Pos2, area: Rect, fitted: Rect, width_px: u32) {
+        let before = self.place(area, fitted);
+        let share = (at - before.min) / before.size();
+        let most = (PIXEL_MAX * width_px as f32 / fitted.width().max(1.0)).max(1.0);
+        self.factor = (self.factor * by).clamp(1.0, most);
+        self.center = share + (area.center() - at) / (self.factor * fitted.size());
+    }
+
+    /// Moves it by so many points.
+    pub(super) fn pan(&mut self, by: Vec2, fitted: Rect) {
+        self.center -= by / (self.factor * fitted.size()).max(vec2(1.0, 1.0));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene() -> (Rect, Rect) {
+        let area = Rect::from_min_size(pos2(100.0, 50.0), vec2(400.0, 300.0));
+        let fitted = Rect::from_center_size(area.center(), vec2(400.0, 200.0));
+        (area, fitted)
+    }
+
+    #[test]
+    fn what_is_under_the_pointer_stays_there() {
+        let (area, fitted) = scene();
+        let mut magnifier = Magnifier::default();
+        assert_eq!(magnifier.place(area, fitted), fitted);
+        let at = pos2(350.0, 180.0);
+        let share = |place: Rect| (at - place.min) / place.size();
+        let before = share(fitted);
+        for _ in 0..3 {
+            magnifier.zoom(2.0, at, area, fitted, 4000);
+            let place = magnifier.place(area, fitted);
+            assert!((share(place) - before).length() < 1e-4, "{place}");
+        }
+        assert_eq!(magnifier.place(area, fitted).width(), 3200.0);
+    }
+
+    #[test]
+    fn it_covers_the_area_and_comes_back_to_its_place() {
+        let (area, fitted) = scene();
+        let mut magnifier = Magnifier::default();
+        magnifier.zoom(4.0, area.center(), area, fitted, 4000);
+        magnifier.pan(vec2(-1e4, 1e4), fitted);
+        let place = magnifier.place(area, fitted);
+        assert!(place.contains_rect(area), "{place}");
+        assert_eq!((place.right(), place.top()), (area.right(), area.top()));
+        magnifier.zoom(1e-3, area.center(), area, fitted, 4000);
+        assert!(!magnifier.is_on());
+        assert_eq!(magnifier.place(area, fitted), fitted);
+        // A pixel of a small picture does not fill the viewport.
+        magnifier.zoom(1e6, area.center(), area, fitted, 40);
+        assert!((magnifier.place(area, fitted).width() - 40.0 * PIXEL_MAX).abs() < 1.0);
+    }
+}

@@ -1,0 +1,50 @@
+//! What of the scene the pointer is over in the viewport, what a click chooses, and materials that are dropped there.
+
+use egui::{DragAndDrop, Rect, Response, Ui};
+
+use super::seen::{hit_at, pixel_at};
+use crate::app::actions::Action;
+use crate::app::desk::Desk;
+use crate::app::services::look::SeenSurface;
+use crate::app::services::selection::Thing;
+use crate::document::MaterialSettings;
+use crate::render::worker::Scene;
+
+/// Lights up what the pointer is over while the tree of the scene is shown, and what a material would be dropped on; gives
+/// it the material where that is dropped.
+pub(super) fn hover(ui: &Ui, response: &Response, place: Rect, scene: &Scene, desk: &mut Desk<'_>) {
+    let is_dropping = DragAndDrop::has_payload_of_type::<MaterialSettings>(ui.ctx());
+    if !(is_dropping || desk.shared.selection.was_shown) || !response.contains_pointer() {
+        return;
+    }
+    let pointer = ui.input(|input| input.pointer.latest_pos());
+    let seen = pointer.and_then(|at| hit_at(pixel_at(at, place, scene)?, scene));
+    let thing = seen.and_then(|seen| match is_dropping {
+        true => seen.slot.map(Thing::Slot),
+        false => seen.object.map(Thing::Object),
+    });
+    if let Some(thing) = thing {
+        desk.shared.selection.hovered = Some(thing);
+    }
+    if let Some(material) = response.dnd_release_payload::<MaterialSettings>()
+        && let Some(slot) = seen.and_then(|seen| seen.slot)
+    {
+        desk.actions.push(Action::SelectSlot(slot));
+        desk.actions
+            .push(Action::UseMaterial(Box::new(MaterialSettings::clone(&material))));
+    }
+}
+
+/// Chooses what was clicked: its material, and while the tree of the scene is shown the object.
+pub(super) fn choose(seen: &SeenSurface, beside_others: bool, desk: &mut Desk<'_>) {
+    let selection = &mut desk.shared.selection;
+    if let Some(object) = seen.object.filter(|_| selection.was_shown) {
+        selection.choose_object(object, beside_others);
+    }
+    let Some(slot) = seen.slot else { return };
+    if beside_others && slot != desk.shared.slot {
+        selection.choose_also(slot);
+    } else if !beside_others {
+        desk.actions.push(Action::SelectSlot(slot));
+    }
+}

@@ -1,0 +1,144 @@
+//! Which object and which material slot is seen at each pixel, made beside the window: what outlines are drawn from.
+
+use std::io;
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::background::Background;
+use crate::job::Job;
+use crate::scene::NO_OBJECT;
+use crate::scene::camera::camera_ray;
+
+/// Longest side of the map in pixels.
+const SIDE_MAX_PX: u32 = 1024;
+/// What stands for nothing.
+pub const NOTHING: u32 = NO_OBJECT;
+/// Rows after which is asked whether somebody still waits.
+const ROWS: usize = 32;
+
+/// Makes maps of jobs; the latest job wins.
+pub type SeenMaps = Background<Arc<Job>, Arc<SeenMap>>;
+
+/// What is seen first through the middle of each pixel.
+#[derive(Clone, Debug)]
+pub struct SeenMap {
+    /// What it was made of.
+    pub job: Arc<Job>,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Object and slot, row by row from the top; [`NOTHING`] where there is none.
+    pub seen: Vec<[u32; 2]>,
+}
+
+/// Starts the thread that makes maps; `repaint` is called when one is finished.
+///
+/// # Errors
+/// If no thread can be started.
+pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<SeenMaps> {
+    Background::spawn("outlines", repaint, |job: Arc<Job>, desk| {
+        if let Some(map) = seen_map(&job, || desk.is_superseded()) {
+            desk.publish(Arc::new(map));
+        }
+    })
+}
+
+/// The map of a job; `None` where nobody waits for it any more.
+pub fn seen_map(job: &Arc<Job>, is_superseded: impl Fn() -> bool) -> Option<SeenMap> {
+    let [columns, rows] = job.settings.image_size;
+    let longest = columns.max(rows).max(1);
+    let kept = SIDE_MAX_PX.min(longest);
+    let [width, height] = [columns, rows].map(|side| (side * kept).div_ceil(longest).max(1));
+    let mut seen = Vec::with_capacity((width * height) as usize);
+    let all: Vec<u32> = (0..height).collect();
+    for some in all.chunks(ROWS) {
+        if is_superseded() {
+            return None;
+        }
+        let row = |y: &u32| {
+            (0..width)
+                .map(|x| seen_at(job, [x, *y], [width, height]))
+                .collect::<Vec<_>>()
+        };
+        seen.par_extend(some.par_iter().flat_map_iter(row));
+    }
+    Some(SeenMap {
+        job: job.clone(),
+        width,
+        height,
+        seen,
+    })
+}
+
+fn seen_at(job: &Job, pixel: [u32; 2], size: [u32; 2]) -> [u32; 2] {
+    let settings = &job.settings;
+    let place = [0, 1].map(|i| {
+        let share = (f64::from(pixel[i]) + 0.5) / f64::from(size[i]);
+        (share * f64::from(settings.image_size[i])) as f32
+    });
+    let [origin, direction] = camera_ray(&settings.camera.cast(), place, settings.image_size, [0.5; 2]);
+    let geometry = &job.geometry;
+    let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
+    hit.map_or([NOTHING; 2], |hit| {
+        let triangle = hit.triangle as usize;
+        [geometry.objects[triangle], geometry.slots[triangle]]
+    })
+}
+
+impl SeenMap {
+    /// The pixels at the edges of what is chosen: those whose neighbours are not all of the same kind.
+    pub fn edges(&self, is_chosen: impl Fn([u32; 2]) -> bool + Sync) -> Vec<bool> {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let chosen: Vec<bool> = self.seen.par_iter().map(|seen| is_chosen(*seen)).collect();
+        let is_edge = |place: usize| {
+            let (x, y) = (place % width, place / width);
+            let at = |x: usize, y: usize| chosen[y * width + x];
+            let is_inside = at(x, y);
+            let beside = [
+                x.checked_sub(1).map(|x| at(x, y)),
+                (x + 1 < width).then(|| at(x + 1, y)),
+                y.checked_sub(1).map(|y| at(x, y)),
+                (y + 1 < height).then(|| at(x, y + 1)),
+            ];
+            beside.into_iter().flatten().any(|other| other != is_inside)
+        };
+        (0..chosen.len()).into_par_iter().map(is_edge).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Document;
+    use crate::render::assets::Assets;
+    use crate::render::compile::Compiler;
+    use crate::scene::ModelSource;
+
+    #[test]
+    fn the_outline_goes_around_what_is_chosen() {
+        let mut document = Document {
+            model: ModelSource::Sphere,
+            ground: true,
+            ..Document::default()
+        };
+        (document.render.width, document.render.height) = (48, 48);
+        let job = Compiler::default()
+            .compile(&document, &Assets::default())
+            .expect("built-in");
+        let map = seen_map(&Arc::new(job), || false).expect("nobody else asks");
+        let at = |x: usize, y: usize| map.seen[y * 48 + x];
+        assert_eq!(at(24, 24), [0, 0], "the sphere");
+        assert_eq!(
+            at(24, 47),
+            [NOTHING, 1],
+            "the ground is no object, and has the slot after the model's"
+        );
+        let edges = map.edges(|[object, _]| object == 0);
+        let row: Vec<usize> = (0..48).filter(|x| edges[24 * 48 + x]).collect();
+        assert_eq!(row.len(), 4, "two pixels at either side: {row:?}");
+        assert!(!edges[24 * 48 + 24] && !edges[0]);
+        assert!(map.edges(|_| false).iter().all(|edge| !edge));
+    }
+}

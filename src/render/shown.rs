@@ -1,0 +1,354 @@
+//! What of a render the window shows: the picture, or maps of what is known about each of its pixels.
+
+use rayon::prelude::*;
+
+use super::display::{display, exposure};
+use crate::analysis::noise::relative_errors;
+use crate::document::ViewSettings;
+use crate::job::features::Features;
+use crate::job::film::{Film, Image};
+use crate::optics::tone::srgb_from_linear;
+use crate::optics::vector::vec3;
+use crate::plot::scale_color;
+
+/// Luminance of middle grey.
+pub const MIDDLE_GREY: f64 = 0.18;
+/// Stops to either side of middle grey that false colours span.
+const STOPS: f64 = 6.0;
+/// Share of the pixels above the brightest colour of a map of errors, and how many times smaller the darkest is.
+const ERRORS_ABOVE: f64 = 0.005;
+const ERRORS_SPAN: f64 = 300.0;
+/// What marks pixels that are clipped, bright and dark ones.
+pub const CLIPPED: [[u8; 3]; 2] = [[255, 40, 40], [40, 90, 255]];
+/// What stands for values that are not there.
+const NOTHING: [u8; 4] = [24, 24, 24, 255];
+
+/// What of a render is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Shown {
+    /// The picture itself.
+    #[default]
+    Picture,
+    /// The estimated error of each pixel.
+    Error,
+    /// The samples of each pixel.
+    Samples,
+    /// Where numbers are not to be trusted: made beside the picture, see [`super::precision`].
+    Precision,
+    /// Luminance in stops.
+    FalseColor,
+    /// The picture with what is too bright or too dark for the screen marked.
+    Clipping,
+    /// What the first surface reflects.
+    Albedo,
+    /// Where the first surface faces.
+    Normal,
+    /// How far away the first surface is.
+    Depth,
+    /// Variance of each pixel's mean.
+    Variance,
+}
+
+impl Shown {
+    /// All of them, with their labels and what they are.
+    pub const ALL: [(Self, &str, &str); 10] = [
+        (Self::Picture, "Picture", "The picture itself."),
+        (
+            Self::Error,
+            "Error",
+            "The estimated standard error of each pixel, relative to the picture's mean luminance.",
+        ),
+        (
+            Self::Samples,
+            "Samples",
+            "How many samples each pixel has had: with adaptive sampling they go where the error is.",
+        ),
+        (
+            Self::Precision,
+            "Precision",
+            "Where samples are dropped, f32 differs from f64, or rays start inside geometry.",
+        ),
+        (
+            Self::FalseColor,
+            "False colour",
+            "Luminance in stops from middle grey, with the exposure and without the tone map.",
+        ),
+        (
+            Self::Clipping,
+            "Clipping",
+            "The picture; red where a channel is as bright as the screen can be, blue where all are black.",
+        ),
+        (
+            Self::Albedo,
+            "Albedo",
+            "The share of the light that what is seen first reflects.",
+        ),
+        (
+            Self::Normal,
+            "Normal",
+            "Where what is seen first faces in the world: x red, y green, z blue.",
+        ),
+        (
+            Self::Depth,
+            "Depth",
+            "The distance of what is seen first along the camera's axis, scene units.",
+        ),
+        (
+            Self::Variance,
+            "Variance",
+            "The variance of each pixel's mean luminance, by the spread of its samples.",
+        ),
+    ];
+}
+
+/// What the ends of a map's colours stand for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// The darkest colour.
+    pub low: f64,
+    /// The brightest.
+    pub high: f64,
+    /// Equal factors, not differences, are equally far apart.
+    pub is_logarithmic: bool,
+}
+
+impl Scale {
+    /// Where a value lies between the ends, in [0, 1].
+    fn place(&self, value: f64) -> f64 {
+        let place = if self.is_logarithmic {
+            (value / self.low).ln() / (self.high / self.low).ln()
+        } else {
+            (value - self.low) / (self.high - self.low)
+        };
+        place.clamp(0.0, 1.0)
+    }
+}
+
+/// What maps are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct Source<'a> {
+    /// The sums.
+    pub film: &'a Film,
+    /// The linear picture that is shown.
+    pub image: &'a Image,
+    /// How it is shown.
+    pub view: &'a ViewSettings,
+    /// Length of a unit of the geometry, scene units.
+    pub world_units_per_unit: f64,
+}
+
+/// A map in opaque bytes as [`display`] gives them, and what its colours mean where they stand for numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// Red, green, blue and alpha of 8 bits, row by row from the top.
+    pub rgba: Vec<u8>,
+    /// What the colours mean.
+    pub scale: Option<Scale>,
+}
+
+/// What is shown in colours; `None` for the picture itself, and for what is made elsewhere.
+pub fn map(source: &Source<'_>, shown: Shown) -> Option<Map> {
+    let film = source.film;
+    Some(match shown {
+        Shown::Picture | Shown::Precision => return None,
+        Shown::Error => map_of_errors(&relative_errors(film)),
+        Shown::Samples => {
+            let counts: Vec<f32> = (0..film.pixel_count())
+                .map(|pixel| film.samples_of(pixel) as f32)
+                .collect();
+            let high = f64::from(counts.iter().copied().fold(0.0, f32::max)).max(1.0);
+            linear_map(&counts, [0.0, high])
+        }
+        Shown::FalseColor => linear_map(&stops(source.image, source.view), [-STOPS, STOPS]),
+        Shown::Clipping => Map {
+            rgba: with_clipping(display(source.image, source.view)),
+            scale: None,
+        },
+        Shown::Albedo => Map {
+            rgba: colors(&Features::of(film, source.world_units_per_unit).albedo, |[r, g, b]| {
+                srgb_from_linear(vec3(r, g, b)).to_f32()
+            }),
+            scale: None,
+        },
+        Shown::Normal => Map {
+            rgba: colors(&Features::of(film, source.world_units_per_unit).normal, |normal| {
+                normal.map(|x| 0.5 + 0.5 * x)
+            }),
+            scale: None,
+        },
+        Shown::Depth => {
+            let depths = Features::of(film, source.world_units_per_unit).depth;
+            let ends = depths
+                .iter()
+                .filter(|depth| depth.is_finite())
+                .map(|depth| f64::from(*depth));
+            let [low, high] = ends.fold([f64::INFINITY, 0.0], |[low, high], depth| {
+                [low.min(depth), high.max(depth)]
+            });
+            linear_map(&depths, [low.min(high), high.max(low.min(high) + 1e-9)])
+        }
+        Shown::Variance => {
+            let variances: Vec<f32> = (0..film.pixel_count())
+                .map(|pixel| film.variance_of_mean_at(pixel) as f32)
+                .collect();
+            map_of_errors(&variances)
+        }
+    })
+}
+
+/// Errors of pixels in colours, see [`map`].
+pub fn map_of_errors(errors: &[f32]) -> Map {
+    let mut sorted: Vec<f32> = errors.iter().copied().filter(|error| error.is_finite()).collect();
+    sorted.sort_by(f32::total_cmp);
+    let rank = ((1.0 - ERRORS_ABOVE) * sorted.len() as f64) as usize;
+    let high = sorted.get(rank).or(sorted.last()).copied().unwrap_or(0.0);
+    let high = f64::from(high).max(1e-9);
+    let scale = Scale {
+        low: high / ERRORS_SPAN,
+        high,
+        is_logarithmic: true,
+    };
+    colored(errors, scale)
+}
+
+fn linear_map(values: &[f32], [low, high]: [f64; 2]) -> Map {
+    let is_logarithmic = false;
+    colored(
+        values,
+        Scale {
+            low,
+            high,
+            is_logarithmic,
+        },
+    )
+}
+
+fn colored(values: &[f32], scale: Scale) -> Map {
+    let color = |value: &f32| {
+        if !value.is_finite() {
+            return NOTHING;
+        }
+        let [red, green, blue] = scale_color(scale.place(f64::from(*value)));
+        [red, green, blue, 255]
+    };
+    Map {
+        rgba: values.par_iter().flat_map_iter(color).collect(),
+        scale: Some(scale),
+    }
+}
+
+/// Bytes of colours in [0, 1].
+fn colors(values: &[[f32; 3]], encode: impl Fn([f32; 3]) -> [f32; 3] + Sync) -> Vec<u8> {
+    let bytes = |value: &[f32; 3]| {
+        let [r, g, b] = encode(*value).map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8);
+        [r, g, b, 255]
+    };
+    values.par_iter().flat_map_iter(bytes).collect()
+}
+
+/// Stops from middle grey of a luminance that has the exposure, −∞ for black.
+pub fn stops_of(luminance: f64) -> f64 {
+    (luminance / MIDDLE_GREY).log2()
+}
+
+/// Luminance of a linear colour.
+pub fn luminance([red, green, blue]: [f32; 3]) -> f64 {
+    crate::job::film::luminance([red, green, blue].map(f64::from))
+}
+
+fn stops(image: &Image, view: &ViewSettings) -> Vec<f32> {
+    let exposure = exposure(image, view);
+    let of = |[red, green, blue, alpha]: &[f32; 4]| {
+        let straight = exposure / alpha.max(1e-9);
+        let value = luminance([red, green, blue].map(|x| x * straight));
+        stops_of(value.max(1e-30)).clamp(-1e3, 1e3) as f32
+    };
+    image.pixels.par_iter().map(of).collect()
+}
+
+/// Whether displayed bytes are as bright as they can be in a channel, or black in all.
+pub fn clipped([red, green, blue]: [u8; 3]) -> Option<usize> {
+    match [red, green, blue] {
+        [0, 0, 0] => Some(1),
+        channels if channels.contains(&255) => Some(0),
+        _ => None,
+    }
+}
+
+fn with_clipping(mut rgba: Vec<u8>) -> Vec<u8> {
+    for pixel in rgba.chunks_exact_mut(4) {
+        if let Some(kind) = clipped([pixel[0], pixel[1], pixel[2]]).filter(|_| pixel[3] > 0) {
+            pixel[..3].copy_from_slice(&CLIPPED[kind]);
+        }
+        pixel[3] = 255;
+    }
+    rgba
+}
+
+/// What is known of each pixel of a picture.
+#[derive(Clone, Debug, Default)]
+pub struct Facts {
+    /// Standard error of the luminance of what is shown, relative to the picture's mean.
+    pub errors: Vec<f32>,
+    /// How many samples there are.
+    pub samples: Vec<u32>,
+    /// What is seen first.
+    pub features: Features,
+}
+
+impl Facts {
+    /// Of a film; errors of the denoised picture stand in for its own.
+    pub fn of(source: &Source<'_>, denoised_errors: Option<&[f32]>) -> Self {
+        let film = source.film;
+        Self {
+            errors: denoised_errors.map_or_else(|| relative_errors(film), <[f32]>::to_vec),
+            samples: (0..film.pixel_count())
+                .map(|pixel| film.samples_of(pixel) as u32)
+                .collect(),
+            features: Features::of(film, source.world_units_per_unit),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(colors: &[[f32; 3]]) -> Image {
+        Image {
+            width: colors.len() as u32,
+            height: 1,
+            pixels: colors.iter().map(|[r, g, b]| [*r, *g, *b, 1.0]).collect(),
+        }
+    }
+
+    #[test]
+    fn false_colours_count_stops_from_middle_grey() {
+        let view = ViewSettings {
+            exposure_ev: 1.0,
+            ..ViewSettings::default()
+        };
+        let found = stops(&image(&[[0.09; 3], [0.18; 3], [1.44; 3]]), &view);
+        for (found, expected) in found.iter().zip([0.0, 1.0, 4.0]) {
+            assert!((found - expected).abs() < 1e-3, "{found} instead of {expected}");
+        }
+    }
+
+    #[test]
+    fn what_is_clipped_is_marked_and_the_rest_stays() {
+        let rgba = vec![0, 0, 0, 255, 10, 255, 20, 255, 90, 80, 70, 255, 0, 0, 0, 0];
+        let [bright, dark] = CLIPPED;
+        let marked = with_clipping(rgba);
+        assert_eq!(marked[..3], dark);
+        assert_eq!(marked[4..7], bright);
+        assert_eq!(marked[8..11], [90, 80, 70]);
+        assert_eq!(marked[12..15], [0, 0, 0], "nothing is there");
+    }
+
+    #[test]
+    fn what_is_not_there_has_no_colour_of_the_scale() {
+        let map = linear_map(&[0.0, 1.0, f32::INFINITY], [0.0, 1.0]);
+        assert_eq!(map.rgba[8..], NOTHING);
+        assert_ne!(map.rgba[..4], map.rgba[4..8]);
+    }
+}

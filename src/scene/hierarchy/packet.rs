@@ -1,0 +1,431 @@
+//! Sixteen rays that go much the same way through the processor's hierarchy together: a node's eight boxes are met by the
+//! interval of all rays first, so that rays through empty space end at once.
+//!
+//! Which rays meet a box or a triangle, and where, is computed for each as for single rays, to the last bit, and of triangles
+//! as far away the first counts. So a ray meets the same triangle by itself as in company, unless rounding moves the place
+//! out of the triangle's own box (an edge seen nearly edge-on, or from afar): then it may be seen only where others have the
+//! box opened. Hence the company of a ray must never depend on chance, such as the number of threads.
+
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8, f32x16};
+
+use super::traverse::{Entry, FAR_MARGIN, INVERSE_MAX, PLACE_ERROR, Stack};
+use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
+
+/// Rays of a packet.
+pub const PACKET: usize = 16;
+
+/// Rays, axis by axis.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Packet {
+    /// Where they start.
+    pub origins: [[f32; PACKET]; 3],
+    /// Where they go.
+    pub directions: [[f32; PACKET]; 3],
+    /// How far they go; negative where there is no ray.
+    pub t_max: [f32; PACKET],
+}
+
+impl Default for Packet {
+    fn default() -> Self {
+        Self {
+            origins: [[0.0; PACKET]; 3],
+            directions: [[1.0; PACKET]; 3],
+            t_max: [-1.0; PACKET],
+        }
+    }
+}
+
+impl Packet {
+    /// Puts a ray in.
+    #[inline(always)]
+    pub fn set(&mut self, lane: usize, origin: [f32; 3], direction: [f32; 3], t_max: f32) {
+        for axis in 0..3 {
+            self.origins[axis][lane] = origin[axis];
+            self.directions[axis][lane] = direction[axis];
+        }
+        self.t_max[lane] = t_max;
+    }
+
+    /// The origin of a ray.
+    #[inline(always)]
+    pub fn origin(&self, lane: usize) -> [f32; 3] {
+        self.origins.map(|axis| axis[lane])
+    }
+
+    /// The direction of a ray.
+    #[inline(always)]
+    pub fn direction(&self, lane: usize) -> [f32; 3] {
+        self.directions.map(|axis| axis[lane])
+    }
+
+    /// Has the first ray stand in where there is none: it goes the same way and is met by nothing.
+    #[inline(always)]
+    pub fn fill(&mut self, count: usize) {
+        let (origin, direction) = (self.origin(0), self.direction(0));
+        (count..PACKET).for_each(|lane| self.set(lane, origin, direction, -1.0));
+    }
+}
+
+/// What the rays of a packet met.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(in crate::scene) struct Found {
+    /// How far away.
+    pub t: [f32; PACKET],
+    /// One more than the triangle's number; 0 where nothing was met.
+    pub marks: [u32; PACKET],
+}
+
+impl Found {
+    /// Takes a triangle that some rays meet no farther away than what was found; whether it is nearer for any.
+    #[inline(always)]
+    fn add<const ANY: bool>(&mut self, mut met: u32, distances: &[f32; PACKET], mark: u32) -> bool {
+        let mut is_new = false;
+        while met != 0 {
+            let lane = (met.trailing_zeros() % PACKET as u32) as usize;
+            met &= met - 1;
+            let t = distances[lane];
+            // Of two as far away the first: so it does not matter in which order they are found.
+            if t < self.t[lane] || mark < self.marks[lane] {
+                self.t[lane] = if ANY { -1.0 } else { t };
+                self.marks[lane] = mark;
+                is_new = true;
+            }
+        }
+        is_new
+    }
+}
+
+/// Which way a ray goes: the signs of its direction, and its longest axis. Rays of a packet go the same way.
+#[inline(always)]
+pub fn ray_way(direction: [f32; 3]) -> usize {
+    let [x, y, z] = direction.map(f32::abs);
+    let longest = if z >= x && z >= y {
+        2
+    } else if y >= x {
+        1
+    } else {
+        0
+    };
+    let sign = |axis: usize| usize::from(direction[axis] < 0.0) << axis;
+    longest << 3 | sign(0) | sign(1) | sign(2)
+}
+
+/// How many ways there are.
+pub const WAYS: usize = 24;
+
+impl Wide {
+    /// The nearest triangle with 0 < t < `t_max` on each ray; `None` where the rays do not go the same way.
+    pub fn nearest_of(&self, level: Level, packet: &Packet) -> Option<Found> {
+        dispatch!(level, simd => trace::<_, false>(simd, self, packet))
+    }
+
+    /// Some triangle with 0 < t < `t_max` on each ray; `None` where the rays do not go the same way.
+    pub fn any_of(&self, level: Level, packet: &Packet) -> Option<Found> {
+        dispatch!(level, simd => trace::<_, true>(simd, self, packet))
+    }
+}
+
+/// The nearest triangles, or the first that are found if `ANY`.
+#[inline(always)]
+fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, packet: &Packet) -> Option<Found> {
+    let way = way_of(simd, packet)?;
+    let mut found = Found {
+        t: packet.t_max,
+        marks: [0; PACKET],
+    };
+    if wide.nodes.is_empty() {
+        return Some(found);
+    }
+    let rays = Rays::new(simd, packet, wide, way);
+    let bundle = Bundle::new(simd, &rays, packet, wide);
+    let mut limit = largest(simd, &found.t) * FAR_MARGIN;
+    let mut stack = Stack::new();
+    // The root.
+    let mut place = 0;
+    loop {
+        if place & BLOCK == 0 {
+            let node = &wide.nodes[place as usize];
+            bundle.enter(&rays, node, limit, &found.t, &mut stack);
+        } else {
+            let block = (place & !BLOCK) as usize;
+            let first = wide.firsts[block];
+            if rays.meet::<ANY>(&wide.blocks[block], &wide.normals[block], first, &mut found) {
+                let farthest = largest(simd, &found.t);
+                if ANY && farthest < 0.0 {
+                    return Some(found);
+                }
+                limit = farthest * FAR_MARGIN;
+            }
+        }
+        match stack.pop_before(limit) {
+            Some(next) => place = next,
+            None => return Some(found),
+        }
+    }
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32x16<S> {
+    f32x16::load_array_ref(simd, lanes)
+}
+
+#[inline(always)]
+fn load_three<S: Simd>(simd: S, axes: &[[f32; PACKET]; 3]) -> [f32x16<S>; 3] {
+    [load(simd, &axes[0]), load(simd, &axes[1]), load(simd, &axes[2])]
+}
+
+#[inline(always)]
+fn largest<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32 {
+    simd.reduce_max_f32x16(load(simd, lanes))
+}
+
+/// The way of all rays; `None` where they differ.
+#[inline(always)]
+fn way_of<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
+    let way = ray_way(packet.direction(0));
+    let zero = f32x16::splat(simd, 0.0);
+    let directions = load_three(simd, &packet.directions);
+    let mut axis = 0;
+    while axis < 3 {
+        let backward = directions[axis].simd_lt(zero);
+        let is_alike = if way >> axis & 1 == 1 {
+            backward.all_true()
+        } else {
+            backward.all_false()
+        };
+        if !is_alike {
+            return None;
+        }
+        axis += 1;
+    }
+    let (x, y, z) = (directions[0].abs(), directions[1].abs(), directions[2].abs());
+    let along_z = z.simd_ge(x) & z.simd_ge(y);
+    let is_alike = match way >> 3 {
+        2 => along_z.all_true(),
+        1 => along_z.all_false() && y.simd_ge(x).all_true(),
+        _ => along_z.all_false() && y.simd_ge(x).all_false(),
+    };
+    is_alike.then_some(way)
+}
+
+/// What the tests of single rays need of each ray.
+struct Rays<S: Simd> {
+    origin: [f32x16<S>; 3],
+    direction: [f32x16<S>; 3],
+    inverse: [f32x16<S>; 3],
+    early: [f32x16<S>; 3],
+    late: [f32x16<S>; 3],
+    /// Which of the two sides of a box is near on each axis.
+    near: [usize; 3],
+    axes: [usize; 3],
+    shear: [f32x16<S>; 2],
+}
+
+impl<S: Simd> Rays<S> {
+    #[inline(always)]
+    fn new(simd: S, packet: &Packet, wide: &Wide, way: usize) -> Self {
+        let axes = [[1, 2, 0], [0, 2, 1], [0, 1, 2]][way >> 3];
+        let [axis_x, axis_y, along] = axes;
+        let direction = load_three(simd, &packet.directions);
+        let mut rays = Self {
+            origin: load_three(simd, &packet.origins),
+            direction,
+            inverse: direction,
+            early: direction,
+            late: direction,
+            near: [way & 1, way >> 1 & 1, way >> 2 & 1],
+            axes,
+            shear: [
+                -direction[axis_x] / direction[along],
+                -direction[axis_y] / direction[along],
+            ],
+        };
+        rays.invert(wide, 0);
+        rays.invert(wide, 1);
+        rays.invert(wide, 2);
+        rays
+    }
+
+    /// What the test against boxes needs on an axis, as for single rays.
+    #[inline(always)]
+    fn invert(&mut self, wide: &Wide, axis: usize) {
+        let (origin, direction) = (self.origin[axis], self.direction[axis]);
+        let simd = origin.token();
+        let size = (f32x16::splat(simd, 1.0) / direction.abs()).min(f32x16::splat(simd, INVERSE_MAX));
+        let inverse = if self.near[axis] == 1 { -size } else { size };
+        let reach = f32x16::splat(simd, wide.reach[axis]) + origin.abs();
+        let (shift, margin) = (-origin * inverse, reach * size * f32x16::splat(simd, PLACE_ERROR));
+        self.inverse[axis] = inverse;
+        self.early[axis] = shift - margin;
+        self.late[axis] = shift + margin;
+    }
+
+    /// Whether any ray meets a child's box.
+    #[inline(always)]
+    fn enter(&self, node: &Node, child: usize, limits: f32x16<S>) -> bool {
+        let simd = limits.token();
+        let (x, y, z) = (
+            self.near(node, child, 0),
+            self.near(node, child, 1),
+            self.near(node, child, 2),
+        );
+        let entered = x.max(y).max(z.max(f32x16::splat(simd, 0.0)));
+        let (x, y, z) = (
+            self.far(node, child, 0),
+            self.far(node, child, 1),
+            self.far(node, child, 2),
+        );
+        let left = x.min(y).min(z.min(limits));
+        entered.simd_le(left).any_true()
+    }
+
+    /// How far away a child's near side is.
+    #[inline(always)]
+    fn near(&self, node: &Node, child: usize, axis: usize) -> f32x16<S> {
+        let side = node.sides[axis][self.near[axis] & 1][child];
+        f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.early[axis]
+    }
+
+    /// How far away a child's far side is.
+    #[inline(always)]
+    fn far(&self, node: &Node, child: usize, axis: usize) -> f32x16<S> {
+        let side = node.sides[axis][(self.near[axis] ^ 1) & 1][child];
+        f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.late[axis]
+    }
+
+    /// Puts the triangles of a block in that are nearer than what was found; whether there are any.
+    #[inline(always)]
+    fn meet<const ANY: bool>(&self, block: &Block, normals: &Normals, first: u32, found: &mut Found) -> bool {
+        let simd = self.origin[0].token();
+        let zero = f32x16::splat(simd, 0.0);
+        let mut is_new = false;
+        let mut triangle = 0;
+        // Behind the last triangle of a block there is none.
+        while triangle < WIDTH && !block.corners[0][0][triangle].is_nan() {
+            let (ax, ay) = self.project(block, 0, triangle);
+            let (bx, by) = self.project(block, 1, triangle);
+            let (cx, cy) = self.project(block, 2, triangle);
+            let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
+            let is_inside = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
+                | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
+            if is_inside.any_true() {
+                let area = u + v + w;
+                let (t, towards) = self.distance(block, normals, triangle);
+                let t = t / towards;
+                let is_met = is_inside & !area.simd_eq(zero) & t.simd_gt(zero) & t.simd_le(load(simd, &found.t));
+                let met = is_met.to_bitmask() as u32;
+                is_new |= found.add::<ANY>(met, &t.to_array(), first + triangle as u32 + 1);
+            }
+            triangle += 1;
+        }
+        is_new
+    }
+
+    /// How far the rays' origins are from the plane of a triangle, and how much nearer they come to it in a unit of length;
+    /// both in lengths of its normal.
+    #[inline(always)]
+    fn distance(&self, block: &Block, normals: &Normals, triangle: usize) -> (f32x16<S>, f32x16<S>) {
+        let simd = self.origin[0].token();
+        let x = f32x16::splat(simd, normals.axes[0][triangle]);
+        let y = f32x16::splat(simd, normals.axes[1][triangle]);
+        let z = f32x16::splat(simd, normals.axes[2][triangle]);
+        let [dx, dy, dz] = self.direction;
+        let from_x = self.place(block, 0, 0, triangle);
+        let from_y = self.place(block, 0, 1, triangle);
+        let from_z = self.place(block, 0, 2, triangle);
+        (x * from_x + y * from_y + z * from_z, x * dx + y * dy + z * dz)
+    }
+
+    /// A coordinate of a corner, from the rays' origins.
+    #[inline(always)]
+    fn place(&self, block: &Block, corner: usize, axis: usize, triangle: usize) -> f32x16<S> {
+        f32x16::splat(self.origin[0].token(), block.corners[corner][axis][triangle]) - self.origin[axis]
+    }
+
+    /// A corner along the rays.
+    #[inline(always)]
+    fn project(&self, block: &Block, corner: usize, triangle: usize) -> (f32x16<S>, f32x16<S>) {
+        let [axis_x, axis_y, along] = self.axes;
+        let depth = self.place(block, corner, along, triangle);
+        (
+            self.place(block, corner, axis_x, triangle) + depth * self.shear[0],
+            self.place(block, corner, axis_y, triangle) + depth * self.shear[1],
+        )
+    }
+}
+
+/// The interval of all rays: what it does not meet, none of them meets.
+struct Bundle<S: Simd> {
+    /// The least and the largest inverse direction on each axis.
+    inverse: [[f32x8<S>; 2]; 3],
+    /// The origin that a box's near side is nearest to, and that its far side is farthest from, with a margin for rounding.
+    origin: [[f32x8<S>; 2]; 3],
+}
+
+impl<S: Simd> Bundle<S> {
+    #[inline(always)]
+    fn new(simd: S, rays: &Rays<S>, packet: &Packet, wide: &Wide) -> Self {
+        let zero = [f32x8::splat(simd, 0.0); 2];
+        let mut bundle = Self {
+            inverse: [zero; 3],
+            origin: [zero; 3],
+        };
+        bundle.set(rays, packet, wide, 0);
+        bundle.set(rays, packet, wide, 1);
+        bundle.set(rays, packet, wide, 2);
+        bundle
+    }
+
+    #[inline(always)]
+    fn set(&mut self, rays: &Rays<S>, packet: &Packet, wide: &Wide, axis: usize) {
+        let simd = rays.origin[0].token();
+        let inverse = rays.inverse[axis];
+        self.inverse[axis] = [
+            f32x8::splat(simd, simd.reduce_min_f32x16(inverse)),
+            f32x8::splat(simd, simd.reduce_max_f32x16(inverse)),
+        ];
+        let origin = load(simd, &packet.origins[axis]);
+        let (low, high) = (simd.reduce_min_f32x16(origin), simd.reduce_max_f32x16(origin));
+        let margin = 2.0 * PLACE_ERROR * (wide.reach[axis] + low.abs().max(high.abs()));
+        let outer = [low - margin, high + margin];
+        let near = rays.near[axis];
+        self.origin[axis] = [
+            f32x8::splat(simd, outer[(near ^ 1) & 1]),
+            f32x8::splat(simd, outer[near & 1]),
+        ];
+    }
+
+    /// Puts the children on the stack that some ray meets, the nearest last.
+    #[inline(always)]
+    fn enter(&self, rays: &Rays<S>, node: &Node, limit: f32, t_max: &[f32; PACKET], stack: &mut Stack) {
+        let simd = self.origin[0][0].token();
+        let mut near = f32x8::splat(simd, 0.0);
+        let mut far = f32x8::splat(simd, limit);
+        let mut axis = 0;
+        while axis < 3 {
+            let [least, most] = self.inverse[axis];
+            let sides = &node.sides[axis];
+            let to_near = f32x8::load_array_ref(simd, &sides[rays.near[axis] & 1]) - self.origin[axis][0];
+            let to_far = f32x8::load_array_ref(simd, &sides[(rays.near[axis] ^ 1) & 1]) - self.origin[axis][1];
+            near = near.max((to_near * least).min(to_near * most));
+            far = far.min((to_far * least).max(to_far * most));
+            axis += 1;
+        }
+        let mut met = near.simd_le(far).to_bitmask() as u32;
+        if met == 0 {
+            return;
+        }
+        let distances = near.to_array();
+        let limits = load(simd, t_max) * f32x16::splat(simd, FAR_MARGIN);
+        let base = stack.height;
+        while met != 0 {
+            let child = (met.trailing_zeros() % WIDTH as u32) as usize;
+            met &= met - 1;
+            if rays.enter(node, child, limits) {
+                stack.insert(Entry::new(distances[child], node.children[child]), base);
+            }
+        }
+    }
+}

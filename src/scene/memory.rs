@@ -1,0 +1,45 @@
+//! Where tables lie in memory that paths look up anywhere in, and asking for them ahead of their use.
+
+/// What a processor finds the place of in one step at best.
+#[cfg(target_os = "linux")]
+const LARGE_PAGE: usize = 2 << 20;
+
+/// The same elements, in large pages of memory where the system has them: else finding the place of each costs a processor
+/// more than reading it. They are not copied by us, so that nothing is there twice.
+pub(super) fn in_large_pages<E>(elements: Vec<E>) -> Vec<E> {
+    #[cfg(target_os = "linux")]
+    if size_of_val(&elements[..]) >= 2 * LARGE_PAGE {
+        advise_large_pages(&elements);
+    }
+    elements
+}
+
+/// Asks for large pages where elements are.
+#[cfg(target_os = "linux")]
+fn advise_large_pages<E>(elements: &[E]) {
+    const PAGE: usize = 4096;
+    // MADV_COLLAPSE, which not every libc names: at once, since Linux 6.1.
+    const COLLAPSE: libc::c_int = 25;
+    let (place, bytes) = (elements.as_ptr().cast::<u8>(), size_of_val(elements));
+    let before = place.align_offset(PAGE);
+    let start = place.wrapping_add(before).cast_mut().cast();
+    let length = bytes.saturating_sub(before) / PAGE * PAGE;
+    for advice in [libc::MADV_HUGEPAGE, COLLAPSE] {
+        // SAFETY: whole pages inside of what was allocated; how they are kept changes nothing of what is in them. That a
+        // system does not know the advice does no harm.
+        unsafe { libc::madvise(start, length, advice) };
+    }
+}
+
+/// Has the processor fetch an element, where it knows how to; what is computed does not depend on it.
+#[inline(always)]
+pub(super) fn fetch<E>(elements: &[E], index: usize) {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(element) = elements.get(index) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: the place is that of an element; nothing is read that the program could tell.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(element).cast()) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = (elements, index);
+}

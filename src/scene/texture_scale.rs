@@ -1,0 +1,64 @@
+//! Pictures made smaller.
+
+use super::model::Texture;
+use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
+use crate::optics::vector::{Vec3, vec3};
+
+/// A channel of a texel, in [0, 1]; `place` counts channels from the first texel on.
+pub(super) fn fraction(picture: &Texture, place: usize) -> f64 {
+    match picture.rgba16.get(place) {
+        Some(code) => f64::from(*code) / 65535.0,
+        None => f64::from(picture.rgba8[place]) / 255.0,
+    }
+}
+
+/// A picture of half the width and height, each texel the mean of those that it covers; of light, where it holds colours.
+pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
+    let (width, height) = ((picture.width / 2).max(1), (picture.height / 2).max(1));
+    let decode = |[r, g, b, a]: [f64; 4]| {
+        let color = vec3(r, g, b);
+        (if is_color { linear_from_srgb(color) } else { color }, a)
+    };
+    let span = |i: u32, from: u32, to: u32| (i * from / to)..((i + 1) * from / to).max(i * from / to + 1);
+    let mut rgba8 = Vec::with_capacity((4 * width * height) as usize);
+    let mut rgba16 = Vec::new();
+    for y in 0..height {
+        for x in 0..width {
+            let (mut color, mut alpha, mut count) = (Vec3::zero(), 0.0, 0.0);
+            for row in span(y, picture.height, height) {
+                for column in span(x, picture.width, width) {
+                    let place = 4 * (row * picture.width + column) as usize;
+                    let texel = [0, 1, 2, 3].map(|channel| fraction(picture, place + channel));
+                    let (c, a) = decode(texel);
+                    (color, alpha, count) = (color + c, alpha + a, count + 1.0);
+                }
+            }
+            let mean = color / count;
+            let [r, g, b] = if is_color { srgb_from_linear(mean) } else { mean }.to_f64();
+            let code = |value: f64, most: f64| (most * value).round().clamp(0.0, most);
+            let rgba = [r, g, b, alpha / count];
+            rgba8.extend(rgba.map(|value| code(value, 255.0) as u8));
+            if !picture.rgba16.is_empty() {
+                rgba16.extend(rgba.map(|value| code(value, 65535.0) as u16));
+            }
+        }
+    }
+    Texture {
+        name: picture.name.clone(),
+        width,
+        height,
+        rgba8,
+        rgba16,
+    }
+}
+
+/// A picture whose sides are at most `side_max`, halved until they are; and the size that it had, where that was more.
+pub(super) fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, Option<[u32; 2]>) {
+    let whole = [picture.width, picture.height];
+    let mut scaled = picture;
+    while scaled.width.max(scaled.height) > side_max.max(1) {
+        scaled = halved(&scaled, is_color);
+    }
+    let is_scaled = [scaled.width, scaled.height] != whole;
+    (scaled, is_scaled.then_some(whole))
+}

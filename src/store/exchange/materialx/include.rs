@@ -1,0 +1,109 @@
+//! Documents that include others (XInclude), as one text.
+
+use std::path::{Component, Path, PathBuf};
+
+use roxmltree::{Document, Node};
+
+use crate::store::exchange::xml::escaped;
+
+/// Most files that one document includes, those that these include among them.
+const FILES_MAX: usize = 256;
+/// Attributes that hold for all that a document has in it; of an included one they are handed to its elements.
+const PREFIX: &str = "fileprefix";
+const COLORSPACE: &str = "colorspace";
+
+/// The text of a document, with that of those which it includes in their places. Their paths are seen from the file at `path`.
+///
+/// # Errors
+/// Which of them cannot be had, and why.
+pub(super) fn whole_text(path: &Path, text: String) -> Result<String, String> {
+    let mut files = vec![path.to_owned()];
+    expanded(path, text, &mut files)
+}
+
+fn expanded(path: &Path, text: String, files: &mut Vec<PathBuf>) -> Result<String, String> {
+    let document = Document::parse(&text).map_err(|error| error.to_string())?;
+    let includes = document.descendants().filter(is_include);
+    let places: Vec<_> = includes
+        .map(|node| (node.range(), node.attribute("href").unwrap_or_default().to_owned()))
+        .collect();
+    let mut whole = String::with_capacity(text.len());
+    let mut done = 0;
+    for (place, name) in places {
+        whole += &text[done..place.start];
+        whole += &included(path, &name, files)?;
+        done = place.end;
+    }
+    whole += &text[done..];
+    Ok(whole)
+}
+
+fn is_include(node: &Node<'_, '_>) -> bool {
+    node.has_tag_name(("http://www.w3.org/2001/XInclude", "include"))
+}
+
+/// The elements of a document beside another one.
+fn included(path: &Path, name: &str, files: &mut Vec<PathBuf>) -> Result<String, String> {
+    let wrong = |reason: String| format!("it includes {name}: {reason}");
+    let relative = Path::new(name);
+    let is_beside = relative
+        .components()
+        .all(|part| matches!(part, Component::Normal(_) | Component::CurDir | Component::ParentDir));
+    if name.is_empty() || !is_beside || name.contains("://") {
+        return Err(wrong(
+            "only files are included that are named from the document's folder".to_owned(),
+        ));
+    }
+    let file = path.parent().unwrap_or(Path::new("")).join(relative);
+    if files.contains(&file) {
+        // As MaterialX has it, what is there already is not read again.
+        return Ok(String::new());
+    }
+    if files.len() >= FILES_MAX {
+        return Err(wrong(format!("there are more than {FILES_MAX} files")));
+    }
+    files.push(file.clone());
+    let bytes = crate::store::file::read(&file).map_err(|error| error.to_string())?;
+    let text = expanded(&file, String::from_utf8_lossy(&bytes).into_owned(), files).map_err(wrong)?;
+    let document = Document::parse(&text).map_err(|error| wrong(error.to_string()))?;
+    let folder = relative.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.map_or_else(String::new, |folder| format!("{}/", folder.display()));
+    let root = document.root_element();
+    let elements = root.children().filter(Node::is_element);
+    Ok(elements
+        .map(|element| handed_down(&text, root, element, &folder))
+        .collect())
+}
+
+/// An element with the attributes that it has from its document, whose files lie in `folder`.
+fn handed_down(text: &str, root: Node<'_, '_>, element: Node<'_, '_>, folder: &str) -> String {
+    let of_both = [root, element].map(|node| node.attribute(PREFIX).unwrap_or_default());
+    let prefix = format!("{folder}{}", of_both.concat());
+    let colorspace = element.attribute(COLORSPACE).or(root.attribute(COLORSPACE));
+    let mut own = text[element.range()].to_owned();
+    // From the back, so that places before stay.
+    let start = element.range().start;
+    let mut attributes: Vec<_> = element
+        .attributes()
+        .filter(|attribute| [PREFIX, COLORSPACE].contains(&attribute.name()))
+        .map(|attribute| attribute.range())
+        .collect();
+    attributes.sort_by_key(|range| std::cmp::Reverse(range.start));
+    for range in attributes {
+        own.replace_range(range.start - start..range.end - start, "");
+    }
+    let name_end = own
+        .find(|c: char| c.is_whitespace() || c == '>' || c == '/')
+        .unwrap_or(1);
+    let mut given = String::new();
+    for (name, value) in [
+        (PREFIX, Some(prefix.as_str()).filter(|prefix| !prefix.is_empty())),
+        (COLORSPACE, colorspace),
+    ] {
+        if let Some(value) = value {
+            given += &format!(" {name}=\"{}\"", escaped(value));
+        }
+    }
+    own.insert_str(name_end, &given);
+    own
+}

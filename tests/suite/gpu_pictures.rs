@@ -1,0 +1,360 @@
+//! Pictures in the containers of GPUs and of many bits: cube maps and panoramas in KTX2 and DDS, TIFF of halves, floats and
+//! doubles, textures of 16 bits and of light.
+
+use glossmith::optics::material::NO_TEXTURE;
+use glossmith::scene::environment::{EnvironmentEncoding, EnvironmentSource, load, load_encoded};
+use glossmith::scene::texture::{Textures, texture_lookup};
+use glossmith::scene::{Fate, Model, ModelOptions, ModelSource, load as load_model, load_with};
+use half::f16;
+use image::{DynamicImage, ImageBuffer, Rgb};
+use serde_json::{Value, json};
+
+use super::environment_shapes::{FACES, assert_is_that_cube};
+use super::gltf_builder::{Folder, glb, square};
+
+/// A KTX2 file of levels as they are.
+fn ktx2(format: u32, [width, height, faces]: [u32; 3], levels: &[Vec<u8>]) -> Vec<u8> {
+    let mut bytes = b"\xabKTX 20\xbb\r\n\x1a\n".to_vec();
+    let numbers = [format, 1, width, height, 0, 0, faces, levels.len() as u32, 0];
+    bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+    bytes.resize(80, 0);
+    let mut start = 80 + 24 * levels.len() as u64;
+    for level in levels {
+        let length = level.len() as u64;
+        bytes.extend([start, length, length].iter().flat_map(|number| number.to_le_bytes()));
+        start += length;
+    }
+    bytes.extend(levels.iter().flatten());
+    bytes
+}
+
+/// Six faces of `side` texels, each of one colour, as numbers of these bytes.
+fn faces(side: u32, texel: impl Fn([f32; 3]) -> Vec<u8>) -> Vec<u8> {
+    let face = |color: &[f32; 3]| texel(*color).repeat((side * side) as usize);
+    FACES.iter().flat_map(face).collect()
+}
+
+/// A DDS file with DXGI's number of a format.
+fn dds(format: u32, [width, height]: [u32; 2], is_cube: bool, texels: &[u8]) -> Vec<u8> {
+    let mut bytes = b"DDS ".to_vec();
+    let mut numbers = vec![124, 0x1007, height, width, 0, 0, 1];
+    numbers.extend([0; 11]);
+    // The pixel format: the extension tells.
+    numbers.extend([32, 4, u32::from_le_bytes(*b"DX10"), 0, 0, 0, 0, 0]);
+    numbers.extend([0x1000, if is_cube { 0xfe00 } else { 0 }, 0, 0, 0]);
+    numbers.extend([format, 3, if is_cube { 4 } else { 0 }, 1, 0]);
+    bytes.extend(numbers.iter().flat_map(|number: &u32| number.to_le_bytes()));
+    bytes.extend(texels);
+    bytes
+}
+
+fn halves([r, g, b]: [f32; 3]) -> Vec<u8> {
+    [r, g, b, 1.0]
+        .iter()
+        .flat_map(|x| f16::from_f32(*x).to_le_bytes())
+        .collect()
+}
+
+fn shared_exponent(color: [f32; 3]) -> Vec<u8> {
+    // 256 · 2^(16 − 24) is one.
+    let [r, g, b] = color.map(|x| (x * 256.0) as u32);
+    (16_u32 << 27 | b << 18 | g << 9 | r).to_le_bytes().to_vec()
+}
+
+fn small_floats(color: [f32; 3]) -> Vec<u8> {
+    let [r, g, b] = color.map(|x| u32::from(f16::from_f32(x).to_bits()));
+    (r >> 4 | (g >> 4) << 11 | (b >> 5) << 22).to_le_bytes().to_vec()
+}
+
+#[test]
+fn ktx2_cubes_of_every_kind_of_light_are_read() {
+    let folder = Folder::new();
+    let path = folder.path("cube.ktx2");
+    let floats = |[r, g, b]: [f32; 3]| [r, g, b, 1.0_f32].iter().flat_map(|x| x.to_le_bytes()).collect();
+    let codes = |color: [f32; 3]| color.iter().map(|x| (255.0 * x) as u8).chain([255]).collect();
+    let three_halves = |color: [f32; 3]| halves(color)[..6].to_vec();
+    let kinds: [(&str, u32, Vec<u8>); 6] = [
+        ("halves", 97, faces(8, halves)),
+        ("three halves", 90, faces(8, three_halves)),
+        ("floats", 109, faces(8, floats)),
+        ("shared exponent", 123, faces(8, shared_exponent)),
+        ("small floats", 122, faces(8, small_floats)),
+        ("codes", 43, faces(8, codes)),
+    ];
+    for (name, format, level) in kinds {
+        std::fs::write(&path, ktx2(format, [8, 8, 6], std::slice::from_ref(&level))).unwrap();
+        let environment =
+            load(&EnvironmentSource::File(path.clone())).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_is_that_cube(&environment, name);
+        let is_of_screens = environment
+            .warnings
+            .iter()
+            .any(|warning| warning.contains("for screens"));
+        assert_eq!(is_of_screens, name == "codes", "{name}: {:?}", environment.warnings);
+        // Cut short: refused.
+        let cut = ktx2(format, [8, 8, 6], &[level[..level.len() - 9].to_vec()]);
+        std::fs::write(&path, cut).unwrap();
+        let error = load(&EnvironmentSource::File(path.clone()))
+            .expect_err("it is cut")
+            .to_string();
+        assert!(error.contains("cube.ktx2") && error.contains("damaged"), "{error}");
+    }
+}
+
+#[test]
+fn dds_cubes_and_panoramas_are_read() {
+    let folder = Folder::new();
+    let path = folder.path("cube.dds");
+    let load_of = |bytes: Vec<u8>| {
+        std::fs::write(&path, bytes).unwrap();
+        load(&EnvironmentSource::File(path.clone())).unwrap_or_else(|error| panic!("{error}"))
+    };
+    assert_is_that_cube(&load_of(dds(10, [8, 8], true, &faces(8, halves))), "halves");
+    assert_is_that_cube(
+        &load_of(dds(67, [8, 8], true, &faces(8, shared_exponent))),
+        "shared exponents",
+    );
+    assert_is_that_cube(&load_of(dds(26, [8, 8], true, &faces(8, small_floats))), "small floats");
+    let codes = |color: [f32; 3]| color.iter().map(|x| (255.0 * x) as u8).chain([255]).collect();
+    assert_is_that_cube(&load_of(dds(28, [8, 8], true, &faces(8, codes))), "codes");
+    // A block of one colour, 5, 6 and 5 bits: both ends the same, no texel of another.
+    let block = |[r, g, b]: [f32; 3]| {
+        let code = ((r * 31.0) as u16) << 11 | ((g * 63.0) as u16) << 5 | (b * 31.0) as u16;
+        [code.to_le_bytes(), code.to_le_bytes(), [0; 2], [0; 2]].concat()
+    };
+    let blocks: Vec<u8> = FACES.iter().flat_map(|color| block(*color).repeat(4)).collect();
+    assert_is_that_cube(&load_of(dds(71, [8, 8], true, &blocks)), "blocks");
+    // A flat one is a panorama.
+    let flat: Vec<u8> = halves([2.0, 0.5, 0.25]).repeat(128);
+    let panorama = load_of(dds(10, [16, 8], false, &flat));
+    assert_eq!(
+        (panorama.width, panorama.height, panorama.texels[77]),
+        (16, 8, [2.0, 0.5, 0.25, 1.0])
+    );
+    std::fs::write(&path, b"DDS what?").unwrap();
+    let error = load(&EnvironmentSource::File(path.clone()))
+        .expect_err("no DDS")
+        .to_string();
+    assert!(error.contains("cube.dds"), "{error}");
+    std::fs::write(&path, b"GIF89a").unwrap();
+    let error = load(&EnvironmentSource::File(path)).expect_err("no DDS").to_string();
+    assert!(error.contains("not a KTX2 or DDS file"), "{error}");
+}
+
+/// A TIFF of one strip: 2 × 1 texels of `bits` bits a channel with a point.
+fn float_tiff(bits: u16, channels: u16, texels: &[u8]) -> Vec<u8> {
+    let mut bytes = b"II*\0\x08\0\0\0".to_vec();
+    let after = 8 + 2 + 12 * 10 + 4;
+    let entries: [(u16, u16, u32, u32); 10] = [
+        (256, 4, 1, 2),
+        (257, 4, 1, 1),
+        // Where the bits of each channel are told; one channel has them here.
+        (
+            258,
+            3,
+            u32::from(channels),
+            if channels == 1 { u32::from(bits) } else { after },
+        ),
+        (259, 3, 1, 1),
+        (262, 3, 1, if channels == 1 { 1 } else { 2 }),
+        (273, 4, 1, after + 16),
+        (277, 3, 1, u32::from(channels)),
+        (278, 4, 1, 1),
+        (279, 4, 1, texels.len() as u32),
+        (339, 3, u32::from(channels), if channels == 1 { 3 } else { after + 8 }),
+    ];
+    bytes.extend(10_u16.to_le_bytes());
+    for (tag, kind, count, value) in entries {
+        bytes.extend(tag.to_le_bytes());
+        bytes.extend(kind.to_le_bytes());
+        bytes.extend(count.to_le_bytes());
+        bytes.extend(value.to_le_bytes());
+    }
+    bytes.extend(0_u32.to_le_bytes());
+    for value in [bits, 3] {
+        bytes.extend([value, value, value, 0].iter().flat_map(|x| x.to_le_bytes()));
+    }
+    bytes.extend(texels);
+    bytes
+}
+
+#[test]
+fn tiffs_of_halves_floats_and_doubles_are_light() {
+    let folder = Folder::new();
+    let path = folder.path("light.tif");
+    let numbers = [4.0_f64, 0.5, 0.25, 0.125, 8.0, 1.0];
+    let bytes = |bits: u16| -> Vec<u8> {
+        let bytes = |x: &f64| match bits {
+            16 => f16::from_f64(*x).to_le_bytes().to_vec(),
+            32 => (*x as f32).to_le_bytes().to_vec(),
+            _ => x.to_le_bytes().to_vec(),
+        };
+        numbers.iter().flat_map(bytes).collect()
+    };
+    for bits in [16, 32, 64] {
+        std::fs::write(&path, float_tiff(bits, 3, &bytes(bits))).unwrap();
+        let environment =
+            load(&EnvironmentSource::File(path.clone())).unwrap_or_else(|error| panic!("{bits}: {error}"));
+        assert_eq!(
+            environment.texels,
+            [[4.0, 0.5, 0.25, 1.0], [0.125, 8.0, 1.0, 1.0]],
+            "{bits} bits"
+        );
+        assert!(environment.warnings.is_empty(), "{:?}", environment.warnings);
+    }
+    let grey: Vec<u8> = [3.0_f32, 0.5].iter().flat_map(|x| x.to_le_bytes()).collect();
+    std::fs::write(&path, float_tiff(32, 1, &grey)).unwrap();
+    let environment = load(&EnvironmentSource::File(path.clone())).expect("grey loads");
+    assert_eq!(environment.texels, [[3.0, 3.0, 3.0, 1.0], [0.5, 0.5, 0.5, 1.0]]);
+    // Whole numbers of 16 bits are codes, as ever.
+    let codes: ImageBuffer<Rgb<u16>, _> = ImageBuffer::from_pixel(2, 1, Rgb([65535, 32768, 0]));
+    DynamicImage::ImageRgb16(codes).save(&path).unwrap();
+    let linear = load_encoded(&EnvironmentSource::File(path.clone()), EnvironmentEncoding::Linear).expect("loads");
+    assert!((linear.texels[0][1] - 0.5).abs() < 1e-4, "{:?}", linear.texels[0]);
+    let display = load(&EnvironmentSource::File(path)).expect("loads");
+    assert!((display.texels[0][1] - 0.214).abs() < 1e-3, "{:?}", display.texels[0]);
+}
+
+/// A square with a picture in the slot of this name.
+fn textured(picture: &[u8], slot: &str) -> Model {
+    let folder = Folder::new();
+    let (mut buffer, _) = square();
+    let view = buffer.view(picture);
+    let primitive = json!({"attributes": {"POSITION": 0, "NORMAL": 1, "TEXCOORD_0": 2}, "indices": 3, "material": 0});
+    let mut document = buffer.document(json!([primitive]));
+    document["images"] = json!([{"bufferView": view, "mimeType": "image/png"}]);
+    document["textures"] = json!([{"source": 0}]);
+    let mut material: Value = json!({"pbrMetallicRoughness": {}});
+    match slot {
+        "normalTexture" => material[slot] = json!({"index": 0}),
+        of_surface => material["pbrMetallicRoughness"][of_surface] = json!({"index": 0}),
+    }
+    document["materials"] = json!([material]);
+    folder
+        .load("square.glb", &glb(&document, &buffer.bytes))
+        .expect("loads")
+}
+
+fn png16(texels: [[u16; 3]; 2]) -> Vec<u8> {
+    let picture: ImageBuffer<Rgb<u16>, _> = ImageBuffer::from_fn(2, 1, |x, _| Rgb(texels[x as usize]));
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    DynamicImage::ImageRgb16(picture)
+        .write_to(&mut bytes, image::ImageFormat::Png)
+        .unwrap();
+    bytes.into_inner()
+}
+
+#[test]
+fn normals_and_roughness_keep_sixteen_bits_and_colours_have_eight() {
+    let png = png16([[32768 + 77, 32768 - 40, 65535], [33000, 40000, 65000]]);
+    for slot in ["normalTexture", "metallicRoughnessTexture"] {
+        let model = textured(&png, slot);
+        assert_eq!(model.textures[0].rgba16[..3], [32768 + 77, 32768 - 40, 65535], "{slot}");
+        let textures = Textures::new(&model);
+        let of_slot = &textures.slots[0];
+        let record = if slot == "normalTexture" {
+            of_slot.normal
+        } else {
+            of_slot.metallic_roughness
+        };
+        assert_ne!(record, NO_TEXTURE);
+        // The middle of the first texel.
+        let (found, alpha) = texture_lookup(&textures, record, [[0.25_f64, 0.5]; 2]);
+        let expected = [32768.0 + 77.0, 32768.0 - 40.0, 65535.0].map(|code| code / 65535.0);
+        for (found, expected) in found.to_f64().into_iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-6, "{slot}: {found} for {expected}");
+        }
+        assert_eq!(alpha, 1.0);
+    }
+    let model = textured(&png, "baseColorTexture");
+    assert!(model.textures[0].rgba16.is_empty());
+    assert_eq!(model.textures[0].rgba8[..4], [128, 127, 255, 255]);
+    let memory = model
+        .report
+        .of(Fate::Used)
+        .find(|entry| entry.what.contains("MiB in memory"));
+    assert!(memory.is_some(), "{:?}", model.report);
+}
+
+#[test]
+fn textures_of_light_are_encoded_by_their_use() {
+    let folder = Folder::new();
+    let path = folder.path("light.exr");
+    super::cli_support::write_exr(
+        &path,
+        2,
+        1,
+        |x, _| if x == 0 { [0.5, 0.25, 1.0] } else { [0.0, 3.0, 0.1] },
+    );
+    let exr = std::fs::read(&path).unwrap();
+    let surface = textured(&exr, "metallicRoughnessTexture");
+    let half = surface.textures[0].rgba16[0];
+    assert!(half.abs_diff(32768) < 2, "linear numbers stay: {half}");
+    let color = textured(&exr, "baseColorTexture");
+    // 0.5 of light is the code 188; what is brighter than white is white.
+    assert_eq!(color.textures[0].rgba8, [188, 137, 255, 255, 0, 255, 89, 255]);
+    let texels = [10_u8, 20, 30, 255, 40, 50, 60, 255];
+    let model = textured(&dds(28, [2, 1], false, &texels), "baseColorTexture");
+    assert_eq!(model.textures[0].rgba8, texels);
+}
+
+#[test]
+fn grey_indexed_and_cmyk_pictures_are_colours() {
+    let mut grey = std::io::Cursor::new(Vec::new());
+    DynamicImage::ImageLuma8(ImageBuffer::from_pixel(2, 1, image::Luma([77])))
+        .write_to(&mut grey, image::ImageFormat::Png)
+        .unwrap();
+    let model = textured(&grey.into_inner(), "baseColorTexture");
+    assert_eq!(model.textures[0].rgba8[..4], [77, 77, 77, 255]);
+
+    let mut indexed = Vec::new();
+    let mut encoder = png::Encoder::new(&mut indexed, 2, 1);
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_depth(png::BitDepth::One);
+    encoder.set_palette(vec![1, 2, 3, 200, 100, 50]);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[0b0100_0000]).unwrap();
+    writer.finish().unwrap();
+    let model = textured(&indexed, "baseColorTexture");
+    assert_eq!(model.textures[0].rgba8, [1, 2, 3, 255, 200, 100, 50, 255]);
+
+    // Magenta and yellow ink: red.
+    let cmyk = include_bytes!("../../fuzz/corpus/jpg/cmyk.jpg");
+    let model = textured(cmyk, "baseColorTexture");
+    let [r, g, b] = [0, 1, 2].map(|channel| model.textures[0].rgba8[channel]);
+    assert!(r > 220 && g < 40 && b < 40, "{r} {g} {b}");
+}
+
+#[test]
+fn textures_above_the_chosen_size_are_scaled_in_all_their_bits() {
+    let folder = Folder::new();
+    let picture: ImageBuffer<Rgb<u16>, _> = ImageBuffer::from_fn(8, 8, |x, _| Rgb([1000 * x as u16, 40000, 65535]));
+    let path = folder.path("normal.png");
+    DynamicImage::ImageRgb16(picture).save(&path).unwrap();
+    let obj = "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+    std::fs::write(folder.path("a.mtl"), "newmtl m\nnorm normal.png\n").unwrap();
+    let model = folder.path("a.obj");
+    std::fs::write(&model, obj).unwrap();
+    let options = ModelOptions {
+        texture_side_max: 4,
+        ..ModelOptions::default()
+    };
+    let small = load_with(&ModelSource::File(model.clone()), &options).expect("loads");
+    assert_eq!((small.textures[0].width, small.textures[0].rgba16[0]), (4, 500));
+    assert!(
+        small.report.lines().join("\n").contains("8 × 8, used at 4 × 4"),
+        "{:?}",
+        small.report
+    );
+    assert_eq!(
+        load_model(&ModelSource::File(model.clone())).expect("loads").textures[0].width,
+        8
+    );
+    // A TGA is known by its name alone.
+    image::RgbImage::from_pixel(2, 2, Rgb([9, 90, 200]))
+        .save(folder.path("color.tga"))
+        .unwrap();
+    std::fs::write(folder.path("a.mtl"), "newmtl m\nmap_Kd color.tga\n").unwrap();
+    let painted = load_model(&ModelSource::File(model)).expect("loads");
+    assert_eq!(painted.textures[0].rgba8[..4], [9, 90, 200, 255]);
+}

@@ -1,0 +1,226 @@
+//! Looking closer: the inspector, maps over the picture, and the picture's own pixels.
+
+use egui::accesskit::{Role, Toggled};
+use egui::{Event, Key, Modifiers, Pos2, Vec2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::layout::Pane;
+use glossmith::render::shown::Shown;
+use glossmith::render::worker::Picture;
+
+use super::ui::{Editor, editor_with, picture, request, see, settle, wait};
+use super::worker::small_document;
+
+/// Where the picture is in the viewport, which it fits.
+fn place(harness: &Editor) -> egui::Rect {
+    let viewport = harness.get_by_label("Viewport").rect();
+    let snapshot = harness.state().snapshot();
+    let picture = snapshot.picture.as_ref().expect("it was waited for");
+    let size = Vec2::new(picture.width as f32, picture.height as f32);
+    let scale = (viewport.width() / size.x).min(viewport.height() / size.y);
+    egui::Rect::from_center_size(viewport.center(), size * scale)
+}
+
+fn hover_pixel(harness: &mut Editor, [x, y]: [u32; 2]) {
+    let place = place(harness);
+    let pixel = place.width() / 40.0;
+    harness.hover_at(place.min + Vec2::new(x as f32 + 0.5, y as f32 + 0.5) * pixel);
+    harness.run_steps(3);
+}
+
+/// So many samples that the error of every pixel is known, and so bright that some are clipped.
+fn editor() -> Editor {
+    let mut document = small_document();
+    document.render.samples = 16;
+    document.view.exposure_ev = 2.5;
+    let mut harness = editor_with(document, Vec::new());
+    settle(&mut harness);
+    harness
+}
+
+fn inspecting() -> Editor {
+    let mut harness = editor();
+    harness.state_mut().reveal(Pane::Inspector);
+    harness.run_steps(3);
+    wait(&mut harness, "what is known of pixels", |app| {
+        app.snapshot()
+            .picture
+            .as_ref()
+            .is_some_and(|picture| picture.facts.is_some())
+    });
+    harness
+}
+
+fn says(harness: &Editor, text: &str) -> bool {
+    harness.query_all_by_label_contains(text).count() > 0
+}
+
+fn shown(harness: &Editor) -> std::sync::Arc<Picture> {
+    harness.state().snapshot().picture.clone().expect("it was waited for")
+}
+
+#[test]
+fn the_inspector_tells_of_the_pixel_under_the_pointer() {
+    let mut harness = inspecting();
+    assert!(says(&harness, "Move the pointer over the picture"));
+    for pixel in [[20, 12], [3, 2]] {
+        hover_pixel(&mut harness, pixel);
+        let [x, y] = pixel;
+        assert!(says(&harness, &format!("{x}, {y} of 40 × 24")));
+        let index = (y * 40 + x) as usize;
+        let [r, g, b, _] = picture(&harness)[index];
+        assert!(says(&harness, &format!("{r:.4}  {g:.4}  {b:.4}")), "its linear colour");
+        let bytes = &shown(&harness).rgba[4 * index..4 * index + 3];
+        assert!(says(
+            &harness,
+            &format!("#{:02x}{:02x}{:02x}", bytes[0], bytes[1], bytes[2])
+        ));
+        assert!(says(&harness, "of the mean luminance"), "its error");
+    }
+    // The middle shows the model, the corner the background.
+    assert!(says(&harness, "none: the background"));
+    hover_pixel(&mut harness, [20, 12]);
+    let name = harness.state().document().materials[0].name.clone();
+    assert!(says(&harness, &name) && !says(&harness, "none: the background"));
+    assert!(says(&harness, "Histogram of the picture") && says(&harness, "Too bright for the screen"));
+}
+
+#[test]
+fn the_noisiest_pixel_is_found_and_stays_until_it_is_let_go() {
+    let mut harness = inspecting();
+    harness.get_by_label("Noisiest pixel").click_accesskit();
+    harness.run_steps(3);
+    let facts = shown(&harness).facts.clone().expect("it was waited for");
+    let noisiest = (0..facts.errors.len()).max_by(|a, b| facts.errors[*a].total_cmp(&facts.errors[*b]));
+    let noisiest = noisiest.expect("pixels") as u32;
+    let told = format!("{}, {} of 40 × 24", noisiest % 40, noisiest / 40);
+    assert!(says(&harness, &told));
+    let pinned = |harness: &Editor| {
+        let pinned = harness.get_by_role_and_label(Role::CheckBox, "Pinned");
+        pinned.accesskit_node().toggled() == Some(Toggled::True)
+    };
+    assert!(pinned(&harness));
+    let other = [(noisiest % 40 + 7) % 40, 20];
+    hover_pixel(&mut harness, other);
+    assert!(says(&harness, &told), "the pointer moved it");
+    harness.key_press(Key::I);
+    harness.run_steps(3);
+    assert!(!pinned(&harness));
+    assert!(says(&harness, &format!("{}, {} of 40 × 24", other[0], other[1])));
+    harness.get_by_label("Brightest pixel").click_accesskit();
+    harness.run_steps(3);
+    let luminance = |[r, g, b, _]: &[f32; 4]| 0.2126 * r + 0.7152 * g + 0.0722 * b;
+    let pixels = picture(&harness);
+    let brightest = (0..pixels.len()).max_by(|a, b| luminance(&pixels[*a]).total_cmp(&luminance(&pixels[*b])));
+    let brightest = brightest.expect("pixels");
+    assert!(says(
+        &harness,
+        &format!("{}, {} of 40 × 24", brightest % 40, brightest / 40)
+    ));
+}
+
+#[test]
+fn maps_are_chosen_over_the_picture_and_leave_it_as_it_is() {
+    let mut harness = editor();
+    let (linear, plain) = (picture(&harness), shown(&harness).rgba.clone());
+    let mut seen = vec![plain.clone()];
+    for (map, label, _) in Shown::ALL
+        .into_iter()
+        .skip(1)
+        .filter(|(map, ..)| *map != Shown::Precision)
+    {
+        harness.get_by_role_and_label(Role::ComboBox, "Viewport shows").click();
+        harness.run_steps(2);
+        // Panels may have tabs of the same name, but not over the viewport.
+        let over = harness.get_by_label("Viewport").rect().x_range();
+        harness
+            .query_all_by_role_and_label(Role::Button, label)
+            .find(|choice| over.contains(choice.rect().center().x))
+            .expect("it is in the menu")
+            .click();
+        wait(&mut harness, label, |app| {
+            let picture = app.snapshot().picture.clone();
+            picture.is_some_and(|picture| picture.map.is_some_and(|(of, _)| of == map))
+        });
+        let rgba = shown(&harness).rgba.clone();
+        assert_eq!(picture(&harness), linear, "{label} leaves the picture as it is");
+        assert!(!seen.contains(&rgba), "{label} shows nothing of its own");
+        seen.push(rgba);
+    }
+    request(&mut harness, Action::Show(Shown::Picture));
+    wait(&mut harness, "the picture", |app| {
+        app.snapshot()
+            .picture
+            .clone()
+            .is_some_and(|picture| picture.map.is_none())
+    });
+    assert_eq!(shown(&harness).rgba, plain);
+}
+
+fn wheel(harness: &mut Editor, at: Pos2, points: f32) {
+    harness.hover_at(at);
+    harness.event(Event::ModifiersChanged(Modifiers::COMMAND));
+    harness.event(Event::MouseWheel {
+        unit: egui::MouseWheelUnit::Point,
+        delta: Vec2::new(0.0, points),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::COMMAND,
+    });
+    harness.run_steps(20);
+    harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.run_steps(2);
+}
+
+#[test]
+fn the_pictures_own_pixels_are_magnified_without_moving_the_camera() {
+    let mut harness = inspecting();
+    let before = harness.state().document().clone();
+    let whole = "Show the whole picture";
+    hover_pixel(&mut harness, [30, 16]);
+    let at = place(&harness).min + Vec2::new(30.5, 16.5) * (place(&harness).width() / 40.0);
+    wheel(&mut harness, at, 300.0);
+    assert!(harness.query_by_label(whole).is_some(), "it is not magnified");
+    assert!(
+        says(&harness, "30, 16 of 40 × 24"),
+        "what is under the pointer stays there"
+    );
+    // Moved by the middle button, the pixel goes with the pointer: to the side, as all of the height fits.
+    let to = at - Vec2::new(100.0, 0.0);
+    let button = |harness: &mut Editor, pos: Pos2, pressed: bool| {
+        harness.event(Event::PointerButton {
+            pos,
+            button: egui::PointerButton::Middle,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        harness.run_steps(2);
+    };
+    button(&mut harness, at, true);
+    for step in 1..=4 {
+        harness.hover_at(at + (to - at) * (step as f32 / 4.0));
+        harness.run_steps(2);
+    }
+    button(&mut harness, to, false);
+    assert!(says(&harness, "30, 16 of 40 × 24"), "it was not moved");
+    assert_eq!(*harness.state().document(), before, "the camera stays");
+    harness.get_by_label(whole).click();
+    harness.run_steps(3);
+    assert!(harness.query_by_label(whole).is_none());
+    for (key, is_magnified) in [
+        (Key::Plus, true),
+        (Key::Plus, true),
+        (Key::Minus, true),
+        (Key::Num0, false),
+    ] {
+        harness.key_press(key);
+        harness.run_steps(3);
+        assert_eq!(harness.query_by_label(whole).is_some(), is_magnified, "{key:?}");
+    }
+    request(&mut harness, Action::Do(Command::ZoomIn));
+    settle(&mut harness);
+    see(&mut harness, "the whole picture's button", |harness| {
+        harness.query_by_label(whole).is_some()
+    });
+    assert_eq!(*harness.state().document(), before);
+}
