@@ -8,8 +8,10 @@ use glossmith::optics::vector::vec3;
 use glossmith::scene::environment::{
     Environment, EnvironmentEncoding, EnvironmentSource, environment_radiance, load, load_encoded,
 };
-use image::{DynamicImage, ImageBuffer, Rgb};
+use image::codecs::jpeg::JpegEncoder;
+use image::{DynamicImage, ImageBuffer, Luma, Rgb};
 use tempfile::TempDir;
+use ultrahdr_rs::{ColorGamut, GainMapMetadata, encode_ultrahdr};
 
 fn load_file(path: &Path) -> Environment {
     load(&EnvironmentSource::File(path.to_owned())).expect("loads")
@@ -195,6 +197,44 @@ fn pictures_for_screens_are_decoded_or_taken_as_light() {
         );
         assert!(linear.warnings.is_empty(), "{name}: {:?}", linear.warnings);
     }
+}
+
+/// A JPEG of grey values, one a texel.
+fn jpeg(values: &ImageBuffer<Luma<u8>, Vec<u8>>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let encoder = JpegEncoder::new_with_quality(&mut bytes, 100);
+    values.write_with_encoder(encoder).unwrap();
+    bytes
+}
+
+#[test]
+fn a_gain_map_makes_a_panorama_for_screens_as_bright_as_it_was() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("ultra.jpg");
+    let shown = jpeg(&ImageBuffer::from_pixel(64, 32, Luma([188])));
+    // The right half is as bright as the map says at most, 2⁴ times; the left half as it is shown.
+    let map = jpeg(&ImageBuffer::from_fn(16, 8, |x, _| Luma([if x < 8 { 0 } else { 255 }])));
+    let mut metadata = GainMapMetadata::default();
+    metadata.gain_map_max = [4.0; 3];
+    metadata.alternate_hdr_headroom = 4.0;
+    let whole = encode_ultrahdr(&shown, &map, &metadata, ColorGamut::Bt709).unwrap();
+    std::fs::write(&path, &whole).unwrap();
+    let environment = load_file(&path);
+    assert!(environment.warnings.is_empty(), "{:?}", environment.warnings);
+    let linear = ((188.0 / 255.0_f64 + 0.055) / 1.055).powf(2.4);
+    let offset = 1.0 / 64.0;
+    for (column, expected) in [(8, linear), (56, 16.0 * (linear + offset) - offset)] {
+        let found = f64::from(environment.texels[16 * 64 + column][1]);
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} instead of {expected}");
+    }
+    // Linear by choice: the values as they stand. Cut short: what screens show, and why.
+    let source = EnvironmentSource::File(path.clone());
+    let as_light = load_encoded(&source, EnvironmentEncoding::Linear).unwrap();
+    assert!((as_light.texels[16 * 64 + 56][1] - 188.0 / 255.0).abs() < 0.01);
+    std::fs::write(&path, &whole[..whole.len() - map.len() / 2]).unwrap();
+    let cut = load_file(&path);
+    assert!(f64::from(cut.texels[16 * 64 + 56][1]) < 1.0);
+    assert!(cut.warnings.join(" ").contains("screens"), "{:?}", cut.warnings);
 }
 
 #[test]

@@ -258,7 +258,7 @@ fn opening_can_be_called_off() {
     harness.state_mut().request(Action::Open(model));
     harness.step();
     let begun = Instant::now();
-    while harness.query_by_role_and_label(Role::Button, "Cancel").is_none() {
+    while harness.query_by_role_and_label(Role::Button, "Stop loading").is_none() {
         assert!(
             begun.elapsed() < Duration::from_secs(120),
             "no button: {:?}",
@@ -268,14 +268,16 @@ fn opening_can_be_called_off() {
     }
     let snapshot = harness.state().snapshot();
     assert!(matches!(&snapshot.activity, Activity::Loading(what) if what.contains("many.obj")));
-    harness.get_by_role_and_label(Role::Button, "Cancel").click_accesskit();
+    harness
+        .get_by_role_and_label(Role::Button, "Stop loading")
+        .click_accesskit();
     see(&mut harness, "the word", |harness| {
         says(harness, "opening was cancelled")
     });
     settle(&mut harness);
     assert_eq!(*harness.state().document(), before);
     assert_eq!(picture(&harness), shown);
-    assert!(harness.query_by_role_and_label(Role::Button, "Cancel").is_none());
+    assert!(harness.query_by_role_and_label(Role::Button, "Stop loading").is_none());
 }
 
 #[test]

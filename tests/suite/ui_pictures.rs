@@ -87,6 +87,8 @@ fn two_compared_beside_effects() {
 fn the_scene_as_a_tree() {
     let mut harness = editor(options());
     harness.state_mut().reveal(Pane::Scene);
+    // Small pictures of environments come when they are made.
+    harness.state_mut().reveal(Pane::Camera);
     settle(&mut harness);
     compare(&mut harness, "scene");
 }

@@ -7,7 +7,6 @@ use eframe::App as _;
 use egui::accesskit::{Role, Toggled};
 use egui::epaint::{ClippedShape, TextShape};
 use egui::{Color32, Rect, Shape, Vec2};
-use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;

@@ -132,7 +132,7 @@ const WIDTH_STEP: f32 = 8.0;
 const SPINNER: f32 = 12.0;
 const SHARE_LENGTH: f32 = 90.0;
 /// Width of the button that gives up loading, points.
-const CANCEL_WIDTH: f32 = 56.0;
+const STOP_WIDTH: f32 = 86.0;
 
 impl<'a> Part<'a> {
     fn new(rank: Rank, width: f32, show: impl FnOnce(&mut Ui) + 'a) -> Self {
@@ -227,10 +227,10 @@ fn activity<'a>(ui: &Ui, snapshot: &'a Snapshot, actions: &'a mut Vec<Action>) -
     parts.push(Part::text(ui, Rank::Activity, text, |_| {}));
     if is_loading {
         ui.ctx().request_repaint_after(LOADING_REPAINT);
-        parts.push(Part::new(Rank::Engine, CANCEL_WIDTH, move |ui| {
+        parts.push(Part::new(Rank::Engine, STOP_WIDTH, move |ui| {
             // By a name, as what stands before it comes and goes.
             let builder = egui::UiBuilder::new().scope_id(egui::Id::unique("cancel loading"));
-            let cancel = ui.scope_builder(builder, |ui| ui.small_button("Cancel")).inner;
+            let cancel = ui.scope_builder(builder, |ui| ui.small_button("Stop loading")).inner;
             let cancel = cancel.on_hover_text("Gives up what is being loaded; what is shown stays");
             if cancel.clicked() {
                 actions.push(Action::CancelLoading);

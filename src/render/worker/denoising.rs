@@ -222,3 +222,45 @@ fn denoise(denoiser: &mut Option<Denoiser>, request: &Request) -> Result<Denoise
     let denoiser = denoiser.insert(opened);
     denoiser.denoise_unless(&request.noisy, request.how, &request.stops)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn progress(samples_per_pixel: u32, render_seconds: f64) -> Progress {
+        Progress {
+            samples_per_pixel,
+            render_seconds,
+            ..Progress::default()
+        }
+    }
+
+    /// By the first picture of two halves alone it can be told how wrong it is: it comes whatever it costs. Those after it
+    /// keep to their share of the time.
+    #[test]
+    fn the_first_picture_of_two_halves_is_due_whatever_it_costs() {
+        let mut denoising = Denoising::spawn(|| {});
+        assert!(denoising.is_due(&progress(1, 20.0)), "the first");
+        denoising.asked_samples = 1;
+        denoising.pending_samples = Some(1);
+        assert!(!denoising.is_due(&progress(2, 20.0)), "one at a time");
+        denoising.pending_samples = None;
+        denoising.latest_seconds = 100.0;
+        assert!(denoising.is_due(&progress(2, 20.0)), "the first of two halves");
+        denoising.asked_samples = 2;
+        assert!(
+            !denoising.is_due(&progress(4, 500.0)),
+            "100 s are more than a fifth of 499 s"
+        );
+        assert!(denoising.is_due(&progress(4, 502.0)));
+        denoising.late_seconds = 100.0;
+        assert!(!denoising.is_due(&progress(4, 502.0)), "another has been made");
+        assert!(denoising.is_due(&progress(4, 1002.0)));
+        assert!(!denoising.is_due(&progress(3, 1002.0)), "too little has come");
+        let last = Progress {
+            is_done: true,
+            ..progress(3, 2.0)
+        };
+        assert!(denoising.is_due(&last), "the last");
+    }
+}

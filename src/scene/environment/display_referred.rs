@@ -6,17 +6,12 @@ use image::{DynamicImage, ImageError};
 
 use super::canvas::Canvas;
 use super::file::{Picture, Source, io};
-use super::{EnvironmentEncoding, EnvironmentError};
+use super::{EnvironmentEncoding, EnvironmentError, gain_map};
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
 use crate::panics::contained;
 use crate::scene::float_tiff;
 use crate::scene::picture::decode_image;
-
-/// How a JPEG's XMP names its gain map (Android's Ultra HDR image format, version 1).
-const GAIN_MAP: &[u8] = b"http://ns.adobe.com/hdr-gain-map/";
-/// How far into the file that is looked for: it stands before the pixels.
-const GAIN_MAP_WITHIN: usize = 1 << 17;
 
 /// What whole numbers stand for.
 pub(super) struct Codes {
@@ -73,12 +68,20 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     source.loading.step("decoding the picture")?;
     let image = contained(|| decode_image(&path.to_string_lossy(), &bytes).map_err(|error| image_error(path, error)));
     let image = image.unwrap_or_else(|| Err(damaged("its pixels contradict each other".to_owned())))?;
-    let has_gain_map = bytes
-        .windows(GAIN_MAP.len())
-        .take(GAIN_MAP_WITHIN)
-        .any(|part| part == GAIN_MAP);
+    let light = match source.encoding {
+        EnvironmentEncoding::Display => {
+            contained(|| gain_map::light(&bytes, &image)).unwrap_or_else(|| Some(Err("it is damaged".to_owned())))
+        }
+        EnvironmentEncoding::Linear => None,
+    };
     drop(bytes);
     let mut canvas = Canvas::new(path, image.width().into(), image.height().into())?;
+    if let Some(Ok(light)) = &light {
+        for row in 0..image.height() {
+            (0..image.width()).for_each(|column| canvas.add_color(column, row, light.rgb(column, row)));
+        }
+        return Ok(canvas.finish());
+    }
     if matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)) {
         for (column, row, pixel) in image.into_rgb32f().enumerate_pixels() {
             canvas.add_color(column, row, pixel.0);
@@ -97,9 +100,10 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     }
     let mut picture = canvas.finish();
     picture.warnings.extend(codes.warning());
-    if has_gain_map {
-        let text = "Its gain map (Ultra HDR) is not read: save it as .exr or .hdr to have all of its light.";
-        picture.warnings.push(text.to_owned());
+    if let Some(Err(why)) = light {
+        picture
+            .warnings
+            .push(format!("Its gain map (Ultra HDR) can't be used: {why}."));
     }
     Ok(picture)
 }

@@ -14,6 +14,7 @@ mod display_referred;
 mod distribution;
 mod error;
 mod file;
+mod gain_map;
 mod luminance_chroma;
 mod open_exr;
 mod procedural;

@@ -131,7 +131,8 @@ fn line(ui: &mut Ui, kind: &str, name: &str, is_selected: bool, is_faint: bool) 
     let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
     let text = RichText::new(name);
     let text = if is_faint { text.weak() } else { text };
-    let button = egui::Button::selectable(is_selected, text)
+    // At the left, as lines of a tree are.
+    let button = egui::Button::selectable(is_selected, (text, egui::Atom::grow()))
         .truncate()
         .sense(Sense::click_and_drag());
     let shown = ui.add_sized(size, button.min_size(size));
