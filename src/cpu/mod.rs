@@ -13,6 +13,7 @@ use std::time::{Duration, Instant};
 use rayon::prelude::*;
 
 use crate::job::Job;
+use crate::job::features::GUIDE_SAMPLES;
 use crate::job::film::Film;
 use crate::job::tiles::{Schedule, SliceLimits, Work};
 use crate::optics::real::Real;
@@ -135,7 +136,9 @@ fn render_tile<T: Real>(integrator: &Integrator<'_, T>, origin: [u32; 2], work: 
             halves[pixel][sample as usize % 2].add(path.radiance.to_f64());
             sums.add_coverage(pixel, path.alpha.to_f64());
             costs.clamped += path.clamped.to_f64();
-            if let Some(guides) = sums.guides.get_mut(pixel) {
+            if sample < GUIDE_SAMPLES
+                && let Some(guides) = sums.guides.get_mut(pixel)
+            {
                 guides.add(&path.seen);
             }
         }

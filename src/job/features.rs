@@ -20,7 +20,7 @@ pub struct Features {
 }
 
 /// Samples of a pixel that tell what is seen first: the mean over more would hardly change.
-pub const GUIDE_SAMPLES: u32 = 64;
+pub const GUIDE_SAMPLES: u32 = 32;
 
 /// Sums over a pixel's first samples of what they saw first, as both engines make them. Albedo and normal are those of
 /// the first surface that is not a mirror or clear glass; the depth is that of the first surface of all.

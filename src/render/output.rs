@@ -4,7 +4,9 @@ use std::io::{self, Seek, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use exr::prelude::{AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, WritableImage as _};
+use exr::prelude::{
+    AnyChannel, AnyChannels, Encoding, FlatSamples, Layer, LayerAttributes, LineOrder, WritableImage as _,
+};
 use image::Rgb;
 use image::codecs::hdr::HdrEncoder;
 
@@ -183,6 +185,11 @@ fn write_exr(file: &mut (impl Write + Seek), rendered: Rendered<'_>, attributes:
         Encoding::SMALL_FAST_LOSSLESS
     } else {
         Encoding::FAST_LOSSLESS
+    };
+    // Tiles in the order in which they are ready would make another file of the same picture each time.
+    let encoding = Encoding {
+        line_order: LineOrder::Increasing,
+        ..encoding
     };
     let layer = Layer::new(size, attributes, encoding, AnyChannels::sort(all));
     let written = exr::prelude::Image::from_layer(layer).write().to_buffered(file);

@@ -258,7 +258,7 @@ fn guides_follow_mirrors_and_are_alike_on_both_engines() {
     );
 }
 
-/// Guides are those of the first 64 samples, and the same however many follow.
+/// Guides are those of the first 32 samples, and the same however many follow.
 #[test]
 fn guides_are_of_the_first_samples_only() {
     let mut document = small_document();
@@ -268,11 +268,11 @@ fn guides_are_of_the_first_samples_only() {
     );
     document.view.denoise = Denoise::High;
     let guides = |document: &Document| render(EngineChoice::Cpu, document).guides;
-    document.render.samples = 64;
+    document.render.samples = 32;
     let first = guides(&document);
-    document.render.samples = 80;
+    document.render.samples = 48;
     assert_eq!(guides(&document), first);
-    assert!(first.iter().any(|sums| sums.hits == 64.0));
+    assert!(first.iter().any(|sums| sums.hits == 32.0));
 }
 
 #[test]

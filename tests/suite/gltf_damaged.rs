@@ -213,3 +213,36 @@ fn random_damage_never_panics() {
     }
     assert!(loaded > 100 && refused > 100, "{loaded} loaded, {refused} refused");
 }
+
+/// What the format leaves to the writer, in ways that few writers take.
+#[test]
+fn unusual_files_are_read() {
+    let folder = Folder::new();
+    let shown = |change: &dyn Fn(&mut Value)| {
+        let (buffer, mut document) = square();
+        change(&mut document);
+        let model = folder.load_glb(&document, &buffer).expect("loads");
+        assert_eq!(model.mesh.triangles.len(), 2, "{document}");
+        model
+    };
+    let usual = shown(&|_| {}).mesh.positions;
+    // Whole numbers with a point.
+    shown(&|d| {
+        d["scene"] = json!(0.0);
+        d["accessors"][0]["count"] = json!(4.0);
+        d["nodes"][0]["mesh"] = json!(0.0);
+    });
+    // A mesh that no node holds.
+    let alone = shown(&|d| {
+        for part in ["scene", "scenes", "nodes"] {
+            d.as_object_mut().unwrap().remove(part);
+        }
+    });
+    assert_eq!(alone.mesh.positions, usual);
+    // What moves is no node.
+    shown(&|d| {
+        let sampler = json!({"input": 0, "output": 0});
+        let channel = json!({"sampler": 0, "target": {"path": "pointer"}});
+        d["animations"] = json!([{"samplers": [sampler], "channels": [channel]}]);
+    });
+}

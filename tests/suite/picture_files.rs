@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use glossmith::document::{AreaLight, Background, Document, assign};
-use glossmith::job::film::Film;
+use glossmith::job::film::{Film, Image};
 use glossmith::optics::tone::ToneCurve;
 use glossmith::render::output::{self, Layers};
 use glossmith::render::{EngineChoice, Session};
@@ -15,6 +15,7 @@ use glossmith::store::picture::load_picture_document;
 use glossmith::store::snapshots;
 
 use crate::cli_support::{Workplace, channels};
+use crate::support::Random;
 
 /// Coloured, brighter than white in places, its pixels covered in part or not at all, with more samples here than there.
 fn document() -> Document {
@@ -175,6 +176,37 @@ fn every_format_holds_the_film() {
     assert_layers(&channels(&place.path("layers.exr")), &film, &layers);
     assert_png(&place.path("a.png"), &film, f64::from(document.view.exposure_ev).exp2());
     assert_hdr(&place.path("a.hdr"), &film);
+}
+
+/// Machines that share a picture compare their files byte for byte.
+#[test]
+fn the_same_picture_is_the_same_file() {
+    let place = Workplace::new();
+    let mut random = Random::new(1);
+    // Tiles of noise take longer than tiles of one colour.
+    let pixels = (0..512 * 512)
+        .map(|pixel| {
+            if pixel / 64 % 2 == 0 {
+                [0.5; 4]
+            } else {
+                [0; 4].map(|_| random.unit())
+            }
+        })
+        .collect();
+    let image = Image {
+        width: 512,
+        height: 512,
+        pixels,
+    };
+    let written = || {
+        let path = place.path("same.exr");
+        output::write(&path, (&image).into(), &document()).unwrap();
+        std::fs::read(path).unwrap()
+    };
+    let first = written();
+    for _ in 0..12 {
+        assert!(written() == first, "another file");
+    }
 }
 
 #[test]

@@ -357,7 +357,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::Guides,
         label: "Guides",
-        help: "Albedo, normal and distance of what each pixel sees first, from its first 64 samples: for the denoiser and for \
+        help: "Albedo, normal and distance of what each pixel sees first, from its first 32 samples: for the denoiser and for \
                layers.",
         decide: |facts| match facts.document.view.denoise {
             Denoise::Off => Decision::off("neither layers nor a denoised picture are made"),

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use gltf::json;
 use rayon::prelude::*;
+use serde_json::Value as Json;
 
 use super::compressed;
 use crate::scene::files::Files;
@@ -62,7 +63,7 @@ pub(super) struct Document {
     /// The JSON. Its indices may be out of range.
     pub root: json::Root,
     /// The JSON once more, for what the crate does not know.
-    pub raw: serde_json::Value,
+    pub raw: Json,
     /// The contents of the buffers; empty where they are missing.
     pub buffers: Vec<Vec<u8>>,
     /// Buffer views that were compressed, as they are without.
@@ -75,12 +76,12 @@ impl Document {
     /// Reads a file with its buffers; its pictures are read when asked for.
     pub fn read(path: &Path, files: Files, mut bytes: Vec<u8>, report: &mut ImportReport) -> Result<Self, ModelError> {
         let (text, blob) = split(path, &bytes)?;
-        let mut raw: serde_json::Value = parse(path, text)?;
-        add_what_the_crate_misses(&mut raw);
+        let mut raw: Json = parse(path, text)?;
+        complete(&mut raw);
         let mut document = Self {
             path: path.to_owned(),
             files,
-            root: serde_json::from_value(raw.clone()).map_err(|error| ModelError::Invalid {
+            root: root(&mut raw).map_err(|error| ModelError::Invalid {
                 path: path.to_owned(),
                 reason: format!("its JSON: {error}"),
             })?,
@@ -122,7 +123,7 @@ impl Document {
     }
 
     /// An extension of a material, mesh or other part of the file, given by the way to it.
-    pub fn extension(&self, part: &serde_json::Value, name: &str) -> Option<serde_json::Value> {
+    pub fn extension(&self, part: &Json, name: &str) -> Option<Json> {
         part.get("extensions")?.get(name).cloned()
     }
 
@@ -284,15 +285,52 @@ impl Document {
     }
 }
 
-/// The crate asks for some parts that the format leaves to the writer.
-fn add_what_the_crate_misses(raw: &mut serde_json::Value) {
-    let scenes = raw.get_mut("scenes").and_then(serde_json::Value::as_array_mut);
-    for scene in scenes
-        .into_iter()
-        .flatten()
-        .filter_map(serde_json::Value::as_object_mut)
-    {
+/// The JSON as the crate reads it, which asks for whole numbers without a point.
+fn root(raw: &mut Json) -> serde_json::Result<json::Root> {
+    serde_json::from_value(raw.clone()).or_else(|_| {
+        without_points(raw);
+        serde_json::from_value(raw.clone())
+    })
+}
+
+/// Adds what the crate asks for and the format leaves to the writer. Meshes that no node holds get one where there are no nodes
+/// at all.
+fn complete(raw: &mut Json) {
+    for scene in parts(raw, "scenes").filter_map(Json::as_object_mut) {
         scene.entry("nodes").or_insert_with(|| serde_json::json!([]));
+    }
+    for animation in parts(raw, "animations") {
+        if let Some(channels) = animation.get_mut("channels").and_then(Json::as_array_mut) {
+            // What an extension moves, or nothing.
+            channels.retain(|channel| !channel["target"].is_object() || channel["target"].get("node").is_some());
+        }
+    }
+    let meshes = raw["meshes"].as_array().map_or(0, Vec::len);
+    if raw["nodes"].as_array().is_none_or(Vec::is_empty) && meshes > 0 && raw.is_object() {
+        raw["nodes"] = (0..meshes).map(|mesh| serde_json::json!({ "mesh": mesh })).collect();
+        raw["scenes"] = serde_json::json!([{ "nodes": (0..meshes).collect::<Vec<_>>() }]);
+        raw["scene"] = serde_json::json!(0);
+    }
+}
+
+/// The parts of a list in an object; none where there is no list.
+fn parts<'a>(of: &'a mut Json, name: &str) -> impl Iterator<Item = &'a mut Json> {
+    of.get_mut(name).and_then(Json::as_array_mut).into_iter().flatten()
+}
+
+/// Writes whole numbers that have a point without it.
+fn without_points(value: &mut Json) {
+    match value {
+        Json::Array(values) => values.iter_mut().for_each(without_points),
+        Json::Object(values) => values.values_mut().for_each(without_points),
+        Json::Number(number) if number.is_f64() => {
+            let whole = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 2f64.powi(53));
+            // Of a negative zero the sign would be lost.
+            if let Some(whole) = whole.filter(|x| *x != 0.0 || x.is_sign_positive()) {
+                *number = (whole as i64).into();
+            }
+        }
+        _ => {}
     }
 }
 
