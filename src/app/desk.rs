@@ -66,6 +66,8 @@ pub(super) struct Shared {
     pub(super) measured: Option<PathBuf>,
     /// The next click in the viewport says what is sharp.
     pub(super) picks_focus: bool,
+    /// What every screen shows is marked in the viewport.
+    pub(super) shows_safe_frames: bool,
     /// Rendering was stopped by hand.
     pub(super) is_paused: bool,
     /// A study measures, for which the viewport's renderer rests.

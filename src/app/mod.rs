@@ -212,6 +212,7 @@ impl App {
                 view_angle_deg: desk::VIEW_ANGLE_DEG,
                 measured: None,
                 picks_focus: false,
+                shows_safe_frames: false,
                 is_paused: false,
                 is_measuring: false,
                 references: options.cache.as_ref().map_or_else(ReferenceCache::none, |cache| {

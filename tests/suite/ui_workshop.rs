@@ -376,3 +376,62 @@ fn examples_are_opened_from_the_help_menu() {
         assert_eq!(*harness.state().document(), before);
     }
 }
+
+#[test]
+fn a_lens_is_set_in_a_photographers_terms() {
+    let mut harness = editor();
+    harness.state_mut().reveal(Pane::Camera);
+    settle(&mut harness);
+    let set = |harness: &mut Editor, name: &str, value: f64| {
+        harness
+            .get_by_role_and_label(Role::SpinButton, name)
+            .set_value_accesskit(value);
+        harness.run_steps(3);
+    };
+    let camera = |harness: &Editor| harness.state().document().camera;
+    let before = harness.state().document().clone();
+    set(&mut harness, "Focal length", 50.0);
+    assert!(
+        (camera(&harness).fov_deg - 26.9915).abs() < 1e-3,
+        "{}",
+        camera(&harness).fov_deg
+    );
+    set(&mut harness, "f-number", 0.5);
+    let scene = harness.state().snapshot().scene.clone().expect("it renders");
+    let radius_mm = 1000.0 * scene.job.geometry.world_units_per_unit;
+    // The lens is as wide as twice its focal length.
+    let expected = 50.0 / radius_mm;
+    assert!(
+        (camera(&harness).aperture / expected - 1.0).abs() < 1e-3,
+        "{}",
+        camera(&harness).aperture
+    );
+    // The same angle on a smaller sensor is another lens.
+    harness.get_by_role_and_label(Role::ComboBox, "Sensor").click();
+    harness.run_steps(3);
+    harness.get_by_label("APS-C").click();
+    harness.run_steps(3);
+    assert!((camera(&harness).fov_deg - 26.9915).abs() < 1e-3);
+    let focal = harness.get_by_role_and_label(Role::SpinButton, "Focal length");
+    assert!((focal.accesskit_node().numeric_value().expect("a number") - 32.5).abs() < 0.1);
+    let [width, height] = [
+        harness.state().document().render.width,
+        harness.state().document().render.height,
+    ];
+    harness.get_by_role_and_label(Role::ComboBox, "Aspect").scroll_to_me();
+    harness.run_steps(3);
+    harness.get_by_role_and_label(Role::ComboBox, "Aspect").click();
+    harness.run_steps(3);
+    harness.get_by_label("2.39 : 1").click();
+    harness.run_steps(3);
+    let wide = harness.state().document().render;
+    assert_eq!(
+        (wide.width, wide.height),
+        (width, (f64::from(width) / 2.39).round() as u32)
+    );
+    assert_ne!(wide.height, height);
+    for _ in 0..3 {
+        undo(&mut harness);
+    }
+    assert_eq!(*harness.state().document(), before);
+}

@@ -202,6 +202,9 @@ impl Viewport {
             if is_compared && desk.shared.compare.view == View::Wipe {
                 Self::divider(ui, place, desk);
             }
+            if desk.shared.shows_safe_frames && !is_compared {
+                safe_frames(&ui.painter().with_clip_rect(area), place);
+            }
             if let Some((shown, scale)) = picture.map {
                 legend::show(ui, area, shown, scale);
             }
@@ -476,6 +479,20 @@ fn loading(ui: &mut Ui, area: Rect, desk: &Desk<'_>) {
         ui.add(egui::Spinner::new().size(14.0));
         ui.add(egui::Label::new(text).truncate())
     });
+}
+
+/// What every screen shows of the picture at `place`: actions, and within them titles (EBU R 95).
+fn safe_frames(painter: &egui::Painter, place: Rect) {
+    for share in [0.93, 0.9] {
+        let frame = Rect::from_center_size(place.center(), share * place.size());
+        // Seen before light and dark.
+        for (width, color) in [
+            (3.0, Color32::from_black_alpha(80)),
+            (1.0, Color32::from_white_alpha(160)),
+        ] {
+            painter.rect_stroke(frame, 0.0, egui::Stroke::new(width, color), egui::StrokeKind::Middle);
+        }
+    }
 }
 
 /// The latest warnings and errors, until they are old or closed.

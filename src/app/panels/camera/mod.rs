@@ -1,8 +1,11 @@
 //! Camera, view and render settings.
 
+mod photographic;
 mod region;
 
 use egui::Ui;
+
+use photographic::Photographic;
 
 use super::Panel;
 use crate::app::actions::{Action, Command};
@@ -13,11 +16,14 @@ use crate::document::{Bookmark, range};
 
 /// Camera, view and render settings.
 #[derive(Default)]
-pub(super) struct CameraPanel;
+pub(super) struct CameraPanel {
+    photographic: Photographic,
+}
 
 impl Panel for CameraPanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         widgets::group(ui, "Camera", |ui| camera(ui, desk));
+        widgets::group(ui, "Lens", |ui| self.photographic.show(ui, desk));
         widgets::group(ui, "Bookmarks", |ui| bookmarks(ui, desk));
         widgets::group(ui, "View", |ui| desk.settings(ui, "View"));
         widgets::group(ui, "Picture", |ui| picture(ui, desk));
@@ -143,6 +149,7 @@ fn picture(ui: &mut Ui, desk: &mut Desk<'_>) {
     widgets::comes_and_goes(ui, |ui| {
         if desk.shared.resolution == Resolution::Document {
             desk.settings(ui, PICTURE_SIZE);
+            photographic::aspect(ui, desk);
         }
     });
     widgets::comes_and_goes(ui, |ui| region::show(ui, desk));
