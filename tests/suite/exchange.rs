@@ -411,36 +411,53 @@ fn materials_of_other_programs_are_rendered_as_they_are() {
     }
 }
 
+/// The material of a MaterialX document of one surface with these numbers.
+fn read_surface(place: &Workplace, node: &str, numbers: &[(&str, f32)]) -> MaterialSettings {
+    let input = |(name, value): &(&str, f32)| format!("<input name=\"{name}\" type=\"float\" value=\"{value}\"/>");
+    let inputs: String = numbers.iter().map(input).collect();
+    let document = format!(
+        "<materialx version=\"1.39\"><{node} name=\"s\" type=\"surfaceshader\">{inputs}</{node}><surfacematerial \
+         name=\"M\" type=\"material\"><input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"s\"/>\
+         </surfacematerial></materialx>"
+    );
+    place.write("s.mtlx", document.as_bytes());
+    place.done("convert s.mtlx s.json --import-lobe ggx");
+    load_material(&place.path("s.json")).unwrap().value
+}
+
+#[test]
+fn the_opacity_of_a_preview_surface_is_glass_a_cutout_or_presence() {
+    let place = Workplace::new();
+    for (numbers, opacity, transmission) in [
+        (&[("opacity", 0.25)][..], 1.0, 0.75),
+        (&[("opacity", 0.25), ("opacityThreshold", 0.5)][..], 0.0, 0.0),
+        (&[("opacity", 0.75), ("opacityThreshold", 0.5)][..], 1.0, 0.0),
+        (&[("opacity", 0.25), ("opacityMode", 1.0)][..], 0.25, 0.0),
+    ] {
+        let material = read_surface(&place, "UsdPreviewSurface", numbers);
+        let found = (material.opacity, material.transmission_weight);
+        assert_eq!(found, (opacity, transmission), "{numbers:?}");
+    }
+}
+
 #[test]
 fn surfaces_of_materialx_have_the_widths_that_their_nodes_define() {
     let place = Workplace::new();
-    let read = |node: &str, inputs: &str| {
-        let document = format!(
-            "<materialx version=\"1.39\"><{node} name=\"s\" type=\"surfaceshader\">{inputs}</{node}><surfacematerial \
-             name=\"M\" type=\"material\"><input name=\"surfaceshader\" type=\"surfaceshader\" nodename=\"s\"/>\
-             </surfacematerial></materialx>"
-        );
-        place.write("s.mtlx", document.as_bytes());
-        place.done("convert s.mtlx s.json --import-lobe ggx");
-        load_material(&place.path("s.json")).unwrap().value
-    };
-    let number = |name: &str, value: f32| format!("<input name=\"{name}\" type=\"float\" value=\"{value}\"/>");
     let widths = |material: &MaterialSettings| {
         let mean = f64::from(material.roughness).powi(2);
         let stretch = glossmith::optics::lobe::stretch_from_anisotropy(f64::from(material.anisotropy));
         [mean * stretch, mean / stretch]
     };
     // α = roughness², aspect = √(1 − anisotropy): α over the aspect, and times it.
-    let inputs = number("roughness", 0.4) + &number("anisotropic", 0.5) + &number("clearcoat", 1.0);
-    let material = read("disney_principled", &inputs);
+    let numbers = [("roughness", 0.4), ("anisotropic", 0.5), ("clearcoat", 1.0)];
+    let material = read_surface(&place, "disney_principled", &numbers);
     let aspect = 0.5_f64.sqrt();
     for (found, wanted) in widths(&material).into_iter().zip([0.16 / aspect, 0.16 * aspect]) {
         assert!((found / wanted - 1.0).abs() < 1e-4, "{found} and {wanted}");
     }
     assert_eq!((material.coat_weight, material.specular_weight), (1.0, 1.0));
     // glTF's: α is mix(roughness², 1, strength²) along, roughness² across.
-    let inputs = number("roughness", 0.4) + &number("anisotropy_strength", 0.5);
-    let material = read("gltf_pbr", &inputs);
+    let material = read_surface(&place, "gltf_pbr", &[("roughness", 0.4), ("anisotropy_strength", 0.5)]);
     for (found, wanted) in widths(&material).into_iter().zip([0.16 + 0.84 * 0.25, 0.16]) {
         assert!((found / wanted - 1.0).abs() < 1e-4, "{found} and {wanted}");
     }

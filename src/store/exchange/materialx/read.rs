@@ -458,6 +458,14 @@ fn disney_principled(inputs: &mut Inputs) -> Surface {
 
 fn usd_preview_surface(inputs: &mut Inputs) -> Surface {
     inputs.drop_layers(&[("useSpecularWorkflow", 0.0), ("displacement", 0.0)]);
+    let (opacity, threshold) = (inputs.number("opacity", 1.0), inputs.number("opacityThreshold", 0.0));
+    let is_presence = inputs.number("opacityMode", 0.0) > 0.0;
+    // What is not stopped is refracted, unless the surface is cut out or is said to be there in part.
+    let (presence, transmission_weight) = match is_presence {
+        _ if threshold > 0.0 => (f32::from(opacity >= threshold), 0.0),
+        true => (opacity, 0.0),
+        false => (1.0, 1.0 - opacity),
+    };
     Surface {
         base_color: inputs.color("diffuseColor", [0.18; 3]),
         metalness: inputs.number("metallic", 0.0),
@@ -466,7 +474,8 @@ fn usd_preview_surface(inputs: &mut Inputs) -> Surface {
         coat_weight: inputs.number("clearcoat", 0.0),
         coat_roughness: inputs.number("clearcoatRoughness", 0.01),
         emission: inputs.color("emissiveColor", [0.0; 3]),
-        opacity: inputs.number("opacity", 1.0),
+        transmission_weight,
+        opacity: presence,
         ..Surface::default()
     }
 }
