@@ -82,3 +82,25 @@ pub fn angle_density(frame: &Frame<f64>, alpha_rad: f64, steps: u32, density: im
         .sum();
     sum * sine * TAU / f64::from(steps)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_counted_in_their_bins_and_densities_add_up() {
+        let mut histogram = Histogram::new(1.0, 3.0, 4);
+        for value in [1.0, 1.49, 2.6, 3.0, 0.99, 3.01, f64::NAN] {
+            histogram.add(value);
+        }
+        assert_eq!(histogram.counts(), [2, 0, 0, 2], "the upper end is the last bin's");
+        assert_eq!(histogram.total(), 7);
+        let density = histogram.density();
+        assert_eq!(
+            density.iter().map(|[middle, _]| *middle).collect::<Vec<_>>(),
+            [1.25, 1.75, 2.25, 2.75]
+        );
+        let within: f64 = density.iter().map(|[_, density]| density * 0.5).sum();
+        assert!((within - 4.0 / 7.0).abs() < 1e-12, "{within}");
+    }
+}

@@ -182,6 +182,10 @@ fn meshopt_meshes_are_those_that_were_compressed() {
         let model = load_plain(&document, &buffer);
         assert_eq!(model.mesh, plain.mesh, "{extension}");
         assert!(model.report.is_clean(), "{:?}", model.report);
+        // No memory is asked for that so few bytes cannot fill.
+        document["bufferViews"][0]["extensions"][extension]["count"] = json!(1u64 << 40);
+        let refused = Folder::new().load_glb(&document, &buffer).expect_err("it can't be");
+        assert!(refused.to_string().contains("cannot hold"), "{refused}");
     }
 }
 

@@ -73,12 +73,17 @@ fn ktx2_cubes_of_every_kind_of_light_are_read() {
     let floats = |[r, g, b]: [f32; 3]| [r, g, b, 1.0_f32].iter().flat_map(|x| x.to_le_bytes()).collect();
     let codes = |color: [f32; 3]| color.iter().map(|x| (255.0 * x) as u8).chain([255]).collect();
     let three_halves = |color: [f32; 3]| halves(color)[..6].to_vec();
-    let kinds: [(&str, u32, Vec<u8>); 6] = [
+    let shorts = |[r, g, b]: [f32; 3]| {
+        let codes = [r, g, b, 1.0].map(|x| (65535.0 * x).round() as u16);
+        codes.iter().flat_map(|code| code.to_le_bytes()).collect()
+    };
+    let kinds: [(&str, u32, Vec<u8>); 7] = [
         ("halves", 97, faces(8, halves)),
         ("three halves", 90, faces(8, three_halves)),
         ("floats", 109, faces(8, floats)),
         ("shared exponent", 123, faces(8, shared_exponent)),
         ("small floats", 122, faces(8, small_floats)),
+        ("shorts", 91, faces(8, shorts)),
         ("codes", 43, faces(8, codes)),
     ];
     for (name, format, level) in kinds {

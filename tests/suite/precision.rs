@@ -20,7 +20,9 @@ fn job(document: &Document) -> Job {
 }
 
 fn map(job: &Job) -> PrecisionMap {
-    precision(job, SIZE, || false).expect("it is not superseded")
+    let map = precision(job, SIZE, || false).expect("it is not superseded");
+    assert_eq!(map.findings.len() as u32, map.width * map.height, "one a pixel");
+    map
 }
 
 fn counts(map: &PrecisionMap) -> [usize; 3] {

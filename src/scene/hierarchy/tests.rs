@@ -68,3 +68,20 @@ fn a_hierarchy_that_nobody_wants_is_not_built() {
     assert!(Hierarchy::new(found.len(), |triangle| found[triangle as usize], &loading).is_ok());
     assert!(loading.doing().contains("hierarchy"), "{}", loading.doing());
 }
+
+/// Hierarchies that are too deep for the stack of a ray are built anew: their depth is counted.
+#[test]
+fn levels_are_counted_to_the_deepest() {
+    let found = triangles();
+    let box_of = |triangle: u32| triangle_box(found[triangle as usize]);
+    let (tree, order) = binary::tree(found.len() as u32, u32::MAX, box_of, &Loading::default()).expect("not cancelled");
+    let corners = |triangle: u32| found[order[triangle as usize] as usize];
+    let made = compressed::compress(&BoxedTree::new(&tree, tree.root(), &corners));
+    // Two levels of eight children hold 64 leaves of three triangles.
+    let depth = compressed::depth(&made);
+    assert!(
+        (3..DEPTH_MAX).contains(&depth),
+        "{depth} levels of {} triangles",
+        found.len()
+    );
+}
