@@ -76,7 +76,7 @@ fn levels_are_counted_to_the_deepest() {
     let box_of = |triangle: u32| triangle_box(found[triangle as usize]);
     let (tree, order) = binary::tree(found.len() as u32, u32::MAX, box_of, &Loading::default()).expect("not cancelled");
     let corners = |triangle: u32| found[order[triangle as usize] as usize];
-    let made = compressed::compress(&BoxedTree::new(&tree, tree.root(), &corners));
+    let made = compressed::compress(&BoxedTree::new(&tree, tree.root(), corners));
     // Two levels of eight children hold 64 leaves of three triangles.
     let depth = compressed::depth(&made);
     assert!(
