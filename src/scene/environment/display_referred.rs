@@ -59,11 +59,8 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let floats =
         contained(|| float_tiff::decode(&bytes)).unwrap_or_else(|| Err("its pixels contradict each other".into()));
     if let Some(floats) = floats.map_err(damaged)? {
-        let mut canvas = Canvas::new(path, floats.width.into(), floats.height.into())?;
-        for row in 0..floats.height {
-            (0..floats.width).for_each(|column| canvas.add_color(column, row, floats.rgb(column, row)));
-        }
-        return Ok(canvas.finish());
+        let size = [floats.width, floats.height];
+        return of_light(path, size, |column, row| floats.rgb(column, row));
     }
     source.loading.step("decoding the picture")?;
     let image = contained(|| decode_image(&path.to_string_lossy(), &bytes).map_err(|error| image_error(path, error)));
@@ -75,13 +72,11 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
         EnvironmentEncoding::Linear => None,
     };
     drop(bytes);
-    let mut canvas = Canvas::new(path, image.width().into(), image.height().into())?;
     if let Some(Ok(light)) = &light {
-        for row in 0..image.height() {
-            (0..image.width()).for_each(|column| canvas.add_color(column, row, light.rgb(column, row)));
-        }
-        return Ok(canvas.finish());
+        let size = [image.width(), image.height()];
+        return of_light(path, size, |column, row| light.rgb(column, row));
     }
+    let mut canvas = Canvas::new(path, image.width().into(), image.height().into())?;
     if matches!(image, DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_)) {
         for (column, row, pixel) in image.into_rgb32f().enumerate_pixels() {
             canvas.add_color(column, row, pixel.0);
@@ -106,6 +101,19 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
             .push(format!("Its gain map (Ultra HDR) can't be used: {why}."));
     }
     Ok(picture)
+}
+
+/// A panorama of linear light by column and row.
+fn of_light(
+    path: &Path,
+    [width, height]: [u32; 2],
+    rgb: impl Fn(u32, u32) -> [f32; 3],
+) -> Result<Picture, EnvironmentError> {
+    let mut canvas = Canvas::new(path, width.into(), height.into())?;
+    for row in 0..height {
+        (0..width).for_each(|column| canvas.add_color(column, row, rgb(column, row)));
+    }
+    Ok(canvas.finish())
 }
 
 fn image_error(path: &Path, error: ImageError) -> EnvironmentError {
