@@ -17,7 +17,7 @@ pub fn least_view_cosine(geometry: &Geometry, eye: [f64; 3]) -> f64 {
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let is_along = |vertex: &Vertex| {
             let shading = DVec3::from_array(vertex.normal.map(f64::from)).normalize_or_zero();
-            shading.dot(normal).abs() > 1.0 - TOLERANCE
+            shading == DVec3::ZERO || shading.dot(normal).abs() > 1.0 - TOLERANCE
         };
         if !triangle.iter().all(|&v| is_along(&geometry.vertices[v as usize])) {
             return 0.0;

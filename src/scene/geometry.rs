@@ -29,7 +29,7 @@ pub const NO_OBJECT: u32 = u32::MAX;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Vertex {
-    /// Unit shading normal.
+    /// Unit shading normal, or 0 for that of the triangle's plane.
     pub normal: [f32; 3],
     /// Texture coordinates, v downwards.
     pub uv: [f32; 2],

@@ -12,7 +12,7 @@ use glam::{DVec2, DVec3, Vec2, Vec3, Vec4};
 pub struct Mesh {
     /// Places in model units. Double precision, so that a small part far from the origin keeps its shape.
     pub positions: Vec<DVec3>,
-    /// Unit shading normals.
+    /// Unit shading normals; 0 where a triangle is shaded by its plane, which asks for no vertices of its own.
     pub normals: Vec<Vec3>,
     /// Texture coordinates, v growing downwards in the image as in glTF; zero where the source has none.
     pub uvs: Vec<Vec2>,
@@ -123,28 +123,20 @@ impl Mesh {
         parallelepipeds.sum::<f64>() / 6.0
     }
 
-    /// Gives every triangle its own three vertices with the normal of its plane: what glTF asks for where a file has
-    /// no normals.
-    pub fn flatten(&mut self) {
-        let mut flat = Mesh::default();
+    /// Gives corners that are shaded by their triangle's plane vertices of their own with its normal: for formats whose
+    /// vertices all have normals.
+    pub fn split_flat(&mut self) {
         for triangle in 0..self.triangles.len() {
             let normal = plane_normal(self.corners(triangle)).as_vec3();
-            let corners = self.triangles[triangle].map(|vertex| {
-                let vertex = vertex as usize;
-                flat.push_vertex(self.positions[vertex], normal, self.uvs[vertex], self.tangents[vertex])
-            });
-            flat.triangles.push(corners);
+            for corner in 0..3 {
+                let vertex = self.triangles[triangle][corner] as usize;
+                if self.normals[vertex] == Vec3::ZERO {
+                    let own = self.copy_vertex(vertex);
+                    self.normals[own as usize] = normal;
+                    self.triangles[triangle][corner] = own;
+                }
+            }
         }
-        if !self.second_uvs.is_empty() {
-            let corners = self.triangles.iter().flatten();
-            flat.second_uvs = corners.map(|&vertex| self.second_uvs[vertex as usize]).collect();
-        }
-        if !self.colors.is_empty() {
-            let corners = self.triangles.iter().flatten();
-            flat.colors = corners.map(|&vertex| self.colors[vertex as usize]).collect();
-        }
-        flat.slots = std::mem::take(&mut self.slots);
-        *self = flat;
     }
 
     /// Gives every vertex the mean normal of its triangles, weighed by their areas: for scanned surfaces, which have no
@@ -161,35 +153,16 @@ impl Mesh {
         self.normals = sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect();
     }
 
-    /// Replaces normals that are not finite or have no length by that of a triangle at the vertex; the rest are
-    /// scaled to unit length. Gives the number of normals replaced.
+    /// Scales normals to unit length; those that are not finite or have no length become 0, which stands for the triangle's
+    /// plane. Gives their number.
     pub fn repair_normals(&mut self) -> usize {
-        let mut broken = vec![false; self.normals.len()];
-        for (normal, broken) in self.normals.iter_mut().zip(&mut broken) {
-            match normal.as_dvec3().try_normalize() {
-                Some(unit) => *normal = unit.as_vec3(),
-                None => *broken = true,
-            }
+        let mut broken = 0;
+        for normal in &mut self.normals {
+            let unit = normal.as_dvec3().try_normalize();
+            broken += usize::from(unit.is_none());
+            *normal = unit.unwrap_or_default().as_vec3();
         }
-        let count = broken.iter().filter(|broken| **broken).count();
-        if count > 0 {
-            for triangle in 0..self.triangles.len() {
-                for vertex in self.triangles[triangle].map(|vertex| vertex as usize) {
-                    if broken[vertex] {
-                        self.normals[vertex] = plane_normal(self.corners(triangle)).as_vec3();
-                    }
-                }
-            }
-            // Vertices that no triangle uses.
-            for normal in self
-                .normals
-                .iter_mut()
-                .filter(|normal| normal.try_normalize().is_none())
-            {
-                *normal = Vec3::Y;
-            }
-        }
-        count
+        broken
     }
 
     /// Tangents along growing u of a texture, as [`Mesh::mikktspace_tangents`] where `is_exact` (a normal texture is made
@@ -205,7 +178,7 @@ impl Mesh {
     /// Tangents along growing u of a texture that the texture coordinates look into by these coefficients
     /// (`TextureRef::texture_from_mesh_uv`), averaged over the triangles at a vertex by their angles there. A vertex
     /// whose triangles disagree about the handedness of the texture is split; one without usable texture coordinates
-    /// gets any tangent. Needs unit normals.
+    /// gets any tangent.
     pub fn generate_tangents(&mut self, texture_from_uv: [f32; 6]) {
         let mut sums = vec![DVec3::ZERO; self.positions.len()];
         let mut signs = vec![0.0f32; self.positions.len()];

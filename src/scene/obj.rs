@@ -142,8 +142,6 @@ fn read_part(source: &tobj::Mesh, slot: u32, is_exact: bool) -> Mesh {
     if normals.len() == count {
         mesh.normals = normals.iter().map(|normal| Vec3::from_array(*normal)).collect();
         mesh.repair_normals();
-    } else {
-        mesh.flatten();
     }
     mesh.make_tangents(IDENTITY, is_exact);
     mesh

@@ -49,7 +49,6 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
         triangles: (0..read.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect(),
         ..Mesh::default()
     };
-    mesh.repair_normals();
     mesh.make_tangents([1.0, 0.0, 0.0, 0.0, 1.0, 0.0], false);
     report.note(Fate::Used, "meshes", "");
     Ok(Model {

@@ -3,7 +3,7 @@
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 use glam::{Vec2, Vec3, Vec4};
 
-use super::mesh::{Mesh, any_tangent};
+use super::mesh::{Mesh, any_tangent, plane_normal};
 
 /// A mesh whose tangents are asked for corner by corner.
 struct Corners<'a> {
@@ -34,7 +34,11 @@ impl Geometry for Corners<'_> {
     }
 
     fn normal(&self, face: usize, corner: usize) -> [f32; 3] {
-        self.mesh.normals[self.vertex(face, corner)].to_array()
+        let normal = self.mesh.normals[self.vertex(face, corner)];
+        if normal == Vec3::ZERO {
+            return plane_normal(self.mesh.corners(face)).as_vec3().to_array();
+        }
+        normal.to_array()
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
@@ -53,7 +57,7 @@ impl Geometry for Corners<'_> {
 impl Mesh {
     /// Tangents by MikkTSpace along growing u of a texture that the texture coordinates look into by these coefficients
     /// (`TextureRef::texture_from_mesh_uv`). A vertex whose corners have different tangents is split; one without usable
-    /// texture coordinates gets any tangent. Needs unit normals.
+    /// texture coordinates gets any tangent.
     pub fn mikktspace_tangents(&mut self, texture_from_uv: [f32; 6]) {
         let [uu, uv, u1, vu, vv, v1] = texture_from_uv;
         let in_texture = |at: &Vec2| Vec2::new(uu * at.x + uv * at.y + u1, vu * at.x + vv * at.y + v1);

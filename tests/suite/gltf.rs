@@ -4,10 +4,17 @@ use std::fs;
 use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3};
-use glossmith::scene::{AlphaMode, Fate, Geometry, Wrap};
+use glossmith::document::Document;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::mesh::plane_normal;
+use glossmith::scene::{AlphaMode, Fate, Geometry, ModelSource, Wrap};
 use serde_json::{Value, json};
 
+use super::cli_support::Workplace;
 use super::gltf_builder::{Buffer, Folder, SQUARE, assert_mirrored_tangents, glb, mirrored_squares, png, square};
+use super::plan::film;
+use super::plan_kernels::assert_same_but_for_rounding;
+use super::random_documents::small;
 use super::support::Random;
 
 #[test]
@@ -71,7 +78,8 @@ fn flattening_and_shearing_nodes_keep_normals() {
     for (scale, expected) in [
         ([1.0, 1.0, 0.0], Vec3::Z),
         ([1e-20, 1e-20, 1e-20], Vec3::Z),
-        ([0.0, 0.0, 0.0], Vec3::Y),
+        // What is a point has no normal.
+        ([0.0, 0.0, 0.0], Vec3::ZERO),
     ] {
         document["nodes"] = json!([{"mesh": 0, "scale": scale}]);
         let mesh = Folder::new().load_glb(&document, &buffer).expect("loads").mesh;
@@ -84,7 +92,8 @@ fn flattening_and_shearing_nodes_keep_normals() {
     // x += y: the square's plane stays, a slanted plane's normal follows the inverse transpose.
     let mut slanted = Buffer::default();
     let positions = slanted.floats(&[[0.0, 0.0, 0.0], [0.0, 0.0, -1.0], [-1.0, 1.0, 0.0]]);
-    let mut document = slanted.document(json!([{"attributes": {"POSITION": positions}}]));
+    let normals = slanted.floats(&[[0.5_f32.sqrt(), 0.5_f32.sqrt(), 0.0]; 3]);
+    let mut document = slanted.document(json!([{"attributes": {"POSITION": positions, "NORMAL": normals}}]));
     document["nodes"] = json!([{"mesh": 0, "matrix": [1, 0, 0, 0, 1, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]);
     let mesh = Folder::new().load_glb(&document, &slanted).expect("loads").mesh;
     let [a, b, c] = mesh.corners(0);
@@ -113,11 +122,11 @@ fn lists_strips_and_fans_without_normals_are_flat() {
             .mesh;
         assert_eq!(
             (mesh.triangles.len(), mesh.positions.len()),
-            (expected, 3 * expected),
+            (expected, 4),
             "mode {mode}"
         );
         assert!(
-            mesh.normals.iter().all(|normal| *normal == Vec3::Z),
+            mesh.normals.iter().all(|normal| *normal == Vec3::ZERO),
             "mode {mode}: {:?}",
             mesh.normals
         );
@@ -128,6 +137,69 @@ fn lists_strips_and_fans_without_normals_are_flat() {
         assert!((area - 1.0).abs() < 1e-12, "mode {mode}: area {area}");
     }
 }
+
+/// Corners that stand for the planes of their triangles are shaded as those that have the planes' normals.
+#[test]
+fn flat_triangles_need_no_vertices_of_their_own() {
+    let folder = Folder::new();
+    let mut shared = Buffer::default();
+    let positions = shared.floats(&PYRAMID);
+    let indices = shared.indices(&PYRAMID_FACES.concat());
+    let shared_json = shared.document(json!([{"attributes": {"POSITION": positions}, "indices": indices}]));
+    let model = folder
+        .load("shared.glb", &glb(&shared_json, &shared.bytes))
+        .expect("loads");
+    assert_eq!(model.mesh.positions.len(), PYRAMID.len());
+
+    let corners: Vec<[f32; 3]> = PYRAMID_FACES
+        .concat()
+        .iter()
+        .map(|&vertex| PYRAMID[usize::from(vertex)])
+        .collect();
+    let normals = corners.chunks(3).flat_map(|face| {
+        let [a, b, c] = [0, 1, 2].map(|corner| Vec3::from_array(face[corner]));
+        [(b - a).cross(c - a).normalize().to_array(); 3]
+    });
+    let normals: Vec<[f32; 3]> = normals.collect();
+    let mut split = Buffer::default();
+    let (positions, normals) = (split.floats(&corners), split.floats(&normals));
+    let split_json = split.document(json!([{"attributes": {"POSITION": positions, "NORMAL": normals}}]));
+    folder
+        .load("split.glb", &glb(&split_json, &split.bytes))
+        .expect("loads");
+
+    for choice in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let mut session = Session::open(choice).unwrap();
+        let [shared, split] = ["shared.glb", "split.glb"].map(|name| {
+            let mut document = small(Document::default());
+            document.model = ModelSource::File(folder.path(name));
+            film(&mut session, &document)
+        });
+        assert_same_but_for_rounding(&shared, &split, "a pyramid");
+    }
+    // Other programs get normals.
+    let place = Workplace::new();
+    place.write("shared.glb", &std::fs::read(folder.path("shared.glb")).unwrap());
+    place.done("convert shared.glb written.glb");
+    let written = glossmith::scene::load(&ModelSource::File(place.path("written.glb")))
+        .expect("loads")
+        .mesh;
+    for triangle in 0..written.triangles.len() {
+        let normal = plane_normal(written.corners(triangle)).as_vec3();
+        for vertex in written.triangles[triangle] {
+            assert!(written.normals[vertex as usize].distance(normal) < 1e-6, "{triangle}");
+        }
+    }
+}
+
+const PYRAMID: [[f32; 3]; 5] = [
+    [-1.0, 0.0, 1.0],
+    [1.0, 0.0, 1.0],
+    [1.0, 0.0, -1.0],
+    [-1.0, 0.0, -1.0],
+    [0.0, 1.0, 0.0],
+];
+const PYRAMID_FACES: [[u16; 3]; 6] = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [0, 3, 2], [0, 2, 1]];
 
 #[test]
 fn sparse_interleaved_and_quantised_accessors_are_read() {

@@ -24,7 +24,7 @@ use crate::textures::all_at_once;
 
 type Edit = fn(&mut Document);
 
-fn film(session: &mut Session, document: &Document) -> Film {
+pub fn film(session: &mut Session, document: &Document) -> Film {
     session.submit(document).unwrap();
     while !session.step(Duration::from_secs(1)).unwrap().is_done {}
     session.film().unwrap().clone()

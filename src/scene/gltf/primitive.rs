@@ -159,8 +159,6 @@ impl Reader<'_> {
                 self.name,
                 replaced,
             );
-        } else {
-            mesh.flatten();
         }
         if !has_tangents {
             mesh.make_tangents(uv_use.normal_texture_from_uv, uv_use.has_normal_texture);

@@ -18,6 +18,10 @@ pub(super) const BLOCK: u32 = 1 << 31;
 /// What a block costs a ray, a node costing 1.
 const BLOCK_COST: f32 = 1.0;
 
+/// Fewer triangles than most hierarchies have for each node and each block (28 and 4.7 where there are ten million).
+const TRIANGLES_A_NODE: usize = 24;
+const TRIANGLES_A_BLOCK: usize = 4;
+
 /// A node. Its unused children have boxes that no ray meets, and lead to the first block, which could do no harm.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
@@ -79,10 +83,17 @@ impl Wide {
     /// 3.1 of Ylitie, Karras and Laine 2017), found for parts of at most so many triangles, one after the other: what is
     /// needed to find it takes as much memory as what comes of it.
     pub fn new(tree: &Tree, part_max: u32, corners: impl Fn(u32) -> [[f32; 3]; 3] + Sync) -> Self {
+        // Grown step by step they would be copied, and there twice. What is not used of it takes no memory.
+        let [node_count, block_count] =
+            [TRIANGLES_A_NODE, TRIANGLES_A_BLOCK].map(|each| tree.root().count as usize / each + 1);
         let mut made = Self {
-            nodes: vec![Node::EMPTY],
+            nodes: Vec::with_capacity(node_count),
+            blocks: Vec::with_capacity(block_count),
+            normals: Vec::with_capacity(block_count),
+            firsts: Vec::with_capacity(block_count),
             ..Self::default()
         };
+        made.nodes.push(Node::EMPTY);
         let bounds = Parts {
             tree,
             part_max,

@@ -318,11 +318,13 @@ impl Builder {
 
     /// One primitive a slot, over shared vertices.
     fn primitives(&mut self, model: &Model, materials: &[Json]) -> Vec<Json> {
-        let mesh = &model.mesh;
+        let mut mesh = model.mesh.clone();
+        mesh.split_flat();
         let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.as_vec3().to_array()).collect();
         let normals: Vec<[f32; 3]> = mesh
             .normals
             .iter()
+            // Of vertices that no triangle uses it may still be 0, which the format forbids.
             .map(|n| n.normalize_or(glam::Vec3::Y).to_array())
             .collect();
         let mut attributes = Map::new();
