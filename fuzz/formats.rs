@@ -3,14 +3,16 @@
 
 use std::path::{Path, PathBuf};
 
+use glossmith::document::Document;
 use glossmith::scene::environment::{self, EnvironmentSource};
 use glossmith::scene::{Geometry, ModelSource, load};
+use glossmith::store::exchange::{self, ReadOptions};
 use glossmith::store::{file, load_document, load_material};
 
 /// Kinds of files.
 #[allow(dead_code)]
-pub const FORMATS: [&str; 14] = [
-    "glb", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "jpg", "tif", "ktx2", "dds", "material", "project",
+pub const FORMATS: [&str; 15] = [
+    "glb", "obj", "ply", "stl", "zip", "hdr", "exr", "png", "jpg", "tif", "ktx2", "dds", "material", "project", "mtlx",
 ];
 
 /// Formats of pictures, which are textures as well as environments.
@@ -83,6 +85,18 @@ fn try_path(format: &str, path: &Path) {
                         .iter()
                         .all(|cell| cell.density.is_finite() && cell.density >= 0.0)
                 );
+            }
+        }
+        "mtlx" => {
+            let Ok(subject) = exchange::read(path, ReadOptions::default()) else {
+                return;
+            };
+            for material in subject.materials {
+                let document = Document {
+                    materials: vec![material],
+                    ..Document::default()
+                };
+                assert!(document.check().is_ok());
             }
         }
         _ => {
