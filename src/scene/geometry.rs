@@ -11,7 +11,7 @@ use super::hierarchy::{Compressed, Found, Hierarchy, PACKET, Packet, Wide};
 use super::intersect::{Hit, RayFrame};
 use super::light::AreaShape;
 use super::loading::{Cancelled, Loading};
-use super::memory::{fetch, in_large_pages};
+use super::memory::{fetch, in_large_pages, room_in_large_pages};
 use super::mesh::{Mesh, any_tangent};
 use super::model::{Model, Slot};
 use super::shapes;
@@ -368,7 +368,8 @@ impl Geometry {
         self.objects = order.iter().map(|&triangle| self.objects[triangle as usize]).collect();
         const UNUSED: u32 = u32::MAX;
         let mut new_of_old = vec![UNUSED; self.positions.len()];
-        let (mut positions, mut vertices) = (Vec::new(), Vec::new());
+        let mut positions = room_in_large_pages(self.positions.len());
+        let mut vertices = room_in_large_pages(self.positions.len());
         let sorted = order.iter().map(|&triangle| {
             self.triangles[triangle as usize].map(|vertex| {
                 let new = &mut new_of_old[vertex as usize];
@@ -380,7 +381,9 @@ impl Geometry {
                 *new
             })
         });
-        self.triangles = in_large_pages(sorted.collect());
+        let mut triangles = room_in_large_pages(order.len());
+        triangles.extend(sorted);
+        self.triangles = in_large_pages(triangles);
         self.positions = in_large_pages(positions);
         self.vertices = in_large_pages(vertices);
     }

@@ -7,7 +7,7 @@ use obvhs::aabb::Aabb;
 use super::tree::{BoxedTree, Subtree, Tree};
 use crate::optics::vector::Vec3;
 use crate::scene::intersect::triangle_normal;
-use crate::scene::memory::in_large_pages;
+use crate::scene::memory::{in_large_pages, room_in_large_pages};
 
 /// Children of a node, and triangles of a leaf at most.
 pub(super) const WIDTH: usize = 8;
@@ -87,9 +87,9 @@ impl Wide {
         let [node_count, block_count] =
             [TRIANGLES_A_NODE, TRIANGLES_A_BLOCK].map(|each| tree.root().count as usize / each + 1);
         let mut made = Self {
-            nodes: Vec::with_capacity(node_count),
-            blocks: Vec::with_capacity(block_count),
-            normals: Vec::with_capacity(block_count),
+            nodes: room_in_large_pages(node_count),
+            blocks: room_in_large_pages(block_count),
+            normals: room_in_large_pages(block_count),
             firsts: Vec::with_capacity(block_count),
             ..Self::default()
         };
