@@ -57,6 +57,8 @@ mod environment_shapes;
 mod environment_twin;
 #[path = "suite/exchange.rs"]
 mod exchange;
+#[path = "suite/exchange_details.rs"]
+mod exchange_details;
 #[path = "suite/exchange_samplers.rs"]
 mod exchange_samplers;
 #[path = "suite/exchange_tools.rs"]

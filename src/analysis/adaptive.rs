@@ -200,6 +200,7 @@ mod tests {
             },
         );
         assert!(far.iter().all(|goal| *goal <= 32), "{far:?}");
+        assert!(far.iter().sum::<u32>() > 36 * 16 * 3 / 2, "{far:?}");
         let told = crate::analysis::noise::noise(&film).unwrap().relative;
         let near = goals(
             &film,

@@ -384,6 +384,36 @@ mod tests {
 
     const SIDE: usize = 64;
 
+    #[test]
+    fn moments_add_up_each_by_itself() {
+        let fields = |moments: &Moments| {
+            [
+                moments.denoised,
+                moments.known,
+                moments.noisy,
+                moments.product,
+                moments.variance,
+                moments.by_squares,
+                moments.fourth_powers,
+                moments.difference,
+                moments.pixels,
+            ]
+        };
+        let [mut sum, other] = [1.0, 100.0].map(|unit: f64| Moments {
+            denoised: unit,
+            known: 2.0 * unit,
+            noisy: 3.0 * unit,
+            product: 4.0 * unit,
+            variance: 5.0 * unit,
+            by_squares: 6.0 * unit,
+            fourth_powers: 7.0 * unit,
+            difference: 8.0 * unit,
+            pixels: 9.0 * unit,
+        });
+        sum += other;
+        assert_eq!(fields(&sum), std::array::from_fn(|i| 101.0 * (i as f64 + 1.0)));
+    }
+
     /// Two halves of a picture of luminance 1 whose noise is `noise(pixel)`, and what a filter makes of them that averages
     /// 3 × 3 pixels and adds `bias(pixel)`.
     fn halves(noise: &dyn Fn(usize) -> f64, bias: &dyn Fn(usize) -> f64, seed: u32) -> [[Colors; 2]; 2] {

@@ -412,7 +412,7 @@ fn materials_of_other_programs_are_rendered_as_they_are() {
 }
 
 /// The material of a MaterialX document of one surface with these numbers.
-fn read_surface(place: &Workplace, node: &str, numbers: &[(&str, f32)]) -> MaterialSettings {
+pub fn read_surface(place: &Workplace, node: &str, numbers: &[(&str, f32)]) -> MaterialSettings {
     let input = |(name, value): &(&str, f32)| format!("<input name=\"{name}\" type=\"float\" value=\"{value}\"/>");
     let inputs: String = numbers.iter().map(input).collect();
     let document = format!(

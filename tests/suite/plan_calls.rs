@@ -370,6 +370,26 @@ fn what_is_left_out_is_counted() {
 }
 
 #[test]
+fn what_cannot_be_switched_is_told_for_its_own_reason() {
+    for effect in EFFECTS {
+        let name = effect.name();
+        for (sign, switch, words) in [
+            ('+', Switch::On, "no code that could run"),
+            ('-', Switch::Off, "nothing can be rendered"),
+        ] {
+            let read = format!("{sign}{name}").parse::<EffectSwitches>();
+            match read {
+                Ok(switches) => assert_eq!(switches.get(effect.id), switch, "{sign}{name}"),
+                Err(error) => {
+                    assert!(!effect.can_be(switch), "{sign}{name}: {error}");
+                    assert!(error.to_string().contains(words), "{sign}{name}: {error}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_switch_that_makes_no_difference_stays_automatic() {
     for effect in EFFECTS {
         for &switch in Switch::ALL {

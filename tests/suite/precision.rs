@@ -1,7 +1,9 @@
 //! The map of what in a picture's numbers is not to be trusted: black on shipped scenes, lit where a scene is made to fail.
 
 use std::sync::Arc;
+use std::time::Duration;
 
+use glossmith::cpu::CpuEngine;
 use glossmith::cpu::precision::precision;
 use glossmith::document::Document;
 use glossmith::job::Job;
@@ -65,6 +67,51 @@ fn dropped_samples_are_lit() {
     job.settings.environment_strength = 1e30;
     let map = map(&job);
     assert!(map.count(Fault::Dropped) > map.findings.len() / 2, "{:?}", counts(&map));
+}
+
+#[test]
+fn samples_that_are_not_finite_are_dropped_and_counted() {
+    let mut job = job(&Document::default());
+    job.settings.environment_strength = f64::INFINITY;
+    job.settings.image_size = [16, 12];
+    let mut engine = CpuEngine::default();
+    engine.submit(Arc::new(job));
+    while engine.samples_per_pixel() < 4 {
+        engine.step(Duration::from_secs(1), 4);
+    }
+    let film = engine.film();
+    assert!(
+        film.dropped() > 0 && film.samples() + film.dropped() >= 4 * 16 * 12,
+        "{} {}",
+        film.samples(),
+        film.dropped()
+    );
+    assert!(film.image().luminance().iter().all(|luminance| luminance.is_finite()));
+}
+
+#[test]
+fn findings_are_where_the_picture_has_them() {
+    let mut document = Document {
+        model: ModelSource::Sphere,
+        ..Document::default()
+    };
+    document.ground = false;
+    document.camera.distance = Some(6.0);
+    let map = map(&job(&document));
+    let met = |x: u32, y: u32| map.findings[(y * map.width + x) as usize].cosine > 0.0;
+    let pixels = || (0..map.height).flat_map(|y| (0..map.width).map(move |x| (x, y)));
+    let disc: Vec<(u32, u32)> = pixels().filter(|&(x, y)| met(x, y)).collect();
+    let mean = |of: &dyn Fn(&(u32, u32)) -> f64| disc.iter().map(of).sum::<f64>() / disc.len() as f64 + 0.5;
+    let middle = [mean(&|at| f64::from(at.0)), mean(&|at| f64::from(at.1))];
+    let expected = [f64::from(map.width) / 2.0, f64::from(map.height) / 2.0];
+    assert!((0..2).all(|i| (middle[i] - expected[i]).abs() < 0.75), "{middle:?}");
+    // It is round.
+    let radius = (disc.len() as f64 / std::f64::consts::PI).sqrt();
+    let farthest = disc
+        .iter()
+        .map(|&(x, y)| (f64::from(x) + 0.5 - middle[0]).hypot(f64::from(y) + 0.5 - middle[1]));
+    let farthest = farthest.fold(0.0, f64::max);
+    assert!((farthest - radius).abs() < 1.5, "{farthest} {radius}");
 }
 
 /// Two panes closer together than rays are moved off them.

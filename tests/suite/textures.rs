@@ -426,6 +426,10 @@ fn shadows_of_half_transparent_surfaces_are_half_dark() {
     for (choice, strategy) in [(EngineChoice::Gpu, Strategy::Mis), (EngineChoice::Cpu, Strategy::Light)] {
         let other = render(choice, &with_strategy(&document, strategy, 3));
         assert_same_picture(&mis, &other, &format!("{choice:?} {strategy:?}"));
+        if strategy == Strategy::Mis {
+            let ratio = other.total_rays() as f64 / mis.total_rays() as f64;
+            assert!((ratio - 1.0).abs() < 0.01, "both count their rays alike: {ratio}");
+        }
     }
 }
 

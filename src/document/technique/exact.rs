@@ -80,6 +80,21 @@ mod tests {
     }
 
     #[test]
+    fn a_metal_whose_color_comes_from_a_texture_stays_as_it_is() {
+        for (color, roughness) in [(true, false), (false, true), (true, true)] {
+            let mut material = MaterialSettings {
+                metalness: 1.0,
+                fresnel: Fresnel::Schlick,
+                ..MaterialSettings::default()
+            };
+            (material.textures.color, material.textures.roughness) = (color, roughness);
+            let before = material.clone();
+            with_exact_fresnel(&mut material);
+            assert_eq!(material, before, "{color} {roughness}");
+        }
+    }
+
+    #[test]
     fn what_is_no_metal_becomes_a_dielectric() {
         let mut material = MaterialSettings {
             metalness: 0.0,

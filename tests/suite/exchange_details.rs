@@ -1,0 +1,285 @@
+//! Details of what other programs' formats hold: each parameter where it belongs, and nothing said that is not so.
+
+use glossmith::document::MaterialSettings;
+use glossmith::optics::fresnel::Fresnel;
+use glossmith::optics::lobe::Lobe;
+use glossmith::scene::{ModelSource, gltf_from_widths, load};
+use glossmith::store::exchange::report::Outcome;
+use glossmith::store::exchange::{ReadOptions, by_name, prepare, read};
+use glossmith::store::{save_document, save_material};
+use serde_json::Value as Json;
+
+use crate::cli_support::Workplace;
+use crate::exchange::read_surface;
+use crate::gltf_builder::Folder;
+use crate::textures::all_at_once;
+
+/// What a format writes of a material.
+fn written(place: &Workplace, material: &MaterialSettings, format: &str, ending: &str) -> String {
+    save_material(&place.path("a.json"), material).unwrap();
+    place.done(&format!("convert a.json a.{ending} --to {format}"));
+    place.read(&format!("a.{ending}"))
+}
+
+fn metal() -> MaterialSettings {
+    MaterialSettings {
+        lobe: Lobe::Ggx,
+        metalness: 1.0,
+        fresnel: Fresnel::Conductor,
+        roughness: 0.3,
+        ..MaterialSettings::default()
+    }
+}
+
+fn glass() -> MaterialSettings {
+    MaterialSettings {
+        metalness: 0.0,
+        fresnel: Fresnel::Dielectric,
+        transmission_weight: 1.0,
+        ..metal()
+    }
+}
+
+#[test]
+fn mitsuba_gets_the_surface_that_a_material_is() {
+    let place = Workplace::new();
+    let surfaces = |material: &MaterialSettings| {
+        let text = written(&place, material, "mitsuba", "xml");
+        let kinds = [
+            "roughconductor",
+            "dielectric",
+            "roughdielectric",
+            "principled",
+            "diffuse",
+        ];
+        let has = |kind: &&str| text.contains(&format!("<bsdf type=\"{kind}\""));
+        kinds.into_iter().filter(has).collect::<Vec<_>>()
+    };
+    assert_eq!(surfaces(&metal()), ["roughconductor"]);
+    let schlick = MaterialSettings {
+        fresnel: Fresnel::Schlick,
+        ..metal()
+    };
+    assert_eq!(surfaces(&schlick), ["principled"]);
+    let half = MaterialSettings {
+        metalness: 0.5,
+        ..metal()
+    };
+    assert_eq!(surfaces(&half), ["principled"]);
+    let coated = MaterialSettings {
+        coat_weight: 0.5,
+        ..metal()
+    };
+    assert_eq!(surfaces(&coated), ["principled"]);
+    assert_eq!(surfaces(&glass()), ["roughdielectric"]);
+    let smooth = MaterialSettings {
+        roughness: 0.0,
+        ..glass()
+    };
+    assert_eq!(surfaces(&smooth), ["dielectric"]);
+    let half = MaterialSettings {
+        transmission_weight: 0.5,
+        ..glass()
+    };
+    assert_eq!(surfaces(&half), ["principled"]);
+}
+
+#[test]
+fn a_tinted_reflection_of_glass_has_its_weight() {
+    let place = Workplace::new();
+    let tinted = MaterialSettings {
+        specular_weight: 0.5,
+        specular_color: [0.5, 0.25, 1.0],
+        ..glass()
+    };
+    let text = written(&place, &tinted, "mitsuba", "xml");
+    let line = text.lines().find(|line| line.contains("specular_reflectance")).unwrap();
+    let value = line.split("value=\"").nth(1).unwrap().split('"').next().unwrap();
+    let numbers: Vec<f32> = value
+        .split([',', ' '])
+        .filter_map(|number| number.parse().ok())
+        .collect();
+    assert_eq!(numbers, [0.25, 0.125, 0.5], "{line}");
+}
+
+#[test]
+fn usd_has_the_surface_for_programs_that_know_open_pbr() {
+    let place = Workplace::new();
+    let text = written(&place, &metal(), "usd", "usda");
+    let shader = text.split("ND_open_pbr_surface_surfaceshader").nth(1).unwrap();
+    for input in [
+        "float inputs:base_metalness = 1",
+        "float inputs:specular_roughness = 0.3",
+    ] {
+        assert!(shader.contains(input), "{input}: {shader}");
+    }
+    assert!(shader.contains("color3f inputs:base_color = ("), "{shader}");
+}
+
+/// `1 - K` over `1 - base K`, K the share that a coat keeps inside (OpenPBR 1.1, "Coat darkening").
+#[test]
+fn a_coat_that_darkens_is_a_tinted_one() {
+    let place = Workplace::new();
+    let color = |numbers: &[(&str, f32)]| {
+        let numbers = [&[("coat_ior", 1.6)], numbers].concat();
+        let material = read_surface(&place, "open_pbr_surface", &numbers);
+        (material.coat_weight, material.coat_color)
+    };
+    let head_on = (0.6_f64 / 2.6).powi(2);
+    let inside = 1.0 - (1.0 - head_on) / (1.6 * 1.6);
+    let darkened = |base: f64| (1.0 - inside) / (1.0 - base * inside);
+    // A node without a colour of its own is of 0.8, and a metal's has the weight of its reflection.
+    let of_metal: &[(&str, f32)] = &[("base_metalness", 1.0), ("specular_weight", 0.5)];
+    for (weight, darkening, more, base) in [
+        (1.0, 1.0, &[][..], 0.8),
+        (0.5, 1.0, &[], 0.8),
+        (0.5, 0.5, &[], 0.8),
+        (1.0, 0.0, &[], 0.8),
+        (1.0, 1.0, of_metal, 0.4),
+    ] {
+        let numbers = [&[("coat_weight", weight), ("coat_darkening", darkening)], more].concat();
+        let (found, [red, green, blue]) = color(&numbers);
+        let expected = 1.0 + (darkened(base) - 1.0) * f64::from(darkening);
+        assert_eq!(found, weight);
+        assert_eq!([red, green], [green, blue]);
+        assert!(
+            (f64::from(red) - expected).abs() < 1e-5,
+            "{weight} {darkening} {base}: {red} {expected}"
+        );
+    }
+}
+
+#[test]
+fn what_a_material_lacks_is_not_reported() {
+    let place = Workplace::new();
+    let entries = |material: &MaterialSettings| -> Vec<String> {
+        save_material(&place.path("a.json"), material).unwrap();
+        let run = place.done("convert a.json a.mtlx --report -");
+        let report: Json = serde_json::from_str(&run.stdout).unwrap();
+        let entries = report[0]["materials"][0]["entries"].as_array().unwrap();
+        entries
+            .iter()
+            .map(|entry| entry["what"].as_str().unwrap().to_owned())
+            .collect()
+    };
+    let has = |entries: &[String], word: &str| entries.iter().any(|entry| entry == word);
+    let of_metal = entries(&metal());
+    for word in [
+        "refraction",
+        "absorption inside",
+        "coat",
+        "anisotropy",
+        "extra roughness of the refraction",
+    ] {
+        assert!(!has(&of_metal, word), "{word}: {of_metal:?}");
+    }
+    assert!(has(&entries(&glass()), "refraction"));
+}
+
+/// The stretch that Blender's surface shows is that of the widths that it is given.
+#[test]
+fn what_a_format_shows_of_a_stretch_is_what_its_widths_are() {
+    use glossmith::optics::lobe::stretch_from_anisotropy;
+    use glossmith::store::exchange::surface::{Law, Surface, Takes};
+    let material = MaterialSettings {
+        anisotropy: 0.5,
+        ..metal()
+    };
+    let (surface, _) = Surface::of(&material);
+    let takes = Takes {
+        law: Law::Schlick,
+        eta_and_k: false,
+        edge_tint: false,
+        specular: true,
+        ior: true,
+        widths: |_| [0.4, 0.1],
+        coat: true,
+        coat_details: false,
+        transmission: true,
+        absorption: false,
+        textures: false,
+    };
+    let taken = surface.as_taken(&material, &takes);
+    let stretch = stretch_from_anisotropy(f64::from(taken.anisotropy));
+    assert!((stretch * stretch - 4.0).abs() < 1e-3, "{stretch}");
+    assert!((taken.roughness.powi(2) - 0.2).abs() < 1e-4, "{}", taken.roughness);
+}
+
+#[test]
+fn reports_count_what_came_of_each_part() {
+    let place = Workplace::new();
+    let coated = MaterialSettings {
+        coat_weight: 0.5,
+        coat_ior: 1.8,
+        ..metal()
+    };
+    save_material(&place.path("a.json"), &coated).unwrap();
+    let subject = read(&place.path("a.json"), ReadOptions::default()).unwrap();
+    let format = by_name("gltf").unwrap();
+    let report = prepare(&subject, "a.json", &place.path("a.glb"), format)
+        .unwrap()
+        .report;
+    let entries = || report.materials.iter().flat_map(|material| &material.entries);
+    for outcome in [Outcome::Exact, Outcome::Approximated, Outcome::Dropped] {
+        let expected = entries().filter(|entry| entry.outcome == outcome).count();
+        assert_eq!(report.count(outcome), expected, "{outcome:?}");
+    }
+    assert!(report.count(Outcome::Exact) > 1, "{report}");
+}
+
+#[test]
+fn a_name_with_a_folder_is_a_file() {
+    let place = Workplace::new();
+    let said = |name: &str| place.run(&format!("render --material {name}")).stderr;
+    let of_name = said("no-such-material");
+    assert!(of_name.contains("no material is called no-such-material"), "{of_name}");
+    let of_file = said("folder/no-such-material");
+    assert!(of_file.contains("folder/no-such-material"), "{of_file}");
+    assert!(!of_file.contains("no material is called"), "{of_file}");
+}
+
+#[test]
+fn textures_travel_in_gltf() {
+    let folder = Folder::new();
+    let mut document = all_at_once(&folder);
+    let place = Workplace::new();
+    save_document(&place.path("scene.json"), &document).unwrap();
+    place.done("convert scene.json scene.glb");
+    let [before, after] =
+        [document.model.clone(), ModelSource::File(place.path("scene.glb"))].map(|source| load(&source).unwrap());
+    assert_eq!(after.textures.len(), before.textures.len());
+    let [old, new] = [&before, &after].map(|model| &model.slots[0]);
+    let pixels = |model: &glossmith::scene::Model, place: &Option<glossmith::scene::TextureRef>| {
+        let picture = &model.textures[place.as_ref().expect("a texture").texture];
+        (picture.width, picture.height, picture.rgba8.clone())
+    };
+    let of_both = [
+        (&old.base_color_texture, &new.base_color_texture),
+        (&old.metallic_roughness_texture, &new.metallic_roughness_texture),
+        (&old.normal_texture, &new.normal_texture),
+        (&old.emissive_texture, &new.emissive_texture),
+    ];
+    for (old, new) in of_both {
+        assert_eq!(pixels(&before, old), pixels(&after, new));
+    }
+    assert_eq!((old.alpha_mode, old.alpha_cutoff), (new.alpha_mode, new.alpha_cutoff));
+    assert_eq!(old.normal_scale, new.normal_scale);
+    assert!((0.0..=1.0).contains(&new.roughness), "{}", new.roughness);
+    // What a file has one number for is that of the texture's mean.
+    let mean = {
+        let (width, height, rgba8) = pixels(&before, &old.metallic_roughness_texture);
+        let greens = rgba8.chunks(4).map(|texel| f32::from(texel[1]));
+        greens.sum::<f32>() / (255 * width * height) as f32
+    };
+    (document.materials[0].lobe, document.materials[0].anisotropy) = (Lobe::Ggx, 0.5);
+    save_document(&place.path("scene.json"), &document).unwrap();
+    let wanted = gltf_from_widths(document.materials[0].roughness * mean, 0.5).stretch;
+    place.done("convert scene.json scene.gltf");
+    let json: Json = serde_json::from_str(&place.read("scene.gltf")).unwrap();
+    let found = json["materials"][0]["extensions"]["KHR_materials_anisotropy"]["anisotropyStrength"].as_f64();
+    let found = found.unwrap_or_else(|| panic!("{json:#}"));
+    assert!(
+        (found - f64::from(wanted)).abs() < 1e-3 && wanted > 0.05,
+        "{found} {wanted}"
+    );
+}
