@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use egui::Ui;
+use egui::{Response, Ui};
 use serde::{Deserialize, Serialize};
 
 use crate::app::actions::{Action, Command};
@@ -64,8 +64,8 @@ pub(super) struct Shared {
     pub(super) view_angle_deg: f32,
     /// The file of a measured material, to compare lobes with.
     pub(super) measured: Option<PathBuf>,
-    /// The next click in the viewport says what is sharp.
-    pub(super) picks_focus: bool,
+    /// What the next click in the viewport is for.
+    pub(super) picks: Option<Pick>,
     /// What every screen shows is marked in the viewport.
     pub(super) shows_safe_frames: bool,
     /// Rendering was stopped by hand.
@@ -80,6 +80,15 @@ pub(super) struct Shared {
     pub(super) snapshots: Snapshots,
     /// The comparison of the document with something else.
     pub(super) compare: Compare,
+}
+
+/// What a click in the viewport can be for instead of choosing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pick {
+    /// It says what is sharp.
+    Focus,
+    /// It says where the highlight of the area light with this number is seen.
+    Highlight(usize),
 }
 
 /// The angle between view and normal at first, degrees.
@@ -129,6 +138,16 @@ pub(super) const PICTURE_SIZE: &str = "Picture size";
 impl Desk<'_> {
     pub(super) fn act(&mut self, command: Command) {
         self.actions.push(Action::Do(command));
+    }
+
+    /// A button that says what the next click in the viewport is for, until it is pressed again.
+    pub(super) fn pick_toggle(&mut self, ui: &mut Ui, pick: Pick, text: &str, help: &str) -> Response {
+        let is_on = self.shared.picks == Some(pick);
+        let response = ui.add(egui::Button::new(text).selected(is_on)).on_hover_text(help);
+        if response.clicked() {
+            self.shared.picks = (!is_on).then_some(pick);
+        }
+        response
     }
 
     /// The scene being rendered, where it is of the document's model.

@@ -211,7 +211,7 @@ impl App {
                 hints_seen: kept.hints_seen,
                 view_angle_deg: desk::VIEW_ANGLE_DEG,
                 measured: None,
-                picks_focus: false,
+                picks: None,
                 shows_safe_frames: false,
                 is_paused: false,
                 is_measuring: false,

@@ -9,6 +9,7 @@ use anyhow::Context;
 use crate::document::parameter::parse_color;
 use crate::document::{AreaLight, AreaLightShape, Background, Document, ParameterError, range};
 use crate::instructions::{Instructions, Missing};
+use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color};
 use crate::render::output::{OutputError, format_of};
 use crate::scene::environment::EnvironmentEncoding;
 use crate::store::replace::check_saving;
@@ -64,12 +65,12 @@ pub(super) fn orbit(text: &str) -> Result<[f64; 2], String> {
 
 /// An area light; white where no colour is given.
 pub(super) fn area_light(text: &str) -> Result<AreaLight, String> {
-    let (numbers, color) = match text.split_once(",#") {
-        Some((numbers, digits)) => (
-            numbers,
-            parse_color(&format!("#{digits}")).map_err(|error| error.to_string())?,
-        ),
-        None => (text, [1.0; 3]),
+    let (numbers, color) = match text.rsplit_once(',') {
+        Some((numbers, color)) if color.starts_with('#') => {
+            (numbers, parse_color(color).map_err(|error| error.to_string())?)
+        }
+        Some((numbers, color)) if color.ends_with('K') => (numbers, color_of_temperature(color)?),
+        _ => (text, [1.0; 3]),
     };
     let length = range::AREA_LENGTH;
     let ranges = [
@@ -94,7 +95,17 @@ pub(super) fn area_light(text: &str) -> Result<AreaLight, String> {
         shape,
         color,
         strength: strength as f32,
+        is_muted: false,
     })
+}
+
+/// The colour of a body that shines at a temperature, as in 3200K.
+fn color_of_temperature(text: &str) -> Result<[f32; 3], String> {
+    let [coldest, hottest] = TEMPERATURES_K;
+    let temperature_k = number_in(coldest..=hottest)(text.trim_end_matches('K'));
+    temperature_k
+        .map(|temperature_k| blackbody_color(temperature_k).map(|x| x as f32))
+        .map_err(|expected| format!("{text}: {expected}, followed by K"))
 }
 
 /// Width and height, as in 640x480.

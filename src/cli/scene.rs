@@ -50,8 +50,8 @@ pub struct SceneArguments {
     #[arg(long, value_name = "display|linear", value_parser = parse::environment_encoding)]
     environment_encoding: Option<EnvironmentEncoding>,
     /// A rectangle (or triangle) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
-    /// in bounding radii of the model) and radiance. May be repeated up to 8 times.
-    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle][,#rrggbb]", value_parser = parse::area_light, allow_hyphen_values = true)]
+    /// in bounding radii of the model) and radiance; a colour, or the temperature of one, may follow. May be repeated up to 8 times.
+    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle][,#rrggbb|,3200K]", value_parser = parse::area_light, allow_hyphen_values = true)]
     area_lights: Vec<AreaLight>,
     /// What the camera sees where it meets nothing [default: environment].
     #[arg(long, value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]

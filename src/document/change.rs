@@ -56,7 +56,8 @@ impl Change {
     /// What differs in all that is no setting of its own: files, lists, materials.
     fn beside_settings(&mut self, old: &Document, new: &Document) {
         let (light, other_light) = (&old.lighting, &new.lighting);
-        let (lights, other_lights) = (&light.area_lights, &other_light.area_lights);
+        let [lights, other_lights] = [light, other_light].map(|light| light.shining().copied().collect::<Vec<_>>());
+        let (lights, other_lights) = (&lights[..], &other_lights[..]);
         let (render, other) = (&old.render, &new.render);
         self.environment |= (&light.environment, light.environment_encoding)
             != (&other_light.environment, other_light.environment_encoding);

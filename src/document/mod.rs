@@ -1,6 +1,7 @@
 //! What is edited and saved, as plain values: what is rendered, its materials, light, camera, view and render settings;
 //! their parameters as data; files; differences; history; and what a document compiles to.
 
+mod area_light;
 pub mod change;
 mod compile;
 pub mod custom_curve;
@@ -20,6 +21,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use area_light::{AreaLight, AreaLightShape};
 pub use change::Change;
 pub use compile::{compile, compile_textured};
 pub use custom_curve::CustomCurve;
@@ -30,8 +32,8 @@ pub use parameter::{
     Choice, Kind, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, Value, assign, parameter, setting,
 };
 pub use settings::{
-    AreaLight, AreaLightShape, Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings,
-    SettingError, ViewSettings, range,
+    Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, SettingError, ViewSettings,
+    range,
 };
 
 pub use crate::job::Strategy;

@@ -25,7 +25,13 @@ impl Document {
         let most = *range::AREA_LIGHTS.end() as usize;
         for light in model.lights.iter().map(|light| area_light(light, model)) {
             let lights = &mut self.lighting.area_lights;
-            if lights.len() < most && !lights.contains(&light) {
+            let is_there = |own: &AreaLight| {
+                AreaLight {
+                    is_muted: false,
+                    ..*own
+                } == light
+            };
+            if lights.len() < most && !lights.iter().any(is_there) {
                 lights.push(light);
             }
         }
@@ -69,6 +75,7 @@ fn area_light(light: &ModelLight, model: &Model) -> AreaLight {
             .color
             .map(|channel| (channel / brightest.max(f32::MIN_POSITIVE)).clamp(0.0, 1.0)),
         strength: strength.clamp(0.0, *range::STRENGTH.end()) as f32,
+        is_muted: false,
     }
 }
 

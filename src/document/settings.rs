@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::effect::{EffectSwitches, Switch};
 use super::parameter::{ParameterError, SETTINGS, Stage};
-use super::{Document, MaterialSettings};
+use super::{AreaLight, Document};
 use crate::job::Strategy;
 use crate::job::effect::EffectId;
 use crate::named::named;
@@ -14,7 +14,6 @@ use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 use crate::scene::camera::PixelFilter;
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
-use crate::scene::light::AreaShape;
 
 /// The ranges of the settings, both ends included.
 pub mod range {
@@ -91,6 +90,13 @@ pub struct Lighting {
     pub area_lights: Vec<AreaLight>,
 }
 
+impl Lighting {
+    /// The area lights that are not muted.
+    pub fn shining(&self) -> impl Iterator<Item = &AreaLight> {
+        self.area_lights.iter().filter(|light| !light.is_muted)
+    }
+}
+
 impl Default for Lighting {
     fn default() -> Self {
         Self {
@@ -102,68 +108,6 @@ impl Default for Lighting {
             background_blur_deg: 0.0,
             ground_color: [0.3; 3],
             area_lights: Vec::new(),
-        }
-    }
-}
-
-/// A rectangle that shines with the same radiance from both sides, seen by the camera like anything else. It looks at
-/// the centre of the model's bounding box, around which yaw and pitch turn as a camera's. Lengths are in units of the
-/// model's bounding radius.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct AreaLight {
-    /// Azimuth, degrees.
-    pub yaw_deg: f64,
-    /// Height, degrees in [−90, 90].
-    pub pitch_deg: f64,
-    /// Distance from the centre, bounding radii.
-    pub distance: f64,
-    /// Horizontal side, bounding radii.
-    pub width: f64,
-    /// Other side, bounding radii.
-    pub height: f64,
-    /// Its shape.
-    pub shape: AreaLightShape,
-    /// Linear RGB in [0, 1].
-    pub color: [f32; 3],
-    /// Radiance of white.
-    pub strength: f32,
-}
-
-impl Default for AreaLight {
-    fn default() -> Self {
-        Self {
-            yaw_deg: -35.0,
-            pitch_deg: 40.0,
-            distance: 3.0,
-            width: 1.0,
-            height: 1.0,
-            shape: AreaLightShape::Quad,
-            color: [1.0; 3],
-            strength: 10.0,
-        }
-    }
-}
-
-impl AreaLight {
-    /// Where it is and how large.
-    pub fn shape(&self) -> AreaShape {
-        AreaShape {
-            yaw_deg: self.yaw_deg,
-            pitch_deg: self.pitch_deg,
-            distance: self.distance,
-            width: self.width,
-            height: self.height,
-            is_triangle: self.shape == AreaLightShape::Triangle,
-        }
-    }
-
-    /// Its surface: black but for what it emits.
-    pub fn material(&self) -> MaterialSettings {
-        MaterialSettings {
-            emission_color: self.color,
-            emission_strength: self.strength,
-            ..MaterialSettings::diffuse("area light", [0.0; 3])
         }
     }
 }
@@ -343,16 +287,6 @@ impl RenderSettings {
     }
 }
 
-named! {
-    /// The shape of an area light.
-    #[derive(Default)]
-    AreaLightShape {
-        #[default]
-        Quad = 0, "quad", "Rectangle", "Two sides, width and height.";
-        Triangle = 1, "triangle", "Triangle", "Width is its base, height its height; the tip is up.";
-    }
-}
-
 /// A setting out of its range.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SettingError {
@@ -405,7 +339,7 @@ pub(super) fn check(document: &Document) -> Result<(), SettingError> {
     let sides = render_region(document);
     let numbers = lights
         .iter()
-        .flat_map(area_light_numbers)
+        .flat_map(AreaLight::numbers)
         .chain(background)
         .chain(sides)
         .chain([number]);
@@ -428,23 +362,4 @@ fn render_region(document: &Document) -> [(&'static str, f64, RangeInclusive<f64
         ("render.region", right, far(left)),
         ("render.region", bottom, far(top)),
     ]
-}
-
-/// What an area light is checked for.
-fn area_light_numbers(light: &AreaLight) -> impl Iterator<Item = (&'static str, f64, RangeInclusive<f64>)> {
-    use range as r;
-    let [red, green, blue] = light.color.map(f64::from);
-    let color = |value| ("lighting.area_lights.color", value, r::COLOR);
-    [
-        ("lighting.area_lights.yaw_deg", light.yaw_deg, r::YAW_DEG),
-        ("lighting.area_lights.pitch_deg", light.pitch_deg, r::PITCH_DEG),
-        ("lighting.area_lights.distance", light.distance, r::AREA_LENGTH),
-        ("lighting.area_lights.width", light.width, r::AREA_LENGTH),
-        ("lighting.area_lights.height", light.height, r::AREA_LENGTH),
-        ("lighting.area_lights.strength", f64::from(light.strength), r::STRENGTH),
-        color(red),
-        color(green),
-        color(blue),
-    ]
-    .into_iter()
 }

@@ -6,6 +6,7 @@
 //! cosine; a density is per steradian.
 
 pub mod albedo;
+pub mod blackbody;
 pub mod chord;
 pub mod coat;
 pub mod curve;

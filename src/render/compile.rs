@@ -37,7 +37,7 @@ impl Compiler {
         let document = &*without_what_is_off(document);
         let (source, options) = (&document.model, &document.import);
         let model = assets.model(source, options)?;
-        let shapes = document.lighting.area_lights.iter().map(AreaLight::shape).collect();
+        let shapes = document.lighting.shining().map(AreaLight::shape).collect();
         let geometry = assets.geometry(
             source,
             options,
@@ -131,7 +131,7 @@ pub(super) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialS
     if document.ground {
         materials.push(MaterialSettings::diffuse("ground", document.lighting.ground_color));
     }
-    materials.extend(document.lighting.area_lights.iter().map(AreaLight::material));
+    materials.extend(document.lighting.shining().map(AreaLight::material));
     materials
 }
 

@@ -95,11 +95,15 @@ impl PathAccount {
 /// What each slot of a job is: the model's, then the ground and the area lights.
 fn surfaces(document: &Document, model: &Model) -> Vec<String> {
     let materials = slot_materials(document, model.slots.len());
-    let lights = document.lighting.area_lights.len();
+    let lights = (1..).zip(&document.lighting.area_lights);
+    let shining: Vec<u32> = lights
+        .filter(|(_, light)| !light.is_muted)
+        .map(|(number, _)| number)
+        .collect();
     let name = |(slot, material): (usize, &crate::document::MaterialSettings)| match model.slots.get(slot) {
         Some(of_model) => format!("slot {slot} ({}), material {}", of_model.name, material.name),
-        None if slot + lights < materials.len() => "the ground".to_owned(),
-        None => format!("area light {}", slot + lights - materials.len() + 1),
+        None if slot + shining.len() < materials.len() => "the ground".to_owned(),
+        None => format!("area light {}", shining[slot + shining.len() - materials.len()]),
     };
     materials.iter().enumerate().map(name).collect()
 }

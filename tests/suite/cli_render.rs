@@ -431,6 +431,10 @@ fn area_lights_shine_from_where_they_are_put() {
     assert!(left > 4.0 * right, "from the left: {left} {right}");
     let red = render("--area-light 0,45,3,1,1,10,#ff0000");
     assert!(red.mean(0) > 0.01 && red.mean(1) == 0.0 && red.mean(2) == 0.0);
+    let warm = render("--area-light 0,45,3,1,1,10,2700K");
+    let white = render("--area-light 0,45,3,1,1,10");
+    let ratio = |picture: &Picture, channel: usize| picture.mean(channel) / picture.mean(0);
+    assert!(ratio(&warm, 2) < 0.25 * ratio(&white, 2) && ratio(&warm, 1) < 0.8 * ratio(&white, 1));
     let both = render("--area-light 0,45,3,1,1,10,#ff0000 --area-light 60,45,3,1,1,10,#0000ff");
     assert!(both.mean(0) > 0.01 && both.mean(2) > 0.0);
     let effects = place.report(&format!("{dark} --area-light 0,45,3,1,1,10"))["effects"].clone();

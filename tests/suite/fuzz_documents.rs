@@ -130,6 +130,7 @@ fn any_document(seed: u64) -> Document {
             shape: AreaLightShape::ALL[random.below(2)],
             color: setting_color(random),
             strength: setting(random, [0.0, 1e6]),
+            is_muted: false,
         }];
     }
     let camera = &mut document.camera;

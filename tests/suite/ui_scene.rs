@@ -5,8 +5,8 @@ use egui::{Modifiers, Pos2, Vec2};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::Action;
 use glossmith::app::layout::Pane;
-use glossmith::document::Denoise;
 use glossmith::document::effect::Switch;
+use glossmith::document::{AreaLight, Denoise};
 use glossmith::job::effect::EffectId;
 use glossmith::optics::tone::ToneCurve;
 use glossmith::render::shown::Shown;
@@ -110,6 +110,101 @@ fn a_click_says_what_is_sharp() {
     click_at(&mut harness, center);
     harness.event(egui::Event::ModifiersChanged(Modifiers::NONE));
     assert_eq!(harness.state().document().camera.focus_distance, Some(near));
+}
+
+/// A smooth dark ball in the dark, with two lights.
+fn lit_ball() -> Editor {
+    let mut document = small_document();
+    document.model = ModelSource::Sphere;
+    document.lighting.strength = 0.0;
+    document.lighting.area_lights = vec![
+        AreaLight {
+            yaw_deg: 150.0,
+            ..AreaLight::default()
+        };
+        2
+    ];
+    document.materials[0].roughness = 0.2;
+    let mut harness = editor_of(glossmith::app::Options {
+        document: Some(document),
+        ..options()
+    });
+    settle(&mut harness);
+    harness.state_mut().reveal(Pane::Lighting);
+    harness.run_steps(2);
+    harness
+}
+
+#[test]
+fn a_click_puts_a_lights_highlight_there() {
+    let mut harness = lit_ball();
+    let brightness = |harness: &Editor| -> f32 { picture(harness).iter().map(|pixel| pixel[1]).sum() };
+    let from_behind = brightness(&harness);
+    harness
+        .get_by_label("Place highlight of area light 2")
+        .click_accesskit();
+    harness.run_steps(2);
+    let center = harness.get_by_label("Viewport").rect().center();
+    click_at(&mut harness, center);
+    settle(&mut harness);
+    let lights = harness.state().document().lighting.area_lights.clone();
+    let camera = harness.state().document().camera;
+    assert_eq!(lights[0].yaw_deg, 150.0, "the other stays");
+    // The middle of a ball mirrors the viewer.
+    assert!(
+        (lights[1].yaw_deg - camera.yaw_deg).abs() < 2.0,
+        "{lights:?} {camera:?}"
+    );
+    assert!(
+        (lights[1].pitch_deg - camera.pitch_deg).abs() < 2.0,
+        "{lights:?} {camera:?}"
+    );
+    assert!(brightness(&harness) > from_behind, "it is seen");
+    // The next click chooses again.
+    click_at(&mut harness, center + Vec2::new(12.0, 0.0));
+    assert_eq!(harness.state().document().lighting.area_lights, lights);
+    undo(&mut harness);
+    assert_eq!(harness.state().document().lighting.area_lights[1].yaw_deg, 150.0);
+}
+
+#[test]
+fn lights_are_muted_soloed_and_warmed() {
+    let mut harness = lit_ball();
+    let muted = |harness: &Editor| -> Vec<bool> {
+        let lights = &harness.state().document().lighting.area_lights;
+        lights.iter().map(|light| light.is_muted).collect()
+    };
+    let both = picture(&harness);
+    let press = |harness: &mut Editor, label: &str| {
+        harness.get_by_label(label).click_accesskit();
+        harness.run_steps(2);
+        settle(harness);
+        picture(harness)
+    };
+    let one = press(&mut harness, "Mute area light 1");
+    assert_eq!(muted(&harness), [true, false]);
+    assert_ne!(one, both);
+    press(&mut harness, "Mute area light 1");
+    let alone = press(&mut harness, "Solo area light 2");
+    assert_eq!(muted(&harness), [true, false]);
+    assert_eq!(alone, one);
+    press(&mut harness, "Solo area light 1");
+    assert_eq!(muted(&harness), [false, true]);
+    let all = press(&mut harness, "Solo area light 1");
+    assert_eq!(muted(&harness), [false, false]);
+    assert_eq!(all, both);
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Area light 1 temperature")
+        .set_value_accesskit(2700.0);
+    settle(&mut harness);
+    let [red, green, blue] = harness.state().document().lighting.area_lights[0].color;
+    assert!(
+        red == 1.0 && green < 0.8 && blue < 0.4 && blue > 0.05,
+        "{red} {green} {blue}"
+    );
+    assert!((number(&harness, "Area light 1 temperature") - 2700.0).abs() < 1.0);
+    undo(&mut harness);
+    assert_eq!(harness.state().document().lighting.area_lights[0].color, [1.0; 3]);
 }
 
 #[test]

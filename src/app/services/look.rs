@@ -14,6 +14,10 @@ pub(in crate::app) struct SeenSurface {
     pub(in crate::app) depth: f64,
     /// Between view and shading normal, degrees.
     pub(in crate::app) view_angle_deg: f32,
+    /// The place, in the geometry's units.
+    pub(in crate::app) place: glam::DVec3,
+    /// Where the viewer's ray goes that is mirrored there.
+    pub(in crate::app) mirrored: glam::DVec3,
 }
 
 /// The pixel that the inspector tells of.

@@ -354,11 +354,7 @@ impl Viewport {
             return;
         }
         let Some(hit) = hit_at(pixel, scene) else { return };
-        let picks_focus = desk.shared.picks_focus || modifiers.command;
-        if picks_focus && desk.document.camera.aperture > 0.0 {
-            desk.document.camera.focus_distance = Some(hit.depth);
-            desk.shared.picks_focus = false;
-            desk.edits.note("Focus", "");
+        if picking::is_picked(&hit, modifiers.command, desk) {
             return;
         }
         desk.shared.view_angle_deg = hit.view_angle_deg;

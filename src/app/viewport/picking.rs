@@ -4,7 +4,7 @@ use egui::{DragAndDrop, Rect, Response, Ui};
 
 use super::seen::{hit_at, pixel_at};
 use crate::app::actions::Action;
-use crate::app::desk::Desk;
+use crate::app::desk::{Desk, Pick};
 use crate::app::services::look::SeenSurface;
 use crate::app::services::selection::Thing;
 use crate::document::MaterialSettings;
@@ -33,6 +33,28 @@ pub(super) fn hover(ui: &Ui, response: &Response, place: Rect, scene: &Scene, de
         desk.actions
             .push(Action::UseMaterial(Box::new(MaterialSettings::clone(&material))));
     }
+}
+
+/// Whether a click was for more than choosing: ctrl stands for the focus.
+pub(super) fn is_picked(seen: &SeenSurface, is_focus: bool, desk: &mut Desk<'_>) -> bool {
+    let picks = if is_focus { Some(Pick::Focus) } else { desk.shared.picks };
+    match picks {
+        Some(Pick::Focus) if desk.document.camera.aperture > 0.0 => {
+            desk.document.camera.focus_distance = Some(seen.depth);
+            desk.edits.note("Focus", "");
+        }
+        Some(Pick::Highlight(number)) => {
+            let Some(light) = desk.document.lighting.area_lights.get_mut(number) else {
+                desk.shared.picks = None;
+                return false;
+            };
+            light.put_highlight(seen.place, seen.mirrored);
+            desk.edits.note("Place highlight", "");
+        }
+        _ => return false,
+    }
+    desk.shared.picks = None;
+    true
 }
 
 /// Chooses what was clicked: its material, and while the tree of the scene is shown the object.

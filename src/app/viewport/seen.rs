@@ -1,9 +1,11 @@
 //! What is seen at a place of the picture.
 
 use egui::{Pos2, Rect};
+use glam::DVec3;
 
 use crate::app::services::look::SeenSurface;
 use crate::optics::material::Material;
+use crate::optics::vector::Vec3;
 use crate::render::worker::Scene;
 use crate::scene::camera::camera_ray;
 use crate::scene::surface::surface_at;
@@ -26,7 +28,11 @@ pub(super) fn hit_at(pixel: [f64; 2], scene: &Scene) -> Option<SeenSurface> {
     let materials: Vec<_> = scene.job.materials.iter().map(Material::cast).collect();
     let point = surface_at(geometry, &materials, &scene.job.textures, &hit, direction);
     let cosine: f64 = point.surface.frame.normal.dot(point.surface.wo);
+    let surface = &point.surface;
+    let vector = |of: Vec3<f64>| DVec3::new(of.x, of.y, of.z);
     Some(SeenSurface {
+        place: vector(point.position),
+        mirrored: vector(surface.wo.mirrored_about(surface.frame.normal)).normalize(),
         slot: (slot < scene.model.slots.len()).then_some(slot),
         object: Some(geometry.objects[hit.triangle as usize] as usize)
             .filter(|object| *object < scene.model.objects.len()),

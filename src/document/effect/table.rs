@@ -48,7 +48,7 @@ pub static EFFECTS: &[Effect] = &[
         id: EffectId::AreaLights,
         label: "Area lights",
         help: "Rectangles that shine beside the model.",
-        decide: |facts| match facts.document.lighting.area_lights.len() {
+        decide: |facts| match facts.document.lighting.shining().count() {
             0 => Decision::off("there is no area light"),
             1 => Decision::on("there is one area light"),
             lights => Decision::on(format!("there are {lights} area lights")),

@@ -9,7 +9,7 @@ use photographic::Photographic;
 
 use super::Panel;
 use crate::app::actions::{Action, Command};
-use crate::app::desk::{Desk, PICTURE_SIZE, RESOLUTIONS, Resolution};
+use crate::app::desk::{Desk, PICTURE_SIZE, Pick, RESOLUTIONS, Resolution};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::widgets::{self, Name, NumberStyle};
 use crate::document::{Bookmark, range};
@@ -54,7 +54,7 @@ fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {
 /// The focus distance: until it is given, that of the target, which only the scene can tell.
 fn focus(ui: &mut Ui, desk: &mut Desk<'_>) {
     if desk.document.camera.aperture == 0.0 {
-        desk.shared.picks_focus = false;
+        desk.shared.picks.take_if(|pick| *pick == Pick::Focus);
         return;
     }
     let at_target = desk.scene().map_or(1.0, |scene| {
@@ -81,8 +81,12 @@ fn focus(ui: &mut Ui, desk: &mut Desk<'_>) {
     desk.edited(response, "Focus distance", |document| {
         &mut document.camera.focus_distance
     });
-    let toggle = ui.toggle_value(&mut desk.shared.picks_focus, "Pick focus");
-    toggle.on_hover_text("The next click in the viewport says what is sharp.");
+    desk.pick_toggle(
+        ui,
+        Pick::Focus,
+        "Pick focus",
+        "The next click in the viewport says what is sharp.",
+    );
 }
 
 fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {

@@ -2,31 +2,63 @@
 
 use std::ops::RangeInclusive;
 
-use egui::{Align, Layout, Ui};
+use egui::{Align, Button, Layout, Ui};
 
-use crate::app::desk::Desk;
+use crate::app::desk::{Desk, Pick};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
 use crate::document::{AreaLight, AreaLightShape, range};
+use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
 
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let mut lights = desk.document.lighting.area_lights.clone();
     let mut removed = None;
+    let mut solo_wish = None;
+    let mut heard = lights.iter().enumerate().filter(|(_, light)| !light.is_muted);
+    let soloed = match (heard.next(), heard.next()) {
+        (Some((index, _)), None) if lights.len() > 1 => Some(index),
+        _ => None,
+    };
     for (index, light) in lights.iter_mut().enumerate() {
         let title = format!("Area light {}", index + 1);
         ui.horizontal(|ui| {
             ui.strong(&title);
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let name = format!("Remove {}", title.to_lowercase());
+                let of_light = title.to_lowercase();
+                let name = format!("Remove {of_light}");
                 if icons::button(ui, Icon::Close, &name, "Remove this light").clicked() {
                     removed = Some(index);
+                }
+                let solo = ui.add(Button::new("Solo").selected(soloed == Some(index)));
+                let solo = solo.on_hover_text("Mutes all other area lights; again: lets all shine.");
+                if solo.accessible_name(format!("Solo {of_light}")).clicked() {
+                    solo_wish = Some(index);
+                }
+                let mute = ui.add(Button::new("Mute").selected(light.is_muted));
+                let mute = mute.on_hover_text("It does not shine, and is not there, until this is pressed again.");
+                let name = format!("Mute {of_light}");
+                if mute.accessible_name(name.as_str()).clicked() {
+                    light.is_muted = !light.is_muted;
+                    desk.edits.note(name, "");
                 }
             });
         });
         rows(ui, desk, &title, light);
+        let help = "The next click on the model turns the light so that it is seen mirrored there.";
+        let pick = desk.pick_toggle(ui, Pick::Highlight(index), "Place highlight", help);
+        pick.accessible_name(format!("Place highlight of {}", title.to_lowercase()));
+    }
+    if let Some(index) = solo_wish {
+        let is_over = soloed == solo_wish;
+        for (other, light) in lights.iter_mut().enumerate() {
+            light.is_muted = !is_over && other != index;
+        }
+        desk.edits.note("Solo area light", "");
     }
     if let Some(index) = removed {
         lights.remove(index);
+        // What another light is chosen for would become its neighbour's.
+        desk.shared.picks = None;
         desk.edits.note("Remove area light", "");
     }
     let is_full = lights.len() as f64 >= *range::AREA_LIGHTS.end();
@@ -129,6 +161,7 @@ fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
     let response = widgets::row(ui, name, |ui| widgets::color(ui, &full, &mut light.color));
     light.color = light.color.map(|x| x.clamp(0.0, 1.0));
     edited(desk, response, full, &mut light.color, default.color);
+    temperature(ui, desk, title, light);
     let style = NumberStyle {
         range: range::STRENGTH,
         bar: Some([0.0, 100.0]),
@@ -144,6 +177,28 @@ fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
     );
     let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut light.strength, &style));
     edited(desk, response, full, &mut light.strength, default.strength);
+}
+
+/// The colour as that of a lamp or a sky.
+fn temperature(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
+    let [coldest, hottest] = TEMPERATURES_K;
+    let style = NumberStyle {
+        range: coldest..=hottest,
+        bar: Some([coldest, 10000.0]),
+        unit: " K",
+        speed: 20.0,
+        decimals: 0,
+    };
+    let full = format!("{title} temperature");
+    let help = "Gives the light the colour of a body that shines at this temperature: 2700 K a light bulb, 5600 K the sun, \
+                10000 K a blue sky.";
+    let mut temperature_k = temperature_of_color(light.color.map(f64::from));
+    let name = Name::new(&full, "Temperature", help);
+    let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut temperature_k, &style));
+    if response.changed {
+        light.color = blackbody_color(temperature_k).map(|x| x as f32);
+    }
+    edited(desk, response, full, &mut light.color, AreaLight::default().color);
 }
 
 /// Notes an edit, and resets where that was asked for.
