@@ -78,8 +78,11 @@ impl ScenePanel {
             "Environment: {}",
             environment_label(&desk.document.lighting.environment)
         );
-        let lights = desk.document.lighting.area_lights.len();
-        let names = (1..=lights).map(|number| format!("Area light {number}"));
+        let lights = desk.document.lighting.area_lights.clone();
+        let names = (1..).zip(&lights).map(|(number, light): (u32, _)| {
+            let muted = if light.is_muted { ", muted" } else { "" };
+            format!("Area light {number}{muted}")
+        });
         for name in std::iter::once(environment)
             .chain(names)
             .filter(|name| self.is_wanted(name))
