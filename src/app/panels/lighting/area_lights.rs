@@ -10,56 +10,40 @@ use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
 use crate::document::{AreaLight, AreaLightShape, range};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
 
+/// What the buttons beside a light's name ask for.
+enum Wish {
+    Remove,
+    Solo,
+}
+
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
     let mut lights = desk.document.lighting.area_lights.clone();
-    let mut removed = None;
-    let mut solo_wish = None;
-    let mut heard = lights.iter().enumerate().filter(|(_, light)| !light.is_muted);
-    let soloed = match (heard.next(), heard.next()) {
-        (Some((index, _)), None) if lights.len() > 1 => Some(index),
-        _ => None,
-    };
+    let soloed = soloed(&lights);
+    let mut wished = None;
     for (index, light) in lights.iter_mut().enumerate() {
         let title = format!("Area light {}", index + 1);
-        ui.horizontal(|ui| {
-            ui.strong(&title);
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let of_light = title.to_lowercase();
-                let name = format!("Remove {of_light}");
-                if icons::button(ui, Icon::Close, &name, "Remove this light").clicked() {
-                    removed = Some(index);
-                }
-                let solo = ui.add(Button::new("Solo").selected(soloed == Some(index)));
-                let solo = solo.on_hover_text("Mutes all other area lights; again: lets all shine.");
-                if solo.accessible_name(format!("Solo {of_light}")).clicked() {
-                    solo_wish = Some(index);
-                }
-                let mute = ui.add(Button::new("Mute").selected(light.is_muted));
-                let mute = mute.on_hover_text("It does not shine, and is not there, until this is pressed again.");
-                let name = format!("Mute {of_light}");
-                if mute.accessible_name(name.as_str()).clicked() {
-                    light.is_muted = !light.is_muted;
-                    desk.edits.note(name, "");
-                }
-            });
-        });
+        let wish = header(ui, desk, &title, light, soloed == Some(index));
+        wished = wish.map(|wish| (wish, index)).or(wished);
         rows(ui, desk, &title, light);
         let help = "The next click on the model turns the light so that it is seen mirrored there.";
         let pick = desk.pick_toggle(ui, Pick::Highlight(index), "Place highlight", help);
         pick.accessible_name(format!("Place highlight of {}", title.to_lowercase()));
     }
-    if let Some(index) = solo_wish {
-        let is_over = soloed == solo_wish;
-        for (other, light) in lights.iter_mut().enumerate() {
-            light.is_muted = !is_over && other != index;
+    match wished {
+        Some((Wish::Solo, index)) => {
+            let is_over = soloed == Some(index);
+            for (other, light) in lights.iter_mut().enumerate() {
+                light.is_muted = !is_over && other != index;
+            }
+            desk.edits.note("Solo area light", "");
         }
-        desk.edits.note("Solo area light", "");
-    }
-    if let Some(index) = removed {
-        lights.remove(index);
-        // What another light is chosen for would become its neighbour's.
-        desk.shared.picks = None;
-        desk.edits.note("Remove area light", "");
+        Some((Wish::Remove, index)) => {
+            lights.remove(index);
+            // What another light was to be picked for would become its neighbour's.
+            desk.shared.picks = None;
+            desk.edits.note("Remove area light", "");
+        }
+        None => {}
     }
     let is_full = lights.len() as f64 >= *range::AREA_LIGHTS.end();
     ui.add_enabled_ui(!is_full, |ui| {
@@ -70,6 +54,47 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
         }
     });
     desk.document.lighting.area_lights = lights;
+}
+
+/// The only one of several lights that shines.
+fn soloed(lights: &[AreaLight]) -> Option<usize> {
+    let mut shining = (0..lights.len()).filter(|&index| !lights[index].is_muted);
+    match (shining.next(), shining.next()) {
+        (Some(index), None) if lights.len() > 1 => Some(index),
+        _ => None,
+    }
+}
+
+fn header(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight, is_soloed: bool) -> Option<Wish> {
+    let of_light = title.to_lowercase();
+    let button = |ui: &mut Ui, word: &str, is_on: bool, help: &str| {
+        let button = ui.add(Button::new(word).selected(is_on)).on_hover_text(help);
+        button.accessible_name(format!("{word} {of_light}")).clicked()
+    };
+    let mut wish = None;
+    ui.horizontal(|ui| {
+        ui.strong(title);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            let name = format!("Remove {}", title.to_lowercase());
+            if icons::button(ui, Icon::Close, &name, "Remove this light").clicked() {
+                wish = Some(Wish::Remove);
+            }
+            if button(
+                ui,
+                "Solo",
+                is_soloed,
+                "Mutes all other area lights; again: lets all shine.",
+            ) {
+                wish = Some(Wish::Solo);
+            }
+            let help = "It does not shine, and is not there, until this is pressed again.";
+            if button(ui, "Mute", light.is_muted, help) {
+                light.is_muted = !light.is_muted;
+                desk.edits.note("Mute area light", "");
+            }
+        });
+    });
+    wish
 }
 
 /// A number of an area light.
