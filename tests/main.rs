@@ -39,6 +39,8 @@ mod denoise_cases;
 mod density;
 #[path = "suite/desktop.rs"]
 mod desktop;
+#[path = "suite/device_loss.rs"]
+mod device_loss;
 #[path = "suite/docs.rs"]
 mod docs;
 #[path = "suite/document.rs"]

@@ -19,6 +19,59 @@ const ROULETTE_START: u32 = 3u;
 // Beyond it the square would overflow: dropped and counted.
 const RADIANCE_MAX: f32 = 1e18;
 
+// What a dispatch renders of one tile.
+struct Tile {
+    // Its top left pixel.
+    origin: vec2u,
+    first_sample: u32,
+    sample_count: u32,
+}
+
+// Sums of a pixel's colours since the host last took them.
+struct PixelColors {
+    // With the coverage.
+    all: vec4f,
+    // The same of the odd samples alone: one of two independent halves.
+    odd: vec3f,
+    odd_kept: f32,
+}
+
+// Other sums over the samples of a pixel since the host last took them; scalars, so that the stride is 24 bytes.
+struct PixelStatistics {
+    luminance_squared: f32,
+    // Samples in the sums.
+    kept: f32,
+    odd_luminance_squared: f32,
+    // Samples that were not sound.
+    dropped: f32,
+    rays: f32,
+    // Luminance that limiting fireflies took.
+    clamped: f32,
+}
+
+// Sums over a pixel's first samples of what they saw first.
+struct GuideSums {
+    // Each times what mirrors and glass before it leave of the light.
+    albedo: vec3f,
+    // How many samples met something.
+    hits: f32,
+    normal: vec3f,
+    // Along the camera's axis, in the geometry's units.
+    depth: f32,
+}
+
+// x: the first row of pixels that the sums are of.
+@group(1) @binding(0) var<uniform> band: vec4u;
+// What this dispatch renders, a Tile each; TILE_COLUMNS in a row.
+@group(1) @binding(1) var tiles: texture_2d<u32>;
+// Sums over the samples of a pixel since the host last took them.
+@group(1) @binding(2) var<storage, read_write> color_sums: array<PixelColors>;
+@group(1) @binding(3) var<storage, read_write> statistics: array<PixelStatistics>;
+@group(1) @binding(4) var<storage, read_write> guide_sums: array<GuideSums>;
+
+// Pixels along the side of a tile, which is a workgroup.
+const TILE_SIDE: u32 = 8u;
+
 struct PathResult {
     radiance: vec3f,
     alpha: f32,
@@ -250,12 +303,13 @@ fn is_sound(color: vec3f) -> bool {
 
 @compute @workgroup_size(TILE_SIDE, TILE_SIDE)
 fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation_id) place: vec3u) {
-    let tile = tiles[workgroup.x];
+    let words = textureLoad(tiles, vec2u(workgroup.x % TILE_COLUMNS, workgroup.x / TILE_COLUMNS), 0);
+    let tile = Tile(words.xy, words.z, words.w);
     let pixel = tile.origin + place.xy;
     if any(pixel >= globals.image_size) {
         return;
     }
-    let index = pixel.y * globals.image_size.x + pixel.x;
+    let index = (pixel.y - band.x) * globals.image_size.x + pixel.x;
     var colors = PixelColors();
     var sums = PixelStatistics();
     var guides = GuideSums();

@@ -120,11 +120,11 @@ fn intersect_children(
 }
 
 fn intersect_node(node: u32, ray: RayFrame, inverse: vec3f, octant_inverse: u32, t_max: f32) -> u32 {
-    let first = nodes[node * 5u];
-    let links = nodes[node * 5u + 1u];
-    let x = nodes[node * 5u + 2u];
-    let y = nodes[node * 5u + 3u];
-    let z = nodes[node * 5u + 4u];
+    let first = node_words(node * 5u);
+    let links = node_words(node * 5u + 1u);
+    let x = node_words(node * 5u + 2u);
+    let y = node_words(node * 5u + 3u);
+    let z = node_words(node * 5u + 4u);
     let exponents = vec3u(first.w, first.w >> 8u, first.w >> 16u) & vec3u(0xffu);
     let scale = bitcast<vec3f>(exponents << vec3u(23u)) * inverse;
     let corner = bitcast<vec3f>(first.xyz);
@@ -167,7 +167,7 @@ fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
             let local = firstLeadingBit(triangle_group.y);
             triangle_group.y &= ~(1u << local);
             let index = triangle_group.x + local;
-            let triangle = triangles[index];
+            let triangle = triangle_at(index);
             let met = intersect_triangle(
                 ray, bitcast<vec3f>(triangle.corners[0].xyz), bitcast<vec3f>(triangle.corners[1].xyz),
                 bitcast<vec3f>(triangle.corners[2].xyz), nearest.t,
@@ -197,8 +197,8 @@ fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
         let slot = (child - 24u) ^ (octant_inverse & 0xffu);
         let node = children + countOneBits(hits & ~(0xffffffffu << slot));
         let hit_mask = intersect_node(node, ray, inverse, octant_inverse, nearest.t);
-        node_group = vec2u(nodes[node * 5u + 1u].x, (hit_mask & 0xff000000u) | (nodes[node * 5u].w >> 24u));
-        triangle_group = vec2u(nodes[node * 5u + 1u].y, hit_mask & 0x00ffffffu);
+        node_group = vec2u(node_words(node * 5u + 1u).x, (hit_mask & 0xff000000u) | (node_words(node * 5u).w >> 24u));
+        triangle_group = vec2u(node_words(node * 5u + 1u).y, hit_mask & 0x00ffffffu);
     }
     return nearest;
 }

@@ -12,6 +12,12 @@ struct AliasCell {
     density: f32,
 }
 
+fn environment_cell(index: u32) -> AliasCell {
+    let place = texel_place(index);
+    let words = textureLoad(environment_cells, place.xy, place.z, 0);
+    return AliasCell(bitcast<f32>(words.x), words.y, bitcast<f32>(words.z));
+}
+
 struct EnvironmentSample {
     // In the map's frame.
     direction: vec3f,
@@ -79,12 +85,12 @@ fn environment_radiance(direction_local: vec3f) -> vec3f {
 // the cell or its alias is taken: see the twin for why one number would not do. cells_size: columns and rows of cells.
 fn environment_sample(xi: vec3f, cells_size: vec2u) -> EnvironmentSample {
     let drawn = grid_place(xi.xy, cells_size);
-    let cell = environment_cells[drawn.index];
+    let cell = environment_cell(drawn.index);
     let chosen = select(cell.alias_index, drawn.index, xi.z < cell.threshold);
     let chosen_cell = vec2u(chosen % cells_size.x, chosen / cells_size.x);
     return EnvironmentSample(
         environment_direction_in_cell(chosen_cell, drawn.place, cells_size),
-        environment_cells[chosen].density,
+        environment_cell(chosen).density,
     );
 }
 
@@ -107,5 +113,5 @@ fn environment_direction_in_cell(cell: vec2u, place: vec2f, cells_size: vec2u) -
 
 // The density, per steradian, with which environment_sample draws a direction.
 fn environment_density(direction_local: vec3f, cells_size: vec2u) -> f32 {
-    return environment_cells[grid_place(environment_uv(direction_local), cells_size).index].density;
+    return environment_cell(grid_place(environment_uv(direction_local), cells_size).index).density;
 }

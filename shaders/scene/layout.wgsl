@@ -1,5 +1,5 @@
 // What the passes read: the twins of the structures in src/gpu/layout.rs and src/optics/material.rs, and the bindings.
-#import "scene/environment"
+#import "scene/texels"
 
 struct Camera {
     // In the geometry's units.
@@ -40,47 +40,6 @@ struct Globals {
     firefly_clamp: f32,
     reserved: u32,
     reserved_pair: vec2u,
-}
-
-// What a dispatch renders of one tile.
-struct Tile {
-    // Its top left pixel.
-    origin: vec2u,
-    first_sample: u32,
-    sample_count: u32,
-}
-
-// Sums of a pixel's colours since the host last took them.
-struct PixelColors {
-    // With the coverage.
-    all: vec4f,
-    // The same of the odd samples alone: one of two independent halves.
-    odd: vec3f,
-    odd_kept: f32,
-}
-
-// Other sums over the samples of a pixel since the host last took them; scalars, so that the stride is 24 bytes.
-struct PixelStatistics {
-    luminance_squared: f32,
-    // Samples in the sums.
-    kept: f32,
-    odd_luminance_squared: f32,
-    // Samples that were not sound.
-    dropped: f32,
-    rays: f32,
-    // Luminance that limiting fireflies took.
-    clamped: f32,
-}
-
-// Sums over a pixel's first samples of what they saw first.
-struct GuideSums {
-    // Each times what mirrors and glass before it leave of the light.
-    albedo: vec3f,
-    // How many samples met something.
-    hits: f32,
-    normal: vec3f,
-    // Along the camera's axis, in the geometry's units.
-    depth: f32,
 }
 
 struct Material {
@@ -127,17 +86,6 @@ struct Material {
     reserved: u32,
 }
 
-// One use of a picture.
-struct TextureRecord {
-    u_from_uv: vec3f,
-    first_texel: u32,
-    v_from_uv: vec3f,
-    width: u32,
-    height: u32,
-    wrap: array<u32, 2>,
-    flags: u32,
-}
-
 // A triangle to intersect: corner positions as bits, with the corner's vertex index in w.
 struct Triangle {
     corners: array<vec4u, 3>,
@@ -153,34 +101,72 @@ struct Vertex {
     color: array<u32, 2>,
 }
 
-// An entry of the alias table over the triangles that emit.
-struct LightCell {
-    threshold: f32,
-    alias_index: u32,
-    triangle: u32,
-}
-
+// Everything that a pass reads of a scene: five storage buffers, so that WebGPU's eight leave three for what it writes.
 @group(0) @binding(0) var<uniform> globals: Globals;
 // Five vec4u a node (80 bytes, CWBVH).
 @group(0) @binding(1) var<storage, read> nodes: array<vec4u>;
 @group(0) @binding(2) var<storage, read> triangles: array<Triangle>;
 @group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
-@group(0) @binding(4) var<storage, read> triangle_slots: array<u32>;
-@group(0) @binding(5) var<storage, read> materials: array<Material>;
+@group(0) @binding(4) var<storage, read> materials: array<Material>;
 // Custom curves and albedo tables.
-@group(0) @binding(6) var<storage, read> tables: array<f32>;
-@group(0) @binding(7) var environment_map: texture_2d<f32>;
-@group(0) @binding(8) var<storage, read> environment_cells: array<AliasCell>;
-// Sums over the samples of a pixel since the host last took them: red, green, blue, alpha.
-@group(0) @binding(9) var<storage, read_write> color_sums: array<PixelColors>;
-@group(0) @binding(10) var<storage, read_write> statistics: array<PixelStatistics>;
-@group(0) @binding(11) var<storage, read> light_cells: array<LightCell>;
-// What this dispatch renders.
-@group(0) @binding(12) var<storage, read> tiles: array<Tile>;
-@group(0) @binding(13) var<storage, read> texture_records: array<TextureRecord>;
-// The linear values of the 256 sRGB codes as bits, then texels of 4 x 8 bits.
-@group(0) @binding(14) var<storage, read> texture_words: array<u32>;
+@group(0) @binding(5) var<storage, read> tables: array<f32>;
+@group(0) @binding(6) var environment_map: texture_2d<f32>;
+// Arrays whose elements lie at texel_place.
+@group(0) @binding(7) var environment_cells: texture_2d_array<u32>;
+@group(0) @binding(8) var light_cells: texture_2d_array<u32>;
+@group(0) @binding(9) var triangle_slots: texture_2d_array<u32>;
+@group(0) @binding(10) var texture_records: texture_2d_array<u32>;
+// The linear values of the 256 sRGB codes as bits, then texels of 4 x 8 bits, or two words each of 4 x 16.
+@group(0) @binding(11) var texture_words: texture_2d_array<u32>;
+// What the buffers of the same names hold, where one of them would be larger than a binding may be.
+@group(0) @binding(12) var node_texels: texture_2d_array<u32>;
+@group(0) @binding(13) var triangle_texels: texture_2d_array<u32>;
+@group(0) @binding(14) var vertex_texels: texture_2d_array<u32>;
 
-// Pixels along the side of a tile, which is a workgroup.
-const TILE_SIDE: u32 = 8u;
-@group(0) @binding(15) var<storage, read_write> guide_sums: array<GuideSums>;
+// 1: the geometry is in the textures.
+override GEOMETRY_IN_TEXTURES: u32 = 0u;
+
+// A vec4u of the nodes.
+fn node_words(index: u32) -> vec4u {
+    if GEOMETRY_IN_TEXTURES == 0u {
+        return nodes[index];
+    }
+    let place = texel_place(index);
+    return textureLoad(node_texels, place.xy, place.z, 0);
+}
+
+fn triangle_at(index: u32) -> Triangle {
+    if GEOMETRY_IN_TEXTURES == 0u {
+        return triangles[index];
+    }
+    var corners: array<vec4u, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        let place = texel_place(3u * index + i);
+        corners[i] = textureLoad(triangle_texels, place.xy, place.z, 0);
+    }
+    return Triangle(corners);
+}
+
+fn vertex_at(index: u32) -> Vertex {
+    if GEOMETRY_IN_TEXTURES == 0u {
+        return vertices[index];
+    }
+    var words: array<vec4u, 4>;
+    for (var i = 0u; i < 4u; i++) {
+        let place = texel_place(4u * index + i);
+        words[i] = textureLoad(vertex_texels, place.xy, place.z, 0);
+    }
+    let a = bitcast<vec4f>(words[0]);
+    let b = bitcast<vec4f>(words[1]);
+    let c = bitcast<vec4f>(words[2]);
+    return Vertex(
+        array<f32, 3>(a.x, a.y, a.z), array<f32, 2>(a.w, b.x), array<f32, 2>(b.y, b.z),
+        array<f32, 4>(b.w, c.x, c.y, c.z), array<u32, 2>(words[2].w, words[3].x),
+    );
+}
+
+// The material slot of a triangle.
+fn slot_at(index: u32) -> u32 {
+    let place = texel_place(index);
+    return textureLoad(triangle_slots, place.xy, place.z, 0).x;
+}

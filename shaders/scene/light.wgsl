@@ -15,14 +15,27 @@ struct LightSample {
 // Keeps densities finite where a triangle is seen edge-on.
 const COSINE_MIN: f32 = 1e-6;
 
+// An entry of the alias table over the triangles that emit.
+struct LightCell {
+    threshold: f32,
+    alias_index: u32,
+    triangle: u32,
+}
+
+fn light_cell(index: u32) -> LightCell {
+    let place = texel_place(index);
+    let words = textureLoad(light_cells, place.xy, place.z, 0);
+    return LightCell(bitcast<f32>(words.x), words.y, words.z);
+}
+
 // A place on an emitting triangle, seen from `origin`. xi.xy choose an entry of the table and the place, xi.z whether the
 // entry or its alias is taken. There must be such a triangle. The ray may start up to origin_error off `origin`.
 fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let drawn = grid_place(xi.xy, globals.light_cells_size);
-    let cell = light_cells[drawn.index];
+    let cell = light_cell(drawn.index);
     let chosen = select(cell.alias_index, drawn.index, xi.z < cell.threshold);
-    let index = light_cells[chosen].triangle;
-    let triangle = triangles[index];
+    let index = light_cell(chosen).triangle;
+    let triangle = triangle_at(index);
     let p0 = bitcast<vec3f>(triangle.corners[0].xyz);
     let p1 = bitcast<vec3f>(triangle.corners[1].xyz);
     let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
@@ -34,7 +47,7 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let distance = length(towards);
     let direction = normalize_or(towards, vec3f(0.0, 1.0, 0.0));
     let normal = normalize_or(triangle_normal(p0, p1, p2), direction);
-    let material = materials[triangle_slots[index]];
+    let material = materials[slot_at(index)];
     var radiance = material.emission;
     if PLAN_EMISSION_TEXTURES == 1u || PLAN_ALPHA == 1u {
         let uvs = uvs_at(vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w), weights);

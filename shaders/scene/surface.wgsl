@@ -48,7 +48,7 @@ struct HitPlace {
 }
 
 fn hit_place(hit: Hit, direction: vec3f) -> HitPlace {
-    let triangle = triangles[hit.triangle];
+    let triangle = triangle_at(hit.triangle);
     let p0 = bitcast<vec3f>(triangle.corners[0].xyz);
     let p1 = bitcast<vec3f>(triangle.corners[1].xyz);
     let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
@@ -67,14 +67,14 @@ fn passed_origin(hit: Hit, direction: vec3f) -> vec3f {
 }
 
 fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
-    let triangle = triangles[hit.triangle];
+    let triangle = triangle_at(hit.triangle);
     let w = 1.0 - hit.u - hit.v;
     let place = hit_place(hit, direction);
     let normal = place.normal;
     let wo = -direction;
-    let a = vertices[triangle.corners[0].w];
-    let b = vertices[triangle.corners[1].w];
-    let c = vertices[triangle.corners[2].w];
+    let a = vertex_at(triangle.corners[0].w);
+    let b = vertex_at(triangle.corners[1].w);
+    let c = vertex_at(triangle.corners[2].w);
     let interpolated = vec3f(
         a.normal[0] * w + b.normal[0] * hit.u + c.normal[0] * hit.v,
         a.normal[1] * w + b.normal[1] * hit.u + c.normal[1] * hit.v,
@@ -83,7 +83,7 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     let smoothed = normalize_or(interpolated, normal);
     let side = select(1.0, -1.0, dot(smoothed, normal) < 0.0);
     let coat_normal = bent_normal(side * smoothed, wo);
-    let slot = triangle_slots[hit.triangle];
+    let slot = slot_at(hit.triangle);
     var uvs = vec4f(0.0);
     if looks_up_textures() {
         uvs = hit_uvs(hit);
@@ -122,13 +122,13 @@ fn looks_up_textures() -> bool {
 }
 
 fn hit_uvs(hit: Hit) -> vec4f {
-    let corners = triangles[hit.triangle].corners;
+    let corners = triangle_at(hit.triangle).corners;
     return uvs_at(vec3u(corners[0].w, corners[1].w, corners[2].w), vec3f(1.0 - hit.u - hit.v, hit.u, hit.v));
 }
 
 // The share of light that is stopped where a ray met the geometry.
 fn hit_opacity(hit: Hit) -> f32 {
-    let slot = triangle_slots[hit.triangle];
+    let slot = slot_at(hit.triangle);
     if !material_has_holes(materials[slot]) {
         return 1.0;
     }

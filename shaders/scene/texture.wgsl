@@ -11,9 +11,37 @@ const IS_NEAREST: u32 = 2u;
 const IS_SECOND_SET: u32 = 4u;
 const IS_FINE: u32 = 8u;
 
+// One use of a picture.
+struct TextureRecord {
+    u_from_uv: vec3f,
+    first_texel: u32,
+    v_from_uv: vec3f,
+    width: u32,
+    height: u32,
+    wrap: vec2u,
+    flags: u32,
+}
+
+fn texture_record(index: u32) -> TextureRecord {
+    var words: array<vec4u, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        let place = texel_place(3u * index + i);
+        words[i] = textureLoad(texture_records, place.xy, place.z, 0);
+    }
+    return TextureRecord(
+        bitcast<vec3f>(words[0].xyz), words[0].w, bitcast<vec3f>(words[1].xyz), words[1].w,
+        words[2].x, words[2].yz, words[2].w,
+    );
+}
+
+fn texture_word(index: u32) -> u32 {
+    let place = texel_place(index);
+    return textureLoad(texture_words, place.xy, place.z, 0).x;
+}
+
 // Red, green, blue (linear) and alpha. uvs holds both sets of texture coordinates.
 fn texture_lookup(index: u32, uvs: vec4f) -> vec4f {
-    let record = texture_records[index];
+    let record = texture_record(index);
     let uv = select(uvs.xy, uvs.zw, (record.flags & IS_SECOND_SET) != 0u);
     let u = record.u_from_uv.x * uv.x + record.u_from_uv.y * uv.y + record.u_from_uv.z;
     let v = record.v_from_uv.x * uv.x + record.v_from_uv.y * uv.y + record.v_from_uv.z;
@@ -62,18 +90,18 @@ fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
     let place = row * record.width + column;
     if (record.flags & IS_FINE) != 0u {
         let first = record.first_texel + 2u * place;
-        let rg = texture_words[first];
-        let ba = texture_words[first + 1u];
+        let rg = texture_word(first);
+        let ba = texture_word(first + 1u);
         return vec4f(vec4u(rg & 0xffffu, rg >> 16u, ba & 0xffffu, ba >> 16u)) / 65535.0;
     }
-    let word = texture_words[record.first_texel + place];
+    let word = texture_word(record.first_texel + place);
     let codes = vec4u(word & 0xffu, (word >> 8u) & 0xffu, (word >> 16u) & 0xffu, word >> 24u);
     if (record.flags & IS_SRGB) == 0u {
         return vec4f(codes) / 255.0;
     }
     return vec4f(
-        bitcast<f32>(texture_words[codes.x]), bitcast<f32>(texture_words[codes.y]),
-        bitcast<f32>(texture_words[codes.z]), f32(codes.w) / 255.0,
+        bitcast<f32>(texture_word(codes.x)), bitcast<f32>(texture_word(codes.y)),
+        bitcast<f32>(texture_word(codes.z)), f32(codes.w) / 255.0,
     );
 }
 
@@ -151,7 +179,6 @@ fn uvs_at(corners: vec3u, weights: vec3f) -> vec4f {
 }
 
 fn corner_uvs(vertex: u32) -> vec4f {
-    let uv = vertices[vertex].uv;
-    let second = vertices[vertex].second_uv;
-    return vec4f(uv[0], uv[1], second[0], second[1]);
+    let at = vertex_at(vertex);
+    return vec4f(at.uv[0], at.uv[1], at.second_uv[0], at.second_uv[1]);
 }

@@ -239,7 +239,13 @@ fn step_to_end(
     let mut attendant = Attendant::new(document);
     loop {
         let budget = attendant.budget(&session.progress(), STEP);
-        let stepped = session.step(budget).map(|_| ());
+        // What the GPU has is taken while it can be rendered again.
+        let stepped = session.step(budget).and_then(|progress| {
+            if progress.is_done {
+                session.film()?;
+            }
+            Ok(())
+        });
         or_fall_back(stepped, session, engine, document)?;
         attendant.attend(session, &session.progress())?;
         let progress = session.progress();
@@ -277,7 +283,8 @@ fn told(progress: &Progress) -> String {
     format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){denoised}{why}")
 }
 
-/// Goes on with the processor where the GPU fails, unless the GPU was asked for by name.
+/// Goes on where the GPU's device was lost, and on the processor after any other failure of it, unless the GPU was asked
+/// for by name.
 fn or_fall_back(
     outcome: Result<(), SessionError>,
     session: &mut Session,
@@ -285,10 +292,10 @@ fn or_fall_back(
     document: &Document,
 ) -> Result<(), SessionError> {
     match outcome {
-        Err(SessionError::Gpu(error)) if engine == EngineChoice::Auto => {
-            log::warn!("{error}; going on with the processor");
-            session.fall_back_to_cpu(&error.to_string());
-            session.submit(document).map(|_| ())
+        Err(SessionError::Gpu(error)) if engine == EngineChoice::Auto || error.is_lost() => {
+            log::warn!("{}", session.recover(&error));
+            let submitted = session.submit(document).map(|_| ());
+            or_fall_back(submitted, session, engine, document)
         }
         outcome => outcome,
     }

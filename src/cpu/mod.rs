@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use crate::job::Job;
 use crate::job::features::GUIDE_SAMPLES;
 use crate::job::film::Film;
-use crate::job::tiles::{Schedule, SliceLimits, Work};
+use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 use crate::optics::real::Real;
 use integrator::{Integrator, is_sound};
 
@@ -68,6 +68,7 @@ impl CpuEngine {
                 // The first picture is there as soon as can be.
                 pass_samples_max: if self.samples_per_pixel() == 0 { 1 } else { u32::MAX },
                 tiles: [CORE_TILES * rayon::current_num_threads(), usize::MAX],
+                order: Order::Rows,
             };
             let left = budget.saturating_sub(start.elapsed()).min(SLICE).as_secs_f64();
             let works = self.schedule.slice(self.samples_per_second * left, limits);
@@ -108,6 +109,11 @@ impl CpuEngine {
     /// What has been rendered of each tile.
     pub fn schedule(&self) -> &Schedule {
         &self.schedule
+    }
+
+    /// Goes on with what another engine rendered of the same job.
+    pub fn take_over(&mut self, film: Film, schedule: Schedule) {
+        (self.film, self.schedule) = (film, schedule);
     }
 
     /// What has been rendered, for another engine to go on with.

@@ -1,6 +1,6 @@
 //! What every compute pass is made of: module, layouts, pipeline, bindings, dispatch.
 
-use super::device::{GpuDevice, GpuError};
+use super::device::{GpuDevice, GpuError, Moment};
 use super::shader;
 use super::timer::Timer;
 
@@ -10,7 +10,7 @@ pub(super) const WRITE: wgpu::BufferBindingType = wgpu::BufferBindingType::Stora
 
 /// A part of a pipeline, or what the driver has against its shader.
 pub(super) fn validated<T>(gpu: &GpuDevice, make: impl FnOnce(&wgpu::Device) -> T) -> Result<T, GpuError> {
-    gpu.checked(make).map_err(GpuError::Shader)
+    gpu.checked(GpuError::Shader, make)
 }
 
 /// The module of `shaders/pass/NAME.wgsl`, every access checked.
@@ -36,6 +36,24 @@ pub(super) fn buffer_entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::B
             ty,
             has_dynamic_offset: false,
             min_binding_size: None,
+        },
+        count: None,
+    }
+}
+
+/// A texture's place in a group.
+pub(super) fn texture_entry(
+    binding: u32,
+    sample_type: wgpu::TextureSampleType,
+    view_dimension: wgpu::TextureViewDimension,
+) -> wgpu::BindGroupLayoutEntry {
+    wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Texture {
+            sample_type,
+            view_dimension,
+            multisampled: false,
         },
         count: None,
     }
@@ -81,6 +99,7 @@ pub(super) fn pipeline(
     constants: &[(&str, f64)],
     cache: Option<&wgpu::PipelineCache>,
 ) -> Result<wgpu::ComputePipeline, GpuError> {
+    gpu.reach(Moment::Compiling);
     validated(gpu, |device| {
         device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(entry_point),
@@ -97,18 +116,22 @@ pub(super) fn pipeline(
     })
 }
 
-/// Buffers bound to their places.
+/// Buffers and textures bound to their places.
 pub(super) fn bind_group(
     gpu: &GpuDevice,
     layout: &wgpu::BindGroupLayout,
     buffers: &[(u32, &wgpu::Buffer)],
+    textures: &[(u32, &wgpu::TextureView)],
 ) -> wgpu::BindGroup {
-    let entries: Vec<_> = buffers
+    let buffers = buffers
         .iter()
-        .map(|(binding, buffer)| wgpu::BindGroupEntry {
-            binding: *binding,
-            resource: buffer.as_entire_binding(),
-        })
+        .map(|(binding, buffer)| (*binding, buffer.as_entire_binding()));
+    let textures = textures
+        .iter()
+        .map(|(binding, view)| (*binding, wgpu::BindingResource::TextureView(view)));
+    let entries: Vec<_> = buffers
+        .chain(textures)
+        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
         .collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
         label: None,
@@ -141,6 +164,7 @@ pub(super) fn dispatch(
         timer.resolve(&mut encoder);
     }
     gpu.queue.submit([encoder.finish()]);
+    gpu.reach(Moment::Rendering);
     if let Some(timer) = timer {
         timer.request();
     }

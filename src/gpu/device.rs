@@ -1,11 +1,12 @@
 //! The GPU: which adapter, and what it says when it fails.
 
 use std::ops::Range;
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::atomic::{AtomicU8, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use pollster::block_on;
-use wgpu::util::DeviceExt;
+
+use super::array::TEXEL_ROW;
 
 /// What can go wrong with a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -80,6 +81,22 @@ pub struct GpuDevice {
     failures: Arc<Mutex<Failures>>,
     /// Bytes that a buffer may have, where that is less than the adapter's limit.
     buffer_limit: Arc<AtomicU64>,
+    /// The [`Moment`] at which it is taken away; 0 for none.
+    losing_moment: Arc<AtomicU8>,
+}
+
+/// When a device is taken away, in tests of what follows: real ones are lost at any time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Moment {
+    /// While a kernel is compiled.
+    Compiling = 1,
+    /// While a job is uploaded.
+    Uploading,
+    /// While a dispatch is waited for.
+    Rendering,
+    /// While sums are read back.
+    Reading,
 }
 
 /// What the device said outside of any call.
@@ -91,8 +108,45 @@ struct Failures {
     refused: Option<String>,
 }
 
-/// Storage buffers that the path tracer binds.
-const STORAGE_BUFFERS: u32 = 13;
+/// What every pass needs of an adapter, each number within what WebGPU grants everywhere: the path tracer's eight storage
+/// buffers, two uniforms and ten textures, arrays in textures of 4096 texels a row, workgroups of 64.
+fn limits_needed() -> wgpu::Limits {
+    wgpu::Limits {
+        max_texture_dimension_2d: TEXEL_ROW as u32,
+        max_sampled_textures_per_shader_stage: 10,
+        max_storage_buffers_per_shader_stage: 8,
+        max_uniform_buffers_per_shader_stage: 2,
+        max_storage_buffer_binding_size: 128 << 20,
+        max_buffer_size: 128 << 20,
+        max_compute_invocations_per_workgroup: 64,
+        max_compute_workgroup_size_x: 64,
+        max_compute_workgroup_size_y: 8,
+        max_compute_workgroup_size_z: 1,
+        max_compute_workgroups_per_dimension: 65_535,
+        // Of the rest nothing is used: the least that there is.
+        ..wgpu::Limits::downlevel_webgl2_defaults()
+    }
+}
+
+/// The limits of an adapter that are below what is needed, by their names; `None` where none is.
+fn lacking(adapter: &wgpu::Limits) -> Option<String> {
+    let mut lacking = Vec::new();
+    limits_needed().check_limits_with_fail_fn(adapter, false, |name, needed, allowed| {
+        lacking.push(format!("its {name} is {allowed}, {needed} is needed"));
+    });
+    (!lacking.is_empty()).then(|| lacking.join("; "))
+}
+
+/// What is asked of an adapter: what is needed, and where models and pictures call for more, as much as it has.
+fn limits_asked(adapter: &wgpu::Limits) -> wgpu::Limits {
+    wgpu::Limits {
+        max_texture_dimension_2d: adapter.max_texture_dimension_2d,
+        max_texture_array_layers: adapter.max_texture_array_layers,
+        max_buffer_size: adapter.max_buffer_size,
+        max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
+        ..limits_needed()
+    }
+}
 
 impl GpuDevice {
     /// Opens the best adapter of a kind.
@@ -134,16 +188,13 @@ impl GpuDevice {
             adapter: info.name.clone(),
             reason,
         };
-        if limits.max_storage_buffers_per_shader_stage < STORAGE_BUFFERS {
-            return Err(unfit(format!(
-                "it binds {} storage buffers, {STORAGE_BUFFERS} are needed",
-                limits.max_storage_buffers_per_shader_stage
-            )));
+        if let Some(lacking) = lacking(&limits) {
+            return Err(unfit(lacking));
         }
         let descriptor = wgpu::DeviceDescriptor {
             label: Some("glossmith"),
             required_features: adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PIPELINE_CACHE),
-            required_limits: limits,
+            required_limits: limits_asked(&limits),
             ..Default::default()
         };
         let (device, queue) =
@@ -168,12 +219,25 @@ impl GpuDevice {
             info,
             failures,
             buffer_limit: Arc::new(AtomicU64::new(u64::MAX)),
+            losing_moment: Arc::default(),
         })
     }
 
     /// Refuses buffers above a size, as a smaller adapter does: for tests of what follows.
     pub fn limit_buffers(&self, bytes: u64) {
         self.buffer_limit.store(bytes, Relaxed);
+    }
+
+    /// Takes the device away at a moment to come, as a driver's reset does: for tests of what follows.
+    pub fn lose_when(&self, moment: Moment) {
+        self.losing_moment.store(moment as u8, Relaxed);
+    }
+
+    /// Notes that a moment has come.
+    pub(super) fn reach(&self, moment: Moment) {
+        if self.losing_moment.load(Relaxed) == moment as u8 {
+            self.device.destroy();
+        }
     }
 
     /// True where the adapter is the processor in disguise.
@@ -188,8 +252,12 @@ impl GpuDevice {
             .to_owned()
     }
 
-    /// What `make` makes, or what the device has against it.
-    pub(super) fn checked<T>(&self, make: impl FnOnce(&wgpu::Device) -> T) -> Result<T, String> {
+    /// What `make` makes; else [`GpuError::Lost`], or what the device has against it as a `refusal`.
+    pub(super) fn checked<T>(
+        &self,
+        refusal: impl FnOnce(String) -> GpuError,
+        make: impl FnOnce(&wgpu::Device) -> T,
+    ) -> Result<T, GpuError> {
         use wgpu::ErrorFilter::{Internal, OutOfMemory, Validation};
         let scopes = [Internal, OutOfMemory, Validation].map(|filter| self.device.push_error_scope(filter));
         let made = make(&self.device);
@@ -199,9 +267,11 @@ impl GpuDevice {
             .rev()
             .filter_map(|scope| block_on(scope.pop()))
             .collect();
-        match said.first() {
-            Some(error) => Err(error.to_string()),
-            None => Ok(made),
+        let Some(error) = said.first() else { return Ok(made) };
+        // A device that was lost refuses everything: why, it tells when it is asked.
+        match self.wait() {
+            Err(lost) if lost.is_lost() => Err(lost),
+            _ => Err(refusal(error.to_string())),
         }
     }
 
@@ -221,6 +291,13 @@ impl GpuDevice {
         }
     }
 
+    /// Bytes that a storage buffer may have.
+    pub fn binding_bytes(&self) -> u64 {
+        let limits = self.device.limits();
+        let of_adapter = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        of_adapter.min(self.buffer_limit.load(Relaxed))
+    }
+
     /// A storage buffer with these bytes.
     ///
     /// # Errors
@@ -236,9 +313,7 @@ impl GpuDevice {
     /// # Errors
     /// [`GpuError::TooLarge`] beyond the adapter's limit.
     pub fn empty_storage(&self, what: &'static str, size: u64) -> Result<wgpu::Buffer, GpuError> {
-        let limits = self.device.limits();
-        let of_adapter = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
-        let allowed = of_adapter.min(self.buffer_limit.load(Relaxed));
+        let allowed = self.binding_bytes();
         if size > allowed {
             return Err(GpuError::TooLarge {
                 what,
@@ -250,7 +325,7 @@ impl GpuDevice {
         Ok(self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(what),
             // Nothing of length zero can be bound.
-            size: size.max(48),
+            size: size.max(64),
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
         }))
@@ -258,11 +333,19 @@ impl GpuDevice {
 
     /// A buffer of uniforms.
     pub fn uniforms<U: bytemuck::Pod>(&self, uniforms: &U) -> wgpu::Buffer {
-        self.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some("uniforms"),
-            contents: bytemuck::bytes_of(uniforms),
-            usage: wgpu::BufferUsages::UNIFORM,
-        })
+        self.filled("uniforms", wgpu::BufferUsages::UNIFORM, bytemuck::bytes_of(uniforms))
+    }
+
+    /// A buffer of these very bytes. Unlike wgpu's own helper it does not panic where the device is lost.
+    pub(super) fn filled(&self, label: &str, usage: wgpu::BufferUsages, bytes: &[u8]) -> wgpu::Buffer {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: bytes.len() as u64,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        self.queue.write_buffer(&buffer, 0, bytes);
+        buffer
     }
 
     /// The contents of a buffer of one kind of plain value; waits for the device.
@@ -288,6 +371,7 @@ impl GpuDevice {
         let mut encoder = self.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(buffer, first, &staging, 0, size);
         self.queue.submit([encoder.finish()]);
+        self.reach(Moment::Reading);
         // The outcome shows in get_mapped_range below.
         staging.map_async(wgpu::MapMode::Read, .., |_| {});
         self.wait()?;
@@ -311,5 +395,36 @@ fn rank(info: &wgpu::AdapterInfo) -> u8 {
         wgpu::DeviceType::VirtualGpu => 2,
         wgpu::DeviceType::Other => 3,
         wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_webgpu_grants_everywhere_is_enough() {
+        assert_eq!(lacking(&wgpu::Limits::default()), None);
+        let asked = limits_asked(&wgpu::Limits::default());
+        assert_eq!(asked.max_storage_buffers_per_shader_stage, 8);
+        assert_eq!(asked.max_storage_buffer_binding_size, 128 << 20);
+    }
+
+    #[test]
+    fn what_an_adapter_lacks_is_told_by_name() {
+        let poor = wgpu::Limits {
+            max_storage_buffers_per_shader_stage: 4,
+            max_texture_dimension_2d: 2048,
+            ..wgpu::Limits::default()
+        };
+        let told = lacking(&poor).expect("it lacks two");
+        assert!(
+            told.contains("max_storage_buffers_per_shader_stage is 4, 8 is needed"),
+            "{told}"
+        );
+        assert!(
+            told.contains("max_texture_dimension_2d is 2048, 4096 is needed"),
+            "{told}"
+        );
     }
 }

@@ -1,22 +1,23 @@
 //! Renders jobs on the GPU in slices that fit a budget.
 
+use std::ops::Range;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use super::budget::Budget;
 use super::compute;
 use super::device::{GpuDevice, GpuError};
 use super::layout::{PixelColors, PixelStatistics, Tile};
 use super::pipeline::Pipelines;
-use super::resources::{DISPATCH_TILES, Resources};
+use super::resources::Resources;
+use super::scene_group::GeometryArrays;
+use super::sums::{Band, DISPATCH_TILES};
 use super::timer::Timer;
 use crate::job::Job;
 use crate::job::features::GuideSums;
 use crate::job::film::{Film, HalfSums, luminance};
-use crate::job::plan::Specialisation;
-use crate::job::tiles::{Schedule, SliceLimits, Work};
+use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 
-/// Longest dispatch: other users of the adapter, the window among them, wait for its end.
-const SLICE: Duration = Duration::from_millis(30);
 /// Samples a pixel that the GPU's f32 sums take before the host adds them to its f64 film.
 const FLUSH_SAMPLES: u32 = 1024;
 /// Pixels that the host reads at once: what it needs for that is bounded.
@@ -30,16 +31,15 @@ pub struct GpuEngine {
     resources: Option<Resources>,
     film: Film,
     schedule: Schedule,
+    /// What of it is in the film: the rest is in the GPU's sums. `None` while the film has a part of them.
+    in_film: Option<Schedule>,
     /// Most samples of a pixel in the GPU's sums.
     unflushed: u32,
     /// Whether there is anything in them.
     is_flushed: bool,
-    /// Pixel samples a second, to cut work to a budget; 0 before the first slice.
-    samples_per_second: f64,
+    /// What a dispatch may render.
+    budget: Budget,
     timer: Option<Timer>,
-    /// Groups that tiles are interleaved in: one for each thread of software Vulkan, which takes a run of workgroups and would
-    /// else render cheap background while another renders the model. 1 on a GPU, whose units take one workgroup at a time.
-    groups: usize,
     /// What the dispatches of the job took by the timer.
     gpu_seconds: f64,
 }
@@ -53,19 +53,15 @@ impl GpuEngine {
         let pipelines = Pipelines::new(&gpu)?;
         Ok(Self {
             timer: Timer::new(&gpu),
-            groups: if gpu.is_software() {
-                std::thread::available_parallelism().map_or(1, usize::from)
-            } else {
-                1
-            },
             gpu,
             pipelines,
             resources: None,
             film: Film::default(),
             schedule: Schedule::default(),
+            in_film: None,
             unflushed: 0,
             is_flushed: true,
-            samples_per_second: 0.0,
+            budget: Budget::default(),
             gpu_seconds: 0.0,
         })
     }
@@ -83,23 +79,26 @@ impl GpuEngine {
         let [width, height] = job.settings.image_size;
         let first_sample = job.settings.first_sample;
         let old = self.resources.as_ref();
-        let resources = Resources::new(&self.gpu, &self.pipelines.bindings, job.clone(), old)?;
-        if old.is_some_and(|old| old.job().plan.specialisation() != job.plan.specialisation()) {
-            self.samples_per_second = 0.0;
-        }
-        resources.clear_sums(&self.gpu);
+        let resources = Resources::new(&self.gpu, &self.pipelines, job.clone(), old)?;
+        self.budget = match old {
+            Some(old) if old.job().plan.specialisation() == job.plan.specialisation() => self.budget.of_another_scene(),
+            _ => Budget::default(),
+        };
+        resources.sums.clear(&self.gpu);
         self.resources = Some(resources);
         // The old film goes first: two would take twice the memory.
         self.film = Film::default();
         self.film = Film::of(&job);
         self.schedule = Schedule::starting_at(width, height, first_sample);
+        self.in_film = Some(self.schedule.clone());
         (self.unflushed, self.is_flushed, self.gpu_seconds) = (0, true, 0.0);
         Ok(())
     }
 
-    /// Whether the kernel is ready that is made for this.
-    pub fn has_kernel(&self, specialisation: &Specialisation) -> bool {
-        self.pipelines.has(specialisation)
+    /// Whether the kernel is ready that a job needs.
+    pub fn has_kernel(&self, job: &Job) -> bool {
+        let is_in_textures = GeometryArrays::wants_textures(&self.gpu, &job.geometry);
+        self.pipelines.has(&(job.plan.specialisation(), is_in_textures))
     }
 
     /// Compiles the kernel of a job's plan: some drivers do that at the first dispatch, so one is made that renders
@@ -115,11 +114,19 @@ impl GpuEngine {
     /// Lets scene and film go and keeps the kernels.
     pub fn rest(&mut self) {
         (self.resources, self.film, self.schedule) = (None, Film::default(), Schedule::default());
+        self.in_film = None;
     }
 
     /// Goes on with what another engine rendered of the same job.
     pub fn take_over(&mut self, film: Film, schedule: Schedule) {
+        self.in_film = Some(schedule.clone());
         (self.film, self.schedule) = (film, schedule);
+    }
+
+    /// What the host has of the picture, for another engine to go on with: the samples that the GPU has not handed over
+    /// are not in it. `None` where the GPU failed while it did.
+    pub fn hand_over(self) -> Option<(Film, Schedule)> {
+        Some((self.film, self.in_film?))
     }
 
     /// Renders for about `budget`, at most up to `samples` a pixel.
@@ -140,13 +147,13 @@ impl GpuEngine {
         let start = Instant::now();
         while self.resources.is_some() {
             let left = budget.saturating_sub(start.elapsed());
-            let affordable = self.samples_per_second * left.min(SLICE).as_secs_f64();
             let limits = SliceLimits {
                 pass_samples_max: FLUSH_SAMPLES - self.unflushed,
-                // At least a row's: fewer leave a GPU idle.
-                tiles: [self.schedule.grid().columns(), DISPATCH_TILES],
+                tiles: [1, DISPATCH_TILES],
+                // Also for software Vulkan, whose threads take a run of workgroups each: none gets the background alone.
+                order: Order::Spread,
             };
-            let works = self.schedule.slice(affordable, limits);
+            let works = self.schedule.slice(self.budget.affordable(left), limits);
             if works.is_empty() {
                 break;
             }
@@ -166,11 +173,10 @@ impl GpuEngine {
             first_sample: work.first_sample,
             sample_count: work.count,
         };
-        let tiles: Vec<Tile> = interleaved(works, self.groups).map(tile).collect();
+        let tiles: Vec<Tile> = works.iter().map(tile).collect();
         let begun = Instant::now();
         self.dispatch(&tiles)?;
-        let seconds = begun.elapsed().as_secs_f64().max(1e-6);
-        self.samples_per_second = grid.pixel_samples(works) as f64 / seconds;
+        self.budget.note(grid.pixel_samples(works), begun.elapsed());
         if self.schedule.finish(works) {
             self.unflushed += self.schedule.pass_samples();
             if self.unflushed >= FLUSH_SAMPLES {
@@ -185,11 +191,27 @@ impl GpuEngine {
         let Some(resources) = &self.resources else {
             return Ok(());
         };
-        let pipeline = self.pipelines.get(&self.gpu, &resources.job().plan)?;
+        let pipeline = self
+            .pipelines
+            .get(&self.gpu, &resources.job().plan, resources.is_in_textures())?;
         self.is_flushed = false;
-        dispatch(&self.gpu, resources, pipeline, tiles, self.timer.as_ref())?;
-        if let Some(timer) = &self.timer {
-            self.gpu_seconds += timer.seconds()?;
+        for (number, band) in (0..).zip(resources.sums.bands()) {
+            let of_band: Vec<Tile> = tiles
+                .iter()
+                .filter(|tile| resources.sums.band_of(tile) == number)
+                .copied()
+                .collect();
+            if of_band.is_empty() {
+                continue;
+            }
+            resources.sums.list(&self.gpu, &of_band);
+            let groups = [&resources.scene_group, &band.group];
+            let workgroups = [of_band.len() as u32, 1];
+            compute::dispatch(&self.gpu, pipeline, &groups, workgroups, self.timer.as_ref());
+            self.gpu.wait()?;
+            if let Some(timer) = &self.timer {
+                self.gpu_seconds += timer.seconds()?;
+            }
         }
         Ok(())
     }
@@ -199,23 +221,16 @@ impl GpuEngine {
         let Some(resources) = self.resources.as_ref().filter(|_| !self.is_flushed) else {
             return Ok(());
         };
-        let pixels = self.film.pixel_count();
-        for first in (0..pixels).step_by(READ_PIXELS) {
-            let part = first..(first + READ_PIXELS).min(pixels);
-            let colors: Vec<PixelColors> = self.gpu.read_part(&resources.sums[0], part.clone())?;
-            let statistics: Vec<PixelStatistics> = self.gpu.read_part(&resources.sums[1], part.clone())?;
-            for (pixel, (colors, statistics)) in part.clone().zip(colors.iter().zip(&statistics)) {
-                take_over(&mut self.film, pixel, colors, statistics);
-            }
-            if self.film.extras().guides {
-                let guides: Vec<GuideSums> = self.gpu.read_part(&resources.sums[2], part.clone())?;
-                for (sums, seen) in self.film.guides[part].iter_mut().zip(&guides) {
-                    sums.add(seen);
-                }
+        self.in_film = None;
+        for band in resources.sums.bands() {
+            for first in (0..band.pixels).step_by(READ_PIXELS) {
+                let part = first..(first + READ_PIXELS).min(band.pixels);
+                take_over_band(&self.gpu, &mut self.film, band, part)?;
             }
         }
-        resources.clear_sums(&self.gpu);
+        resources.sums.clear(&self.gpu);
         (self.unflushed, self.is_flushed) = (0, true);
+        self.in_film = Some(self.schedule.clone());
         Ok(())
     }
 
@@ -242,6 +257,24 @@ impl GpuEngine {
     pub fn gpu_seconds(&self) -> Option<f64> {
         self.timer.as_ref().map(|_| self.gpu_seconds)
     }
+}
+
+/// Adds what the GPU summed of some pixels of a band to the film.
+fn take_over_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usize>) -> Result<(), GpuError> {
+    let [colors, statistics, guides] = &band.buffers;
+    let colors: Vec<PixelColors> = gpu.read_part(colors, part.clone())?;
+    let statistics: Vec<PixelStatistics> = gpu.read_part(statistics, part.clone())?;
+    let first = band.first_row as usize * film.width as usize + part.start;
+    for (pixel, (colors, statistics)) in (first..).zip(colors.iter().zip(&statistics)) {
+        take_over(film, pixel, colors, statistics);
+    }
+    if film.extras().guides {
+        let guides: Vec<GuideSums> = gpu.read_part(guides, part)?;
+        for (sums, seen) in film.guides[first..].iter_mut().zip(&guides) {
+            sums.add(seen);
+        }
+    }
+    Ok(())
 }
 
 /// Adds what the GPU summed of a pixel to the film.
@@ -274,37 +307,5 @@ fn half(color: [f64; 3], luminance_squared: f64, samples: f64) -> HalfSums {
         color,
         squared_deviations: luminance_squared - y * y / samples.max(1.0),
         samples,
-    }
-}
-
-/// The items of `groups` interleaved groups, one group after the other: 0, n, 2n, …, then 1, n + 1, …
-fn interleaved<T>(items: &[T], groups: usize) -> impl Iterator<Item = &T> {
-    (0..groups).flat_map(move |group| items.iter().skip(group).step_by(groups))
-}
-
-/// Runs a pass over tiles, and waits for its end.
-fn dispatch(
-    gpu: &GpuDevice,
-    resources: &Resources,
-    pipeline: &wgpu::ComputePipeline,
-    tiles: &[Tile],
-    timer: Option<&Timer>,
-) -> Result<(), GpuError> {
-    gpu.queue.write_buffer(&resources.tiles, 0, bytemuck::cast_slice(tiles));
-    let workgroups = [tiles.len() as u32, 1];
-    compute::dispatch(gpu, pipeline, &[&resources.bind_group], workgroups, timer);
-    gpu.wait()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::interleaved;
-
-    #[test]
-    fn every_tile_is_in_a_group_and_neighbours_are_in_different_ones() {
-        let of = |groups| interleaved(&[0, 1, 2, 3, 4, 5, 6], groups).copied().collect::<Vec<_>>();
-        assert_eq!(of(1), [0, 1, 2, 3, 4, 5, 6]);
-        assert_eq!(of(2), [0, 2, 4, 6, 1, 3, 5]);
-        assert_eq!(of(9), [0, 1, 2, 3, 4, 5, 6]);
     }
 }

@@ -1,6 +1,8 @@
 //! Shader modules that are generated from Rust's lists, so that no number is copied by hand.
 
+use super::array::TEXEL_ROW_BITS;
 use super::layout::BACKGROUNDS;
+use super::sums::TILE_COLUMNS;
 use crate::job::Strategy;
 use crate::job::effect::{ANY, EffectId};
 use crate::job::features::GUIDE_SAMPLES;
@@ -43,11 +45,12 @@ fn optics_choices() -> String {
     format!("// Generated from the choices in src/optics.\n{}", kinds.concat())
 }
 
-/// The choices of camera, background and light sampling.
+/// The choices of camera, background and light sampling, and how arrays lie in textures.
 fn scene_choices() -> String {
     let backgrounds = BACKGROUNDS.map(|(name, number)| format!("const BACKGROUND_{name}: u32 = {number}u;\n"));
     format!(
-        "// Generated from src/job, src/scene/camera.rs and src/gpu/layout.rs.\n{}{}{}const GUIDE_SAMPLES: u32 = {GUIDE_SAMPLES}u;\n",
+        "// Generated from src/job, src/scene/camera.rs and src/gpu.\n{}{}{}const GUIDE_SAMPLES: u32 = {GUIDE_SAMPLES}u;\n\
+         const TEXEL_ROW_BITS: u32 = {TEXEL_ROW_BITS}u;\nconst TILE_COLUMNS: u32 = {TILE_COLUMNS}u;\n",
         choices::<Strategy>("STRATEGY"),
         choices::<PixelFilter>("FILTER"),
         backgrounds.concat(),

@@ -1,11 +1,11 @@
-//! The structures that the GPU reads, byte for byte as in `shaders/scene/layout.wgsl`; a test compares the two.
+//! The structures that the GPU reads, byte for byte as in `shaders/scene/layout.wgsl` and `shaders/pass/path_trace.wgsl`; a
+//! test compares the two.
 
 use bytemuck::{Pod, Zeroable};
 
 use crate::job::{BackgroundKind, Settings};
 use crate::scene::Geometry;
 use crate::scene::camera::Camera;
-use crate::scene::light::{LightCell, Lights};
 
 const BACKGROUND_ENVIRONMENT: u32 = 0;
 const BACKGROUND_TRANSPARENT: u32 = 1;
@@ -144,34 +144,14 @@ pub struct Triangle {
     pub corners: [[u32; 4]; 3],
 }
 
-/// The triangles of a geometry, in the order of [`Compressed::triangles`](crate::scene::Compressed), as are all others here.
-pub fn triangles(geometry: &Geometry) -> Vec<Triangle> {
+/// The triangle at a place in the order of [`Compressed::triangles`](crate::scene::Compressed).
+pub fn triangle(geometry: &Geometry, place: usize) -> Triangle {
     let corner = |vertex: u32| {
         let [x, y, z] = geometry.positions[vertex as usize].map(f32::to_bits);
         [x, y, z, vertex]
     };
-    let order = geometry.compressed().triangles.iter();
-    order
-        .map(|&triangle| Triangle {
-            corners: geometry.triangles[triangle as usize].map(corner),
-        })
-        .collect()
-}
-
-/// The slots of a geometry's triangles.
-pub fn slots(geometry: &Geometry) -> Vec<u32> {
-    let order = geometry.compressed().triangles.iter();
-    order.map(|&triangle| geometry.slots[triangle as usize]).collect()
-}
-
-/// The table of the triangles that emit.
-pub fn light_cells(geometry: &Geometry, lights: &Lights) -> Vec<LightCell> {
-    let places = geometry.compressed().places();
-    let cells = lights.cells.iter();
-    cells
-        .map(|cell| LightCell {
-            triangle: places[cell.triangle as usize],
-            ..*cell
-        })
-        .collect()
+    let triangle = geometry.compressed().triangles[place];
+    Triangle {
+        corners: geometry.triangles[triangle as usize].map(corner),
+    }
 }

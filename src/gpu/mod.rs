@@ -1,5 +1,7 @@
 //! The engine on the GPU: the only code that talks to wgpu's compute.
 
+mod array;
+mod budget;
 mod compute;
 pub mod device;
 mod engine;
@@ -11,8 +13,10 @@ pub mod probe;
 mod resources;
 pub mod sampling;
 pub mod scatter;
+pub mod scene_group;
 pub mod shader;
+mod sums;
 mod timer;
 
-pub use device::{AdapterKind, GpuDevice, GpuError};
+pub use device::{AdapterKind, GpuDevice, GpuError, Moment};
 pub use engine::GpuEngine;

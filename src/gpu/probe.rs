@@ -4,18 +4,15 @@ use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use bytemuck::{Pod, Zeroable};
-use wgpu::util::DeviceExt;
 
-use super::compute::{self, READ, UNIFORMS, WRITE};
+use super::compute::{self, READ, WRITE};
 use super::device::{GpuDevice, GpuError};
-use super::layout::{self, Globals};
+use super::layout::Globals;
+use super::scene_group::{self, GeometryArrays, SceneGroup, geometry_constant};
 use crate::job::probe::ProbeScene;
 
 /// Questions a dispatch: within the limit of 65 535 workgroups of 64.
 const BATCH: usize = 1 << 20;
-
-/// The bindings of `shaders/scene/layout.wgsl` that answers are read from.
-const SCENE_BINDINGS: [u32; 5] = [0, 1, 2, 5, 6];
 
 /// The shader that answers, compiled a kind of question at a time.
 #[derive(Debug)]
@@ -24,7 +21,7 @@ pub struct Probe {
     module: wgpu::ShaderModule,
     groups: [wgpu::BindGroupLayout; 2],
     layout: wgpu::PipelineLayout,
-    pipelines: Mutex<HashMap<&'static str, wgpu::ComputePipeline>>,
+    pipelines: Mutex<HashMap<(&'static str, bool), wgpu::ComputePipeline>>,
 }
 
 impl Probe {
@@ -34,9 +31,8 @@ impl Probe {
     /// [`GpuError::Shader`] where the driver refuses it.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
         let module = compute::module(&gpu, "probe")?;
-        let scene = SCENE_BINDINGS.map(|binding| (binding, if binding == 0 { UNIFORMS } else { READ }));
         let groups = [
-            compute::group_layout(&gpu, "probe", &scene),
+            scene_group::layout(&gpu),
             compute::group_layout(&gpu, "probe", &[(0, READ), (1, WRITE)]),
         ];
         let layout = compute::pipeline_layout(&gpu, "probe", &groups.each_ref().map(Some));
@@ -60,18 +56,14 @@ impl Probe {
         questions: &[Q],
     ) -> Result<Vec<A>, GpuError> {
         let gpu = &self.gpu;
-        let pipeline = self.pipeline(entry_point)?;
-        let scene = self.scene(scene)?;
+        let (scene, is_in_textures) = self.scene(scene)?;
+        let pipeline = self.pipeline(entry_point, is_in_textures)?;
         let mut answers = Vec::with_capacity(questions.len());
         for batch in questions.chunks(BATCH) {
             // Nothing past the questions may be taken for one: a buffer of their very size.
-            let asked = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("questions"),
-                contents: bytemuck::cast_slice(batch),
-                usage: wgpu::BufferUsages::STORAGE,
-            });
+            let asked = gpu.filled("questions", wgpu::BufferUsages::STORAGE, bytemuck::cast_slice(batch));
             let answered = gpu.empty_storage("the answers", (batch.len() * size_of::<A>()) as u64)?;
-            let own = compute::bind_group(gpu, &self.groups[1], &[(0, &asked), (1, &answered)]);
+            let own = compute::bind_group(gpu, &self.groups[1], &[(0, &asked), (1, &answered)], &[]);
             let workgroups = [(batch.len() as u32).div_ceil(64), 1];
             compute::dispatch(gpu, &pipeline, &[&scene, &own], workgroups, None);
             answers.extend(gpu.read::<A>(&answered, batch.len())?);
@@ -80,47 +72,35 @@ impl Probe {
     }
 
     /// The pipeline of an entry point, compiled at its first use.
-    fn pipeline(&self, entry_point: &'static str) -> Result<wgpu::ComputePipeline, GpuError> {
+    fn pipeline(&self, entry_point: &'static str, is_in_textures: bool) -> Result<wgpu::ComputePipeline, GpuError> {
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(pipeline) = pipelines.get(entry_point) {
+        if let Some(pipeline) = pipelines.get(&(entry_point, is_in_textures)) {
             return Ok(pipeline.clone());
         }
-        let pipeline = compute::pipeline(&self.gpu, &self.module, &self.layout, entry_point, &[], None)?;
-        pipelines.insert(entry_point, pipeline.clone());
+        let constants = [geometry_constant(is_in_textures)];
+        let pipeline = compute::pipeline(&self.gpu, &self.module, &self.layout, entry_point, &constants, None)?;
+        pipelines.insert((entry_point, is_in_textures), pipeline.clone());
         Ok(pipeline)
     }
 
-    fn scene(&self, scene: &ProbeScene<'_>) -> Result<wgpu::BindGroup, GpuError> {
+    /// The scene bound, and whether its geometry is in textures.
+    fn scene(&self, scene: &ProbeScene<'_>) -> Result<(wgpu::BindGroup, bool), GpuError> {
         let gpu = &self.gpu;
-        let (nodes, triangles) = match scene.geometry {
-            Some(geometry) => (&geometry.compressed().nodes[..], layout::triangles(geometry)),
-            None => (&[][..], Vec::new()),
+        let mut group = SceneGroup {
+            materials: scene_group::materials(gpu, scene.materials)?,
+            tables: scene_group::tables(gpu, scene.tables)?,
+            ..SceneGroup::empty(gpu)?
         };
-        let globals = Globals {
-            node_count: nodes.len() as u32,
+        if let Some(geometry) = scene.geometry {
+            group.geometry = GeometryArrays::new(gpu, geometry)?;
+        }
+        let globals = gpu.uniforms(&Globals {
+            node_count: scene
+                .geometry
+                .map_or(0, |geometry| geometry.compressed().nodes.len() as u32),
             ..Globals::zeroed()
-        };
-        let globals = gpu.uniforms(&globals);
-        // A buffer is at least as large as one element of what the shader takes it for.
-        let filler = [0u8; 256];
-        let nodes = gpu.storage("the hierarchy of boxes", bytemuck::cast_slice(nodes))?;
-        let triangles = gpu.storage("the triangles", bytemuck::cast_slice(&triangles))?;
-        let materials: &[u8] = match scene.materials {
-            [] => &filler,
-            materials => bytemuck::cast_slice(materials),
-        };
-        let materials = gpu.storage("the materials", materials)?;
-        let tables = gpu.storage("the materials' tables", bytemuck::cast_slice(scene.tables))?;
-        Ok(compute::bind_group(
-            gpu,
-            &self.groups[0],
-            &[
-                (0, &globals),
-                (1, &nodes),
-                (2, &triangles),
-                (5, &materials),
-                (6, &tables),
-            ],
-        ))
+        });
+        let bound = group.bind(gpu, &self.groups[0], &globals);
+        Ok((bound, group.geometry.is_in_textures()))
     }
 }

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::compute::{self, READ, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
+use super::scene_group::TABLES_BINDING;
 use super::timer::Timer;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::vector::Vec3;
@@ -115,7 +116,7 @@ impl LobePass {
     ) -> Result<Self, GpuError> {
         let module = compute::module(gpu, name)?;
         let groups = [
-            compute::group_layout(gpu, name, &[(6, READ)]),
+            compute::group_layout(gpu, name, &[(TABLES_BINDING, READ)]),
             compute::group_layout(gpu, name, &[(0, UNIFORMS), (1, WRITE)]),
         ];
         let layout = compute::pipeline_layout(gpu, name, &groups.each_ref().map(Some));
@@ -134,8 +135,8 @@ impl LobePass {
     ) {
         let uniforms = gpu.uniforms(uniforms);
         let groups = [
-            compute::bind_group(gpu, &self.groups[0], &[(6, tables)]),
-            compute::bind_group(gpu, &self.groups[1], &[(0, &uniforms), (1, out)]),
+            compute::bind_group(gpu, &self.groups[0], &[(TABLES_BINDING, tables)], &[]),
+            compute::bind_group(gpu, &self.groups[1], &[(0, &uniforms), (1, out)], &[]),
         ];
         compute::dispatch(gpu, &self.pipeline, &groups.each_ref(), workgroups, timer);
     }

@@ -111,6 +111,37 @@ pub struct SliceLimits {
     pub pass_samples_max: u32,
     /// The least tiles of a slice, where there are so many, and the most.
     pub tiles: [usize; 2],
+    /// In which order a pass takes its tiles.
+    pub order: Order,
+}
+
+/// An order of a picture's tiles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// Row by row: neighbours share what is in the caches.
+    Rows,
+    /// Spread over the picture, so that any few in a row cost about as much as any others.
+    Spread,
+}
+
+impl Order {
+    /// Puts tiles that are in rows into the order.
+    fn arrange(self, tiles: Vec<usize>) -> Vec<usize> {
+        let count = tiles.len();
+        if self == Self::Rows || count < 2 {
+            return tiles;
+        }
+        // Steps of the golden section leave no two neighbours near each other; one that shares no divisor with the count
+        // meets every tile once.
+        let coprime = |step: &usize| greatest_common_divisor(*step, count) == 1;
+        let golden = (count as f64 * 0.618_034) as usize;
+        let step = (golden.max(1)..).find(coprime).unwrap_or(1);
+        (0..count).map(|place| tiles[place * step % count]).collect()
+    }
+}
+
+fn greatest_common_divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
 /// Which samples have been rendered and which come next. A *pass* goes once over all tiles that lack samples.
@@ -162,7 +193,7 @@ impl Schedule {
     /// Empty where no tile lacks any.
     pub fn slice(&mut self, affordable: f64, limits: SliceLimits) -> Vec<Work> {
         if self.next >= self.pass.len() {
-            self.begin(affordable, limits.pass_samples_max);
+            self.begin(affordable, limits);
         }
         let tile_samples = f64::from(TILE_SIDE * TILE_SIDE * self.pass_samples.max(1));
         let [least, most] = limits.tiles;
@@ -170,12 +201,13 @@ impl Schedule {
     }
 
     /// Begins a pass over the tiles that lack samples.
-    fn begin(&mut self, affordable: f64, samples_max: u32) {
+    fn begin(&mut self, affordable: f64, limits: SliceLimits) {
         let lacks = |tile: &usize| self.samples[*tile] < self.goals[*tile];
-        self.pass = (0..self.samples.len()).filter(lacks).collect();
+        let in_rows = (0..self.samples.len()).filter(lacks).collect();
+        self.pass = limits.order.arrange(in_rows);
         self.next = 0;
         let pixels: u64 = self.pass.iter().map(|tile| self.grid.pixels(*tile)).sum();
-        self.pass_samples = ((affordable / pixels.max(1) as f64) as u32).clamp(1, samples_max);
+        self.pass_samples = ((affordable / pixels.max(1) as f64) as u32).clamp(1, limits.pass_samples_max);
     }
 
     /// The most samples that a tile gets in the pass.
@@ -250,6 +282,21 @@ mod tests {
     }
 
     #[test]
+    fn tiles_in_a_row_are_spread_over_the_picture() {
+        for count in [1, 2, 3, 60, 61, 8160] {
+            let mut tiles = Order::Spread.arrange((0..count).collect());
+            let few = count.min(30);
+            let left = tiles[..few].iter().filter(|tile| **tile < count / 2).count();
+            assert!(
+                left.abs_diff(few / 2) <= 2,
+                "{left} of {few} are in the first half of {count}"
+            );
+            tiles.sort_unstable();
+            assert_eq!(tiles, (0..count).collect::<Vec<_>>());
+        }
+    }
+
+    #[test]
     fn every_tile_gets_what_it_lacks_and_nothing_twice() {
         let mut schedule = Schedule::new(20, 10);
         let goals = [5, 0, 3, 5, 5, 1];
@@ -260,6 +307,7 @@ mod tests {
         let two = SliceLimits {
             pass_samples_max: 2,
             tiles: [1, 2],
+            order: Order::Rows,
         };
         loop {
             let works = schedule.slice(1e9, two);
@@ -283,6 +331,7 @@ mod tests {
         let all = SliceLimits {
             pass_samples_max: 8,
             tiles: [1, 9],
+            order: Order::Rows,
         };
         let works = schedule.slice(1e9, all);
         let counts: Vec<_> = works

@@ -51,6 +51,11 @@ impl Workshop {
         }
     }
 
+    /// The device of the engine that has no kernel yet.
+    pub(super) fn blank_device(&self) -> Option<&GpuDevice> {
+        self.blank.as_ref().map(GpuEngine::device)
+    }
+
     /// How long the kernel took that was compiled last.
     pub(super) fn compile_seconds(&self) -> Option<f64> {
         self.compile_time.as_ref().map(Duration::as_secs_f64)
@@ -62,13 +67,12 @@ impl Workshop {
     /// # Errors
     /// What the GPU has against the job.
     pub(super) fn begin(&mut self, job: &Arc<Job>, current: &mut Engine) -> Result<(), GpuError> {
-        let wanted = job.plan.specialisation();
         if let Engine::Gpu(engine) = current
-            && engine.has_kernel(&wanted)
+            && engine.has_kernel(job)
         {
             return engine.submit(job.clone());
         }
-        let next = match self.ready.iter().position(|engine| engine.has_kernel(&wanted)) {
+        let next = match self.ready.iter().position(|engine| engine.has_kernel(job)) {
             Some(place) => {
                 self.ready[place].submit(job.clone())?;
                 Engine::Gpu(Box::new(self.ready.remove(place)))

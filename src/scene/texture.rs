@@ -39,7 +39,7 @@ pub const IS_SECOND_SET: u32 = 4;
 /// [`TextureRecord::flags`]: channels have 16 bits, a texel two words.
 pub const IS_FINE: u32 = 8;
 
-/// One use of a picture. What the GPU reads, byte for byte (`shaders/scene/layout.wgsl`).
+/// One use of a picture. Three texels of four words on the GPU (`shaders/scene/texture.wgsl`).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct TextureRecord {

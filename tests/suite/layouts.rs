@@ -9,9 +9,6 @@ use glossmith::job::features::GuideSums;
 use glossmith::optics::material::Material;
 use glossmith::scene::Vertex;
 use glossmith::scene::camera::Camera;
-use glossmith::scene::environment::AliasCell;
-use glossmith::scene::light::LightCell;
-use glossmith::scene::texture::TextureRecord;
 
 use super::shaders::modules;
 
@@ -67,17 +64,12 @@ fn rust_layouts() -> Vec<Layout> {
         }),
         layout!(Triangle: Triangle { corners }),
         layout!(Vertex: Vertex { normal, uv, second_uv, tangent, color }),
-        layout!(TextureRecord: TextureRecord {
-            u_from_uv, first_texel, v_from_uv, width, height, wrap, flags,
-        }),
         layout!(Scatter: Scatter {
             wo, roughness, anisotropy, eta, lobe, curve, horizon, seed, first, count,
         }),
         layout!(Sampling: Sampling {
             normal, roughness, width, rows, height, samples, seed, reserved_a, reserved_b, reserved_c,
         }),
-        layout!(AliasCell: AliasCell { threshold, alias_index, density }),
-        layout!(LightCell: LightCell { threshold, alias_index, triangle }),
     ]
 }
 

@@ -86,7 +86,8 @@ fn what_the_adapter_cannot_hold_leaves_the_old_picture_in_the_making() {
     let mut refused = document.clone();
     refused.lighting.environment = wide;
     let mut large = document.clone();
-    (large.render.width, large.render.height) = (400, 400);
+    // Not even a row of tiles has room.
+    (large.render.width, large.render.height) = (8000, 8);
     session.device().expect("it renders").limit_buffers(1 << 20);
     for refused in [&refused, &large] {
         let error = session.submit(refused).expect_err("the adapter can't");
@@ -109,6 +110,23 @@ fn what_the_adapter_cannot_hold_leaves_the_old_picture_in_the_making() {
     render(&mut session);
     assert_eq!(session.engine().kind, EngineKind::Gpu);
     assert!(!is_alike(&session.image().expect("it is there"), &expected));
+}
+
+/// A model in textures and a picture in bands are what an adapter of small bindings has of them.
+#[test]
+fn small_bindings_show_the_same_picture() {
+    let mut document = Document::default();
+    (document.render.width, document.render.height) = (120, 90);
+    document.render.samples = 4;
+    let picture_within = |bytes| {
+        let mut session = gpu();
+        session.device().expect("it is open").limit_buffers(bytes);
+        session.submit(&document).expect("the default scene");
+        render(&mut session);
+        session.image().expect("it is done")
+    };
+    let whole = picture_within(u64::MAX);
+    assert!(is_alike(&picture_within(100 << 10), &whole));
 }
 
 /// Where the processor draws until the kernel is there, it finishes what the GPU can't take.
@@ -151,12 +169,13 @@ fn the_window_keeps_gpu_and_picture_where_an_edit_is_too_large() {
     wait(&worker, "the GPU's picture", |snapshot| {
         snapshot.picture.is_some() && !snapshot.progress.is_standing_in
     });
-    worker.limit_buffers(1 << 20);
+    // The model has room, a row of tiles has not.
+    worker.limit_buffers(3 << 20);
     // So flat that no smaller picture is shown first.
     let large = Document {
         render: glossmith::document::RenderSettings {
-            width: 1600,
-            height: 100,
+            width: 16_000,
+            height: 16,
             ..document.render
         },
         ..document.clone()

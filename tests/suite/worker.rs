@@ -4,9 +4,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use glossmith::document::Document;
+use glossmith::render::EngineChoice;
 use glossmith::render::shown::Shown;
 use glossmith::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
-use glossmith::render::{EngineChoice, EngineKind};
 use glossmith::scene::{ModelOptions, ModelSource};
 
 const PATIENCE: Duration = Duration::from_secs(600);
@@ -283,42 +283,4 @@ fn files_are_opened_beside_the_document() {
     }
     assert_eq!(slots, 2);
     assert!(why.contains("missing.hdr"), "{why}");
-}
-
-/// In the middle of a picture: the processor goes on with the same document, and with what is submitted after it.
-#[test]
-fn a_lost_device_leaves_the_document_to_the_processor() {
-    let worker = Worker::spawn(EngineChoice::Gpu, || {}).expect("a thread");
-    let mut document = small_document();
-    document.render.samples = 20_000;
-    let revision = worker.submit(&document, Pace::Still);
-    let snapshot = wait(&worker, "the GPU's picture", |snapshot| {
-        snapshot.picture.is_some() && !snapshot.progress.is_standing_in
-    });
-    let engine = snapshot.engine.as_ref().expect("it renders");
-    assert_eq!(
-        engine.kind,
-        EngineKind::Gpu,
-        "a Vulkan driver is needed: apt install mesa-vulkan-drivers"
-    );
-    assert_eq!(snapshot.activity, Activity::Rendering, "it is lost in the middle");
-    worker.lose_device();
-    let snapshot = wait(&worker, "the processor", |snapshot| {
-        let picture = snapshot.picture.as_ref();
-        let is_new = picture.is_some_and(|picture| picture.revision == revision);
-        snapshot
-            .engine
-            .as_ref()
-            .is_some_and(|engine| engine.kind == EngineKind::Cpu)
-            && is_new
-    });
-    assert_eq!(*snapshot.picture.as_ref().expect("waited for").document, document);
-    let errors = errors(&worker);
-    assert!(errors.iter().any(|text| text.contains("processor")), "{errors:?}");
-    document.render.samples = 3;
-    document.materials[0].roughness = 0.9;
-    let picture = finished(&worker, worker.submit(&document, Pace::Still));
-    let alone = Worker::spawn(EngineChoice::Cpu, || {}).expect("a thread");
-    let expected = finished(&alone, alone.submit(&document, Pace::Still));
-    assert_eq!(picture.rgba, expected.rgba);
 }

@@ -1,5 +1,6 @@
 // D(xi) and h(D) of a curve drawn by hand, whose table lies in `tables` from index `table` on. Twin of
 // src/optics/curve/custom.rs.
+#import "optics/numeric"
 #import "scene/layout"
 
 const CUSTOM_INTERVALS: u32 = 64u;

@@ -1,6 +1,7 @@
 //! A document being rendered.
 
 mod films;
+mod recovery;
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -9,14 +10,14 @@ use super::assets::{Assets, Reloaded};
 use super::calibration;
 use super::compile::Compiler;
 use super::convergence::{Convergence, Measurement, fewest_samples, mean_samples};
-use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision, cpu};
+use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision};
 use super::memory;
 use super::workshop::Workshop;
 use crate::analysis::halves::Distance;
 use crate::analysis::noise::Noise;
 use crate::document::change::Change;
 use crate::document::{Denoise, Document};
-use crate::gpu::{GpuDevice, GpuError};
+use crate::gpu::{GpuDevice, GpuError, Moment};
 use crate::job::Job;
 use crate::job::effect::{Decision, EffectId};
 use crate::scene::ModelError;
@@ -153,6 +154,10 @@ pub struct Session {
     guides_wanted: Option<&'static str>,
     /// Bytes that a picture may take; `None` is what is free.
     memory_limit: Option<u64>,
+    /// How often the GPU failed.
+    losses: u32,
+    /// When devices that replace a lost one are lost as well, and how many: for tests.
+    losing: Option<(Moment, u32)>,
 }
 
 impl Session {
@@ -193,6 +198,8 @@ impl Session {
             denoised: None,
             guides_wanted: None,
             memory_limit: memory::limit(),
+            losses: 0,
+            losing: None,
         }
     }
 
@@ -351,7 +358,7 @@ impl Session {
     }
 
     /// Has the engine begin anew; after an error it goes on with what it had.
-    fn start(&mut self, job: Arc<Job>) -> Result<(), SessionError> {
+    fn start(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         match &mut self.workshop {
             Some(workshop) => workshop.begin(&job, &mut self.engine)?,
             None => self.engine.submit(job)?,
@@ -370,7 +377,7 @@ impl Session {
     /// Renders for about `budget`. After an error of the engine the picture is done as it is, until something is submitted.
     ///
     /// # Errors
-    /// If the GPU fails; [`Session::fall_back_to_cpu`] goes on without it.
+    /// If the GPU fails; [`Session::recover`] goes on all the same.
     pub fn step(&mut self, budget: Duration) -> Result<Progress, SessionError> {
         self.change_over()?;
         let outcome = self.render(budget);
@@ -524,16 +531,5 @@ impl Session {
 
     fn world_units_per_unit(&self) -> f64 {
         self.job.as_ref().map_or(1.0, |job| job.geometry.world_units_per_unit)
-    }
-
-    /// Goes on with the processor after the GPU failed, with the same document from its start.
-    pub fn fall_back_to_cpu(&mut self, why: &str) {
-        (self.engine, self.info) = cpu(format!("the GPU failed: {why}"));
-        self.workshop = None;
-        if let Some(job) = &self.job
-            && self.engine.submit(job.clone()).is_ok()
-        {
-            self.start_clocks();
-        }
     }
 }

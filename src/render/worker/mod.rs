@@ -19,11 +19,11 @@ use super::convergence::Measurement;
 use super::engine::{EngineChoice, EngineInfo};
 use super::output::{Layers, Rendered};
 use super::priority::lower_thread_priority;
-use super::session::Progress;
+use super::session::{Progress, Session};
 use super::shown::{Facts, Scale, Shown};
 use crate::analysis::halves::Distance;
 use crate::document::Document;
-use crate::gpu::GpuDevice;
+use crate::gpu::Moment;
 use crate::job::Job;
 use crate::job::film::Image;
 use crate::scene::environment::{Environment, EnvironmentSource};
@@ -205,16 +205,20 @@ pub enum Event {
 /// What befalls the GPU's device.
 #[derive(Clone, Copy, Debug)]
 enum Mishap {
-    Lost,
+    /// It is lost at a moment, and so many times in all.
+    Lost(Moment, u32),
     /// Buffers above so many bytes are refused.
     Limited(u64),
 }
 
 impl Mishap {
-    fn befall(self, device: &GpuDevice) {
+    fn befall(self, session: &mut Session) {
         match self {
-            Self::Lost => device.device.destroy(),
-            Self::Limited(bytes) => device.limit_buffers(bytes),
+            Self::Lost(moment, times) => session.lose_when(moment, times),
+            Self::Limited(bytes) => session
+                .device()
+                .into_iter()
+                .for_each(|device| device.limit_buffers(bytes)),
         }
     }
 }
@@ -369,9 +373,10 @@ impl Worker {
         self.order(|orders| orders.restart = true);
     }
 
-    /// Takes the GPU's device away, as a driver's reset does: for tests of what follows. Nothing on the processor.
-    pub fn lose_device(&self) {
-        self.order(|orders| orders.mishaps.push(Mishap::Lost));
+    /// Takes the GPU's device away at a moment to come, and so many times in all those that replace it, as a driver's reset
+    /// does: for tests of what follows. Nothing on the processor.
+    pub fn lose_device(&self, moment: Moment, times: u32) {
+        self.order(|orders| orders.mishaps.push(Mishap::Lost(moment, times)));
     }
 
     /// Has the GPU refuse buffers above a size, as a small adapter does: for tests of what follows.

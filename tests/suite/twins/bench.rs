@@ -2,9 +2,10 @@
 
 use std::sync::{LazyLock, OnceLock};
 
-use bytemuck::{bytes_of, cast_slice};
+use bytemuck::cast_slice;
 use glam::Vec2;
-use glossmith::gpu::layout::{Globals, light_cells, slots, triangles};
+use glossmith::gpu::layout::Globals;
+use glossmith::gpu::scene_group::{self, GeometryArrays, SceneGroup};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
 use glossmith::job::{BackgroundKind, Settings, Strategy};
 use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
@@ -288,9 +289,8 @@ impl Bench {
             gpu.device
                 .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries })
         };
-        let scene_entries: Vec<_> = (0..=8).chain([11, 13, 14]).map(scene_entry).collect();
         let rows_entries = [storage_entry(0, true), storage_entry(1, false)];
-        let layouts = [layout_of(&scene_entries), layout_of(&rows_entries)];
+        let layouts = [scene_group::layout(&gpu), layout_of(&rows_entries)];
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: &[Some(&layouts[0]), Some(&layouts[1])],
@@ -384,22 +384,6 @@ fn entry(binding: u32, ty: wgpu::BufferBindingType) -> wgpu::BindGroupLayoutEntr
     }
 }
 
-/// The bindings of shaders/scene/layout.wgsl that functions read.
-fn scene_entry(binding: u32) -> wgpu::BindGroupLayoutEntry {
-    match binding {
-        0 => entry(0, wgpu::BufferBindingType::Uniform),
-        7 => wgpu::BindGroupLayoutEntry {
-            ty: wgpu::BindingType::Texture {
-                sample_type: wgpu::TextureSampleType::Float { filterable: false },
-                view_dimension: wgpu::TextureViewDimension::D2,
-                multisampled: false,
-            },
-            ..storage_entry(7, true)
-        },
-        _ => storage_entry(binding, true),
-    }
-}
-
 fn settings() -> Settings {
     Settings {
         image_size: [64, 48],
@@ -429,63 +413,13 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
     } = &*SCENE;
     let cells_size = [environment.cells_width, environment.cells_height];
     let globals = Globals::new(&settings(), geometry.compressed().nodes.len(), cells_size);
-    let uniforms = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: None,
-        size: size_of::<Globals>() as u64,
-        usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
-    gpu.queue.write_buffer(&uniforms, 0, bytes_of(&globals));
-    let map = upload_map(gpu, environment);
-    let buffers = [
-        gpu.storage("nodes", cast_slice(&geometry.compressed().nodes))?,
-        gpu.storage("triangles", cast_slice(&triangles(geometry)))?,
-        gpu.storage("vertices", cast_slice(&geometry.vertices))?,
-        gpu.storage("slots", cast_slice(&slots(geometry)))?,
-        gpu.storage("materials", cast_slice(materials))?,
-        gpu.storage("tables", cast_slice(tables))?,
-        gpu.storage("cells", cast_slice(&environment.cells))?,
-        gpu.storage("light cells", cast_slice(&light_cells(geometry, lights)))?,
-        gpu.storage("texture records", cast_slice(&textures.records))?,
-        gpu.storage("texture words", cast_slice(&textures.words))?,
-    ];
-    let mut resources: Vec<_> = buffers.iter().map(wgpu::Buffer::as_entire_binding).collect();
-    resources.insert(0, uniforms.as_entire_binding());
-    resources.insert(7, wgpu::BindingResource::TextureView(&map));
-    let entries: Vec<_> = (0..=8)
-        .chain([11, 13, 14])
-        .zip(resources)
-        .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-        .collect();
-    Ok(gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: None,
-        layout,
-        entries: &entries,
-    }))
-}
-
-fn upload_map(gpu: &GpuDevice, environment: &Environment) -> wgpu::TextureView {
-    let size = wgpu::Extent3d {
-        width: environment.width,
-        height: environment.height,
-        depth_or_array_layers: 1,
+    let group = SceneGroup {
+        geometry: GeometryArrays::new(gpu, geometry)?,
+        materials: scene_group::materials(gpu, materials)?,
+        tables: scene_group::tables(gpu, tables)?,
+        environment: scene_group::environment(gpu, environment)?,
+        light_cells: scene_group::light_cells(gpu, geometry, lights)?,
+        textures: scene_group::textures(gpu, textures)?,
     };
-    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: None,
-        size,
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format: wgpu::TextureFormat::Rgba32Float,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-        view_formats: &[],
-    });
-    let lines = wgpu::TexelCopyBufferLayout {
-        offset: 0,
-        bytes_per_row: Some(16 * environment.width),
-        rows_per_image: None,
-    };
-    gpu.queue
-        .write_texture(texture.as_image_copy(), cast_slice(&environment.texels), lines, size);
-    texture.create_view(&Default::default())
+    Ok(group.bind(gpu, layout, &gpu.uniforms(&globals)))
 }

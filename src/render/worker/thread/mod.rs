@@ -12,6 +12,7 @@ use super::denoising::Denoising;
 use super::stage::Stage;
 use super::{Activity, Event, FIRST_STEP, Level, STEP, Scene, Shared, Snapshot, Submission, lock};
 use crate::document::{Change, Document};
+use crate::gpu::GpuError;
 use crate::job::plan::Specialisation;
 use crate::panics::caught;
 use crate::render::assets::Assets;
@@ -118,8 +119,8 @@ impl State<'_> {
             self.open(choice);
             self.restart();
         }
-        if let Some(device) = self.session.as_ref().and_then(Session::device) {
-            orders.mishaps.iter().for_each(|mishap| mishap.befall(device));
+        if let Some(session) = &mut self.session {
+            orders.mishaps.iter().for_each(|mishap| mishap.befall(session));
         }
         (0..orders.reloads).for_each(|_| self.reload());
         if orders.restart {
@@ -232,12 +233,15 @@ impl State<'_> {
         }
     }
 
-    /// Runs what may fail. Where the GPU is lost, or something panics, the processor takes over with the same document;
-    /// anything else is said and leaves what was there, the GPU included.
+    /// Runs what may fail. Where the GPU is lost it is opened anew, and where that does not last, or something panics, the
+    /// processor takes over with the same document; anything else is said and leaves what was there, the GPU included.
     fn guarded(&mut self, work: impl FnOnce(&mut Self) -> Result<(), SessionError>) -> bool {
         let why = match caught(|| work(self)) {
             Ok(Ok(())) => return true,
-            Ok(Err(SessionError::Gpu(error))) if error.is_lost() => error.to_string(),
+            Ok(Err(SessionError::Gpu(error))) if error.is_lost() => {
+                self.recover(error);
+                return false;
+            }
             Ok(Err(error)) => {
                 if error.is_cancelled() {
                     self.say(Level::Info, error.to_string());
@@ -277,6 +281,26 @@ impl State<'_> {
         self.samples_per_second = 0.0;
         self.note_engine();
         false
+    }
+
+    /// Goes on after the GPU's device was lost, with the stage's document.
+    fn recover(&mut self, mut lost: GpuError) {
+        while let Some(session) = &mut self.session {
+            let how = session.recover(&lost);
+            let stage = self.stage.as_ref().map(Stage::document);
+            let outcome = stage.map(|document| session.submit_shared(&document));
+            self.say(Level::Warning, how);
+            match outcome {
+                Some(Err(SessionError::Gpu(again))) if again.is_lost() => lost = again,
+                Some(Err(error)) => {
+                    self.say(Level::Error, error.to_string());
+                    break;
+                }
+                _ => break,
+            }
+        }
+        self.samples_per_second = 0.0;
+        self.note_engine();
     }
 
     /// The stage's document once more, as after a change of engine.

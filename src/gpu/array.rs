@@ -1,0 +1,159 @@
+//! Arrays on the GPU, brought there a part at a time: in a storage buffer, or in a texture where WebGPU's eight storage
+//! buffers a stage or its 128 MiB a binding do not suffice.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use bytemuck::Pod;
+
+use super::device::{GpuDevice, GpuError};
+
+/// The binary logarithm of [`TEXEL_ROW`], which the shaders know.
+pub const TEXEL_ROW_BITS: u32 = 12;
+/// Texels in a row of a texture that holds an array: within the texture sizes that every adapter takes.
+pub const TEXEL_ROW: usize = 1 << TEXEL_ROW_BITS;
+/// Rows in a layer of it.
+const LAYER_ROWS: usize = TEXEL_ROW;
+/// Values that are made and written at once.
+const PART: usize = 1 << 18;
+/// Bytes that may wait for the device: each waits in memory of its own.
+const PENDING_BYTES: usize = 64 << 20;
+
+/// Plain values, made when they are asked for, so that a model is not there twice.
+pub struct Values<'a, T: Pod> {
+    count: usize,
+    part: Box<dyn Fn(Range<usize>) -> Cow<'a, [T]> + 'a>,
+}
+
+impl<'a, T: Pod> Values<'a, T> {
+    /// Values that are there already.
+    pub fn of(values: &'a [T]) -> Self {
+        Self {
+            count: values.len(),
+            part: Box::new(move |range| Cow::Borrowed(&values[range])),
+        }
+    }
+
+    /// Values that are made one by one, by their number.
+    pub fn made(count: usize, value: impl Fn(usize) -> T + 'a) -> Self {
+        Self {
+            count,
+            part: Box::new(move |range| range.map(&value).collect()),
+        }
+    }
+
+    /// The same values in another form.
+    pub fn map<U: Pod>(self, other: impl Fn(&T) -> U + 'a) -> Values<'a, U>
+    where
+        T: 'a,
+    {
+        Values {
+            count: self.count,
+            part: Box::new(move |range| (self.part)(range).iter().map(&other).collect()),
+        }
+    }
+
+    /// Bytes of all values.
+    pub fn bytes(&self) -> u64 {
+        (self.count * size_of::<T>()) as u64
+    }
+
+    /// Hands the values on, part by part, each with the number of its first one; waits for the device where much is
+    /// pending.
+    fn write(&self, gpu: &GpuDevice, mut write: impl FnMut(usize, &[T])) -> Result<(), GpuError> {
+        let mut pending = 0;
+        for first in (0..self.count).step_by(PART) {
+            let part = (self.part)(first..(first + PART).min(self.count));
+            write(first, &part);
+            pending += size_of_val(&part[..]);
+            if pending > PENDING_BYTES {
+                gpu.queue.submit([]);
+                gpu.wait()?;
+                pending = 0;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A storage buffer of these values.
+///
+/// # Errors
+/// [`GpuError::TooLarge`] beyond the adapter's limit; [`GpuError::Lost`].
+pub fn buffer<T: Pod>(gpu: &GpuDevice, what: &'static str, values: &Values<'_, T>) -> Result<wgpu::Buffer, GpuError> {
+    let buffer = gpu.empty_storage(what, values.bytes())?;
+    values.write(gpu, |first, part| {
+        let offset = (first * size_of::<T>()) as u64;
+        gpu.queue.write_buffer(&buffer, offset, bytemuck::cast_slice(part));
+    })?;
+    Ok(buffer)
+}
+
+/// A texture of these values, one or four words a texel: `u32`s, or what is as long as some `[u32; 4]`s. Shaders find the
+/// texels by `texel_place`.
+///
+/// # Errors
+/// [`GpuError::Lost`]; what the adapter has against the texture is told when the work is checked.
+pub fn texture<T: Pod>(
+    gpu: &GpuDevice,
+    what: &'static str,
+    values: &Values<'_, T>,
+) -> Result<wgpu::TextureView, GpuError> {
+    let (format, texel_bytes) = if size_of::<T>() == 4 {
+        (wgpu::TextureFormat::R32Uint, 4)
+    } else {
+        (wgpu::TextureFormat::Rgba32Uint, 16)
+    };
+    let texels = (values.bytes() as usize / texel_bytes).max(1);
+    let rows = texels.div_ceil(TEXEL_ROW);
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(what),
+        size: extent(texels.min(TEXEL_ROW), rows.min(LAYER_ROWS), rows.div_ceil(LAYER_ROWS)),
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    values.write(gpu, |first, part| {
+        let bytes: &[u8] = bytemuck::cast_slice(part);
+        // A part begins with a row, as its number of values is a multiple of a row's.
+        let first_row = first * size_of::<T>() / texel_bytes / TEXEL_ROW;
+        for (row, line) in (first_row..).zip(bytes.chunks(TEXEL_ROW * texel_bytes)) {
+            write_row(gpu, &texture, row, line, texel_bytes);
+        }
+    })?;
+    Ok(texture.create_view(&wgpu::TextureViewDescriptor {
+        dimension: Some(wgpu::TextureViewDimension::D2Array),
+        ..Default::default()
+    }))
+}
+
+fn extent(width: usize, height: usize, layers: usize) -> wgpu::Extent3d {
+    wgpu::Extent3d {
+        width: width as u32,
+        height: height as u32,
+        depth_or_array_layers: layers as u32,
+    }
+}
+
+/// Writes a row of an array's texture, counted through all layers.
+fn write_row(gpu: &GpuDevice, texture: &wgpu::Texture, row: usize, line: &[u8], texel_bytes: usize) {
+    let origin = wgpu::Origin3d {
+        x: 0,
+        y: (row % LAYER_ROWS) as u32,
+        z: (row / LAYER_ROWS) as u32,
+    };
+    let place = wgpu::TexelCopyTextureInfo {
+        origin,
+        ..texture.as_image_copy()
+    };
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(line.len() as u32),
+        rows_per_image: None,
+    };
+    gpu.queue
+        .write_texture(place, line, layout, extent(line.len() / texel_bytes, 1, 1));
+}

@@ -1,0 +1,115 @@
+//! How much a dispatch renders, so that it ends in time: other users of the adapter, the window among them, wait for its
+//! end, and drivers stop what takes seconds.
+
+use std::time::Duration;
+
+use crate::job::tiles::TILE_SIDE;
+
+/// What a dispatch is to take at most, once the adapter's speed is known.
+pub const DISPATCH: Duration = Duration::from_millis(20);
+/// Tiles of the first dispatch: at most 50 ms on an adapter that makes 10 000 samples a second. A dispatch of one tile is the
+/// least there is.
+pub const FIRST_TILES: usize = 8;
+/// A dispatch has at most so many times the samples of the one before: what an idle GPU does with a few tiles says little
+/// of what it does with many.
+const GROWTH: f64 = 4.0;
+/// The first dispatch of another scene has this share of the samples of the one before.
+const CAUTION: f64 = 0.125;
+/// What is aimed at of [`DISPATCH`]: some tiles take longer than others.
+const SHARE: f64 = 0.7;
+
+/// The rate that may be counted on, from the last dispatches.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Budget {
+    /// Samples of a pixel a second of the last two dispatches, the last one first; 0 where there was none.
+    rates: [f64; 2],
+    /// Samples of the last dispatch.
+    last: f64,
+}
+
+impl Budget {
+    /// Samples of a pixel that a dispatch may have where `left` is left of the time for all of them.
+    pub fn affordable(&self, left: Duration) -> f64 {
+        let rate = self.rates[0].min(self.rates[1]);
+        let first = FIRST_TILES as f64 * f64::from(TILE_SIDE * TILE_SIDE);
+        let by_growth = (GROWTH * self.last).max(first);
+        if self.last == 0.0 {
+            return first;
+        }
+        (SHARE * rate * left.min(DISPATCH).as_secs_f64()).min(by_growth)
+    }
+
+    /// Takes note of a dispatch.
+    pub fn note(&mut self, samples: u64, took: Duration) {
+        let rate = samples as f64 / took.as_secs_f64().max(1e-6);
+        let before = if self.last == 0.0 { rate } else { self.rates[0] };
+        (self.rates, self.last) = ([rate, before], samples as f64);
+    }
+
+    /// Another scene on the same kernel, which may cost several times as much.
+    pub fn of_another_scene(self) -> Self {
+        Self {
+            last: self.last * CAUTION / GROWTH,
+            ..self
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::tiles::{Order, Schedule, SliceLimits};
+
+    /// The longest dispatch of a render on an adapter of a latency and a rate where the lower half of the picture costs
+    /// so many times as much as the upper; the first one is told apart.
+    fn longest(budget: &mut Budget, rate: f64, latency_s: f64, ratio: f64) -> (Duration, Duration, usize) {
+        let mut schedule = Schedule::new(960, 540);
+        let grid = schedule.grid();
+        schedule.aim(&vec![4; grid.tiles()]);
+        let (mut first, mut longest, mut count) = (Duration::ZERO, Duration::ZERO, 0);
+        loop {
+            let limits = SliceLimits {
+                pass_samples_max: 1024,
+                tiles: [1, 65_535],
+                order: Order::Spread,
+            };
+            let works = schedule.slice(budget.affordable(Duration::from_secs(1)), limits);
+            if works.is_empty() {
+                return (first, longest, count);
+            }
+            let cost = |tile: usize| if tile < grid.tiles() / 2 { 1.0 } else { ratio };
+            let samples = works.iter().map(|work| {
+                let samples = grid.pixels(work.tile) * u64::from(work.count);
+                samples as f64 * cost(work.tile)
+            });
+            let took = Duration::from_secs_f64(latency_s + samples.sum::<f64>() / rate);
+            budget.note(grid.pixel_samples(&works), took);
+            schedule.finish(&works);
+            if count == 0 {
+                first = took;
+            } else {
+                longest = longest.max(took);
+            }
+            count += 1;
+        }
+    }
+
+    #[test]
+    fn no_dispatch_takes_longer_than_it_may() {
+        for (rate, latency_s) in [(1e5, 1e-3), (1e6, 1e-4), (1e9, 1e-4), (1e9, 2e-3)] {
+            for ratio in [1.0, 10.0] {
+                let mut budget = Budget::default();
+                let (first, after, count) = longest(&mut budget, rate, latency_s, 1.0);
+                // The next scene is dearer.
+                budget = budget.of_another_scene();
+                let (_, dearer, _) = longest(&mut budget, rate, latency_s, ratio);
+                let told = format!("{rate} samples a second: {first:?}, {after:?}, {dearer:?}, {count} dispatches");
+                assert!(first <= Duration::from_millis(50), "{told}");
+                assert!(after.max(dearer) <= DISPATCH, "{told}");
+                // It is no drag either.
+                let ideal = 960.0 * 540.0 * 4.0 / rate / DISPATCH.as_secs_f64();
+                assert!((count as f64) < 2.5 * ideal + 16.0, "{told}");
+            }
+        }
+    }
+}

@@ -1,0 +1,274 @@
+//! Group 0 of the passes: all that shaders read of a scene (`shaders/scene/layout.wgsl`).
+
+use super::array::{self, Values};
+use super::compute::{self, READ, UNIFORMS, buffer_entry, texture_entry};
+use super::device::{GpuDevice, GpuError};
+use super::layout::{self, Triangle};
+use crate::optics::material::Material;
+use crate::scene::environment::Environment;
+use crate::scene::light::Lights;
+use crate::scene::texture::Textures;
+use crate::scene::{Geometry, Vertex};
+
+/// The binding of the materials' tables, for passes that read nothing else.
+pub const TABLES_BINDING: u32 = 5;
+
+const MAP: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
+
+/// The layout of the group.
+pub fn layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
+    use wgpu::TextureViewDimension::{D2, D2Array};
+    let entry = |binding: u32| match binding {
+        0 => buffer_entry(binding, UNIFORMS),
+        1..=5 => buffer_entry(binding, READ),
+        6 => texture_entry(binding, MAP, D2),
+        _ => texture_entry(binding, wgpu::TextureSampleType::Uint, D2Array),
+    };
+    let entries: Vec<_> = (0..=14).map(entry).collect();
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("scene"),
+        entries: &entries,
+    })
+}
+
+/// What a scene is on the GPU. The parts are shared: a new scene may have some of an old one's.
+#[derive(Clone, Debug)]
+pub struct SceneGroup {
+    /// The model.
+    pub geometry: GeometryArrays,
+    /// See [`materials`].
+    pub materials: wgpu::Buffer,
+    /// See [`tables`].
+    pub tables: wgpu::Buffer,
+    /// See [`environment`].
+    pub environment: [wgpu::TextureView; 2],
+    /// See [`light_cells`].
+    pub light_cells: wgpu::TextureView,
+    /// See [`textures`].
+    pub textures: [wgpu::TextureView; 2],
+}
+
+impl SceneGroup {
+    /// A scene of nothing.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn empty(gpu: &GpuDevice) -> Result<Self, GpuError> {
+        let nothing = || array::texture(gpu, "nothing", &Values::<u32>::of(&[]));
+        Ok(Self {
+            geometry: GeometryArrays::empty(gpu)?,
+            materials: materials(gpu, &[])?,
+            tables: tables(gpu, &[])?,
+            environment: [environment_map(gpu, [1, 1], &[[0.0; 4]]), nothing()?],
+            light_cells: nothing()?,
+            textures: [nothing()?, nothing()?],
+        })
+    }
+
+    /// The group with its uniforms, a [`layout::Globals`].
+    pub fn bind(&self, gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, globals: &wgpu::Buffer) -> wgpu::BindGroup {
+        let [nodes, triangles, vertices] = &self.geometry.buffers;
+        let buffers = [globals, nodes, triangles, vertices, &self.materials, &self.tables];
+        let [map, cells] = &self.environment;
+        let [records, words] = &self.textures;
+        let [node_texels, triangle_texels, vertex_texels] = &self.geometry.textures;
+        let textures = [
+            map,
+            cells,
+            &self.light_cells,
+            &self.geometry.slots,
+            records,
+            words,
+            node_texels,
+            triangle_texels,
+            vertex_texels,
+        ];
+        let buffers: Vec<_> = (0..).zip(buffers).collect();
+        let textures: Vec<_> = (buffers.len() as u32..).zip(textures).collect();
+        compute::bind_group(gpu, layout, &buffers, &textures)
+    }
+}
+
+/// A model's hierarchy, triangles and vertices on the GPU: in buffers or, where one of them is larger than a binding may
+/// be, all in textures, which may be larger.
+#[derive(Clone, Debug)]
+pub struct GeometryArrays {
+    buffers: [wgpu::Buffer; 3],
+    textures: [wgpu::TextureView; 3],
+    slots: wgpu::TextureView,
+    is_in_textures: bool,
+}
+
+impl GeometryArrays {
+    fn empty(gpu: &GpuDevice) -> Result<Self, GpuError> {
+        let (none, no_texels) = (Values::<Triangle>::of(&[]), Values::<u32>::of(&[]));
+        let buffer = || array::buffer(gpu, "nothing", &none);
+        let texture = || array::texture(gpu, "nothing", &no_texels);
+        Ok(Self {
+            buffers: [buffer()?, buffer()?, buffer()?],
+            textures: [texture()?, texture()?, texture()?],
+            slots: texture()?,
+            is_in_textures: false,
+        })
+    }
+
+    /// Brings a model to the GPU.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn new(gpu: &GpuDevice, geometry: &Geometry) -> Result<Self, GpuError> {
+        let compressed = geometry.compressed();
+        let nodes = Values::of(bytemuck::cast_slice::<_, NodeWords>(&compressed.nodes));
+        let count = compressed.triangles.len();
+        let triangles = Values::made(count, |place| layout::triangle(geometry, place));
+        let vertices = Values::of(&geometry.vertices);
+        let slots = Values::made(count, |place| geometry.slots[compressed.triangles[place] as usize]);
+        let mut arrays = Self {
+            slots: array::texture(gpu, "the model's material slots", &slots)?,
+            is_in_textures: Self::wants_textures(gpu, geometry),
+            ..Self::empty(gpu)?
+        };
+        let names = [
+            "the hierarchy of boxes",
+            "the model's triangles",
+            "the model's vertices",
+        ];
+        if arrays.is_in_textures {
+            arrays.textures = [
+                array::texture(gpu, names[0], &nodes)?,
+                array::texture(gpu, names[1], &triangles)?,
+                array::texture(gpu, names[2], &vertices.map(vertex_words))?,
+            ];
+        } else {
+            arrays.buffers = [
+                array::buffer(gpu, names[0], &nodes)?,
+                array::buffer(gpu, names[1], &triangles)?,
+                array::buffer(gpu, names[2], &vertices)?,
+            ];
+        }
+        Ok(arrays)
+    }
+
+    /// Whether shaders find it in the textures.
+    pub fn is_in_textures(&self) -> bool {
+        self.is_in_textures
+    }
+
+    /// Whether a model is too large for the bindings of this adapter: kernels are made for one or the other. Nodes, which
+    /// may not be built yet, take less than the triangles.
+    pub fn wants_textures(gpu: &GpuDevice, geometry: &Geometry) -> bool {
+        let triangles = geometry.triangles.len() * size_of::<Triangle>();
+        let largest = triangles.max(size_of_val(&geometry.vertices[..]));
+        largest as u64 > gpu.binding_bytes()
+    }
+}
+
+/// The override constant that tells a pipeline where the geometry is.
+pub fn geometry_constant(is_in_textures: bool) -> (&'static str, f64) {
+    ("GEOMETRY_IN_TEXTURES", f64::from(u8::from(is_in_textures)))
+}
+
+/// A node of the hierarchy: whole texels of 16 bytes.
+type NodeWords = [[u32; 4]; 5];
+
+/// A vertex in whole texels.
+fn vertex_words(vertex: &Vertex) -> [u32; 16] {
+    let mut words = [0; 16];
+    let own: &[u32] = bytemuck::cast_slice(std::slice::from_ref(vertex));
+    words[..own.len()].copy_from_slice(own);
+    words
+}
+
+/// The materials of a scene.
+///
+/// # Errors
+/// [`GpuError::TooLarge`].
+pub fn materials(gpu: &GpuDevice, materials: &[Material<f32>]) -> Result<wgpu::Buffer, GpuError> {
+    // A buffer is at least as large as one element of what the shader takes it for.
+    let filler = [bytemuck::Zeroable::zeroed()];
+    let materials = if materials.is_empty() { &filler } else { materials };
+    array::buffer(gpu, "the materials", &Values::of(materials))
+}
+
+/// Their custom curves and albedo tables.
+///
+/// # Errors
+/// [`GpuError::TooLarge`].
+pub fn tables(gpu: &GpuDevice, tables: &[f32]) -> Result<wgpu::Buffer, GpuError> {
+    array::buffer(gpu, "the materials' tables", &Values::of(tables))
+}
+
+/// The map of an environment and the cells of its distribution.
+///
+/// # Errors
+/// [`GpuError::Unfit`] where the map is wider than the adapter's textures.
+pub fn environment(gpu: &GpuDevice, environment: &Environment) -> Result<[wgpu::TextureView; 2], GpuError> {
+    let size = [environment.width, environment.height];
+    let limit = gpu.device.limits().max_texture_dimension_2d;
+    if size[0].max(size[1]) > limit {
+        return Err(GpuError::Unfit {
+            adapter: gpu.info.name.clone(),
+            reason: format!("the environment {} is wider than {limit} pixels", environment.name),
+        });
+    }
+    let cells = Values::of(&environment.cells)
+        .map(|cell| [cell.threshold.to_bits(), cell.alias_index, cell.density.to_bits(), 0]);
+    Ok([
+        environment_map(gpu, size, &environment.texels),
+        array::texture(gpu, "the environment's cells", &cells)?,
+    ])
+}
+
+fn environment_map(gpu: &GpuDevice, [width, height]: [u32; 2], texels: &[[f32; 4]]) -> wgpu::TextureView {
+    let size = wgpu::Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    };
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("environment"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: wgpu::TextureFormat::Rgba32Float,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(16 * width),
+        rows_per_image: None,
+    };
+    gpu.queue
+        .write_texture(texture.as_image_copy(), bytemuck::cast_slice(texels), layout, size);
+    texture.create_view(&Default::default())
+}
+
+/// The alias table of the triangles that emit, each told by its place in the hierarchy's order.
+///
+/// # Errors
+/// If the device fails.
+pub fn light_cells(gpu: &GpuDevice, geometry: &Geometry, lights: &Lights) -> Result<wgpu::TextureView, GpuError> {
+    let places = geometry.compressed().places();
+    let cells = Values::of(&lights.cells).map(|cell| {
+        [
+            cell.threshold.to_bits(),
+            cell.alias_index,
+            places[cell.triangle as usize],
+            0,
+        ]
+    });
+    array::texture(gpu, "the triangles that emit", &cells)
+}
+
+/// The uses of a model's pictures, and their words.
+///
+/// # Errors
+/// If the device fails.
+pub fn textures(gpu: &GpuDevice, textures: &Textures) -> Result<[wgpu::TextureView; 2], GpuError> {
+    Ok([
+        array::texture(gpu, "the model's textures", &Values::of(&textures.records))?,
+        array::texture(gpu, "the model's pictures", &Values::of(&textures.words))?,
+    ])
+}

@@ -1,0 +1,177 @@
+//! Group 1 of the path tracer: what it renders, and the picture's sums, cut into bands of rows where they would be larger
+//! than a binding may be.
+
+use super::compute::{self, UNIFORMS, WRITE, buffer_entry, texture_entry};
+use super::device::{GpuDevice, GpuError};
+use super::layout::{PixelColors, PixelStatistics, Tile};
+use crate::job::Job;
+use crate::job::effect::EffectId;
+use crate::job::features::GuideSums;
+use crate::job::tiles::TILE_SIDE;
+
+/// Tiles in a row of the texture that lists them.
+pub const TILE_COLUMNS: u32 = 256;
+/// Most tiles of a dispatch: a workgroup each, of which WebGPU lets 65 535 stand in a row.
+pub const DISPATCH_TILES: usize = 65_535;
+
+/// The layout of the group.
+pub fn layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
+    let entries = [
+        buffer_entry(0, UNIFORMS),
+        texture_entry(1, wgpu::TextureSampleType::Uint, wgpu::TextureViewDimension::D2),
+        buffer_entry(2, WRITE),
+        buffer_entry(3, WRITE),
+        buffer_entry(4, WRITE),
+    ];
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("sums"),
+        entries: &entries,
+    })
+}
+
+/// The sums over samples that the host has not taken yet, and the list of tiles to render.
+#[derive(Clone, Debug)]
+pub struct Sums {
+    size: [u32; 2],
+    has_guides: bool,
+    band_rows: u32,
+    bands: Vec<Band>,
+    tiles: wgpu::Texture,
+}
+
+/// Sums of some rows of pixels.
+#[derive(Clone, Debug)]
+pub struct Band {
+    /// Its first row of pixels.
+    pub first_row: u32,
+    /// Its pixels, row by row.
+    pub pixels: usize,
+    /// Sums of colours, of statistics and of what is seen first.
+    pub buffers: [wgpu::Buffer; 3],
+    /// The group to bind.
+    pub group: wgpu::BindGroup,
+}
+
+impl Sums {
+    /// Whether these are what a job needs.
+    pub fn fit(&self, job: &Job) -> bool {
+        self.size == job.settings.image_size && self.has_guides == job.plan.has(EffectId::Guides)
+    }
+
+    /// Sums for a job's picture; not zero where the driver leaves memory as it was.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] where not even a row of tiles fits a binding.
+    pub fn new(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, job: &Job) -> Result<Self, GpuError> {
+        let [width, height] = job.settings.image_size;
+        let has_guides = job.plan.has(EffectId::Guides);
+        let widest = if has_guides {
+            size_of::<GuideSums>().max(size_of::<PixelColors>())
+        } else {
+            size_of::<PixelColors>()
+        };
+        let tile_row_bytes = u64::from(TILE_SIDE * width) * widest as u64;
+        let tile_rows = (gpu.binding_bytes() / tile_row_bytes).clamp(1, u64::from(height.div_ceil(TILE_SIDE)));
+        let band_rows = tile_rows as u32 * TILE_SIDE;
+        let tiles = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("the list of tiles"),
+            size: wgpu::Extent3d {
+                width: TILE_COLUMNS,
+                height: (DISPATCH_TILES as u32).div_ceil(TILE_COLUMNS),
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Uint,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let list = tiles.create_view(&Default::default());
+        let bands = (0..height).step_by(band_rows as usize).map(|first_row| {
+            let rows = band_rows.min(height - first_row);
+            Band::new(
+                gpu,
+                layout,
+                &list,
+                first_row,
+                u64::from(rows) * u64::from(width),
+                has_guides,
+            )
+        });
+        Ok(Self {
+            size: [width, height],
+            has_guides,
+            band_rows,
+            bands: bands.collect::<Result<_, _>>()?,
+            tiles,
+        })
+    }
+
+    /// The bands, from the top.
+    pub fn bands(&self) -> &[Band] {
+        &self.bands
+    }
+
+    /// The band that a tile is in, by its number.
+    pub fn band_of(&self, tile: &Tile) -> usize {
+        (tile.origin[1] / self.band_rows) as usize
+    }
+
+    /// Lists what the next dispatch renders, at most [`DISPATCH_TILES`].
+    pub fn list(&self, gpu: &GpuDevice, tiles: &[Tile]) {
+        let rows = tiles.len().div_ceil(TILE_COLUMNS as usize);
+        let mut whole = tiles.to_vec();
+        whole.resize(rows * TILE_COLUMNS as usize, Tile::default());
+        gpu.queue.write_texture(
+            self.tiles.as_image_copy(),
+            bytemuck::cast_slice(&whole),
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(TILE_COLUMNS * size_of::<Tile>() as u32),
+                rows_per_image: None,
+            },
+            wgpu::Extent3d {
+                width: TILE_COLUMNS,
+                height: rows as u32,
+                depth_or_array_layers: 1,
+            },
+        );
+    }
+
+    /// Sets the sums to zero.
+    pub fn clear(&self, gpu: &GpuDevice) {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        for buffer in self.bands.iter().flat_map(|band| &band.buffers) {
+            encoder.clear_buffer(buffer, 0, None);
+        }
+        gpu.queue.submit([encoder.finish()]);
+    }
+}
+
+impl Band {
+    fn new(
+        gpu: &GpuDevice,
+        layout: &wgpu::BindGroupLayout,
+        tiles: &wgpu::TextureView,
+        first_row: u32,
+        pixels: u64,
+        has_guides: bool,
+    ) -> Result<Self, GpuError> {
+        let guide_bytes = if has_guides { size_of::<GuideSums>() } else { 0 };
+        let sizes = [size_of::<PixelColors>(), size_of::<PixelStatistics>(), guide_bytes];
+        let buffer = |bytes: usize| gpu.empty_storage("the picture", pixels * bytes as u64);
+        let [colors, statistics, guides] = sizes.map(buffer);
+        let buffers = [colors?, statistics?, guides?];
+        let uniforms = gpu.uniforms(&[first_row, 0, 0, 0]);
+        let [colors, statistics, guides] = &buffers;
+        let bound = [(0, &uniforms), (2, colors), (3, statistics), (4, guides)];
+        let group = compute::bind_group(gpu, layout, &bound, &[(1, tiles)]);
+        Ok(Self {
+            first_row,
+            pixels: pixels as usize,
+            buffers,
+            group,
+        })
+    }
+}
