@@ -13,8 +13,6 @@ pub const FIRST_TILES: usize = 8;
 /// A dispatch has at most so many times the samples of the one before: what an idle GPU does with a few tiles says little
 /// of what it does with many.
 const GROWTH: f64 = 4.0;
-/// The first dispatch of another scene has this share of the samples of the one before.
-const CAUTION: f64 = 0.125;
 /// What is aimed at of [`DISPATCH`]: some tiles take longer than others.
 const SHARE: f64 = 0.6;
 /// What a dispatch counts for in the mean rate when the next one comes.
@@ -39,7 +37,11 @@ impl Budget {
         }
         let [samples, seconds] = self.recent;
         // Where nothing is known of the scene, the last one's rate stands in.
-        let mean_rate = if seconds > 0.0 { samples / seconds } else { self.last_rate };
+        let mean_rate = if seconds > 0.0 {
+            samples / seconds
+        } else {
+            self.last_rate
+        };
         let rate = self.last_rate.min(mean_rate);
         (SHARE * rate * left.min(DISPATCH).as_secs_f64()).min(GROWTH * self.last)
     }
@@ -58,7 +60,7 @@ impl Budget {
     /// Another scene on the same kernel, which may cost several times as much.
     pub fn of_another_scene(self) -> Self {
         Self {
-            last: self.last * CAUTION / GROWTH,
+            last: self.last / (GROWTH * GROWTH),
             last_rate: self.last_rate,
             recent: [0.0; 2],
         }
