@@ -32,7 +32,9 @@ test: ## Check format and lints, then run every test
 	cargo test $(ARGS)
 
 test-thorough: export GLOSSMITH_THOROUGH = 1
-test-thorough: test ## The same, and for an hour more: what is tried at random is tried more often
+test-thorough: test ## The same, for an hour more: what is random more often, shaders on a second Vulkan driver
+	@scripts/setup thorough
+	scripts/second-driver
 	@if cargo deny --version >/dev/null 2>&1; then set -x; cargo deny check; \
 	else echo "note: cargo-deny is not installed, advisories and licences are not checked (cargo install cargo-deny)"; fi
 

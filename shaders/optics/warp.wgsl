@@ -5,12 +5,10 @@
 fn uniform_sphere(xi: vec2f) -> vec3f {
     let x = 2.0 * xi.x - 1.0;
     let s = safe_sqrt(1.0 - x * x);
-    let phi_rad = 2.0 * PI * xi.y;
-    return vec3f(x, s * sin(phi_rad), s * cos(phi_rad));
+    let around = cos_sin(2.0 * PI * xi.y);
+    return vec3f(x, s * around.y, s * around.x);
 }
 
 fn uniform_disc(xi: vec2f) -> vec2f {
-    let radius = safe_sqrt(xi.x);
-    let phi_rad = 2.0 * PI * xi.y;
-    return vec2f(radius * cos(phi_rad), radius * sin(phi_rad));
+    return safe_sqrt(xi.x) * cos_sin(2.0 * PI * xi.y);
 }

@@ -50,14 +50,13 @@ fn environment_uv(direction: vec3f) -> vec2f {
 }
 
 fn environment_direction(uv: vec2f) -> vec3f {
-    let polar_rad = uv.y * PI;
-    return environment_direction_from_angles(uv.x, cos(polar_rad), sin(polar_rad));
+    let polar = cos_sin(uv.y * PI);
+    return environment_direction_from_angles(uv.x, polar.x, polar.y);
 }
 
 fn environment_direction_from_angles(u: f32, cos_polar: f32, sin_polar: f32) -> vec3f {
-    // Half a turn back, so that the argument stays in [-pi, pi], where GPUs promise accuracy.
-    let azimuth_rad = (u - 0.5) * (2.0 * PI);
-    return vec3f(-(sin(azimuth_rad) * sin_polar), cos_polar, cos(azimuth_rad) * sin_polar);
+    let azimuth = cos_sin((u - 0.5) * (2.0 * PI));
+    return vec3f(-(azimuth.y * sin_polar), cos_polar, azimuth.x * sin_polar);
 }
 
 // Radiance from a direction: bilinear, wrapping in u, clamped at the poles in v.
@@ -103,8 +102,8 @@ fn environment_direction_in_cell(cell: vec2u, place: vec2f, cells_size: vec2u) -
     let row_from_pole = f32(select(cell.y, cells_size.y - 1u - cell.y, is_south));
     let across = select(place.y, 1.0 - place.y, is_south);
     let half_turn_per_row = 0.5 * PI / f32(cells_size.y);
-    let near = sin(half_turn_per_row * row_from_pole);
-    let far = sin(half_turn_per_row * (row_from_pole + 1.0));
+    let near = cos_sin(half_turn_per_row * row_from_pole).y;
+    let far = cos_sin(half_turn_per_row * (row_from_pole + 1.0)).y;
     let s = near * near + across * (far * far - near * near);
     let cos_from_pole = 1.0 - 2.0 * s;
     let sin_polar = 2.0 * sqrt(max(0.0, s * (1.0 - s)));

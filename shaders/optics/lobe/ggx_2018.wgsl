@@ -8,10 +8,10 @@ fn ggx_2018_sample(shape: LobeShape, frame: Frame, wo_world: vec3f, xi: vec3f) -
     let t1 = normalize_or(vec3f(-v.y, v.x, 0.0), vec3f(1.0, 0.0, 0.0));
     let t2 = cross(v, t1);
     let radius = safe_sqrt(xi.x);
-    let phi_rad = 2.0 * PI * xi.y;
-    let p1 = radius * cos(phi_rad);
+    let around = cos_sin(2.0 * PI * xi.y);
+    let p1 = radius * around.x;
     let s = 0.5 * (1.0 + v.z);
-    let p2 = (1.0 - s) * safe_sqrt(1.0 - p1 * p1) + s * radius * sin(phi_rad);
+    let p2 = (1.0 - s) * safe_sqrt(1.0 - p1 * p1) + s * radius * around.y;
     let p3 = safe_sqrt(1.0 - p1 * p1 - p2 * p2);
     let n = t1 * p1 + t2 * p2 + v * p3;
     let h = normalize_or(vec3f(n.xy * alpha, max(n.z, 0.0)), vec3f(0.0, 0.0, 1.0));

@@ -4,8 +4,7 @@
 fn ggx_ndf_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
     let alpha = microfacet_alpha(shape);
     let slope = sqrt(xi.x / (1.0 - xi.x));
-    let phi_rad = 2.0 * PI * xi.y;
-    let tilted = vec3f(alpha.x * slope * cos(phi_rad), alpha.y * slope * sin(phi_rad), 1.0);
+    let tilted = vec3f(alpha * slope * cos_sin(2.0 * PI * xi.y), 1.0);
     let h = normalize_or(tilted, vec3f(0.0, 0.0, 1.0));
     return world_from_local(frame, mirrored_about(local_from_world(frame, wo), h));
 }

@@ -10,9 +10,8 @@ fn phong_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
     let power = log(1.0 - xi.x) / (phong_exponent(shape.roughness) + 1.0);
     let cosine = exp(power);
     let sine = safe_sqrt(-expm1(2.0 * power));
-    let phi_rad = 2.0 * PI * xi.y;
     let around_mirror = frame_from_normal(mirrored_about(wo, frame.normal));
-    return world_from_local(around_mirror, vec3f(sine * cos(phi_rad), sine * sin(phi_rad), cosine));
+    return world_from_local(around_mirror, vec3f(sine * cos_sin(2.0 * PI * xi.y), cosine));
 }
 
 fn phong_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
