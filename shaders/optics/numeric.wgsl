@@ -36,20 +36,18 @@ fn arctan2(y: f32, x: f32) -> f32 {
     return select(angle, -angle, y < 0.0);
 }
 
-// Cosine and sine of an angle in radians, in [-1e4, 1e4], to 2e-7. Instead of the built-ins, which may be 5e-4 off: a tenth of
-// what a sharp reflection is wide. Polynomials of Cephes.
-fn cos_sin(angle_rad: f32) -> vec2f {
-    let quadrant = round(angle_rad * (2.0 / PI));
-    // Pi / 2 in three parts, of which the first two have so few digits that their products are exact.
-    let angle = ((angle_rad - quadrant * 1.5703125) - quadrant * 4.8375129e-4) - quadrant * 7.549790e-8;
+// The place on the unit circle after so many turns, in [-1e4, 1e4]: cosine and sine to 2e-7. Instead of the built-ins, which
+// may be 5e-4 off: a tenth of what a sharp reflection is wide. Polynomials of Cephes.
+fn unit_circle(turns: f32) -> vec2f {
+    let quarters = 4.0 * turns;
+    let quadrant = round(quarters);
+    let angle = (quarters - quadrant) * (0.5 * PI);
     let s = angle * angle;
     let sine = angle + angle * s * (-1.6666654611e-1 + s * (8.3321608736e-3 - s * 1.9515295891e-4));
     let cosine = 1.0 - 0.5 * s + s * s * (4.166664568298827e-2 + s * (-1.388731625493765e-3 + s * 2.443315711809948e-5));
-    let turn = u32(i32(quadrant)) & 3u;
-    let is_odd = (turn & 1u) == 1u;
-    let x = select(cosine, sine, is_odd);
-    let y = select(sine, cosine, is_odd);
-    return vec2f(select(x, -x, turn == 1u || turn == 2u), select(y, -y, turn >= 2u));
+    let turned = i32(quadrant);
+    let place = select(vec2f(cosine, sine), vec2f(-sine, cosine), (turned & 1) != 0);
+    return select(place, -place, (turned & 2) != 0);
 }
 
 fn safe_sqrt(x: f32) -> f32 {

@@ -50,12 +50,12 @@ fn environment_uv(direction: vec3f) -> vec2f {
 }
 
 fn environment_direction(uv: vec2f) -> vec3f {
-    let polar = cos_sin(uv.y * PI);
+    let polar = unit_circle(0.5 * uv.y);
     return environment_direction_from_angles(uv.x, polar.x, polar.y);
 }
 
 fn environment_direction_from_angles(u: f32, cos_polar: f32, sin_polar: f32) -> vec3f {
-    let azimuth = cos_sin((u - 0.5) * (2.0 * PI));
+    let azimuth = unit_circle(u - 0.5);
     return vec3f(-(azimuth.y * sin_polar), cos_polar, azimuth.x * sin_polar);
 }
 
@@ -101,9 +101,9 @@ fn environment_direction_in_cell(cell: vec2u, place: vec2f, cells_size: vec2u) -
     let is_south = 2u * cell.y >= cells_size.y;
     let row_from_pole = f32(select(cell.y, cells_size.y - 1u - cell.y, is_south));
     let across = select(place.y, 1.0 - place.y, is_south);
-    let half_turn_per_row = 0.5 * PI / f32(cells_size.y);
-    let near = cos_sin(half_turn_per_row * row_from_pole).y;
-    let far = cos_sin(half_turn_per_row * (row_from_pole + 1.0)).y;
+    let turns_per_row = 0.25 / f32(cells_size.y);
+    let near = unit_circle(turns_per_row * row_from_pole).y;
+    let far = unit_circle(turns_per_row * (row_from_pole + 1.0)).y;
     let s = near * near + across * (far * far - near * near);
     let cos_from_pole = 1.0 - 2.0 * s;
     let sin_polar = 2.0 * sqrt(max(0.0, s * (1.0 - s)));

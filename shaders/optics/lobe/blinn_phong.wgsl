@@ -10,7 +10,7 @@ fn blinn_phong_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> v
     let power = log(1.0 - xi.x) / (blinn_phong_exponent(shape.roughness) + 2.0);
     let cosine = exp(power);
     let sine = safe_sqrt(-expm1(2.0 * power));
-    let h = vec3f(sine * cos_sin(2.0 * PI * xi.y), cosine);
+    let h = vec3f(sine * unit_circle(xi.y), cosine);
     return world_from_local(frame, mirrored_about(local_from_world(frame, wo), h));
 }
 

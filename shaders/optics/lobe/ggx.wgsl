@@ -7,7 +7,7 @@ fn ggx_sample(shape: LobeShape, frame: Frame, wo_world: vec3f, xi: vec3f) -> vec
     let stretched = normalize_or(vec3f(wo.xy * alpha, wo.z), vec3f(0.0, 0.0, 1.0));
     let z = (1.0 - xi.y) * (1.0 + stretched.z) - stretched.z;
     let sine = safe_sqrt(1.0 - z * z);
-    let cap = vec3f(sine * cos_sin(2.0 * PI * xi.x), z) + stretched;
+    let cap = vec3f(sine * unit_circle(xi.x), z) + stretched;
     let h = normalize_or(vec3f(cap.xy * alpha, max(cap.z, 0.0)), vec3f(0.0, 0.0, 1.0));
     return world_from_local(frame, mirrored_about(wo, h));
 }

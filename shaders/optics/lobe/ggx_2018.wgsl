@@ -8,7 +8,7 @@ fn ggx_2018_sample(shape: LobeShape, frame: Frame, wo_world: vec3f, xi: vec3f) -
     let t1 = normalize_or(vec3f(-v.y, v.x, 0.0), vec3f(1.0, 0.0, 0.0));
     let t2 = cross(v, t1);
     let radius = safe_sqrt(xi.x);
-    let around = cos_sin(2.0 * PI * xi.y);
+    let around = unit_circle(xi.y);
     let p1 = radius * around.x;
     let s = 0.5 * (1.0 + v.z);
     let p2 = (1.0 - s) * safe_sqrt(1.0 - p1 * p1) + s * radius * around.y;

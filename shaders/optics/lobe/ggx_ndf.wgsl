@@ -4,7 +4,7 @@
 fn ggx_ndf_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
     let alpha = microfacet_alpha(shape);
     let slope = sqrt(xi.x / (1.0 - xi.x));
-    let tilted = vec3f(alpha * slope * cos_sin(2.0 * PI * xi.y), 1.0);
+    let tilted = vec3f(alpha * slope * unit_circle(xi.y), 1.0);
     let h = normalize_or(tilted, vec3f(0.0, 0.0, 1.0));
     return world_from_local(frame, mirrored_about(local_from_world(frame, wo), h));
 }

@@ -11,7 +11,7 @@ fn phong_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec3f {
     let cosine = exp(power);
     let sine = safe_sqrt(-expm1(2.0 * power));
     let around_mirror = frame_from_normal(mirrored_about(wo, frame.normal));
-    return world_from_local(around_mirror, vec3f(sine * cos_sin(2.0 * PI * xi.y), cosine));
+    return world_from_local(around_mirror, vec3f(sine * unit_circle(xi.y), cosine));
 }
 
 fn phong_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
