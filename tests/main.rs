@@ -55,8 +55,6 @@ mod environment_files;
 mod environment_sampling;
 #[path = "suite/environment_shapes.rs"]
 mod environment_shapes;
-#[path = "suite/environment_twin.rs"]
-mod environment_twin;
 #[path = "suite/exchange.rs"]
 mod exchange;
 #[path = "suite/exchange_details.rs"]
