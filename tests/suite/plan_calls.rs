@@ -1,7 +1,9 @@
 //! What calls for an effect: for each of the registry the least that does, one channel and one place at a time.
 
 use glossmith::document::effect::{EFFECTS, EffectSwitches, Switch};
-use glossmith::document::{AreaLight, Background, Denoise, Document, MaterialSettings, Strategy, TextureUse};
+use glossmith::document::{
+    AreaLight, Background, Denoise, Document, GroundKind, MaterialSettings, Strategy, TextureUse,
+};
 use glossmith::job::effect::{ANY, EffectId};
 use glossmith::job::plan::Plan;
 use glossmith::optics::curve::Curve;
@@ -164,6 +166,14 @@ fn calls_for(effect: &str) -> Calls {
             &[|d, _| d.lighting.background = Background::Environment],
         ),
         "ground" => (metal, &[|d, _| d.ground = true]),
+        "shadow-catcher" => (
+            || {
+                let mut document = metal();
+                document.ground = true;
+                document
+            },
+            &[|d, _| d.lighting.ground.kind = GroundKind::ShadowCatcher],
+        ),
         "interreflection" => (
             metal,
             &[
