@@ -11,11 +11,11 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::environment::Environment;
+use super::environment::{Environment, environment_local_from_world, environment_radiance};
 use super::ground::HALF_SIDE;
 use super::light::AreaShape;
 use crate::optics::real::Real;
-use crate::optics::vector::Vec3;
+use crate::optics::vector::{Vec3, vec3};
 
 /// Nodes along each side where area lights shine; without them the light is the same all over.
 const SIDE: usize = 128;
@@ -33,9 +33,11 @@ pub const CATCHER_REFLECTANCE: f32 = 0.04;
 pub struct CatcherLight<'a> {
     /// The environment.
     pub environment: &'a Environment,
+    /// Cosine and sine of its rotation about +Y.
+    pub rotation: [f64; 2],
     /// Factor of its radiance.
     pub strength: f64,
-    /// Area lights with the radiance of each.
+    /// Area lights with the radiance of each. They shine, and take the light from behind them away.
     pub area_lights: &'a [(AreaShape, [f64; 3])],
 }
 
@@ -45,7 +47,7 @@ pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> 
     let near: Vec<_> = light
         .area_lights
         .iter()
-        .map(|(shape, radiance)| (shape.corners(), *radiance))
+        .map(|(shape, radiance)| (parts(&shape.corners()), *radiance))
         .collect();
     let side = if near.is_empty() { 1 } else { SIDE };
     let at = |index: usize| {
@@ -53,17 +55,42 @@ pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> 
         let place = DVec3::new(x, height, z);
         let mut sum = far;
         for (triangles, radiance) in &near {
-            let share: f64 = triangles.iter().map(|corners| form_factor(place, corners)).sum();
-            for (sum, radiance) in sum.iter_mut().zip(radiance) {
-                *sum += share * radiance;
+            for corners in triangles {
+                let share = form_factor(place, corners);
+                let behind = light.behind(place, corners);
+                for (channel, sum) in sum.iter_mut().enumerate() {
+                    *sum += share * (radiance[channel] - behind[channel]);
+                }
             }
         }
-        sum.map(|radiance| radiance as f32)
+        sum.map(|radiance| radiance.max(0.0) as f32)
     };
     let nodes: Vec<[f32; 3]> = (0..side * side).into_par_iter().map(at).collect();
     let mut table = vec![side as f32, reflection];
     table.extend(nodes.iter().flatten());
     table
+}
+
+impl CatcherLight<'_> {
+    /// What the environment would send to a place from behind the middle of a triangle.
+    fn behind(&self, place: DVec3, corners: &[DVec3; 3]) -> [f64; 3] {
+        let [x, y, z] = (corners.iter().sum::<DVec3>() / 3.0 - place)
+            .normalize_or(DVec3::Y)
+            .to_array();
+        let local = environment_local_from_world(vec3(x, y, z), self.rotation);
+        environment_radiance(self.environment, local)
+            .to_f64()
+            .map(|radiance| radiance * self.strength)
+    }
+}
+
+/// Triangles each cut into four, so that the environment behind each part may be taken as that behind its middle.
+fn parts(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 3]> {
+    let cut = |&[a, b, c]: &[DVec3; 3]| {
+        let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    };
+    triangles.iter().flat_map(cut).collect()
 }
 
 /// Where a node is along an axis.
@@ -174,7 +201,6 @@ pub fn catcher_reflectance<T: Real>(tables: &[f32], table: u32, cosine: T) -> T 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::vector::vec3;
     use crate::scene::environment::{self, EnvironmentSource};
 
     #[test]
@@ -216,6 +242,7 @@ mod tests {
         let environment = environment::load(&EnvironmentSource::Furnace).expect("loads");
         let light = CatcherLight {
             environment: &environment,
+            rotation: [1.0, 0.0],
             strength: 2.0,
             area_lights: &[],
         };
@@ -243,6 +270,7 @@ mod tests {
         };
         let light = CatcherLight {
             environment: &environment,
+            rotation: [1.0, 0.0],
             strength: 0.0,
             area_lights: &[(shape, [10.0, 5.0, 1.0])],
         };
