@@ -46,6 +46,13 @@ pub(in crate::app) fn grid(ui: &mut Ui, content: impl FnOnce(&mut Ui)) {
     });
 }
 
+/// Begins another row of a grid where there is no room for something so wide, points.
+pub(in crate::app) fn make_room(ui: &mut Ui, width: f32) {
+    if ui.available_size_before_wrap().x < width {
+        ui.end_row();
+    }
+}
+
 impl Tile<'_> {
     /// Shows it; `menu` is what its button and a right click open.
     pub(in crate::app) fn show(&self, ui: &mut Ui, layout: Layout, mut menu: impl FnMut(&mut Ui)) -> Response {

@@ -18,13 +18,18 @@ use crate::store::exchange::FORMATS;
 use crate::store::preset::command_line_name;
 use crate::store::shelf::{Contents, Item, ItemKind};
 
-/// The groups of the shipped materials, each with what belongs there and to no group before it.
-const KINDS: [(&str, fn(&MaterialSettings) -> bool); 4] = [
-    ("Glass and liquids", |material| material.transmission_weight > 0.0),
-    ("Metals", |material| material.metalness >= 0.5),
-    ("Coated", |material| material.coat_weight > 0.0),
-    ("Plastics and matt", |_| true),
-];
+/// The groups of the shipped materials, from the top.
+const KINDS: [&str; 4] = ["Plastics and matt", "Coated", "Metals", "Glass and liquids"];
+
+/// The group of a shipped material.
+fn kind_of(material: &MaterialSettings) -> usize {
+    match material {
+        _ if material.transmission_weight > 0.0 => 3,
+        _ if material.metalness >= 0.5 => 2,
+        _ if material.coat_weight > 0.0 => 1,
+        _ => 0,
+    }
+}
 
 /// Things that stand together.
 pub(super) struct Group {
@@ -114,6 +119,14 @@ impl Entry {
         has(&self.name) || has(group) || has(&kept.tags_of(&self.key))
     }
 
+    /// Width of its picture over the height.
+    pub(super) fn aspect(&self) -> f32 {
+        match self.kind {
+            EntryKind::Environment(_) => 2.0,
+            EntryKind::Material(_) | EntryKind::Broken(_) => 1.0,
+        }
+    }
+
     /// Shows it, and takes what the user does with it.
     pub(super) fn show(
         &self,
@@ -122,14 +135,14 @@ impl Entry {
         layout: Layout,
         tagging: &mut Option<(String, String)>,
     ) {
-        let (aspect, color, is_current) = match &self.kind {
+        let (color, is_current) = match &self.kind {
             EntryKind::Material(material) => {
                 let [r, g, b] = widgets::srgb_of(material.base_color);
-                (1.0, egui::Color32::from_rgb(r, g, b), **material == desk.material())
+                (egui::Color32::from_rgb(r, g, b), **material == desk.material())
             }
             EntryKind::Environment(source) => {
                 let is_current = *source == desk.document.lighting.environment;
-                (2.0, ui.visuals().extreme_bg_color, is_current)
+                (ui.visuals().extreme_bg_color, is_current)
             }
             EntryKind::Broken(why) => {
                 let label = egui::Label::new(&self.name).truncate();
@@ -146,7 +159,7 @@ impl Entry {
             full_name: &self.full_name,
             menu_name: &menu_name,
             picture: self.picture.as_ref(),
-            aspect,
+            aspect: self.aspect(),
             color,
             is_current,
             is_favourite: desk.shared.shelves.kept.favourites.contains(&self.key),
@@ -247,14 +260,13 @@ pub(super) fn groups(ctx: &egui::Context, desk: &mut Desk<'_>) -> Vec<Group> {
 }
 
 fn shipped(desk: &Desk<'_>) -> Vec<Group> {
-    let mut groups: Vec<Group> = KINDS.iter().map(|(title, _)| Group::new(*title, Vec::new())).collect();
+    let mut groups = KINDS.map(|title| Group::new(title, Vec::new()));
     for (index, material) in PRESETS.iter().enumerate() {
         let key = format!("preset:{}", command_line_name(&material.name));
         let entry = Entry::material(key, material, desk.shared.library.shipped_picture(index));
-        let kind = KINDS.iter().position(|(_, holds)| holds(material)).unwrap_or_default();
-        groups[kind].entries.push(entry);
+        groups[kind_of(material)].entries.push(entry);
     }
-    groups
+    groups.into()
 }
 
 fn own(desk: &Desk<'_>) -> Vec<Entry> {

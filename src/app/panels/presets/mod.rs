@@ -8,7 +8,7 @@ use super::Panel;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
-use crate::app::kit::tile::Layout;
+use crate::app::kit::tile::{self, Layout};
 use crate::app::kit::widgets;
 use crate::app::services::library::Change;
 use crate::app::services::shelves::{LIST, SIDE_MAX};
@@ -116,7 +116,7 @@ impl PresetsPanel {
                         .entries
                         .iter()
                         .for_each(|entry| self.entry(ui, desk, entry, layout)),
-                    Layout::Grid(_) => crate::app::kit::tile::grid(ui, |ui| {
+                    Layout::Grid(_) => tile::grid(ui, |ui| {
                         group
                             .entries
                             .iter()
@@ -132,6 +132,9 @@ impl PresetsPanel {
 
     /// One thing, or the field in which its name or its tags are typed.
     fn entry(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, entry: &Entry, layout: Layout) {
+        if let Layout::Grid(height) = layout {
+            tile::make_room(ui, height * entry.aspect());
+        }
         // By what it is, as others may come before it.
         let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("preset", &entry.key)));
         ui.scope_builder(builder, |ui| {

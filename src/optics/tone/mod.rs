@@ -2,9 +2,13 @@
 //!
 //! To add a curve: a function here, a line in the list of curves, one in [`tone_map`].
 
+mod aces2;
+
 use super::real::Real;
 use super::vector::{Vec3, vec3};
 use crate::named::named;
+
+pub use aces2::tone_aces2;
 
 named! {
     /// The tone curve.
@@ -13,8 +17,9 @@ named! {
         #[default]
         Agx = 0, "agx", "AgX", "Bright colours fade to white as on film: for any picture with strong light.";
         Aces = 1, "aces", "ACES", "Strong contrast and saturation, as in films and games (Hill's fit of ACES 1.0).";
-        PbrNeutral = 2, "pbr-neutral", "PBR Neutral", "Colours below the highlights stay exactly as they are: for product pictures.";
-        None = 3, "none", "None", "Cut off at white: for comparing numbers.";
+        Aces2 = 2, "aces2", "ACES 2", "The Academy's transform of 2024 for screens: softer than the first, colours keep their hue up to white.";
+        PbrNeutral = 3, "pbr-neutral", "PBR Neutral", "Colours below the highlights stay exactly as they are: for product pictures.";
+        None = 4, "none", "None", "Cut off at white: for comparing numbers.";
     }
 }
 
@@ -28,6 +33,7 @@ pub fn tone_map<T: Real>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
         ToneCurve::Aces => tone_aces(scene),
         ToneCurve::PbrNeutral => tone_pbr_neutral(scene),
         ToneCurve::None => tone_none(scene),
+        ToneCurve::Aces2 => tone_aces2(scene),
     };
     display.map(|x| x.clamp(T::zero(), T::one()))
 }
