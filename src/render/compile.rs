@@ -6,7 +6,7 @@ use super::assets::Assets;
 use super::session::SessionError;
 use crate::document::effect::{Facts, Switch, plan, without_what_is_off};
 use crate::document::{
-    AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile_textured,
+    AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, Shine, compile_textured,
 };
 use crate::job::effect::EffectId;
 use crate::job::{BackgroundKind, Job, Settings};
@@ -19,8 +19,8 @@ use crate::scene::texture::Textures;
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
 
-/// What materials and tables depend on.
-type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>);
+/// What materials and tables depend on: settings, textures, and the slots of area lights with how each shines.
+type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>, Vec<(usize, Shine)>);
 
 /// What the table of emitting triangles depends on: geometry, and the emission of each slot.
 type LightsKey = (Arc<Geometry>, Vec<f32>);
@@ -49,7 +49,9 @@ impl Compiler {
         let environment = assets.environment(&lighting.environment, lighting.environment_encoding)?;
         let textures = assets.textures(source, options)?;
         let slots = slot_materials(document, model.slots.len());
-        let (materials, tables) = self.materials(&slots, &textures);
+        let first_light = model.slots.len() + usize::from(document.ground);
+        let shines = (first_light..).zip(lighting.shining().map(AreaLight::shine)).collect();
+        let (materials, tables) = self.materials(&slots, &textures, shines);
         let lights = self.lights(&geometry, &materials);
         let environment_strength = f64::from(document.lighting.strength);
         let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
@@ -99,14 +101,24 @@ impl Compiler {
         })
     }
 
-    fn materials(&mut self, wanted: &[MaterialSettings], textures: &Arc<Textures>) -> Compiled {
-        let is_known = |(of, looked_up): &MaterialsKey| of == wanted && Arc::ptr_eq(looked_up, textures);
+    fn materials(
+        &mut self,
+        wanted: &[MaterialSettings],
+        textures: &Arc<Textures>,
+        shines: Vec<(usize, Shine)>,
+    ) -> Compiled {
+        let is_known = |(of, looked_up, shone): &MaterialsKey| {
+            of == wanted && Arc::ptr_eq(looked_up, textures) && *shone == shines
+        };
         if let Some((_, compiled)) = self.materials.as_ref().filter(|(key, _)| is_known(key)) {
             return compiled.clone();
         }
-        let (materials, tables) = compile_textured(wanted, &textures.slots);
+        let (mut materials, tables) = compile_textured(wanted, &textures.slots);
+        for (slot, shine) in &shines {
+            shine.finish(&mut materials[*slot]);
+        }
         let compiled = (Arc::new(materials), Arc::new(tables));
-        self.materials = Some(((wanted.to_vec(), textures.clone()), compiled.clone()));
+        self.materials = Some(((wanted.to_vec(), textures.clone(), shines), compiled.clone()));
         compiled
     }
 

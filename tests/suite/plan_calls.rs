@@ -1,7 +1,9 @@
 //! What calls for an effect: for each of the registry the least that does, one channel and one place at a time.
 
 use glossmith::document::effect::{EFFECTS, EffectSwitches, Switch};
-use glossmith::document::{AreaLight, Background, Denoise, Document, MaterialSettings, Strategy, TextureUse};
+use glossmith::document::{
+    AreaLight, AreaLightShape, Background, Denoise, Document, MaterialSettings, Strategy, TextureUse,
+};
 use glossmith::job::effect::{ANY, EffectId};
 use glossmith::job::plan::Plan;
 use glossmith::optics::curve::Curve;
@@ -140,6 +142,15 @@ fn calls_for(effect: &str) -> Calls {
                     (material.emission_color, material.emission_strength) = (one(c, LEAST, 0.0), 1.0);
                 },
             ],
+        ),
+        "spot" => (
+            metal,
+            &[|d, _| {
+                d.lighting.area_lights.push(AreaLight {
+                    shape: AreaLightShape::Spot,
+                    ..AreaLight::default()
+                });
+            }],
         ),
         "area-lights" => (metal, &[|d, _| d.lighting.area_lights.push(AreaLight::default())]),
         "emission" => (
