@@ -8,6 +8,7 @@ pub mod custom_curve;
 pub mod effect;
 pub mod history;
 pub mod import;
+pub mod light_handle;
 pub mod match_look;
 mod material;
 pub mod measured_look;
