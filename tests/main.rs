@@ -139,6 +139,8 @@ mod refused;
 mod renders;
 #[path = "suite/same_paths.rs"]
 mod same_paths;
+#[path = "suite/shadow_catcher.rs"]
+mod shadow_catcher;
 #[path = "suite/statistics.rs"]
 mod statistics;
 #[path = "suite/structure.rs"]

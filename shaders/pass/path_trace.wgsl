@@ -3,6 +3,7 @@
 #import "optics/random"
 #import "optics/warp"
 #import "scene/camera"
+#import "scene/catcher"
 #import "scene/choices"
 #import "scene/environment"
 #import "scene/light"
@@ -14,6 +15,14 @@ const FIRST_DIMENSION: u32 = 2u;
 const BOUNCE_DIMENSIONS: u32 = 4u;
 // The first of the pairs of numbers for what the specular lobe passed on, two a bounce: beyond those of every path.
 const BELOW_DIMENSION: u32 = 4096u;
+// The pairs of numbers for what a shadow catcher does with a camera ray, and for the blur of the background below it.
+const CATCHER_DIMENSION: u32 = 12288u;
+// What a shadow catcher makes of a path: it has met none; the light that arrives tells how much of the background is seen,
+// or, over a transparent one, its alpha; it is mirrored.
+const CAUGHT_NOT: u32 = 0u;
+const CAUGHT_SHADOW: u32 = 1u;
+const CAUGHT_ALPHA: u32 = 2u;
+const CAUGHT_MIRRORED: u32 = 3u;
 // Bounces before Russian roulette.
 const ROULETTE_START: u32 = 3u;
 // Beyond it the square would overflow: dropped and counted.
@@ -202,10 +211,10 @@ fn limited(contribution: vec3f, reflections: u32, taken: ptr<function, f32>) -> 
     return contribution * kept;
 }
 
-fn camera_background(direction: vec3f, state: RandomState, rays: u32) -> PathResult {
+// What the camera sees where it meets nothing; a blur is drawn with the pair of this dimension.
+fn camera_background(direction: vec3f, state: RandomState, dimension: u32, rays: u32) -> PathResult {
     if globals.background_kind == BACKGROUND_BLURRED {
-        // The numbers of the first bounce, which there is none of.
-        let disc = globals.background.x * uniform_disc(random_pair(state, FIRST_DIMENSION));
+        let disc = globals.background.x * uniform_disc(random_pair(state, dimension));
         let blurred = world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
         return PathResult(far_radiance(blurred), 1.0, rays, 0.0, GuideSums());
     }
@@ -215,6 +224,34 @@ fn camera_background(direction: vec3f, state: RandomState, rays: u32) -> PathRes
     let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
     let color = select(globals.background, vec3f(0.0), is_transparent);
     return PathResult(color, select(1.0, 0.0, is_transparent), rays, 0.0, GuideSums());
+}
+
+// How a path begins anew at the shadow catcher.
+struct Caught {
+    kind: u32,
+    throughput: vec3f,
+    // Of the background where it is mirrored; else what has no shadow, since no light of that colour would reach the place.
+    radiance: vec3f,
+    alpha: f32,
+}
+
+// A camera ray met the shadow catcher; it is not there seen from below, and without light.
+fn catch_shadow(position: vec3f, direction: vec3f, state: RandomState) -> Caught {
+    let light = catcher_light(globals.catcher_table, position);
+    if direction.y >= 0.0 || max(max(light.x, light.y), light.z) <= 0.0 {
+        return Caught(CAUGHT_NOT, vec3f(0.0), vec3f(0.0), 0.0);
+    }
+    let background = camera_background(direction, state, CATCHER_DIMENSION + 1u, 0u);
+    if random_pair(state, CATCHER_DIMENSION).x < catcher_reflectance(globals.catcher_table, -direction.y) {
+        return Caught(CAUGHT_MIRRORED, vec3f(1.0), background.radiance, background.alpha);
+    }
+    let is_transparent = background.alpha <= 0.0;
+    let shown = select(background.radiance, vec3f(1.0), is_transparent);
+    let albedo = materials[globals.catcher_slot].base_color;
+    let is_lit = select(vec3f(0.0), vec3f(1.0), light > vec3f(0.0));
+    let reflected = light * albedo + (vec3f(1.0) - is_lit);
+    let kind = select(CAUGHT_SHADOW, CAUGHT_ALPHA, is_transparent);
+    return Caught(kind, shown * is_lit / reflected, shown * (vec3f(1.0) - is_lit), 1.0);
 }
 
 fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
@@ -230,6 +267,8 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var rays = 0u;
     var leaves = false;
     var seen = GuideSums();
+    var caught = CAUGHT_NOT;
+    var below = Caught();
     // Nothing but mirrors and clear glass so far.
     var looks = PLAN_GUIDES == 1u && sample < GUIDE_SAMPLES;
     for (var bounce = 0u; ; bounce++) {
@@ -239,14 +278,38 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         if hit.triangle == NO_HIT {
             if bounce == 0u {
-                return camera_background(ray.direction, state, rays);
+                // The numbers of the first bounce, which there is none of.
+                return camera_background(ray.direction, state, FIRST_DIMENSION, rays);
+            }
+            if PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_MIRRORED {
+                return PathResult(radiance + below.radiance, below.alpha, rays, clamped, seen);
             }
             let found = throughput * far_light(ray.direction, lobe_density, was_mirror);
             radiance += limited(found, bounce, &clamped);
             break;
         }
         let point = surface_at(hit, ray.direction);
-        let material = textured_material(materials[point.slot], point.uvs, point.vertex_color);
+        var slot = point.slot;
+        if PLAN_SHADOW_CATCHER == 1u {
+            if caught == CAUGHT_MIRRORED {
+                caught = CAUGHT_NOT;
+            }
+            if bounce == 0u && slot == globals.catcher_slot {
+                below = catch_shadow(point.position, ray.direction, state);
+                caught = below.kind;
+                if caught == CAUGHT_NOT {
+                    return camera_background(ray.direction, state, FIRST_DIMENSION, rays);
+                }
+                throughput = below.throughput;
+                if caught == CAUGHT_MIRRORED {
+                    slot = globals.catcher_reflection_slot;
+                } else {
+                    radiance = below.radiance;
+                }
+            }
+        }
+        let is_mirrored = PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_MIRRORED;
+        let material = textured_material(materials[slot], point.uvs, point.vertex_color);
         if PLAN_ABSORPTION == 1u && point.surface.is_inside && material_transmits(material) {
             throughput *= exp(-material.absorption * hit.t);
         }
@@ -267,7 +330,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             break;
         }
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
-        if samples_light() {
+        if samples_light() && !is_mirrored {
             let found = throughput * direct_light(point, material, state, dimension + 2u, &rays);
             radiance += limited(found, bounce + 1u, &clamped);
         }
@@ -278,7 +341,15 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             let pair = BELOW_DIMENSION + 2u * bounce;
             numbers.below = vec3f(random_pair(state, pair), random_pair(state, pair + 1u).x);
         }
-        let drawn = material_sample(material, point.surface, numbers, wants_density);
+        var drawn = material_sample(material, point.surface, numbers, wants_density);
+        leaves = meets_nothing(point, drawn.wi);
+        looks = looks && drawn.is_mirror;
+        if is_mirrored {
+            // All of it goes on, also what the facets would keep, and none of what it meets is left to light sampling.
+            leaves = leaves || !any(drawn.throughput > vec3f(0.0));
+            drawn.throughput = vec3f(1.0);
+            drawn.is_mirror = true;
+        }
         throughput *= drawn.throughput;
         let strength = max(max(throughput.x, throughput.y), throughput.z);
         if !(strength > 0.0) {
@@ -292,9 +363,10 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         lobe_density = drawn.density;
         was_mirror = drawn.is_mirror;
-        looks = looks && was_mirror;
-        leaves = meets_nothing(point, drawn.wi);
         ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
+    }
+    if PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_ALPHA {
+        return PathResult(vec3f(0.0), 1.0 - luminance(radiance), rays, clamped, seen);
     }
     return PathResult(radiance, 1.0, rays, clamped, seen);
 }

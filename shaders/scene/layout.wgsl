@@ -38,8 +38,10 @@ struct Globals {
     density_per_luminance: f32,
     // The largest radiance of an indirect contribution.
     firefly_clamp: f32,
-    reserved: u32,
-    reserved_pair: vec2u,
+    // The slots of the shadow catcher and of what it reflects with, and where its table begins.
+    catcher_slot: u32,
+    catcher_reflection_slot: u32,
+    catcher_table: u32,
 }
 
 struct Material {

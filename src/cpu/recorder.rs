@@ -129,6 +129,15 @@ pub enum Event {
         /// True where the back of the triangle was met.
         is_inside: bool,
     },
+    /// A shadow catcher shows the background, as far as light reaches it.
+    Caught {
+        /// What is seen of the background; 1 where it is transparent, and the path's light is taken from that.
+        background: [f32; 3],
+        /// The radiance of a white matt plane there, nothing in the way of the light.
+        light: [f32; 3],
+        /// What the light that arrives is multiplied by from here on.
+        throughput: [f32; 3],
+    },
     /// The interior took its part of the light.
     Absorption {
         /// The way inside.

@@ -11,6 +11,7 @@ use super::{MaterialSettings, range};
 use crate::named::named;
 use crate::optics::material::Material;
 use crate::optics::vector::Vec3;
+use crate::scene::catcher::NearLight;
 use crate::scene::light::{AreaShape, Outline};
 
 /// How far away a sun is, bounding radii: its light is parallel to a hundredth of a degree.
@@ -241,6 +242,16 @@ impl AreaLight {
         }
     }
 
+    /// How it lights a shadow catcher.
+    pub fn seen_from_near(&self) -> NearLight {
+        let radiance = self.radiance();
+        NearLight {
+            shape: self.shape(),
+            radiance: self.color.map(|channel| f64::from(channel) * radiance),
+            spot: self.shine().ramp(),
+        }
+    }
+
     /// All that its compiled surface depends on.
     pub fn shine(&self) -> Shine {
         Shine {
@@ -262,13 +273,19 @@ pub struct Shine {
 }
 
 impl Shine {
+    /// Scale and offset of a spot's ramp, see [`spot_share`](crate::scene::light::spot_share); 0 and 1 of other lights.
+    fn ramp(&self) -> [f64; 2] {
+        let Some([inner, outer]) = self.cone_cosines else {
+            return [0.0, 1.0];
+        };
+        let scale = 1.0 / (inner - outer);
+        [scale, -outer * scale]
+    }
+
     /// What of its compiled surface a material of the model can't have: a spot's cone, and how often a sun is drawn, which
     /// its irradiance says and not its area.
     pub fn finish(&self, material: &mut Material<f32>) {
-        if let Some([inner, outer]) = self.cone_cosines {
-            let scale = 1.0 / (inner - outer);
-            (material.spot_scale, material.spot_offset) = (scale as f32, (-outer * scale) as f32);
-        }
+        [material.spot_scale, material.spot_offset] = self.ramp().map(|number| number as f32);
         if self.is_sun {
             material.light_luminance *= (SUN_DISTANCE * SUN_DISTANCE).recip() as f32;
         }

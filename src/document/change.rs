@@ -17,7 +17,7 @@ pub struct Change {
     pub lighting: bool,
     /// A material, or the colour of the ground or of an area light.
     pub materials: bool,
-    /// The model, whether there is a ground, or the place of an area light.
+    /// The model, the shape of the ground, or the place of an area light.
     pub geometry: bool,
     /// Bounces, sequence, strategy, seed, pixel filter, effects switched on or off, the part that is rendered.
     pub sampling: bool,

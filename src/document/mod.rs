@@ -6,6 +6,7 @@ pub mod change;
 mod compile;
 pub mod custom_curve;
 pub mod effect;
+mod ground;
 pub mod history;
 pub mod import;
 pub mod light_handle;
@@ -26,6 +27,7 @@ pub use area_light::{AreaLight, AreaLightShape, Shine};
 pub use change::Change;
 pub use compile::{compile, compile_textured};
 pub use custom_curve::CustomCurve;
+pub use ground::{GroundKind, GroundSettings};
 pub use history::History;
 pub use import::ImportLobe;
 pub use material::{Conductor, MaterialSettings, TextureUse};
@@ -55,7 +57,7 @@ pub struct Document {
     pub hidden_objects: Vec<usize>,
     /// Names of objects of the model instead of the file's, by number; no picture depends on them.
     pub object_names: BTreeMap<usize, String>,
-    /// Whether the model stands on a ground plane.
+    /// Whether the model stands on a ground.
     pub ground: bool,
     /// The materials in the order of the model's slots. A slot beyond the last takes the last one.
     pub materials: Vec<MaterialSettings>,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::effect::{EffectSwitches, Switch};
 use super::parameter::{ParameterError, SETTINGS, Stage};
-use super::{AreaLight, Document};
+use super::{AreaLight, Document, GroundSettings};
 use crate::job::Strategy;
 use crate::job::effect::EffectId;
 use crate::named::named;
@@ -73,6 +73,8 @@ pub mod range {
     pub const POSE_TIME_S: RangeInclusive<f64> = 0.0..=1e6;
     /// How many area lights there may be.
     pub const AREA_LIGHTS: RangeInclusive<f64> = 0.0..=8.0;
+    /// Shares.
+    pub const SHARE: RangeInclusive<f64> = 0.0..=1.0;
     /// Linear colours of things that do not emit.
     pub const COLOR: RangeInclusive<f64> = 0.0..=1.0;
 }
@@ -94,8 +96,10 @@ pub struct Lighting {
     /// How far the environment is blurred where the camera sees it: the angle around each direction over which it is
     /// averaged, degrees. Light and reflections stay sharp.
     pub background_blur_deg: f32,
-    /// Albedo of the ground plane, linear RGB in [0, 1].
+    /// Albedo of the ground, linear RGB in [0, 1].
     pub ground_color: [f32; 3],
+    /// What else the ground is.
+    pub ground: GroundSettings,
     /// Lights beside it, at most 8.
     pub area_lights: Vec<AreaLight>,
 }
@@ -117,6 +121,7 @@ impl Default for Lighting {
             background: Background::default(),
             background_blur_deg: 0.0,
             ground_color: [0.3; 3],
+            ground: GroundSettings::default(),
             area_lights: Vec::new(),
         }
     }

@@ -12,6 +12,7 @@ use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::{Horizon, Lobe, LobeTraits, Width};
 use crate::optics::random::Sequence;
 use crate::scene::camera::PixelFilter;
+use crate::scene::catcher::{CATCHER_BEND, CATCHER_HALF_SIDE, CATCHER_REFLECTANCE};
 
 /// A module that no file holds: the name that `#import` knows it by, and what writes it.
 pub type Generated = (&'static str, fn() -> String);
@@ -50,7 +51,9 @@ fn scene_choices() -> String {
     let backgrounds = BACKGROUNDS.map(|(name, number)| format!("const BACKGROUND_{name}: u32 = {number}u;\n"));
     format!(
         "// Generated from src/job, src/scene/camera.rs and src/gpu.\n{}{}{}const GUIDE_SAMPLES: u32 = {GUIDE_SAMPLES}u;\n\
-         const TEXEL_ROW_BITS: u32 = {TEXEL_ROW_BITS}u;\nconst TILE_COLUMNS: u32 = {TILE_COLUMNS}u;\n",
+         const TEXEL_ROW_BITS: u32 = {TEXEL_ROW_BITS}u;\nconst TILE_COLUMNS: u32 = {TILE_COLUMNS}u;\n\
+         const CATCHER_BEND: f32 = {CATCHER_BEND:?};\nconst CATCHER_HALF_SIDE: f32 = {CATCHER_HALF_SIDE:?};\n\
+         const CATCHER_REFLECTANCE: f32 = {CATCHER_REFLECTANCE:?};\n",
         choices::<Strategy>("STRATEGY"),
         choices::<PixelFilter>("FILTER"),
         backgrounds.concat(),

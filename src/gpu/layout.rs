@@ -56,10 +56,12 @@ pub struct Globals {
     pub density_per_luminance: f32,
     /// The largest radiance of an indirect contribution.
     pub firefly_clamp: f32,
-    /// Fills the last 16 bytes, with the next.
-    pub reserved: u32,
-    /// See `reserved`.
-    pub reserved_pair: [u32; 2],
+    /// The slot of the shadow catcher, and that which it reflects with; no material's where there is none.
+    pub catcher_slot: u32,
+    /// See `catcher_slot`.
+    pub catcher_reflection_slot: u32,
+    /// Where its table begins.
+    pub catcher_table: u32,
 }
 
 /// What a dispatch renders of one tile.
@@ -113,6 +115,10 @@ impl Globals {
             BackgroundKind::Color(color) => (BACKGROUND_COLOR, color),
             BackgroundKind::Blurred(sine) => (BACKGROUND_BLURRED, [sine as f32, 0.0, 0.0]),
         };
+        let [catcher_slot, catcher_reflection_slot, catcher_table] =
+            settings.catcher.map_or([u32::MAX, u32::MAX, 0], |catcher| {
+                [catcher.slot, catcher.reflection_slot, catcher.table]
+            });
         Self {
             camera: settings.camera.cast(),
             image_size: settings.image_size,
@@ -130,8 +136,9 @@ impl Globals {
             environment_probability: settings.light_choice.environment_probability as f32,
             density_per_luminance: settings.light_choice.density_per_luminance as f32,
             firefly_clamp: settings.firefly_clamp.min(f64::from(f32::MAX)) as f32,
-            reserved: 0,
-            reserved_pair: [0; 2],
+            catcher_slot,
+            catcher_reflection_slot,
+            catcher_table,
         }
     }
 }

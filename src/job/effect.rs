@@ -66,6 +66,7 @@ effects! {
     EmitterSampling "emitter-sampling" flag "PLAN_EMITTER_SAMPLING";
     Background "background";
     Ground "ground";
+    ShadowCatcher "shadow-catcher" flag "PLAN_SHADOW_CATCHER";
     Interreflection "interreflection" flag "PLAN_INTERREFLECTION";
     Base "base" flag "PLAN_BASE";
     Specular "specular" flag "PLAN_SPECULAR";

@@ -244,10 +244,12 @@ impl Film {
         (0..self.pixels.len()).map(|pixel| self.color(pixel))
     }
 
-    /// The mean of a pixel's colors and its coverage; black where there is no sample yet.
+    /// The mean of a pixel's colors and its coverage; black where there is no sample yet. The noise of a caught shadow may
+    /// take its coverage out of [0, 1], which is mended here.
     pub fn mean(&self, pixel: usize) -> [f64; 4] {
         let samples = self.samples_of(pixel).max(1.0);
-        self.color(pixel).map(|sum| sum / samples)
+        let [red, green, blue, coverage] = self.color(pixel).map(|sum| sum / samples);
+        [red, green, blue, coverage.clamp(0.0, 1.0)]
     }
 
     /// How many samples are in a pixel's sums.

@@ -33,11 +33,11 @@ pub struct Job {
     pub environment: Arc<Environment>,
     /// What of the geometry emits.
     pub lights: Arc<Lights>,
-    /// The materials by slot: the model's, the ground's, the area lights'.
+    /// The materials by slot: the model's, the ground's, the area lights', what a shadow catcher reflects with.
     pub materials: Arc<Vec<Material<f32>>>,
     /// What the materials look up.
     pub textures: Arc<Textures>,
-    /// Custom curves and albedo tables; never empty.
+    /// Custom curves, albedo tables, the shadow catcher's table; never empty.
     pub tables: Arc<Vec<f32>>,
     /// Camera, light and sampling.
     pub settings: Settings,
@@ -54,6 +54,8 @@ pub struct Settings {
     pub camera: Camera<f64>,
     /// What the camera sees where it meets nothing.
     pub background: BackgroundKind,
+    /// The ground, where only shadows and reflections are seen of it.
+    pub catcher: Option<Catcher>,
     /// Cosine and sine of the environment's rotation about +Y.
     pub environment_rotation: [f64; 2],
     /// Factor of the environment's radiance.
@@ -83,6 +85,17 @@ named! {
         #[default]
         Mis = 2, "mis", "Both (MIS)", "Sample both, each weighed by its density (Veach 1997).";
     }
+}
+
+/// A ground of which the camera sees only shadows and reflections.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Catcher {
+    /// Its material slot.
+    pub slot: u32,
+    /// The slot whose specular lobe it reflects with.
+    pub reflection_slot: u32,
+    /// Where its table begins among the job's ([`catcher_table`](crate::scene::catcher::catcher_table)).
+    pub table: u32,
 }
 
 /// What the camera sees where it meets nothing.

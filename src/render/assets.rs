@@ -4,12 +4,13 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::session::SessionError;
 use crate::scene::environment::{self, Environment, EnvironmentEncoding, EnvironmentSource};
+use crate::scene::ground::Ground;
 use crate::scene::light::AreaShape;
 use crate::scene::texture::Textures;
 use crate::scene::{self, Geometry, Loading, Model, ModelError, ModelOptions, ModelSource};
 
 /// What a geometry is made of: model, ground, area lights, hidden objects.
-type GeometryKey = (ModelKey, bool, Vec<AreaShape>, Vec<usize>);
+type GeometryKey = (ModelKey, Ground, Vec<AreaShape>, Vec<usize>);
 
 /// A model's file, and what is shown of it.
 type ModelKey = (ModelSource, ModelOptions);
@@ -112,7 +113,7 @@ impl Assets {
         Ok(textures)
     }
 
-    /// The geometry of a source, with or without ground, with area lights, without the objects that are hidden.
+    /// The geometry of a source, on a ground, with area lights, without the objects that are hidden.
     ///
     /// # Errors
     /// As [`Assets::model`].
@@ -120,7 +121,7 @@ impl Assets {
         &self,
         source: &ModelSource,
         options: &ModelOptions,
-        ground: bool,
+        ground: Ground,
         area_lights: Vec<AreaShape>,
         hidden: Vec<usize>,
     ) -> Result<Arc<Geometry>, SessionError> {

@@ -9,10 +9,12 @@ use crate::document::{
     AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, Shine, compile_textured,
 };
 use crate::job::effect::EffectId;
-use crate::job::{BackgroundKind, Job, Settings};
+use crate::job::{BackgroundKind, Catcher, Job, Settings};
 use crate::optics::material::Material;
 use crate::scene::Geometry;
 use crate::scene::camera::{Camera, framing_distance, orbit_direction};
+use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
+use crate::scene::environment::Environment;
 use crate::scene::light::{LightChoice, Lights, Sampled};
 use crate::scene::texture::Textures;
 
@@ -25,9 +27,31 @@ type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>, Vec<(usize, Shine)>);
 /// What the table of emitting triangles depends on: geometry, and the emission of each slot.
 type LightsKey = (Arc<Geometry>, Vec<f32>);
 
+/// What the table of a shadow catcher depends on, and the tables that it follows.
+#[derive(Debug)]
+struct CatcherKey {
+    environment: Arc<Environment>,
+    strength: f32,
+    area_lights: Vec<NearLight>,
+    height: f64,
+    reflection: f32,
+    tables: Arc<Vec<f32>>,
+}
+
+impl CatcherKey {
+    fn is_same(&self, other: &Self) -> bool {
+        let numbers = |key: &Self| (key.strength, key.height, key.reflection);
+        Arc::ptr_eq(&self.environment, &other.environment)
+            && Arc::ptr_eq(&self.tables, &other.tables)
+            && numbers(self) == numbers(other)
+            && self.area_lights == other.area_lights
+    }
+}
+
 /// Compiles documents; remembers the last materials and lights, whose tables take milliseconds.
 #[derive(Debug, Default)]
 pub(super) struct Compiler {
+    catcher: Option<(CatcherKey, Arc<Vec<f32>>)>,
     materials: Option<(MaterialsKey, Compiled)>,
     lights: Option<(LightsKey, Arc<Lights>)>,
 }
@@ -41,17 +65,29 @@ impl Compiler {
         let geometry = assets.geometry(
             source,
             options,
-            document.ground,
+            document.ground_shape(),
             shapes,
             document.hidden_objects.clone(),
         )?;
         let lighting = &document.lighting;
         let environment = assets.environment(&lighting.environment, lighting.environment_encoding)?;
         let textures = assets.textures(source, options)?;
-        let slots = slot_materials(document, model.slots.len());
+        let mut slots = slot_materials(document, model.slots.len());
+        slots.extend(document.catcher_reflection());
         let first_light = model.slots.len() + usize::from(document.ground);
         let shines = (first_light..).zip(lighting.shining().map(AreaLight::shine)).collect();
         let (materials, tables) = self.materials(&slots, &textures, shines);
+        let (catcher, tables) = if document.catches_shadows() {
+            let (table, tables) = self.with_catcher(document, &geometry, &environment, tables);
+            let catcher = Catcher {
+                slot: model.slots.len() as u32,
+                reflection_slot: slots.len() as u32 - 1,
+                table,
+            };
+            (Some(catcher), tables)
+        } else {
+            (None, tables)
+        };
         let lights = self.lights(&geometry, &materials);
         let environment_strength = f64::from(document.lighting.strength);
         let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
@@ -71,6 +107,7 @@ impl Compiler {
                 Background::Transparent => BackgroundKind::Transparent,
                 Background::Color(color) => BackgroundKind::Color(color),
             },
+            catcher,
             environment_rotation: [rotation_rad.cos(), rotation_rad.sin()],
             environment_strength,
             light_choice: LightChoice::new(&environment, environment_strength, &lights, sampled),
@@ -122,6 +159,39 @@ impl Compiler {
         compiled
     }
 
+    /// The tables with a shadow catcher's at their end, and where it begins.
+    fn with_catcher(
+        &mut self,
+        document: &Document,
+        geometry: &Geometry,
+        environment: &Arc<Environment>,
+        tables: Arc<Vec<f32>>,
+    ) -> (u32, Arc<Vec<f32>>) {
+        let lighting = &document.lighting;
+        let key = CatcherKey {
+            environment: environment.clone(),
+            strength: lighting.strength,
+            area_lights: lighting.shining().map(AreaLight::seen_from_near).collect(),
+            height: geometry.ground_height(),
+            reflection: lighting.ground.reflection,
+            tables,
+        };
+        let first = key.tables.len() as u32;
+        if let Some((_, joined)) = self.catcher.as_ref().filter(|(of, _)| of.is_same(&key)) {
+            return (first, joined.clone());
+        }
+        let light = CatcherLight {
+            environment,
+            strength: key.strength.into(),
+            area_lights: &key.area_lights,
+        };
+        let mut joined = key.tables.to_vec();
+        joined.extend(catcher_table(&light, key.height, key.reflection));
+        let joined = Arc::new(joined);
+        self.catcher = Some((key, joined.clone()));
+        (first, joined)
+    }
+
     fn lights(&mut self, geometry: &Arc<Geometry>, materials: &[Material<f32>]) -> Arc<Lights> {
         let emissions: Vec<_> = materials.iter().map(|material| material.light_luminance).collect();
         let is_known = |(of, emitted): &LightsKey| Arc::ptr_eq(of, geometry) && *emitted == emissions;
@@ -141,7 +211,7 @@ pub(super) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialS
     let mut materials = document.materials.clone();
     materials.resize(slots, last);
     if document.ground {
-        materials.push(MaterialSettings::diffuse("ground", document.lighting.ground_color));
+        materials.push(document.ground_material());
     }
     materials.extend(document.lighting.shining().map(AreaLight::material));
     materials

@@ -7,6 +7,7 @@ use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
 use super::convex::is_convex;
+use super::ground::Ground;
 use super::hierarchy::{Compressed, Found, Hierarchy, PACKET, Packet, Wide};
 use super::intersect::{Hit, RayFrame};
 use super::light::AreaShape;
@@ -14,11 +15,8 @@ use super::loading::{Cancelled, Loading};
 use super::memory::{fetch, in_large_pages, room_in_large_pages};
 use super::mesh::{Mesh, any_tangent};
 use super::model::{Model, Slot};
-use super::shapes;
 use crate::instructions;
 
-/// The ground's half side in bounding radii.
-const GROUND_HALF_SIDE: f64 = 20.0;
 /// How far the ground is below the lowest point, in bounding radii: enough that flat bottoms do not flicker with it.
 const GROUND_GAP: f64 = 1e-4;
 
@@ -93,15 +91,15 @@ pub struct Geometry {
 }
 
 impl Geometry {
-    /// Makes a model ready to trace; `ground` adds a horizontal square of half side 20 bounding radii at its lowest
-    /// point, in the slot after the model's (see [`Geometry::ground_slot`]).
-    pub fn build(model: &Model, ground: bool) -> Self {
+    /// Makes a model ready to trace; a ground touches its lowest point, in the slot after the model's (see
+    /// [`Geometry::ground_slot`]).
+    pub fn build(model: &Model, ground: impl Into<Ground>) -> Self {
         Self::build_lit(model, ground, &[], &[])
     }
 
     /// The same with area lights, each in a slot of its own after the model's and the ground's, and without the objects
     /// whose numbers are hidden: place and scale stay those of the whole model.
-    pub fn build_lit(model: &Model, ground: bool, area_lights: &[AreaShape], hidden: &[usize]) -> Self {
+    pub fn build_lit(model: &Model, ground: impl Into<Ground>, area_lights: &[AreaShape], hidden: &[usize]) -> Self {
         Self::build_watched(model, ground, area_lights, hidden, &Loading::default()).expect("nobody cancels it")
     }
 
@@ -111,7 +109,7 @@ impl Geometry {
     /// Where it was cancelled.
     pub fn build_watched(
         model: &Model,
-        ground: bool,
+        ground: impl Into<Ground>,
         area_lights: &[AreaShape],
         hidden: &[usize],
         loading: &Loading,
@@ -152,14 +150,13 @@ impl Geometry {
         } else {
             geometry.add(mesh, chosen.filter(is_shown), object_of, to_units);
         }
-        if ground {
-            let lowest = (bounds_world[0].y - center_world.y) / world_units_per_unit - GROUND_GAP;
-            let slot = model.slots.len() as u32;
-            let ground = shapes::square(DVec3::Y * lowest, GROUND_HALF_SIDE, GROUND_HALF_SIDE as f32, slot);
+        let ground_slot = model.slots.len() as u32;
+        let ground = ground.into().mesh(geometry.ground_height(), ground_slot);
+        if let Some(ground) = &ground {
             let to_units = |place: DVec3| place.as_vec3().to_array();
-            geometry.add(&ground, 0..ground.triangles.len(), |_| NO_OBJECT, to_units);
+            geometry.add(ground, 0..ground.triangles.len(), |_| NO_OBJECT, to_units);
         }
-        for (light, slot) in area_lights.iter().zip(model.slots.len() as u32 + u32::from(ground)..) {
+        for (light, slot) in area_lights.iter().zip(ground_slot + u32::from(ground.is_some())..) {
             let light = light.mesh(slot);
             let to_units = |place: DVec3| place.as_vec3().to_array();
             geometry.add(&light, 0..light.triangles.len(), |_| NO_OBJECT, to_units);
@@ -264,6 +261,11 @@ impl Geometry {
         for vertex in self.triangles[triangle as usize] {
             fetch(&self.vertices, vertex as usize);
         }
+    }
+
+    /// The height of a ground, in the geometry's units.
+    pub fn ground_height(&self) -> f64 {
+        (self.bounds_world[0].y - self.center_world.y) / self.world_units_per_unit - GROUND_GAP
     }
 
     /// The material of the ground, for the slot after the model's.

@@ -100,6 +100,16 @@ impl AreaShape {
     }
 }
 
+impl AreaShape {
+    /// The corners of its triangles, in the geometry's units.
+    pub(super) fn corners(&self) -> Vec<[DVec3; 3]> {
+        let mesh = self.mesh(0);
+        (0..mesh.triangles.len())
+            .map(|triangle| mesh.corners(triangle))
+            .collect()
+    }
+}
+
 /// An entry of the alias table over the emitting triangles.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Zeroable, Pod)]

@@ -2,6 +2,7 @@
 
 mod alias;
 pub mod camera;
+pub mod catcher;
 mod convex;
 pub mod environment;
 pub mod facing;
@@ -10,6 +11,7 @@ mod float_tiff;
 mod geometry;
 mod gltf;
 mod gpu_picture;
+pub mod ground;
 mod hierarchy;
 mod import;
 mod intersect;

@@ -34,7 +34,7 @@ fn lit(assets: &Assets, yaw_deg: f64) -> Arc<Geometry> {
     let made = assets.geometry(
         &ModelSource::Sphere,
         &ModelOptions::default(),
-        true,
+        true.into(),
         vec![light],
         Vec::new(),
     );

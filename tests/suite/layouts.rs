@@ -43,7 +43,8 @@ fn rust_layouts() -> Vec<Layout> {
         layout!(Globals: Globals {
             camera, image_size, bounces, sequence, background, background_kind, environment_rotation,
             environment_cells_size, environment_strength, strategy, seed, node_count, light_cells_size,
-            environment_probability, density_per_luminance, firefly_clamp, reserved, reserved_pair,
+            environment_probability, density_per_luminance, firefly_clamp, catcher_slot, catcher_reflection_slot,
+            catcher_table,
         }),
         layout!(Tile: Tile { origin, first_sample, sample_count }),
         layout!(PixelStatistics: PixelStatistics {

@@ -2,7 +2,7 @@
 
 use glossmith::document::effect::{EFFECTS, EffectSwitches, Switch};
 use glossmith::document::{
-    AreaLight, AreaLightShape, Background, Denoise, Document, MaterialSettings, Strategy, TextureUse,
+    AreaLight, AreaLightShape, Background, Denoise, Document, GroundKind, MaterialSettings, Strategy, TextureUse,
 };
 use glossmith::job::effect::{ANY, EffectId};
 use glossmith::job::plan::Plan;
@@ -175,6 +175,14 @@ fn calls_for(effect: &str) -> Calls {
             &[|d, _| d.lighting.background = Background::Environment],
         ),
         "ground" => (metal, &[|d, _| d.ground = true]),
+        "shadow-catcher" => (
+            || {
+                let mut document = metal();
+                document.ground = true;
+                document
+            },
+            &[|d, _| d.lighting.ground.kind = GroundKind::ShadowCatcher],
+        ),
         "interreflection" => (
             metal,
             &[

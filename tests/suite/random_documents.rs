@@ -1,7 +1,7 @@
 //! Documents with some of everything, in range: for the tests of plans, and for the benchmark that takes more of them.
 
 use glossmith::document::{
-    AreaLight, Denoise, Document, Kind, MaterialSettings, PARAMETERS, Parameter, Strategy, Value,
+    AreaLight, Denoise, Document, GroundKind, Kind, MaterialSettings, PARAMETERS, Parameter, Strategy, Value,
 };
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
@@ -98,6 +98,8 @@ pub fn random_document(random: &mut Random) -> Document {
     }
     let mut document = of_material(models[random.below(models.len())].clone(), material);
     document.ground = random.below(2) == 0;
+    document.lighting.ground.kind = GroundKind::ALL[random.below(3)];
+    document.lighting.ground.reflection = [0.0, 0.5][random.below(2)];
     document.lighting.environment = lights[random.below(lights.len())].clone();
     document.lighting.strength = [0.0, 1.0, 1.0, 3.0][random.below(4)];
     document.render.strategy = Strategy::ALL[random.below(3)];

@@ -265,6 +265,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("FIRST_DIMENSION", f64::from(integrator::FIRST_DIMENSION)),
         ("BOUNCE_DIMENSIONS", f64::from(integrator::BOUNCE_DIMENSIONS)),
         ("BELOW_DIMENSION", f64::from(integrator::BELOW_DIMENSION)),
+        ("CATCHER_DIMENSION", f64::from(integrator::CATCHER_DIMENSION)),
         ("OPACITY_DIMENSION", f64::from(integrator::OPACITY_DIMENSION)),
         ("PASSES_MAX", f64::from(integrator::PASSES_MAX)),
         ("ROULETTE_START", f64::from(integrator::ROULETTE_START)),
@@ -288,6 +289,10 @@ const WITHOUT_TWIN: &[&str] = &[
     "LAYER_BASE",
     "LAYER_TRANSMISSION",
     "LAYER_COAT",
+    "CAUGHT_NOT",
+    "CAUGHT_SHADOW",
+    "CAUGHT_ALPHA",
+    "CAUGHT_MIRRORED",
     // Rows of questions to single functions.
     "FRESNEL_WORDS",
     "LOBE_WORDS",

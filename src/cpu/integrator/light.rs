@@ -169,7 +169,7 @@ impl<T: Real> Integrator<'_, T> {
         numbers: Vec3<T>,
         path: &mut Path<'_, T, R>,
     ) -> Option<LightRay<T>> {
-        if !self.samples_light() {
+        if !self.samples_light() || path.caught.is_mirrored() {
             return None;
         }
         let (drawn, is_far) = self.draw_light(point, numbers);
@@ -253,18 +253,18 @@ impl<T: Real> Integrator<'_, T> {
         self.add(light.source(), found, bounce + 1, path);
     }
 
-    /// What the camera sees where it meets nothing, and its alpha.
+    /// What the camera sees where it meets nothing, and its alpha; a blur is drawn with the pair of this dimension.
     pub(super) fn camera_background<R: Recorder>(
         &self,
         direction: Vec3<T>,
         place: [T; 2],
+        dimension: u32,
         path: &mut Path<'_, T, R>,
     ) -> (Vec3<T>, T) {
         match self.settings.background {
             BackgroundKind::Environment => (self.far_radiance(place), T::one()),
             BackgroundKind::Blurred(sine) => {
-                // The numbers of the first bounce, which there is none of.
-                let disc: [T; 2] = uniform_disc(path.pair(FIRST_DIMENSION, [Purpose::Blur; 2]));
+                let disc: [T; 2] = uniform_disc(path.pair(dimension, [Purpose::Blur; 2]));
                 let disc = disc.map(|x| x * T::from_f64(sine));
                 let height = (T::one() - disc[0] * disc[0] - disc[1] * disc[1]).safe_sqrt();
                 let around = frame_from_normal(direction);

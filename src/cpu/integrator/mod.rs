@@ -1,5 +1,6 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
 
+mod catcher;
 mod light;
 mod path;
 mod rays;
@@ -23,6 +24,8 @@ use crate::scene::environment::Environment;
 use crate::scene::light::Lights;
 use crate::scene::surface::SurfacePoint;
 use crate::scene::texture::{Textures, textured_material};
+pub use catcher::CATCHER_DIMENSION;
+use catcher::Caught;
 use path::{Path, Ray};
 
 /// Pairs of numbers before the first bounce: pixel, lens.
@@ -128,7 +131,10 @@ impl<'a, T: Real> Integrator<'a, T> {
             let Some((point, distance)) = self.stop(&ray, bounce, &mut path) else {
                 return self.left(&ray, self.left_place(&ray, bounce), bounce, &mut path);
             };
-            let material = &*self.material(&point);
+            if !self.pass_catcher(&point, &ray, bounce, &mut path) {
+                return self.left(&ray, self.left_place(&ray, bounce), bounce, &mut path);
+            }
+            let material = &*self.material(&point, &path);
             if !self.meet(&point, material, distance, &ray, bounce, &mut path) {
                 break;
             }
@@ -186,10 +192,14 @@ impl<'a, T: Real> Integrator<'a, T> {
         self.samples_environment || self.samples_emitters
     }
 
-    /// The material at a point, with what its textures say there.
+    /// The material at a point where a path is, with what its textures say there.
     #[inline(always)]
-    fn material(&self, point: &SurfacePoint<T>) -> Cow<'_, Material<T>> {
-        let plain = &self.materials[point.slot as usize];
+    fn material<R>(&self, point: &SurfacePoint<T>, path: &Path<'_, T, R>) -> Cow<'_, Material<T>> {
+        let slot = match self.settings.catcher {
+            Some(catcher) if path.caught.is_mirrored() => catcher.reflection_slot,
+            _ => point.slot,
+        };
+        let plain = &self.materials[slot as usize];
         if plain.is_textured() || plain.has_vertex_colors == 1 {
             Cow::Owned(textured_material(
                 self.textures,
@@ -236,8 +246,16 @@ impl<'a, T: Real> Integrator<'a, T> {
     fn left<R: Recorder>(&self, ray: &Ray<T>, place: [T; 2], bounce: u32, path: &mut Path<'_, T, R>) -> PathResult<T> {
         let mut alpha = T::one();
         if bounce == 0 {
-            let (radiance, seen) = self.camera_background(ray.direction, place, path);
+            // The numbers of the first bounce, which there is none of.
+            let (radiance, seen) = self.camera_background(ray.direction, place, FIRST_DIMENSION, path);
             self.add(Source::Background, radiance, 0, path);
+            alpha = seen;
+        } else if let Caught::Mirrored {
+            background,
+            alpha: seen,
+        } = path.caught
+        {
+            self.add(Source::Background, background, bounce, path);
             alpha = seen;
         } else {
             let found = path.throughput * self.far_light(ray, place, path);
@@ -288,9 +306,16 @@ impl<'a, T: Real> Integrator<'a, T> {
     ) -> Option<Ray<T>> {
         let numbers = material_numbers(material, bounce, path);
         let wants_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
-        let drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
-        path.throughput = path.throughput * drawn.throughput;
+        let mut drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
+        let mut leaves = self.meets_nothing(point, drawn.wi);
         path.is_looking &= drawn.is_mirror;
+        if path.caught.is_mirrored() {
+            // All of it goes on, also what the facets would keep, and none of what it meets is left to light sampling.
+            leaves |= drawn.throughput.max_component().to_f64() <= 0.0;
+            drawn.throughput = Vec3::splat(T::one());
+            drawn.is_mirror = true;
+        }
+        path.throughput = path.throughput * drawn.throughput;
         let throughput = path.throughput;
         path.record(|| self.scattered(point, material, &drawn, throughput));
         if !survives(bounce, path) {
@@ -301,7 +326,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             direction: drawn.wi,
             lobe_density: drawn.density,
             is_mirror: drawn.is_mirror,
-            leaves: self.meets_nothing(point, drawn.wi),
+            leaves,
         })
     }
 

@@ -1,5 +1,6 @@
 //! A path under way: its sums, and its random numbers as they are drawn.
 
+use super::catcher::Caught;
 use super::{BOUNCE_DIMENSIONS, PathResult};
 use crate::cpu::recorder::{Event, Purpose, Recorder, single};
 use crate::job::features::GuideSums;
@@ -22,6 +23,8 @@ pub(super) struct Path<'r, T, R> {
     pub rays: u32,
     /// What is seen first.
     pub seen: GuideSums,
+    /// What a shadow catcher has made of it.
+    pub caught: Caught<T>,
     /// True while the path is one of those that tell what they see, and has met nothing but mirrors and clear glass.
     pub is_looking: bool,
     recorder: &'r mut R,
@@ -72,6 +75,7 @@ impl<'r, T: Real, R: Recorder> Path<'r, T, R> {
             clamped: T::zero(),
             rays: 0,
             seen: GuideSums::default(),
+            caught: Caught::Not,
             is_looking,
             recorder,
         }
@@ -119,12 +123,12 @@ impl<'r, T: Real, R: Recorder> Path<'r, T, R> {
 
     /// What the path found.
     pub fn result(&self, alpha: T) -> PathResult<T> {
-        PathResult {
+        self.caught.result(PathResult {
             radiance: self.radiance,
             alpha,
             rays: self.rays,
             clamped: self.clamped,
             seen: self.seen,
-        }
+        })
     }
 }

@@ -171,7 +171,11 @@ impl<T: Real> Integrator<'_, T> {
             return false;
         };
         let Traveller { path, ray, numbers, .. } = traveller;
-        let material = &*self.material(&point);
+        if !self.pass_catcher(&point, ray, bounce, path) {
+            results[traveller.pixel] = self.left(ray, self.left_place(ray, bounce), bounce, path);
+            return false;
+        }
+        let material = &*self.material(&point, path);
         traveller.goes_on = self.meet(&point, material, distance, ray, bounce, path);
         if traveller.goes_on {
             traveller.light = self.aim(&point, material, *numbers, path);

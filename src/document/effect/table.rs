@@ -1,7 +1,7 @@
 //! The table of effects.
 
 use super::{Effect, Switch, horizon};
-use crate::document::{AreaLight, Background, Denoise, Document, MaterialSettings, Strategy};
+use crate::document::{AreaLight, Background, Denoise, Document, GroundKind, MaterialSettings, Strategy};
 use crate::job::effect::{ANY, Decision, EffectId};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
@@ -106,7 +106,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::Ground,
         label: "Ground",
-        help: "A plane that catches shadows and reflections.",
+        help: "A surface under the model, on which it casts its shadow.",
         decide: |facts| {
             if facts.document.ground {
                 Decision::on("the model stands on a ground")
@@ -115,6 +115,21 @@ pub static EFFECTS: &[Effect] = &[
             }
         },
         remove: Some(|document| document.ground = false),
+    },
+    Effect {
+        id: EffectId::ShadowCatcher,
+        label: "Shadow catcher",
+        help: "A ground of which only shadows and reflections are seen, over the background.",
+        decide: |facts| {
+            if facts.settings.catcher.is_some() {
+                Decision::on("the ground shows shadows and reflections alone")
+            } else if facts.document.ground {
+                Decision::off("the ground is seen itself")
+            } else {
+                Decision::off("there is no ground")
+            }
+        },
+        remove: Some(|document| document.lighting.ground.kind = GroundKind::Plane),
     },
     Effect {
         id: EffectId::Interreflection,

@@ -4,7 +4,7 @@ use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
 use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
-use crate::document::{Background, Denoise, DenoiseWhen, Document, PixelFilter, Strategy, range};
+use crate::document::{Background, Denoise, DenoiseWhen, Document, GroundKind, PixelFilter, Strategy, range};
 use crate::named::Named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
@@ -79,11 +79,27 @@ fn lighting() -> Vec<Parameter<Document>> {
             .named("Background blur").group("Background").flag("background-blur").bar(0.0, 45.0).decimals(1).applies(|document| document.lighting.background == Background::Environment),
         of("scene.unit", Stage::Display, "Scene unit", "Metres of a unit of the model's coordinates; the power of lights is reckoned with it. No picture depends on it.", real(range::UNIT_M, "m"), field!(Real unit_m))
             .named("Scene unit").group("Area lights").flag("scene-unit").applies(|document| !document.lighting.area_lights.is_empty()),
-        of("scene.ground", Geometry, "Ground plane", "A matt plane under the model that catches its shadow.", Kind::Toggle, field!(Toggle ground))
+        of("scene.ground", Geometry, "Ground plane", "A surface under the model that catches its shadow.", Kind::Toggle, field!(Toggle ground))
             .named("Ground").group("Ground").flag("ground"),
+        of("lighting.ground.kind", Geometry, "Kind", "What the ground is.", choices::<GroundKind>(), choice!(lighting.ground.kind))
+            .named("Kind of ground").group("Ground").flag("ground-kind").applies(|document| document.ground),
         of("lighting.ground_color", Materials, "Colour", "Albedo of the ground.", Kind::Color, field!(Color lighting.ground_color))
             .named("Ground colour").group("Ground").flag("ground-color").applies(|document| document.ground),
+        of("lighting.ground.reflection", Materials, "Reflection", "How much of a varnish lies on the ground: it reflects as glass does, times this.", single(range::SHARE, ""), field!(Number lighting.ground.reflection))
+            .named("Ground reflection").group("Ground").flag("ground-reflection").bar(0.0, 1.0).applies(|document| document.ground),
+        of("lighting.ground.roughness", Materials, "Roughness", "How rough the reflection is.", single(range::SHARE, ""), field!(Number lighting.ground.roughness))
+            .named("Ground roughness").group("Ground").flag("ground-roughness").bar(0.0, 1.0).applies(|document| document.ground && document.lighting.ground.reflection > 0.0),
+        of("lighting.ground.yaw", Geometry, "Turn", "Which side of the cyclorama is open, as the yaw of a camera that looks at its wall.", real(range::YAW_DEG, "°"), field!(Real lighting.ground.yaw_deg))
+            .named("Cyclorama turn").group("Ground").flag("cyclorama-turn").bar(-180.0, 180.0).decimals(1).applies(is_cyclorama),
+        of("lighting.ground.wall_distance", Geometry, "Wall", "How far the cyclorama's wall is behind the model's centre, in bounding radii.", real(range::AREA_LENGTH, ""), field!(Real lighting.ground.wall_distance))
+            .named("Cyclorama wall").group("Ground").flag("cyclorama-wall").bar(1.0, 10.0).decimals(2).applies(is_cyclorama),
+        of("lighting.ground.bend_radius", Geometry, "Bend", "Radius of the cyclorama's bend from floor to wall, in bounding radii; no more than the wall's distance is used.", real(range::AREA_LENGTH, ""), field!(Real lighting.ground.bend_radius))
+            .named("Cyclorama bend").group("Ground").flag("cyclorama-bend").bar(0.5, 10.0).decimals(2).applies(is_cyclorama),
     ]
+}
+
+fn is_cyclorama(document: &Document) -> bool {
+    document.ground && document.lighting.ground.kind == GroundKind::Cyclorama
 }
 
 #[rustfmt::skip]

@@ -92,6 +92,14 @@ impl PathAccount {
                 ),
             ],
             Event::Hit { .. } => self.hit(event),
+            Event::Caught { background, light, .. } => [
+                "caught".into(),
+                format!(
+                    "shows the background, {}, as far as light arrives: {} if nothing stood in its way",
+                    vector(background),
+                    vector(light)
+                ),
+            ],
             Event::Absorption { distance, kept } => [
                 "absorbed".into(),
                 format!(

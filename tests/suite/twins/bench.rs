@@ -393,6 +393,7 @@ fn settings() -> Settings {
     Settings {
         image_size: [64, 48],
         camera: Camera::look_at([0.0, 1.0, 4.0], [0.0; 3], 30.0, 4.0 / 3.0, PixelFilter::Gaussian),
+        catcher: None,
         background: BackgroundKind::Environment,
         environment_rotation: [1.0, 0.0],
         environment_strength: 1.0,

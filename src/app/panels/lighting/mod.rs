@@ -12,7 +12,7 @@ use crate::app::desk::Desk;
 use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, Name, PictureRow};
 use crate::app::services::environments::{BUILT_IN, environment_label};
-use crate::document::Background;
+use crate::document::{Background, GroundKind};
 use crate::scene::environment::EnvironmentSource;
 
 /// Size of an environment's picture in the list, points.
@@ -35,7 +35,19 @@ impl Panel for LightingPanel {
         });
         widgets::group(ui, "Area lights", |ui| area_lights::show(ui, desk));
         widgets::group(ui, "Background", |ui| background(ui, desk));
-        widgets::group(ui, "Ground", |ui| desk.settings(ui, "Ground"));
+        widgets::group(ui, "Ground", |ui| ground(ui, desk));
+    }
+}
+
+fn ground(ui: &mut Ui, desk: &mut Desk<'_>) {
+    desk.settings(ui, "Ground");
+    if !desk.document.ground || desk.document.lighting.ground.kind != GroundKind::Cyclorama {
+        return;
+    }
+    let button = ui.button("Turn the wall away from the camera");
+    if button.on_hover_text("The camera looks straight at the wall.").clicked() {
+        desk.document.lighting.ground.yaw_deg = desk.document.camera.yaw_deg;
+        desk.edits.note("Cyclorama turned", "");
     }
 }
 

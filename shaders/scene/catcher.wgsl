@@ -1,0 +1,46 @@
+// What a shadow catcher compares with: the light that reaches its plane where nothing stands on it.
+// Twin of src/scene/catcher.rs.
+#import "scene/choices"
+#import "scene/layout"
+
+// A place in the table along an axis: the node before it, and how far it is behind that.
+struct CatcherNode {
+    number: u32,
+    behind: f32,
+}
+
+fn catcher_node(along: f32, side: u32) -> CatcherNode {
+    let away = min(abs(along) / CATCHER_HALF_SIDE, 1.0);
+    let bent = away * (1.0 + CATCHER_BEND) / (away + CATCHER_BEND);
+    let place = (select(bent, -bent, along < 0.0) * 0.5 + 0.5) * (f32(side) - 1.0);
+    let low = floor(place);
+    return CatcherNode(u32(low), place - low);
+}
+
+fn catcher_radiance(table: u32, side: u32, row: u32, column: u32) -> vec3f {
+    let node = table + 2u + 3u * (min(row, side - 1u) * side + min(column, side - 1u));
+    return vec3f(tables[node], tables[node + 1u], tables[node + 2u]);
+}
+
+// The radiance that a white matt plane would have at a place, lit by all lights with nothing in their way.
+fn catcher_light(table: u32, position: vec3f) -> vec3f {
+    let side = u32(tables[table]);
+    let across = catcher_node(position.x, side);
+    let down = catcher_node(position.z, side);
+    let upper = mix(
+        catcher_radiance(table, side, down.number, across.number),
+        catcher_radiance(table, side, down.number, across.number + 1u), across.behind,
+    );
+    let lower = mix(
+        catcher_radiance(table, side, down.number + 1u, across.number),
+        catcher_radiance(table, side, down.number + 1u, across.number + 1u), across.behind,
+    );
+    return mix(upper, lower, down.behind);
+}
+
+// The share of what is seen of the plane under this cosine that is mirrored in it (Schlick 1994, eq. 15).
+fn catcher_reflectance(table: u32, cosine: f32) -> f32 {
+    let away = clamp(1.0 - cosine, 0.0, 1.0);
+    let squared = away * away;
+    return tables[table + 1u] * (CATCHER_REFLECTANCE + (1.0 - CATCHER_REFLECTANCE) * squared * squared * away);
+}

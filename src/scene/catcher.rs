@@ -1,0 +1,349 @@
+//! What a shadow catcher compares with: the light that reaches its plane where nothing stands on it.
+//!
+//! A shadow catcher shows the background times what light reaches a place over what would reach it were nothing there
+//! (Debevec 1998, "Rendering synthetic objects into real scenes", with a quotient in place of the difference, so that nothing
+//! becomes negative). What would reach it is a table, since any light may be near: a square of radiances that a white matt
+//! plane would have, its nodes close together below the model. In front of them stand how many there are along a side, and
+//! how much the plane reflects. The functions that start with `catcher_` have WGSL twins in `shaders/scene/catcher.wgsl`.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use rayon::prelude::*;
+
+use super::environment::Environment;
+use super::ground::HALF_SIDE;
+use super::light::AreaShape;
+use crate::optics::real::Real;
+use crate::optics::vector::Vec3;
+
+/// Nodes along each side where area lights shine; without them the light is the same all over.
+const SIDE: usize = 128;
+/// Numbers in front of the nodes.
+const HEADER: usize = 2;
+/// The share of the half side over which nodes are close together.
+pub const CATCHER_BEND: f32 = 0.15;
+/// Half a side of the table in bounding radii: the ground's.
+pub const CATCHER_HALF_SIDE: f32 = HALF_SIDE as f32;
+/// What glass of index 1.5 reflects straight on.
+pub const CATCHER_REFLECTANCE: f32 = 0.04;
+
+/// What shines on a shadow catcher.
+#[derive(Clone, Copy, Debug)]
+pub struct CatcherLight<'a> {
+    /// The environment.
+    pub environment: &'a Environment,
+    /// Factor of its radiance.
+    pub strength: f64,
+    /// Area lights.
+    pub area_lights: &'a [NearLight],
+}
+
+/// An area light that shines on a shadow catcher.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearLight {
+    /// Where it is.
+    pub shape: AreaShape,
+    /// Its radiance, a spot's in the middle of its cone.
+    pub radiance: [f64; 3],
+    /// The ramp of a spot's share over the cosine to the way it faces, see [`spot_share`](super::light::spot_share): scale and
+    /// offset.
+    pub spot: [f64; 2],
+}
+
+impl NearLight {
+    /// The mean share of its radiance that one of its triangles sends to a place: exact for what is linear or quadratic
+    /// over the triangle.
+    fn share(&self, place: DVec3, corners: &[DVec3; 3]) -> f64 {
+        let [scale, offset] = self.spot;
+        if scale == 0.0 {
+            return 1.0;
+        }
+        let facing = -self.shape.frame().outwards;
+        let shares = [0, 1, 2].map(|index: usize| {
+            let middle = corners[index].midpoint(corners[(index + 1) % 3]);
+            let cosine = (place - middle).normalize_or_zero().dot(facing);
+            (cosine * scale + offset).clamp(0.0, 1.0).powi(2)
+        });
+        shares.iter().sum::<f64>() / 3.0
+    }
+}
+
+/// The table of a plane at this height that faces +Y, in the geometry's units; `reflection` is how much varnish lies on it.
+pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> Vec<f32> {
+    let far = far_light(light.environment).map(|radiance| radiance * light.strength);
+    let near: Vec<_> = light
+        .area_lights
+        .iter()
+        .map(|light| (light.shape.corners(), light))
+        .collect();
+    let side = if near.is_empty() { 1 } else { SIDE };
+    let at = |index: usize| {
+        let [x, z] = [index % side, index / side].map(|number| node_place(number, side));
+        let place = DVec3::new(x, height, z);
+        let mut sum = far;
+        for (triangles, light) in &near {
+            let seen = |corners| form_factor(place, corners) * light.share(place, corners);
+            let share: f64 = triangles.iter().map(seen).sum();
+            for (sum, radiance) in sum.iter_mut().zip(light.radiance) {
+                *sum += share * radiance;
+            }
+        }
+        sum.map(|radiance| radiance as f32)
+    };
+    let nodes: Vec<[f32; 3]> = (0..side * side).into_par_iter().map(at).collect();
+    let mut table = vec![side as f32, reflection];
+    table.extend(nodes.iter().flatten());
+    table
+}
+
+/// Where a node is along an axis.
+fn node_place(number: usize, side: usize) -> f64 {
+    if side == 1 {
+        return 0.0;
+    }
+    let along = 2.0 * number as f64 / (side - 1) as f64 - 1.0;
+    let bend = f64::from(CATCHER_BEND);
+    HALF_SIDE * along * bend / (1.0 + bend - along.abs())
+}
+
+/// The mean of an environment over the upper hemisphere, weighed by the cosine to +Y: what a white matt plane shows of it.
+/// The map is turned about that axis alone, so that its rotation does not matter.
+fn far_light(environment: &Environment) -> [f64; 3] {
+    let columns = environment.width as usize;
+    let row_mean = |row: &[[f32; 4]]| {
+        let sum = row.iter().fold([0.0; 3], |sum, texel| {
+            [0, 1, 2].map(|channel| sum[channel] + f64::from(texel[channel]))
+        });
+        sum.map(|sum| sum / columns as f64)
+    };
+    let height = environment.height as usize;
+    let upper = (height / 2 + 1).min(height);
+    let rows: Vec<[f64; 3]> = environment.texels[..upper * columns]
+        .par_chunks(columns)
+        .map(row_mean)
+        .collect();
+    // By the midpoint rule in the square of the sine, in which the weight is the same everywhere.
+    let steps = (8 * height).max(4096);
+    let mut sum = [0.0; 3];
+    for step in 0..steps {
+        let sine_squared = (step as f64 + 0.5) / steps as f64;
+        let v = sine_squared.sqrt().asin() / PI;
+        let place = (v * height as f64 - 0.5).clamp(0.0, (upper - 1) as f64);
+        let (row, share) = (place.floor() as usize, place.fract());
+        let next = (row + 1).min(upper - 1);
+        for (channel, sum) in sum.iter_mut().enumerate() {
+            *sum += rows[row][channel] * (1.0 - share) + rows[next][channel] * share;
+        }
+    }
+    sum.map(|sum| sum / steps as f64)
+}
+
+/// The share of a horizontal place's hemisphere, weighed by the cosine, that a triangle takes up, whichever side it shows;
+/// what is below the horizon does not count (Lambert 1760; Baum, Rushmeier and Winget 1989, eq. 9).
+fn form_factor(place: DVec3, corners: &[DVec3; 3]) -> f64 {
+    let relative = corners.map(|corner| corner - place);
+    let mut above = Vec::with_capacity(4);
+    for (index, &corner) in relative.iter().enumerate() {
+        let next = relative[(index + 1) % 3];
+        if corner.y >= 0.0 {
+            above.push(corner);
+        }
+        if (corner.y < 0.0) != (next.y < 0.0) {
+            above.push(corner.lerp(next, corner.y / (corner.y - next.y)));
+        }
+    }
+    let edge = |(index, from): (usize, &DVec3)| {
+        let to = above[(index + 1) % above.len()];
+        let across = from.cross(to);
+        let sine = across.length();
+        // Without length there is no edge, and it counts nothing.
+        if sine > 0.0 {
+            sine.atan2(from.dot(to)) * across.y / sine
+        } else {
+            0.0
+        }
+    };
+    let sum: f64 = above.iter().enumerate().map(edge).sum();
+    sum.abs() / (2.0 * PI)
+}
+
+/// The radiance that a white matt plane would have at a place, lit by all lights with nothing in their way: bilinear
+/// between the table's nodes.
+pub fn catcher_light<T: Real>(tables: &[f32], table: u32, position: Vec3<T>) -> Vec3<T> {
+    let first = table as usize + HEADER;
+    let side = tables[table as usize] as usize;
+    let node = |along: T| {
+        let away = (along.abs() / T::from_f64(f64::from(CATCHER_HALF_SIDE))).min(T::one());
+        let bend = T::from_f64(f64::from(CATCHER_BEND));
+        let bent = away * (T::one() + bend) / (away + bend);
+        let turned = T::select(along.less(T::zero()), -bent, bent);
+        let last = T::from_f64(side as f64 - 1.0);
+        let place = (turned * T::from_f64(0.5) + T::from_f64(0.5)) * last;
+        let low = place.floor();
+        (low.to_f64() as usize, place - low)
+    };
+    let ((column, across), (row, down)) = (node(position.x), node(position.z));
+    let at = |row: usize, column: usize| {
+        let node = first + 3 * (row.min(side - 1) * side + column.min(side - 1));
+        Vec3::from_f32([tables[node], tables[node + 1], tables[node + 2]])
+    };
+    let upper = at(row, column).mix(at(row, column + 1), across);
+    let lower = at(row + 1, column).mix(at(row + 1, column + 1), across);
+    upper.mix(lower, down)
+}
+
+/// The share of what is seen of the plane under this cosine that is mirrored in it (Schlick 1994, eq. 15).
+pub fn catcher_reflectance<T: Real>(tables: &[f32], table: u32, cosine: T) -> T {
+    let reflection = T::from_f64(f64::from(tables[table as usize + 1]));
+    let straight = T::from_f64(f64::from(CATCHER_REFLECTANCE));
+    let away = (T::one() - cosine).clamp(T::zero(), T::one());
+    let squared = away * away;
+    reflection * (straight + (T::one() - straight) * squared * squared * away)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::optics::vector::vec3;
+    use crate::scene::environment::{self, EnvironmentSource};
+    use crate::scene::light::Outline;
+
+    #[test]
+    fn form_factors_of_triangles_are_those_of_quadrature() {
+        // Above the horizon, through it, below it, edge-on.
+        let triangles = [
+            [[0.5, 1.0, 0.2], [1.5, 1.2, -0.3], [0.4, 2.0, 0.8]],
+            [[-1.0, -0.5, 0.3], [1.0, 1.5, 0.2], [0.3, 0.8, 1.4]],
+            [[-1.0, -0.5, 0.3], [1.0, -1.5, 0.2], [0.3, -0.8, 1.4]],
+            [[-2.0, 0.4, -2.0], [3.0, -0.2, -1.0], [0.0, 0.5, 4.0]],
+        ];
+        for corners in triangles.map(|corners| corners.map(DVec3::from_array)) {
+            let (u, v) = (corners[1] - corners[0], corners[2] - corners[0]);
+            let normal = u.cross(v).normalize();
+            let area = 0.5 * u.cross(v).length();
+            let steps = 700;
+            let mut sum = 0.0;
+            for i in 0..steps {
+                for j in 0..steps {
+                    let [a, b] = [i, j].map(|i| (f64::from(i) + 0.5) / f64::from(steps));
+                    let root = a.sqrt();
+                    let place = corners[0] + u * (root * (1.0 - b)) + v * (root * b);
+                    let distance = place.length();
+                    let cosines = (place.y / distance).max(0.0) * (normal.dot(place) / distance).abs();
+                    sum += cosines / (distance * distance);
+                }
+            }
+            let expected = sum * area / f64::from(steps * steps) / PI;
+            let found = form_factor(DVec3::ZERO, &corners);
+            assert!(
+                (found - expected).abs() < 2e-4 * (1.0 + expected),
+                "{corners:?}: {found}, not {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_plane_under_a_uniform_environment_shows_its_radiance() {
+        let environment = environment::load(&EnvironmentSource::Furnace).expect("loads");
+        let light = CatcherLight {
+            environment: &environment,
+            strength: 2.0,
+            area_lights: &[],
+        };
+        let table = catcher_table(&light, 0.0, 0.5);
+        let found: Vec3<f64> = catcher_light(&table, 0, vec3(3.0, 0.0, -7.0));
+        let expected = f64::from(environment.texels[0][0]) * 2.0;
+        assert!(
+            (found.x - expected).abs() < 1e-6 * expected,
+            "{found:?}, not {expected}"
+        );
+        assert!((catcher_reflectance(&table, 0, 1.0_f64) - 0.02).abs() < 1e-7);
+        assert!((catcher_reflectance(&table, 0, 0.0_f64) - 0.5).abs() < 1e-7);
+    }
+
+    #[test]
+    fn a_spot_lights_what_its_cone_holds() {
+        let environment = environment::load(&EnvironmentSource::Studio).expect("loads");
+        let shape = AreaShape {
+            yaw_deg: 0.0,
+            pitch_deg: 90.0,
+            distance: 2.0,
+            width: 0.02,
+            height: 0.02,
+            target: [1.0, 0.0, 0.0],
+            turn_deg: 0.0,
+            outline: Outline::Ellipse,
+        };
+        // From 30° to 20°.
+        let [inner, outer] = [20.0_f64, 30.0].map(|angle| angle.to_radians().cos());
+        let spots = [[0.0, 1.0], [1.0 / (inner - outer), -outer / (inner - outer)]];
+        let [lamp, spot] = spots.map(|spot| {
+            let light = CatcherLight {
+                environment: &environment,
+                strength: 0.0,
+                area_lights: &[NearLight {
+                    shape,
+                    radiance: [1e3; 3],
+                    spot,
+                }],
+            };
+            let table = catcher_table(&light, -0.5, 0.0);
+            move |x: f64| catcher_light(&table, 0, vec3(x, -0.5, 0.0)).x
+        });
+        // 2.5 below it: tan 10°, tan 25° and tan 45° beside its target.
+        let beside = |angle_deg: f64| 1.0 + 2.5 * angle_deg.to_radians().tan();
+        assert!((spot(beside(10.0)) / lamp(beside(10.0)) - 1.0).abs() < 1e-3);
+        let within = spot(beside(25.0)) / lamp(beside(25.0));
+        assert!((0.1..0.5).contains(&within), "{within}");
+        assert_eq!(spot(beside(45.0)), 0.0);
+    }
+
+    #[test]
+    fn tables_with_lights_are_near_the_true_light() {
+        let environment = environment::load(&EnvironmentSource::Studio).expect("loads");
+        let shape = AreaShape {
+            yaw_deg: 30.0,
+            pitch_deg: 35.0,
+            distance: 2.0,
+            width: 1.0,
+            height: 0.6,
+            target: [0.0; 3],
+            turn_deg: 0.0,
+            outline: Outline::Rectangle,
+        };
+        let light = CatcherLight {
+            environment: &environment,
+            strength: 0.0,
+            area_lights: &[NearLight {
+                shape,
+                radiance: [10.0, 5.0, 1.0],
+                spot: [0.0, 1.0],
+            }],
+        };
+        let height = -0.6;
+        let table = catcher_table(&light, height, 0.0);
+        for (x, z) in [
+            (0.0, 0.0),
+            (0.13, -0.4),
+            (0.9, 1.1),
+            (-2.3, 0.7),
+            (0.3, 6.2),
+            (5.0, -8.0),
+            (19.9, 19.9),
+            (40.0, 0.0),
+        ] {
+            let place = DVec3::new(x, height, z);
+            let share: f64 = shape.corners().iter().map(|corners| form_factor(place, corners)).sum();
+            let found: Vec3<f64> = catcher_light(&table, 0, vec3(x, height, z));
+            if x <= 20.0 {
+                assert!(
+                    (found.x - 10.0 * share).abs() < 0.01 * 10.0 * share,
+                    "{place}: {found:?}, not {share}"
+                );
+                assert!((found.z - 0.1 * found.x).abs() < 1e-5 * found.x);
+            }
+            assert!(found.x > 0.0);
+        }
+    }
+}

@@ -1,0 +1,221 @@
+//! Grounds: the shadow catcher is the background where nothing stands on it, its shadows and reflections have their true
+//! values, on both engines; the cyclorama's wall stands where it should.
+
+use glossmith::document::{AreaLight, Background, Document, GroundKind, MaterialSettings};
+use glossmith::job::film::Film;
+use glossmith::optics::random::Sequence;
+use glossmith::render::EngineChoice;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::{Geometry, ModelSource, load};
+
+use crate::cli_support::Workplace;
+use crate::renders::{assert_same_picture, document, render};
+
+const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
+/// How far, along the ground, the place that is looked at is from where the sphere touches it.
+const AWAY: f64 = 1.5;
+/// The sphere's luminance where it shines.
+const GLOW: f32 = 3.0;
+
+/// A black sphere on a shadow catcher.
+fn caught(environment: EnvironmentSource) -> Document {
+    let mut document = document(ModelSource::Sphere, environment, &[]);
+    document.materials = vec![MaterialSettings::diffuse("black", [0.0; 3])];
+    document.ground = true;
+    document.lighting.ground.kind = GroundKind::ShadowCatcher;
+    document.render.bounces = 2;
+    document
+}
+
+/// Looks at one place on the ground from across the sphere, or along it.
+fn at_one_place(document: &mut Document, across: bool) {
+    document.camera.target = Some([AWAY, -1.0, 0.0]);
+    let away = if across { 4.0 } else { 0.0 };
+    document.camera.position = Some([AWAY + away, 1.0, 4.0 - away]);
+    document.camera.fov_deg = 0.1;
+    (document.render.width, document.render.height) = (8, 8);
+    document.render.samples = 2048;
+    document.render.sequence = Sequence::Sobol;
+}
+
+/// Red, green, blue and coverage, averaged over the picture.
+fn mean(film: &Film) -> [f64; 4] {
+    let pixels = film.colors().count();
+    (0..pixels).fold([0.0; 4], |sum, pixel| {
+        let of = film.mean(pixel);
+        [0, 1, 2, 3].map(|channel| sum[channel] + of[channel] / pixels as f64)
+    })
+}
+
+#[track_caller]
+fn assert_near(found: f64, expected: f64, tolerance: f64, what: &str) {
+    assert!((found - expected).abs() < tolerance, "{what}: {found}, not {expected}");
+}
+
+/// The share of the light of a uniform environment that the sphere of radius 1 takes from the place: its form factor.
+fn shadow() -> f64 {
+    let distance = AWAY.hypot(1.0);
+    1.0 / distance.powi(3)
+}
+
+#[test]
+fn nothing_on_it_is_nothing_to_be_seen() {
+    for engine in ENGINES {
+        let mut document = caught(EnvironmentSource::Studio);
+        document.hidden_objects = vec![0];
+        document.render.samples = 256;
+        document.lighting.ground.reflection = 0.7;
+        document.lighting.ground.roughness = 0.5;
+        document.lighting.area_lights.push(AreaLight {
+            pitch_deg: 30.0,
+            distance: 2.0,
+            ..AreaLight::default()
+        });
+        (document.camera.pitch_deg, document.camera.yaw_deg) = (30.0, 145.0);
+        for blur in [0.0, 10.0] {
+            document.lighting.background_blur_deg = blur;
+            let mut bare = document.clone();
+            bare.ground = false;
+            let (with, without) = (render(engine, &document), render(engine, &bare));
+            let apart = with.difference_in_sigma(&without);
+            assert!(
+                apart.abs() < 4.0,
+                "{engine:?}, blurred by {blur}: off by {apart:.1} sigma"
+            );
+            let [with, without] = [with, without].map(|film| mean(&film));
+            for channel in 0..3 {
+                assert_near(with[channel] / without[channel], 1.0, 0.006, "the background");
+            }
+        }
+    }
+}
+
+#[test]
+fn shadows_are_the_light_that_is_missing() {
+    for engine in ENGINES {
+        let mut document = caught(EnvironmentSource::Furnace);
+        at_one_place(&mut document, false);
+        let color = [0.2, 0.5, 0.8];
+        document.lighting.background = Background::Color(color);
+        let found = mean(&render(engine, &document));
+        for (found, color) in found.iter().zip(color) {
+            assert_near(*found, f64::from(color) * (1.0 - shadow()), 0.002, "over a colour");
+        }
+        document.lighting.background = Background::Transparent;
+        let [red, green, blue, alpha] = mean(&render(engine, &document));
+        assert_eq!([red, green, blue], [0.0; 3], "a shadow is black");
+        assert_near(alpha, shadow(), 0.002, "alpha");
+    }
+}
+
+#[test]
+fn shadows_of_area_lights_are_black_without_other_light() {
+    for engine in ENGINES {
+        let mut document = caught(EnvironmentSource::Furnace);
+        document.lighting.strength = 0.0;
+        document.lighting.background = Background::Color([1.0; 3]);
+        // Behind the sphere, seen from the place.
+        document.lighting.area_lights.push(AreaLight {
+            yaw_deg: -90.0,
+            pitch_deg: 30.0,
+            distance: 3.0,
+            width: 0.2,
+            height: 0.2,
+            ..AreaLight::default()
+        });
+        at_one_place(&mut document, false);
+        let [dark, ..] = mean(&render(engine, &document));
+        assert_near(dark, 0.0, 1e-6, "in the core");
+        document.camera.target = Some([0.0, -1.0, 6.0]);
+        document.camera.position = Some([0.0, 3.0, 10.0]);
+        let [bright, ..] = mean(&render(engine, &document));
+        assert_near(bright, 1.0, 0.01, "aside");
+    }
+}
+
+#[test]
+fn reflections_lie_over_the_background() {
+    for engine in ENGINES {
+        let mut document = caught(EnvironmentSource::Furnace);
+        document.lighting.background = Background::Color([0.5; 3]);
+        document.lighting.ground.roughness = 0.0;
+        // The mirrored view meets the sphere.
+        at_one_place(&mut document, true);
+        document.materials[0].emission_color = [1.0; 3];
+        document.materials[0].emission_strength = GLOW;
+        let [plain, ..] = mean(&render(engine, &document));
+        document.lighting.ground.reflection = 1.0;
+        let [shiny, ..] = mean(&render(engine, &document));
+        let cosine = 2.0 / 4.0_f64.hypot(2.0);
+        let share = 0.04 + 0.96 * (1.0 - cosine).powi(5);
+        let expected = plain * (1.0 - share) + f64::from(GLOW) * share;
+        assert_near(shiny, expected, 0.004, "over a colour");
+        document.lighting.background = Background::Transparent;
+        let [red, .., alpha] = mean(&render(engine, &document));
+        assert_near(red, f64::from(GLOW) * share, 0.004, "premultiplied");
+        assert!(alpha > share - 0.2 && alpha < 1.0, "{alpha}");
+    }
+}
+
+/// From below, and where no light would be, there is no ground.
+#[test]
+fn it_is_not_there_from_below() {
+    for engine in ENGINES {
+        let mut document = caught(EnvironmentSource::Studio);
+        document.hidden_objects = vec![0];
+        document.camera.pitch_deg = -40.0;
+        let mut bare = document.clone();
+        bare.ground = false;
+        assert_same_picture(&render(engine, &document), &render(engine, &bare), "from below");
+    }
+}
+
+#[test]
+fn cycloramas_bend_up_into_a_wall() {
+    let mut document = document(ModelSource::Sphere, EnvironmentSource::Furnace, &[]);
+    document.ground = true;
+    document.lighting.ground.kind = GroundKind::Cyclorama;
+    let ground = &mut document.lighting.ground;
+    (ground.yaw_deg, ground.wall_distance, ground.bend_radius) = (90.0, 4.0, 1.5);
+    let model = load(&ModelSource::Sphere).expect("loads");
+    let geometry = Geometry::build(&model, document.ground_shape());
+    let floor = geometry.ground_height() as f32;
+    let met = |origin: [f32; 3], direction: [f32; 3]| {
+        let hit = geometry.intersect(origin, direction, f32::MAX).expect("meets");
+        [0, 1, 2].map(|axis| origin[axis] + hit.t * direction[axis])
+    };
+    // A camera at yaw 90 is on the +X side: the wall is at −X.
+    let wall = met([0.0, 5.0, 0.0], [-1.0, 0.0, 0.0]);
+    assert!((wall[0] + 4.0).abs() < 1e-4, "{wall:?}");
+    let flat = met([3.0, 1.0, 2.0], [0.0, -1.0, 0.0]);
+    assert!((flat[1] - floor).abs() < 1e-4, "{flat:?}");
+    // Halfway around the bend.
+    let half = met([-2.5, floor + 1.5, 0.0], [-1.0, -1.0, 0.0]);
+    let away = (half[0] + 2.5).hypot(half[1] - floor - 1.5);
+    assert!((away - 1.5).abs() < 1e-3, "{half:?}");
+    // And it is seen from its front all over.
+    assert!(
+        geometry
+            .intersect([8.0, 3.0, 0.0], [-1.0, 0.0, 0.0], f32::MAX)
+            .is_some()
+    );
+}
+
+#[test]
+fn grounds_are_chosen_on_the_command_line() {
+    let place = Workplace::new();
+    let arguments =
+        "--model sphere --environment furnace --ground --ground-kind shadow-catcher --background transparent";
+    let caught = place.picture(arguments);
+    let alphas: Vec<f32> = caught.pixels.iter().map(|pixel| pixel[3]).collect();
+    assert!(alphas.iter().all(|alpha| (0.0..=1.0).contains(alpha)));
+    assert!(alphas.iter().any(|alpha| *alpha > 0.1 && *alpha < 0.9), "half shadows");
+    let plane = place.picture("--model sphere --environment furnace --ground --background transparent");
+    let covered = |picture: &crate::cli_support::Picture| picture.mean(3);
+    assert!(covered(&plane) > covered(&caught) + 0.2);
+    let wall = place.picture(
+        "--model sphere --environment furnace --ground --ground-kind cyclorama --cyclorama-wall 3 --background transparent",
+    );
+    assert!(covered(&wall) > 0.999, "the wall fills the picture");
+    place.refused(2, "render --ground-kind sea", &["sea", "shadow-catcher"]);
+}
