@@ -202,7 +202,8 @@ impl AreaLight {
     /// Where the place is farther out than the light it is moved outwards, too. A spot looks at the place from then on.
     pub fn put_highlight(&mut self, place: DVec3, mirrored: DVec3) {
         if self.is_spot() {
-            self.target = place.to_array();
+            let (least, most) = range::LIGHT_TARGET.into_inner();
+            self.target = place.to_array().map(|x| x.clamp(least, most));
         }
         let place = if self.is_sun() {
             DVec3::ZERO
