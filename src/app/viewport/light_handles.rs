@@ -107,11 +107,15 @@ impl LightHandles {
             .held
             .as_mut()
             .filter(|held| (held.light, held.handle) == (index, handle));
+        // It ends the drag for the interface, too.
+        let is_escaped = ui.input(|input| input.key_pressed(Key::Escape));
         let moved = match held {
+            Some(held) if !held.is_over && is_escaped => {
+                held.is_over = true;
+                held.start
+            }
             Some(held) if !held.is_over && response.dragged_by(PointerButton::Primary) => {
-                held.is_over = ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape));
                 match response.interact_pointer_pos() {
-                    _ if held.is_over => held.start,
                     Some(to) => held.pulled(ui, to, view, place),
                     None => light,
                 }

@@ -154,7 +154,7 @@ fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
             temperature(ui, desk, title, light);
         }
     }
-    power(ui, desk, title, light);
+    widgets::comes_and_goes(ui, |ui| power(ui, desk, title, light));
 }
 
 /// The row of a parameter: grey where it has no effect on a light of this shape.

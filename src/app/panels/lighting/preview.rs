@@ -23,8 +23,8 @@ pub(super) struct Preview {
     texture: Option<TextureHandle>,
     /// The environment and the strength that the texture shows.
     key: Option<(EnvironmentSource, f32, usize)>,
-    /// The rotation at which a drag began, and where; `None` once escape was pressed.
-    held: Option<Option<(f32, Pos2)>>,
+    /// The rotation at which a drag began, and where.
+    held: Option<(f32, Pos2)>,
 }
 
 impl Preview {
@@ -54,19 +54,21 @@ impl Preview {
         let mut rotation_deg = before;
         if response.drag_started_by(PointerButton::Primary) {
             let from = ui.input(|input| input.pointer.press_origin());
-            self.held = from.map(|from| Some((before, from)));
+            self.held = from.map(|from| (before, from));
             desk.edits.seal();
         }
         if response.clicked() {
             response.request_focus();
         }
         let modifiers = ui.input(|input| input.modifiers);
-        if response.dragged_by(PointerButton::Primary)
-            && let Some(Some((start_deg, from))) = self.held
-        {
-            if ui.input_mut(|input| input.consume_key(Modifiers::NONE, Key::Escape)) {
+        if let Some((start_deg, from)) = self.held {
+            // It ends the drag for the interface, too.
+            if ui.input(|input| input.key_pressed(Key::Escape)) {
                 rotation_deg = start_deg;
-                self.held = Some(None);
+                self.held = None;
+            } else if !response.dragged() {
+                self.held = None;
+                desk.edits.seal();
             } else if let Some(at) = response.interact_pointer_pos()
                 && at != from
             {
@@ -78,9 +80,6 @@ impl Preview {
                     turned
                 });
             }
-        } else if self.held.is_some() && !response.dragged() {
-            self.held = None;
-            desk.edits.seal();
         }
         if response.has_focus() {
             rotation_deg = keyed(ui, response, rotation_deg);
