@@ -157,6 +157,8 @@ mod tone;
 mod transmission;
 #[path = "suite/ui.rs"]
 mod ui;
+#[path = "suite/ui_browser.rs"]
+mod ui_browser;
 #[path = "suite/ui_export.rs"]
 mod ui_export;
 #[path = "suite/ui_files.rs"]

@@ -161,6 +161,7 @@ commands! {
     Save, File, "Save project", "Saves materials, light, camera and settings (.json).", keys(CTRL, Key::S), 1;
     SaveAs, File, "Save project as…", "Saves the project under another name.", keys(CTRL_SHIFT, Key::S), 1;
     SaveMaterial, File, "Save material…", "Saves the selected material (.json).", None, 1;
+    WatchFolder, File, "Watch a folder…", "Shows the materials and environments of a folder among the presets, as they come and go.", None, 1;
     SaveToMyPresets, File, "Save to my presets", "Adds the selected material to your own presets.", None, 1;
     Export, File, "Export…", "Writes the material, or a model with its materials, for another program, and tells first what is lost.", None, 1;
     SavePicture, File, "Save picture…", "Saves what has been rendered so far (.png with the document inside, .exr, .hdr).", keys(CTRL, Key::E), 1;

@@ -16,6 +16,7 @@ use crate::app::services::look::Look;
 use crate::app::services::messages::Entry;
 use crate::app::services::recent::Recent;
 use crate::app::services::selection::Selection;
+use crate::app::services::shelves::Shelves;
 use crate::app::services::snapshots::Snapshots;
 use crate::document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting};
 use crate::render::EngineChoice;
@@ -76,6 +77,8 @@ pub(super) struct Shared {
     pub(super) references: ReferenceCache,
     /// The materials to choose from.
     pub(super) library: Library,
+    /// What the browser keeps, and the folders that it watches.
+    pub(super) shelves: Shelves,
     /// The pinned states.
     pub(super) snapshots: Snapshots,
     /// The comparison of the document with something else.

@@ -219,6 +219,7 @@ impl App {
                     ReferenceCache::at(cache.join("references"))
                 }),
                 library,
+                shelves: services::shelves::Shelves::new(kept.shelves),
                 snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
                 compare: compare::Compare::default(),
             },
@@ -566,6 +567,7 @@ impl eframe::App for App {
             denoise: self.document.view.denoise,
             recent: self.shared.recent.paths().to_vec(),
             hints_seen: self.shared.hints_seen,
+            shelves: self.shared.shelves.kept.clone(),
             is_first: false,
         };
         kept.save(storage);

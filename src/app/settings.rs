@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::app::desk::Resolution;
 use crate::app::layout::{self, Pane};
+use crate::app::services::shelves::KeptShelves;
 use crate::document::{Denoise, ImportLobe};
 use crate::render::EngineChoice;
 use crate::render::denoise::Library;
@@ -125,6 +126,8 @@ pub(super) struct Kept {
     pub(super) recent: Vec<PathBuf>,
     /// How many of the hints for new users are over.
     pub(super) hints_seen: usize,
+    /// What the browser remembers.
+    pub(super) shelves: KeptShelves,
     /// Nothing was left by an earlier start.
     #[serde(skip)]
     pub(super) is_first: bool,
@@ -141,6 +144,7 @@ impl Default for Kept {
             denoise: Denoise::Off,
             recent: Vec::new(),
             hints_seen: usize::MAX,
+            shelves: KeptShelves::default(),
             is_first: false,
         }
     }

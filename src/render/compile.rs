@@ -31,6 +31,7 @@ type LightsKey = (Arc<Geometry>, Vec<f32>);
 #[derive(Debug)]
 struct CatcherKey {
     environment: Arc<Environment>,
+    rotation_deg: f32,
     strength: f32,
     area_lights: Vec<NearLight>,
     height: f64,
@@ -40,7 +41,7 @@ struct CatcherKey {
 
 impl CatcherKey {
     fn is_same(&self, other: &Self) -> bool {
-        let numbers = |key: &Self| (key.strength, key.height, key.reflection);
+        let numbers = |key: &Self| (key.rotation_deg, key.strength, key.height, key.reflection);
         Arc::ptr_eq(&self.environment, &other.environment)
             && Arc::ptr_eq(&self.tables, &other.tables)
             && numbers(self) == numbers(other)
@@ -90,7 +91,6 @@ impl Compiler {
         };
         let lights = self.lights(&geometry, &materials);
         let environment_strength = f64::from(document.lighting.strength);
-        let rotation_rad = f64::from(document.lighting.rotation_deg).to_radians();
         let switches = document.render.effects;
         let sampled = Sampled {
             environment: switches.get(EffectId::LightSampling) != Switch::Off,
@@ -108,7 +108,7 @@ impl Compiler {
                 Background::Color(color) => BackgroundKind::Color(color),
             },
             catcher,
-            environment_rotation: [rotation_rad.cos(), rotation_rad.sin()],
+            environment_rotation: cosine_and_sine(document.lighting.rotation_deg),
             environment_strength,
             light_choice: LightChoice::new(&environment, environment_strength, &lights, sampled),
             bounces: document.render.bounces,
@@ -170,6 +170,7 @@ impl Compiler {
         let lighting = &document.lighting;
         let key = CatcherKey {
             environment: environment.clone(),
+            rotation_deg: lighting.rotation_deg,
             strength: lighting.strength,
             area_lights: lighting.shining().map(AreaLight::seen_from_near).collect(),
             height: geometry.ground_height(),
@@ -182,6 +183,7 @@ impl Compiler {
         }
         let light = CatcherLight {
             environment,
+            rotation: cosine_and_sine(key.rotation_deg),
             strength: key.strength.into(),
             area_lights: &key.area_lights,
         };
@@ -202,6 +204,12 @@ impl Compiler {
         self.lights = Some(((geometry.clone(), emissions), lights.clone()));
         lights
     }
+}
+
+/// Of an angle in degrees.
+fn cosine_and_sine(angle_deg: f32) -> [f64; 2] {
+    let (sine, cosine) = f64::from(angle_deg).to_radians().sin_cos();
+    [cosine, sine]
 }
 
 /// One material a slot, the last one repeated where the document has too few, the ground's where there is one, and those

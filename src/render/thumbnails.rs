@@ -14,16 +14,17 @@ use super::display::display;
 use super::looks::ball;
 use super::{EngineChoice, Session, SessionError, picture_cache};
 use crate::document::{Denoise, Document, MaterialSettings};
+use crate::scene::ModelSource;
 use crate::store::preset::material_text;
 
 /// Columns and rows of a thumbnail.
-pub const SIDE: u32 = 64;
+pub const SIDE: u32 = 128;
 /// Samples a pixel: noise is below what is seen at this size, and nothing of it is left where it is denoised.
 const SAMPLES: u32 = 24;
 /// How long to render before looking whether something else is wanted.
 const STEP: Duration = Duration::from_millis(30);
 /// To be raised where thumbnails of the same material come out otherwise than before.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 
 /// A picture: red, green, blue and alpha of 8 bits, alpha not premultiplied; [`SIDE`] × [`SIDE`] pixels from the top.
 pub type Thumbnail = Arc<Vec<u8>>;
@@ -83,7 +84,18 @@ fn document(material: &MaterialSettings) -> Document {
     } else {
         Denoise::Off
     };
-    ball(material, SIDE, SAMPLES, denoise)
+    let mut document = ball(material, SIDE, SAMPLES, denoise);
+    if material.emission_strength > 0.0 {
+        // In the light of a studio nothing would be seen of its own.
+        document.ground = true;
+        document.lighting.strength = 0.05;
+        document.camera.pitch_deg = 15.0;
+    } else if material.transmission_weight > 0.0 {
+        // Thick and thin, with edges behind which something is seen.
+        document.model = ModelSource::default();
+        document.camera.pitch_deg = 20.0;
+    }
+    document
 }
 
 /// What thumbnails are made with.
@@ -134,8 +146,8 @@ mod tests {
     fn mean(pixels: &[u8]) -> [f64; 3] {
         [0, 1, 2].map(|channel| {
             // The middle of the picture: the sphere.
-            let middle = (24..40).flat_map(|y| (24..40).map(move |x| 4 * (y * SIDE as usize + x) + channel));
-            middle.map(|at| f64::from(pixels[at])).sum::<f64>() / 256.0
+            let middle = (48..80).flat_map(|y| (48..80).map(move |x| 4 * (y * SIDE as usize + x) + channel));
+            middle.map(|at| f64::from(pixels[at])).sum::<f64>() / 1024.0
         })
     }
 

@@ -11,11 +11,11 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::environment::Environment;
+use super::environment::{Environment, environment_local_from_world, environment_radiance};
 use super::ground::HALF_SIDE;
 use super::light::AreaShape;
 use crate::optics::real::Real;
-use crate::optics::vector::Vec3;
+use crate::optics::vector::{Vec3, vec3};
 
 /// Nodes along each side where area lights shine; without them the light is the same all over.
 const SIDE: usize = 128;
@@ -33,9 +33,11 @@ pub const CATCHER_REFLECTANCE: f32 = 0.04;
 pub struct CatcherLight<'a> {
     /// The environment.
     pub environment: &'a Environment,
+    /// Cosine and sine of its rotation about +Y.
+    pub rotation: [f64; 2],
     /// Factor of its radiance.
     pub strength: f64,
-    /// Area lights.
+    /// Area lights. They shine, and take the light from behind them away.
     pub area_lights: &'a [NearLight],
 }
 
@@ -75,26 +77,57 @@ pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> 
     let near: Vec<_> = light
         .area_lights
         .iter()
-        .map(|light| (light.shape.corners(), light))
+        .map(|light| (parts(&light.shape.corners()), light))
         .collect();
     let side = if near.is_empty() { 1 } else { SIDE };
     let at = |index: usize| {
         let [x, z] = [index % side, index / side].map(|number| node_place(number, side));
         let place = DVec3::new(x, height, z);
         let mut sum = far;
-        for (triangles, light) in &near {
-            let seen = |corners| form_factor(place, corners) * light.share(place, corners);
-            let share: f64 = triangles.iter().map(seen).sum();
-            for (sum, radiance) in sum.iter_mut().zip(light.radiance) {
-                *sum += share * radiance;
+        for (triangles, near) in &near {
+            for corners in triangles {
+                let share = form_factor(place, corners);
+                let behind = light.behind(place, corners);
+                let spot = near.share(place, corners);
+                for (channel, sum) in sum.iter_mut().enumerate() {
+                    *sum += share * (spot * near.radiance[channel] - behind[channel]);
+                }
             }
         }
-        sum.map(|radiance| radiance as f32)
+        sum.map(|radiance| radiance.max(0.0) as f32)
     };
     let nodes: Vec<[f32; 3]> = (0..side * side).into_par_iter().map(at).collect();
     let mut table = vec![side as f32, reflection];
     table.extend(nodes.iter().flatten());
     table
+}
+
+impl CatcherLight<'_> {
+    /// What the environment would send to a place from behind the middle of a triangle.
+    fn behind(&self, place: DVec3, corners: &[DVec3; 3]) -> [f64; 3] {
+        let [x, y, z] = (corners.iter().sum::<DVec3>() / 3.0 - place)
+            .normalize_or(DVec3::Y)
+            .to_array();
+        let local = environment_local_from_world(vec3(x, y, z), self.rotation);
+        environment_radiance(self.environment, local)
+            .to_f64()
+            .map(|radiance| radiance * self.strength)
+    }
+}
+
+/// So many triangles are parts enough: a disc's.
+const MANY: usize = 16;
+
+/// Triangles each cut into four, so that the environment behind each part may be taken as that behind its middle.
+fn parts(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 3]> {
+    if triangles.len() >= MANY {
+        return triangles.to_vec();
+    }
+    let cut = |&[a, b, c]: &[DVec3; 3]| {
+        let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
+        [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    };
+    triangles.iter().flat_map(cut).collect()
 }
 
 /// Where a node is along an axis.
@@ -205,7 +238,6 @@ pub fn catcher_reflectance<T: Real>(tables: &[f32], table: u32, cosine: T) -> T 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::optics::vector::vec3;
     use crate::scene::environment::{self, EnvironmentSource};
     use crate::scene::light::Outline;
 
@@ -248,6 +280,7 @@ mod tests {
         let environment = environment::load(&EnvironmentSource::Furnace).expect("loads");
         let light = CatcherLight {
             environment: &environment,
+            rotation: [1.0, 0.0],
             strength: 2.0,
             area_lights: &[],
         };
@@ -281,6 +314,7 @@ mod tests {
         let [lamp, spot] = spots.map(|spot| {
             let light = CatcherLight {
                 environment: &environment,
+                rotation: [1.0, 0.0],
                 strength: 0.0,
                 area_lights: &[NearLight {
                     shape,
@@ -314,6 +348,7 @@ mod tests {
         };
         let light = CatcherLight {
             environment: &environment,
+            rotation: [1.0, 0.0],
             strength: 0.0,
             area_lights: &[NearLight {
                 shape,

@@ -1,5 +1,6 @@
 //! What is kept in files: projects, presets and the user's folder of them, pictures with a document inside, copies of
-//! unsaved documents, pinned states; materials in other programs' formats; examples to begin with.
+//! unsaved documents, pinned states; materials in other programs' formats; examples to begin with;
+//! folders that are watched.
 
 pub mod examples;
 pub mod exchange;
@@ -10,6 +11,7 @@ pub mod preset;
 pub mod project;
 pub mod recovery;
 pub mod replace;
+pub mod shelf;
 pub mod snapshots;
 
 pub use file::{FileError, Loaded};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glossmith::document::effect::{EFFECTS, Effect, EffectSwitches, Switch};
-use glossmith::document::{AreaLight, Denoise, Document, MaterialSettings, assign};
+use glossmith::document::{AreaLight, Denoise, Document, GroundKind, MaterialSettings, assign};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
 use glossmith::job::Job;
 use glossmith::job::effect::{ANY, Decision, EffectId};
@@ -164,6 +164,10 @@ fn needing(effect: &str) -> Document {
         "firefly-clamp" => document.render.firefly_clamp = Some(0.01),
         "emitter-sampling" => document.lighting.area_lights.push(AreaLight::default()),
         "guides" => document.view.denoise = Denoise::Fast,
+        "shadow-catcher" => {
+            document.ground = true;
+            document.lighting.ground.kind = GroundKind::ShadowCatcher;
+        }
         _ => {}
     }
     document

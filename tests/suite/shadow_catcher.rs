@@ -64,16 +64,18 @@ fn nothing_on_it_is_nothing_to_be_seen() {
         let mut document = caught(EnvironmentSource::Studio);
         document.hidden_objects = vec![0];
         document.render.samples = 256;
-        document.lighting.ground.reflection = 0.7;
-        document.lighting.ground.roughness = 0.5;
-        document.lighting.area_lights.push(AreaLight {
-            pitch_deg: 30.0,
-            distance: 2.0,
-            ..AreaLight::default()
-        });
         (document.camera.pitch_deg, document.camera.yaw_deg) = (30.0, 145.0);
-        for blur in [0.0, 10.0] {
+        for (blur, reflection, is_lit) in [(0.0, 0.7, false), (10.0, 0.0, true)] {
             document.lighting.background_blur_deg = blur;
+            (document.lighting.ground.reflection, document.lighting.ground.roughness) = (reflection, 0.5);
+            // It would be seen mirrored in the ground.
+            if is_lit {
+                document.lighting.area_lights.push(AreaLight {
+                    pitch_deg: 30.0,
+                    distance: 2.0,
+                    ..AreaLight::default()
+                });
+            }
             let mut bare = document.clone();
             bare.ground = false;
             let (with, without) = (render(engine, &document), render(engine, &bare));

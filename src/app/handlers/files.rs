@@ -286,6 +286,7 @@ impl App {
             Command::OpenEnvironment => (Purpose::OpenEnvironment, String::new()),
             Command::OpenMaterial => (Purpose::OpenMaterial, String::new()),
             Command::OpenMeasured => (Purpose::OpenMeasured, String::new()),
+            Command::WatchFolder => (Purpose::WatchFolder, String::new()),
             Command::SaveMaterial => (Purpose::SaveMaterial, material_file()),
             Command::Export => {
                 self.ask_export(ctx, None);
@@ -307,6 +308,7 @@ impl App {
                 self.open(path);
             }
             Purpose::OpenMeasured => self.shared.measured = Some(path),
+            Purpose::WatchFolder => self.shared.shelves.watch(path),
             // The ending says what is saved: a picture has the document inside, too.
             Purpose::SaveProject if is_picture(&path) => self.want_picture(Destination::File(path)),
             Purpose::SaveProject => self.save_project(as_json(path)),

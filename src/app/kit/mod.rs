@@ -5,5 +5,6 @@ pub(super) mod icons;
 pub(super) mod parameter_row;
 pub(super) mod start_stop;
 pub(super) mod theme;
+pub(super) mod tile;
 pub(super) mod widgets;
 pub(super) mod words;

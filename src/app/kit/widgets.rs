@@ -494,6 +494,8 @@ pub(in crate::app) fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut U
 /// A picture with a name beside it, to choose.
 pub(in crate::app) struct PictureRow<'a> {
     pub(in crate::app) name: &'a str,
+    /// What it is called where only one thing may have a name.
+    pub(in crate::app) full_name: &'a str,
     /// `None` until it is there.
     pub(in crate::app) picture: Option<&'a TextureHandle>,
     /// Of the picture, points.
@@ -507,7 +509,7 @@ impl PictureRow<'_> {
     pub(in crate::app) fn show(&self, ui: &mut Ui) -> Response {
         let size = Vec2::new(ui.available_width(), self.size.y + 4.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, self.is_current, self.name));
+        response.widget_info(|| egui::WidgetInfo::selected(egui::Role::Button, true, self.is_current, self.full_name));
         let visuals = ui.style().interact_selectable(&response, self.is_current);
         if self.is_current || response.hovered() || response.has_focus() {
             ui.painter()
@@ -535,15 +537,21 @@ impl PictureRow<'_> {
 
 /// A field for a new name, which has the keys. `Some(None)`: left as it was.
 pub(in crate::app) fn name_field(ui: &mut Ui, name: &mut String) -> Option<Option<String>> {
+    let is_done = text_field(ui, "New name", name)?;
+    let name = name.trim().to_owned();
+    Some((is_done && !name.is_empty()).then_some(name))
+}
+
+/// A field for words, which has the keys. `Some`: whether they are to count.
+pub(in crate::app) fn text_field(ui: &mut Ui, name: &str, text: &mut String) -> Option<bool> {
     let field = ui
-        .add(egui::TextEdit::singleline(name).desired_width(f32::INFINITY))
-        .accessible_name("New name");
+        .add(egui::TextEdit::singleline(text).desired_width(f32::INFINITY))
+        .accessible_name(name);
     if ui.input(|input| input.key_pressed(egui::Key::Escape)) {
-        return Some(None);
+        return Some(false);
     }
     if field.lost_focus() {
-        let name = name.trim().to_owned();
-        return Some((!name.is_empty()).then_some(name));
+        return Some(true);
     }
     field.request_focus();
     None

@@ -1,6 +1,6 @@
 //! The environments to choose from: those that come with the program, and the files opened last, with small pictures.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -44,6 +44,8 @@ pub(in crate::app) struct Environments {
     hold: Arc<AtomicBool>,
     worker: Option<EnvironmentThumbnailWorker>,
     has_failed: bool,
+    /// What each part of the window shows.
+    wanted: BTreeMap<&'static str, Vec<EnvironmentSource>>,
     /// What was asked for last, and the environment that was there then.
     asked: Option<(Vec<EnvironmentSource>, Option<Arc<Environment>>)>,
     textures: HashMap<EnvironmentSource, TextureHandle>,
@@ -76,12 +78,12 @@ impl Environments {
         known.is_some_and(Option::is_none)
     }
 
-    /// Asks for the pictures of these, and takes those that are there. `loaded` is the environment in use, with where it
-    /// comes from. To be called while they are seen.
+    /// Asks for the pictures of what a part of the window shows, besides those that others do, and takes those that are there.
+    /// `loaded` is the environment in use, with where it comes from. To be called while they are seen.
     pub(in crate::app) fn make_pictures(
         &mut self,
         ctx: &egui::Context,
-        sources: &[EnvironmentSource],
+        (shown_by, shown): (&'static str, &[EnvironmentSource]),
         loaded: Option<(&EnvironmentSource, &Arc<Environment>)>,
     ) {
         if self.worker.is_none() && !self.has_failed {
@@ -94,12 +96,21 @@ impl Environments {
         let Some(worker) = &self.worker else {
             return;
         };
+        if self.wanted.get(shown_by).is_none_or(|before| before != shown) {
+            self.wanted.insert(shown_by, shown.to_vec());
+        }
+        let mut sources: Vec<EnvironmentSource> = Vec::new();
+        for source in self.wanted.values().flatten() {
+            if !sources.contains(source) {
+                sources.push(source.clone());
+            }
+        }
         let is_asked = self.asked.as_ref().is_some_and(|(asked, with)| {
             let is_same = match (with, loaded) {
                 (Some(with), Some((_, environment))) => Arc::ptr_eq(with, environment),
                 (with, loaded) => with.is_none() && loaded.is_none(),
             };
-            is_same && asked == sources
+            is_same && *asked == sources
         });
         if !is_asked {
             let wanted = sources.iter().map(|source| Wanted {
@@ -109,7 +120,7 @@ impl Environments {
                     .map(|(_, environment)| environment.clone()),
             });
             worker.ask(wanted.collect());
-            self.asked = Some((sources.to_vec(), loaded.map(|(_, environment)| environment.clone())));
+            self.asked = Some((sources, loaded.map(|(_, environment)| environment.clone())));
         }
         let Some(made) = worker.latest() else {
             return;

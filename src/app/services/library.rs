@@ -55,7 +55,9 @@ pub(in crate::app) struct Library {
     hold: Arc<AtomicBool>,
     cache: Option<PathBuf>,
     worker: Option<ThumbnailWorker>,
-    is_asked: bool,
+    /// Materials that lie in watched folders.
+    pub(in crate::app) watched: Vec<MaterialSettings>,
+    pub(in crate::app) is_asked: bool,
     textures: HashMap<u64, TextureHandle>,
     uploaded: Option<Thumbnails>,
 }
@@ -124,7 +126,8 @@ impl Library {
         };
         if !std::mem::replace(&mut self.is_asked, true) {
             let own = self.own.iter().filter_map(|shown| shown.entry.material.as_ref().ok());
-            worker.ask(PRESETS.iter().chain(own).cloned().collect::<Vec<MaterialSettings>>());
+            let all = PRESETS.iter().chain(own).chain(&self.watched);
+            worker.ask(all.cloned().collect::<Vec<MaterialSettings>>());
         }
         let Some(made) = worker.latest() else {
             return;

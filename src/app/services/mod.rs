@@ -12,5 +12,6 @@ pub(super) mod look;
 pub(super) mod messages;
 pub(super) mod recent;
 pub(super) mod selection;
+pub(super) mod shelves;
 pub mod snapshots;
 pub(super) mod watched;

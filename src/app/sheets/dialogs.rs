@@ -1,6 +1,7 @@
 //! Choosing files: the system's dialog on a thread of its own, or a path field where there is none.
 
 use std::path::{Path, PathBuf};
+use std::pin::Pin;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
@@ -38,6 +39,7 @@ pub(in crate::app) enum Purpose {
     SavePicture,
     SaveLayers,
     SaveWindow,
+    WatchFolder,
 }
 
 impl Purpose {
@@ -54,6 +56,7 @@ impl Purpose {
             Self::SavePicture => "Save the picture",
             Self::SaveLayers => "Save the picture with layers",
             Self::SaveWindow => "Save a picture of the window",
+            Self::WatchFolder => "Watch a folder",
         }
     }
 
@@ -76,6 +79,7 @@ impl Purpose {
             Self::SavePicture => ("Pictures", &["png", "exr", "hdr"]),
             Self::SaveLayers => ("OpenEXR pictures", &["exr"]),
             Self::SaveWindow => ("PNG pictures", &["png"]),
+            Self::WatchFolder => ("Folders", &[]),
         }
     }
 
@@ -150,30 +154,25 @@ impl Dialogs {
             return;
         }
         let (name, endings) = purpose.kind();
-        let mut dialog = rfd::AsyncFileDialog::new()
-            .set_title(purpose.title())
-            .add_filter(name, endings);
+        let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
+        if !endings.is_empty() {
+            dialog = dialog.add_filter(name, endings);
+        }
         if let Some(folder) = &self.folder {
             dialog = dialog.set_directory(folder);
         }
         let (sender, answer) = channel();
         let ctx = ctx.clone();
-        // The futures must be made here: some systems have dialogs only on this thread.
-        let (open, save) = if purpose.is_saving() {
-            (None, Some(dialog.set_file_name(&suggestion).save_file()))
-        } else {
-            (Some(dialog.pick_file()), None)
+        // The future must be made here: some systems have dialogs only on this thread.
+        let chosen: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
+            Purpose::WatchFolder => Box::pin(dialog.pick_folder()),
+            _ if purpose.is_saving() => Box::pin(dialog.set_file_name(&suggestion).save_file()),
+            _ => Box::pin(dialog.pick_file()),
         };
         let spawned = std::thread::Builder::new()
             .name("file dialog".to_owned())
             .spawn(move || {
-                let chosen = pollster::block_on(async {
-                    match (open, save) {
-                        (Some(open), _) => open.await,
-                        (_, Some(save)) => save.await,
-                        _ => None,
-                    }
-                });
+                let chosen = pollster::block_on(chosen);
                 // Nobody listens where the window was closed meanwhile.
                 let _ = sender.send(chosen.map(|file| file.path().to_owned()));
                 ctx.request_repaint();
@@ -297,11 +296,17 @@ impl PathField {
         let path = PathBuf::from(self.text.trim());
         let is_usable = if self.purpose.is_saving() {
             path.file_name().is_some() && !path.is_dir()
+        } else if self.purpose == Purpose::WatchFolder {
+            path.is_dir()
         } else {
             path.is_file()
         };
         ui.horizontal(|ui| {
-            let verb = if self.purpose.is_saving() { "Save" } else { "Open" };
+            let verb = match self.purpose {
+                Purpose::WatchFolder => "Watch",
+                purpose if purpose.is_saving() => "Save",
+                _ => "Open",
+            };
             let confirmed = ui.add_enabled(is_usable, egui::Button::new(verb)).clicked() || (is_entered && is_usable);
             if confirmed {
                 outcome = Some(Some(path.clone()));

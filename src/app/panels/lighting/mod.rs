@@ -64,7 +64,9 @@ fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
     let loaded = scene
         .as_ref()
         .map(|scene| (&scene.document.lighting.environment, &scene.job.environment));
-    desk.shared.environments.make_pictures(ui.ctx(), &sources, loaded);
+    desk.shared
+        .environments
+        .make_pictures(ui.ctx(), ("light", &sources), loaded);
     ui.add_space(2.0);
     widgets::comes_and_goes(ui, |ui| rows(ui, desk, &sources));
     ui.add_space(2.0);
@@ -85,6 +87,7 @@ fn rows(ui: &mut Ui, desk: &mut Desk<'_>, sources: &[EnvironmentSource]) {
         let environments = &desk.shared.environments;
         let row = PictureRow {
             name: &environment_label(source),
+            full_name: &environment_label(source),
             picture: environments.picture(source),
             size: PICTURE,
             color: ui.visuals().extreme_bg_color,

@@ -1,0 +1,171 @@
+//! The browser: materials to start from, the shipped ones, the user's own and those in watched folders, and environments.
+
+mod entries;
+
+use egui::{Ui, vec2};
+
+use super::Panel;
+use crate::app::actions::{Action, Command};
+use crate::app::desk::Desk;
+use crate::app::kit::theme;
+use crate::app::kit::tile::Layout;
+use crate::app::kit::widgets;
+use crate::app::services::library::Change;
+use crate::app::services::shelves::{LIST, SIDE_MAX};
+use entries::{Entry, groups};
+
+/// The materials and environments to start from.
+#[derive(Default)]
+pub(super) struct PresetsPanel {
+    /// What is searched for.
+    search: String,
+    /// A tag that all that is shown must have.
+    tag: Option<String>,
+    /// What is being tagged, with its tags as they are typed.
+    tagging: Option<(String, String)>,
+}
+
+impl Panel for PresetsPanel {
+    fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        self.header(ui, desk);
+        ui.add_space(0.5 * theme::GAP);
+        let shared = &mut *desk.shared;
+        shared.shelves.look(ui.ctx(), &mut shared.library);
+        shared.library.make_pictures(ui.ctx());
+        widgets::comes_and_goes(ui, |ui| self.groups(ui, desk));
+        ui.add_space(theme::GAP);
+        widgets::comes_and_goes(ui, |ui| restoring(ui, desk));
+        ui.horizontal_wrapped(|ui| {
+            for command in [Command::SaveToMyPresets, Command::WatchFolder] {
+                if ui.button(command.label()).on_hover_text(command.help()).clicked() {
+                    desk.act(command);
+                }
+            }
+        });
+    }
+}
+
+impl PresetsPanel {
+    /// Search, tags, and the size of the pictures.
+    fn header(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let search = egui::TextEdit::singleline(&mut self.search)
+            .hint_text("Search")
+            .desired_width(f32::INFINITY)
+            .margin(vec2(6.0, 4.0));
+        ui.add(search).accessible_name("Search presets");
+        ui.horizontal(|ui| {
+            let kept = &mut desk.shared.shelves.kept;
+            let slider = egui::Slider::new(&mut kept.picture_side, LIST..=SIDE_MAX)
+                .show_value(false)
+                .step_by(4.0);
+            ui.add(slider)
+                .on_hover_text("Size of the pictures; the smallest make a list.")
+                .accessible_name("Size of the pictures");
+            let tags: Vec<String> = kept.all_tags().into_iter().map(str::to_owned).collect();
+            if self.tag.as_ref().is_some_and(|tag| !tags.contains(tag)) {
+                self.tag = None;
+            }
+            if tags.is_empty() {
+                return;
+            }
+            let label = self.tag.clone().unwrap_or_else(|| "All tags".to_owned());
+            let button = ui.menu_button(label, |ui| {
+                if ui.selectable_label(self.tag.is_none(), "All tags").clicked() {
+                    self.tag = None;
+                }
+                for tag in &tags {
+                    if ui.selectable_label(self.tag.as_ref() == Some(tag), tag).clicked() {
+                        self.tag = Some(tag.clone());
+                    }
+                }
+            });
+            button.response.accessible_name("Only what has a tag");
+        });
+    }
+
+    /// Everything that is looked for, in groups.
+    fn groups(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
+        let layout = match desk.shared.shelves.kept.picture_side {
+            side if side > LIST => Layout::Grid(side),
+            side => Layout::List(side),
+        };
+        let wanted = self.search.to_lowercase();
+        let groups = groups(ui.ctx(), desk);
+        let mut found = false;
+        for mut group in groups {
+            let kept = &desk.shared.shelves.kept;
+            group.entries.retain(|entry| {
+                let has_tag = |tag: &String| kept.tags.get(&entry.key).is_some_and(|tags| tags.contains(tag));
+                self.tag.as_ref().is_none_or(has_tag) && entry.is_wanted(&wanted, &group.title, kept)
+            });
+            if group.entries.is_empty() && (group.notes.is_empty() || !wanted.is_empty()) {
+                continue;
+            }
+            found = true;
+            widgets::group(ui, &group.title, |ui| {
+                if let Some(folder) = &group.folder
+                    && ui.small_button(format!("Stop watching {}", group.title)).clicked()
+                {
+                    desk.shared.shelves.kept.folders.retain(|watched| watched != folder);
+                }
+                for note in &group.notes {
+                    widgets::note(ui, note);
+                }
+                match layout {
+                    Layout::List(_) => group
+                        .entries
+                        .iter()
+                        .for_each(|entry| self.entry(ui, desk, entry, layout)),
+                    Layout::Grid(_) => crate::app::kit::tile::grid(ui, |ui| {
+                        group
+                            .entries
+                            .iter()
+                            .for_each(|entry| self.entry(ui, desk, entry, layout));
+                    }),
+                }
+            });
+        }
+        if !found {
+            widgets::note(ui, "No preset of that name.");
+        }
+    }
+
+    /// One thing, or the field in which its name or its tags are typed.
+    fn entry(&mut self, ui: &mut Ui, desk: &mut Desk<'_>, entry: &Entry, layout: Layout) {
+        // By what it is, as others may come before it.
+        let builder = egui::UiBuilder::new().scope_id(egui::Id::unique(("preset", &entry.key)));
+        ui.scope_builder(builder, |ui| {
+            if let Some((key, text)) = &mut self.tagging
+                && *key == entry.key
+            {
+                let name = format!("Tags of {}", entry.full_name);
+                if let Some(typed) = widgets::text_field(ui, &name, text) {
+                    if typed {
+                        desk.shared.shelves.kept.tag(key, text);
+                    }
+                    self.tagging = None;
+                }
+            } else if let Some((path, name)) = &mut desk.shared.library.renaming
+                && entry.own.as_ref() == Some(path)
+            {
+                if let Some(chosen) = widgets::name_field(ui, name) {
+                    let rename = |name| Action::ChangeLibrary(Change::Rename(path.clone(), name));
+                    desk.actions.extend(chosen.map(rename));
+                    desk.shared.library.renaming = None;
+                }
+            } else {
+                entry.show(ui, desk, layout, &mut self.tagging);
+            }
+        });
+    }
+}
+
+/// The button that brings back what was deleted last.
+fn restoring(ui: &mut Ui, desk: &mut Desk<'_>) {
+    let removed = desk.shared.library.removed.as_ref();
+    if let Some(name) = removed.and_then(|removed| removed.path().file_stem())
+        && ui.button(format!("Restore {}", name.to_string_lossy())).clicked()
+    {
+        desk.actions.push(Action::ChangeLibrary(Change::Restore));
+    }
+}

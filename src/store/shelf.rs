@@ -1,0 +1,206 @@
+//! What lies in folders that the user keeps materials and environments in: any format that is opened, a few folders deep.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+
+use super::exchange::{self, ReadOptions, holds_materials};
+use super::preset::load_material;
+use crate::document::MaterialSettings;
+
+/// Folders below one that is watched which are looked into.
+const DEPTH: usize = 3;
+/// Files of a folder that are shown at most: more are not looked through, but searched for in a file manager.
+pub const FILES_MAX: usize = 400;
+/// Pictures of fewer bytes are no environments but icons and previews.
+const ENVIRONMENT_BYTES_MIN: u64 = 1 << 12;
+
+/// A file that can be used.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Item {
+    /// The file.
+    pub path: PathBuf,
+    /// What it holds.
+    pub kind: ItemKind,
+}
+
+/// What a file holds.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ItemKind {
+    /// A material, or what is wrong with it.
+    Material(Result<Box<MaterialSettings>, String>),
+    /// An environment, which is read once it is wanted.
+    Environment,
+}
+
+/// What a folder holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contents {
+    /// The folder.
+    pub folder: PathBuf,
+    /// In the order of their paths; or why there are none.
+    pub items: Result<Vec<Item>, String>,
+    /// Whether there are more than are listed.
+    pub has_more: bool,
+}
+
+/// Files that have been read, with when they were last changed and their lengths: only what has changed is read again.
+#[derive(Debug, Default)]
+pub struct Shelf {
+    known: HashMap<PathBuf, (Option<SystemTime>, u64, ItemKind)>,
+}
+
+impl Shelf {
+    /// What folders hold now.
+    pub fn list(&mut self, folders: &[PathBuf]) -> Vec<Contents> {
+        let mut known = std::mem::take(&mut self.known);
+        folders.iter().map(|folder| self.list_one(folder, &mut known)).collect()
+    }
+
+    fn list_one(
+        &mut self,
+        folder: &Path,
+        known: &mut HashMap<PathBuf, (Option<SystemTime>, u64, ItemKind)>,
+    ) -> Contents {
+        let mut paths = Vec::new();
+        let walked = walk(folder, 0, &mut paths);
+        paths.sort();
+        let has_more = paths.len() > FILES_MAX;
+        paths.truncate(FILES_MAX);
+        let items = walked.map(|()| {
+            let item = |path: PathBuf| {
+                let metadata = fs::metadata(&path).ok()?;
+                let stamp = (metadata.modified().ok(), metadata.len());
+                let is_small = stamp.1 < ENVIRONMENT_BYTES_MIN;
+                let before = known
+                    .remove(&path)
+                    .filter(|(changed, length, _)| (*changed, *length) == stamp);
+                let kind = match before {
+                    Some((.., kind)) => kind,
+                    None if is_material(&path) => material(&path)?,
+                    None if is_small => return None,
+                    None => ItemKind::Environment,
+                };
+                self.known.insert(path.clone(), (stamp.0, stamp.1, kind.clone()));
+                Some(Item { path, kind })
+            };
+            paths.into_iter().filter_map(item).collect()
+        });
+        Contents {
+            folder: folder.to_owned(),
+            items,
+            has_more,
+        }
+    }
+}
+
+/// The files below a folder that may be of use, one more than are shown at most.
+fn walk(folder: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), String> {
+    let entries = fs::read_dir(folder).map_err(|error| {
+        let folder = folder.display();
+        format!("{folder} can't be read: {error}; bring it back, or stop watching it")
+    })?;
+    let mut folders = Vec::new();
+    for entry in entries.flatten() {
+        let path = entry.path();
+        let is_hidden = entry.file_name().to_string_lossy().starts_with('.');
+        // Links to folders could go round in circles.
+        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        if is_hidden || paths.len() > FILES_MAX {
+            continue;
+        }
+        if is_folder {
+            folders.push(path);
+        } else if is_material(&path) || is_environment(&path) {
+            paths.push(path);
+        }
+    }
+    folders.sort();
+    for folder in folders.iter().filter(|_| depth < DEPTH) {
+        // What can't be looked into is left out; the watched folder itself is told of.
+        _ = walk(folder, depth + 1, paths);
+    }
+    Ok(())
+}
+
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| endings.iter().any(|known| known.eq_ignore_ascii_case(ending)))
+}
+
+fn is_material(path: &Path) -> bool {
+    has_ending(path, &["json", "mtlx"])
+}
+
+/// Pictures for screens are seldom environments; where a folder holds some, they are opened by hand.
+fn is_environment(path: &Path) -> bool {
+    has_ending(path, &["hdr", "exr"])
+}
+
+/// A material in a file; `None` where a .json file holds something else.
+fn material(path: &Path) -> Option<ItemKind> {
+    let read = if holds_materials(path) {
+        let opened = exchange::find(&path.to_string_lossy(), ReadOptions::default());
+        opened.map(|loaded| loaded.value).map_err(|error| error.to_string())
+    } else {
+        let bytes = fs::read(path).ok()?;
+        let json: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
+        json.get("material")?;
+        load_material(path)
+            .map(|loaded| loaded.value)
+            .map_err(|error| error.to_string())
+    };
+    Some(ItemKind::Material(read.map(Box::new)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::{PRESETS, save_material};
+
+    #[test]
+    fn folders_show_what_can_be_used_and_follow_changes() {
+        let place = tempfile::tempdir().expect("a folder");
+        let deep = place.path().join("metals/old");
+        fs::create_dir_all(&deep).expect("made");
+        let path = deep.join("one.json");
+        save_material(&path, &PRESETS[0]).expect("saved");
+        fs::write(place.path().join("broken.json"), r#"{"glossmith": 1, "material": 7}"#).expect("written");
+        fs::write(place.path().join("package.json"), "{}").expect("written");
+        fs::write(place.path().join("sky.hdr"), vec![0; 1 << 15]).expect("written");
+        fs::write(place.path().join("icon.hdr"), "small").expect("written");
+        let mut shelf = Shelf::default();
+        let folders = [place.path().to_owned(), place.path().join("gone")];
+        let names = |contents: &Contents| -> Vec<String> {
+            let items = contents.items.as_ref().expect("listed");
+            let name = |item: &Item| item.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            items.iter().map(name).collect()
+        };
+        let listed = shelf.list(&folders);
+        assert_eq!(names(&listed[0]), ["broken.json", "one.json", "sky.hdr"]);
+        let items = listed[0].items.as_ref().expect("listed");
+        assert!(matches!(&items[0].kind, ItemKind::Material(Err(why)) if why.contains("broken.json")));
+        assert_eq!(items[1].kind, ItemKind::Material(Ok(Box::new(PRESETS[0].clone()))));
+        assert_eq!(items[2].kind, ItemKind::Environment);
+        let why = listed[1].items.as_ref().expect_err("not there");
+        assert!(why.contains("gone") && why.contains("stop watching"), "{why}");
+        save_material(&path, &PRESETS[1]).expect("saved");
+        fs::remove_file(place.path().join("sky.hdr")).expect("removed");
+        let listed = shelf.list(&folders);
+        assert_eq!(names(&listed[0]), ["broken.json", "one.json"]);
+        let items = listed[0].items.as_ref().expect("listed");
+        assert_eq!(items[1].kind, ItemKind::Material(Ok(Box::new(PRESETS[1].clone()))));
+    }
+
+    #[test]
+    fn large_folders_end_somewhere() {
+        let place = tempfile::tempdir().expect("a folder");
+        for number in 0..FILES_MAX + 5 {
+            fs::write(place.path().join(format!("{number}.mtlx")), "").expect("written");
+        }
+        let listed = Shelf::default().list(&[place.path().to_owned()]);
+        assert!(listed[0].has_more);
+        assert_eq!(listed[0].items.as_ref().expect("listed").len(), FILES_MAX);
+    }
+}

@@ -1,0 +1,158 @@
+//! The browser of materials and environments: groups, sizes, favourites, tags, watched folders.
+
+use std::path::Path;
+
+use eframe::App as _;
+use egui::Key;
+use egui::accesskit::{self, Role};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glossmith::app::Options;
+use glossmith::app::actions::{Action, Command};
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::{PRESETS, save_material};
+
+use super::cli_support::write_hdr;
+use super::ui::{Editor, Memory, editor_of, editor_remembering, options, request, see, wait};
+
+fn has(harness: &Editor, label: &str) -> bool {
+    harness.query_by_role_and_label(Role::Button, label).is_some()
+}
+
+fn click(harness: &mut Editor, label: &str) {
+    harness.get_by_role_and_label(Role::Button, label).click_accesskit();
+    harness.run_steps(4);
+}
+
+fn search(harness: &mut Editor, text: &str) {
+    let field = harness.get_by_role_and_label(Role::TextInput, "Search presets");
+    field.set_text_value_accesskit(text);
+    harness.run_steps(3);
+}
+
+/// Where a thing is shown.
+fn place(harness: &Editor, label: &str) -> egui::Rect {
+    harness.get_by_role_and_label(Role::Button, label).rect()
+}
+
+#[test]
+fn pictures_have_any_size_and_the_smallest_make_a_list() {
+    let mut harness = editor_of(options());
+    harness.run_steps(3);
+    let [a, b] = ["Gold", "Copper"].map(|name| place(&harness, name));
+    assert!((a.width() - 72.0).abs() < 1.0 && a.height() > a.width(), "{a:?}");
+    assert!((a.top() - b.top()).abs() < 1.0, "side by side");
+    let slider = |harness: &mut Editor, value: f64| {
+        let slider = harness.get_by_role_and_label(Role::Slider, "Size of the pictures");
+        harness.event(egui::Event::AccessKitActionRequest(accesskit::ActionRequest {
+            target_node: slider.accesskit_node().locate().0,
+            target_tree: accesskit::TreeId::ROOT,
+            action: accesskit::Action::SetValue,
+            data: Some(accesskit::ActionData::NumericValue(value)),
+        }));
+        harness.run_steps(3);
+    };
+    slider(&mut harness, 120.0);
+    assert!((place(&harness, "Gold").width() - 120.0).abs() < 1.0);
+    slider(&mut harness, 36.0);
+    let [a, b] = ["Gold", "Copper"].map(|name| place(&harness, name));
+    assert!(b.top() >= a.bottom() && a.width() > 150.0, "a list: {a:?}, {b:?}");
+    harness.check_accessibility();
+}
+
+#[test]
+fn favourites_come_first_tags_are_found_and_both_are_kept() {
+    let mut harness = editor_of(options());
+    harness.run_steps(3);
+    click(&mut harness, "More of Rubber");
+    click(&mut harness, "Favourite");
+    assert!(place(&harness, "Rubber").top() < place(&harness, "Glass").top());
+    click(&mut harness, "More of Gold");
+    click(&mut harness, "Tags…");
+    let field = harness.get_by_role_and_label(Role::TextInput, "Tags of Gold");
+    field.set_text_value_accesskit("Jewel, warm");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    search(&mut harness, "jewel");
+    assert!(has(&harness, "Gold") && !has(&harness, "Silver"));
+    search(&mut harness, "metals");
+    assert!(has(&harness, "Gold") && has(&harness, "Silver") && !has(&harness, "Rubber"));
+    search(&mut harness, "");
+    click(&mut harness, "Only what has a tag");
+    click(&mut harness, "warm");
+    assert!(has(&harness, "Gold") && !has(&harness, "Silver"));
+
+    let mut memory = Memory::default();
+    harness.state_mut().save(&mut memory);
+    drop(harness);
+    let mut harness = editor_remembering(memory, options());
+    assert!(place(&harness, "Rubber").top() < place(&harness, "Glass").top());
+    search(&mut harness, "jewel");
+    assert!(has(&harness, "Gold") && !has(&harness, "Silver"));
+    click(&mut harness, "More of Gold");
+    click(&mut harness, "Tags…");
+    harness
+        .get_by_role_and_label(Role::TextInput, "Tags of Gold")
+        .set_text_value_accesskit("");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert!(!has(&harness, "Gold"), "nothing is found by a tag that was taken away");
+}
+
+/// Chooses a folder by the path field.
+fn watch(harness: &mut Editor, folder: &Path) {
+    request(harness, Action::Do(Command::WatchFolder));
+    see(harness, "the path field", |harness| {
+        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
+    });
+    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
+    field.set_text_value_accesskit(&folder.display().to_string());
+    harness.run_steps(2);
+    click(harness, "Watch");
+}
+
+#[test]
+fn folders_are_watched_for_materials_and_environments() {
+    let place = tempfile::tempdir().expect("a folder");
+    let folder = place.path().join("collected");
+    std::fs::create_dir_all(folder.join("metals")).expect("made");
+    let mut own = PRESETS[3].clone();
+    own.name = "Zinc".to_owned();
+    save_material(&folder.join("metals/zinc.json"), &own).expect("saved");
+    write_hdr(&folder.join("dusk.hdr"), 128, 64, |x, _| [x as f32 / 128.0, 0.2, 0.1]);
+    let mut harness = editor_of(Options {
+        typed_paths: Some(place.path().to_owned()),
+        ..options()
+    });
+    harness.run_steps(3);
+    watch(&mut harness, &folder);
+    let zinc = "Zinc (collected/metals/zinc.json)";
+    see(&mut harness, "the material", |harness| has(harness, zinc));
+    click(&mut harness, zinc);
+    assert_eq!(harness.state().document().materials[0], own);
+    let dusk = "dusk.hdr (collected/dusk.hdr)";
+    search(&mut harness, "dusk");
+    assert!(has(&harness, dusk) && !has(&harness, zinc));
+    click(&mut harness, dusk);
+    let source = EnvironmentSource::File(folder.join("dusk.hdr"));
+    wait(&mut harness, "the environment", |app| {
+        app.document().lighting.environment == source
+    });
+    // What comes later is found.
+    search(&mut harness, "");
+    own.name = "Tin".to_owned();
+    save_material(&folder.join("tin.json"), &own).expect("saved");
+    see(&mut harness, "the new one", |harness| {
+        has(harness, "Tin (collected/tin.json)")
+    });
+    click(&mut harness, "Stop watching collected");
+    assert!(!has(&harness, zinc));
+    // And one that goes is told of.
+    watch(&mut harness, &folder);
+    see(&mut harness, "the material", |harness| has(harness, zinc));
+    std::fs::remove_dir_all(&folder).expect("removed");
+    see(&mut harness, "what is wrong", |harness| {
+        harness.query_by_label_contains("can't be read").is_some()
+    });
+}
