@@ -163,6 +163,8 @@ mod ui_browser;
 mod ui_export;
 #[path = "suite/ui_files.rs"]
 mod ui_files;
+#[path = "suite/ui_lights.rs"]
+mod ui_lights;
 #[path = "suite/ui_look.rs"]
 mod ui_look;
 #[path = "suite/ui_objects.rs"]

@@ -114,7 +114,11 @@ fn far_light(direction: vec3f, lobe_density: f32, is_mirror: bool) -> vec3f {
 fn emitted_light(
     point: SurfacePoint, material: Material, distance: f32, lobe_density: f32, is_mirror: bool,
 ) -> vec3f {
-    let emission = material.emission;
+    var emission = material.emission;
+    if PLAN_SPOT == 1u {
+        let cosine = dot(point.surface.normal, point.surface.wo);
+        emission *= spot_share(material, select(cosine, -cosine, point.surface.is_inside));
+    }
     if !samples_emitters() || is_mirror {
         return emission;
     }

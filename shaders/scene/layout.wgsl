@@ -85,7 +85,11 @@ struct Material {
     texture_roughness: f32,
     roughness_table: u32,
     has_vertex_colors: u32,
+    // The ramp of a spot's share over the cosine to the way it faces.
+    spot_scale: f32,
+    spot_offset: f32,
     reserved: u32,
+    reserved_pair: vec2u,
 }
 
 // A triangle to intersect: corner positions as bits, with the corner's vertex index in w.

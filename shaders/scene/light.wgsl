@@ -53,11 +53,20 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
         let uvs = uvs_at(vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w), weights);
         radiance = emission_at(material, uvs);
     }
+    if PLAN_SPOT == 1u {
+        radiance *= spot_share(material, -dot(normal, direction));
+    }
     let cosine = abs(dot(normal, direction));
     let error = position_error(p0, p1, p2, weights, normal) + origin_error + POSITION_ERROR * distance;
     return LightSample(
         direction, light_density(material.light_luminance, cosine, distance), radiance, distance - error / max(cosine, COSINE_MIN),
     );
+}
+
+// The share of its radiance that a spot sends in a direction under this cosine to the way it faces.
+fn spot_share(material: Material, cosine: f32) -> f32 {
+    let ramp = clamp(cosine * material.spot_scale + material.spot_offset, 0.0, 1.0);
+    return ramp * ramp;
 }
 
 // The density, per steradian, with which light_sample draws the direction to a place of a material with this

@@ -9,6 +9,7 @@ mod check;
 mod convert;
 mod explain;
 mod fit;
+mod lights;
 mod lobe;
 mod lobe_spec;
 mod merge;

@@ -7,9 +7,8 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 
 use crate::document::parameter::parse_color;
-use crate::document::{AreaLight, AreaLightShape, Background, Document, ParameterError, range};
+use crate::document::{Background, Document, ParameterError, range};
 use crate::instructions::{Instructions, Missing};
-use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color};
 use crate::render::output::{OutputError, format_of};
 use crate::scene::environment::EnvironmentEncoding;
 use crate::store::replace::check_saving;
@@ -61,51 +60,6 @@ pub(super) fn region(text: &str) -> Result<[f64; 4], String> {
 /// Yaw and pitch in degrees.
 pub(super) fn orbit(text: &str) -> Result<[f64; 2], String> {
     numbers_in([range::YAW_DEG, range::PITCH_DEG])(text)
-}
-
-/// An area light; white where no colour is given.
-pub(super) fn area_light(text: &str) -> Result<AreaLight, String> {
-    let (numbers, color) = match text.rsplit_once(',') {
-        Some((numbers, color)) if color.starts_with('#') => {
-            (numbers, parse_color(color).map_err(|error| error.to_string())?)
-        }
-        Some((numbers, color)) if color.ends_with('K') => (numbers, color_of_temperature(color)?),
-        _ => (text, [1.0; 3]),
-    };
-    let length = range::AREA_LENGTH;
-    let ranges = [
-        range::YAW_DEG,
-        range::PITCH_DEG,
-        length.clone(),
-        length.clone(),
-        length,
-        range::STRENGTH,
-    ];
-    let (numbers, shape) = match numbers.strip_suffix(",triangle") {
-        Some(numbers) => (numbers, AreaLightShape::Triangle),
-        None => (numbers, AreaLightShape::Quad),
-    };
-    let [yaw_deg, pitch_deg, distance, width, height, strength] = numbers_in(ranges)(numbers)?;
-    Ok(AreaLight {
-        yaw_deg,
-        pitch_deg,
-        distance,
-        width,
-        height,
-        shape,
-        color,
-        strength: strength as f32,
-        is_muted: false,
-    })
-}
-
-/// The colour of a body that shines at a temperature, as in 3200K.
-fn color_of_temperature(text: &str) -> Result<[f32; 3], String> {
-    let [coldest, hottest] = TEMPERATURES_K;
-    let temperature_k = number_in(coldest..=hottest)(text.trim_end_matches('K'));
-    temperature_k
-        .map(|temperature_k| blackbody_color(temperature_k).map(|x| x as f32))
-        .map_err(|expected| format!("{text}: {expected}, followed by K"))
 }
 
 /// Width and height, as in 640x480.

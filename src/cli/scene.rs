@@ -5,11 +5,12 @@ use std::path::{Path, PathBuf};
 use anyhow::bail;
 use clap::Args;
 
+use super::lights::{self, LightArgument};
 use super::settings::SettingOptions;
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
 use crate::document::of_model::materials_of;
-use crate::document::{AreaLight, Background, Document, ImportLobe, range};
+use crate::document::{Background, Document, ImportLobe, range};
 use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::{Model, ModelOptions, ModelSource, is_model};
@@ -49,10 +50,19 @@ pub struct SceneArguments {
     /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light [default: display].
     #[arg(long, value_name = "display|linear", value_parser = parse::environment_encoding)]
     environment_encoding: Option<EnvironmentEncoding>,
-    /// A rectangle (or triangle) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
-    /// in bounding radii of the model) and radiance; a colour, or the temperature of one, may follow. May be repeated up to 8 times.
-    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle][,#rrggbb|,3200K]", value_parser = parse::area_light, allow_hyphen_values = true)]
-    area_lights: Vec<AreaLight>,
+    /// A rectangle (triangle, disc) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
+    /// in bounding radii of the model) and radiance; a colour, or the temperature of one, may follow, and WORD=VALUE as of
+    /// --spot. May be repeated, 8 lights in all.
+    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle|,disc][,#rrggbb|,3200K][,WORD=VALUE]…", value_parser = lights::area_light, allow_hyphen_values = true)]
+    area_lights: Vec<LightArgument>,
+    /// A spot, a disc that shines into a cone: yaw, pitch (degrees), distance, target (x,y,z), turn, width, height, cone
+    /// (degrees), softness, color, temperature (2700K), strength (radiance) or power (lumens). May be repeated.
+    #[arg(long = "spot", value_name = "WORD=VALUE,…", value_parser = lights::spot, allow_hyphen_values = true)]
+    spots: Vec<LightArgument>,
+    /// A sun: yaw, pitch (degrees), angle across it (degrees), color, temperature (5600K), strength (irradiance at the model)
+    /// or power (lux, the same). May be repeated.
+    #[arg(long = "sun", value_name = "WORD=VALUE,…", value_parser = lights::sun, allow_hyphen_values = true)]
+    suns: Vec<LightArgument>,
     /// What the camera sees where it meets nothing [default: environment].
     #[arg(long, value_name = "environment|transparent|#rrggbb", value_parser = parse::background)]
     background: Option<Background>,
@@ -115,12 +125,19 @@ impl SceneArguments {
         }
         self.put_light(&mut document);
         self.put_view(&mut document);
-        self.settings.apply(&mut document)?;
         self.put_limits(&mut document);
+        document = self.set_up(&document)?;
+        document.check()?;
+        Ok(document)
+    }
+
+    /// A document with the settings that were given.
+    fn set_up(&self, document: &Document) -> anyhow::Result<Document> {
+        let mut document = document.clone();
+        self.settings.apply(&mut document)?;
         for assignment in &self.assignments {
             document.assign(assignment)?;
         }
-        document.check()?;
         Ok(document)
     }
 
@@ -162,7 +179,12 @@ impl SceneArguments {
         if takes_materials && has_materials {
             document.materials = materials_of(&model, self.import_lobe);
         }
-        document.lighting.area_lights.extend(&self.area_lights);
+        let radius_m = model.bounding_radius() * self.set_up(document)?.unit_m;
+        let given = [&self.area_lights, &self.spots, &self.suns].into_iter().flatten();
+        document
+            .lighting
+            .area_lights
+            .extend(given.map(|light| light.in_scene(radius_m)));
         if takes_materials {
             document.add_lights_and_cameras(&model);
         }

@@ -1,16 +1,26 @@
-//! Lights of the document's own: rectangles and triangles that shine.
+//! Lights of the document's own: rectangles, triangles and discs that shine, spots and suns.
 
+use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
+use super::parameter::LIGHT_PARAMETERS;
 use super::{MaterialSettings, range};
 use crate::named::named;
-use crate::scene::light::AreaShape;
+use crate::optics::material::Material;
+use crate::optics::vector::Vec3;
+use crate::scene::catcher::NearLight;
+use crate::scene::light::{AreaShape, Outline};
 
-/// A rectangle that shines with the same radiance from both sides, seen by the camera like anything else. It looks at
-/// the centre of the model's bounding box, around which yaw and pitch turn as a camera's. Lengths are in units of the
+/// How far away a sun is, bounding radii: its light is parallel to a hundredth of a degree.
+pub const SUN_DISTANCE: f64 = 1e4;
+/// The narrowest ramp of a spot's edge, in the cosine.
+const RAMP_MIN: f64 = 1e-4;
+
+/// A surface that shines and is seen by the camera like anything else: with the same radiance to both sides, or into a cone
+/// where it is a spot. It looks at its target, around which yaw and pitch turn as a camera's. Lengths are in units of the
 /// model's bounding radius.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -19,17 +29,27 @@ pub struct AreaLight {
     pub yaw_deg: f64,
     /// Height, degrees in [−90, 90].
     pub pitch_deg: f64,
-    /// Distance from the centre, bounding radii.
+    /// Distance from the target, bounding radii; a sun's is [`SUN_DISTANCE`].
     pub distance: f64,
+    /// What it looks at, relative to the centre of the model's bounding box, bounding radii.
+    pub target: [f64; 3],
+    /// Turn about the line to its target, clockwise seen from there, degrees.
+    pub turn_deg: f64,
     /// Horizontal side, bounding radii.
     pub width: f64,
     /// Other side, bounding radii.
     pub height: f64,
     /// Its shape.
     pub shape: AreaLightShape,
+    /// The angle across a spot's cone, degrees.
+    pub cone_deg: f64,
+    /// The share of the cone's angle over which it fades to its edge, in [0, 1].
+    pub softness: f64,
+    /// The angle across a sun, degrees.
+    pub angle_deg: f64,
     /// Linear RGB in [0, 1].
     pub color: [f32; 3],
-    /// Radiance of white.
+    /// Radiance of white; a sun's irradiance at the model.
     pub strength: f32,
     /// It does not shine, and is not there.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
@@ -42,9 +62,14 @@ impl Default for AreaLight {
             yaw_deg: -35.0,
             pitch_deg: 40.0,
             distance: 3.0,
+            target: [0.0; 3],
+            turn_deg: 0.0,
             width: 1.0,
             height: 1.0,
             shape: AreaLightShape::Quad,
+            cone_deg: 40.0,
+            softness: 0.2,
+            angle_deg: 0.53,
             color: [1.0; 3],
             strength: 10.0,
             is_muted: false,
@@ -53,57 +78,217 @@ impl Default for AreaLight {
 }
 
 impl AreaLight {
+    /// A small lamp with a cone.
+    pub fn spot() -> Self {
+        Self {
+            shape: AreaLightShape::Spot,
+            width: 0.3,
+            height: 0.3,
+            strength: 200.0,
+            ..Self::default()
+        }
+    }
+
+    /// The sun, as bright as a white sky of radiance 1.
+    pub fn sun() -> Self {
+        Self {
+            shape: AreaLightShape::Sun,
+            strength: PI as f32,
+            ..Self::default()
+        }
+    }
+
+    /// Whether it sends its light into a cone.
+    pub fn is_spot(&self) -> bool {
+        self.shape == AreaLightShape::Spot
+    }
+
+    /// Whether it is as far away as the sun.
+    pub fn is_sun(&self) -> bool {
+        self.shape == AreaLightShape::Sun
+    }
+
     /// Where it is and how large.
     pub fn shape(&self) -> AreaShape {
-        AreaShape {
+        let outline = match self.shape {
+            AreaLightShape::Quad => Outline::Rectangle,
+            AreaLightShape::Triangle => Outline::Triangle,
+            AreaLightShape::Disc | AreaLightShape::Spot | AreaLightShape::Sun => Outline::Ellipse,
+        };
+        let seen = AreaShape {
+            target: self.target,
             yaw_deg: self.yaw_deg,
             pitch_deg: self.pitch_deg,
             distance: self.distance,
             width: self.width,
             height: self.height,
-            is_triangle: self.shape == AreaLightShape::Triangle,
+            turn_deg: self.turn_deg,
+            outline,
+        };
+        if !self.is_sun() {
+            return seen;
+        }
+        let across = 2.0 * SUN_DISTANCE * self.half_angle_rad().tan();
+        AreaShape {
+            target: [0.0; 3],
+            distance: SUN_DISTANCE,
+            width: across,
+            height: across,
+            turn_deg: 0.0,
+            ..seen
         }
     }
 
-    /// Turns it around the model so that its middle is seen mirrored at a place: `mirrored` is the direction, of length 1,
+    fn half_angle_rad(&self) -> f64 {
+        0.5 * self.angle_deg.to_radians()
+    }
+
+    /// The cosines of half the angles within which a spot is as bright as it gets, and outside which it is dark.
+    fn cone_cosines(&self) -> [f64; 2] {
+        let outer_rad = 0.5 * self.cone_deg.to_radians();
+        let outer = outer_rad.cos();
+        let inner = (outer_rad * (1.0 - self.softness)).cos();
+        [inner.max(outer + RAMP_MIN), outer]
+    }
+
+    /// Radiance of white.
+    pub fn radiance(&self) -> f64 {
+        let strength = f64::from(self.strength);
+        match self.is_sun() {
+            true => strength / (PI * self.half_angle_rad().sin().powi(2)),
+            false => strength,
+        }
+    }
+
+    /// Luminous flux in lumens where a radiance of 1 is a luminance of 1 cd/m² and a bounding radius this many metres; for
+    /// a sun its illuminance in lux.
+    pub fn power(&self, radius_m: f64) -> f64 {
+        f64::from(self.strength) * self.power_of_one(radius_m)
+    }
+
+    /// Gives it the strength at which [`AreaLight::power`] is this, or the nearest that it takes; black stays black.
+    pub fn set_power(&mut self, power: f64, radius_m: f64) {
+        let of_one = self.power_of_one(radius_m);
+        if of_one > 0.0 {
+            let (least, most) = range::STRENGTH.into_inner();
+            self.strength = (power / of_one).clamp(least, most) as f32;
+        }
+    }
+
+    /// The power at strength 1.
+    fn power_of_one(&self, radius_m: f64) -> f64 {
+        let luminance = Vec3::<f64>::from_f32(self.color).luminance();
+        let share = match self.shape {
+            AreaLightShape::Sun => return luminance,
+            AreaLightShape::Quad => 1.0,
+            AreaLightShape::Triangle => 0.5,
+            AreaLightShape::Disc | AreaLightShape::Spot => 0.25 * PI,
+        };
+        let area_m2 = share * self.width * self.height * radius_m * radius_m;
+        // What leaves a place, over its radiance: π to each side, or the integral of share × cosine over the cone.
+        let projected_sr = match self.is_spot() {
+            true => {
+                let [inner, outer] = self.cone_cosines();
+                let ramp = inner - outer;
+                PI * (1.0 - inner * inner) + 2.0 * PI * ramp * (outer / 3.0 + ramp / 4.0)
+            }
+            false => 2.0 * PI,
+        };
+        luminance * area_m2 * projected_sr
+    }
+
+    /// Turns it around its target so that its middle is seen mirrored at a place: `mirrored` is the direction, of length 1,
     /// in which the viewer's ray leaves from there. Both in the geometry's units, the middle of the model at the origin.
-    /// Where the place is farther out than the light it is moved outwards, too.
+    /// Where the place is farther out than the light it is moved outwards, too. A spot looks at the place from then on.
     pub fn put_highlight(&mut self, place: DVec3, mirrored: DVec3) {
+        if self.is_spot() {
+            let (least, most) = range::LIGHT_TARGET.into_inner();
+            self.target = place.to_array().map(|x| x.clamp(least, most));
+        }
+        let place = if self.is_sun() {
+            DVec3::ZERO
+        } else {
+            place - DVec3::from_array(self.target)
+        };
         let beyond = self.distance.max(1.5 * place.length());
         self.distance = beyond.min(*range::AREA_LENGTH.end());
         let along = place.dot(mirrored);
         let below_root = along * along + self.distance * self.distance - place.length_squared();
         let middle = place + mirrored * (below_root.max(0.0).sqrt() - along);
-        let [x, y, z] = middle.normalize_or(mirrored).to_array();
-        self.yaw_deg = x.atan2(z).to_degrees();
+        self.look_from(middle.normalize_or(mirrored));
+    }
+
+    /// Puts it in this direction of length 1 from its target.
+    pub fn look_from(&mut self, outwards: DVec3) {
+        let [x, y, z] = outwards.to_array();
+        // Straight above or below any yaw is right: the one that it has.
+        if x != 0.0 || z != 0.0 {
+            self.yaw_deg = x.atan2(z).to_degrees();
+        }
         self.pitch_deg = y.clamp(-1.0, 1.0).asin().to_degrees();
     }
 
     /// What it is checked for.
     pub(super) fn numbers(&self) -> impl Iterator<Item = (&'static str, f64, RangeInclusive<f64>)> {
-        use range as r;
-        let [red, green, blue] = self.color.map(f64::from);
-        let color = |value| ("lighting.area_lights.color", value, r::COLOR);
-        [
-            ("lighting.area_lights.yaw_deg", self.yaw_deg, r::YAW_DEG),
-            ("lighting.area_lights.pitch_deg", self.pitch_deg, r::PITCH_DEG),
-            ("lighting.area_lights.distance", self.distance, r::AREA_LENGTH),
-            ("lighting.area_lights.width", self.width, r::AREA_LENGTH),
-            ("lighting.area_lights.height", self.height, r::AREA_LENGTH),
-            ("lighting.area_lights.strength", f64::from(self.strength), r::STRENGTH),
-            color(red),
-            color(green),
-            color(blue),
-        ]
-        .into_iter()
+        let numbers = LIGHT_PARAMETERS.iter().flat_map(|parameter| parameter.numbers(self));
+        numbers.map(|(key, value, [low, high])| (key, value, low..=high))
     }
 
     /// Its surface: black but for what it emits.
     pub fn material(&self) -> MaterialSettings {
         MaterialSettings {
             emission_color: self.color,
-            emission_strength: self.strength,
+            emission_strength: self.radiance() as f32,
             ..MaterialSettings::diffuse("area light", [0.0; 3])
+        }
+    }
+
+    /// How it lights a shadow catcher.
+    pub fn seen_from_near(&self) -> NearLight {
+        let radiance = self.radiance();
+        NearLight {
+            shape: self.shape(),
+            radiance: self.color.map(|channel| f64::from(channel) * radiance),
+            spot: self.shine().ramp(),
+        }
+    }
+
+    /// All that its compiled surface depends on.
+    pub fn shine(&self) -> Shine {
+        Shine {
+            color: self.color,
+            radiance: self.radiance() as f32,
+            cone_cosines: self.is_spot().then(|| self.cone_cosines()),
+            is_sun: self.is_sun(),
+        }
+    }
+}
+
+/// How the surface of an area light shines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shine {
+    color: [f32; 3],
+    radiance: f32,
+    cone_cosines: Option<[f64; 2]>,
+    is_sun: bool,
+}
+
+impl Shine {
+    /// Scale and offset of a spot's ramp, see [`spot_share`](crate::scene::light::spot_share); 0 and 1 of other lights.
+    fn ramp(&self) -> [f64; 2] {
+        let Some([inner, outer]) = self.cone_cosines else {
+            return [0.0, 1.0];
+        };
+        let scale = 1.0 / (inner - outer);
+        [scale, -outer * scale]
+    }
+
+    /// What of its compiled surface a material of the model can't have: a spot's cone, and how often a sun is drawn, which
+    /// its irradiance says and not its area.
+    pub fn finish(&self, material: &mut Material<f32>) {
+        [material.spot_scale, material.spot_offset] = self.ramp().map(|number| number as f32);
+        if self.is_sun {
+            material.light_luminance *= (SUN_DISTANCE * SUN_DISTANCE).recip() as f32;
         }
     }
 }
@@ -115,6 +300,9 @@ named! {
         #[default]
         Quad = 0, "quad", "Rectangle", "Two sides, width and height.";
         Triangle = 1, "triangle", "Triangle", "Width is its base, height its height; the tip is up.";
+        Disc = 2, "disc", "Disc", "A circle or an ellipse: width and height are its axes.";
+        Spot = 3, "spot", "Spot", "A disc that sends its light into a cone around its target.";
+        Sun = 4, "sun", "Sun", "A disc so far away that its light is parallel.";
     }
 }
 
@@ -130,12 +318,82 @@ mod tests {
             (DVec3::ZERO, DVec3::Y),
             (DVec3::new(8.0, -1.0, 3.0), DVec3::new(0.0, 1.0, 0.0)),
         ] {
-            let mut light = AreaLight::default();
-            light.put_highlight(place, mirrored);
-            let middle = light.distance * orbit_direction(light.yaw_deg, light.pitch_deg);
-            let seen = (middle - place).normalize();
-            assert!(seen.distance(mirrored) < 1e-9, "{place} {mirrored}: {light:?}");
-            assert!(light.distance >= AreaLight::default().distance);
+            for target in [[0.0; 3], [0.2, -0.4, 0.1]] {
+                for start in [AreaLight::default(), AreaLight::spot(), AreaLight::sun()] {
+                    let mut light = AreaLight { target, ..start };
+                    light.put_highlight(place, mirrored);
+                    let seen = (light.shape().frame().middle - place).normalize();
+                    let tolerance = if light.is_sun() { 2e-3 } else { 1e-9 };
+                    assert!(seen.distance(mirrored) < tolerance, "{place} {mirrored}: {light:?}");
+                    assert!(light.distance >= AreaLight::default().distance);
+                }
+            }
         }
+    }
+
+    #[test]
+    fn a_light_looks_at_its_target() {
+        let light = AreaLight {
+            target: [0.5, -1.0, 2.0],
+            turn_deg: 30.0,
+            ..AreaLight::default()
+        };
+        let frame = light.shape().frame();
+        let outwards = orbit_direction(light.yaw_deg, light.pitch_deg);
+        assert!((frame.middle - 3.0 * outwards).distance(DVec3::new(0.5, -1.0, 2.0)) < 1e-12);
+        // To the right of who looks at it, and turned clockwise: downwards.
+        let untilted = AreaLight { turn_deg: 0.0, ..light }.shape().frame();
+        assert!(untilted.across.cross(untilted.up).distance(-outwards) < 1e-12);
+        assert!(frame.across.dot(untilted.across) > 0.0 && frame.across.dot(untilted.up) < 0.0);
+    }
+
+    /// The flux of a spot against the integral of what it sends in each direction.
+    #[test]
+    fn the_power_of_a_spot_is_what_its_cone_holds() {
+        for (cone_deg, softness) in [(40.0, 0.2), (120.0, 1.0), (5.0, 0.0)] {
+            let light = AreaLight {
+                cone_deg,
+                softness,
+                ..AreaLight::spot()
+            };
+            let mut material = crate::document::compile(&[light.material()]).0[0];
+            light.shine().finish(&mut material);
+            let steps = 200_000;
+            let shares = (0..steps).map(|step| {
+                let cosine = (f64::from(step) + 0.5) / f64::from(steps);
+                2.0 * PI * cosine * crate::scene::light::spot_share(&material.cast::<f64>(), cosine)
+            });
+            let projected = shares.sum::<f64>() / f64::from(steps);
+            let expected = projected * light.radiance() * 0.25 * PI * 0.09 * 4.0;
+            let power = light.power(2.0);
+            assert!(
+                (power / expected - 1.0).abs() < 5e-3,
+                "{cone_deg} {softness}: {power} for {expected}"
+            );
+        }
+    }
+
+    #[test]
+    fn power_and_strength_are_the_same_said_twice() {
+        for start in [AreaLight::default(), AreaLight::spot(), AreaLight::sun()] {
+            let mut light = AreaLight {
+                color: [1.0, 0.5, 0.2],
+                ..start
+            };
+            light.set_power(800.0, 0.3);
+            assert!((light.power(0.3) - 800.0).abs() < 1e-3, "{light:?}");
+        }
+        // A square metre of 1 cd/m² sends π lm to each side.
+        let square = AreaLight {
+            strength: 1.0,
+            ..AreaLight::default()
+        };
+        assert!((square.power(1.0) - 2.0 * PI).abs() < 1e-9);
+        let mut black = AreaLight {
+            color: [0.0; 3],
+            ..square
+        };
+        black.set_power(5.0, 1.0);
+        assert_eq!(black.strength, 1.0);
     }
 }

@@ -102,8 +102,7 @@ impl Change {
 }
 
 fn emit_alike(old: &[AreaLight], new: &[AreaLight]) -> bool {
-    let emission = |light: &AreaLight| (light.color, light.strength);
-    old.iter().map(emission).eq(new.iter().map(emission))
+    old.iter().map(AreaLight::shine).eq(new.iter().map(AreaLight::shine))
 }
 
 fn have_same_shapes(old: &[AreaLight], new: &[AreaLight]) -> bool {

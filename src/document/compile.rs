@@ -108,7 +108,10 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         texture_roughness: settings.roughness,
         roughness_table: NO_TEXTURE,
         has_vertex_colors: u32::from(uses.color && slot.has_vertex_colors),
+        spot_scale: 0.0,
+        spot_offset: 1.0,
         reserved: 0,
+        reserved_pair: [0; 2],
     };
     if material.textures[1] == NO_TEXTURE {
         // Else it is brought into range where the texture has been looked up.

@@ -9,6 +9,7 @@ pub mod effect;
 mod ground;
 pub mod history;
 pub mod import;
+pub mod light_handle;
 pub mod match_look;
 mod material;
 pub mod measured_look;
@@ -22,7 +23,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-pub use area_light::{AreaLight, AreaLightShape};
+pub use area_light::{AreaLight, AreaLightShape, Shine};
 pub use change::Change;
 pub use compile::{compile, compile_textured};
 pub use custom_curve::CustomCurve;
@@ -31,7 +32,8 @@ pub use history::History;
 pub use import::ImportLobe;
 pub use material::{Conductor, MaterialSettings, TextureUse};
 pub use parameter::{
-    Choice, Kind, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, Value, assign, parameter, setting,
+    Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, Value, assign, parameter,
+    setting,
 };
 pub use settings::{
     Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, SettingError, ViewSettings,
@@ -63,6 +65,8 @@ pub struct Document {
     pub lighting: Lighting,
     /// Where it is seen from.
     pub camera: CameraSettings,
+    /// Metres of a scene unit: what lights' power is reckoned with; no picture depends on it.
+    pub unit_m: f64,
     /// Cameras to come back to; no picture depends on them.
     pub bookmarks: Vec<Bookmark>,
     /// How radiance becomes a picture.
@@ -85,6 +89,7 @@ impl Default for Document {
             materials: vec![MaterialSettings::default()],
             lighting: Lighting::default(),
             camera: CameraSettings::default(),
+            unit_m: 1.0,
             bookmarks: Vec::new(),
             view: ViewSettings::default(),
             render: RenderSettings::default(),

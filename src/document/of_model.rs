@@ -75,7 +75,7 @@ fn area_light(light: &ModelLight, model: &Model) -> AreaLight {
             .color
             .map(|channel| (channel / brightest.max(f32::MIN_POSITIVE)).clamp(0.0, 1.0)),
         strength: strength.clamp(0.0, *range::STRENGTH.end()) as f32,
-        is_muted: false,
+        ..AreaLight::default()
     }
 }
 

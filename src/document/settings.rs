@@ -57,6 +57,16 @@ pub mod range {
     pub const FIREFLY_CLAMP: RangeInclusive<f64> = 1e-6..=1e9;
     /// Distance and sides of an area light, bounding radii.
     pub const AREA_LENGTH: RangeInclusive<f64> = 1e-3..=1e3;
+    /// Coordinates of what an area light looks at, bounding radii.
+    pub const LIGHT_TARGET: RangeInclusive<f64> = -1e3..=1e3;
+    /// The angle across a spot's cone, degrees.
+    pub const CONE_DEG: RangeInclusive<f64> = 1.0..=180.0;
+    /// The share of a spot's cone over which it fades.
+    pub const SOFTNESS: RangeInclusive<f64> = 0.0..=1.0;
+    /// The angle across a sun, degrees.
+    pub const SUN_ANGLE_DEG: RangeInclusive<f64> = 0.01..=90.0;
+    /// Metres of a scene unit.
+    pub const UNIT_M: RangeInclusive<f64> = 1e-6..=1e6;
     /// The longest side of a model's textures, texels.
     pub const TEXTURE_SIDE: RangeInclusive<f64> = 16.0..=16384.0;
     /// Time of a model's pose, seconds.
@@ -90,7 +100,7 @@ pub struct Lighting {
     pub ground_color: [f32; 3],
     /// What else the ground is.
     pub ground: GroundSettings,
-    /// Rectangles that shine, at most 8.
+    /// Lights beside it, at most 8.
     pub area_lights: Vec<AreaLight>,
 }
 

@@ -51,6 +51,7 @@ fn turn_light(document: &mut Document, angle_deg: f64) {
     lighting.rotation_deg = wrapped_deg(f64::from(lighting.rotation_deg) + angle_deg) as f32;
     for light in &mut lighting.area_lights {
         light.yaw_deg = wrapped_deg(light.yaw_deg + angle_deg);
+        light.target = turned_about(light.target, [0.0; 3], angle_deg);
     }
 }
 

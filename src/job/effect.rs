@@ -61,6 +61,7 @@ effects! {
     Environment "environment";
     LightSampling "light-sampling" flag "PLAN_LIGHT_SAMPLING";
     AreaLights "area-lights";
+    Spot "spot" flag "PLAN_SPOT";
     Emission "emission" flag "PLAN_EMISSION";
     EmitterSampling "emitter-sampling" flag "PLAN_EMITTER_SAMPLING";
     Background "background";

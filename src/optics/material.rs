@@ -103,11 +103,18 @@ pub struct Material<T> {
     pub roughness_table: u32,
     /// 1 where the colours at the vertices multiply the base colour.
     pub has_vertex_colors: u32,
+    /// With `spot_offset`: the ramp of a spot's share over the cosine to the way it faces
+    /// ([`spot_share`](crate::scene::light::spot_share)); 0 and 1 where the surface shines into all directions.
+    pub spot_scale: T,
+    /// See `spot_scale`.
+    pub spot_offset: T,
     /// Fills the last 16 bytes.
     pub reserved: u32,
+    /// See `reserved`.
+    pub reserved_pair: [u32; 2],
 }
 
-// SAFETY: f32 and u32 fields without padding (15 × 16 bytes); any bit pattern is valid.
+// SAFETY: f32 and u32 fields without padding (16 × 16 bytes); any bit pattern is valid.
 unsafe impl bytemuck::Zeroable for Material<f32> {}
 // SAFETY: as above.
 unsafe impl bytemuck::Pod for Material<f32> {}
@@ -156,7 +163,10 @@ impl<T: Real> Material<T> {
             texture_roughness: number(self.texture_roughness),
             roughness_table: self.roughness_table,
             has_vertex_colors: self.has_vertex_colors,
+            spot_scale: number(self.spot_scale),
+            spot_offset: number(self.spot_offset),
             reserved: self.reserved,
+            reserved_pair: self.reserved_pair,
         }
     }
 
@@ -231,6 +241,12 @@ impl<T: Real> Material<T> {
     #[inline(always)]
     pub fn is_textured(&self) -> bool {
         self.opacity_texture != NO_TEXTURE || self.textures != [NO_TEXTURE; 4]
+    }
+
+    /// True where what it emits depends on the direction.
+    #[inline(always)]
+    pub fn is_spot(&self) -> bool {
+        self.spot_scale.to_f64() != 0.0
     }
 
     /// True where some light may go straight on, as if the surface were not there.

@@ -6,23 +6,23 @@ use super::assets::Assets;
 use super::session::SessionError;
 use crate::document::effect::{Facts, Switch, plan, without_what_is_off};
 use crate::document::{
-    AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, compile_textured,
+    AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, Shine, compile_textured,
 };
 use crate::job::effect::EffectId;
 use crate::job::{BackgroundKind, Catcher, Job, Settings};
 use crate::optics::material::Material;
 use crate::scene::Geometry;
 use crate::scene::camera::{Camera, framing_distance, orbit_direction};
-use crate::scene::catcher::{CatcherLight, catcher_table};
+use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
 use crate::scene::environment::Environment;
-use crate::scene::light::{AreaShape, LightChoice, Lights, Sampled};
+use crate::scene::light::{LightChoice, Lights, Sampled};
 use crate::scene::texture::Textures;
 
 /// Materials and their tables.
 type Compiled = (Arc<Vec<Material<f32>>>, Arc<Vec<f32>>);
 
-/// What materials and tables depend on.
-type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>);
+/// What materials and tables depend on: settings, textures, and the slots of area lights with how each shines.
+type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>, Vec<(usize, Shine)>);
 
 /// What the table of emitting triangles depends on: geometry, and the emission of each slot.
 type LightsKey = (Arc<Geometry>, Vec<f32>);
@@ -33,7 +33,7 @@ struct CatcherKey {
     environment: Arc<Environment>,
     rotation_deg: f32,
     strength: f32,
-    area_lights: Vec<(AreaShape, [f64; 3])>,
+    area_lights: Vec<NearLight>,
     height: f64,
     reflection: f32,
     tables: Arc<Vec<f32>>,
@@ -75,7 +75,9 @@ impl Compiler {
         let textures = assets.textures(source, options)?;
         let mut slots = slot_materials(document, model.slots.len());
         slots.extend(document.catcher_reflection());
-        let (materials, tables) = self.materials(&slots, &textures);
+        let first_light = model.slots.len() + usize::from(document.ground);
+        let shines = (first_light..).zip(lighting.shining().map(AreaLight::shine)).collect();
+        let (materials, tables) = self.materials(&slots, &textures, shines);
         let (catcher, tables) = if document.catches_shadows() {
             let (table, tables) = self.with_catcher(document, &geometry, &environment, tables);
             let catcher = Catcher {
@@ -136,14 +138,24 @@ impl Compiler {
         })
     }
 
-    fn materials(&mut self, wanted: &[MaterialSettings], textures: &Arc<Textures>) -> Compiled {
-        let is_known = |(of, looked_up): &MaterialsKey| of == wanted && Arc::ptr_eq(looked_up, textures);
+    fn materials(
+        &mut self,
+        wanted: &[MaterialSettings],
+        textures: &Arc<Textures>,
+        shines: Vec<(usize, Shine)>,
+    ) -> Compiled {
+        let is_known = |(of, looked_up, shone): &MaterialsKey| {
+            of == wanted && Arc::ptr_eq(looked_up, textures) && *shone == shines
+        };
         if let Some((_, compiled)) = self.materials.as_ref().filter(|(key, _)| is_known(key)) {
             return compiled.clone();
         }
-        let (materials, tables) = compile_textured(wanted, &textures.slots);
+        let (mut materials, tables) = compile_textured(wanted, &textures.slots);
+        for (slot, shine) in &shines {
+            shine.finish(&mut materials[*slot]);
+        }
         let compiled = (Arc::new(materials), Arc::new(tables));
-        self.materials = Some(((wanted.to_vec(), textures.clone()), compiled.clone()));
+        self.materials = Some(((wanted.to_vec(), textures.clone(), shines), compiled.clone()));
         compiled
     }
 
@@ -156,15 +168,11 @@ impl Compiler {
         tables: Arc<Vec<f32>>,
     ) -> (u32, Arc<Vec<f32>>) {
         let lighting = &document.lighting;
-        let shines = |light: &AreaLight| {
-            let radiance = light.color.map(|channel| f64::from(channel * light.strength));
-            (light.shape(), radiance)
-        };
         let key = CatcherKey {
             environment: environment.clone(),
             rotation_deg: lighting.rotation_deg,
             strength: lighting.strength,
-            area_lights: lighting.shining().map(shines).collect(),
+            area_lights: lighting.shining().map(AreaLight::seen_from_near).collect(),
             height: geometry.ground_height(),
             reflection: lighting.ground.reflection,
             tables,

@@ -37,8 +37,38 @@ pub struct CatcherLight<'a> {
     pub rotation: [f64; 2],
     /// Factor of its radiance.
     pub strength: f64,
-    /// Area lights with the radiance of each. They shine, and take the light from behind them away.
-    pub area_lights: &'a [(AreaShape, [f64; 3])],
+    /// Area lights. They shine, and take the light from behind them away.
+    pub area_lights: &'a [NearLight],
+}
+
+/// An area light that shines on a shadow catcher.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearLight {
+    /// Where it is.
+    pub shape: AreaShape,
+    /// Its radiance, a spot's in the middle of its cone.
+    pub radiance: [f64; 3],
+    /// The ramp of a spot's share over the cosine to the way it faces, see [`spot_share`](super::light::spot_share): scale and
+    /// offset.
+    pub spot: [f64; 2],
+}
+
+impl NearLight {
+    /// The mean share of its radiance that one of its triangles sends to a place: exact for what is linear or quadratic
+    /// over the triangle.
+    fn share(&self, place: DVec3, corners: &[DVec3; 3]) -> f64 {
+        let [scale, offset] = self.spot;
+        if scale == 0.0 {
+            return 1.0;
+        }
+        let facing = -self.shape.frame().outwards;
+        let shares = [0, 1, 2].map(|index: usize| {
+            let middle = corners[index].midpoint(corners[(index + 1) % 3]);
+            let cosine = (place - middle).normalize_or_zero().dot(facing);
+            (cosine * scale + offset).clamp(0.0, 1.0).powi(2)
+        });
+        shares.iter().sum::<f64>() / 3.0
+    }
 }
 
 /// The table of a plane at this height that faces +Y, in the geometry's units; `reflection` is how much varnish lies on it.
@@ -47,19 +77,20 @@ pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> 
     let near: Vec<_> = light
         .area_lights
         .iter()
-        .map(|(shape, radiance)| (parts(&shape.corners()), *radiance))
+        .map(|light| (parts(&light.shape.corners()), light))
         .collect();
     let side = if near.is_empty() { 1 } else { SIDE };
     let at = |index: usize| {
         let [x, z] = [index % side, index / side].map(|number| node_place(number, side));
         let place = DVec3::new(x, height, z);
         let mut sum = far;
-        for (triangles, radiance) in &near {
+        for (triangles, near) in &near {
             for corners in triangles {
                 let share = form_factor(place, corners);
                 let behind = light.behind(place, corners);
+                let spot = near.share(place, corners);
                 for (channel, sum) in sum.iter_mut().enumerate() {
-                    *sum += share * (radiance[channel] - behind[channel]);
+                    *sum += share * (spot * near.radiance[channel] - behind[channel]);
                 }
             }
         }
@@ -84,8 +115,14 @@ impl CatcherLight<'_> {
     }
 }
 
+/// So many triangles are parts enough: a disc's.
+const MANY: usize = 16;
+
 /// Triangles each cut into four, so that the environment behind each part may be taken as that behind its middle.
 fn parts(triangles: &[[DVec3; 3]]) -> Vec<[DVec3; 3]> {
+    if triangles.len() >= MANY {
+        return triangles.to_vec();
+    }
     let cut = |&[a, b, c]: &[DVec3; 3]| {
         let [ab, bc, ca] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
@@ -202,6 +239,7 @@ pub fn catcher_reflectance<T: Real>(tables: &[f32], table: u32, cosine: T) -> T 
 mod tests {
     use super::*;
     use crate::scene::environment::{self, EnvironmentSource};
+    use crate::scene::light::Outline;
 
     #[test]
     fn form_factors_of_triangles_are_those_of_quadrature() {
@@ -258,6 +296,44 @@ mod tests {
     }
 
     #[test]
+    fn a_spot_lights_what_its_cone_holds() {
+        let environment = environment::load(&EnvironmentSource::Studio).expect("loads");
+        let shape = AreaShape {
+            yaw_deg: 0.0,
+            pitch_deg: 90.0,
+            distance: 2.0,
+            width: 0.02,
+            height: 0.02,
+            target: [1.0, 0.0, 0.0],
+            turn_deg: 0.0,
+            outline: Outline::Ellipse,
+        };
+        // From 30° to 20°.
+        let [inner, outer] = [20.0_f64, 30.0].map(|angle| angle.to_radians().cos());
+        let spots = [[0.0, 1.0], [1.0 / (inner - outer), -outer / (inner - outer)]];
+        let [lamp, spot] = spots.map(|spot| {
+            let light = CatcherLight {
+                environment: &environment,
+                rotation: [1.0, 0.0],
+                strength: 0.0,
+                area_lights: &[NearLight {
+                    shape,
+                    radiance: [1e3; 3],
+                    spot,
+                }],
+            };
+            let table = catcher_table(&light, -0.5, 0.0);
+            move |x: f64| catcher_light(&table, 0, vec3(x, -0.5, 0.0)).x
+        });
+        // 2.5 below it: tan 10°, tan 25° and tan 45° beside its target.
+        let beside = |angle_deg: f64| 1.0 + 2.5 * angle_deg.to_radians().tan();
+        assert!((spot(beside(10.0)) / lamp(beside(10.0)) - 1.0).abs() < 1e-3);
+        let within = spot(beside(25.0)) / lamp(beside(25.0));
+        assert!((0.1..0.5).contains(&within), "{within}");
+        assert_eq!(spot(beside(45.0)), 0.0);
+    }
+
+    #[test]
     fn tables_with_lights_are_near_the_true_light() {
         let environment = environment::load(&EnvironmentSource::Studio).expect("loads");
         let shape = AreaShape {
@@ -266,13 +342,19 @@ mod tests {
             distance: 2.0,
             width: 1.0,
             height: 0.6,
-            is_triangle: false,
+            target: [0.0; 3],
+            turn_deg: 0.0,
+            outline: Outline::Rectangle,
         };
         let light = CatcherLight {
             environment: &environment,
             rotation: [1.0, 0.0],
             strength: 0.0,
-            area_lights: &[(shape, [10.0, 5.0, 1.0])],
+            area_lights: &[NearLight {
+                shape,
+                radiance: [10.0, 5.0, 1.0],
+                spot: [0.0, 1.0],
+            }],
         };
         let height = -0.6;
         let table = catcher_table(&light, height, 0.0);

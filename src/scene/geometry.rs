@@ -427,6 +427,13 @@ impl Framing {
     }
 }
 
+impl Model {
+    /// From the middle of its bounding box to the farthest vertex of a triangle, in the world; 1 where there is none.
+    pub fn bounding_radius(&self) -> f64 {
+        Framing::of(&self.mesh).world_units_per_unit
+    }
+}
+
 fn is_finite(corners: &[DVec3; 3]) -> bool {
     corners.iter().all(|corner| corner.is_finite())
 }

@@ -1,14 +1,14 @@
 //! Surfaces that emit: sampled by power, triangle by triangle, and weighed against the environment. Area lights are
-//! rectangles among them.
+//! rectangles, triangles and ellipses among them.
 //!
-//! A triangle emits the same radiance from both sides. It is picked in proportion to area × luminance, and a place on it
+//! A triangle emits the same radiance from both sides, but for a spot's, which sends all of it into a cone. It is picked in proportion to area × luminance, and a place on it
 //! uniformly; so the density per area is luminance / power for every place of every triangle, and a hit needs no table
 //! to know it. With an emission texture the luminance is its mean. The functions that start with `light_` have WGSL twins in `shaders/scene/light.wgsl`.
 
 use std::f64::consts::PI;
 
 use bytemuck::{Pod, Zeroable};
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 use super::alias::{AliasEntry, alias_table, grid_place};
 use super::camera::{orbit_direction, right_and_up};
@@ -24,34 +24,79 @@ use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 
-/// Where an area light is, which looks at the centre of the model's bounding box. Lengths are in units of the model's
-/// bounding radius.
+/// Where an area light is and what it looks at. Places are relative to the centre of the model's bounding box, they and
+/// lengths in units of the model's bounding radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaShape {
+    /// What it looks at.
+    pub target: [f64; 3],
     /// Azimuth in degrees, as a camera's: 0 on the +Z side, 90 on the +X side.
     pub yaw_deg: f64,
     /// Height above the horizon in degrees.
     pub pitch_deg: f64,
-    /// Distance of its middle from the centre, above 0.
+    /// Distance of its middle from the target, above 0.
     pub distance: f64,
     /// Its horizontal side, above 0.
     pub width: f64,
     /// Its other side, above 0.
     pub height: f64,
-    /// A triangle with these as base and height, not a rectangle.
-    pub is_triangle: bool,
+    /// How far it is turned about the line to its target, clockwise seen from there, degrees.
+    pub turn_deg: f64,
+    /// What it is bounded by.
+    pub outline: Outline,
+}
+
+/// What bounds an area light within its width and height.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Outline {
+    /// All of it.
+    Rectangle,
+    /// The width is its base; its tip is at the middle of the upper side.
+    Triangle,
+    /// Width and height are its axes.
+    Ellipse,
+}
+
+/// The middle of an area light, and unit vectors along its sides and away from its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AreaFrame {
+    /// Its middle, in the geometry's units.
+    pub middle: DVec3,
+    /// Along its width, to the right of who looks at it from the target.
+    pub across: DVec3,
+    /// Along its height, upwards.
+    pub up: DVec3,
+    /// From the target to the middle.
+    pub outwards: DVec3,
 }
 
 impl AreaShape {
-    /// Its triangles in the geometry's units, facing the centre.
-    pub(super) fn mesh(&self, slot: u32) -> Mesh {
+    /// Where it is.
+    pub fn frame(&self) -> AreaFrame {
         let outwards = orbit_direction(self.yaw_deg, self.pitch_deg);
-        let [right, up] = right_and_up(-outwards);
-        let (half_u, half_v) = (right * (-0.5 * self.width), up * (-0.5 * self.height));
-        if self.is_triangle {
-            return shapes::triangle(self.distance * outwards, half_u, half_v, slot);
+        let [left, mut up] = right_and_up(-outwards);
+        let mut across = -left;
+        if self.turn_deg != 0.0 {
+            let turn = DQuat::from_axis_angle(outwards, self.turn_deg.to_radians());
+            (across, up) = (turn * across, turn * up);
         }
-        shapes::rectangle(self.distance * outwards, half_u, half_v, 1.0, slot)
+        AreaFrame {
+            middle: DVec3::from_array(self.target) + self.distance * outwards,
+            across,
+            up,
+            outwards,
+        }
+    }
+
+    /// Its triangles in the geometry's units, facing the target.
+    pub(super) fn mesh(&self, slot: u32) -> Mesh {
+        let AreaFrame { middle, across, up, .. } = self.frame();
+        let (half_u, half_v) = (across * (0.5 * self.width), up * (-0.5 * self.height));
+        match self.outline {
+            Outline::Rectangle => shapes::rectangle(middle, half_u, half_v, 1.0, slot),
+            Outline::Triangle => shapes::triangle(middle, half_u, half_v, slot),
+            Outline::Ellipse => shapes::ellipse(middle, half_u, half_v, slot),
+        }
     }
 }
 
@@ -248,6 +293,9 @@ pub fn light_sample<T: Real>(
         let uvs = uvs_at(geometry, triangle, weights);
         radiance = emission_at(emitters.textures, material, uvs);
     }
+    if material.is_spot() {
+        radiance = radiance * spot_share(material, -normal.dot(direction));
+    }
     let cosine = normal.dot(direction).abs();
     let error = position_error([p0, p1, p2], weights, normal) + origin_error + T::from_f64(POSITION_ERROR) * distance;
     LightSample {
@@ -261,6 +309,17 @@ pub fn light_sample<T: Real>(
         distance: distance - error / cosine.max(T::from_f64(COSINE_MIN)),
         radiance,
     }
+}
+
+/// The share of its radiance that a spot sends in a direction under this cosine to the way it faces: 1 within the inner
+/// cone, 0 outside the outer one, and between them the square of a ramp in the cosine, as glTF's spots have it
+/// (KHR_lights_punctual).
+#[inline(always)]
+pub fn spot_share<T: Real>(material: &Material<T>, cosine: T) -> T {
+    let ramp = (cosine * material.spot_scale + material.spot_offset)
+        .max(T::zero())
+        .min(T::one());
+    ramp * ramp
 }
 
 /// Keeps densities finite where a triangle is seen edge-on.

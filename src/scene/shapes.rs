@@ -65,6 +65,30 @@ pub(super) fn triangle(center: DVec3, half_u: DVec3, half_v: DVec3, slot: u32) -
     mesh
 }
 
+/// Corners of the polygon that stands for an ellipse.
+const ELLIPSE_CORNERS: u32 = 64;
+
+/// An ellipse around `center` with half its axes as vectors, as a polygon of the same area. It faces `half_v` × `half_u`.
+pub(super) fn ellipse(center: DVec3, half_u: DVec3, half_v: DVec3, slot: u32) -> Mesh {
+    let mut mesh = Mesh::default();
+    let normal = half_v.cross(half_u).normalize_or(DVec3::Y).as_vec3();
+    let tangent = half_u.normalize_or(DVec3::X).as_vec3().extend(1.0);
+    let step_rad = TAU / f64::from(ELLIPSE_CORNERS);
+    let grown = (step_rad / step_rad.sin()).sqrt();
+    let middle = mesh.push_vertex(center, normal, Vec2::splat(0.5), tangent);
+    let rim: Vec<u32> = (0..ELLIPSE_CORNERS)
+        .map(|corner| {
+            let at = grown * DVec2::from_angle(step_rad * f64::from(corner));
+            let uv = (at.as_vec2() + 1.0) * 0.5;
+            mesh.push_vertex(center + at.x * half_u + at.y * half_v, normal, uv, tangent)
+        })
+        .collect();
+    for (index, corner) in rim.iter().enumerate() {
+        mesh.push_triangle([middle, rim[(index + 1) % rim.len()], *corner], slot);
+    }
+    mesh
+}
+
 /// A rectangle around `center` of two triangles, with half its sides as vectors: u runs along `half_u`, v along
 /// `half_v`, both from −`uv_half_side` to `uv_half_side` about ½. It faces `half_v` × `half_u`.
 pub(super) fn rectangle(center: DVec3, half_u: DVec3, half_v: DVec3, uv_half_side: f32, slot: u32) -> Mesh {

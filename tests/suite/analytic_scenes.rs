@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, Vec2};
 use glossmith::analysis::quadrature::{gauss_legendre, integrate, integrate_hemisphere};
-use glossmith::document::{AreaLight, Background, Document, MaterialSettings, Strategy, assign};
+use glossmith::document::{AreaLight, AreaLightShape, Background, Document, MaterialSettings, Strategy, assign};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate};
@@ -293,7 +293,59 @@ fn lights() -> Vec<Case> {
         );
     }
     cases.extend(backs(above(0.25, 0.6, 0.6)));
+    cases.extend(round_lights(above(1.2, 1.0, 1.0)));
     cases
+}
+
+/// A disc, a spot and a sun above a plane of albedo 0.8.
+fn round_lights(above: AreaLight) -> Vec<Case> {
+    let white = ["base.color=0.8,0.8,0.8"];
+    let case = |name: &'static str, irradiance: f64, light: AreaLight, place: [f64; 3]| {
+        Case::new(name, &[&MATT, &white], [0.8 / PI * irradiance; 3])
+            .in_the_dark()
+            .with(|document| document.lighting.area_lights = vec![light])
+            .seen([4.0, 3.0, 0.0], place)
+            .by(BY_LIGHT, 256)
+    };
+    let disc = AreaLight {
+        shape: AreaLightShape::Disc,
+        ..above
+    };
+    let of_disc = PI * 5.0 * 0.5_f64.powi(2) / (0.5_f64.powi(2) + 1.2_f64.powi(2));
+    // Half an angle of 20°, bright within 10°; seen from where its light falls under some 16°.
+    let spot = AreaLight {
+        shape: AreaLightShape::Spot,
+        width: 0.02,
+        height: 0.02,
+        cone_deg: 40.0,
+        softness: 0.5,
+        strength: 5e3,
+        ..above
+    };
+    let of_spot = |beside: f64| {
+        let distance = beside.hypot(1.2);
+        let cosine = 1.2 / distance;
+        let [inner, outer] = [10.0_f64, 20.0].map(|angle| angle.to_radians().cos());
+        let share = ((cosine - outer) / (inner - outer)).clamp(0.0, 1.0).powi(2);
+        5e3 * PI * 0.01_f64.powi(2) * share * (cosine / distance).powi(2)
+    };
+    let sun = AreaLight {
+        pitch_deg: 60.0,
+        ..AreaLight::sun()
+    };
+    // Places in the world, where the bounding radius of the square is √2.
+    let beside = 0.5;
+    vec![
+        case("disc", of_disc, disc, [0.0; 3]),
+        case("spot", of_spot(0.0), spot, [0.0; 3]),
+        case(
+            "edge of a spot",
+            of_spot(beside / 2.0_f64.sqrt()),
+            spot,
+            [0.0, 0.0, beside],
+        ),
+        case("sun", PI * 60.0_f64.to_radians().sin(), sun, [0.3, 0.0, 0.3]),
+    ]
 }
 
 /// Area lights and emitters shine to both sides.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glossmith::render::Assets;
 use glossmith::scene::environment::{Environment, EnvironmentEncoding, EnvironmentSource};
-use glossmith::scene::light::AreaShape;
+use glossmith::scene::light::{AreaShape, Outline};
 use glossmith::scene::{Geometry, Model, ModelOptions, ModelSource};
 
 const SOURCES: [ModelSource; 3] = [ModelSource::Sphere, ModelSource::Plane, ModelSource::Shaderball];
@@ -27,7 +27,9 @@ fn lit(assets: &Assets, yaw_deg: f64) -> Arc<Geometry> {
         distance: 3.0,
         width: 1.0,
         height: 1.0,
-        is_triangle: false,
+        target: [0.0; 3],
+        turn_deg: 0.0,
+        outline: Outline::Rectangle,
     };
     let made = assets.geometry(
         &ModelSource::Sphere,

@@ -61,7 +61,7 @@ fn rust_layouts() -> Vec<Layout> {
             horizon, fresnel, curve_table, albedo_table, inner_albedo_table, edge_tint, opacity,
             coat_color, coat_weight, coat_roughness, coat_ior, coat_table, light_luminance, textures,
             opacity_texture, alpha_cutoff, normal_strength, has_rough_tables, texture_roughness, roughness_table,
-            has_vertex_colors, reserved,
+            has_vertex_colors, spot_scale, spot_offset, reserved, reserved_pair,
         }),
         layout!(Triangle: Triangle { corners }),
         layout!(Vertex: Vertex { normal, uv, second_uv, tangent, color }),

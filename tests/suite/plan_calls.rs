@@ -2,7 +2,7 @@
 
 use glossmith::document::effect::{EFFECTS, EffectSwitches, Switch};
 use glossmith::document::{
-    AreaLight, Background, Denoise, Document, GroundKind, MaterialSettings, Strategy, TextureUse,
+    AreaLight, AreaLightShape, Background, Denoise, Document, GroundKind, MaterialSettings, Strategy, TextureUse,
 };
 use glossmith::job::effect::{ANY, EffectId};
 use glossmith::job::plan::Plan;
@@ -142,6 +142,15 @@ fn calls_for(effect: &str) -> Calls {
                     (material.emission_color, material.emission_strength) = (one(c, LEAST, 0.0), 1.0);
                 },
             ],
+        ),
+        "spot" => (
+            metal,
+            &[|d, _| {
+                d.lighting.area_lights.push(AreaLight {
+                    shape: AreaLightShape::Spot,
+                    ..AreaLight::default()
+                });
+            }],
         ),
         "area-lights" => (metal, &[|d, _| d.lighting.area_lights.push(AreaLight::default())]),
         "emission" => (

@@ -45,6 +45,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         },
         "specular" => |material, _| material.specular_weight = 0.0,
         "emission" => |material, _| material.emission = Vec3::zero(),
+        "spot" => |material, _| (material.spot_scale, material.spot_offset) = (0.0, 1.0),
         "transmission" => |material, _| material.transmission_weight = 0.0,
         "absorption" => |material, _| material.absorption = Vec3::zero(),
         "edge-tint" => |material, _| material.edge_tint = Vec3::splat(1.0),

@@ -112,7 +112,8 @@ pub fn random_document(random: &mut Random) -> Document {
         document.camera.aperture = 0.1;
     }
     if random.below(3) == 0 {
-        document.lighting.area_lights.push(AreaLight::default());
+        let made = [AreaLight::default, AreaLight::spot, AreaLight::sun][random.below(3)];
+        document.lighting.area_lights.push(made());
     }
     if random.below(4) == 0 {
         document.view.denoise = Denoise::High;

@@ -9,7 +9,7 @@ use crate::document::{Kind, Parameter, Value};
 /// Whether a parameter can be edited in a row; what depends on the scene has controls of its own.
 pub(in crate::app) fn has_row<T>(parameter: &Parameter<T>) -> bool {
     match &parameter.kind {
-        Kind::Curve | Kind::Place { .. } => false,
+        Kind::Curve => false,
         Kind::Optional { kind, at_first, .. } => at_first.is_some() || matches!(**kind, Kind::Toggle),
         _ => true,
     }
@@ -23,15 +23,25 @@ pub(in crate::app) fn show<T: Default>(
     value: &mut Value,
     beside: impl FnOnce(&mut Ui),
 ) -> bool {
-    let full = parameter.full_name();
+    show_as(ui, parameter, &parameter.full_name(), value, beside)
+}
+
+/// The same under another name, for one of several things that have the parameter.
+pub(in crate::app) fn show_as<T: Default>(
+    ui: &mut Ui,
+    parameter: &Parameter<T>,
+    full: &str,
+    value: &mut Value,
+    beside: impl FnOnce(&mut Ui),
+) -> bool {
     let name = Name {
-        full: &full,
+        full,
         label: parameter.label,
         symbol: parameter.symbol,
         help: parameter.help,
     };
     let response = widgets::row(ui, name, |ui| {
-        let response = control(ui, parameter, &full, value);
+        let response = control(ui, parameter, full, value);
         beside(ui);
         response
     });
@@ -60,7 +70,11 @@ fn of_kind(ui: &mut Ui, kind: &Kind, row: &RowStyle, full: &str, value: &mut Val
             response
         }
         (Kind::Triple { range }, Value::Triple(values)) => {
-            widgets::triple(ui, full, values, f64::from(range[0])..=f64::from(range[1]))
+            let range = f64::from(range[0])..=f64::from(range[1]);
+            widgets::triple(ui, full, values, range, ["red", "green", "blue"])
+        }
+        (Kind::Place { range }, Value::Place(place)) => {
+            widgets::triple(ui, full, place, range[0]..=range[1], ["x", "y", "z"])
         }
         (Kind::Choice(choices), Value::Choice(name)) => {
             let choices: Vec<_> = choices

@@ -343,16 +343,22 @@ fn linear_of(text: &str) -> Option<[f32; 3]> {
     Some(linear_from_srgb(vec3(r, g, b)).to_f32())
 }
 
-/// Three numbers side by side.
-pub(in crate::app) fn triple(ui: &mut Ui, name: &str, values: &mut [f32; 3], range: RangeInclusive<f64>) -> Response {
+/// Three numbers side by side, with what each is called.
+pub(in crate::app) fn triple<N: egui::emath::Numeric>(
+    ui: &mut Ui,
+    name: &str,
+    values: &mut [N; 3],
+    range: RangeInclusive<f64>,
+    parts: [&str; 3],
+) -> Response {
     let spacing = ui.spacing().item_spacing.x;
     let width = ((ui.available_width() - 2.0 * spacing) / 3.0).max(30.0);
     let mut whole: Option<Response> = None;
-    for (value, channel) in values.iter_mut().zip(["red", "green", "blue"]) {
+    for (value, part) in values.iter_mut().zip(parts) {
         let drag = DragValue::new(value).range(range.clone()).speed(0.01).max_decimals(3);
         let response = ui
             .add_sized(Vec2::new(width, ROW_HEIGHT), drag)
-            .accessible_name(format!("{name}, {channel}"));
+            .accessible_name(format!("{name}, {part}"));
         whole = Some(match whole {
             Some(whole) => whole.union(response),
             None => response,

@@ -67,6 +67,11 @@ impl Environments {
         self.textures.get(source)
     }
 
+    /// The pixels of that picture, red, green, blue and alpha.
+    pub(in crate::app) fn pixels(&self, source: &EnvironmentSource) -> Option<&[u8]> {
+        self.uploaded.as_ref()?.get(source)?.as_deref().map(Vec::as_slice)
+    }
+
     /// Whether its file is not there or can't be read.
     pub(in crate::app) fn is_missing(&self, source: &EnvironmentSource) -> bool {
         let known = self.uploaded.as_ref().and_then(|made| made.get(source));

@@ -26,6 +26,11 @@ pub(in crate::app) struct Selection {
     /// What the pointer is over in this frame, and what it was over in the one before.
     pub(in crate::app) hovered: Option<Thing>,
     pub(in crate::app) lit: Option<Thing>,
+    /// The area light whose handles are shown.
+    pub(in crate::app) light: Option<usize>,
+    /// The list of lights was shown in this frame, and in the one before: lights are marked in the viewport.
+    pub(in crate::app) shows_lights: bool,
+    pub(in crate::app) showed_lights: bool,
     /// The material that was copied.
     pub(in crate::app) copied: Option<MaterialSettings>,
 }
@@ -34,12 +39,13 @@ impl Selection {
     /// What the parts of the window say about this frame comes after what they said about the last one.
     pub(in crate::app) fn begin_frame(&mut self) {
         self.was_shown = std::mem::take(&mut self.is_shown);
+        self.showed_lights = std::mem::take(&mut self.shows_lights);
         self.lit = self.hovered.take();
     }
 
     /// Whether the next frame shows something else without anything else happening.
     pub(in crate::app) fn is_news(&self) -> bool {
-        self.hovered != self.lit || self.is_shown != self.was_shown
+        self.hovered != self.lit || self.is_shown != self.was_shown || self.shows_lights != self.showed_lights
     }
 
     /// Nothing is chosen of another model.

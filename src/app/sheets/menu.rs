@@ -216,11 +216,15 @@ pub(in crate::app) fn sheet(
     }
 }
 
-const MOUSE: [(&str, &str); 9] = [
+const MOUSE: [(&str, &str); 10] = [
     ("Drag", "Turn the camera"),
     ("Middle drag, or ctrl and drag", "Pan"),
     ("Wheel, or right drag", "Zoom"),
     ("Shift and drag", "Turn the light"),
+    (
+        "Drag a light's mark or handle",
+        "Move or change it; Escape takes it back",
+    ),
     ("Click", "Select the material there"),
     ("Ctrl, shift and click", "Explain the last sample of the pixel"),
     ("Arrows, page up and down", "Turn and zoom, with the viewport focused"),

@@ -8,6 +8,7 @@ mod compare;
 mod header;
 mod hints;
 mod legend;
+mod light_handles;
 mod look;
 mod magnifier;
 mod orbit;
@@ -73,6 +74,7 @@ pub(super) struct Viewport {
     region: region::RegionTool,
     magnifier: Magnifier,
     outline: outline::Outline,
+    lights: light_handles::LightHandles,
     /// By how much the picture is to be shown larger; 0 is back to all of it.
     magnifies: Option<f32>,
 }
@@ -214,6 +216,9 @@ impl Viewport {
                 if !is_compared {
                     picking::hover(ui, &response, place, &scene, desk);
                     self.outline.show(ui, area, place, &scene.job, desk);
+                }
+                if !is_drawing && !is_compared {
+                    self.lights.show(ui, area, place, &scene.job, desk);
                 }
                 if !is_drawing {
                     self.navigate(ui, &response, place, &scene, desk);

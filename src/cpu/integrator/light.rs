@@ -13,7 +13,7 @@ use crate::scene::environment::{
     environment_density_at, environment_local_from_world, environment_radiance_at, environment_sample, environment_uv,
     environment_world_from_local, fetch_cell, fetch_chosen, fetch_place,
 };
-use crate::scene::light::{Emitters, LightSample, light_density, light_sample};
+use crate::scene::light::{Emitters, LightSample, light_density, light_sample, spot_share};
 use crate::scene::surface::SurfacePoint;
 
 impl<T: Real> Integrator<'_, T> {
@@ -85,11 +85,14 @@ impl<T: Real> Integrator<'_, T> {
         ray: &Ray<T>,
         path: &mut Path<'_, T, R>,
     ) -> Vec3<T> {
-        let density = || {
-            let cosine = point.surface.normal.dot(point.surface.wo);
-            light_density(material.light_luminance, cosine, distance, self.density_per_luminance)
-        };
-        self.weighed(Source::Surface, material.emission, ray, density, path)
+        let cosine = point.surface.normal.dot(point.surface.wo);
+        let mut emission = material.emission;
+        if material.is_spot() {
+            let facing = if point.surface.is_inside { -cosine } else { cosine };
+            emission = emission * spot_share(material, facing);
+        }
+        let density = || light_density(material.light_luminance, cosine, distance, self.density_per_luminance);
+        self.weighed(Source::Surface, emission, ray, density, path)
     }
 
     /// The share of light that the ray has where it met it by itself: all of it where light sampling does not draw from

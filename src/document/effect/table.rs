@@ -1,7 +1,7 @@
 //! The table of effects.
 
 use super::{Effect, Switch, horizon};
-use crate::document::{Background, Denoise, Document, GroundKind, MaterialSettings, Strategy};
+use crate::document::{AreaLight, Background, Denoise, Document, GroundKind, MaterialSettings, Strategy};
 use crate::job::effect::{ANY, Decision, EffectId};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
@@ -47,13 +47,23 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::AreaLights,
         label: "Area lights",
-        help: "Rectangles that shine beside the model.",
+        help: "Rectangles, discs, spots and suns that shine beside the model.",
         decide: |facts| match facts.document.lighting.shining().count() {
             0 => Decision::off("there is no area light"),
             1 => Decision::on("there is one area light"),
             lights => Decision::on(format!("there are {lights} area lights")),
         },
         remove: Some(|document| document.lighting.area_lights.clear()),
+    },
+    Effect {
+        id: EffectId::Spot,
+        label: "Spots",
+        help: "Area lights that send their light into a cone.",
+        decide: |facts| match facts.document.lighting.shining().any(AreaLight::is_spot) {
+            true => Decision::on("an area light is a spot"),
+            false => Decision::off("no area light is a spot"),
+        },
+        remove: Some(|document| document.lighting.area_lights.retain(|light| !light.is_spot())),
     },
     Effect {
         id: EffectId::Emission,

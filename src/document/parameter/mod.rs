@@ -2,6 +2,7 @@
 //! [`PARAMETERS`], those of the rest of a document in [`SETTINGS`].
 
 mod of_document;
+mod of_light;
 mod of_material;
 mod text;
 
@@ -13,6 +14,7 @@ use crate::named::Named;
 use text::shortened;
 
 pub use of_document::SETTINGS;
+pub use of_light::LIGHT_PARAMETERS;
 pub use of_material::PARAMETERS;
 pub(crate) use text::nearest_key;
 pub use text::{ColorError, parse_color};

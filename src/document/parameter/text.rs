@@ -91,6 +91,7 @@ impl Kind {
         let of_unit = |unit: &str| match unit {
             "°" => "DEG".to_owned(),
             "s" => "SECONDS".to_owned(),
+            "m" => "METRES".to_owned(),
             "" => "X".to_owned(),
             unit => unit.to_owned(),
         };

@@ -7,6 +7,7 @@
 //!
 //! The functions whose names start with `environment_` have WGSL twins in `shaders/scene/environment.wgsl`.
 
+mod brightest;
 mod canvas;
 mod container;
 mod cube;
@@ -38,7 +39,7 @@ pub use distribution::AliasCell;
 pub use error::EnvironmentError;
 pub use file::{ENDINGS, MAX_HEIGHT, MAX_WIDTH};
 pub use procedural::{SkyParams, furnace, sky, studio, sun_direction, sun_irradiance};
-pub use thumbnail::thumbnail;
+pub use thumbnail::{brightened, thumbnail};
 
 /// Where an environment comes from. Written `studio`, `sky`, `furnace` or the name of a file; a file of one of those three
 /// names is reached as `./studio`.
@@ -119,6 +120,8 @@ pub struct Environment {
     pub mean_radiance: [f32; 3],
     /// The largest luminance of any texel.
     pub max_luminance: f32,
+    /// The middle of its brightest place, in (u, v); `None` where it is equally bright everywhere.
+    pub brightest: Option<[f32; 2]>,
 }
 
 impl Environment {
@@ -149,8 +152,11 @@ impl Environment {
         let summary = distribution::summarise(&map);
         let (cells_width, cells_height) = distribution::cells_size(width, height);
         let cells = distribution::build(&map, cells_width, cells_height);
+        let is_constant = texels.iter().all(|texel| *texel == texels[0]);
+        let brightest = brightest::brightest(&cells, cells_width, cells_height).filter(|_| !is_constant);
         Ok(Self {
-            is_constant: texels.iter().all(|texel| *texel == texels[0]),
+            is_constant,
+            brightest,
             is_black: summary.max_luminance <= 0.0,
             mean_radiance: summary.mean_radiance,
             max_luminance: summary.max_luminance,

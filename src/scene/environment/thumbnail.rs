@@ -28,6 +28,29 @@ pub fn thumbnail(environment: &Environment, width: u32, height: u32) -> Vec<[u8;
         .collect()
 }
 
+/// The pixels of a thumbnail, red, green, blue and alpha, as if the environment were so many times as bright.
+pub fn brightened(pixels: &[u8], factor: f32) -> Vec<u8> {
+    let codes: Vec<u8> = (0..=255_u8)
+        .map(|code| {
+            // The inverse of the curve, which white at 4 ends.
+            let shown = linear_from_code(code);
+            let radiance = 8.0 * (shown - 1.0 + ((1.0 - shown).powi(2) + 0.25 * shown).sqrt());
+            let bright = factor * radiance;
+            srgb_u8(bright * (1.0 + bright / 16.0) / (1.0 + bright))
+        })
+        .collect();
+    let pixel = |pixel: &[u8; 4]| {
+        let [red, green, blue, alpha] = *pixel;
+        [
+            codes[usize::from(red)],
+            codes[usize::from(green)],
+            codes[usize::from(blue)],
+            alpha,
+        ]
+    };
+    pixels.as_chunks().0.iter().flat_map(pixel).collect()
+}
+
 /// The mean radiance over a pixel.
 fn pixel_radiance(environment: &Environment, place: [u32; 2], size: [u32; 2]) -> [f32; 3] {
     let mut sum = [0.0; 3];
@@ -64,4 +87,37 @@ fn srgb_u8(linear: f32) -> u8 {
         1.055 * linear.powf(1.0 / 2.4) - 0.055
     };
     (encoded * 255.0 + 0.5) as u8
+}
+
+/// The inverse of [`srgb_u8`].
+fn linear_from_code(code: u8) -> f32 {
+    let encoded = f32::from(code) / 255.0;
+    if encoded <= 0.040_45 {
+        encoded / 12.92
+    } else {
+        ((encoded + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thumbnail_is_as_bright_as_the_strength_says() {
+        let pixels: Vec<u8> = (0..=255).collect();
+        assert_eq!(brightened(&pixels, 1.0), pixels);
+        let [dark, bright] = [0.25, 4.0].map(|factor| brightened(&pixels, factor));
+        let colors = (1..250).filter(|index| index % 4 != 3);
+        assert!(colors.clone().all(|i| dark[i] <= pixels[i] && bright[i] >= pixels[i]));
+        assert!(dark[128] < 90 && bright[128] > 190, "{} {}", dark[128], bright[128]);
+        // What is opaque stays opaque.
+        assert!((0..256).filter(|index| index % 4 == 3).all(|i| dark[i] == pixels[i]));
+        assert!(
+            brightened(&pixels, 0.0)
+                .iter()
+                .enumerate()
+                .all(|(i, code)| i % 4 == 3 || *code == 0)
+        );
+    }
 }

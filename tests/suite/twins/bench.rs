@@ -105,6 +105,8 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     materials[0].normal_strength = 0.5;
     for material in &mut materials[..2] {
         material.light_luminance = material.emission.luminance();
+        // Half the light within 60 degrees, none beyond 90.
+        (material.spot_scale, material.spot_offset) = (1.4, 0.0);
         (material.opacity_texture, material.alpha_cutoff) = (NO_TEXTURE, -1.0);
     }
     for (number, material) in materials.iter_mut().enumerate() {
@@ -258,7 +260,10 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         texture_roughness: rng.range(0.1, 1.0),
         roughness_table: NO_TEXTURE,
         has_vertex_colors: 0,
+        spot_scale: 0.0,
+        spot_offset: 1.0,
         reserved: 0,
+        reserved_pair: [0; 2],
     }
 }
 

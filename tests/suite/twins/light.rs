@@ -3,7 +3,7 @@
 use glossmith::optics::material::Material;
 use glossmith::optics::real::Real;
 use glossmith::optics::vector::vec3;
-use glossmith::scene::light::{Emitters, light_density, light_sample};
+use glossmith::scene::light::{Emitters, light_density, light_sample, spot_share};
 
 use super::bench::SCENE;
 use super::harness::{Case, Output, Value, check, inputs, twin};
@@ -51,7 +51,7 @@ fn lights_agree() {
             .output("s.direction", UNIT)
             .output("s.density", Output::Number(0.0))
             .output("s.distance", Output::Number(1.0))
-            .output("s.radiance", Output::Vector(0.0))
+            .output("s.radiance", Output::Vector(1e-3))
             .group_of("from around the teapot", 32_000, |rng, _| {
                 inputs![
                     rng.direction() * rng.range(1.2, 5.0),
@@ -61,6 +61,17 @@ fn lights_agree() {
                     Value::Unit(rng.unit())
                 ]
             }),
+            Case::new(
+                "spot_share",
+                "cosine",
+                "",
+                twin!(|row| {
+                    let cosine = row.number();
+                    row.put(spot_share(&materials()[0], cosine));
+                }),
+            )
+            .output("spot_share(materials[0], cosine)", Output::Number(1.0))
+            .group("", |rng, _| inputs![rng.range(-1.0, 1.0)]),
             Case::new(
                 "light_density",
                 "light_luminance cosine distance",

@@ -1,13 +1,12 @@
-//! The rectangles and triangles that shine: adding, removing, and a row for each of their numbers.
-
-use std::ops::RangeInclusive;
+//! The list of area lights, and a row for each of their parameters.
 
 use egui::{Align, Button, Layout, Ui};
 
 use crate::app::desk::{Desk, Pick};
 use crate::app::kit::icons::{self, Icon};
+use crate::app::kit::parameter_row;
 use crate::app::kit::widgets::{self, Name, NumberStyle, RowResponse};
-use crate::document::{AreaLight, AreaLightShape, range};
+use crate::document::{AreaLight, LIGHT_PARAMETERS, Parameter, range};
 use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color, temperature_of_color};
 
 /// What the buttons beside a light's name ask for.
@@ -16,13 +15,36 @@ enum Wish {
     Solo,
 }
 
+/// The lights that can be added: what the button says and is called, what it adds, and help.
+const KINDS: [(&str, &str, fn() -> AreaLight, &str); 3] = [
+    (
+        "Area light",
+        "Add area light",
+        AreaLight::default,
+        "A rectangle that shines on the model.",
+    ),
+    (
+        "Spot",
+        "Add spot",
+        AreaLight::spot,
+        "A small disc that shines into a cone.",
+    ),
+    (
+        "Sun",
+        "Add sun",
+        AreaLight::sun,
+        "A disc so far away that its light is parallel.",
+    ),
+];
+
 pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
+    desk.shared.selection.shows_lights = true;
     let mut lights = desk.document.lighting.area_lights.clone();
     let soloed = soloed(&lights);
     let mut wished = None;
     for (index, light) in lights.iter_mut().enumerate() {
         let title = format!("Area light {}", index + 1);
-        let wish = header(ui, desk, &title, light, soloed == Some(index));
+        let wish = header(ui, desk, index, &title, light, soloed == Some(index));
         wished = wish.map(|wish| (wish, index)).or(wished);
         rows(ui, desk, &title, light);
         let help = "The next click on the model turns the light so that it is seen mirrored there.";
@@ -41,19 +63,33 @@ pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>) {
             lights.remove(index);
             // What another light was to be picked for would become its neighbour's.
             desk.shared.picks = None;
+            desk.shared.selection.light = None;
             desk.edits.note("Remove area light", "");
         }
         None => {}
     }
+    add(ui, desk, &mut lights);
+    desk.document.lighting.area_lights = lights;
+    desk.settings(ui, "Area lights");
+}
+
+/// Buttons that add a light, which is then the chosen one.
+fn add(ui: &mut Ui, desk: &mut Desk<'_>, lights: &mut Vec<AreaLight>) {
     let is_full = lights.len() as f64 >= *range::AREA_LIGHTS.end();
     ui.add_enabled_ui(!is_full, |ui| {
-        let button = ui.button("Add area light");
-        if button.on_hover_text("A rectangle that shines on the model.").clicked() {
-            lights.push(AreaLight::default());
-            desk.edits.note("Add area light", "");
-        }
+        ui.horizontal(|ui| {
+            ui.label("Add");
+            for (word, name, made, help) in KINDS {
+                let button = ui.button(word).on_hover_text(help);
+                if button.clicked() && !is_full {
+                    lights.push(made());
+                    desk.shared.selection.light = Some(lights.len() - 1);
+                    desk.edits.note(name, "");
+                }
+                button.accessible_name(name);
+            }
+        });
     });
-    desk.document.lighting.area_lights = lights;
 }
 
 /// The only one of several lights that shines.
@@ -65,7 +101,14 @@ fn soloed(lights: &[AreaLight]) -> Option<usize> {
     }
 }
 
-fn header(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight, is_soloed: bool) -> Option<Wish> {
+fn header(
+    ui: &mut Ui,
+    desk: &mut Desk<'_>,
+    index: usize,
+    title: &str,
+    light: &mut AreaLight,
+    is_soloed: bool,
+) -> Option<Wish> {
     let of_light = title.to_lowercase();
     let button = |ui: &mut Ui, word: &str, is_on: bool, help: &str| {
         let button = ui.add(Button::new(word).selected(is_on)).on_hover_text(help);
@@ -73,7 +116,14 @@ fn header(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight, 
     };
     let mut wish = None;
     ui.horizontal(|ui| {
-        ui.strong(title);
+        let chosen = &mut desk.shared.selection.light;
+        let is_chosen = *chosen == Some(index);
+        let name = ui.selectable_label(is_chosen, egui::RichText::new(title).strong());
+        let name = name.on_hover_text("Shows its handles in the viewport.");
+        if name.clicked() {
+            *chosen = (!is_chosen).then_some(index);
+        }
+        name.accessible_name(format!("Choose {of_light}"));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let name = format!("Remove {}", title.to_lowercase());
             if icons::button(ui, Icon::Close, &name, "Remove this light").clicked() {
@@ -97,111 +147,36 @@ fn header(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight, 
     wish
 }
 
-/// A number of an area light.
-struct Row {
-    label: &'static str,
-    help: &'static str,
-    field: fn(&mut AreaLight) -> &mut f64,
-    range: RangeInclusive<f64>,
-    bar: [f64; 2],
-    unit: &'static str,
-}
-
-fn number_rows() -> [Row; 5] {
-    let length = |label, help, field, bar| Row {
-        label,
-        help,
-        field,
-        range: range::AREA_LENGTH,
-        bar,
-        unit: "",
-    };
-    [
-        Row {
-            label: "Yaw",
-            help: "Turns the light around the model.",
-            field: |light| &mut light.yaw_deg,
-            range: range::YAW_DEG,
-            bar: [-180.0, 180.0],
-            unit: "°",
-        },
-        Row {
-            label: "Pitch",
-            help: "Height of the light above the horizon.",
-            field: |light| &mut light.pitch_deg,
-            range: range::PITCH_DEG,
-            bar: [-90.0, 90.0],
-            unit: "°",
-        },
-        length(
-            "Distance",
-            "From the middle of the model, in its bounding radii.",
-            |light| &mut light.distance,
-            [0.0, 10.0],
-        ),
-        length(
-            "Width",
-            "In bounding radii of the model. A small light makes sharp shadows.",
-            |light| &mut light.width,
-            [0.0, 4.0],
-        ),
-        length(
-            "Height",
-            "In bounding radii of the model.",
-            |light| &mut light.height,
-            [0.0, 4.0],
-        ),
-    ]
-}
-
 fn rows(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
-    let mut default = AreaLight::default();
-    for row in number_rows() {
-        let is_angle = !row.unit.is_empty();
-        let style = NumberStyle {
-            range: row.range,
-            bar: Some(row.bar),
-            unit: row.unit,
-            speed: 0.01,
-            decimals: if is_angle { 1 } else { 3 },
-        };
-        let full = format!("{title} {}", row.label.to_lowercase());
-        let value = (row.field)(light);
-        let response = widgets::row(ui, Name::new(&full, row.label, row.help), |ui| {
-            widgets::number(ui, value, &style)
-        });
-        edited(desk, response, full, value, *(row.field)(&mut default));
+    for parameter in LIGHT_PARAMETERS.iter() {
+        parameter_of(ui, desk, title, parameter, light);
+        if parameter.word() == "color" {
+            temperature(ui, desk, title, light);
+        }
     }
-    let full = format!("{title} shape");
-    let shapes: Vec<_> = AreaLightShape::ALL
-        .iter()
-        .map(|shape| (*shape, shape.label(), shape.help()))
-        .collect();
-    let response = widgets::row(ui, Name::new(&full, "Shape", "Rectangle or triangle."), |ui| {
-        widgets::choice(ui, &full, &mut light.shape, &shapes)
+    widgets::comes_and_goes(ui, |ui| power(ui, desk, title, light));
+}
+
+/// The row of a parameter: grey where it has no effect on a light of this shape.
+fn parameter_of(
+    ui: &mut Ui,
+    desk: &mut Desk<'_>,
+    title: &str,
+    parameter: &Parameter<AreaLight>,
+    light: &mut AreaLight,
+) {
+    let full = format!("{title} {}", parameter.label.to_lowercase());
+    let mut value = parameter.get(light);
+    let idle = (parameter.idle)(light);
+    let row = ui.add_enabled_ui(idle.is_none(), |ui| {
+        parameter_row::show_as(ui, parameter, &full, &mut value, |_| {})
     });
-    edited(desk, response, full, &mut light.shape, default.shape);
-    let full = format!("{title} colour");
-    let name = Name::new(&full, "Colour", "Colour of the light.");
-    let response = widgets::row(ui, name, |ui| widgets::color(ui, &full, &mut light.color));
-    light.color = light.color.map(|x| x.clamp(0.0, 1.0));
-    edited(desk, response, full, &mut light.color, default.color);
-    temperature(ui, desk, title, light);
-    let style = NumberStyle {
-        range: range::STRENGTH,
-        bar: Some([0.0, 100.0]),
-        unit: "",
-        speed: 0.1,
-        decimals: 3,
-    };
-    let full = format!("{title} strength");
-    let name = Name::new(
-        &full,
-        "Strength",
-        "Radiance of the light: a larger one of the same strength gives more light.",
-    );
-    let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut light.strength, &style));
-    edited(desk, response, full, &mut light.strength, default.strength);
+    if let Some(why) = idle {
+        row.response.on_hover_text(why);
+    }
+    if row.inner && parameter.set(light, value).is_ok() {
+        desk.edits.note(full.clone(), full);
+    }
 }
 
 /// The colour as that of a lamp or a sky.
@@ -224,6 +199,55 @@ fn temperature(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLi
         light.color = blackbody_color(temperature_k).map(|x| x as f32);
     }
     edited(desk, response, full, &mut light.color, AreaLight::default().color);
+}
+
+/// The strength as a lamp's packet or a light meter says it, once the size of the model is known.
+fn power(ui: &mut Ui, desk: &mut Desk<'_>, title: &str, light: &mut AreaLight) {
+    let unit_m = desk.document.unit_m;
+    let Some(radius) = desk.scene().map(|scene| scene.job.geometry.world_units_per_unit) else {
+        return;
+    };
+    let radius_m = radius * unit_m;
+    let (label, unit, help) = if light.is_sun() {
+        (
+            "Illuminance",
+            " lx",
+            "Of what faces the sun, where a radiance of 1 is 1 cd/m². Sets the strength.",
+        )
+    } else {
+        (
+            "Power",
+            " lm",
+            "Luminous flux, where a radiance of 1 is 1 cd/m² and the model as large as the scene unit says; 683 lm are 1 W. \
+             Sets the strength.",
+        )
+    };
+    let of_black = AreaLight {
+        strength: 1.0,
+        ..*light
+    }
+    .power(radius_m)
+        <= 0.0;
+    let full = format!("{title} power");
+    let row = ui.add_enabled_ui(!of_black, |ui| {
+        let mut power = light.power(radius_m);
+        let style = NumberStyle {
+            range: 0.0..=f64::MAX,
+            bar: None,
+            unit,
+            speed: (0.01 * power).max(1e-3),
+            decimals: 2,
+        };
+        let response = widgets::row(ui, Name::new(&full, label, help), |ui| {
+            widgets::number(ui, &mut power, &style)
+        });
+        (response, power)
+    });
+    let (response, power) = row.inner;
+    if response.changed {
+        light.set_power(power, radius_m);
+    }
+    edited(desk, response, full, &mut light.strength, AreaLight::default().strength);
 }
 
 /// Notes an edit, and resets where that was asked for.

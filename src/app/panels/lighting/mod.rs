@@ -1,9 +1,11 @@
 //! Environment, area lights, background and ground.
 
 mod area_lights;
+mod preview;
 
 use egui::{Ui, vec2};
 
+use self::preview::Preview;
 use super::Panel;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
@@ -20,12 +22,14 @@ const FILES_MAX: usize = 6;
 
 /// Environment, area lights, background and ground.
 #[derive(Default)]
-pub(super) struct LightingPanel;
+pub(super) struct LightingPanel {
+    preview: Preview,
+}
 
 impl Panel for LightingPanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         widgets::group(ui, "Environment", |ui| {
-            widgets::comes_and_goes(ui, |ui| current(ui, desk));
+            widgets::comes_and_goes(ui, |ui| self.preview.show(ui, desk));
             sources(ui, desk);
             desk.settings(ui, "Environment");
         });
@@ -45,25 +49,6 @@ fn ground(ui: &mut Ui, desk: &mut Desk<'_>) {
         desk.document.lighting.ground.yaw_deg = desk.document.camera.yaw_deg;
         desk.edits.note("Cyclorama turned", "");
     }
-}
-
-/// The environment in use, as large as the panel lets it be.
-fn current(ui: &mut Ui, desk: &mut Desk<'_>) {
-    let Some(scene) = desk.snapshot.scene.clone() else {
-        return;
-    };
-    let source = &scene.document.lighting.environment;
-    let width = ui.available_width();
-    let size = vec2(width, 0.5 * width);
-    let (place, response) = ui.allocate_exact_size(size, egui::Sense::hover());
-    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "The environment"));
-    match desk.shared.environments.picture(source) {
-        Some(picture) => egui::Image::new(picture).corner_radius(3.0).paint_at(ui, place),
-        None => _ = ui.painter().rect_filled(place, 3.0, ui.visuals().extreme_bg_color),
-    }
-    let environment = &scene.job.environment;
-    let [width, height] = [environment.width, environment.height];
-    response.on_hover_text(format!("{}, {width} × {height}", environment.name));
 }
 
 /// All there are to choose from: those that come with the program, and files, the one in use and those opened last.

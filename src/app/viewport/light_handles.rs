@@ -1,0 +1,310 @@
+//! Area lights in the viewport: a mark for each, and handles of the chosen one that are dragged or moved by keys.
+
+use egui::{
+    Color32, CursorIcon, Id, Key, Modifiers, Painter, PointerButton, Pos2, Rect, Response, Sense, Shape, Stroke, Ui,
+    Vec2, pos2, vec2,
+};
+use glam::{DVec2, DVec3};
+
+use crate::app::desk::Desk;
+use crate::app::kit::theme;
+use crate::app::kit::widgets::srgb_of;
+use crate::document::AreaLight;
+use crate::document::light_handle::{LightHandle, Pull, View, handles, nudged, pulled};
+use crate::job::Job;
+use crate::scene::light::Outline;
+
+/// Side of the square that takes the pointer, points.
+const TARGET: f32 = 20.0;
+/// Radius of a light's mark, points.
+const MARK: f32 = 7.0;
+/// From the picture's edge to the marks of lights beyond it, points.
+const MARGIN: f64 = 14.0;
+/// Share of the pointer's way that counts with shift.
+const FINE: f32 = 0.1;
+/// Points of a line around a disc or a cone.
+const AROUND: u32 = 48;
+
+/// The handle that is being dragged.
+#[derive(Default)]
+pub(super) struct LightHandles {
+    held: Option<Held>,
+}
+
+struct Held {
+    light: usize,
+    handle: LightHandle,
+    /// What the light was like before.
+    start: AreaLight,
+    from: Pos2,
+    /// Escape was pressed: nothing moves any more.
+    is_over: bool,
+}
+
+impl LightHandles {
+    /// Shows the lights over the picture at `place` while their list is shown, and lets them be moved.
+    pub(super) fn show(&mut self, ui: &mut Ui, area: Rect, place: Rect, job: &Job, desk: &mut Desk<'_>) {
+        if !desk.shared.selection.showed_lights {
+            self.held = None;
+            return;
+        }
+        let view = View {
+            camera: job.settings.camera,
+            size: DVec2::new(place.width().into(), place.height().into()),
+        };
+        let clip = area.intersect(place);
+        for index in 0..desk.document.lighting.area_lights.len() {
+            let light = desk.document.lighting.area_lights[index];
+            let is_chosen = desk.shared.selection.light == Some(index);
+            if is_chosen {
+                outline(&ui.painter_at(clip), &view, place, &light);
+            }
+            // The light's own mark last, over its other handles.
+            for (handle, at) in handles(&light, &view, MARGIN).into_iter().rev() {
+                let at = place.min + vec2(at.x as f32, at.y as f32);
+                let is_mark = handle == LightHandle::Direction;
+                if (is_mark || is_chosen) && clip.expand(1.0).contains(at) {
+                    let response = interact(ui, clip, index, handle, at);
+                    draw(&ui.painter_at(clip), ui, handle, at, &light, is_chosen, &response);
+                    self.react(ui, &response, (index, handle), &view, place, desk);
+                }
+            }
+        }
+        if self.held.is_some() && !ui.input(|input| input.pointer.any_down()) {
+            self.held = None;
+            desk.edits.seal();
+        }
+    }
+
+    fn react(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        (index, handle): (usize, LightHandle),
+        view: &View,
+        place: Rect,
+        desk: &mut Desk<'_>,
+    ) {
+        let light = desk.document.lighting.area_lights[index];
+        if response.clicked() {
+            response.request_focus();
+            desk.shared.selection.light = Some(index);
+        }
+        if response.drag_started_by(PointerButton::Primary)
+            && let Some(from) = ui.input(|input| input.pointer.press_origin())
+        {
+            desk.shared.selection.light = Some(index);
+            desk.edits.seal();
+            self.held = Some(Held {
+                light: index,
+                handle,
+                start: light,
+                from,
+                is_over: false,
+            });
+        }
+        let held = self
+            .held
+            .as_mut()
+            .filter(|held| (held.light, held.handle) == (index, handle));
+        // It ends the drag for the interface, too.
+        let is_escaped = ui.input(|input| input.key_pressed(Key::Escape));
+        let moved = match held {
+            Some(held) if !held.is_over && is_escaped => {
+                held.is_over = true;
+                held.start
+            }
+            Some(held) if !held.is_over && response.dragged_by(PointerButton::Primary) => {
+                match response.interact_pointer_pos() {
+                    Some(to) => held.pulled(ui, to, view, place),
+                    None => light,
+                }
+            }
+            Some(_) => light,
+            None if response.has_focus() => keyed(ui, response, &light, handle),
+            None => light,
+        };
+        if moved != light {
+            desk.document.lighting.area_lights[index] = moved;
+            let key = format!("{} of area light {}", handle.name(), index + 1);
+            desk.edits.note(format!("{} area light", handle.label()), key);
+        }
+    }
+}
+
+impl Held {
+    fn pulled(&self, ui: &Ui, to: Pos2, view: &View, place: Rect) -> AreaLight {
+        let modifiers = ui.input(|input| input.modifiers);
+        let share = if modifiers.shift { FINE } else { 1.0 };
+        let in_picture = |at: Pos2| {
+            let at = at - place.min;
+            DVec2::new(at.x.into(), at.y.into())
+        };
+        let pull = Pull {
+            from: in_picture(self.from),
+            to: in_picture(self.from + share * (to - self.from)),
+            snaps: modifiers.command,
+        };
+        if pull.from == pull.to {
+            return self.start;
+        }
+        pulled(&self.start, self.handle, view, &pull)
+    }
+}
+
+fn interact(ui: &Ui, clip: Rect, index: usize, handle: LightHandle, at: Pos2) -> Response {
+    let rect = Rect::from_center_size(at, Vec2::splat(TARGET)).intersect(clip);
+    let id = Id::unique(("light handle", index, handle.name()));
+    let name = match handle {
+        LightHandle::Direction => format!("Move area light {}", index + 1),
+        _ => format!("{} handle of area light {}", handle.label(), index + 1),
+    };
+    let response = ui.interact(rect, id, Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, &name));
+    let cursor = if response.dragged() {
+        CursorIcon::Grabbing
+    } else {
+        CursorIcon::Grab
+    };
+    response.on_hover_cursor(cursor).on_hover_text(handle.help())
+}
+
+/// The light after the arrow keys of this frame: with shift finely, with ctrl in large steps.
+fn keyed(ui: &Ui, response: &Response, light: &AreaLight, handle: LightHandle) -> AreaLight {
+    ui.memory_mut(|memory| {
+        let filter = egui::EventFilter {
+            horizontal_arrows: true,
+            vertical_arrows: true,
+            ..Default::default()
+        };
+        memory.set_focus_lock_filter(response.id, filter);
+    });
+    let keys = [
+        (Key::ArrowLeft, DVec2::NEG_X),
+        (Key::ArrowRight, DVec2::X),
+        (Key::ArrowUp, DVec2::Y),
+        (Key::ArrowDown, DVec2::NEG_Y),
+    ];
+    let mut steps = DVec2::ZERO;
+    for (modifiers, size) in [
+        (Modifiers::COMMAND, 15.0),
+        (Modifiers::SHIFT, 0.1),
+        (Modifiers::NONE, 1.0),
+    ] {
+        for (key, along) in keys {
+            steps += size * along * ui.input_mut(|input| input.count_and_consume_key(modifiers, key)) as f64;
+        }
+    }
+    if steps == DVec2::ZERO {
+        return *light;
+    }
+    nudged(light, handle, steps)
+}
+
+/// Light and dark, so that it is seen against everything.
+fn line(painter: &Painter, points: Vec<Pos2>, color: Color32) {
+    painter.add(Shape::line(
+        points.clone(),
+        Stroke::new(3.0, Color32::from_black_alpha(110)),
+    ));
+    painter.add(Shape::line(points, Stroke::new(1.2, color)));
+}
+
+/// The rim of the chosen light, the line to its target, and where a spot's cone ends there.
+fn outline(painter: &Painter, view: &View, place: Rect, light: &AreaLight) {
+    let shape = light.shape();
+    let frame = shape.frame();
+    let color = Color32::from_white_alpha(220);
+    let seen = |at: DVec3| {
+        view.seen(at)
+            .map(|at| place.min + vec2(at.x as f32, at.y as f32))
+            .filter(|at| at.x.abs() < 1e5 && at.y.abs() < 1e5)
+    };
+    let closed = |places: Vec<DVec3>| {
+        let points: Option<Vec<Pos2>> = places.iter().chain(places.first()).map(|at| seen(*at)).collect();
+        if let Some(points) = points {
+            line(painter, points, color);
+        }
+    };
+    let at = |u: f64, v: f64| frame.middle + 0.5 * (u * shape.width * frame.across + v * shape.height * frame.up);
+    let turn = |step: u32| std::f64::consts::TAU * f64::from(step) / f64::from(AROUND);
+    closed(match shape.outline {
+        Outline::Rectangle => vec![at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)],
+        Outline::Triangle => vec![at(-1.0, -1.0), at(1.0, -1.0), at(0.0, 1.0)],
+        Outline::Ellipse => (0..AROUND).map(|step| at(turn(step).cos(), turn(step).sin())).collect(),
+    });
+    let target = DVec3::from_array(shape.target);
+    if let (Some(middle), Some(target)) = (seen(frame.middle), seen(target))
+        && !light.is_sun()
+    {
+        painter.extend(Shape::dashed_line(&[middle, target], Stroke::new(1.0, color), 4.0, 4.0));
+    }
+    // A wider cone ends too far out to be seen.
+    if light.is_spot() && light.cone_deg < 120.0 {
+        let radius = shape.distance * (0.5 * light.cone_deg).to_radians().tan();
+        let rim = |step: u32| target + radius * (turn(step).cos() * frame.across + turn(step).sin() * frame.up);
+        closed((0..AROUND).map(rim).collect());
+    }
+}
+
+fn draw(
+    painter: &Painter,
+    ui: &Ui,
+    handle: LightHandle,
+    at: Pos2,
+    light: &AreaLight,
+    is_chosen: bool,
+    response: &Response,
+) {
+    let accent = theme::accent(ui.visuals().dark_mode);
+    let is_lit = response.hovered() || response.dragged() || response.has_focus();
+    let rim = if is_lit { accent } else { Color32::WHITE };
+    let shadow = Stroke::new(3.5, Color32::from_black_alpha(130));
+    let stroke = Stroke::new(1.5, rim);
+    match handle {
+        LightHandle::Direction => {
+            let [red, green, blue] = srgb_of(light.color);
+            let fill = match light.is_muted {
+                true => Color32::from_black_alpha(120),
+                false => Color32::from_rgb(red, green, blue),
+            };
+            painter.circle(at, MARK, fill, shadow);
+            painter.circle_stroke(at, MARK, stroke);
+            for ray in (0..8).filter(|_| !light.is_muted) {
+                let along = Vec2::angled(std::f32::consts::FRAC_PI_4 * ray as f32);
+                painter.line_segment([at + (MARK + 2.0) * along, at + (MARK + 4.5) * along], stroke);
+            }
+            if is_chosen {
+                painter.circle_stroke(at, MARK + 6.5, Stroke::new(1.5, accent));
+            }
+        }
+        LightHandle::Width | LightHandle::Height => {
+            let square = Rect::from_center_size(at, Vec2::splat(8.0));
+            painter.rect(square, 1.0, Color32::from_gray(40), shadow, egui::StrokeKind::Middle);
+            painter.rect_stroke(square, 1.0, stroke, egui::StrokeKind::Middle);
+        }
+        LightHandle::Turn => {
+            painter.circle_stroke(at, 5.0, shadow);
+            painter.circle_stroke(at, 5.0, stroke);
+            painter.circle_filled(at, 1.5, rim);
+        }
+        LightHandle::Distance | LightHandle::Cone => {
+            let side = 5.5;
+            let tips = match handle {
+                LightHandle::Distance => vec![
+                    pos2(at.x, at.y - side),
+                    pos2(at.x + side, at.y),
+                    pos2(at.x, at.y + side),
+                    pos2(at.x - side, at.y),
+                ],
+                _ => vec![
+                    pos2(at.x, at.y - side),
+                    pos2(at.x + side, at.y + side),
+                    pos2(at.x - side, at.y + side),
+                ],
+            };
+            painter.add(Shape::convex_polygon(tips.clone(), Color32::from_gray(40), shadow));
+            painter.add(Shape::closed_line(tips, stroke));
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Lights as options of the command line.
+
+use std::ops::RangeInclusive;
+
+use super::parse::{number_in, numbers_in};
+use crate::document::parameter::parse_color;
+use crate::document::{AreaLight, AreaLightShape, LIGHT_PARAMETERS, Parameter, range};
+use crate::optics::blackbody::{TEMPERATURES_K, blackbody_color};
+
+/// Luminous flux of a light in lumens, or illuminance of a sun in lux.
+const POWER: RangeInclusive<f64> = 0.0..=1e12;
+
+/// A light as an option says it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LightArgument {
+    light: AreaLight,
+    /// See [`AreaLight::power`]: replaces the strength.
+    power: Option<f64>,
+}
+
+impl LightArgument {
+    /// The light in a scene whose bounding radius measures this many metres.
+    pub(super) fn in_scene(&self, radius_m: f64) -> AreaLight {
+        let mut light = self.light;
+        if let Some(power) = self.power {
+            light.set_power(power, radius_m);
+        }
+        light
+    }
+}
+
+/// A rectangle, triangle or disc: six numbers, then words; white where no colour is given.
+pub(super) fn area_light(text: &str) -> Result<LightArgument, String> {
+    let length = range::AREA_LENGTH;
+    let ranges = [
+        range::YAW_DEG,
+        range::PITCH_DEG,
+        length.clone(),
+        length.clone(),
+        length,
+        range::STRENGTH,
+    ];
+    let end = text.match_indices(',').nth(5).map_or(text.len(), |(end, _)| end);
+    let (numbers, words) = text.split_at(end);
+    let [yaw_deg, pitch_deg, distance, width, height, strength] = numbers_in(ranges)(numbers)?;
+    let light = AreaLight {
+        yaw_deg,
+        pitch_deg,
+        distance,
+        width,
+        height,
+        strength: strength as f32,
+        ..AreaLight::default()
+    };
+    with_words(light, words.trim_start_matches(','))
+}
+
+/// A spot, all of whose numbers may be left out.
+pub(super) fn spot(text: &str) -> Result<LightArgument, String> {
+    with_words(AreaLight::spot(), text)
+}
+
+/// The same for a sun.
+pub(super) fn sun(text: &str) -> Result<LightArgument, String> {
+    with_words(AreaLight::sun(), text)
+}
+
+/// The light as words with commas between them change it; what has no `=` goes on with the value before it.
+fn with_words(light: AreaLight, text: &str) -> Result<LightArgument, String> {
+    let mut argument = LightArgument { light, power: None };
+    let mut words: Vec<String> = Vec::new();
+    for word in text.split(',').filter(|word| !word.is_empty()) {
+        match words.last_mut() {
+            Some(last) if last.contains('=') && is_number(word) => *last = format!("{last},{word}"),
+            _ => words.push(word.trim().to_owned()),
+        }
+    }
+    for word in &words {
+        put_word(&mut argument, word)?;
+    }
+    Ok(argument)
+}
+
+fn is_number(word: &str) -> bool {
+    word.trim().parse::<f64>().is_ok()
+}
+
+fn put_word(argument: &mut LightArgument, word: &str) -> Result<(), String> {
+    let light = &mut argument.light;
+    let Some((word, value)) = word.split_once('=') else {
+        match word {
+            "triangle" => light.shape = AreaLightShape::Triangle,
+            "disc" => light.shape = AreaLightShape::Disc,
+            color if color.starts_with('#') => light.color = parse_color(color).map_err(|error| error.to_string())?,
+            color if color.ends_with('K') => light.color = color_of_temperature(color)?,
+            other => return Err(format!("{other}: {}", expected(light))),
+        }
+        return Ok(());
+    };
+    match word {
+        "temperature" => light.color = color_of_temperature(value)?,
+        "power" => {
+            let power = number_in(POWER)(value).map_err(|expected| format!("power={value}: {expected}"))?;
+            argument.power = Some(power);
+        }
+        _ => {
+            let parameter = words_of(light).find(|parameter| parameter.word() == word);
+            let parameter = parameter.ok_or_else(|| format!("{word}: {}", expected(light)))?;
+            let value = parameter.parse(value).map_err(|error| error.to_string())?;
+            parameter.set(light, value).map_err(|error| error.to_string())?;
+        }
+    }
+    Ok(())
+}
+
+/// The parameters that have an effect on a light, but for its shape.
+fn words_of(light: &AreaLight) -> impl Iterator<Item = &'static Parameter<AreaLight>> + use<> {
+    let light = *light;
+    let has_word =
+        move |parameter: &&Parameter<AreaLight>| parameter.word() != "shape" && (parameter.idle)(&light).is_none();
+    LIGHT_PARAMETERS.iter().filter(has_word)
+}
+
+fn expected(light: &AreaLight) -> String {
+    let words: Vec<_> = words_of(light).map(Parameter::word).collect();
+    let shapes = match light.shape {
+        AreaLightShape::Spot | AreaLightShape::Sun => "",
+        _ => "triangle, disc, ",
+    };
+    format!(
+        "give {shapes}#rrggbb, a temperature such as 3200K, or WORD=VALUE with one of {}, temperature, power",
+        words.join(", ")
+    )
+}
+
+/// The colour of a body that shines at a temperature, as in 3200K.
+fn color_of_temperature(text: &str) -> Result<[f32; 3], String> {
+    let [coldest, hottest] = TEMPERATURES_K;
+    let temperature_k = number_in(coldest..=hottest)(text.trim_end_matches('K'));
+    temperature_k
+        .map(|temperature_k| blackbody_color(temperature_k).map(|x| x as f32))
+        .map_err(|expected| format!("{text}: {expected}, followed by K"))
+}

@@ -1,0 +1,446 @@
+//! Handles of area lights: where they are in the picture, and what pulling one makes of the light.
+
+use glam::{DVec2, DVec3};
+
+use super::{AreaLight, range};
+use crate::named::named;
+use crate::scene::camera::Camera;
+
+/// Degrees of a turn for a pull of one point, where the light is not in the picture.
+const DEG_PER_POINT: f64 = 0.35;
+/// Degrees to which angles snap.
+const SNAP_DEG: f64 = 15.0;
+/// Bounding radii to which lengths snap.
+const SNAP_LENGTH: f64 = 0.1;
+/// Points over which a distance or a cone's angle changes by a factor of e.
+const POINTS_PER_E: f64 = 120.0;
+/// Least distance between the middles of two handles, points.
+const APART: f64 = 20.0;
+/// From the light's middle to handles that stand for no place, points.
+const ARM: f64 = 46.0;
+
+named! {
+    /// A part of a light that can be taken hold of.
+    LightHandle {
+        Direction, "direction", "Move", "Moves the light around its target; with ctrl in steps of 15°, with shift finely.";
+        Width, "width", "Width", "Makes the light wider or narrower; the sun larger.";
+        Height, "height", "Height", "Makes the light higher or lower.";
+        Distance, "distance", "Distance", "Moves the light to its target or away from it.";
+        Turn, "turn", "Turn", "Turns the light about the line to its target.";
+        Cone, "cone", "Cone", "Opens or closes the cone of a spot.";
+    }
+}
+
+/// How a scene is seen in a picture of this size.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// In the geometry's units.
+    pub camera: Camera<f64>,
+    /// Width and height of the picture, points.
+    pub size: DVec2,
+}
+
+/// A pull of the pointer, in points from the picture's top left.
+#[derive(Clone, Copy, Debug)]
+pub struct Pull {
+    /// Where it began.
+    pub from: DVec2,
+    /// Where it is.
+    pub to: DVec2,
+    /// Angles and lengths become round.
+    pub snaps: bool,
+}
+
+impl View {
+    /// Where a place is seen; `None` behind the camera.
+    pub fn seen(&self, place: DVec3) -> Option<DVec2> {
+        let away = place - vector(self.camera.origin.to_f64());
+        let depth = away.dot(vector(self.camera.forward.to_f64()));
+        let share = |axis: [f64; 3]| away.dot(vector(axis)) / vector(axis).length_squared() / depth;
+        let at = DVec2::new(share(self.camera.right.to_f64()), -share(self.camera.up.to_f64()));
+        (depth > 1e-6 && at.is_finite()).then(|| 0.5 * (at + 1.0) * self.size)
+    }
+
+    /// The same within the picture.
+    pub fn seen_inside(&self, place: DVec3) -> Option<DVec2> {
+        self.seen(place)
+            .filter(|at| at.cmpge(DVec2::ZERO).all() && at.cmple(self.size).all())
+    }
+
+    /// The point of the picture's edge beyond which a place lies that is not in it.
+    pub fn edge_towards(&self, place: DVec3, margin: f64) -> DVec2 {
+        let away = place - vector(self.camera.origin.to_f64());
+        let side = |axis: [f64; 3]| away.dot(vector(axis).normalize());
+        let towards = DVec2::new(side(self.camera.right.to_f64()), -side(self.camera.up.to_f64()));
+        let towards = towards.try_normalize().unwrap_or(DVec2::Y);
+        let half = (0.5 * self.size - margin).max(DVec2::ONE);
+        let reach = half / towards.abs().max(DVec2::splat(1e-9));
+        0.5 * self.size + towards * reach.min_element()
+    }
+
+    /// The ray through a point: origin and unit direction.
+    fn ray(&self, at: DVec2) -> [DVec3; 2] {
+        let share = 2.0 * at / self.size - 1.0;
+        let along = vector(self.camera.forward.to_f64()) + share.x * vector(self.camera.right.to_f64())
+            - share.y * vector(self.camera.up.to_f64());
+        [vector(self.camera.origin.to_f64()), along.normalize()]
+    }
+}
+
+/// The handles of a light and where they are: one alone, at the picture's edge, where the light is not in the picture.
+pub fn handles(light: &AreaLight, view: &View, margin: f64) -> Vec<(LightHandle, DVec2)> {
+    let shape = light.shape();
+    let frame = shape.frame();
+    let Some(middle) = view.seen_inside(frame.middle) else {
+        return vec![(LightHandle::Direction, view.edge_towards(frame.middle, margin))];
+    };
+    let towards = |place: DVec3, otherwise: DVec2| {
+        let arm = view.seen(place).unwrap_or(middle) - middle;
+        (arm.try_normalize().unwrap_or(otherwise), arm.length())
+    };
+    let (across, half_width) = towards(frame.middle + 0.5 * shape.width * frame.across, DVec2::X);
+    let (up, half_height) = towards(frame.middle + 0.5 * shape.height * frame.up, DVec2::NEG_Y);
+    let (ahead, _) = towards(shape.target.into(), DVec2::Y);
+    let mut placed = vec![(LightHandle::Direction, middle)];
+    let mut put = |handle, along: DVec2, length: f64| {
+        let mut length = length.max(APART);
+        while placed
+            .iter()
+            .any(|(_, at)| at.distance(middle + length * along) < APART)
+        {
+            length += 0.25 * APART;
+        }
+        placed.push((handle, middle + length * along));
+    };
+    put(LightHandle::Width, across, half_width);
+    if !light.is_sun() {
+        put(LightHandle::Height, up, half_height);
+        put(LightHandle::Distance, ahead, ARM);
+        put(LightHandle::Turn, -up, half_height.max(APART) + APART);
+    }
+    if light.is_spot() {
+        put(LightHandle::Cone, ahead.perp(), ARM);
+    }
+    placed
+}
+
+/// The light after a pull of a handle that began when it was as given.
+pub fn pulled(light: &AreaLight, handle: LightHandle, view: &View, pull: &Pull) -> AreaLight {
+    let mut moved = *light;
+    let middle = view.seen_inside(light.shape().frame().middle);
+    let at = handles(light, view, 0.0).into_iter().find(|(of, _)| *of == handle);
+    let arm = match (middle, at) {
+        (Some(middle), Some((_, at))) => at - middle,
+        _ => DVec2::ZERO,
+    };
+    let by = pull.to - pull.from;
+    let along = by.dot(arm.normalize_or_zero());
+    // How far the handle was pulled, in lengths of its arm.
+    let factor = (1.0 + along / arm.length().max(1.0)).max(0.01);
+    let length = |length: f64| {
+        let (least, most) = range::AREA_LENGTH.into_inner();
+        snapped(length, SNAP_LENGTH, pull.snaps).clamp(least, most)
+    };
+    match handle {
+        LightHandle::Direction => move_around(&mut moved, view, middle, pull),
+        LightHandle::Width if light.is_sun() => {
+            let (least, most) = range::SUN_ANGLE_DEG.into_inner();
+            moved.angle_deg = snapped(light.angle_deg * factor, SNAP_LENGTH, pull.snaps).clamp(least, most);
+        }
+        LightHandle::Width => moved.width = length(light.width * factor),
+        LightHandle::Height => moved.height = length(light.height * factor),
+        LightHandle::Distance => moved.distance = length(light.distance * (-along / POINTS_PER_E).exp()),
+        LightHandle::Turn => {
+            let Some(middle) = middle else { return moved };
+            let angle_deg = (pull.from - middle).angle_to(pull.to - middle).to_degrees();
+            let sign = if faces_viewer(light, view) { 1.0 } else { -1.0 };
+            moved.turn_deg = wrapped_deg(snapped(light.turn_deg + sign * angle_deg, SNAP_DEG, pull.snaps));
+        }
+        LightHandle::Cone => {
+            let (least, most) = range::CONE_DEG.into_inner();
+            let cone_deg = light.cone_deg * (along / POINTS_PER_E).exp();
+            moved.cone_deg = snapped(cone_deg, 0.1 * SNAP_DEG, pull.snaps).clamp(least, most);
+        }
+    }
+    moved
+}
+
+/// The light after steps of the arrow keys, to the right and upwards, on a handle: degrees, or hundredths of a length.
+pub fn nudged(light: &AreaLight, handle: LightHandle, steps: DVec2) -> AreaLight {
+    let mut moved = *light;
+    let sum = steps.x + steps.y;
+    let scaled = |value: f64, range: std::ops::RangeInclusive<f64>| {
+        let (least, most) = range.into_inner();
+        (value * 1.01_f64.powf(sum)).clamp(least, most)
+    };
+    match handle {
+        LightHandle::Direction => {
+            moved.yaw_deg = wrapped_deg(light.yaw_deg + steps.x);
+            moved.pitch_deg = (light.pitch_deg + steps.y).clamp(-90.0, 90.0);
+        }
+        LightHandle::Width if light.is_sun() => moved.angle_deg = scaled(light.angle_deg, range::SUN_ANGLE_DEG),
+        LightHandle::Width => moved.width = scaled(light.width, range::AREA_LENGTH),
+        LightHandle::Height => moved.height = scaled(light.height, range::AREA_LENGTH),
+        LightHandle::Distance => moved.distance = scaled(light.distance, range::AREA_LENGTH),
+        LightHandle::Turn => moved.turn_deg = wrapped_deg(light.turn_deg + sum),
+        LightHandle::Cone => moved.cone_deg = scaled(light.cone_deg, range::CONE_DEG),
+    }
+    moved
+}
+
+/// Moves a light over the sphere around its target: so that it stays under the pointer, or where it is not in the picture,
+/// as if the sphere were rolled.
+fn move_around(light: &mut AreaLight, view: &View, middle: Option<DVec2>, pull: &Pull) {
+    let by = pull.to - pull.from;
+    let frame = light.shape().frame();
+    let forward = vector(view.camera.forward.to_f64());
+    match middle {
+        Some(middle) => {
+            let target = frame.middle - light.shape().distance * frame.outwards;
+            let distance = light.shape().distance;
+            let nearest = |at: DVec2| {
+                let [origin, along] = view.ray(at);
+                let half = (target - origin).dot(along);
+                let below_root = half * half - (origin - target).length_squared() + distance * distance;
+                (origin, along, half, below_root.max(0.0).sqrt())
+            };
+            let (origin, _, half, _) = nearest(middle);
+            let is_far = frame.middle.distance(origin) > half;
+            let (origin, along, half, root) = nearest(middle + by);
+            let near = half - root;
+            let t = if is_far || near <= 0.0 { half + root } else { near };
+            let outwards = (origin + t * along - target).normalize_or(frame.outwards);
+            light.look_from(outwards);
+        }
+        None => {
+            // Rolled by its near side, or by its far side.
+            let sign = if frame.outwards.dot(forward) <= 0.0 { 1.0 } else { -1.0 };
+            light.yaw_deg = wrapped_deg(light.yaw_deg + sign * DEG_PER_POINT * by.x);
+            light.pitch_deg = (light.pitch_deg - DEG_PER_POINT * by.y).clamp(-90.0, 90.0);
+        }
+    }
+    light.yaw_deg = snapped(light.yaw_deg, SNAP_DEG, pull.snaps);
+    light.pitch_deg = snapped(light.pitch_deg, SNAP_DEG, pull.snaps);
+}
+
+/// Whether the viewer sees the side of a light that looks at its target.
+fn faces_viewer(light: &AreaLight, view: &View) -> bool {
+    let frame = light.shape().frame();
+    (vector(view.camera.origin.to_f64()) - frame.middle).dot(frame.outwards) < 0.0
+}
+
+fn snapped(value: f64, step: f64, snaps: bool) -> f64 {
+    if snaps { (value / step).round() * step } else { value }
+}
+
+fn vector(of: [f64; 3]) -> DVec3 {
+    DVec3::from_array(of)
+}
+
+/// In [−180, 180).
+fn wrapped_deg(angle: f64) -> f64 {
+    (angle + 180.0).rem_euclid(360.0) - 180.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::AreaLightShape;
+    use crate::scene::camera::PixelFilter;
+
+    fn view() -> View {
+        View {
+            camera: Camera::look_at([0.0, 0.0, 8.0], [0.0; 3], 60.0, 1.5, PixelFilter::Box),
+            size: DVec2::new(600.0, 400.0),
+        }
+    }
+
+    fn pull(from: DVec2, by: DVec2) -> Pull {
+        Pull {
+            from,
+            to: from + by,
+            snaps: false,
+        }
+    }
+
+    fn middle(light: &AreaLight) -> Option<DVec2> {
+        view().seen_inside(light.shape().frame().middle)
+    }
+
+    #[test]
+    fn a_light_stays_under_the_pointer_in_front_and_behind() {
+        for yaw_deg in [-30.0, 10.0, 160.0, 200.0] {
+            let light = AreaLight {
+                yaw_deg,
+                pitch_deg: 20.0,
+                ..AreaLight::default()
+            };
+            let at = middle(&light).expect("it is in the picture");
+            // Wherever on the mark it was taken hold of.
+            let grabbed = at + DVec2::new(3.0, -2.0);
+            let by = DVec2::new(25.0, -30.0);
+            let moved = pulled(&light, LightHandle::Direction, &view(), &pull(grabbed, by));
+            let now = middle(&moved).expect("it still is");
+            assert!(now.distance(at + by) < 1e-6, "yaw {yaw_deg}: {at} to {now}");
+            assert_eq!(moved.distance, light.distance);
+            assert_eq!(
+                pulled(&light, LightHandle::Direction, &view(), &pull(grabbed, DVec2::ZERO)).width,
+                light.width
+            );
+        }
+    }
+
+    #[test]
+    fn a_light_beside_the_picture_is_rolled_by_its_near_or_far_side() {
+        for (yaw_deg, sign) in [(60.0, 1.0), (120.0, -1.0)] {
+            let light = AreaLight {
+                yaw_deg,
+                distance: 30.0,
+                ..AreaLight::default()
+            };
+            assert_eq!(middle(&light), None);
+            let [(handle, at)] = handles(&light, &view(), 12.0)[..] else {
+                panic!("one handle")
+            };
+            assert!(
+                at.x > 500.0 && at.x <= 588.0 + 1e-6 && at.y >= 12.0 - 1e-6,
+                "at the right edge: {at}"
+            );
+            let moved = pulled(&light, handle, &view(), &pull(at, DVec2::new(100.0, -20.0)));
+            assert!((moved.yaw_deg - yaw_deg - sign * 35.0).abs() < 1e-9);
+            assert!((moved.pitch_deg - light.pitch_deg - 7.0).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_edge_of_a_light_follows_its_handle() {
+        let light = AreaLight {
+            yaw_deg: 0.0,
+            pitch_deg: 0.0,
+            distance: 2.0,
+            turn_deg: 20.0,
+            ..AreaLight::default()
+        };
+        for handle in [LightHandle::Width, LightHandle::Height] {
+            let at = handles(&light, &view(), 0.0)
+                .into_iter()
+                .find(|(of, _)| *of == handle)
+                .expect("it has one")
+                .1;
+            let arm = at - middle(&light).expect("it is there");
+            let larger = pulled(&light, handle, &view(), &pull(at, 0.5 * arm));
+            let sizes = |light: &AreaLight| match handle {
+                LightHandle::Width => (light.width, light.height),
+                _ => (light.height, light.width),
+            };
+            assert!(
+                (sizes(&larger).0 - 1.5).abs() < 1e-9 && sizes(&larger).1 == 1.0,
+                "{handle:?}: {larger:?}"
+            );
+            let now = handles(&larger, &view(), 0.0)
+                .into_iter()
+                .find(|(of, _)| *of == handle)
+                .expect("it has one")
+                .1;
+            assert!(now.distance(at + 0.5 * arm) < 1e-6, "{handle:?} is at {now}");
+            // Through the middle it does not turn inside out.
+            assert!(sizes(&pulled(&light, handle, &view(), &pull(at, -3.0 * arm))).0 > 0.0);
+        }
+    }
+
+    #[test]
+    fn turns_distances_and_cones_follow_their_handles() {
+        let light = AreaLight {
+            yaw_deg: 180.0,
+            pitch_deg: 0.0,
+            ..AreaLight::spot()
+        };
+        let center = middle(&light).expect("it is there");
+        // Seen from the target's side, a quarter clockwise.
+        let quarter = Pull {
+            from: center + 30.0 * DVec2::NEG_Y,
+            to: center + 30.0 * DVec2::X,
+            snaps: false,
+        };
+        assert!((pulled(&light, LightHandle::Turn, &view(), &quarter).turn_deg - 90.0).abs() < 1e-9);
+        let front = AreaLight { yaw_deg: 0.0, ..light };
+        assert!((pulled(&front, LightHandle::Turn, &view(), &quarter).turn_deg + 90.0).abs() < 1e-9);
+        let of = |handle| {
+            handles(&light, &view(), 0.0)
+                .into_iter()
+                .find(|(of, _)| *of == handle)
+                .expect("it has one")
+                .1
+        };
+        for (handle, value) in [
+            (
+                LightHandle::Distance,
+                (|light| -light.distance) as fn(&AreaLight) -> f64,
+            ),
+            (LightHandle::Cone, |light| light.cone_deg),
+        ] {
+            let arm = of(handle) - center;
+            let out = pulled(&light, handle, &view(), &pull(of(handle), arm));
+            assert!(value(&out) > value(&light), "{handle:?}: {out:?}");
+        }
+        let tip = handles(&light, &view(), 0.0);
+        for (index, (_, a)) in tip.iter().enumerate() {
+            assert!(tip[..index].iter().all(|(_, b)| a.distance(*b) >= 12.0), "{tip:?}");
+        }
+    }
+
+    #[test]
+    fn lights_snap_to_round_numbers() {
+        let light = AreaLight {
+            yaw_deg: 7.0,
+            pitch_deg: 11.0,
+            ..AreaLight::default()
+        };
+        let at = middle(&light).expect("it is there");
+        let snap = Pull {
+            snaps: true,
+            ..pull(at, DVec2::new(9.0, 5.0))
+        };
+        let moved = pulled(&light, LightHandle::Direction, &view(), &snap);
+        assert_eq!((moved.yaw_deg % 15.0, moved.pitch_deg % 15.0), (0.0, 0.0));
+    }
+
+    #[test]
+    fn a_sun_has_two_handles_and_turns_around_the_model() {
+        let sun = AreaLight {
+            yaw_deg: 180.0,
+            pitch_deg: 5.0,
+            ..AreaLight::sun()
+        };
+        let at = handles(&sun, &view(), 0.0);
+        assert_eq!(at.len(), 2, "{at:?}");
+        let moved = pulled(
+            &sun,
+            LightHandle::Direction,
+            &view(),
+            &pull(at[0].1, DVec2::new(40.0, 0.0)),
+        );
+        assert!(
+            middle(&moved)
+                .expect("it is there")
+                .distance(at[0].1 + DVec2::new(40.0, 0.0))
+                < 0.5
+        );
+        let larger = pulled(&sun, LightHandle::Width, &view(), &pull(at[1].1, at[1].1 - at[0].1));
+        assert!((larger.angle_deg - 2.0 * sun.angle_deg).abs() < 1e-9);
+        assert_eq!(larger.shape, AreaLightShape::Sun);
+    }
+
+    #[test]
+    fn keys_do_what_pulls_do() {
+        let light = AreaLight::default();
+        let right = nudged(&light, LightHandle::Direction, DVec2::new(1.0, -2.0));
+        assert_eq!((right.yaw_deg, right.pitch_deg), (-34.0, 38.0));
+        for handle in LightHandle::ALL {
+            let there = nudged(&AreaLight::spot(), *handle, DVec2::new(2.0, 0.0));
+            assert_ne!(there, AreaLight::spot(), "{handle:?}");
+            let back = nudged(&there, *handle, DVec2::new(-2.0, 0.0));
+            assert!((back.width - 0.3).abs() + (back.yaw_deg + 35.0).abs() + (back.cone_deg - 40.0).abs() < 1e-9);
+        }
+    }
+}

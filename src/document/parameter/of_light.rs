@@ -1,0 +1,151 @@
+//! The parameters of an area light.
+
+use std::ops::RangeInclusive;
+use std::sync::LazyLock;
+
+use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
+use crate::document::{AreaLight, AreaLightShape, range};
+use crate::named::Named as _;
+
+/// Every parameter of an area light, in the order of its rows; the keys are those of project files.
+pub static LIGHT_PARAMETERS: LazyLock<Vec<Parameter<AreaLight>>> = LazyLock::new(all);
+
+/// Reads and writes a field through the variant of [`Value`] that holds it.
+macro_rules! field {
+    ($variant:ident $field:ident) => {
+        (
+            |light: &AreaLight| Value::$variant(light.$field),
+            |light: &mut AreaLight, value: Value| {
+                if let Value::$variant(value) = value {
+                    light.$field = value;
+                }
+            },
+        )
+    };
+}
+
+type Accessors = (fn(&AreaLight) -> Value, fn(&mut AreaLight, Value));
+
+#[rustfmt::skip]
+fn all() -> Vec<Parameter<AreaLight>> {
+    let shape: Accessors = (
+        |light| Value::Choice(light.shape.name()),
+        |light, value| {
+            if let Value::Choice(name) = value && let Some(shape) = AreaLightShape::by_name(name) {
+                light.shape = shape;
+            }
+        },
+    );
+    vec![
+        of("lighting.area_lights.shape", "Shape", "Rectangle, triangle or disc; a spot with a cone; or a sun, far away.", choices::<AreaLightShape>(), shape, |_| None),
+        of("lighting.area_lights.yaw_deg", "Yaw", "Turns the light around its target.", real(range::YAW_DEG, "°"), field!(Real yaw_deg), |_| None)
+            .row([-180.0, 180.0], 1),
+        of("lighting.area_lights.pitch_deg", "Pitch", "Height of the light above the horizon of its target.", real(range::PITCH_DEG, "°"), field!(Real pitch_deg), |_| None)
+            .row([-90.0, 90.0], 1),
+        of("lighting.area_lights.distance", "Distance", "From its target, in bounding radii of the model.", real(range::AREA_LENGTH, ""), field!(Real distance), of_lamps)
+            .row([0.0, 10.0], 3),
+        of("lighting.area_lights.target", "Target", "What the light looks at: right, up and forwards of the middle of the model, in its bounding radii.", Kind::Place { range: ends(range::LIGHT_TARGET) }, field!(Place target), of_lamps),
+        of("lighting.area_lights.turn_deg", "Turn", "About the line to its target, clockwise seen from there.", real(range::YAW_DEG, "°"), field!(Real turn_deg), of_lamps)
+            .row([-180.0, 180.0], 1),
+        of("lighting.area_lights.width", "Width", "In bounding radii of the model. A small light makes sharp shadows.", real(range::AREA_LENGTH, ""), field!(Real width), of_lamps)
+            .row([0.0, 4.0], 3),
+        of("lighting.area_lights.height", "Height", "In bounding radii of the model.", real(range::AREA_LENGTH, ""), field!(Real height), of_lamps)
+            .row([0.0, 4.0], 3),
+        of("lighting.area_lights.cone_deg", "Cone", "The angle across the cone into which a spot shines.", real(range::CONE_DEG, "°"), field!(Real cone_deg), of_spots)
+            .row([1.0, 120.0], 1),
+        of("lighting.area_lights.softness", "Softness", "The share of the cone over which a spot fades to its edge.", real(range::SOFTNESS, ""), field!(Real softness), of_spots)
+            .row([0.0, 1.0], 3),
+        of("lighting.area_lights.angle_deg", "Angle", "How large a sun is in the sky; the real one measures 0.53°. A large one makes soft shadows.", real(range::SUN_ANGLE_DEG, "°"), field!(Real angle_deg), of_suns)
+            .row([0.05, 10.0], 3),
+        of("lighting.area_lights.color", "Colour", "Colour of the light.", Kind::Color, field!(Color color), |_| None),
+        of("lighting.area_lights.strength", "Strength", "Radiance of the light: a larger one of the same strength gives more light. Of a sun the irradiance of what faces it.", strength(), field!(Number strength), |_| None)
+            .row([0.0, 100.0], 3),
+    ]
+}
+
+fn of_lamps(light: &AreaLight) -> Option<&'static str> {
+    light.is_sun().then_some("A sun is too far away for this to matter.")
+}
+
+fn of_spots(light: &AreaLight) -> Option<&'static str> {
+    (!light.is_spot()).then_some("Only a spot has a cone.")
+}
+
+fn of_suns(light: &AreaLight) -> Option<&'static str> {
+    (!light.is_sun()).then_some("The size of other lights is their width and height.")
+}
+
+fn of(
+    key: &'static str,
+    label: &'static str,
+    help: &'static str,
+    kind: Kind,
+    (get, set): Accessors,
+    idle: fn(&AreaLight) -> Option<&'static str>,
+) -> Parameter<AreaLight> {
+    Parameter {
+        key,
+        group: "Area light",
+        label,
+        name: "",
+        flag: None,
+        symbol: "",
+        help,
+        kind,
+        row: RowStyle {
+            bar: None,
+            step: 0.01,
+            decimals: 3,
+            is_percent: false,
+        },
+        stage: Stage::Geometry,
+        applies: |_| true,
+        idle,
+        get,
+        set,
+    }
+}
+
+impl Parameter<AreaLight> {
+    fn row(mut self, bar: [f64; 2], decimals: usize) -> Self {
+        (self.row.bar, self.row.decimals) = (Some(bar), decimals);
+        self
+    }
+
+    /// The word for it on the command line: its key within the light, without the unit.
+    pub fn word(&self) -> &'static str {
+        let last = self.key.rsplit('.').next().unwrap_or(self.key);
+        last.trim_end_matches("_deg")
+    }
+
+    /// The numbers that a light has of it, with their range.
+    pub(in crate::document) fn numbers(&self, light: &AreaLight) -> Vec<(&'static str, f64, [f64; 2])> {
+        let key = self.key;
+        match (self.get(light), &self.kind) {
+            (Value::Real(x), Kind::Real { range, .. }) => vec![(key, x, *range)],
+            (Value::Number(x), Kind::Number { range, .. }) => vec![(key, x.into(), range.map(f64::from))],
+            (Value::Place(place), Kind::Place { range }) => place.map(|x| (key, x, *range)).to_vec(),
+            (Value::Color(color), _) => color.map(|x| (key, x.into(), [0.0, 1.0])).to_vec(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+fn ends(range: RangeInclusive<f64>) -> [f64; 2] {
+    let (low, high) = range.into_inner();
+    [low, high]
+}
+
+fn real(range: RangeInclusive<f64>, unit: &'static str) -> Kind {
+    Kind::Real {
+        range: ends(range),
+        unit,
+    }
+}
+
+fn strength() -> Kind {
+    Kind::Number {
+        range: ends(range::STRENGTH).map(|end| end as f32),
+        unit: "",
+    }
+}

@@ -1,0 +1,85 @@
+//! The brightest place of an environment.
+
+use std::f32::consts::PI;
+
+use super::distribution::AliasCell;
+use super::{environment_direction, environment_uv};
+use crate::optics::vector::Vec3;
+
+/// What belongs to the brightest place: cells that touch it, of at least this share of its brightness.
+const SHARE: f32 = 0.5;
+
+/// The middle, in the map's (u, v), of the cells around the brightest one that are at least half as bright; `None` where
+/// nothing shines.
+pub(super) fn brightest(cells: &[AliasCell], columns: u32, rows: u32) -> Option<[f32; 2]> {
+    let density = |index: usize| cells[index].density;
+    let first = (0..cells.len()).max_by(|a, b| density(*a).total_cmp(&density(*b)))?;
+    let least = SHARE * density(first);
+    if least <= 0.0 {
+        return None;
+    }
+    let (columns, rows) = (columns as usize, rows as usize);
+    let mut is_taken = vec![false; cells.len()];
+    let mut open = vec![first];
+    is_taken[first] = true;
+    let mut sum = Vec3::zero();
+    while let Some(index) = open.pop() {
+        let (column, row) = (index % columns, index / columns);
+        let uv = [(column as f32 + 0.5) / columns as f32, (row as f32 + 0.5) / rows as f32];
+        sum = sum + environment_direction(uv) * (density(index) * (PI * uv[1]).sin());
+        let beside = [
+            Some(row * columns + (column + 1) % columns),
+            Some(row * columns + (column + columns - 1) % columns),
+            index.checked_sub(columns),
+            Some(index + columns).filter(|below| *below < cells.len()),
+        ];
+        for next in beside.into_iter().flatten() {
+            if !is_taken[next] && density(next) >= least {
+                is_taken[next] = true;
+                open.push(next);
+            }
+        }
+    }
+    // A ring around the whole sky has no middle: its brightest cell stands for it.
+    if sum.length() < 1e-6 {
+        sum = environment_direction([
+            ((first % columns) as f32 + 0.5) / columns as f32,
+            ((first / columns) as f32 + 0.5) / rows as f32,
+        ]);
+    }
+    Some(environment_uv(sum))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cells(bright: &[(usize, f32)]) -> Vec<AliasCell> {
+        let mut cells = vec![
+            AliasCell {
+                density: 0.1,
+                ..AliasCell::default()
+            };
+            16 * 8
+        ];
+        for (index, density) in bright {
+            cells[*index].density = *density;
+        }
+        cells
+    }
+
+    #[test]
+    fn the_brightest_place_is_the_middle_of_what_touches_it() {
+        let place = |bright: &[(usize, f32)]| brightest(&cells(bright), 16, 8).expect("something shines");
+        // Column 5, row 3.
+        let [u, v] = place(&[(3 * 16 + 5, 4.0)]);
+        assert!((u - 5.5 / 16.0).abs() < 1e-4 && (v - 3.5 / 8.0).abs() < 1e-4, "{u} {v}");
+        // Two beside each other across the map's edge, and one that does not touch them.
+        let [u, _] = place(&[(3 * 16, 4.0), (3 * 16 + 15, 4.0), (3 * 16 + 7, 3.9)]);
+        assert!(u < 1e-4 || u > 1.0 - 1e-4, "{u}");
+        // What is less than half as bright does not count.
+        let [u, _] = place(&[(3 * 16 + 5, 4.0), (3 * 16 + 6, 1.9)]);
+        assert!((u - 5.5 / 16.0).abs() < 1e-4, "{u}");
+        assert_eq!(brightest(&vec![AliasCell::default(); 16 * 8], 16, 8), None);
+    }
+}

@@ -1,0 +1,299 @@
+//! Lights moved in the viewport, and the environment in its preview, as a person does it.
+
+use egui::accesskit::Role;
+use egui::{Event, Key, Modifiers, Pos2, Vec2};
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
+use glossmith::app::layout::Pane;
+use glossmith::document::{AreaLight, AreaLightShape, Document};
+use glossmith::scene::environment::EnvironmentSource;
+
+use super::ui::{Editor, drag, editor_with, settle, undo};
+use super::worker::small_document;
+
+/// Lights in view of the camera, and the window with their list.
+fn editor_lit_by(lights: &[AreaLight]) -> Editor {
+    let mut document = small_document();
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
+    document.lighting.area_lights = lights.to_vec();
+    let mut harness = editor_with(document, Vec::new());
+    settle(&mut harness);
+    harness.state_mut().reveal(Pane::Lighting);
+    harness.run_steps(4);
+    harness
+}
+
+/// A light in front of the model, beside the middle of the picture.
+fn in_view() -> AreaLight {
+    AreaLight {
+        yaw_deg: 20.0,
+        pitch_deg: 15.0,
+        distance: 1.2,
+        width: 0.5,
+        height: 0.3,
+        ..AreaLight::default()
+    }
+}
+
+fn document(harness: &Editor) -> &Document {
+    harness.state().document()
+}
+
+fn light(harness: &Editor) -> AreaLight {
+    document(harness).lighting.area_lights[0]
+}
+
+fn place(harness: &Editor, label: &str) -> Pos2 {
+    harness.get_by_label(label).rect().center()
+}
+
+fn press(harness: &mut Editor, label: &str) {
+    harness.get_by_label(label).click_accesskit();
+    harness.run_steps(3);
+}
+
+fn with_modifiers(harness: &mut Editor, modifiers: Modifiers, deed: impl FnOnce(&mut Editor)) {
+    harness.event(Event::ModifiersChanged(modifiers));
+    deed(harness);
+    harness.event(Event::ModifiersChanged(Modifiers::NONE));
+    harness.run_steps(1);
+}
+
+#[test]
+fn a_light_is_dragged_around_its_target_in_one_step() {
+    let mut harness = editor_lit_by(&[
+        in_view(),
+        AreaLight {
+            yaw_deg: 180.0,
+            ..in_view()
+        },
+    ]);
+    let before = document(&harness).clone();
+    let (mark, by) = ("Move area light 1", Vec2::new(30.0, -20.0));
+    let at = place(&harness, mark);
+    drag(&mut harness, at, by);
+    settle(&mut harness);
+    let now = place(&harness, mark);
+    assert!(now.distance(at + by) < 1.0, "from {at} to {now}");
+    let moved = light(&harness);
+    assert!(moved.yaw_deg > before.lighting.area_lights[0].yaw_deg, "{moved:?}");
+    let elsewhere = AreaLight {
+        yaw_deg: 20.0,
+        pitch_deg: 15.0,
+        ..moved
+    };
+    assert_eq!(elsewhere, in_view(), "nothing else of it changed");
+    assert_eq!(document(&harness).camera, before.camera);
+    undo(&mut harness);
+    assert_eq!(*document(&harness), before);
+    // With ctrl in round steps.
+    with_modifiers(&mut harness, Modifiers::COMMAND, |harness| drag(harness, at, by));
+    assert_eq!(light(&harness).yaw_deg % 15.0, 0.0);
+    undo(&mut harness);
+    // With shift a tenth of the way.
+    with_modifiers(&mut harness, Modifiers::SHIFT, |harness| drag(harness, at, by));
+    let now = place(&harness, mark);
+    assert!(now.distance(at + 0.1 * by) < 0.5, "finely from {at} to {now}");
+    undo(&mut harness);
+    assert_eq!(*document(&harness), before);
+}
+
+#[test]
+fn each_handle_changes_its_number_in_one_step() {
+    let spot = AreaLight {
+        shape: AreaLightShape::Spot,
+        ..in_view()
+    };
+    let mut harness = editor_lit_by(&[spot]);
+    assert!(
+        harness.query_by_label("Turn handle of area light 1").is_none(),
+        "no light is chosen"
+    );
+    press(&mut harness, "Choose area light 1");
+    let before = document(&harness).clone();
+    let middle = place(&harness, "Move area light 1");
+    let handles: [(&str, fn(&AreaLight) -> f64); 5] = [
+        ("Width", |light| light.width),
+        ("Height", |light| light.height),
+        ("Distance", |light| light.distance),
+        ("Turn", |light| light.turn_deg),
+        ("Cone", |light| light.cone_deg),
+    ];
+    for (handle, number) in handles {
+        let at = place(&harness, &format!("{handle} handle of area light 1"));
+        let arm = at - middle;
+        let by = if handle == "Turn" { arm.rot90() } else { 0.5 * arm };
+        drag(&mut harness, at, by);
+        settle(&mut harness);
+        assert_ne!(number(&light(&harness)), number(&spot), "{handle}");
+        for (other, same) in handles.iter().filter(|(other, _)| *other != handle) {
+            assert_eq!(same(&light(&harness)), same(&spot), "{handle} changed {other}");
+        }
+        undo(&mut harness);
+        assert_eq!(*document(&harness), before, "{handle}");
+    }
+    press(&mut harness, "Choose area light 1");
+    assert!(harness.query_by_label("Turn handle of area light 1").is_none());
+}
+
+#[test]
+fn escape_takes_a_drag_back_and_keys_move_what_has_them() {
+    let mut harness = editor_lit_by(&[in_view()]);
+    let before = document(&harness).clone();
+    let at = place(&harness, "Move area light 1");
+    harness.hover_at(at);
+    harness.step();
+    harness.drag_at(at);
+    harness.step();
+    for step in 1..4 {
+        harness.hover_at(at + step as f32 * Vec2::new(8.0, 5.0));
+        harness.step();
+    }
+    assert_ne!(*document(&harness), before);
+    harness.key_press(Key::Escape);
+    harness.run_steps(2);
+    assert_eq!(*document(&harness), before);
+    harness.hover_at(at + Vec2::new(40.0, 0.0));
+    harness.step();
+    harness.drop_at(at + Vec2::new(40.0, 0.0));
+    harness.run_steps(3);
+    assert_eq!(*document(&harness), before, "the rest of the drag is none");
+    harness.get_by_label("Move area light 1").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowRight);
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowUp);
+    harness.run_steps(2);
+    assert_eq!((light(&harness).yaw_deg, light(&harness).pitch_deg), (21.0, 16.0));
+    undo(&mut harness);
+    assert_eq!(*document(&harness), before);
+}
+
+#[test]
+fn a_light_beside_the_picture_is_moved_by_its_mark_at_the_edge() {
+    let mut harness = editor_lit_by(&[AreaLight {
+        yaw_deg: 80.0,
+        pitch_deg: 0.0,
+        ..AreaLight::default()
+    }]);
+    let at = place(&harness, "Move area light 1");
+    let viewport = harness.get_by_label("Viewport").rect();
+    assert!(
+        at.x > viewport.center().x + 0.3 * viewport.width(),
+        "{at} in {viewport}"
+    );
+    drag(&mut harness, at, Vec2::new(-60.0, 0.0));
+    assert!((light(&harness).yaw_deg - 59.0).abs() < 0.5, "{:?}", light(&harness));
+    // Lights are marked where their list is, and nowhere else.
+    harness.state_mut().reveal(Pane::Camera);
+    harness.run_steps(4);
+    assert!(harness.query_by_label("Move area light 1").is_none());
+}
+
+#[test]
+fn the_environment_is_turned_in_its_preview() {
+    let mut harness = editor_lit_by(&[]);
+    let before = document(&harness).clone();
+    let preview = harness.get_by_label("Environment preview").rect();
+    drag(&mut harness, preview.center(), Vec2::new(0.25 * preview.width(), 7.0));
+    settle(&mut harness);
+    let rotation_deg = document(&harness).lighting.rotation_deg;
+    assert!((rotation_deg + 90.0).abs() < 0.5, "{rotation_deg}");
+    undo(&mut harness);
+    assert_eq!(*document(&harness), before);
+    harness.get_by_label("Environment preview").focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowLeft);
+    harness.run_steps(2);
+    assert_eq!(document(&harness).lighting.rotation_deg, 1.0);
+    harness.key_press_modifiers(Modifiers::COMMAND, Key::ArrowRight);
+    harness.run_steps(2);
+    assert_eq!(document(&harness).lighting.rotation_deg, -14.0);
+    undo(&mut harness);
+    assert_eq!(*document(&harness), before);
+}
+
+/// The sun of the sky is dragged behind the camera: what faces it is bright then.
+#[test]
+fn light_comes_from_where_the_brightest_place_is_dragged() {
+    let mut start = small_document();
+    (start.camera.yaw_deg, start.camera.pitch_deg) = (0.0, 0.0);
+    start.lighting.environment = EnvironmentSource::Sky;
+    let mut harness = editor_with(start, Vec::new());
+    settle(&mut harness);
+    harness.state_mut().reveal(Pane::Lighting);
+    harness.run_steps(4);
+    let scene = harness.state().snapshot().scene.clone().expect("it was waited for");
+    let [u, v] = scene.job.environment.brightest.expect("the sky has a sun");
+    let preview = harness.get_by_label("Environment preview").rect();
+    let sun = preview.min + Vec2::new(u, v) * preview.size();
+    drag(&mut harness, sun, Vec2::new((0.5 - u) * preview.width(), 0.0));
+    settle(&mut harness);
+    // +Z, where the camera is.
+    let rotation_rad = f64::from(document(&harness).lighting.rotation_deg).to_radians();
+    let local = glossmith::scene::environment::environment_direction([f64::from(u), f64::from(v)]);
+    let world =
+        glossmith::scene::environment::environment_world_from_local(local, [rotation_rad.cos(), rotation_rad.sin()]);
+    assert!(world.x.abs() < 0.02 && world.z > 0.1, "{world:?}");
+}
+
+#[test]
+fn power_is_the_strength_in_lumens_and_stays_as_it_was_set() {
+    let mut harness = editor_lit_by(&[in_view()]);
+    let radius = harness
+        .state()
+        .snapshot()
+        .scene
+        .as_ref()
+        .expect("there is one")
+        .job
+        .geometry
+        .world_units_per_unit;
+    let power = harness.get_by_role_and_label(Role::SpinButton, "Area light 1 power");
+    power.set_value_accesskit(500.0);
+    settle(&mut harness);
+    assert!((light(&harness).power(radius) - 500.0).abs() < 0.01);
+    let before = document(&harness).clone();
+    harness.run_steps(5);
+    assert_eq!(*document(&harness), before, "showing it edits nothing");
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Scene unit")
+        .set_value_accesskit(0.01);
+    settle(&mut harness);
+    assert_eq!(document(&harness).lighting, before.lighting);
+    let shown = harness.get_by_role_and_label(Role::SpinButton, "Area light 1 power");
+    let shown = shown.accesskit_node().numeric_value().expect("a number");
+    assert!((shown - 0.05).abs() < 1e-3, "{shown}");
+}
+
+#[test]
+fn what_has_no_effect_on_a_light_is_grey() {
+    let mut harness = editor_lit_by(&[]);
+    for label in ["Add spot", "Add sun"] {
+        press(&mut harness, label);
+    }
+    settle(&mut harness);
+    let lights = &document(&harness).lighting.area_lights;
+    assert_eq!(*lights, [AreaLight::spot(), AreaLight::sun()]);
+    let is_grey = |harness: &Editor, label: &str| {
+        harness
+            .get_by_role_and_label(Role::SpinButton, label)
+            .accesskit_node()
+            .is_disabled()
+    };
+    for (label, grey) in [
+        ("Area light 1 cone", false),
+        ("Area light 1 distance", false),
+        ("Area light 1 angle", true),
+        ("Area light 2 cone", true),
+        ("Area light 2 distance", true),
+        ("Area light 2 angle", false),
+        ("Area light 2 strength", false),
+    ] {
+        assert_eq!(is_grey(&harness, label), grey, "{label}");
+    }
+    harness
+        .get_by_role_and_label(Role::SpinButton, "Area light 1 target, y")
+        .set_value_accesskit(0.5);
+    harness.run_steps(2);
+    assert_eq!(light(&harness).target, [0.0, 0.5, 0.0]);
+}
