@@ -243,12 +243,6 @@ impl<T: Real> Material<T> {
         self.opacity_texture != NO_TEXTURE || self.textures != [NO_TEXTURE; 4]
     }
 
-    /// True where what it emits depends on the direction.
-    #[inline(always)]
-    pub fn is_spot(&self) -> bool {
-        self.spot_scale.to_f64() != 0.0
-    }
-
     /// True where some light may go straight on, as if the surface were not there.
     #[inline(always)]
     pub fn has_holes(&self) -> bool {

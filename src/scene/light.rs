@@ -293,7 +293,7 @@ pub fn light_sample<T: Real>(
         let uvs = uvs_at(geometry, triangle, weights);
         radiance = emission_at(emitters.textures, material, uvs);
     }
-    if material.is_spot() {
+    if is_spot(material) {
         radiance = radiance * spot_share(material, -normal.dot(direction));
     }
     let cosine = normal.dot(direction).abs();
@@ -309,6 +309,12 @@ pub fn light_sample<T: Real>(
         distance: distance - error / cosine.max(T::from_f64(COSINE_MIN)),
         radiance,
     }
+}
+
+/// True where what a material emits depends on the direction.
+#[inline(always)]
+pub fn is_spot<T: Real>(material: &Material<T>) -> bool {
+    material.spot_scale.to_f64() != 0.0
 }
 
 /// The share of its radiance that a spot sends in a direction under this cosine to the way it faces: 1 within the inner

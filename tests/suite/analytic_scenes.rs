@@ -335,15 +335,18 @@ fn round_lights(above: AreaLight) -> Vec<Case> {
     };
     // Places in the world, where the bounding radius of the square is √2.
     let beside = 0.5;
+    let mut edge = case(
+        "edge of a spot",
+        of_spot(beside / 2.0_f64.sqrt()),
+        spot,
+        [0.0, 0.0, beside],
+    );
+    // It falls off within the picture otherwise.
+    edge.document.camera.fov_deg = 0.005;
     vec![
         case("disc", of_disc, disc, [0.0; 3]),
         case("spot", of_spot(0.0), spot, [0.0; 3]),
-        case(
-            "edge of a spot",
-            of_spot(beside / 2.0_f64.sqrt()),
-            spot,
-            [0.0, 0.0, beside],
-        ),
+        edge,
         case("sun", PI * 60.0_f64.to_radians().sin(), sun, [0.3, 0.0, 0.3]),
     ]
 }

@@ -175,7 +175,7 @@ fn wrong_arguments_are_refused() {
         ("--area-light 1,2,3,4,5", ["--area-light", "6 numbers"]),
         ("--area-light 1,2,3,4,5,-6", ["--area-light", "from 0 to 1000000"]),
         ("--area-light 1,2,0,4,5,6", ["--area-light", "from 0.001 to 1000"]),
-        ("--area-light 1,2,3,4,5,6,red", ["--area-light", "6 numbers"]),
+        ("--area-light 1,2,3,4,5,6,red", ["--area-light", "triangle"]),
         ("--area-light 1,2,3,4,5,6,#ff", ["--area-light", "#rrggbb"]),
         ("--area-light 1,2,3,4,5,6,100K", ["--area-light", "from 2000 to 20000"]),
         ("--background plaid", ["--background", "transparent"]),

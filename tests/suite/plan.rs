@@ -163,6 +163,7 @@ fn needing(effect: &str) -> Document {
         "depth-of-field" => document.camera.aperture = 0.5,
         "firefly-clamp" => document.render.firefly_clamp = Some(0.01),
         "emitter-sampling" => document.lighting.area_lights.push(AreaLight::default()),
+        "spot" => document.lighting.area_lights.push(AreaLight::spot()),
         "guides" => document.view.denoise = Denoise::Fast,
         "shadow-catcher" => {
             document.ground = true;

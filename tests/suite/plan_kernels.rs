@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use glossmith::cpu::CpuEngine;
 use glossmith::document::effect::EFFECTS;
-use glossmith::document::{Document, GroundKind, assign};
+use glossmith::document::{AreaLight, Document, GroundKind, assign};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuEngine};
 use glossmith::job::effect::{ANY, Decision};
 use glossmith::job::film::Film;
@@ -204,6 +204,7 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
         assign(&mut glass.materials[0], assignment).unwrap();
     }
     glass.camera.aperture = 0.05;
+    glass.lighting.area_lights.push(AreaLight::spot());
     glass.ground = true;
     glass.lighting.ground.kind = GroundKind::ShadowCatcher;
     vec![metals, glass, small(all_at_once(folder))]

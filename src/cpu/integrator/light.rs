@@ -13,7 +13,7 @@ use crate::scene::environment::{
     environment_density_at, environment_local_from_world, environment_radiance_at, environment_sample, environment_uv,
     environment_world_from_local, fetch_cell, fetch_chosen, fetch_place,
 };
-use crate::scene::light::{Emitters, LightSample, light_density, light_sample, spot_share};
+use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_sample, spot_share};
 use crate::scene::surface::SurfacePoint;
 
 impl<T: Real> Integrator<'_, T> {
@@ -87,7 +87,7 @@ impl<T: Real> Integrator<'_, T> {
     ) -> Vec3<T> {
         let cosine = point.surface.normal.dot(point.surface.wo);
         let mut emission = material.emission;
-        if material.is_spot() {
+        if is_spot(material) {
             let facing = if point.surface.is_inside { -cosine } else { cosine };
             emission = emission * spot_share(material, facing);
         }
