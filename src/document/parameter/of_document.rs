@@ -79,7 +79,7 @@ fn lighting() -> Vec<Parameter<Document>> {
             .named("Background blur").group("Background").flag("background-blur").bar(0.0, 45.0).decimals(1).applies(|document| document.lighting.background == Background::Environment),
         of("scene.unit", Stage::Display, "Scene unit", "Metres of a unit of the model's coordinates; the power of lights is reckoned with it. No picture depends on it.", real(range::UNIT_M, "m"), field!(Real unit_m))
             .named("Scene unit").group("Area lights").flag("scene-unit").applies(|document| !document.lighting.area_lights.is_empty()),
-        of("scene.ground", Geometry, "Ground plane", "A surface under the model that catches its shadow.", Kind::Toggle, field!(Toggle ground))
+        of("scene.ground", Geometry, "Ground", "A surface under the model that catches its shadow.", Kind::Toggle, field!(Toggle ground))
             .named("Ground").group("Ground").flag("ground"),
         of("lighting.ground.kind", Geometry, "Kind", "What the ground is.", choices::<GroundKind>(), choice!(lighting.ground.kind))
             .named("Kind of ground").group("Ground").flag("ground-kind").applies(|document| document.ground),
