@@ -1,9 +1,10 @@
 //! Surfaces that emit: sampled by power, triangle by triangle, and weighed against the environment. Area lights are
 //! rectangles, triangles and ellipses among them.
 //!
-//! A triangle emits the same radiance from both sides, but for a spot's, which sends all of it into a cone. It is picked in proportion to area × luminance, and a place on it
-//! uniformly; so the density per area is luminance / power for every place of every triangle, and a hit needs no table
-//! to know it. With an emission texture the luminance is its mean. The functions that start with `light_` have WGSL twins in `shaders/scene/light.wgsl`.
+//! A triangle emits the same radiance from both sides, but for a spot's, which sends all of it into a cone. It is picked in
+//! proportion to area × luminance, and a place on it uniformly; so the density per area is luminance / power for every place
+//! of every triangle, and a hit needs no table to know it. With an emission texture the luminance is its mean. The functions
+//! that start with `light_`, and `spot_share`, have WGSL twins in `shaders/scene/light.wgsl`.
 
 use std::f64::consts::PI;
 

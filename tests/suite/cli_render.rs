@@ -458,14 +458,14 @@ fn spots_and_suns_are_told_in_words() {
     let mean = |arguments: &str| place.picture(&format!("{dark} {arguments}")).mean(1);
     // Of a matt ball: twice the irradiance is twice the light, whichever way it is said.
     let matt = "--set specular.weight=0 --set base.metalness=0";
-    let [one, two, lux] = ["strength=2", "strength=4", "power=4"]
-        .map(|said| f64::from(mean(&format!("{matt} --sun yaw=0,pitch=20,{said}"))));
+    let [one, two, lux] =
+        ["strength=2", "strength=4", "power=4"].map(|said| mean(&format!("{matt} --sun yaw=0,pitch=20,{said}")));
     assert!(one > 0.01 && (two / one - 2.0).abs() < 1e-3, "{one} {two}");
     assert_eq!(two, lux);
     // The same lumens over an area half as large each way are four times as bright.
     let spot = "--spot yaw=0,pitch=0,distance=2,cone=120,power=100";
-    let near = f64::from(mean(&format!("{matt} {spot},temperature=3000K")));
-    let far = f64::from(mean(&format!("{matt} {spot},temperature=3000K --scene-unit 2")));
+    let near = mean(&format!("{matt} {spot},temperature=3000K"));
+    let far = mean(&format!("{matt} {spot},temperature=3000K --scene-unit 2"));
     assert!((near / far - 4.0).abs() < 0.01, "{near} {far}");
     // Beside the ball nothing is lit.
     assert_eq!(mean(&format!("{matt} --spot target=9,0,0,cone=10,strength=5")), 0.0);
@@ -473,7 +473,7 @@ fn spots_and_suns_are_told_in_words() {
     assert!(effects.contains("\"spot\""), "{effects}");
     let disc = mean(&format!("{matt} --area-light 0,45,3,1,1,10,disc,turn=20"));
     let square = mean(&format!("{matt} --area-light 0,45,3,1,1,10"));
-    assert!((f64::from(disc / square) - 0.785).abs() < 0.02, "{disc} {square}");
+    assert!((disc / square - 0.785).abs() < 0.02, "{disc} {square}");
     for (wrong, said) in [
         ("--sun distance=3", "distance: give #rrggbb"),
         ("--spot cone=500", "cone_deg does not take 500"),

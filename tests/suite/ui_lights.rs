@@ -111,7 +111,9 @@ fn each_handle_changes_its_number_in_one_step() {
     press(&mut harness, "Choose area light 1");
     let before = document(&harness).clone();
     let middle = place(&harness, "Move area light 1");
-    let handles: [(&str, fn(&AreaLight) -> f64); 5] = [
+    /// What of a light a handle changes.
+    type Changed = fn(&AreaLight) -> f64;
+    let handles: [(&str, Changed); 5] = [
         ("Width", |light| light.width),
         ("Height", |light| light.height),
         ("Distance", |light| light.distance),

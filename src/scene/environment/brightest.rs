@@ -26,7 +26,7 @@ pub(super) fn brightest(cells: &[AliasCell], columns: u32, rows: u32) -> Option<
     while let Some(index) = open.pop() {
         let (column, row) = (index % columns, index / columns);
         let uv = [(column as f32 + 0.5) / columns as f32, (row as f32 + 0.5) / rows as f32];
-        sum = sum + environment_direction(uv) * (density(index) * (PI * uv[1]).sin());
+        sum += environment_direction(uv) * (density(index) * (PI * uv[1]).sin());
         let beside = [
             Some(row * columns + (column + 1) % columns),
             Some(row * columns + (column + columns - 1) % columns),
@@ -76,7 +76,7 @@ mod tests {
         assert!((u - 5.5 / 16.0).abs() < 1e-4 && (v - 3.5 / 8.0).abs() < 1e-4, "{u} {v}");
         // Two beside each other across the map's edge, and one that does not touch them.
         let [u, _] = place(&[(3 * 16, 4.0), (3 * 16 + 15, 4.0), (3 * 16 + 7, 3.9)]);
-        assert!(u < 1e-4 || u > 1.0 - 1e-4, "{u}");
+        assert!(!(1e-4..=1.0 - 1e-4).contains(&u), "{u}");
         // What is less than half as bright does not count.
         let [u, _] = place(&[(3 * 16 + 5, 4.0), (3 * 16 + 6, 1.9)]);
         assert!((u - 5.5 / 16.0).abs() < 1e-4, "{u}");

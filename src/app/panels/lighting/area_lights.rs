@@ -15,8 +15,10 @@ enum Wish {
     Solo,
 }
 
-/// The lights that can be added: what the button says and is called, what it adds, and help.
-const KINDS: [(&str, &str, fn() -> AreaLight, &str); 3] = [
+/// A light that can be added: what the button says and is called, what it adds, and help.
+type LightKind = (&'static str, &'static str, fn() -> AreaLight, &'static str);
+
+const KINDS: [LightKind; 3] = [
     (
         "Area light",
         "Add area light",
