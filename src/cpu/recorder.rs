@@ -46,6 +46,8 @@ pub enum Purpose {
     Light,
     /// Russian roulette.
     Roulette,
+    /// Whether a shadow catcher mirrors the ray.
+    Catcher,
     /// The direction in which a blurred background is seen.
     Blur,
     /// Drawn beside another number and not used; not told.
@@ -129,8 +131,10 @@ pub enum Event {
         /// True where the back of the triangle was met.
         is_inside: bool,
     },
-    /// A shadow catcher shows the background, as far as light reaches it.
+    /// A shadow catcher shows the background, as far as light reaches it or what it mirrors does not hide it.
     Caught {
+        /// Whether it mirrors the ray.
+        is_mirrored: bool,
         /// What is seen of the background; 1 where it is transparent, and the path's light is taken from that.
         background: [f32; 3],
         /// The radiance of a white matt plane there, nothing in the way of the light.

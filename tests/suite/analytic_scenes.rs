@@ -315,11 +315,11 @@ fn round_lights(above: AreaLight) -> Vec<Case> {
     // Half an angle of 20°, bright within 10°; seen from where its light falls under some 16°.
     let spot = AreaLight {
         shape: AreaLightShape::Spot,
-        width: 0.02,
-        height: 0.02,
+        width: 0.002,
+        height: 0.002,
         cone_deg: 40.0,
         softness: 0.5,
-        strength: 5e3,
+        strength: 5e5,
         ..above
     };
     let of_spot = |beside: f64| {
@@ -327,7 +327,7 @@ fn round_lights(above: AreaLight) -> Vec<Case> {
         let cosine = 1.2 / distance;
         let [inner, outer] = [10.0_f64, 20.0].map(|angle| angle.to_radians().cos());
         let share = ((cosine - outer) / (inner - outer)).clamp(0.0, 1.0).powi(2);
-        5e3 * PI * 0.01_f64.powi(2) * share * (cosine / distance).powi(2)
+        5e5 * PI * 0.001_f64.powi(2) * share * (cosine / distance).powi(2)
     };
     let sun = AreaLight {
         pitch_deg: 60.0,

@@ -186,6 +186,7 @@ fn misdrawn(events: &[Event]) -> Option<String> {
             }
             Event::Camera { .. } => count(Purpose::Pixel) == 2,
             Event::Light { .. } => count(Purpose::Light) == 3,
+            Event::Caught { .. } => count(Purpose::Catcher) == 1,
             Event::Scattered { .. } => count(Purpose::Lobe) == 3 && count(Purpose::Layer) == 1,
             Event::Roulette { number, .. } => fresh == [(Purpose::Roulette, *number)],
             _ => continue,
@@ -227,7 +228,7 @@ fn no_number_of_a_path_is_drawn_twice() {
             }
         }
     }
-    assert_eq!(met.len(), 9, "of nine purposes only {met:?} were met");
+    assert_eq!(met.len(), 10, "of ten purposes only {met:?} were met");
 }
 
 /// All numbers of a path, as bits.

@@ -496,3 +496,17 @@ fn looking_at_a_panel_changes_nothing() {
         }
     }
 }
+
+/// A lens as small as this has an f-number beyond any that is typed. Shown, it was once brought into a range, which was an edit
+/// that undo could not pass.
+#[test]
+fn showing_an_f_number_is_no_edit() {
+    let mut document = small_document();
+    document.camera.aperture = 5e-9;
+    let mut harness = editor_with(document.clone(), Vec::new());
+    settle(&mut harness);
+    harness.state_mut().reveal(Pane::Camera);
+    harness.run_steps(10);
+    assert!(harness.query_by_label("f-number").is_some());
+    assert_eq!(*harness.state().document(), document);
+}

@@ -72,16 +72,10 @@ impl<T: Real> Integrator<'_, T> {
         }
         let place = self.left_place(ray, 0);
         let (background, alpha) = self.camera_background(ray.direction, place, CATCHER_DIMENSION + 1, path);
+        let [choice, _] = path.pair(CATCHER_DIMENSION, [Purpose::Catcher, Purpose::Unused]);
+        let share = catcher_reflectance(self.tables, catcher.table, -ray.direction.y);
+        let is_mirrored = choice.less(share).any();
         let is_transparent = alpha.to_f64() <= 0.0;
-        let [choice, _] = path.pair(CATCHER_DIMENSION, [Purpose::Layer, Purpose::Unused]);
-        if choice
-            .less(catcher_reflectance(self.tables, catcher.table, -ray.direction.y))
-            .any()
-        {
-            path.caught = Caught::Mirrored { background, alpha };
-            return true;
-        }
-        path.caught = Caught::Shadow { is_transparent };
         let shown = if is_transparent {
             Vec3::splat(T::one())
         } else {
@@ -89,14 +83,23 @@ impl<T: Real> Integrator<'_, T> {
         };
         let albedo = self.materials[catcher.slot as usize].base_color;
         let is_lit = light.map(|light| T::select(T::zero().less(light), T::one(), T::zero()));
-        let reflected = light * albedo + (Vec3::splat(T::one()) - is_lit);
-        path.throughput = shown * is_lit * reflected.map(|reflected| T::one() / reflected);
+        if is_mirrored {
+            path.caught = Caught::Mirrored { background, alpha };
+        } else {
+            path.caught = Caught::Shadow { is_transparent };
+            let reflected = light * albedo + (Vec3::splat(T::one()) - is_lit);
+            path.throughput = shown * is_lit * reflected.map(|reflected| T::one() / reflected);
+        }
         let throughput = path.throughput.to_f32();
         path.record(|| Event::Caught {
+            is_mirrored,
             background: shown.to_f32(),
             light: light.to_f32(),
             throughput,
         });
+        if is_mirrored {
+            return true;
+        }
         // A colour of which no light would reach the place has no shadow.
         self.add(Source::Background, shown * (Vec3::splat(T::one()) - is_lit), 0, path);
         true

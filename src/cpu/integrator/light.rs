@@ -55,7 +55,7 @@ impl<T: Real> Integrator<'_, T> {
     /// The numbers with which a direction to a light is drawn.
     #[inline(always)]
     pub(super) fn light_numbers<R: Recorder>(&self, bounce: u32, path: &mut Path<'_, T, R>) -> Vec3<T> {
-        if !self.samples_light() {
+        if !self.samples_light() || path.caught.is_mirrored() {
             return Vec3::zero();
         }
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 2;

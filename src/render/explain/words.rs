@@ -92,13 +92,22 @@ impl PathAccount {
                 ),
             ],
             Event::Hit { .. } => self.hit(event),
-            Event::Caught { background, light, .. } => [
+            Event::Caught {
+                is_mirrored,
+                background,
+                light,
+                ..
+            } => [
                 "caught".into(),
-                format!(
-                    "shows the background, {}, as far as light arrives: {} if nothing stood in its way",
-                    vector(background),
-                    vector(light)
-                ),
+                if *is_mirrored {
+                    format!("mirrors what is above, or shows the background, {}", vector(background))
+                } else {
+                    format!(
+                        "shows the background, {}, as far as light arrives: {} if nothing stood in its way",
+                        vector(background),
+                        vector(light)
+                    )
+                },
             ],
             Event::Absorption { distance, kept } => [
                 "absorbed".into(),
@@ -197,6 +206,7 @@ fn name(purpose: Purpose) -> &'static str {
         Purpose::Below => "below the lobe",
         Purpose::Light => "light",
         Purpose::Roulette => "roulette",
+        Purpose::Catcher => "catcher",
         Purpose::Blur => "blur",
         Purpose::Unused => "unused",
     }

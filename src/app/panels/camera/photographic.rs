@@ -97,7 +97,9 @@ impl Photographic {
         };
         let mut number = exchanged(desk.document.camera.aperture);
         let style = NumberStyle {
-            range: 0.0..=f64::from(u16::MAX),
+            // No end: a number beyond it would be brought back at once, an edit that nobody made and that stands in the way of
+            // undo.
+            range: 0.0..=f64::MAX,
             bar: None,
             unit: "",
             speed: 0.01 * number.max(1.0),

@@ -80,9 +80,8 @@ fn add(ui: &mut Ui, desk: &mut Desk<'_>, lights: &mut Vec<AreaLight>) {
     let is_full = lights.len() as f64 >= *range::AREA_LIGHTS.end();
     ui.add_enabled_ui(!is_full, |ui| {
         ui.horizontal(|ui| {
-            ui.label("Add");
             for (word, name, made, help) in KINDS {
-                let button = ui.button(word).on_hover_text(help);
+                let button = ui.button(format!("+ {word}")).on_hover_text(help);
                 if button.clicked() && !is_full {
                     lights.push(made());
                     desk.shared.selection.light = Some(lights.len() - 1);
