@@ -507,6 +507,6 @@ fn showing_an_f_number_is_no_edit() {
     settle(&mut harness);
     harness.state_mut().reveal(Pane::Camera);
     harness.run_steps(10);
-    assert!(harness.query_by_label("f-number").is_some());
+    harness.get_by_role_and_label(Role::SpinButton, "f-number");
     assert_eq!(*harness.state().document(), document);
 }
