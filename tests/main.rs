@@ -115,6 +115,8 @@ mod monkey_deeds;
 mod noise;
 #[path = "suite/nothing_lost.rs"]
 mod nothing_lost;
+#[path = "suite/own_textures.rs"]
+mod own_textures;
 #[path = "suite/parameters.rs"]
 mod parameters;
 #[path = "suite/parting.rs"]
@@ -177,6 +179,8 @@ mod ui_pictures;
 mod ui_scene;
 #[path = "suite/ui_study.rs"]
 mod ui_study;
+#[path = "suite/ui_textures.rs"]
+mod ui_textures;
 #[path = "suite/ui_workshop.rs"]
 mod ui_workshop;
 #[path = "suite/worker.rs"]

@@ -76,7 +76,7 @@ struct Material {
     coat_ior: f32,
     coat_table: u32,
     light_luminance: f32,
-    // Base colour, metalness and roughness, normal, emission.
+    // Base colour, roughness, normal, emission.
     textures: vec4u,
     opacity_texture: u32,
     alpha_cutoff: f32,
@@ -88,8 +88,9 @@ struct Material {
     // The ramp of a spot's share over the cosine to the way it faces.
     spot_scale: f32,
     spot_offset: f32,
-    reserved: u32,
-    reserved_pair: vec2u,
+    metalness_texture: u32,
+    coat_texture: u32,
+    has_box_projection: u32,
 }
 
 // A triangle to intersect: corner positions as bits, with the corner's vertex index in w.

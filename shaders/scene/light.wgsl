@@ -50,7 +50,7 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let material = materials[slot_at(index)];
     var radiance = material.emission;
     if PLAN_EMISSION_TEXTURES == 1u || PLAN_ALPHA == 1u {
-        let uvs = uvs_at(vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w), weights);
+        let uvs = uvs_at(triangle, weights, material.has_box_projection == 1u);
         radiance = emission_at(material, uvs);
     }
     if PLAN_SPOT == 1u {

@@ -9,8 +9,7 @@ struct SurfacePoint {
     // How far off the true place `position` may be, along the normal.
     error: f32,
     slot: u32,
-    // Both sets of texture coordinates.
-    uvs: vec4f,
+    uvs: Uvs,
     // The colour between the vertices; white where the material takes none.
     vertex_color: vec3f,
 }
@@ -84,9 +83,9 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     let side = select(1.0, -1.0, dot(smoothed, normal) < 0.0);
     let coat_normal = bent_normal(side * smoothed, wo);
     let slot = slot_at(hit.triangle);
-    var uvs = vec4f(0.0);
+    var uvs = Uvs(vec4f(0.0), vec2f(0.0));
     if looks_up_textures() {
-        uvs = hit_uvs(hit);
+        uvs = hit_uvs(hit, materials[slot]);
     }
     let tangent = vec4f(
         a.tangent[0] * w + b.tangent[0] * hit.u + c.tangent[0] * hit.v,
@@ -96,7 +95,8 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     );
     var shading = coat_normal;
     if PLAN_NORMAL_MAPS == 1u && materials[slot].textures.z != NO_TEXTURE {
-        shading = bent_normal(side * mapped_normal(materials[slot], uvs, smoothed, tangent), wo);
+        let outward = normalize_or(interpolated, select(normal, -normal, place.is_back));
+        shading = bent_normal(side * mapped_normal(materials[slot], uvs, smoothed, tangent, outward), wo);
         shading = lifted_normal(shading, normal, wo);
     }
     var frame = frame_from_normal(shading);
@@ -118,12 +118,12 @@ fn vertex_color(vertex: Vertex) -> vec3f {
 
 fn looks_up_textures() -> bool {
     return PLAN_COLOR_TEXTURES == 1u || PLAN_ROUGHNESS_TEXTURES == 1u || PLAN_EMISSION_TEXTURES == 1u ||
-        PLAN_NORMAL_MAPS == 1u;
+        PLAN_NORMAL_MAPS == 1u || PLAN_COAT_TEXTURES == 1u;
 }
 
-fn hit_uvs(hit: Hit) -> vec4f {
-    let corners = triangle_at(hit.triangle).corners;
-    return uvs_at(vec3u(corners[0].w, corners[1].w, corners[2].w), vec3f(1.0 - hit.u - hit.v, hit.u, hit.v));
+fn hit_uvs(hit: Hit, material: Material) -> Uvs {
+    let weights = vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
+    return uvs_at(triangle_at(hit.triangle), weights, material.has_box_projection == 1u);
 }
 
 // The share of light that is stopped where a ray met the geometry.
@@ -132,7 +132,7 @@ fn hit_opacity(hit: Hit) -> f32 {
     if !material_has_holes(materials[slot]) {
         return 1.0;
     }
-    return opacity_at(materials[slot], hit_uvs(hit));
+    return opacity_at(materials[slot], hit_uvs(hit, materials[slot]));
 }
 
 // How far off its plane, along the normal, the place may be that is interpolated between a triangle's corners.

@@ -13,6 +13,7 @@ use crate::document::MaterialSettings;
 use crate::render::EngineChoice;
 use crate::render::shown::Shown;
 use crate::scene::environment::EnvironmentSource;
+use crate::scene::texture::TextureTarget;
 use crate::scene::{ModelOptions, ModelSource};
 
 /// Something for the app to do after the panels have been shown.
@@ -22,8 +23,8 @@ pub enum Action {
     Do(Command),
     /// Opens a file by its ending.
     Open(PathBuf),
-    /// Takes files that were dropped on the window together: a picture becomes the base colour of the selected material,
-    /// anything else is opened.
+    /// Takes files that were dropped on the window together: pictures are put on the selected material, anything else is
+    /// opened.
     Drop(Vec<PathBuf>),
     /// Takes text that was pasted into the window: names of files.
     Paste(String),
@@ -37,6 +38,8 @@ pub enum Action {
     UseEnvironment(EnvironmentSource),
     /// Replaces the selected material, keeping nothing of it.
     UseMaterial(Box<MaterialSettings>),
+    /// Asks for a picture to put on the selected material.
+    ChooseTexture(TextureTarget),
     /// Asks where to write a material for another program.
     Export(Box<MaterialSettings>),
     /// Copies a material to the clipboard, as the text of a format of this name.

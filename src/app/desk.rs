@@ -24,6 +24,7 @@ use crate::render::shown::Shown;
 use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Scene, Snapshot};
 use crate::scene::ModelSource;
+use crate::scene::texture::TextureTarget;
 
 /// What panels work on.
 pub(super) struct Desk<'a> {
@@ -185,6 +186,12 @@ impl Desk<'_> {
                 {
                     // A picker's colour may be out of range for a frame.
                     log::debug!("{error}");
+                }
+            }
+            for &target in TextureTarget::ALL {
+                let texture = material.own.get(target);
+                if texture != before.own.get(target) {
+                    other.own.set(target, texture.cloned());
                 }
             }
         }

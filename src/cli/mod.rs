@@ -22,6 +22,7 @@ mod scene;
 mod settings;
 mod shell;
 mod study;
+mod textures;
 mod turntable;
 mod waiting;
 

@@ -98,8 +98,11 @@ pub(super) fn background(text: &str) -> Result<Background, String> {
 
 /// `KEY=VALUE`, checked: whether a parameter takes a value does not depend on the document.
 pub(super) fn assignment(text: &str) -> Result<String, ParameterError> {
-    Document::default().assign(text)?;
-    Ok(text.to_owned())
+    match Document::default().assign(text) {
+        // The texture comes with another option, or with the document.
+        Ok(()) | Err(ParameterError::NoTexture { .. }) => Ok(text.to_owned()),
+        Err(error) => Err(error),
+    }
 }
 
 /// The name of a picture; its ending is one of those that are written.

@@ -7,10 +7,11 @@ use clap::Args;
 
 use super::lights::{self, LightArgument};
 use super::settings::SettingOptions;
+use super::textures::{self, TextureArgument};
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
 use crate::document::of_model::materials_of;
-use crate::document::{Background, Document, ImportLobe, range};
+use crate::document::{Background, Document, ImportLobe, ParameterError, range};
 use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::{Model, ModelOptions, ModelSource, is_model};
@@ -70,6 +71,11 @@ pub struct SceneArguments {
     /// Without it a file's own materials stay.
     #[arg(long, value_name = "FILE|NAME")]
     material: Option<String>,
+    /// Put a picture on a material: base-color, roughness, metalness, normal, opacity, emission or coat. SLOT is a material's
+    /// name or number, without it every one. A file or a folder of files whose names say what they are for needs no USE.
+    /// How it lies there: --set base.color_map.scale=3, .rotation, .projection=box and more. May be repeated.
+    #[arg(long = "texture", value_name = "[SLOT:]USE=FILE", value_parser = textures::texture)]
+    textures: Vec<TextureArgument>,
     /// The lobe of a file's own materials: geometric, its roughness matched to the look of the file's, or ggx.
     #[arg(long, default_value = "geometric", value_name = "geometric|ggx", value_parser = names::choice::<ImportLobe>)]
     import_lobe: ImportLobe,
@@ -123,22 +129,34 @@ impl SceneArguments {
             warn(&material.warnings);
             document.materials = vec![material.value];
         }
+        if !self.textures.is_empty() {
+            let model = session.assets().model(&document.model, &document.import)?;
+            for texture in &self.textures {
+                texture.apply(&mut document, &model)?;
+            }
+        }
         self.put_light(&mut document);
         self.put_view(&mut document);
         self.put_limits(&mut document);
-        document = self.set_up(&document)?;
-        document.check()?;
-        Ok(document)
-    }
-
-    /// A document with the settings that were given.
-    fn set_up(&self, document: &Document) -> anyhow::Result<Document> {
-        let mut document = document.clone();
         self.settings.apply(&mut document)?;
         for assignment in &self.assignments {
             document.assign(assignment)?;
         }
+        document.check()?;
         Ok(document)
+    }
+
+    /// The length of a unit that a document will have, metres; its textures come later.
+    fn unit_m(&self, document: &Document) -> anyhow::Result<f64> {
+        let mut document = document.clone();
+        self.settings.apply(&mut document)?;
+        for assignment in &self.assignments {
+            match document.assign(assignment) {
+                Ok(()) | Err(ParameterError::NoTexture { .. }) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Ok(document.unit_m)
     }
 
     /// How materials of other programs are read.
@@ -179,7 +197,7 @@ impl SceneArguments {
         if takes_materials && has_materials {
             document.materials = materials_of(&model, self.import_lobe);
         }
-        let radius_m = model.bounding_radius() * self.set_up(document)?.unit_m;
+        let radius_m = model.bounding_radius() * self.unit_m(document)?;
         let given = [&self.area_lights, &self.spots, &self.suns].into_iter().flatten();
         document
             .lighting

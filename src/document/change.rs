@@ -1,6 +1,6 @@
 //! What differs between two documents, and what follows from it.
 
-use super::{AreaLight, Document, PARAMETERS, SETTINGS, Stage};
+use super::{AreaLight, Document, PARAMETERS, Parameter, SETTINGS, Stage};
 
 /// What differs between two documents.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -112,8 +112,7 @@ fn have_same_shapes(old: &[AreaLight], new: &[AreaLight]) -> bool {
 fn look_alike(old: &Document, new: &Document) -> bool {
     old.materials.len() == new.materials.len()
         && std::iter::zip(&old.materials, &new.materials).all(|(old, new)| {
-            PARAMETERS
-                .iter()
-                .all(|parameter| parameter.get(old) == parameter.get(new))
+            let is_same = |parameter: &Parameter| parameter.get(old) == parameter.get(new);
+            old.own == new.own && PARAMETERS.iter().all(is_same)
         })
 }

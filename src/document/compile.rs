@@ -9,8 +9,8 @@ use crate::optics::coat::coat_shape;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Width;
 use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
-use crate::optics::vector::{Vec3, vec3};
-use crate::scene::texture::SlotTextures;
+use crate::optics::vector::Vec3;
+use crate::scene::texture::{SlotTextures, TextureTarget};
 
 /// Samples of each node of an albedo table.
 const ALBEDO_SAMPLES: u32 = 1024;
@@ -49,12 +49,12 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     let looked_up = |is_on: bool, texture: u32| if is_on { texture } else { NO_TEXTURE };
     let uses = settings.textures;
     // Textures of one value are multiplied in here.
-    let [r, g, b, alpha] = slot.constant_base_color.unwrap_or([1.0; 4]);
-    let color = if uses.color { vec3(r, g, b) } else { Vec3::splat(1.0) };
-    let alpha = if uses.opacity { alpha } else { 1.0 };
-    let of_texture = slot.constant_roughness_metalness.filter(|_| uses.roughness);
-    let roughness = of_texture.map_or(settings.roughness, |[share, _]| textured_roughness(settings, share));
-    let metalness = settings.metalness * of_texture.map_or(1.0, |[_, share]| share);
+    let factor = |is_on: bool, constant: Option<f32>| constant.filter(|_| is_on).unwrap_or(1.0);
+    let color = slot.constant_base_color.filter(|_| uses.color);
+    let color = color.map_or(Vec3::splat(1.0), Vec3::from_f32);
+    let of_texture = slot.constant_roughness.filter(|_| uses.roughness);
+    let roughness = of_texture.map_or(settings.roughness, |share| textured_roughness(settings, share));
+    let metalness = settings.metalness * factor(uses.roughness, slot.constant_metalness);
     let mut emission = Vec3::from_f32(settings.emission_color) * settings.emission_strength;
     let emission_texture = looked_up(uses.emission, slot.emission);
     let mut mean_emission = emission;
@@ -64,6 +64,8 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
     if emission_texture == NO_TEXTURE {
         emission = mean_emission;
     }
+    let has_box = |target: &TextureTarget| slot.on_box[*target as usize] && settings.uses_texture(*target);
+    let is_on_box = TextureTarget::ALL.iter().any(has_box);
     let mut material = Material {
         base_color: Vec3::from_f32(settings.base_color) * settings.base_weight * color,
         metalness,
@@ -88,16 +90,16 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         albedo_table: 0,
         inner_albedo_table: 0,
         edge_tint: Vec3::from_f32(settings.edge_tint),
-        opacity: settings.opacity * alpha,
+        opacity: settings.opacity * factor(uses.opacity, slot.constant_opacity),
         coat_color: Vec3::from_f32(settings.coat_color),
-        coat_weight: settings.coat_weight,
+        coat_weight: settings.coat_weight * factor(uses.coat, slot.constant_coat),
         coat_roughness: settings.coat_roughness,
         coat_ior: settings.coat_ior,
         coat_table: 0,
         light_luminance: mean_emission.luminance(),
         textures: [
             looked_up(uses.color, slot.base_color),
-            looked_up(uses.roughness, slot.metallic_roughness),
+            looked_up(uses.roughness, slot.roughness),
             looked_up(uses.normal, slot.normal),
             emission_texture,
         ],
@@ -110,15 +112,17 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         has_vertex_colors: u32::from(uses.color && slot.has_vertex_colors),
         spot_scale: 0.0,
         spot_offset: 1.0,
-        reserved: 0,
-        reserved_pair: [0; 2],
+        metalness_texture: looked_up(uses.roughness, slot.metalness),
+        coat_texture: looked_up(uses.coat && settings.coat_weight > 0.0, slot.coat),
+        has_box_projection: u32::from(is_on_box),
     };
     if material.textures[1] == NO_TEXTURE {
         // Else it is brought into range where the texture has been looked up.
         material.transmission_roughness = material.transmission_roughness.clamp(0.0, 1.0);
     }
     let is_metal_in_part = material.metalness > 0.0 && (material.has_base() || material.transmits());
-    material.has_rough_tables = u32::from(material.textures[1] != NO_TEXTURE || is_metal_in_part);
+    let changes = [material.textures[1], material.metalness_texture] != [NO_TEXTURE; 2];
+    material.has_rough_tables = u32::from(changes || is_metal_in_part);
     if material.least_metallic().transmits() {
         // Only the exact equations know total reflection.
         material.fresnel = Fresnel::Dielectric as u32;
@@ -244,6 +248,9 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         coat_table: 0,
         light_luminance: 0.0,
         textures: [NO_TEXTURE; 4],
+        metalness_texture: NO_TEXTURE,
+        coat_texture: NO_TEXTURE,
+        has_box_projection: 0,
         opacity_texture: NO_TEXTURE,
         alpha_cutoff: 0.0,
         normal_strength: 0.0,

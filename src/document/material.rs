@@ -5,6 +5,7 @@ use serde_json::{Map, Value as Json};
 
 use super::CustomCurve;
 use super::import::{ImportLobe, geometric_from_ggx};
+use super::own_textures::OwnTextures;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
@@ -76,8 +77,10 @@ pub struct MaterialSettings {
     pub opacity: f32,
     /// Scales the slopes of the normal texture, in [−10, 10].
     pub normal_strength: f32,
-    /// Which of the slot's textures are looked up.
+    /// Which textures are looked up.
     pub textures: TextureUse,
+    /// The user's own textures, which take the place of the slot's.
+    pub own: OwnTextures,
     /// What the file's "material" had that this version does not know.
     pub extra: Map<String, Json>,
     /// What the file had beside it.
@@ -120,6 +123,7 @@ impl Default for MaterialSettings {
             opacity: 1.0,
             normal_strength: 1.0,
             textures: TextureUse::default(),
+            own: OwnTextures::default(),
             extra: Map::new(),
             file_extra: Map::new(),
         };
@@ -165,6 +169,7 @@ impl MaterialSettings {
             normal: slot.normal_texture.is_some(),
             emission: slot.emissive_texture.is_some(),
             opacity: slot.alpha_mode != AlphaMode::Opaque,
+            coat: slot.coat_texture.is_some(),
         };
         material.normal_strength = slot.normal_scale.clamp(-10.0, 10.0);
         if slot.alpha_mode != AlphaMode::Opaque {
@@ -206,8 +211,8 @@ impl MaterialSettings {
     }
 }
 
-/// Which of a slot's textures a material looks up. None, unless the material comes with the model: a material that is
-/// put in its place is plain.
+/// Which textures a material looks up: its own, and else its slot's. None, unless the material comes with the model or was
+/// given one: another material that is put in its place is plain.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TextureUse {
     /// The base colour is multiplied by its texture.
@@ -220,6 +225,8 @@ pub struct TextureUse {
     pub emission: bool,
     /// The opacity is multiplied by the alpha of the base colour's texture, and cut off where the model says so.
     pub opacity: bool,
+    /// The weight of the coat is multiplied by its texture.
+    pub coat: bool,
 }
 
 /// Where the conductor's η and k come from.

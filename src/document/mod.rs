@@ -14,6 +14,7 @@ pub mod match_look;
 mod material;
 pub mod measured_look;
 pub mod of_model;
+mod own_textures;
 pub mod parameter;
 mod settings;
 pub mod technique;
@@ -31,9 +32,12 @@ pub use ground::{GroundKind, GroundSettings};
 pub use history::History;
 pub use import::ImportLobe;
 pub use material::{Conductor, MaterialSettings, TextureUse};
+pub use own_textures::{
+    OwnTextures, TextureError, map_key, target_of_key, texture_assignments, texture_from_json, texture_to_json,
+};
 pub use parameter::{
-    Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, Value, assign, parameter,
-    setting,
+    Choice, Kind, LIGHT_PARAMETERS, PARAMETERS, Parameter, ParameterError, SETTINGS, Stage, TEXTURE_PARAMETERS, Value,
+    assign, parameter, setting,
 };
 pub use settings::{
     Background, Bookmark, CameraSettings, Denoise, DenoiseWhen, Lighting, RenderSettings, SettingError, ViewSettings,

@@ -84,6 +84,8 @@ effects! {
     RoughTables "rough-tables" flag "PLAN_ROUGH_TABLES";
     NormalMap "normal-map" flag "PLAN_NORMAL_MAPS";
     EmissionTexture "emission-texture" flag "PLAN_EMISSION_TEXTURES";
+    CoatTexture "coat-texture" flag "PLAN_COAT_TEXTURES";
+    BoxProjection "box-projection" flag "PLAN_BOX_PROJECTION";
     Alpha "alpha" flag "PLAN_ALPHA";
     DepthOfField "depth-of-field" flag "PLAN_LENS";
     FireflyClamp "firefly-clamp" flag "PLAN_FIREFLY_CLAMP";

@@ -86,7 +86,7 @@ pub struct Material<T> {
     pub coat_table: u32,
     /// The luminance by which the surface is sampled as a light: the mean over its emission texture.
     pub light_luminance: T,
-    /// Textures of base colour, metalness and roughness, normal, emission; [`NO_TEXTURE`] where there is none.
+    /// Textures of base colour, roughness, normal, emission; [`NO_TEXTURE`] where there is none.
     pub textures: [u32; 4],
     /// The texture whose alpha multiplies the opacity, or [`NO_TEXTURE`].
     pub opacity_texture: u32,
@@ -108,10 +108,12 @@ pub struct Material<T> {
     pub spot_scale: T,
     /// See `spot_scale`.
     pub spot_offset: T,
-    /// Fills the last 16 bytes.
-    pub reserved: u32,
-    /// See `reserved`.
-    pub reserved_pair: [u32; 2],
+    /// The texture of the metalness, or [`NO_TEXTURE`].
+    pub metalness_texture: u32,
+    /// The texture that multiplies the weight of the coat, or [`NO_TEXTURE`].
+    pub coat_texture: u32,
+    /// 1 where a texture lies on the surface as on a box.
+    pub has_box_projection: u32,
 }
 
 // SAFETY: f32 and u32 fields without padding (16 × 16 bytes); any bit pattern is valid.
@@ -165,8 +167,9 @@ impl<T: Real> Material<T> {
             has_vertex_colors: self.has_vertex_colors,
             spot_scale: number(self.spot_scale),
             spot_offset: number(self.spot_offset),
-            reserved: self.reserved,
-            reserved_pair: self.reserved_pair,
+            metalness_texture: self.metalness_texture,
+            coat_texture: self.coat_texture,
+            has_box_projection: self.has_box_projection,
         }
     }
 
@@ -229,7 +232,7 @@ impl<T: Real> Material<T> {
 
     /// The material where its textures make it the least metallic: what calls for a base or for transmission.
     pub fn least_metallic(&self) -> Self {
-        let metalness = if self.textures[1] == NO_TEXTURE {
+        let metalness = if self.metalness_texture == NO_TEXTURE {
             self.metalness
         } else {
             T::zero()
@@ -240,7 +243,8 @@ impl<T: Real> Material<T> {
     /// True where a texture is looked up.
     #[inline(always)]
     pub fn is_textured(&self) -> bool {
-        self.opacity_texture != NO_TEXTURE || self.textures != [NO_TEXTURE; 4]
+        let others = [self.opacity_texture, self.metalness_texture, self.coat_texture];
+        others != [NO_TEXTURE; 3] || self.textures != [NO_TEXTURE; 4]
     }
 
     /// True where some light may go straight on, as if the surface were not there.

@@ -1,19 +1,28 @@
 //! What documents name and sessions keep: models, their textures and geometry, environments.
 
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::session::SessionError;
 use crate::scene::environment::{self, Environment, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::ground::Ground;
 use crate::scene::light::AreaShape;
-use crate::scene::texture::Textures;
-use crate::scene::{self, Geometry, Loading, Model, ModelError, ModelOptions, ModelSource};
+use crate::scene::picture::read_texture;
+use crate::scene::texture::{Pack, TextureAssignment, Textures};
+use crate::scene::{self, Geometry, Loading, Model, ModelError, ModelOptions, ModelSource, Texture};
 
 /// What a geometry is made of: model, ground, area lights, hidden objects.
 type GeometryKey = (ModelKey, Ground, Vec<AreaShape>, Vec<usize>);
 
 /// A model's file, and what is shown of it.
 type ModelKey = (ModelSource, ModelOptions);
+
+/// A picture's file, and whether its numbers are read as colours.
+type PictureKey = (PathBuf, bool);
+
+/// A model's pictures, and those of the user's own with whether each has green upside down.
+type PackKey = (ModelKey, Vec<(PictureKey, bool)>);
 
 /// An environment's file, and what its numbers stand for.
 type EnvironmentKey = (EnvironmentSource, EnvironmentEncoding);
@@ -23,6 +32,9 @@ const MEMORY: usize = 1 << 30;
 
 /// Geometries that are kept of one model: each place of a light that is dragged is another one.
 const GEOMETRIES_OF_MODEL: usize = 2;
+
+/// Ways of putting pictures on that are kept.
+const TEXTURES: usize = 8;
 
 /// What was asked for lately: an edit that leaves a source alone costs nothing, and neither does going back and forth between
 /// two, as comparisons and studies do. Within 1 GiB; what was not used for longest goes first. Clones share what they
@@ -47,7 +59,9 @@ pub struct Reloaded {
 #[derive(Debug)]
 struct Kept {
     models: Shelf<ModelKey, Model>,
-    textures: Shelf<ModelKey, Textures>,
+    pictures: Shelf<PictureKey, Texture>,
+    packs: Shelf<PackKey, Pack>,
+    textures: Shelf<(ModelKey, Vec<TextureAssignment>), Textures>,
     geometries: Shelf<GeometryKey, Geometry>,
     environments: Shelf<EnvironmentKey, Environment>,
     /// Counts the uses.
@@ -59,6 +73,8 @@ impl Default for Kept {
     fn default() -> Self {
         Self {
             models: Shelf::new(Model::bytes),
+            pictures: Shelf::new(Texture::bytes),
+            packs: Shelf::new(Pack::bytes),
             textures: Shelf::new(Textures::bytes),
             geometries: Shelf::new(Geometry::bytes),
             environments: Shelf::new(Environment::bytes),
@@ -102,13 +118,18 @@ impl Assets {
         Ok(model)
     }
 
-    /// The textures of a source, packed.
+    /// The textures of a source, and those of the user's own on its slots, packed. What is missing of these is told.
     ///
     /// # Errors
     /// As [`Assets::model`].
-    pub fn textures(&self, source: &ModelSource, options: &ModelOptions) -> Result<Arc<Textures>, SessionError> {
+    pub fn textures(
+        &self,
+        source: &ModelSource,
+        options: &ModelOptions,
+        assigned: &[TextureAssignment],
+    ) -> Result<Arc<Textures>, SessionError> {
         let mut kept = self.kept();
-        let textures = kept.textures(&(source.clone(), options.clone()), &self.loading)?;
+        let textures = kept.textures((source.clone(), options.clone()), assigned, &self.loading)?;
         kept.tidy();
         Ok(textures)
     }
@@ -151,7 +172,8 @@ impl Assets {
     pub fn keep_model(&self, source: ModelSource, model: Model) {
         let key = (source, ModelOptions::default());
         let mut kept = self.kept();
-        kept.textures.retain(|of| *of != key);
+        kept.packs.retain(|(of, _)| *of != key);
+        kept.textures.retain(|(of, _)| *of != key);
         kept.geometries.retain(|(of, ..)| *of != key);
         let now = kept.now();
         kept.models.put(key, Arc::new(model), now);
@@ -213,15 +235,51 @@ impl Kept {
         Ok(model)
     }
 
-    fn textures(&mut self, key: &ModelKey, loading: &Loading) -> Result<Arc<Textures>, SessionError> {
+    fn textures(
+        &mut self,
+        of: ModelKey,
+        assigned: &[TextureAssignment],
+        loading: &Loading,
+    ) -> Result<Arc<Textures>, SessionError> {
         let now = self.now();
-        if let Some(textures) = self.textures.get(key, now) {
+        let key = (of, assigned.to_vec());
+        if let Some(textures) = self.textures.get(&key, now) {
             return Ok(textures);
         }
-        let textures = Arc::new(Textures::new(&*self.model(key, loading)?));
-        textures.warnings.iter().for_each(|warning| log::warn!("{warning}"));
-        self.textures.put(key.clone(), textures.clone(), now);
+        let model = self.model(&key.0, loading)?;
+        let textures = Arc::new(self.pack(&key.0, &model, assigned).textures(&model, assigned));
+        // Each way to put a picture on is another entry, and takes next to nothing; only the last few come back.
+        while self.textures.count(|_| true) >= TEXTURES {
+            self.textures.drop_oldest(|_| true);
+        }
+        self.textures.put(key, textures.clone(), now);
         Ok(textures)
+    }
+
+    /// The texels for a model and pictures of the user's own, whatever the way in which these are put on.
+    fn pack(&mut self, of: &ModelKey, model: &Model, assigned: &[TextureAssignment]) -> Arc<Pack> {
+        let now = self.now();
+        let mut own: Vec<_> = assigned.iter().map(|one| (one.picture(), one.is_flipped())).collect();
+        own.sort();
+        own.dedup();
+        let key = (of.clone(), own);
+        if let Some(pack) = self.packs.get(&key, now) {
+            return pack;
+        }
+        let pictures = RefCell::new(&mut self.pictures);
+        let read = |path: &Path, is_color: bool| {
+            let key = (path.to_owned(), is_color);
+            if let Some(picture) = pictures.borrow_mut().get(&key, now) {
+                return Ok(picture);
+            }
+            let picture = Arc::new(read_texture(path, is_color, of.1.texture_side_max)?);
+            pictures.borrow_mut().put(key, picture.clone(), now);
+            Ok(picture)
+        };
+        let pack = Arc::new(Pack::new(model, assigned, &read));
+        pack.warnings().iter().for_each(|warning| log::warn!("{warning}"));
+        self.packs.put(key, pack.clone(), now);
+        pack
     }
 
     fn geometry(&mut self, key: GeometryKey, loading: &Loading) -> Result<Arc<Geometry>, SessionError> {
@@ -256,8 +314,10 @@ impl Kept {
     /// first needed, count from then on.
     fn tidy(&mut self) {
         loop {
-            let mut shelves: [&mut dyn Tidied; 4] = [
+            let mut shelves: [&mut dyn Tidied; 6] = [
                 &mut self.models,
+                &mut self.pictures,
+                &mut self.packs,
                 &mut self.textures,
                 &mut self.geometries,
                 &mut self.environments,

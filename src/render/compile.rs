@@ -7,6 +7,7 @@ use super::session::SessionError;
 use crate::document::effect::{Facts, Switch, plan, without_what_is_off};
 use crate::document::{
     AreaLight, Background, CameraSettings, Document, MaterialSettings, RenderSettings, Shine, compile_textured,
+    texture_assignments,
 };
 use crate::job::effect::EffectId;
 use crate::job::{BackgroundKind, Catcher, Job, Settings};
@@ -72,8 +73,8 @@ impl Compiler {
         )?;
         let lighting = &document.lighting;
         let environment = assets.environment(&lighting.environment, lighting.environment_encoding)?;
-        let textures = assets.textures(source, options)?;
         let mut slots = slot_materials(document, model.slots.len());
+        let textures = assets.textures(source, options, &texture_assignments(&slots[..model.slots.len()]))?;
         slots.extend(document.catcher_reflection());
         let first_light = model.slots.len() + usize::from(document.ground);
         let shines = (first_light..).zip(lighting.shining().map(AreaLight::shine)).collect();

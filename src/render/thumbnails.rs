@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
@@ -40,7 +40,12 @@ pub fn key(material: &MaterialSettings) -> u64 {
         ..material.clone()
     };
     let mut hasher = DefaultHasher::new();
-    (VERSION, env!("CARGO_PKG_VERSION"), material_text(&nameless)).hash(&mut hasher);
+    (
+        VERSION,
+        env!("CARGO_PKG_VERSION"),
+        material_text(Path::new(""), &nameless),
+    )
+        .hash(&mut hasher);
     hasher.finish()
 }
 

@@ -5,10 +5,8 @@ use std::path::Path;
 use super::files::{Files, Seen};
 use super::geometry::Framing;
 use super::loading::Loading;
-use super::model::{Filter, Model, ModelError, ModelOptions, SlotPicture, Texture, TextureRef, Wrap};
-use super::picture::decode_bytes;
+use super::model::{Model, ModelError, ModelOptions, Texture};
 use super::report::Fate;
-use super::texture_scale::scaled_to;
 use super::{gltf, obj, ply, stl};
 
 /// Endings of the model files that can be read, without their dots.
@@ -116,38 +114,6 @@ fn load_file(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOptions) 
         return Err(ModelError::NoTriangles { path: path.to_owned() });
     }
     Ok(model)
-}
-
-/// Gives slots the pictures that were chosen for them, in the first set of texture coordinates.
-pub(super) fn put_pictures(model: &mut Model, options: &ModelOptions) {
-    for SlotPicture { slot, file } in &options.pictures {
-        model.files.push(file.clone());
-        let name = file.display().to_string();
-        let picture = std::fs::read(file)
-            .map_err(|error| error.to_string())
-            .and_then(|bytes| decode_bytes(name.clone(), &bytes));
-        match (picture, model.slots.get_mut(*slot)) {
-            (Ok(picture), Some(slot)) => {
-                let (picture, _) = scaled_to(picture.texture(true), options.texture_side_max, true);
-                slot.base_color = [1.0; 3];
-                slot.base_color_texture = Some(TextureRef {
-                    texture: model.textures.len(),
-                    uv_set: 0,
-                    texture_from_mesh_uv: [1.0, 0.0, 0.0, 0.0, 1.0, 0.0],
-                    wrap: [Wrap::Repeat; 2],
-                    filter: Filter::Linear,
-                });
-                model.textures.push(picture);
-                model.report.note(Fate::Used, "pictures of your own", &name);
-            }
-            (Err(reason), _) => model
-                .report
-                .note(Fate::Missing, format!("a picture of your own ({reason})"), &name),
-            (Ok(_), None) => model
-                .report
-                .note(Fate::Ignored, "a picture for a slot that is not there", &name),
-        }
-    }
 }
 
 /// What all formats have in common: lengths in bounding radii, and a word about triangles that cannot be shown.

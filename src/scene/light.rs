@@ -291,7 +291,7 @@ pub fn light_sample<T: Real>(
     let material = &emitters.materials[geometry.slots[triangle] as usize];
     let mut radiance = material.emission;
     if material.is_textured() || material.has_holes() {
-        let uvs = uvs_at(geometry, triangle, weights);
+        let uvs = uvs_at(geometry, triangle, weights, material.has_box_projection == 1);
         radiance = emission_at(emitters.textures, material, uvs);
     }
     if is_spot(material) {

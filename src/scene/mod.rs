@@ -21,7 +21,7 @@ mod memory;
 pub mod mesh;
 mod model;
 mod obj;
-mod picture;
+pub(crate) mod picture;
 mod ply;
 pub mod report;
 pub mod shapes;
@@ -30,7 +30,6 @@ pub mod surface;
 mod tangents;
 pub mod teapot;
 pub mod texture;
-mod texture_scale;
 
 pub use geometry::{Geometry, NO_OBJECT, Vertex};
 pub use gltf::{Widths, gltf_from_widths, kept_keys, widths_from_gltf};
@@ -40,6 +39,6 @@ pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
 pub use loading::{Cancelled, Loading};
 pub use model::{
     AlphaMode, Filter, LightKind, Model, ModelCamera, ModelError, ModelLight, ModelObject, ModelOptions, ModelSource,
-    Slot, SlotPicture, Texture, TextureRef, Wrap, load, load_watched, load_with,
+    Slot, Texture, TextureRef, Wrap, load, load_watched, load_with,
 };
 pub use report::{Entry, Fate, ImportReport};

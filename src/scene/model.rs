@@ -188,21 +188,10 @@ pub struct ModelOptions {
     pub time_s: Option<f32>,
     /// The longest side of a texture; larger ones are halved until they fit.
     pub texture_side_max: u32,
-    /// Pictures that take the place of the base colours of slots.
-    pub pictures: Vec<SlotPicture>,
     /// Other files that were given with it. Models are shown together with it; what it names and lacks beside itself is
     /// looked for among the others.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub beside: Vec<PathBuf>,
-}
-
-/// A picture for the base colour of a slot.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct SlotPicture {
-    /// The number of the slot.
-    pub slot: usize,
-    /// The picture's file.
-    pub file: PathBuf,
 }
 
 impl Default for ModelOptions {
@@ -212,7 +201,6 @@ impl Default for ModelOptions {
             variant: None,
             time_s: None,
             texture_side_max: 8192,
-            pictures: Vec::new(),
             beside: Vec::new(),
         }
     }
@@ -304,6 +292,8 @@ pub struct Slot {
     pub normal_scale: f32,
     /// Emission (sRGB-encoded).
     pub emissive_texture: Option<TextureRef>,
+    /// Its red channel multiplies `coat`.
+    pub coat_texture: Option<TextureRef>,
     /// Share of the specular reflection that is kept, in [0, 1] (KHR_materials_specular).
     pub specular: f32,
     /// Tint of the specular reflection of what is no metal, linear, each in [0, 1].
@@ -343,6 +333,7 @@ impl Default for Slot {
             normal_texture: None,
             normal_scale: 1.0,
             emissive_texture: None,
+            coat_texture: None,
             specular: 1.0,
             specular_color: [1.0; 3],
             anisotropy: 0.0,
@@ -372,6 +363,7 @@ impl Slot {
             &self.metallic_roughness_texture,
             &self.normal_texture,
             &self.emissive_texture,
+            &self.coat_texture,
         ];
         refs.into_iter().flatten()
     }
@@ -383,6 +375,7 @@ impl Slot {
             &mut self.metallic_roughness_texture,
             &mut self.normal_texture,
             &mut self.emissive_texture,
+            &mut self.coat_texture,
         ];
         refs.into_iter().flatten()
     }
@@ -580,6 +573,5 @@ pub fn load_watched(source: &ModelSource, options: &ModelOptions, loading: &Load
             triangles: 0..model.mesh.triangles.len(),
         }];
     }
-    import::put_pictures(&mut model, options);
     Ok(model)
 }

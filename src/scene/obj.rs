@@ -15,7 +15,7 @@ use super::mesh::Mesh;
 use super::model::{AlphaMode, Filter, Model, ModelError, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap};
 use super::picture::decode_bytes;
 use super::report::{Fate, ImportReport};
-use super::texture_scale::scaled_to;
+use super::texture::scale::scaled_to;
 use crate::panics::contained;
 
 /// Loads the contents of an OBJ file.

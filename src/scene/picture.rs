@@ -1,6 +1,7 @@
 //! Pictures of models, whatever their format.
 
 use std::io::Cursor;
+use std::path::Path;
 
 use exr::prelude::{MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2};
 use image::error::{LimitError, LimitErrorKind};
@@ -9,6 +10,7 @@ use image::{DynamicImage, ImageError, ImageFormat, ImageReader, ImageResult, Lim
 use super::float_tiff;
 use super::gpu_picture::{self, Texels};
 use super::model::Texture;
+use super::texture::scale::scaled_to;
 use crate::optics::tone::srgb_from_linear;
 use crate::optics::vector::vec3;
 use crate::panics::contained;
@@ -76,6 +78,21 @@ impl Decoded {
             rgba16: if is_color { Vec::new() } else { rgba16 },
         }
     }
+}
+
+/// The picture in a file, its longest side at most `side_max`.
+///
+/// # Errors
+/// Why it can't be had, in a few words.
+pub fn read_texture(path: &Path, is_color: bool, side_max: u32) -> Result<Texture, String> {
+    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+    let name = path
+        .file_name()
+        .unwrap_or(path.as_os_str())
+        .to_string_lossy()
+        .into_owned();
+    let picture = decode_bytes(name, &bytes)?.texture(is_color);
+    Ok(scaled_to(picture, side_max, is_color).0)
 }
 
 /// Decodes a picture of any known format.

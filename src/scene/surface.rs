@@ -6,7 +6,7 @@ use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 
-use super::texture::{Textures, mapped_normal, opacity_at, uvs_at};
+use super::texture::{Textures, Uvs, mapped_normal, opacity_at, uvs_at};
 use super::{Geometry, Hit, Vertex, triangle_normal};
 
 /// Rounding of the position's three products and sums, with what the box test and the transforms add.
@@ -28,8 +28,8 @@ pub struct SurfacePoint<T> {
     pub error: T,
     /// Material slot.
     pub slot: u32,
-    /// Both sets of texture coordinates; zero where the material looks up no texture.
-    pub uvs: [[T; 2]; 2],
+    /// The texture coordinates; zero where the material looks up no texture.
+    pub uvs: Uvs<T>,
     /// The colour between the vertices, linear RGB; white where the material takes none.
     pub vertex_color: Vec3<T>,
 }
@@ -137,9 +137,9 @@ pub fn surface_at<T: Real>(
     let slot = geometry.slots[index];
     let material = &materials[slot as usize];
     let uvs = if material.is_textured() {
-        uvs_at(geometry, index, [w, u, v])
+        uvs_at(geometry, index, [w, u, v], material.has_box_projection == 1)
     } else {
-        [[T::zero(); 2]; 2]
+        [[T::zero(); 2]; 3]
     };
     let tangent = || {
         let axis = |i: usize| [corners[i].tangent[0], corners[i].tangent[1], corners[i].tangent[2]];
@@ -156,7 +156,9 @@ pub fn surface_at<T: Real>(
     if material.textures[2] != NO_TEXTURE {
         let side = |i: usize| T::from_f64(f64::from(corners[i].tangent[3]));
         let sign = side(0) * w + side(1) * u + side(2) * v;
-        shading = facing(mapped_normal(textures, material, uvs, [smoothed, tangent()], sign));
+        let outward = normalize_or(interpolated, if is_back { -normal } else { normal });
+        let normals = [smoothed, tangent(), outward];
+        shading = facing(mapped_normal(textures, material, uvs, normals, sign));
         shading = lifted_normal(shading, normal, wo);
     }
     let frame = if material.anisotropy.to_f64() != 0.0 {
@@ -193,7 +195,8 @@ pub fn hit_opacity<T: Real>(geometry: &Geometry, materials: &[Material<T>], text
     if !material.has_holes() {
         return T::one();
     }
-    let uvs = uvs_at(geometry, hit.triangle as usize, hit_weights(hit));
+    let has_box = material.has_box_projection == 1;
+    let uvs = uvs_at(geometry, hit.triangle as usize, hit_weights(hit), has_box);
     opacity_at(textures, material, uvs)
 }
 

@@ -129,6 +129,31 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     }
 }
 
+/// The folder of a file.
+pub(super) fn folder(path: &Path) -> &Path {
+    path.parent().unwrap_or(Path::new(""))
+}
+
+/// Names of files as they are written into the file `path`: relative to its folder where they lie in it, so that the folder
+/// can be moved.
+pub(super) fn seen_from(path: &Path) -> impl Fn(&Path) -> PathBuf {
+    let folder = absolute(folder(path));
+    move |named| {
+        let named = absolute(named);
+        named.strip_prefix(&folder).map(Path::to_owned).unwrap_or(named)
+    }
+}
+
+/// The path from the root, nothing looked up; as it is where the current folder is gone.
+fn absolute(path: &Path) -> PathBuf {
+    let path = if path.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        path
+    };
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
 /// The JSON object that a file is.
 pub(super) fn object(path: &Path, bytes: &[u8]) -> Result<Map<String, Json>, FileError> {
     // Some editors put a byte order mark before the text.

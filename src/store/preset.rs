@@ -12,8 +12,11 @@ use serde_json::{Map, Value as Json, json};
 use super::file::{self, FileError, Loaded};
 use super::replace::save_atomically;
 use crate::document::parameter::nearest_key;
-use crate::document::{MaterialSettings, PARAMETERS, ParameterError};
+use crate::document::{
+    MaterialSettings, PARAMETERS, ParameterError, TextureError, map_key, texture_from_json, texture_to_json,
+};
 use crate::scene::kept_keys;
+use crate::scene::texture::TextureTarget;
 
 /// The version of the format.
 pub const VERSION: u64 = 1;
@@ -114,10 +117,11 @@ pub fn parse_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettin
             mark: MARK,
         });
     }
-    let material = MaterialSettings::try_from(object).map_err(|error| FileError::Content {
+    let mut material = MaterialSettings::try_from(object).map_err(|error| FileError::Content {
         path: path.to_owned(),
         reason: error.to_string(),
     })?;
+    material.own.map_files(|named| file::folder(path).join(named));
     warnings.extend(unknown_keys(&material).map(|warning| format!("{}: {warning}", path.display())));
     Ok(Loaded {
         value: material,
@@ -177,14 +181,16 @@ pub(super) fn unknown_keys(material: &MaterialSettings) -> impl Iterator<Item = 
 /// # Errors
 /// [`FileError::Write`]; the old file is then untouched.
 pub fn save_material(path: &Path, material: &MaterialSettings) -> Result<(), FileError> {
-    save_atomically(path, material_text(material).as_bytes())
+    save_atomically(path, material_text(path, material).as_bytes())
 }
 
-/// The contents of a material's file.
-pub fn material_text(material: &MaterialSettings) -> String {
+/// The contents of a material's file at `path`.
+pub fn material_text(path: &Path, material: &MaterialSettings) -> String {
+    let mut material = material.clone();
+    material.own.map_files(file::seen_from(path));
     let mut object = Map::new();
     object.insert(MARK.to_owned(), json!(VERSION));
-    object.extend(Map::from(material.clone()));
+    object.extend(Map::from(material));
     file::text(&object)
 }
 
@@ -194,6 +200,9 @@ pub enum MaterialError {
     /// A parameter's value.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
+    /// A texture of the user's own.
+    #[error(transparent)]
+    Texture(#[from] TextureError),
     /// The name is no text.
     #[error("\"name\" must be text; put it in quotation marks")]
     Name,
@@ -222,6 +231,11 @@ impl TryFrom<Map<String, Json>> for MaterialSettings {
                 parameter.set(&mut material, parameter.value_from_json(&json)?)?;
             }
         }
+        for &target in TextureTarget::ALL {
+            if let Some(json) = values.shift_remove(map_key(target)) {
+                material.own.set(target, Some(texture_from_json(json)?));
+            }
+        }
         object.shift_remove(MARK);
         material.extra = values;
         material.file_extra = object;
@@ -238,6 +252,9 @@ impl From<MaterialSettings> for Map<String, Json> {
                 parameter.key.to_owned(),
                 parameter.json_from_value(&parameter.get(&material)),
             );
+        }
+        for (target, texture) in material.own.iter() {
+            values.insert(map_key(target).to_owned(), texture_to_json(texture));
         }
         values.extend(material.extra);
         let mut object = Map::new();

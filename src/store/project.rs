@@ -12,6 +12,7 @@ use super::replace::save_atomically;
 use crate::document::Document;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
+use crate::scene::texture::{OwnTexture, TextureTarget};
 
 /// The version of the format.
 pub const VERSION: u64 = 1;
@@ -31,7 +32,8 @@ pub fn load_document(path: &Path) -> Result<Loaded<Document>, FileError> {
 /// # Errors
 /// What is wrong with the contents.
 pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, FileError> {
-    let object = file::object(path, bytes)?;
+    let mut object = file::object(path, bytes)?;
+    let pictures = pictures_of_slots(&mut object);
     let version = file::version(path, &object, MARK)?.ok_or_else(|| FileError::WrongKind {
         path: path.to_owned(),
         expected: "project",
@@ -45,7 +47,14 @@ pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, Fil
     document.check().map_err(|error| content(error.to_string()))?;
     document.extra = unknown_part(&object, &known_part(&document).map_err(content)?);
     document.extra.shift_remove(MARK);
-    map_paths(&mut document, |named| folder(path).join(named));
+    for (slot, file) in pictures {
+        let texture = OwnTexture::of(file);
+        document
+            .material_mut(slot)
+            .own
+            .set(TextureTarget::BaseColor, Some(texture));
+    }
+    map_paths(&mut document, |named| file::folder(path).join(named));
     let mut warnings = Vec::new();
     if version > VERSION {
         warnings.push(format!(
@@ -61,6 +70,18 @@ pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, Fil
         value: document,
         warnings,
     })
+}
+
+/// Takes the pictures out that files of before had for the base colours of slots, beside the model.
+fn pictures_of_slots(object: &mut Map<String, Json>) -> Vec<(usize, PathBuf)> {
+    let import = object.get_mut("import").and_then(Json::as_object_mut);
+    let Some(Json::Array(pictures)) = import.and_then(|import| import.shift_remove("pictures")) else {
+        return Vec::new();
+    };
+    let picture = |picture: &Json| Some((picture["slot"].as_u64()? as usize, picture["file"].as_str()?.into()));
+    // A model has no more slots.
+    let is_meant = |(slot, _): &(usize, PathBuf)| *slot < 1 << 16;
+    pictures.iter().filter_map(picture).filter(is_meant).collect()
 }
 
 /// Reads one part after the other before the whole, so that the message can say which one is wrong.
@@ -87,11 +108,7 @@ pub fn save_document(path: &Path, document: &Document) -> Result<(), FileError> 
 /// [`FileError::Content`] for file names that are no Unicode.
 pub fn document_text(path: &Path, document: &Document) -> Result<String, FileError> {
     let mut document = document.clone();
-    let folder = absolute(folder(path));
-    map_paths(&mut document, |named| {
-        let named = absolute(named);
-        named.strip_prefix(&folder).map(Path::to_owned).unwrap_or(named)
-    });
+    map_paths(&mut document, file::seen_from(path));
     let content = |reason: String| FileError::Content {
         path: path.to_owned(),
         reason,
@@ -159,24 +176,10 @@ fn map_paths(document: &mut Document, map: impl Fn(&Path) -> PathBuf) {
     if let EnvironmentSource::File(path) = &mut document.lighting.environment {
         *path = map(path);
     }
-    for picture in &mut document.import.pictures {
-        picture.file = map(&picture.file);
-    }
     for file in &mut document.import.beside {
         *file = map(file);
     }
-}
-
-fn folder(path: &Path) -> &Path {
-    path.parent().unwrap_or(Path::new(""))
-}
-
-/// The path from the root, nothing looked up; as it is where the current folder is gone.
-fn absolute(path: &Path) -> PathBuf {
-    let path = if path.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        path
-    };
-    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+    for material in &mut document.materials {
+        material.own.map_files(&map);
+    }
 }

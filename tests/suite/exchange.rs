@@ -14,7 +14,7 @@ use crate::cli_support::Workplace;
 
 /// What a material looks like: all but what its file had beside it.
 fn text(material: &MaterialSettings) -> String {
-    material_text(material)
+    material_text(std::path::Path::new(""), material)
 }
 
 /// Formats that hold the exact parameters, and can be opened again.

@@ -260,11 +260,11 @@ fn normals_and_roughness_keep_sixteen_bits_and_colours_have_eight() {
         let record = if slot == "normalTexture" {
             of_slot.normal
         } else {
-            of_slot.metallic_roughness
+            of_slot.roughness
         };
         assert_ne!(record, NO_TEXTURE);
         // The middle of the first texel.
-        let (found, alpha) = texture_lookup(&textures, record, [[0.25_f64, 0.5]; 2]);
+        let (found, alpha) = texture_lookup(&textures, record, [[0.25_f64, 0.5]; 3]);
         let expected = [32768.0 + 77.0, 32768.0 - 40.0, 65535.0].map(|code| code / 65535.0);
         for (found, expected) in found.to_f64().into_iter().zip(expected) {
             assert!((found - expected).abs() < 1e-6, "{slot}: {found} for {expected}");

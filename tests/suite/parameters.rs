@@ -134,7 +134,7 @@ fn every_value_survives_the_material_the_text_and_the_file() {
             let json = serde_json::from_str(&parameter.json_from_value(&value).to_string()).expect(key);
             assert_eq!(parameter.value_from_json(&json), Ok(value), "{key}");
 
-            let text = preset::material_text(&material);
+            let text = preset::material_text(std::path::Path::new(""), &material);
             let loaded = preset::parse_material("x.json".as_ref(), text.as_bytes()).expect(key);
             assert_eq!((loaded.value, loaded.warnings), (material, vec![]), "{key}");
         }

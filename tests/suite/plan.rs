@@ -18,6 +18,7 @@ use glossmith::store::PRESETS;
 
 use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
+use crate::own_textures::coated_on_a_box;
 use crate::plan_kernels::assert_same_but_for_rounding;
 use crate::random_documents::{of_material, small};
 use crate::textures::all_at_once;
@@ -200,7 +201,9 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
     for effect in EFFECTS.iter().filter(switched) {
         let is_of_texture =
             effect.name().ends_with("texture") || ["normal-map", "rough-tables"].contains(&effect.name());
-        let document = if is_of_texture {
+        let document = if ["coat-texture", "box-projection"].contains(&effect.name()) {
+            coated_on_a_box(&folder)
+        } else if is_of_texture {
             small(all_at_once(&folder))
         } else {
             needing(effect.name())

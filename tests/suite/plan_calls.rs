@@ -12,8 +12,10 @@ use glossmith::optics::lobe::{Horizon, Lobe};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::texture::{OwnTexture, TextureProjection, TextureTarget};
 
 use crate::gltf_builder::Folder;
+use crate::own_textures::own_texture;
 use crate::plan::{job, job_in};
 use crate::random_documents::small;
 use crate::textures::all_at_once;
@@ -90,6 +92,11 @@ fn textured(folder: &Folder) -> Document {
     let material = &mut document.materials[0];
     material.textures = TextureUse::default();
     (material.metalness, material.emission_strength) = (1.0, 0.0);
+    let coat = OwnTexture {
+        projection: TextureProjection::First,
+        ..own_texture(folder)
+    };
+    material.own.set(TextureTarget::Coat, Some(coat));
     document
 }
 
@@ -269,6 +276,18 @@ fn calls_for(effect: &str) -> Calls {
         ),
         "normal-map" => (metal, &[|d, _| d.materials[0].textures.normal = true]),
         "emission-texture" => (metal, &[|d, _| d.materials[0].textures.emission = true]),
+        "coat-texture" => (
+            metal,
+            &[|d, _| (d.materials[0].textures.coat, d.materials[0].coat_weight) = (true, LEAST)],
+        ),
+        "box-projection" => (
+            metal,
+            &[|d, _| {
+                let material = &mut d.materials[0];
+                (material.textures.coat, material.coat_weight) = (true, LEAST);
+                material.own.get_mut(TextureTarget::Coat).unwrap().projection = TextureProjection::Box;
+            }],
+        ),
         "alpha" => (metal, &[|d, _| d.materials[0].opacity = MOST]),
         "depth-of-field" => (metal, &[|d, _| d.camera.aperture = f64::from(LEAST)]),
         "firefly-clamp" => (metal, &[|d, _| d.render.firefly_clamp = Some(1e6)]),
@@ -307,7 +326,7 @@ fn the_least_of_an_effect_calls_for_it() {
     for effect in EFFECTS {
         let name = effect.name();
         let calls = calls_for(name);
-        let is_of_texture = name.ends_with("-texture") || name == "normal-map";
+        let is_of_texture = name.ends_with("-texture") || ["normal-map", "box-projection"].contains(&name);
         let without = if is_of_texture {
             textures.clone()
         } else {

@@ -19,6 +19,7 @@ use glossmith::scene::ModelSource;
 use glossmith::store::PRESETS;
 
 use crate::gltf_builder::Folder;
+use crate::own_textures::coated_on_a_box;
 use crate::plan::job_in;
 use crate::random_documents::{apart, of_material, random_document, small};
 use crate::support::Random;
@@ -37,7 +38,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "fresnel" => |material, fresnel| material.fresnel = fresnel,
         "anisotropy" => |material, _| material.anisotropy = 0.0,
         "base" => |material, _| {
-            let is_metal = material.metalness >= 1.0 && material.textures[1] == NO_TEXTURE;
+            let is_metal = material.metalness >= 1.0 && material.metalness_texture == NO_TEXTURE;
             // A metal's colour is that of its reflection.
             if !is_metal && material.transmission_weight < 1.0 {
                 material.base_color = Vec3::zero();
@@ -51,9 +52,13 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "edge-tint" => |material, _| material.edge_tint = Vec3::splat(1.0),
         "coat" => |material, _| material.coat_weight = 0.0,
         "color-texture" => |material, _| material.textures[0] = NO_TEXTURE,
-        "roughness-texture" => |material, _| material.textures[1] = NO_TEXTURE,
+        "roughness-texture" => |material, _| {
+            (material.textures[1], material.metalness_texture) = (NO_TEXTURE, NO_TEXTURE);
+        },
         "normal-map" => |material, _| material.textures[2] = NO_TEXTURE,
         "emission-texture" => |material, _| material.textures[3] = NO_TEXTURE,
+        "coat-texture" => |material, _| material.coat_texture = NO_TEXTURE,
+        "box-projection" => |material, _| material.has_box_projection = 0,
         "rough-tables" => |material, _| material.has_rough_tables = 0,
         "alpha" => |material, _| {
             (material.opacity, material.alpha_cutoff) = (1.0, -1.0);
@@ -160,7 +165,8 @@ fn what_kernels_leave_out_shows_nowhere() {
     assert!(plans.len() > 40, "only {} plans were met", plans.len());
     for (effect, count) in EFFECTS.iter().zip(left_out) {
         // No built-in model has textures: theirs are the next test's.
-        let is_of_texture = effect.name().ends_with("-texture") || effect.name() == "normal-map";
+        let is_of_texture =
+            effect.name().ends_with("-texture") || ["normal-map", "box-projection"].contains(&effect.name());
         let Some(constant) = effect.id.constant().filter(|_| !is_of_texture) else {
             continue;
         };
@@ -207,7 +213,7 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
     glass.lighting.area_lights.push(AreaLight::spot());
     glass.ground = true;
     glass.lighting.ground.kind = GroundKind::ShadowCatcher;
-    vec![metals, glass, small(all_at_once(folder))]
+    vec![metals, glass, small(all_at_once(folder)), coated_on_a_box(folder)]
 }
 
 /// What the kernels of weak effects do without: nothing that shows. Shown on the processor to be seen where it does.

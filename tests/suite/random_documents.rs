@@ -89,7 +89,11 @@ pub fn random_document(random: &mut Random) -> Document {
         EnvironmentSource::Furnace,
     ];
     let mut material = PRESETS[random.below(PRESETS.len())].clone();
-    for parameter in PARAMETERS.iter() {
+    // No built-in model has textures to switch.
+    for parameter in PARAMETERS
+        .iter()
+        .filter(|parameter| !matches!(parameter.kind, Kind::Toggle))
+    {
         if random.below(4) == 0 {
             let value = value(random, parameter, &parameter.get(&material));
             // Soft ranges lie within what is taken.

@@ -78,12 +78,8 @@ fn base_color(sampler: &Value, extension: &Value, uv: [f64; 2], is_srgb: bool) -
     let material = json!({"pbrMetallicRoughness": {kind: {"index": 0, "extensions": extension}}});
     let textures = Textures::new(&load(&material, &[four_texels()], sampler));
     let slot = textures.slots[0];
-    let index = if is_srgb {
-        slot.base_color
-    } else {
-        slot.metallic_roughness
-    };
-    let (color, alpha) = texture_lookup::<f64>(&textures, index, [uv, [0.0; 2]]);
+    let index = if is_srgb { slot.base_color } else { slot.roughness };
+    let (color, alpha) = texture_lookup::<f64>(&textures, index, [uv, [0.0; 2], [0.0; 2]]);
     let [r, g, b] = color.to_f64();
     [r, g, b, alpha]
 }
@@ -174,7 +170,7 @@ fn a_material_may_look_up_two_sets_of_coordinates() {
     let model = load(&material, &[four_texels()], &json!({}));
     assert_eq!(model.mesh.second_uvs[0].to_array(), [0.25, 0.75]);
     let textures = Textures::new(&model);
-    let uvs = [[0.25, 0.25], [0.75, 0.25]];
+    let uvs = [[0.25, 0.25], [0.75, 0.25], [0.0; 2]];
     let slot = textures.slots[0];
     assert!(texture_lookup::<f64>(&textures, slot.base_color, uvs).0.x < 1e-6);
     assert!((texture_lookup::<f64>(&textures, slot.emission, uvs).0.x - linear(100)).abs() < 1e-6);
@@ -202,7 +198,7 @@ fn a_mask_without_a_cutoff_cuts_at_a_half() {
     let textures = Textures::new(&model);
     let settings = MaterialSettings::from_slot(&model.slots[0], ImportLobe::Geometric);
     let (materials, _) = compile_textured(&[settings], &textures.slots);
-    let opacity = |u: f32| opacity_at::<f32>(&textures, &materials[0], [[u, 0.5], [0.0; 2]]);
+    let opacity = |u: f32| opacity_at::<f32>(&textures, &materials[0], [[u, 0.5], [0.0; 2], [0.0; 2]]);
     assert_eq!([opacity(0.25), opacity(0.75)], [0.0, 1.0]);
 }
 
@@ -224,7 +220,7 @@ fn pictures_that_are_too_large_are_halved() {
     assert_eq!(halved.words.len(), 256 + 32 * 32);
     let warning = halved.warnings.join("");
     assert!(warning.contains("32 × 32 instead of 64 × 64"), "{warning}");
-    let (color, _) = texture_lookup::<f64>(&halved, halved.slots[0].base_color, [[0.3, 0.4], [0.0; 2]]);
+    let (color, _) = texture_lookup::<f64>(&halved, halved.slots[0].base_color, [[0.3, 0.4], [0.0; 2], [0.0; 2]]);
     assert!(
         (color.x - 0.5).abs() < 5e-3,
         "{color:?}: half the light, not half the code"

@@ -54,15 +54,15 @@ fn what_an_export_loses_is_shown_before_it_is_written() {
     request(&mut harness, Action::UseMaterial(Box::new(PRESETS[5].clone())));
     harness.run_steps(2);
     request(&mut harness, Action::Open(path.clone()));
-    let text = material_text(&material);
+    let text = material_text(std::path::Path::new(""), &material);
     wait(&mut harness, "the material", |app| {
-        material_text(&app.document().materials[0]) == text
+        material_text(std::path::Path::new(""), &app.document().materials[0]) == text
     });
     // The exact parameters are those of the command line.
     let place = crate::cli_support::Workplace::new();
     place.done(&format!("convert {} back.json", path.display()));
     let back = load_material(&place.path("back.json")).expect("a material").value;
-    assert_eq!(material_text(&back), text);
+    assert_eq!(material_text(std::path::Path::new(""), &back), text);
 }
 
 #[test]

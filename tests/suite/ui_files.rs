@@ -10,6 +10,7 @@ use glossmith::app::actions::Action;
 use glossmith::render::worker::Activity;
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::texture::TextureTarget;
 use glossmith::store::{save_document, save_material};
 use serde_json::json;
 
@@ -31,7 +32,7 @@ impl egui::DroppedFile for Dropped {
 }
 
 /// Drops files on the window as the system does: all in one frame.
-fn drop_on(harness: &mut Editor, paths: &[PathBuf]) {
+pub(super) fn drop_on(harness: &mut Editor, paths: &[PathBuf]) {
     let files = paths
         .iter()
         .map(|path| Arc::new(Dropped(path.clone())) as egui::DroppedFileHandle);
@@ -40,11 +41,11 @@ fn drop_on(harness: &mut Editor, paths: &[PathBuf]) {
     harness.step();
 }
 
-fn says(harness: &Editor, part: &str) -> bool {
+pub(super) fn says(harness: &Editor, part: &str) -> bool {
     harness.state().messages().iter().any(|text| text.contains(part))
 }
 
-fn wait_for_words(harness: &mut Editor, part: &str) {
+pub(super) fn wait_for_words(harness: &mut Editor, part: &str) {
     wait(harness, part, |app| {
         app.messages().iter().any(|text| text.contains(part))
     });
@@ -102,11 +103,8 @@ fn every_kind_of_file_can_be_dropped() {
         .unwrap();
         drop_on(&mut harness, std::slice::from_ref(&wood));
         wait(&mut harness, name, |app| {
-            app.document()
-                .import
-                .pictures
-                .iter()
-                .any(|picture| picture.slot == 0 && picture.file == wood)
+            let own = app.document().materials[0].own.get(TextureTarget::BaseColor);
+            own.is_some_and(|own| own.file == wood)
         });
     }
 
@@ -170,7 +168,8 @@ fn a_model_its_parts_and_its_light_are_dropped_together() {
     assert!(model.report.is_clean(), "{:?}", model.report);
     assert!(says(&harness, "left.png: not used"), "{:?}", harness.state().messages());
     assert!(!says(&harness, "wood.png: not used"));
-    assert!(harness.state().document().import.pictures.is_empty());
+    let materials = &harness.state().document().materials;
+    assert!(materials.iter().all(|material| material.own.iter().next().is_none()));
 }
 
 #[test]
@@ -187,11 +186,8 @@ fn a_base_color_dropped_with_a_plain_model_is_put_on_it() {
     let mut harness = editor();
     drop_on(&mut harness, &[color.clone(), model, normal]);
     wait(&mut harness, "the picture", |app| {
-        app.document()
-            .import
-            .pictures
-            .first()
-            .is_some_and(|picture| picture.file == color)
+        let own = app.document().materials[0].own.get(TextureTarget::BaseColor);
+        own.is_some_and(|own| own.file == color)
     });
     assert!(says(&harness, "oak_n.png: not used"));
 }

@@ -5,6 +5,7 @@ use crate::app::desk::{PICTURE_SIZE, Resolution};
 use crate::app::kit::widgets;
 use crate::app::layout::{self, Pane};
 use crate::app::services::{library, snapshots};
+use crate::app::sheets::dialogs::Purpose;
 use crate::app::sheets::menu::Sheet;
 use crate::app::sheets::palette;
 use crate::app::{App, example, is_dragging};
@@ -33,6 +34,7 @@ impl App {
             Action::UseEnvironment(source) => self.worker.open_environment(source),
             Action::ImportAs(lobe) => self.shared.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
+            Action::ChooseTexture(target) => self.dialogs.ask(Purpose::Texture(target), String::new(), ctx),
             Action::Export(material) => self.ask_export(ctx, Some(*material)),
             Action::CopyAs(material, format) => self.copy_as(*material, format),
             Action::SelectSlot(slot) => {

@@ -6,16 +6,15 @@ use crate::app::App;
 use crate::app::actions::Action;
 use crate::render::worker::Level;
 use crate::scene::environment::{self, EnvironmentSource};
+use crate::scene::texture::set;
 use crate::scene::{Model, ModelOptions, ModelSource, holds_model, is_model};
 
-/// Endings of pictures for screens: environments where they are opened, base colours where they are dropped.
+/// Endings of pictures for screens: environments where they are opened, textures where they are dropped.
 const PICTURES: [&str; 8] = ["png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "tga"];
 /// Endings of pictures of light: environments.
 const LIGHT: [&str; 6] = ["hdr", "exr", "pic", "rgbe", "ktx2", "dds"];
 /// Endings of what other files refer to and nothing can be seen of by itself.
 const PARTS: [&str; 2] = ["bin", "mtl"];
-/// What the names of pictures of a base colour end in.
-const COLOR_NAMES: [&str; 6] = ["basecolor", "base_color", "albedo", "diffuse", "color", "col"];
 
 /// What was dropped on the window in this frame and, where text may be taken, pasted.
 pub(in crate::app) fn handed_over(ctx: &egui::Context, takes_text: bool) -> Vec<Action> {
@@ -51,10 +50,14 @@ fn name(path: &Path) -> String {
         .into_owned()
 }
 
-/// Whether a picture's name says that it is a base colour.
-fn is_called_color(path: &Path) -> bool {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy().to_lowercase();
-    COLOR_NAMES.iter().any(|color| stem.ends_with(color))
+/// The pictures in a folder, where their names say that they belong on a material.
+pub(in crate::app) fn textures_in(path: &Path) -> Vec<PathBuf> {
+    if !path.is_dir() || holds_model(path) {
+        return Vec::new();
+    }
+    let pictures = set::pictures_in(path);
+    let (found, _) = set::recognised(&pictures);
+    if found.is_empty() { Vec::new() } else { pictures }
 }
 
 /// What was dropped, by what it is for.
@@ -77,6 +80,11 @@ impl Sorted {
             return sorted;
         }
         for path in paths {
+            let of_material = textures_in(&path);
+            if !of_material.is_empty() {
+                sorted.pictures.extend(of_material);
+                continue;
+            }
             let kind = if is_model(&path) || (path.is_dir() && holds_model(&path)) {
                 &mut sorted.models
             } else if path.is_dir() || has_ending(&path, &LIGHT) {
@@ -96,7 +104,7 @@ impl Sorted {
 
 impl App {
     /// Takes files that were dropped together. Models are shown together; what they name is looked for among the files,
-    /// too. A picture is for the selected material, or a document where one is in it.
+    /// too. Pictures are for the selected material; one may have a document in it.
     pub(in crate::app) fn drop_files(&mut self, paths: Vec<PathBuf>) {
         if let Some(address) = paths
             .iter()
@@ -157,8 +165,8 @@ impl App {
                 .sum::<usize>()
     }
 
-    /// Pictures by themselves: that of a base colour for the selected material.
-    fn drop_without_model(&mut self, mut pictures: Vec<PathBuf>, parts: &[PathBuf]) {
+    /// Pictures by themselves: for the selected material.
+    fn drop_without_model(&mut self, pictures: Vec<PathBuf>, parts: &[PathBuf]) {
         for part in parts {
             let text = format!(
                 "{}: part of a model; drop it together with the .gltf or .obj that names it, or open that",
@@ -166,44 +174,33 @@ impl App {
             );
             self.say(Level::Error, text);
         }
-        let painted = match pictures.len() {
-            0 => return,
-            1 => Some(0),
-            _ => pictures.iter().position(|path| is_called_color(path)),
-        };
-        if let Some(place) = painted {
-            let picture = pictures.remove(place);
-            if ending(&picture) == "png" {
-                // It may hold a document: that is looked for first.
-                self.files.dropped = Some(picture.clone());
-                self.open(picture);
-            } else {
-                self.paint(picture);
-            }
+        if let [picture] = pictures.as_slice()
+            && ending(picture) == "png"
+        {
+            // It may hold a document: that is looked for first.
+            self.files.dropped = Some(picture.clone());
+            self.open(picture.clone());
+            return;
         }
-        self.leave_out(&pictures);
+        let left = self.put_pictures(&pictures);
+        self.leave_out(&left);
     }
 
-    /// What was dropped with a model and is not part of it: the picture of a base colour is for its first material.
+    /// What was dropped with a model and is not part of it: pictures that say what they are for are put on its first material.
     pub(in crate::app) fn use_dropped_with(&mut self, model: &Model) {
         let names: Vec<String> = model.files.iter().map(|path| name(path)).collect();
         let mut left = std::mem::take(&mut self.files.dropped_with);
         left.retain(|path| !names.iter().any(|known| known.eq_ignore_ascii_case(&name(path))));
-        let color = left
-            .iter()
-            .position(|path| has_ending(path, &PICTURES) && is_called_color(path));
-        if let Some(place) = color {
-            let picture = left.remove(place);
-            self.paint(picture);
-        }
+        let (found, left) = set::recognised(&left);
+        self.put_textures(&found);
         self.leave_out(&left);
     }
 
     fn leave_out(&mut self, files: &[PathBuf]) {
         for file in files {
             let text = format!(
-                "{}: not used: nothing here names it; a picture dropped by itself becomes the base colour of what it is \
-                 dropped on",
+                "{}: not used: nothing here names it, nor does its name say what it is for, as wood_roughness.png does; \
+                 choose it in Material › Textures",
                 name(file)
             );
             self.say(Level::Warning, text);
@@ -278,7 +275,6 @@ mod tests {
         assert_eq!(found.pictures, paths(&["wood_BaseColor.png"]));
         assert_eq!(found.environments, paths(&["light.HDR"]));
         assert_eq!(found.others, paths(&["look.mtlx"]));
-        assert!(is_called_color(Path::new("wood_BaseColor.png")) && !is_called_color(Path::new("wood_normal.png")));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::actions::Command;
+use crate::app::handlers::dropped::textures_in;
 use crate::app::handlers::take_picture::Destination;
 use crate::app::services::disk::{Disk, Done, Task, words};
 use crate::app::services::edits::Edits;
@@ -13,7 +14,8 @@ use crate::app::{App, new_document};
 use crate::document::{Document, MaterialSettings};
 use crate::render::worker::Level;
 use crate::scene::environment::{ENDINGS, EnvironmentSource};
-use crate::scene::{ModelOptions, ModelSource, SlotPicture, holds_model, is_model};
+use crate::scene::texture::OwnTexture;
+use crate::scene::{ModelOptions, ModelSource, holds_model, is_model};
 use crate::store::exchange::{self, ExchangeError, ReadOptions};
 use crate::store::file::Opened;
 use crate::store::{FileError, Loaded, preset, save_document, save_material};
@@ -75,6 +77,7 @@ enum FileKind {
     Model,
     Environment,
     Document,
+    Textures,
     Unknown,
 }
 
@@ -87,6 +90,7 @@ fn kind_of(path: &Path) -> FileKind {
     match ending.as_str() {
         _ if is_model(path) => FileKind::Model,
         _ if path.is_dir() && holds_model(path) => FileKind::Model,
+        _ if !textures_in(path).is_empty() => FileKind::Textures,
         _ if path.is_dir() => FileKind::Environment,
         "json" | "png" => FileKind::Document,
         _ if exchange::holds_materials(path) => FileKind::Document,
@@ -111,6 +115,10 @@ impl App {
                     Done::Read(path, opened)
                 });
             }
+            FileKind::Textures => {
+                self.drop_files(vec![path]);
+                return false;
+            }
             FileKind::Unknown => {
                 let text = "opened are models (.glb, .gltf, .obj, .ply, .stl, .zip), environments (.hdr, .exr, .ktx2, \
                             .dds, .jpg, .tif, .webp), materials (.json, .mtlx, and other programs' with exact parameters), projects (.json), and pictures \
@@ -123,15 +131,6 @@ impl App {
             }
         }
         true
-    }
-
-    /// Makes a picture the base colour of the selected material.
-    pub(in crate::app) fn paint(&mut self, file: PathBuf) {
-        let slot = self.shared.slot;
-        let mut options = self.document.import.clone();
-        options.pictures.retain(|picture| picture.slot != slot);
-        options.pictures.push(SlotPicture { slot, file });
-        self.worker.open_model(self.document.model.clone(), options);
     }
 
     /// Takes what has been read and written.
@@ -204,7 +203,7 @@ impl App {
             Err(ExchangeError::File(FileError::NoDocument { path }))
                 if self.files.dropped.take_if(|dropped| *dropped == path).is_some() =>
             {
-                self.paint(path);
+                self.put_pictures(&[path]);
             }
             Err(error) => self.say(Level::Error, error.to_string()),
         }
@@ -307,6 +306,7 @@ impl App {
             Purpose::Open | Purpose::OpenModel | Purpose::OpenEnvironment | Purpose::OpenMaterial => {
                 self.open(path);
             }
+            Purpose::Texture(target) => self.put_textures(&[(target, OwnTexture::of(path))]),
             Purpose::OpenMeasured => self.shared.measured = Some(path),
             Purpose::WatchFolder => self.shared.shelves.watch(path),
             // The ending says what is saved: a picture has the document inside, too.

@@ -10,6 +10,7 @@ pub(super) mod models;
 mod recovery;
 mod snapshots;
 mod take_picture;
+mod textures;
 mod turntable;
 mod unsaved;
 mod window_picture;

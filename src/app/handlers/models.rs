@@ -8,7 +8,7 @@ use crate::document::MaterialSettings;
 use crate::document::of_model::materials_of;
 use crate::render::worker::Level;
 use crate::scene::environment::EnvironmentSource;
-use crate::scene::{Model, ModelOptions, ModelSource, SlotPicture};
+use crate::scene::{Model, ModelOptions, ModelSource};
 
 /// What an edit is called that changes the model, before the model's name.
 const MODEL_CHANGED: &str = "Change the model to";
@@ -24,7 +24,7 @@ impl App {
         let before = std::mem::take(&mut self.document.materials);
         self.document.materials = materials_of(model, self.shared.import_lobe);
         if is_shown_anew {
-            self.keep_edits(before, &options);
+            self.keep_edits(before);
         } else if !is_file && let Some(first) = self.document.materials.first_mut() {
             *first = edited;
         }
@@ -44,15 +44,8 @@ impl App {
         self.edits.note(format!("{MODEL_CHANGED} {}", model.name), "");
     }
 
-    /// Where the same file is shown in another way: materials whose slots have the same name stay as they were edited. One
-    /// that was given a picture shows it.
-    fn keep_edits(&mut self, mut before: Vec<MaterialSettings>, options: &ModelOptions) {
-        let is_new = |picture: &&SlotPicture| !self.document.import.pictures.contains(picture);
-        for picture in options.pictures.iter().filter(is_new) {
-            if let Some(material) = before.get_mut(picture.slot) {
-                (material.base_color, material.textures.color) = ([1.0; 3], true);
-            }
-        }
+    /// Where the same file is shown in another way: materials whose slots have the same name stay as they were edited.
+    fn keep_edits(&mut self, mut before: Vec<MaterialSettings>) {
         for material in &mut self.document.materials {
             if let Some(known) = before.iter().position(|known| known.name == material.name) {
                 *material = before.swap_remove(known);
@@ -107,6 +100,7 @@ impl App {
         if let EnvironmentSource::File(path) = &scene.document.lighting.environment {
             files.push(path.clone());
         }
+        files.extend(scene.job.textures.own.iter().map(|own| own.file.clone()));
         self.files.watched.watch(&files);
         if !self.files.watched.take_changed().is_empty() {
             self.worker.reload();

@@ -10,6 +10,7 @@ use egui::{Key, Ui};
 use crate::app::kit::theme;
 use crate::scene::MODEL_ENDINGS;
 use crate::scene::environment::ENDINGS;
+use crate::scene::texture::{TextureTarget, set};
 
 /// A dialog that is back sooner with nothing was never there: nobody cancels that fast.
 const NO_DIALOG: Duration = Duration::from_millis(400);
@@ -40,6 +41,7 @@ pub(in crate::app) enum Purpose {
     SaveLayers,
     SaveWindow,
     WatchFolder,
+    Texture(TextureTarget),
 }
 
 impl Purpose {
@@ -57,6 +59,7 @@ impl Purpose {
             Self::SaveLayers => "Save the picture with layers",
             Self::SaveWindow => "Save a picture of the window",
             Self::WatchFolder => "Watch a folder",
+            Self::Texture(_) => "Choose a texture",
         }
     }
 
@@ -80,6 +83,7 @@ impl Purpose {
             Self::SaveLayers => ("OpenEXR pictures", &["exr"]),
             Self::SaveWindow => ("PNG pictures", &["png"]),
             Self::WatchFolder => ("Folders", &[]),
+            Self::Texture(_) => ("Pictures", &set::ENDINGS),
         }
     }
 

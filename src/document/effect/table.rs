@@ -268,7 +268,7 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::ColorTexture,
         label: "Colour textures",
-        help: "Base colours looked up in the model's pictures, or given at its vertices.",
+        help: "Base colours looked up in pictures, or given at the model's vertices.",
         decide: |facts| {
             let is_colored = |m: &Material<f32>| m.textures[0] != NO_TEXTURE || m.has_vertex_colors == 1;
             facts.needed_by(is_colored, "takes its colour from a texture or from its vertices")
@@ -278,8 +278,11 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::RoughnessTexture,
         label: "Roughness textures",
-        help: "Roughness and metalness looked up in the model's pictures.",
-        decide: |facts| facts.needed_by(|m| m.textures[1] != NO_TEXTURE, "takes its roughness from a texture"),
+        help: "Roughness and metalness looked up in pictures.",
+        decide: |facts| {
+            let is_looked_up = |m: &Material<f32>| [m.textures[1], m.metalness_texture] != [NO_TEXTURE; 2];
+            facts.needed_by(is_looked_up, "takes its roughness from a texture")
+        },
         remove: Some(|document| each_material(document, |material| material.textures.roughness = false)),
     },
     Effect {
@@ -297,16 +300,40 @@ pub static EFFECTS: &[Effect] = &[
     Effect {
         id: EffectId::NormalMap,
         label: "Normal maps",
-        help: "Shading normals bent by the model's pictures.",
+        help: "Shading normals bent by pictures.",
         decide: |facts| facts.needed_by(|m| m.textures[2] != NO_TEXTURE, "has a normal map"),
         remove: Some(|document| each_material(document, |material| material.textures.normal = false)),
     },
     Effect {
         id: EffectId::EmissionTexture,
         label: "Emission textures",
-        help: "Emission looked up in the model's pictures.",
+        help: "Emission looked up in pictures.",
         decide: |facts| facts.needed_by(|m| m.textures[3] != NO_TEXTURE, "takes its emission from a texture"),
         remove: Some(|document| each_material(document, |material| material.textures.emission = false)),
+    },
+    Effect {
+        id: EffectId::CoatTexture,
+        label: "Coat textures",
+        help: "Weights of coats looked up in pictures.",
+        decide: |facts| {
+            facts.needed_by(
+                |m| m.coat_texture != NO_TEXTURE,
+                "takes the weight of its coat from a texture",
+            )
+        },
+        remove: Some(|document| each_material(document, |material| material.textures.coat = false)),
+    },
+    Effect {
+        id: EffectId::BoxProjection,
+        label: "Box projection",
+        help: "Pictures that lie on a surface as on a box, without texture coordinates.",
+        decide: |facts| {
+            facts.needed_by(
+                |m| m.has_box_projection == 1,
+                "has a texture that lies on it as on a box",
+            )
+        },
+        remove: Some(|document| each_material(document, MaterialSettings::without_boxes)),
     },
     Effect {
         id: EffectId::Alpha,

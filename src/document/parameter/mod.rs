@@ -4,18 +4,22 @@
 mod of_document;
 mod of_light;
 mod of_material;
+mod of_texture;
 mod text;
 
 use serde_json::Value as Json;
 
 use super::custom_curve::CustomCurve;
+use super::own_textures::{map_key, target_of_key};
 use super::{Document, MaterialSettings};
 use crate::named::Named;
+use crate::scene::texture::{OwnTexture, TextureTarget};
 use text::shortened;
 
 pub use of_document::SETTINGS;
 pub use of_light::LIGHT_PARAMETERS;
 pub use of_material::PARAMETERS;
+pub use of_texture::TEXTURE_PARAMETERS;
 pub(crate) use text::nearest_key;
 pub use text::{ColorError, parse_color};
 
@@ -199,6 +203,14 @@ pub enum ParameterError {
         /// The nearest name, or all of them.
         hint: String,
     },
+    /// A parameter of a texture that is not there.
+    #[error("{key}: there is no such texture; put one there first: --texture {target}=FILE")]
+    NoTexture {
+        /// The key of what it is put on.
+        key: &'static str,
+        /// The name of what it is put on.
+        target: &'static str,
+    },
     /// A value that the parameter does not take.
     #[error("{key} does not take {value}; {expected}")]
     Invalid {
@@ -218,6 +230,24 @@ pub enum ParameterError {
 pub fn parameter(key: &str) -> Result<&'static Parameter, ParameterError> {
     let found = PARAMETERS.iter().find(|parameter| parameter.key == key);
     found.ok_or_else(|| unknown_key(key))
+}
+
+/// What a picture is put on and the parameter of it, of a key such as `base.color_map.rotation`.
+fn texture_key(key: &str) -> Option<(TextureTarget, &str)> {
+    let (of_target, of_texture) = key.rsplit_once('.')?;
+    Some((target_of_key(of_target)?, of_texture))
+}
+
+/// The parameter of a picture on a material with this key.
+fn texture_parameter(key: &str) -> Result<&'static Parameter<OwnTexture>, ParameterError> {
+    let found = TEXTURE_PARAMETERS.iter().find(|parameter| parameter.key == key);
+    found.ok_or_else(|| ParameterError::UnknownKey {
+        key: key.to_owned(),
+        hint: {
+            let keys: Vec<_> = TEXTURE_PARAMETERS.iter().map(|parameter| parameter.key).collect();
+            format!("the parameters of a texture are {}", keys.join(", "))
+        },
+    })
 }
 
 /// The setting of a document with this key.
@@ -255,6 +285,15 @@ fn split_assignment(assignment: &str) -> Result<(&str, &str), ParameterError> {
 /// Says what is wrong and what would be right.
 pub fn assign(material: &mut MaterialSettings, assignment: &str) -> Result<(), ParameterError> {
     let (key, text) = split_assignment(assignment)?;
+    if let Some((target, key)) = texture_key(key) {
+        let parameter = texture_parameter(key)?;
+        let value = parameter.parse(text)?;
+        let texture = material.own.get_mut(target).ok_or(ParameterError::NoTexture {
+            key: map_key(target),
+            target: target.name(),
+        })?;
+        return parameter.set(texture, value);
+    }
     let parameter = parameter(key)?;
     parameter.set(material, parameter.parse(text)?)
 }

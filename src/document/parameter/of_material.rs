@@ -90,7 +90,7 @@ fn base() -> Vec<Parameter> {
         },
         Parameter {
             label: "Colour texture",
-            help: "Multiplies the colour by the model's texture.",
+            help: "Multiplies the colour by a texture, the model's or one of your own.",
             ..of("base.color_texture", Kind::Toggle, texture!(color))
         },
         Parameter {
@@ -122,7 +122,7 @@ fn specular_shape() -> Vec<Parameter> {
         },
         Parameter {
             label: "Roughness texture",
-            help: "Multiplies roughness and metalness by the model's texture.",
+            help: "Multiplies roughness and metalness by textures.",
             ..of("specular.roughness_texture", Kind::Toggle, texture!(roughness))
         },
         Parameter {
@@ -243,6 +243,11 @@ fn coat() -> Vec<Parameter> {
             ..of("coat.weight", unit_number(), field!(Number coat_weight))
         },
         Parameter {
+            label: "Weight texture",
+            help: "Multiplies the weight by a texture.",
+            ..of("coat.weight_texture", Kind::Toggle, texture!(coat))
+        },
+        Parameter {
             label: "Roughness",
             symbol: "R",
             help: "How far the coat spreads its reflection; what is seen through it stays as sharp as it is.",
@@ -336,7 +341,7 @@ fn geometry() -> Vec<Parameter> {
         },
         Parameter {
             label: "Opacity texture",
-            help: "Multiplies the opacity by the alpha of the model's colour texture, cut off where the model says so.",
+            help: "Multiplies the opacity by a texture, such as the alpha of the model's colour texture, cut off where the model says so.",
             ..of("geometry.opacity_texture", Kind::Toggle, texture!(opacity))
         },
         Parameter {
@@ -352,7 +357,7 @@ fn geometry() -> Vec<Parameter> {
         },
         Parameter {
             label: "Normal texture",
-            help: "Bends the surface's normal by the model's texture.",
+            help: "Bends the surface's normal by a texture.",
             ..of("geometry.normal_texture", Kind::Toggle, texture!(normal))
         },
     ]

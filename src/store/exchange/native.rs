@@ -19,7 +19,7 @@ impl Format for Native {
         }
         let text = match &subject.document {
             Some(document) if subject.materials.len() > 1 => document_text(path, document)?,
-            _ => material_text(subject.only(path)?),
+            _ => material_text(path, subject.only(path)?),
         };
         let report = |material| MaterialReport::of(material, vec![Entry::exact("everything")]);
         Ok(Written::text(text, subject.materials.iter().map(report).collect()))

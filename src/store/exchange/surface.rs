@@ -3,7 +3,7 @@
 use super::report::{Entry, Residual};
 use crate::document::import::ggx_from_geometric;
 use crate::document::match_look::{lobe_of_material, nearest_ggx};
-use crate::document::{ImportLobe, MaterialSettings};
+use crate::document::{ImportLobe, MaterialSettings, TextureUse};
 use crate::optics::fresnel::{
     Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick,
 };
@@ -430,13 +430,19 @@ impl Surface {
         );
         layer(material.emission_strength > 0.0, true, "emission", none);
         layer(material.opacity < 1.0, true, "opacity", none);
-        let uses = material.textures;
-        let is_textured = uses.color || uses.roughness || uses.normal || uses.emission || uses.opacity;
+        let is_textured = material.uses_of_model() != TextureUse::default();
         layer(
             is_textured,
             takes.textures,
             "textures of the model",
             "convert to a glTF model to take them along",
+        );
+        let has_own = material.own.iter().any(|(target, _)| material.uses_texture(target));
+        layer(
+            has_own,
+            false,
+            "textures of your own",
+            "put them on again in the other program",
         );
         if material.coat_weight > 0.0 && takes.coat {
             let detail = format!("GGX of roughness {} stands for its geometric lobe", self.coat_roughness);

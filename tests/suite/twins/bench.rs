@@ -19,7 +19,7 @@ use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
 use glossmith::scene::light::{LightChoice, Lights, Sampled};
-use glossmith::scene::texture::Textures;
+use glossmith::scene::texture::{CHANNEL_SHIFT, IS_BOX, TURNS_NORMALS, TextureRecord, Textures};
 use glossmith::scene::{self, Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 
 use super::harness::Rng;
@@ -72,7 +72,16 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         let density: Vec<f64> = (0..=CUSTOM_INTERVALS).map(density).collect();
         tables.extend(custom_table([1.0, 1.7, 0.6][curve], &density).unwrap());
     }
-    let textures = Textures::new(&pictures(&mut rng));
+    let mut textures = Textures::new(&pictures(&mut rng));
+    // And those that are put on otherwise: by one channel, inverted in part, on a box, normals turning with them.
+    for (number, record) in (0..).zip(textures.records.clone()) {
+        textures.records.push(TextureRecord {
+            flags: record.flags | IS_BOX | TURNS_NORMALS | (1 + number % 4) << CHANNEL_SHIFT,
+            scale: -0.7,
+            offset: 0.9,
+            ..record
+        });
+    }
     let mut materials = Vec::new();
     for lobe in Lobe::ALL {
         for curve in Curve::ALL {
@@ -89,6 +98,12 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
                 };
                 material.textures = [(); 4].map(|()| texture());
                 material.opacity_texture = texture();
+                material.metalness_texture = if materials.len() % 2 == 0 {
+                    material.textures[1]
+                } else {
+                    texture()
+                };
+                material.coat_texture = texture();
                 materials.push(material);
             }
         }
@@ -262,8 +277,9 @@ fn random_material(rng: &mut Rng, lobe: Lobe, curve: Curve, fresnel: Fresnel) ->
         has_vertex_colors: 0,
         spot_scale: 0.0,
         spot_offset: 1.0,
-        reserved: 0,
-        reserved_pair: [0; 2],
+        metalness_texture: NO_TEXTURE,
+        coat_texture: NO_TEXTURE,
+        has_box_projection: 0,
     }
 }
 

@@ -79,19 +79,21 @@ fn surfaces_agree() {
             Case::new(
                 "hit_uvs",
                 "triangle u v",
-                "let uvs = hit_uvs(Hit(1.0, triangle, u, v));",
+                "var boxed = materials[0]; boxed.has_box_projection = 1u; let uvs = hit_uvs(Hit(1.0, triangle, u, v), boxed);",
                 twin!(|row| {
                     let triangle = SCENE.geometry.compressed().triangles[row.bits() as usize];
                     let [u, v]: [T; 2] = row.numbers();
                     let weights = [T::one() - u - v, u, v];
-                    let sets = uvs_at(&SCENE.geometry, triangle as usize, weights);
+                    let sets = uvs_at(&SCENE.geometry, triangle as usize, weights, true);
                     sets.as_flattened().iter().for_each(|x| row.put(*x));
                 }),
             )
-            .output("uvs.x", COORDINATE)
-            .output("uvs.y", COORDINATE)
-            .output("uvs.z", COORDINATE)
-            .output("uvs.w", COORDINATE)
+            .output("uvs.sets.x", COORDINATE)
+            .output("uvs.sets.y", COORDINATE)
+            .output("uvs.sets.z", COORDINATE)
+            .output("uvs.sets.w", COORDINATE)
+            .output("uvs.on_box.x", COORDINATE)
+            .output("uvs.on_box.y", COORDINATE)
             .group("teapot and ground", |rng, _| {
                 let (triangle, u, v) = place_in_triangle(rng);
                 inputs![triangle, u, v]

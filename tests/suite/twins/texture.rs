@@ -3,21 +3,21 @@
 use glossmith::optics::material::{Material, NO_TEXTURE};
 use glossmith::optics::real::Real;
 use glossmith::optics::vector::Vec3;
-use glossmith::scene::texture::{mapped_normal, opacity_at, texture_lookup, textured_material, wrapped};
+use glossmith::scene::texture::{Uvs, mapped_normal, opacity_at, texture_lookup, textured_material, wrapped};
 
 use super::bench::SCENE;
 use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};
 
 const SHARE: Output = Output::Number(0.1);
 const COLOUR: Output = Output::Vector(0.1);
-const UVS: &str = "let uvs = vec4f(u, v, second_u, second_v);";
+const UVS: &str = "let uvs = Uvs(vec4f(u, v, second_u, second_v), vec2f(box_u, box_v));";
 
-fn uvs<T: Real>(row: &mut Row<'_, T>) -> [[T; 2]; 2] {
-    [row.numbers(), row.numbers()]
+fn uvs<T: Real>(row: &mut Row<'_, T>) -> Uvs<T> {
+    [row.numbers(), row.numbers(), row.numbers()]
 }
 
-fn random_uvs(rng: &mut Rng) -> [Value; 4] {
-    [(); 4].map(|()| rng.range(-3.0, 3.0).into())
+fn random_uvs(rng: &mut Rng) -> [Value; 6] {
+    [(); 6].map(|()| rng.range(-3.0, 3.0).into())
 }
 
 fn with_uvs(rng: &mut Rng, first: u32) -> Vec<Value> {
@@ -33,8 +33,8 @@ fn any_material(rng: &mut Rng) -> u32 {
 fn textures_agree() {
     let mut lookup = Case::new(
         "texture_lookup",
-        "index u v second_u second_v",
-        "let t = texture_lookup(index, vec4f(u, v, second_u, second_v));",
+        "index u v second_u second_v box_u box_v",
+        "let uvs = Uvs(vec4f(u, v, second_u, second_v), vec2f(box_u, box_v)); let t = texture_lookup(index, uvs);",
         twin!(|row| {
             let index = row.bits();
             let (color, alpha) = texture_lookup(&SCENE.textures, index, uvs(row));
@@ -73,8 +73,9 @@ fn textured_materials_agree() {
         &[
             Case::new(
                 "textured_material",
-                "material u v second_u second_v",
-                "let m = textured_material(materials[material], vec4f(u, v, second_u, second_v), vec3f(0.5, 0.75, 0.25));",
+                "material u v second_u second_v box_u box_v",
+                "let uvs = Uvs(vec4f(u, v, second_u, second_v), vec2f(box_u, box_v)); \
+                 let m = textured_material(materials[material], uvs, vec3f(0.5, 0.75, 0.25));",
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
                     let tint = Vec3::from_f32([0.5, 0.75, 0.25]);
@@ -82,7 +83,7 @@ fn textured_materials_agree() {
                     row.put_vector(m.base_color);
                     row.put_vector(m.transmission_tint);
                     row.put_vector(m.emission);
-                    row.put_numbers([m.metalness, m.roughness, m.transmission_roughness]);
+                    row.put_numbers([m.metalness, m.roughness, m.transmission_roughness, m.coat_weight]);
                 }),
             )
             .output("m.base_color", COLOUR)
@@ -91,13 +92,14 @@ fn textured_materials_agree() {
             .output("m.metalness", SHARE)
             .output("m.roughness", SHARE)
             .output("m.transmission_roughness", SHARE)
+            .output("m.coat_weight", SHARE)
             .group("", |rng, _| {
                 let material = any_material(rng);
                 with_uvs(rng, material)
             }),
             Case::new(
                 "opacity_at",
-                "material u v second_u second_v",
+                "material u v second_u second_v box_u box_v",
                 UVS,
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
@@ -112,18 +114,18 @@ fn textured_materials_agree() {
             }),
             Case::new(
                 "mapped_normal",
-                "material normal tangent sign u v second_u second_v",
+                "material normal tangent outward sign u v second_u second_v box_u box_v",
                 UVS,
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
-                    let frame = [row.vector(), row.vector()];
+                    let frame = [row.vector(), row.vector(), row.vector()];
                     let sign = row.number();
                     let uvs = uvs(row);
                     row.put_vector(mapped_normal(&SCENE.textures, &material, uvs, frame, sign));
                 }),
             )
             .output(
-                "mapped_normal(materials[material], uvs, normal, vec4f(tangent, sign))",
+                "mapped_normal(materials[material], uvs, normal, vec4f(tangent, sign), outward)",
                 Output::Vector(1.0),
             )
             .group("", |rng, _| {
@@ -134,6 +136,7 @@ fn textured_materials_agree() {
                     .collect();
                 let start = inputs![
                     mapped[rng.below(mapped.len())],
+                    rng.direction(),
                     rng.direction(),
                     rng.direction(),
                     rng.sign()

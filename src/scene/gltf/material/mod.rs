@@ -267,7 +267,7 @@ impl<'a> Materials<'a> {
             }
         }
         read.emissive_texture = self.texture(info(&material.emissive_texture), &mut sets, &read.name);
-        self.read_layers(raw, slot, &mut read);
+        self.read_layers(raw, slot, &mut read, &mut sets);
         self.read_interior(material, raw, slot, &mut read);
         if raw["extensions"].get("KHR_materials_unlit").is_some() {
             make_unlit(&mut read);
@@ -336,7 +336,7 @@ impl<'a> Materials<'a> {
     }
 
     /// Specular reflection, coat and anisotropy.
-    fn read_layers(&mut self, raw: &Json, slot: usize, read: &mut Slot) {
+    fn read_layers(&mut self, raw: &Json, slot: usize, read: &mut Slot, sets: &mut [Option<u32>; 2]) {
         let mut means = Vec::new();
         if let Some(specular) = extension::<Specular>(raw, "KHR_materials_specular") {
             read.specular = unit(specular.specular_factor);
@@ -363,13 +363,8 @@ impl<'a> Materials<'a> {
         if let Some(coat) = extension::<Clearcoat>(raw, "KHR_materials_clearcoat") {
             (read.coat, read.coat_roughness) = (unit(coat.clearcoat_factor), unit(coat.clearcoat_roughness_factor));
             if read.coat > 0.0 {
-                means.extend(mean(
-                    &coat.clearcoat_texture,
-                    "a coat texture, by its mean",
-                    |slot, mean| {
-                        slot.coat *= mean.codes[0];
-                    },
-                ));
+                let reference = coat.clearcoat_texture.as_ref().map(TextureInfo::reference);
+                read.coat_texture = self.texture(reference, sets, &read.name);
                 means.extend(mean(
                     &coat.clearcoat_roughness_texture,
                     "a coat roughness texture, by its mean",

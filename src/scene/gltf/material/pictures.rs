@@ -13,7 +13,7 @@ use super::{Materials, Reference};
 use crate::scene::gltf::image;
 use crate::scene::model::{Filter, Slot, Texture, TextureRef, Wrap};
 use crate::scene::report::Fate;
-use crate::scene::texture_scale::scaled_to;
+use crate::scene::texture::scale::scaled_to;
 
 /// A picture that slots look up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -181,6 +181,7 @@ pub(super) fn without_missing(slots: &mut [Slot], textures: Vec<Option<Texture>>
         if !keep(&mut slot.emissive_texture) {
             slot.emission = [0.0; 3];
         }
+        keep(&mut slot.coat_texture);
     }
     textures.into_iter().flatten().collect()
 }

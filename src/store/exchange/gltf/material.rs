@@ -17,6 +17,7 @@ pub struct SlotTextures {
     pub metallic_roughness: Option<Json>,
     pub normal: Option<Json>,
     pub emissive: Option<Json>,
+    pub coat: Option<Json>,
     /// The mean of the roughness that a texture varies.
     pub roughness_mean: Option<f32>,
     /// What the texture's opacity means, where it is looked up.
@@ -88,6 +89,9 @@ pub fn material_json(material: &MaterialSettings, surface: &Surface, textures: &
         json["doubleSided"] = true.into();
     }
     let mut extensions = extensions(surface, transmission, absorbs, radius, &mut json);
+    if let (Some(texture), Some(coat)) = (&textures.coat, extensions.get_mut("KHR_materials_clearcoat")) {
+        coat["clearcoatTexture"] = texture.clone();
+    }
     if surface.anisotropy != 0.0 {
         let (_, rotation_deg) = surface.ratio_and_rotation();
         let anisotropy = json!({

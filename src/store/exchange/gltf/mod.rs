@@ -265,7 +265,8 @@ impl Builder {
         let Some(slot) = model.slots.get(slot) else {
             return SlotTextures::default();
         };
-        let uses = material.textures;
+        // In the place of one's own texture there is none of the model's.
+        let uses = material.uses_of_model();
         let mut texture = |is_used: bool, place: &Option<crate::scene::TextureRef>| {
             let place = place.as_ref().filter(|_| is_used)?;
             let index = self.texture(model, place)?;
@@ -277,6 +278,7 @@ impl Builder {
             metallic_roughness: texture(uses.roughness, &slot.metallic_roughness_texture),
             normal: texture(uses.normal, &slot.normal_texture),
             emissive: texture(uses.emission, &slot.emissive_texture),
+            coat: texture(uses.coat, &slot.coat_texture),
             alpha: Some((slot.alpha_mode, slot.alpha_cutoff)).filter(|_| uses.opacity),
             is_double_sided: slot.double_sided,
         }

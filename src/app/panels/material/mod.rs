@@ -1,6 +1,6 @@
 //! The selected material: every parameter of the registry, in its group, with the widget that suits its kind.
 
-use std::sync::Arc;
+mod textures;
 
 use egui::Ui;
 
@@ -11,7 +11,6 @@ use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::widgets;
 use crate::app::kit::{parameter_row, theme};
 use crate::document::{Kind, MaterialSettings, PARAMETERS, Parameter};
-use crate::scene::{AlphaMode, Model, Texture};
 
 /// The slots that are seen at once: more are scrolled to, so that the parameters stay in sight.
 const SLOTS_SHOWN: f32 = 6.0;
@@ -28,12 +27,8 @@ impl Panel for MaterialPanel {
         name(ui, desk, &mut material);
         ui.add_space(theme::GAP);
         let mut groups: Vec<&'static str> = Vec::new();
-        let textures = textures(desk);
-        let is_shown = |parameter: &&Parameter| match parameter.kind {
-            // A texture's switch stands beside its picture, where the model has one.
-            Kind::Toggle => textures.iter().any(|(key, _)| *key == parameter.key),
-            _ => (parameter.applies)(&before),
-        };
+        // The switches of textures stand beside their pictures.
+        let is_shown = |parameter: &&Parameter| !matches!(parameter.kind, Kind::Toggle) && (parameter.applies)(&before);
         for parameter in PARAMETERS.iter() {
             if !groups.contains(&parameter.group) {
                 groups.push(parameter.group);
@@ -45,20 +40,18 @@ impl Panel for MaterialPanel {
                 for parameter in parameters() {
                     widgets::comes_and_goes(ui, |ui| {
                         if is_shown(&parameter) {
-                            let picture = textures.iter().find(|(key, _)| *key == parameter.key);
-                            let picture = picture.map(|(_, picture)| picture.as_ref());
-                            show_parameter(ui, desk, parameter, picture, &mut material);
+                            show_parameter(ui, desk, parameter, &mut material);
                         }
                     });
                 }
             };
-            // A group of textures comes with the model's pictures, above others that stay.
             widgets::comes_and_goes(ui, |ui| {
                 if parameters().any(|parameter| is_shown(&parameter)) {
                     widgets::group(ui, group, &mut rows);
                 }
             });
         }
+        widgets::group(ui, "Textures", |ui| textures::show(ui, desk, &mut material));
         if material != before {
             desk.set_material(material);
         }
@@ -132,90 +125,12 @@ fn name(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
     });
 }
 
-/// The pictures of the selected slot, by the keys of the parameters that switch them.
-fn textures(desk: &Desk<'_>) -> Vec<(&'static str, Arc<SlotPicture>)> {
-    let Some(scene) = desk.scene() else { return Vec::new() };
-    let Some(slot) = scene.model.slots.get(desk.shared.slot) else {
-        return Vec::new();
-    };
-    let opacity = slot.base_color_texture.filter(|_| slot.alpha_mode != AlphaMode::Opaque);
-    let kinds = [
-        ("base.color_texture", slot.base_color_texture),
-        ("specular.roughness_texture", slot.metallic_roughness_texture),
-        ("emission.color_texture", slot.emissive_texture),
-        ("geometry.opacity_texture", opacity),
-        ("geometry.normal_texture", slot.normal_texture),
-    ];
-    let found = kinds.into_iter().filter_map(|(key, reference)| {
-        let picture = Arc::new(SlotPicture {
-            model: scene.model.clone(),
-            texture: reference?.texture,
-        });
-        Some((key, picture))
-    });
-    found.collect()
-}
-
-/// A picture of a model.
-struct SlotPicture {
-    model: Arc<Model>,
-    texture: usize,
-}
-
-impl SlotPicture {
-    /// Its name, size and a small copy, which is made once for each model.
-    fn show(&self, ui: &mut Ui) {
-        let picture = &self.model.textures[self.texture];
-        let id = egui::Id::unique(("texture", Arc::as_ptr(&self.model) as usize, self.texture));
-        let known = ui.memory(|memory| memory.data.get_temp::<egui::TextureHandle>(id));
-        let handle = known.unwrap_or_else(|| {
-            let handle = ui
-                .ctx()
-                .load_texture(&picture.name, small_copy(picture), egui::TextureOptions::LINEAR);
-            ui.memory_mut(|memory| memory.data.insert_temp(id, handle.clone()));
-            handle
-        });
-        let side = egui::Vec2::splat(theme::ROW_HEIGHT - 2.0);
-        let about = format!("{}\n{} × {}", picture.name, picture.width, picture.height);
-        ui.add(egui::Image::new((handle.id(), side)).alt_text(&picture.name))
-            .on_hover_text(&about);
-        ui.add(egui::Label::new(&picture.name).truncate()).on_hover_text(about);
-    }
-}
-
-/// Most texels to a side of the small copy that is shown.
-const SMALL_SIDE: u32 = 64;
-
-/// A picture reduced to at most [`SMALL_SIDE`] texels a side, by the nearest texel.
-fn small_copy(picture: &Texture) -> egui::ColorImage {
-    let [width, height] = [picture.width, picture.height].map(|side| side.clamp(1, SMALL_SIDE));
-    let pixels = (0..width * height).map(|i| {
-        let (x, y) = (i % width * picture.width / width, i / width * picture.height / height);
-        let place = 4 * (y * picture.width + x) as usize;
-        match picture.rgba8.get(place..place + 3) {
-            Some(&[r, g, b]) => egui::Color32::from_rgb(r, g, b),
-            _ => egui::Color32::BLACK,
-        }
-    });
-    egui::ColorImage::new([width as usize, height as usize], pixels.collect())
-}
-
-/// The row of a parameter, with the picture that its switch stands for.
-fn show_parameter(
-    ui: &mut Ui,
-    desk: &mut Desk<'_>,
-    parameter: &Parameter,
-    picture: Option<&SlotPicture>,
-    material: &mut MaterialSettings,
-) {
+/// The row of a parameter.
+fn show_parameter(ui: &mut Ui, desk: &mut Desk<'_>, parameter: &Parameter, material: &mut MaterialSettings) {
     let mut value = parameter.get(material);
     let idle = (parameter.idle)(material);
     let row = ui.add_enabled_ui(idle.is_none(), |ui| {
-        parameter_row::show(ui, parameter, &mut value, |ui| {
-            if let Some(picture) = picture {
-                picture.show(ui);
-            }
-        })
+        parameter_row::show(ui, parameter, &mut value, |_| {})
     });
     if let Some(why) = idle {
         row.response.on_hover_text(why);

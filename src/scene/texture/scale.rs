@@ -1,8 +1,8 @@
 //! Pictures made smaller.
 
-use super::model::Texture;
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::{Vec3, vec3};
+use crate::scene::model::Texture;
 
 /// A channel of a texel, in [0, 1]; `place` counts channels from the first texel on.
 pub(super) fn fraction(picture: &Texture, place: usize) -> f64 {
@@ -53,7 +53,7 @@ pub(super) fn halved(picture: &Texture, is_color: bool) -> Texture {
 }
 
 /// A picture whose sides are at most `side_max`, halved until they are; and the size that it had, where that was more.
-pub(super) fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, Option<[u32; 2]>) {
+pub(in crate::scene) fn scaled_to(picture: Texture, side_max: u32, is_color: bool) -> (Texture, Option<[u32; 2]>) {
     let whole = [picture.width, picture.height];
     let mut scaled = picture;
     while scaled.width.max(scaled.height) > side_max.max(1) {

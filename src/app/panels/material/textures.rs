@@ -1,0 +1,269 @@
+//! The textures of the selected material: the model's, and those of the user's own in their place.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use egui::Ui;
+
+use crate::app::actions::Action;
+use crate::app::desk::Desk;
+use crate::app::kit::icons::{self, Icon};
+use crate::app::kit::widgets::{self, Name};
+use crate::app::kit::{parameter_row, theme};
+use crate::document::{MaterialSettings, PARAMETERS, Parameter, TEXTURE_PARAMETERS};
+use crate::scene::texture::TextureTarget;
+use crate::scene::{AlphaMode, Model, Texture};
+
+/// Most texels to a side of the small copy that is shown.
+const SMALL_SIDE: u32 = 64;
+
+/// A picture that a target looks up.
+enum Picture {
+    /// One of the model's.
+    OfModel(Arc<Model>, usize),
+    /// One of the user's own; none until it is there, or why it can't be had.
+    Own(String, Option<Result<Arc<Texture>, String>>),
+}
+
+/// What a row's buttons ask for.
+enum Wish {
+    Choose,
+    Remove,
+}
+
+/// A row for each target, with its picture, and how the user's own ones are put on.
+pub(super) fn show(ui: &mut Ui, desk: &mut Desk<'_>, material: &mut MaterialSettings) {
+    for &target in TextureTarget::ALL {
+        widgets::comes_and_goes(ui, |ui| {
+            let picture = picture(desk, target);
+            row(ui, desk, target, picture.as_ref(), material);
+            placement(ui, desk, target, material);
+        });
+    }
+}
+
+/// The switch of a target, where it has one of its own.
+fn switch(target: TextureTarget) -> Option<&'static Parameter> {
+    let key = match target {
+        TextureTarget::BaseColor => "base.color_texture",
+        TextureTarget::Roughness => "specular.roughness_texture",
+        // With that of the roughness.
+        TextureTarget::Metalness => return None,
+        TextureTarget::Normal => "geometry.normal_texture",
+        TextureTarget::Opacity => "geometry.opacity_texture",
+        TextureTarget::Emission => "emission.color_texture",
+        TextureTarget::Coat => "coat.weight_texture",
+    };
+    PARAMETERS.iter().find(|parameter| parameter.key == key)
+}
+
+fn row(
+    ui: &mut Ui,
+    desk: &mut Desk<'_>,
+    target: TextureTarget,
+    picture: Option<&Picture>,
+    material: &mut MaterialSettings,
+) {
+    let switch = switch(target).filter(|_| picture.is_some());
+    let of_target = target.label().to_lowercase();
+    let full = switch.map_or_else(|| format!("Texture of the {of_target}"), Parameter::full_name);
+    let help = match switch {
+        Some(parameter) => parameter.help,
+        None => target.help(),
+    };
+    let name = Name::new(&full, target.label(), help);
+    let is_own = material.own.get(target).is_some();
+    let mut wish = None;
+    let response = widgets::row(ui, name, |ui| {
+        let mut is_on = material.uses_texture(target);
+        let response = match (switch, picture) {
+            (Some(_), Some(picture)) => {
+                let response = ui.checkbox(&mut is_on, "");
+                // Its small copy comes later, and the button behind stays the one that it is.
+                widgets::comes_and_goes(ui, |ui| picture.show(ui));
+                response
+            }
+            (None, Some(picture)) => widgets::comes_and_goes(ui, |ui| picture.show(ui)),
+            (_, None) => {
+                let response = ui
+                    .button("Choose…")
+                    .on_hover_text("Puts a picture of your own here; or drop one on the window");
+                if response.clicked() {
+                    wish = Some(Wish::Choose);
+                }
+                return response;
+            }
+        };
+        if response.changed() {
+            *material.uses_texture_mut(target) = is_on;
+        }
+        menu(ui, &of_target, is_own, &mut wish);
+        response
+    });
+    if response.changed
+        && let Some(parameter) = switch
+    {
+        desk.edits
+            .note(parameter.full_name(), format!("{}/{}", desk.shared.slot, parameter.key));
+    }
+    match wish {
+        Some(Wish::Remove) => {
+            material.own.set(target, None);
+            desk.edits.note(format!("Remove the {of_target} texture"), "");
+        }
+        Some(Wish::Choose) => desk.actions.push(Action::ChooseTexture(target)),
+        None => {}
+    }
+}
+
+fn menu(ui: &mut Ui, of_target: &str, is_own: bool, wish: &mut Option<Wish>) {
+    let name = format!("Menu of the {of_target} texture");
+    let more = icons::button(ui, Icon::More, &name, "Replace, remove");
+    egui::Popup::menu(&more).show(|ui| {
+        if ui
+            .button("Replace…")
+            .on_hover_text("Another picture of your own")
+            .clicked()
+        {
+            *wish = Some(Wish::Choose);
+        }
+        let remove = ui.add_enabled(is_own, egui::Button::new("Remove"));
+        let remove = remove.on_hover_text("The model's texture comes back, where it has one");
+        if remove
+            .on_disabled_hover_text("It is the model's; its switch leaves it out")
+            .clicked()
+        {
+            *wish = Some(Wish::Remove);
+        }
+    });
+}
+
+/// How a picture of the user's own lies on the material.
+fn placement(ui: &mut Ui, desk: &mut Desk<'_>, target: TextureTarget, material: &mut MaterialSettings) {
+    let Some(mut texture) = material.own.get(target).cloned() else {
+        return;
+    };
+    let title = format!("Placement of the {} texture", target.label().to_lowercase());
+    egui::CollapsingHeader::new(egui::RichText::new("Placement").weak())
+        .id_salt(&title)
+        .show(ui, |ui| {
+            for parameter in TEXTURE_PARAMETERS.iter() {
+                let has_effect = match parameter.key {
+                    "channel" => target.is_number(),
+                    // Bumps have a strength of their own, and are never colours.
+                    "strength" | "color_space" => target != TextureTarget::Normal,
+                    _ => true,
+                };
+                if !has_effect {
+                    continue;
+                }
+                let full = format!("{} texture {}", target.label(), parameter.label.to_lowercase());
+                let mut value = parameter.get(&texture);
+                let is_other = parameter_row::show_as(ui, parameter, &full, &mut value, |_| {});
+                if is_other && parameter.set(&mut texture, value).is_ok() {
+                    let key = format!("{}/{}/{}", desk.shared.slot, target.name(), parameter.key);
+                    desk.edits.note(full, key);
+                    material.own.set(target, Some(texture.clone()));
+                }
+            }
+        })
+        .header_response
+        .accessible_name(title);
+}
+
+/// What a target of the selected slot looks up.
+fn picture(desk: &Desk<'_>, target: TextureTarget) -> Option<Picture> {
+    let scene = desk.scene();
+    if let Some(own) = desk.material().own.get(target) {
+        let known = scene.and_then(|scene| scene.job.textures.own.iter().find(|known| known.file == own.file));
+        return Some(Picture::Own(
+            name_of(&own.file),
+            known.map(|known| known.picture.clone()),
+        ));
+    }
+    let scene = scene?;
+    let slot = scene.model.slots.get(desk.shared.slot)?;
+    let reference = match target {
+        TextureTarget::BaseColor => slot.base_color_texture,
+        TextureTarget::Roughness | TextureTarget::Metalness => slot.metallic_roughness_texture,
+        TextureTarget::Normal => slot.normal_texture,
+        TextureTarget::Opacity => slot.base_color_texture.filter(|_| slot.alpha_mode != AlphaMode::Opaque),
+        TextureTarget::Emission => slot.emissive_texture,
+        TextureTarget::Coat => slot.coat_texture,
+    };
+    Some(Picture::OfModel(scene.model.clone(), reference?.texture))
+}
+
+fn name_of(file: &Path) -> String {
+    file.file_name()
+        .unwrap_or(file.as_os_str())
+        .to_string_lossy()
+        .into_owned()
+}
+
+impl Picture {
+    /// Its name, size and a small copy, which is made once.
+    fn show(&self, ui: &mut Ui) -> egui::Response {
+        let (name, about) = match self {
+            Self::OfModel(model, texture) => {
+                let picture = &model.textures[*texture];
+                (picture.name.as_str(), about(picture))
+            }
+            Self::Own(name, Some(Ok(picture))) => (name.as_str(), about(picture)),
+            Self::Own(name, None) => (name.as_str(), "loading".to_owned()),
+            Self::Own(name, Some(Err(why))) => {
+                let text = egui::RichText::new(format!("{name}: missing")).color(ui.visuals().warn_fg_color);
+                let help = format!("{why}\nPut the file there, or choose another.");
+                return ui.add(egui::Label::new(text).truncate()).on_hover_text(help);
+            }
+        };
+        if let Some((picture, id)) = self.texels() {
+            let known = ui.memory(|memory| memory.data.get_temp::<egui::TextureHandle>(id));
+            let handle = known.unwrap_or_else(|| {
+                let options = egui::TextureOptions::LINEAR;
+                let handle = ui.ctx().load_texture(name, small_copy(picture), options);
+                ui.memory_mut(|memory| memory.data.insert_temp(id, handle.clone()));
+                handle
+            });
+            let side = egui::Vec2::splat(theme::ROW_HEIGHT - 2.0);
+            ui.add(egui::Image::new((handle.id(), side)).alt_text(name))
+                .on_hover_text(&about);
+        }
+        let width = (ui.available_width() - theme::ROW_HEIGHT - ui.spacing().item_spacing.x).max(0.0);
+        let label = egui::Label::new(name).truncate();
+        ui.add_sized([width, theme::ROW_HEIGHT], label).on_hover_text(about)
+    }
+
+    /// The picture, where it is there, and what its small copy is remembered by.
+    fn texels(&self) -> Option<(&Texture, egui::Id)> {
+        match self {
+            Self::OfModel(model, texture) => {
+                let id = ("texture", Arc::as_ptr(model) as usize, *texture);
+                Some((&model.textures[*texture], egui::Id::unique(id)))
+            }
+            Self::Own(_, Some(Ok(picture))) => {
+                let id = ("own texture", Arc::as_ptr(picture) as usize);
+                Some((picture, egui::Id::unique(id)))
+            }
+            Self::Own(..) => None,
+        }
+    }
+}
+
+fn about(picture: &Texture) -> String {
+    format!("{}\n{} × {}", picture.name, picture.width, picture.height)
+}
+
+/// A picture reduced to at most [`SMALL_SIDE`] texels a side, by the nearest texel.
+fn small_copy(picture: &Texture) -> egui::ColorImage {
+    let [width, height] = [picture.width, picture.height].map(|side| side.clamp(1, SMALL_SIDE));
+    let pixels = (0..width * height).map(|i| {
+        let (x, y) = (i % width * picture.width / width, i / width * picture.height / height);
+        let place = 4 * (y * picture.width + x) as usize;
+        match picture.rgba8.get(place..place + 3) {
+            Some(&[r, g, b]) => egui::Color32::from_rgb(r, g, b),
+            _ => egui::Color32::BLACK,
+        }
+    });
+    egui::ColorImage::new([width as usize, height as usize], pixels.collect())
+}

@@ -1,0 +1,110 @@
+//! `--texture`: pictures of one's own on materials.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::bail;
+
+use crate::document::Document;
+use crate::named::Named as _;
+use crate::scene::Model;
+use crate::scene::texture::{OwnTexture, TextureTarget, set};
+
+/// Pictures, and the material that they are put on.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct TextureArgument {
+    /// Name or number of the slot; every material where none is given.
+    slot: Option<String>,
+    textures: Vec<(TextureTarget, OwnTexture)>,
+}
+
+/// Reads `[SLOT:]USE=FILE`, or `[SLOT:]FILE` or `[SLOT:]FOLDER` where names of files say what they are for.
+pub(super) fn texture(text: &str) -> Result<TextureArgument, String> {
+    let uses = || {
+        TextureTarget::ALL
+            .iter()
+            .map(|target| target.name())
+            .collect::<Vec<_>>()
+            .join(", ")
+    };
+    if let Some((left, file)) = text.split_once('=') {
+        let (slot, name) = match left.rsplit_once(':') {
+            Some((slot, name)) => (Some(slot.to_owned()), name),
+            None => (None, left),
+        };
+        let target = TextureTarget::by_name(name)
+            .ok_or_else(|| format!("{name} is nothing that a texture is put on; give one of {}", uses()))?;
+        let file = existing(file)?;
+        let named = set::targets_of(&file).into_iter().find(|(known, _)| *known == target);
+        let texture = named.map_or_else(|| OwnTexture::of(file), |(_, texture)| texture);
+        return Ok(TextureArgument {
+            slot,
+            textures: vec![(target, texture)],
+        });
+    }
+    let (slot, path) = match text.rsplit_once(':') {
+        Some((slot, path)) if !Path::new(text).exists() => (Some(slot.to_owned()), path),
+        _ => (None, text),
+    };
+    let path = existing(path)?;
+    let (textures, _) = match path.is_dir() {
+        true => set::recognised(&set::pictures_in(&path)),
+        false => set::recognised(std::slice::from_ref(&path)),
+    };
+    if textures.is_empty() {
+        return Err(format!(
+            "{}: no name here says what a picture is for, as wood_basecolor.png does; write USE={0}, with one of {}",
+            path.display(),
+            uses()
+        ));
+    }
+    Ok(TextureArgument { slot, textures })
+}
+
+fn existing(path: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(path);
+    match path.exists() {
+        true => Ok(path),
+        false => Err(format!("{}: there is no such file", path.display())),
+    }
+}
+
+impl TextureArgument {
+    /// Puts the pictures on the materials of a document.
+    ///
+    /// # Errors
+    /// Where the model has no such slot.
+    pub(super) fn apply(&self, document: &mut Document, model: &Model) -> anyhow::Result<()> {
+        let slots = match &self.slot {
+            None => 0..document.materials.len().max(1),
+            Some(slot) => {
+                let place = slot_of(slot, model)?;
+                place..place + 1
+            }
+        };
+        for slot in slots {
+            let material = document.material_mut(slot);
+            for (target, texture) in &self.textures {
+                material.put_texture(*target, texture.clone());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The number of a slot by its name, or by its number from 1.
+fn slot_of(text: &str, model: &Model) -> anyhow::Result<usize> {
+    let named = model.slots.iter().position(|slot| slot.name == text);
+    let numbered = text
+        .parse()
+        .ok()
+        .filter(|number| (1..=model.slots.len()).contains(number));
+    if let Some(slot) = named.or(numbered.map(|number| number - 1)) {
+        return Ok(slot);
+    }
+    let names: Vec<_> = model.slots.iter().map(|slot| slot.name.as_str()).collect();
+    bail!(
+        "--texture: the model has no material {text}; it has {} (or 1 to {})",
+        names.join(", "),
+        names.len()
+    )
+}

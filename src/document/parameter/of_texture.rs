@@ -1,0 +1,108 @@
+//! How a picture of the user's own is put on a material.
+
+use std::sync::LazyLock;
+
+use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
+use crate::named::Named;
+use crate::scene::texture::{OwnTexture, TextureChannel, TextureProjection, TextureSpace};
+
+/// Every parameter of a picture on a material, in the order of its rows; the keys are those inside its object in files, and on
+/// the command line behind that of what it is put on.
+pub static TEXTURE_PARAMETERS: LazyLock<Vec<Parameter<OwnTexture>>> = LazyLock::new(all);
+
+type Accessors = (fn(&OwnTexture) -> Value, fn(&mut OwnTexture, Value));
+
+/// Reads and writes a number.
+macro_rules! number {
+    ($($field:tt)*) => {
+        (
+            |texture: &OwnTexture| Value::Number(texture.$($field)*),
+            |texture: &mut OwnTexture, value: Value| {
+                if let Value::Number(value) = value {
+                    texture.$($field)* = value;
+                }
+            },
+        )
+    };
+}
+
+/// Reads and writes one of a closed list.
+macro_rules! choice {
+    ($field:ident) => {
+        (
+            |texture: &OwnTexture| Value::Choice(texture.$field.name()),
+            |texture: &mut OwnTexture, value: Value| {
+                if let Value::Choice(name) = value
+                    && let Some(choice) = Named::by_name(name)
+                {
+                    texture.$field = choice;
+                }
+            },
+        )
+    };
+}
+
+#[rustfmt::skip]
+fn all() -> Vec<Parameter<OwnTexture>> {
+    let inverted: Accessors = (
+        |texture| Value::Toggle(texture.inverted),
+        |texture, value| {
+            if let Value::Toggle(is_on) = value {
+                texture.inverted = is_on;
+            }
+        },
+    );
+    vec![
+        of("strength", "Strength", "How far the picture counts: at 0 what it is put on stays as it is. Bumps have a strength of their own.", range([0.0, 1.0], ""), number!(strength)).row([0.0, 1.0], 3),
+        of("scale", "Scale", "How many times the picture repeats across the texture coordinates, or across the model.", range([1e-3, 1e3], ""), number!(scale)).row([0.1, 10.0], 3),
+        of("stretch", "Stretch", "How many times oftener it repeats upwards than sidewards.", range([1e-2, 1e2], ""), number!(stretch)).row([0.1, 10.0], 3),
+        of("rotation", "Rotation", "Turns the picture counterclockwise about its middle.", range([-360.0, 360.0], "°"), number!(rotation_deg)).row([-180.0, 180.0], 1),
+        of("offset_u", "Offset right", "By how much of its width the picture lies further to the right.", range([-100.0, 100.0], ""), number!(offset[0])).row([-1.0, 1.0], 3),
+        of("offset_v", "Offset up", "By how much of its height the picture lies further up.", range([-100.0, 100.0], ""), number!(offset[1])).row([-1.0, 1.0], 3),
+        of("projection", "Projection", "Where the picture lies on the surface.", choices::<TextureProjection>(), choice!(projection)),
+        of("channel", "Channel", "Which of the picture's channels counts, where a number is meant.", choices::<TextureChannel>(), choice!(channel)),
+        of("color_space", "Colour space", "What the picture's numbers stand for.", choices::<TextureSpace>(), choice!(space)),
+        of("inverted", "Inverted", "Dark counts as bright: gloss for roughness. Of a normal map, green points downwards, as DirectX has it.", Kind::Toggle, inverted),
+    ]
+}
+
+fn range(range: [f32; 2], unit: &'static str) -> Kind {
+    Kind::Number { range, unit }
+}
+
+fn of(
+    key: &'static str,
+    label: &'static str,
+    help: &'static str,
+    kind: Kind,
+    (get, set): Accessors,
+) -> Parameter<OwnTexture> {
+    Parameter {
+        key,
+        group: "Texture",
+        label,
+        name: "",
+        flag: None,
+        symbol: "",
+        help,
+        kind,
+        row: RowStyle {
+            bar: None,
+            step: 0.01,
+            decimals: 3,
+            is_percent: false,
+        },
+        stage: Stage::Materials,
+        applies: |_| true,
+        idle: |_| None,
+        get,
+        set,
+    }
+}
+
+impl Parameter<OwnTexture> {
+    fn row(mut self, bar: [f64; 2], decimals: usize) -> Self {
+        (self.row.bar, self.row.decimals) = (Some(bar), decimals);
+        self
+    }
+}

@@ -1,0 +1,334 @@
+//! The pictures of a model as the integrators read them: all texels in one array, filtered by hand, so that both engines
+//! find the same numbers. Twin of `shaders/scene/texture.wgsl`.
+//!
+//! Texels are RGBA of 8 bits in words of 32, or of 16 bits in two words each. The array begins with the linear values of the 256 sRGB codes as the bits of
+//! f32: colours are decoded before they are filtered, by a look-up that has no rounding of its own.
+
+mod mean;
+mod own;
+mod pack;
+pub(super) mod scale;
+pub mod set;
+mod uses;
+
+use bytemuck::{Pod, Zeroable};
+
+use super::geometry::{Geometry, Vertex};
+use super::triangle_normal;
+use crate::optics::albedo::table_lookup;
+use crate::optics::frame::frame_from_tangent;
+use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
+use crate::optics::numeric::normalize_or;
+use crate::optics::real::Real;
+use crate::optics::vector::{Vec3, vec3};
+
+pub use mean::{TextureMean, mean_of_file, texture_mean};
+pub use own::{OwnTexture, TextureChannel, TextureProjection, TextureSpace, TextureTarget};
+pub use pack::{OwnPicture, Pack, Pictures, SlotTextures, Textures, WORDS_MAX};
+pub use uses::TextureAssignment;
+
+/// How a picture goes on beyond its edges: from the start again.
+pub const WRAP_REPEAT: u32 = 0;
+/// Back and forth.
+pub const WRAP_MIRRORED: u32 = 1;
+/// The texel at the edge.
+pub const WRAP_CLAMP: u32 = 2;
+/// [`TextureRecord::flags`]: red, green and blue are sRGB codes.
+pub const IS_SRGB: u32 = 1;
+/// [`TextureRecord::flags`]: the nearest texel alone counts.
+pub const IS_NEAREST: u32 = 2;
+/// [`TextureRecord::flags`]: the second set of texture coordinates is meant.
+pub const IS_SECOND_SET: u32 = 4;
+/// [`TextureRecord::flags`]: channels have 16 bits, a texel two words.
+pub const IS_FINE: u32 = 8;
+/// [`TextureRecord::flags`]: the picture lies on the surface as on a box.
+pub const IS_BOX: u32 = 16;
+/// [`TextureRecord::flags`]: normals turn with their picture.
+pub const TURNS_NORMALS: u32 = 32;
+/// [`TextureRecord::flags`]: where the channel's number begins that stands for all; 0 for none, else 1 more than it.
+pub const CHANNEL_SHIFT: u32 = 8;
+/// [`TextureRecord::flags`]: where it begins how the picture goes on along u; along v two bits further.
+pub const WRAP_SHIFT: u32 = 16;
+
+/// One use of a picture. Three texels of four words on the GPU (`shaders/scene/texture.wgsl`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct TextureRecord {
+    /// The place along u: the dot product with (u, v, 1).
+    pub u_from_uv: [f32; 3],
+    /// Where the texels begin, row by row from the top.
+    pub first_texel: u32,
+    /// The place along v.
+    pub v_from_uv: [f32; 3],
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// How its texels are read.
+    pub flags: u32,
+    /// What is found is multiplied by this.
+    pub scale: f32,
+    /// Then this is added.
+    pub offset: f32,
+}
+
+/// Places on a surface by which pictures are looked up: both sets of texture coordinates, and where the place is on a box
+/// around the model.
+pub type Uvs<T> = [[T; 2]; 3];
+
+/// Red, green, blue (linear) and alpha that a use of a picture gives at a surface point; the same four times where one channel
+/// counts.
+pub fn texture_lookup<T: Real>(textures: &Textures, index: u32, uvs: Uvs<T>) -> (Vec3<T>, T) {
+    let record = &textures.records[index as usize];
+    let (color, alpha) = filtered(textures, record, uvs);
+    let (color, alpha) = match (record.flags >> CHANNEL_SHIFT) & 7 {
+        0 => (color, alpha),
+        1 => (Vec3::splat(color.x), color.x),
+        2 => (Vec3::splat(color.y), color.y),
+        3 => (Vec3::splat(color.z), color.z),
+        _ => (Vec3::splat(alpha), alpha),
+    };
+    let [scale, offset] = [record.scale, record.offset].map(|x| T::from_f64(f64::from(x)));
+    (color * scale + Vec3::splat(offset), alpha * scale + offset)
+}
+
+/// A picture at a surface point as it is: red, green, blue (linear) and alpha.
+fn filtered<T: Real>(textures: &Textures, record: &TextureRecord, uvs: Uvs<T>) -> (Vec3<T>, T) {
+    let [u, v] = match record.flags & (IS_SECOND_SET | IS_BOX) {
+        0 => uvs[0],
+        IS_SECOND_SET => uvs[1],
+        _ => uvs[2],
+    };
+    let along = |row: [f32; 3]| {
+        let [a, b, c] = row.map(|x| T::from_f64(f64::from(x)));
+        a * u + b * v + c
+    };
+    let wrap = [0, 2].map(|shift| (record.flags >> (WRAP_SHIFT + shift)) & 3);
+    let [width, height] = [record.width, record.height].map(|size| T::from_f64(f64::from(size)));
+    let x = wrapped(along(record.u_from_uv), wrap[0]) * width;
+    let y = wrapped(along(record.v_from_uv), wrap[1]) * height;
+    if record.flags & IS_NEAREST != 0 {
+        let place = |x: T, size: u32| (x.to_f64() as u32).min(size - 1);
+        return texel(textures, record, place(x, record.width), place(y, record.height));
+    }
+    let half = T::from_f64(0.5);
+    let (left, top) = ((x - half).floor(), (y - half).floor());
+    let columns = neighbours(left, record.width, wrap[0]);
+    let rows = neighbours(top, record.height, wrap[1]);
+    let (fx, fy) = (x - half - left, y - half - top);
+    let mix = |(a, a1): (Vec3<T>, T), (b, b1): (Vec3<T>, T), t: T| (a.mix(b, t), a1 + (b1 - a1) * t);
+    let [above, below] = rows.map(|row| {
+        let [a, b] = columns.map(|column| texel(textures, record, column, row));
+        mix(a, b, fx)
+    });
+    mix(above, below, fy)
+}
+
+/// A place along one side of a texture, brought into [0, 1].
+pub fn wrapped<T: Real>(place: T, wrap: u32) -> T {
+    match wrap {
+        WRAP_CLAMP => place.clamp(T::zero(), T::one()),
+        WRAP_MIRRORED => {
+            let two = T::from_f64(2.0);
+            let turn = place - two * (place / two).floor();
+            turn.min(two - turn)
+        }
+        _ => place - place.floor(),
+    }
+}
+
+/// The texels on both sides of a place, whose left one is `low` (from −1 on).
+fn neighbours<T: Real>(low: T, size: u32, wrap: u32) -> [u32; 2] {
+    let last = size - 1;
+    let low = low.to_f64();
+    let is_first = low < 0.0;
+    let left = (low.max(0.0) as u32).min(last);
+    let right = if is_first { 0 } else { (left + 1).min(last) };
+    if wrap == WRAP_REPEAT {
+        return [
+            if is_first { last } else { left },
+            if left == last && !is_first { 0 } else { right },
+        ];
+    }
+    [left, right]
+}
+
+fn texel<T: Real>(textures: &Textures, record: &TextureRecord, column: u32, row: u32) -> (Vec3<T>, T) {
+    let place = row * record.width + column;
+    if record.flags & IS_FINE != 0 {
+        let first = (record.first_texel + 2 * place) as usize;
+        let fraction = |code: u32| T::from_f64(f64::from((code & 0xffff) as f32 / 65535.0));
+        let [rg, ba] = [textures.words[first], textures.words[first + 1]];
+        return (vec3(fraction(rg), fraction(rg >> 16), fraction(ba)), fraction(ba >> 16));
+    }
+    let word = textures.words[(record.first_texel + place) as usize];
+    let [r, g, b, a] = word.to_le_bytes();
+    let channel = |code: u8| {
+        let linear = if record.flags & IS_SRGB != 0 {
+            f32::from_bits(textures.words[usize::from(code)])
+        } else {
+            f32::from(code) / 255.0
+        };
+        T::from_f64(f64::from(linear))
+    };
+    (
+        vec3(channel(r), channel(g), channel(b)),
+        T::from_f64(f64::from(f32::from(a) / 255.0)),
+    )
+}
+
+/// The texture coordinates at a place of a triangle, given by the weights of its corners; those of the box where
+/// `has_box` says that they are needed.
+#[inline(always)]
+pub fn uvs_at<T: Real>(geometry: &Geometry, triangle: usize, weights: [T; 3], has_box: bool) -> Uvs<T> {
+    let corners = geometry.triangles[triangle].map(|vertex| &geometry.vertices[vertex as usize]);
+    let sum = |number: &dyn Fn(&Vertex) -> f32| {
+        let part = |i: usize| T::from_f64(f64::from(number(corners[i]))) * weights[i];
+        part(0) + part(1) + part(2)
+    };
+    [
+        [0, 1].map(|i| sum(&|vertex| vertex.uv[i])),
+        [0, 1].map(|i| sum(&|vertex| vertex.second_uv[i])),
+        if has_box {
+            let between = |[a, b, c]: [Vec3<T>; 3]| a * weights[0] + b * weights[1] + c * weights[2];
+            let places = geometry.corners(triangle).map(Vec3::from_f32);
+            let smooth = between(corners.map(|corner| Vec3::from_f32(corner.normal)));
+            box_uv(between(places), normalize_or(smooth, triangle_normal(places)))
+        } else {
+            [T::zero(); 2]
+        },
+    ]
+}
+
+/// The axis along which a picture lies to the right on the side of a box that a surface with this normal faces: seen from
+/// outside, with y upwards, and with −z upwards on top.
+pub fn box_right<T: Real>(normal: Vec3<T>) -> Vec3<T> {
+    let [x, y, z] = normal.to_f64();
+    let axis = |x: f64, z: f64| vec3(T::from_f64(x), T::zero(), T::from_f64(z));
+    if x.abs() >= y.abs() && x.abs() >= z.abs() {
+        axis(0.0, if x < 0.0 { 1.0 } else { -1.0 })
+    } else if y.abs() >= z.abs() {
+        axis(1.0, 0.0)
+    } else {
+        axis(if z < 0.0 { -1.0 } else { 1.0 }, 0.0)
+    }
+}
+
+/// Where a place with this normal is on the side of the box around the model that it faces, v downwards. The box reaches from
+/// −1 to 1, the model's bounding radius.
+fn box_uv<T: Real>(position: Vec3<T>, normal: Vec3<T>) -> [T; 2] {
+    let [x, y, z] = normal.to_f64();
+    let is_level = y.abs() > x.abs() && y.abs() >= z.abs();
+    let down = match is_level {
+        true if y < 0.0 => -position.z,
+        true => position.z,
+        false => -position.y,
+    };
+    let half = T::from_f64(0.5);
+    [box_right(normal).dot(position) * half + half, down * half + half]
+}
+
+/// The material at a surface point: what its textures say and the colour between its vertices multiplied in.
+/// `tables` holds all materials' tables.
+pub fn textured_material<T: Real>(
+    textures: &Textures,
+    tables: &[f32],
+    material: &Material<T>,
+    uvs: Uvs<T>,
+    vertex_color: Vec3<T>,
+) -> Material<T> {
+    let mut at_point = *material;
+    at_point.base_color = material.base_color * vertex_color;
+    at_point.transmission_tint = material.transmission_tint * vertex_color;
+    let [base_color, roughness, _, emission] = material.textures;
+    if base_color != NO_TEXTURE {
+        let (color, _) = texture_lookup(textures, base_color, uvs);
+        at_point.base_color = at_point.base_color * color;
+        at_point.transmission_tint = at_point.transmission_tint * color;
+    }
+    // A picture that has both is looked up once.
+    let mut of_metalness = Vec3::splat(T::one());
+    if roughness != NO_TEXTURE {
+        let (values, _) = texture_lookup(textures, roughness, uvs);
+        of_metalness = values;
+        at_point.roughness = material.texture_roughness * values.y;
+        if material.roughness_table != NO_TEXTURE {
+            at_point.roughness = table_lookup(tables, material.roughness_table, MATCHED_NODES, at_point.roughness);
+        }
+        // What the refraction is rougher by stays.
+        let rough = material.transmission_roughness + (at_point.roughness - material.roughness);
+        at_point.transmission_roughness = rough.clamp(T::zero(), T::one());
+    }
+    if material.metalness_texture != NO_TEXTURE {
+        if material.metalness_texture != roughness {
+            (of_metalness, _) = texture_lookup(textures, material.metalness_texture, uvs);
+        }
+        at_point.metalness = material.metalness * of_metalness.z;
+    }
+    if emission != NO_TEXTURE {
+        at_point.emission = material.emission * texture_lookup(textures, emission, uvs).0;
+    }
+    if material.coat_texture != NO_TEXTURE {
+        at_point.coat_weight = material.coat_weight * texture_lookup(textures, material.coat_texture, uvs).0.x;
+    }
+    at_point
+}
+
+/// What a surface point emits, linear RGB, its holes left out.
+pub fn emission_at<T: Real>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> Vec3<T> {
+    let share = if material.has_holes() {
+        opacity_at(textures, material, uvs)
+    } else {
+        T::one()
+    };
+    let emission = material.textures[3];
+    if emission == NO_TEXTURE {
+        return material.emission * share;
+    }
+    material.emission * texture_lookup(textures, emission, uvs).0 * share
+}
+
+/// The share of light that a surface point stops, in [0, 1].
+pub fn opacity_at<T: Real>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> T {
+    let mut opacity = material.opacity;
+    if material.opacity_texture != NO_TEXTURE {
+        opacity = opacity * texture_lookup(textures, material.opacity_texture, uvs).1;
+    }
+    let cutoff = material.alpha_cutoff;
+    let masked = T::select(opacity.less(cutoff), T::zero(), T::one());
+    T::select(cutoff.less(T::zero()), opacity, masked)
+}
+
+/// The normal that a normal texture gives, in world space. `tangent` and the sign of the bitangent as the geometry has
+/// them, `normal` the interpolated one, `outward` the same on the front of the surface; the plain normal where the texture
+/// says nothing.
+pub fn mapped_normal<T: Real>(
+    textures: &Textures,
+    material: &Material<T>,
+    uvs: Uvs<T>,
+    [normal, tangent, outward]: [Vec3<T>; 3],
+    sign: T,
+) -> Vec3<T> {
+    let record = &textures.records[material.textures[2] as usize];
+    let (texel, _) = filtered(textures, record, uvs);
+    let signed = |x: T| T::from_f64(2.0) * x - T::one();
+    let (mut x, mut y) = (
+        signed(texel.x) * material.normal_strength,
+        signed(texel.y) * material.normal_strength,
+    );
+    if record.flags & TURNS_NORMALS != 0 {
+        let [a, b, _] = record.u_from_uv.map(|x| T::from_f64(f64::from(x)));
+        let length = (a * a + b * b).sqrt();
+        let (cosine, sine) = (a / length, -b / length);
+        (x, y) = (cosine * x - sine * y, sine * x + cosine * y);
+    }
+    let is_box = record.flags & IS_BOX != 0;
+    let tangent = if is_box { box_right(outward) } else { tangent };
+    let along = frame_from_tangent(normal, tangent, T::zero());
+    let is_left = !is_box && sign.to_f64() < 0.0;
+    let bitangent = if is_left { -along.bitangent } else { along.bitangent };
+    // What points into the surface is laid down on it.
+    let up = signed(texel.z).max(T::zero());
+    let mapped = along.tangent * x + bitangent * y + normal * up;
+    normalize_or(mapped, normal)
+}

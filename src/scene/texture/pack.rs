@@ -1,0 +1,541 @@
+//! Pictures packed for the integrators.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::mean::{TextureMean, texture_mean};
+use super::own::TextureTarget;
+use super::scale::{fraction, halved};
+use super::uses::{SlotUses, TextureAssignment, Use, of_own, of_slot};
+use super::{CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord};
+use crate::optics::material::NO_TEXTURE;
+use crate::optics::tone::linear_from_srgb;
+use crate::optics::vector::{Vec3, vec3};
+use crate::scene::model::{AlphaMode, Model, Texture};
+
+/// Words before the first texel: the linear values of sRGB codes.
+const DECODED: usize = 256;
+/// Words that a model's texels may take: what every Vulkan adapter binds at once, 128 MiB.
+pub const WORDS_MAX: usize = 1 << 25;
+
+/// Reads pictures of the user's own; the flag says whether they are read as colours.
+///
+/// # Errors
+/// Why it can't be had.
+pub type Pictures<'a> = &'a dyn Fn(&Path, bool) -> Result<Arc<Texture>, String>;
+
+/// A picture of the user's own, or why it can't be had.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OwnPicture {
+    /// Its file.
+    pub file: PathBuf,
+    /// What was read.
+    pub picture: Result<Arc<Texture>, String>,
+}
+
+/// What slots look up.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Textures {
+    /// The uses of pictures; never empty, since a GPU's buffer cannot be.
+    pub records: Vec<TextureRecord>,
+    /// Decoded sRGB codes, then texels.
+    pub words: Arc<Vec<u32>>,
+    /// What each of the model's slots looks up.
+    pub slots: Vec<SlotTextures>,
+    /// What had to be changed, and what is missing, one line each.
+    pub warnings: Vec<String>,
+    /// The pictures of the user's own.
+    pub own: Vec<OwnPicture>,
+}
+
+/// What a slot looks up, as numbers of [`Textures::records`] or [`NO_TEXTURE`]. A picture of one value is a number, not
+/// looked up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlotTextures {
+    /// Multiplies the base colour.
+    pub base_color: u32,
+    /// Its green multiplies the roughness.
+    pub roughness: u32,
+    /// Its blue multiplies the metalness.
+    pub metalness: u32,
+    /// Tangent-space normals.
+    pub normal: u32,
+    /// Multiplies the emission.
+    pub emission: u32,
+    /// Its alpha multiplies the opacity.
+    pub opacity: u32,
+    /// Its red multiplies the weight of the coat.
+    pub coat: u32,
+    /// The surface is there where its opacity reaches this; negative where the opacity is a share.
+    pub alpha_cutoff: f32,
+    /// The emission texture's mean, linear.
+    pub mean_emission: [f32; 3],
+    /// Linear RGB of a base colour texture of one value.
+    pub constant_base_color: Option<[f32; 3]>,
+    /// The same of the opacity's.
+    pub constant_opacity: Option<f32>,
+    /// The same of the roughness's.
+    pub constant_roughness: Option<f32>,
+    /// The same of the metalness's.
+    pub constant_metalness: Option<f32>,
+    /// The same of the coat's.
+    pub constant_coat: Option<f32>,
+    /// Colours at the vertices multiply the base colour.
+    pub has_vertex_colors: bool,
+    /// Which of them, by target, lie on the surface as on a box.
+    pub on_box: [bool; TextureTarget::ALL.len()],
+}
+
+impl Default for SlotTextures {
+    fn default() -> Self {
+        Self {
+            base_color: NO_TEXTURE,
+            roughness: NO_TEXTURE,
+            metalness: NO_TEXTURE,
+            normal: NO_TEXTURE,
+            emission: NO_TEXTURE,
+            opacity: NO_TEXTURE,
+            coat: NO_TEXTURE,
+            alpha_cutoff: -1.0,
+            mean_emission: [1.0; 3],
+            constant_base_color: None,
+            constant_opacity: None,
+            constant_roughness: None,
+            constant_metalness: None,
+            constant_coat: None,
+            has_vertex_colors: false,
+            on_box: [false; TextureTarget::ALL.len()],
+        }
+    }
+}
+
+/// The texels of all pictures that are used, and what is known of each: all that does not depend on how they are put on a
+/// surface.
+#[derive(Debug)]
+pub struct Pack {
+    words: Arc<Vec<u32>>,
+    pictures: Vec<Packed>,
+    own: Vec<Own>,
+    /// Whether the triangles of each slot have texture coordinates.
+    has_coordinates: Vec<bool>,
+    warnings: Vec<String>,
+}
+
+/// A picture of the user's own among the packed ones.
+#[derive(Debug)]
+struct Own {
+    is_srgb: bool,
+    /// Its number, where it could be read.
+    index: Option<usize>,
+    of: OwnPicture,
+}
+
+/// A packed picture.
+#[derive(Debug)]
+struct Packed {
+    size: [u32; 2],
+    /// Where its texels begin, by [`variant`].
+    first_texels: [Option<u32>; 4],
+    /// Its channels, in [0, 1], where each is the same everywhere.
+    channels: [Option<f64>; 4],
+    mean: Option<TextureMean>,
+    is_translucent: bool,
+    is_fine: bool,
+}
+
+/// Texels as they are packed: of 8 or of 16 bits, green as it is or upside down.
+fn variant(is_fine: bool, is_flipped: bool) -> usize {
+    usize::from(is_fine) + 2 * usize::from(is_flipped)
+}
+
+impl Pack {
+    /// Packs what a model's slots and pictures of the user's own need. Where that is too much for a GPU the largest
+    /// pictures are halved, which the warnings say.
+    pub fn new(model: &Model, assigned: &[TextureAssignment], pictures: Pictures<'_>) -> Self {
+        Self::within(model, assigned, pictures, WORDS_MAX)
+    }
+
+    fn within(model: &Model, assigned: &[TextureAssignment], read: Pictures<'_>, words_max: usize) -> Self {
+        let mut warnings = Vec::new();
+        let mut own: Vec<Own> = Vec::new();
+        let mut count = model.textures.len();
+        for TextureAssignment { target, texture, .. } in assigned {
+            let is_srgb = texture.is_srgb(*target);
+            if own
+                .iter()
+                .any(|own| own.of.file == texture.file && own.is_srgb == is_srgb)
+            {
+                continue;
+            }
+            let picture = read(&texture.file, is_srgb);
+            if let Err(why) = &picture {
+                warnings.push(format!(
+                    "{}: the {} texture can't be had: {why}; put the file there, or choose another",
+                    texture.file.display(),
+                    target.label().to_lowercase()
+                ));
+            }
+            let index = picture.is_ok().then_some(count);
+            count += usize::from(picture.is_ok());
+            own.push(Own {
+                is_srgb,
+                index,
+                of: OwnPicture {
+                    file: texture.file.clone(),
+                    picture,
+                },
+            });
+        }
+        let read: Vec<Arc<Texture>> = own.iter().filter_map(|own| own.of.picture.clone().ok()).collect();
+        let all: Vec<&Texture> = model.textures.iter().chain(read.iter().map(Arc::as_ref)).collect();
+        let mut pack = Self {
+            words: Arc::default(),
+            pictures: all.iter().map(|picture| Packed::of(picture)).collect(),
+            own,
+            has_coordinates: slots_with_coordinates(model),
+            warnings,
+        };
+        let uses: Vec<Use> = pack.uses(model, assigned).into_iter().flatten().flatten().collect();
+        let fitted = fitting(
+            model,
+            &all,
+            &uses,
+            words_max.saturating_sub(DECODED),
+            &mut pack.warnings,
+        );
+        let mut words: Vec<u32> = decoded_codes().collect();
+        for used in &uses {
+            pack.pictures[used.picture].put(&fitted[used.picture], used, &mut words);
+        }
+        pack.words = Arc::new(words);
+        pack
+    }
+
+    /// What had to be changed, and what is missing, one line each.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.words[..])
+    }
+
+    /// The number of a picture of the user's own.
+    pub(super) fn own_picture(&self, file: &Path, is_srgb: bool) -> Option<usize> {
+        let is_it = |own: &&Own| own.is_srgb == is_srgb && own.of.file == file;
+        self.own.iter().find(is_it)?.index
+    }
+
+    pub(super) fn is_translucent(&self, picture: usize) -> bool {
+        self.pictures[picture].is_translucent
+    }
+
+    /// Whether a slot's triangles have texture coordinates.
+    pub(super) fn has_coordinates(&self, slot: usize) -> bool {
+        self.has_coordinates.get(slot).copied().unwrap_or(false)
+    }
+
+    /// What each slot uses. A picture of the user's own takes the place of the model's, also where it can't be had.
+    fn uses(&self, model: &Model, assigned: &[TextureAssignment]) -> Vec<SlotUses> {
+        let is_translucent = |picture: usize| self.is_translucent(picture);
+        let mut uses: Vec<SlotUses> = model.slots.iter().map(|slot| of_slot(slot, is_translucent)).collect();
+        for assignment in assigned {
+            if let Some(slot) = uses.get_mut(assignment.slot) {
+                slot[assignment.target as usize] = of_own(assignment, self);
+            }
+        }
+        uses
+    }
+
+    /// What the model's slots look up, with the same pictures of the user's own, put on in any way.
+    pub fn textures(&self, model: &Model, assigned: &[TextureAssignment]) -> Textures {
+        let mut textures = Textures {
+            records: Vec::new(),
+            words: self.words.clone(),
+            slots: Vec::new(),
+            warnings: self.warnings.clone(),
+            own: self.own.iter().map(|own| own.of.clone()).collect(),
+        };
+        for (slot, uses) in model.slots.iter().zip(self.uses(model, assigned)) {
+            let mut packed = SlotTextures {
+                has_vertex_colors: slot.has_vertex_colors,
+                ..SlotTextures::default()
+            };
+            if slot.alpha_mode == AlphaMode::Mask {
+                packed.alpha_cutoff = slot.alpha_cutoff.max(0.0);
+            }
+            for used in uses.iter().flatten() {
+                self.look_up(used, &mut textures, &mut packed);
+            }
+            textures.slots.push(packed);
+        }
+        if textures.records.is_empty() {
+            textures.records.push(TextureRecord::default());
+        }
+        textures
+    }
+
+    /// Has a slot look a picture up, or know its one value.
+    fn look_up(&self, used: &Use, textures: &mut Textures, slot: &mut SlotTextures) {
+        let picture = &self.pictures[used.picture];
+        let value = picture.one_value(used).filter(|_| used.target != TextureTarget::Normal);
+        slot.on_box[used.target as usize] = value.is_none() && used.flags & IS_BOX != 0;
+        let mut number = |constant: fn(&mut SlotTextures) -> &mut Option<f32>,
+                          record: fn(&mut SlotTextures) -> &mut u32| {
+            *constant(slot) = value.map(|value| value.x as f32);
+            if value.is_none() {
+                *record(slot) = textures.add(picture.record(used));
+            }
+        };
+        match used.target {
+            TextureTarget::Roughness => number(|slot| &mut slot.constant_roughness, |slot| &mut slot.roughness),
+            TextureTarget::Metalness => number(|slot| &mut slot.constant_metalness, |slot| &mut slot.metalness),
+            TextureTarget::Opacity => number(|slot| &mut slot.constant_opacity, |slot| &mut slot.opacity),
+            TextureTarget::Coat => number(|slot| &mut slot.constant_coat, |slot| &mut slot.coat),
+            TextureTarget::Normal => slot.normal = textures.add(picture.record(used)),
+            TextureTarget::BaseColor => {
+                slot.constant_base_color = value.map(Vec3::to_f32);
+                if value.is_none() {
+                    slot.base_color = textures.add(picture.record(used));
+                }
+            }
+            TextureTarget::Emission => {
+                slot.mean_emission = picture.mean(used);
+                // The mean of a single value is that value.
+                if value.is_none() {
+                    slot.emission = textures.add(picture.record(used));
+                }
+            }
+        }
+    }
+}
+
+impl Packed {
+    fn of(picture: &Texture) -> Self {
+        Self {
+            size: [0; 2],
+            first_texels: [None; 4],
+            channels: [0, 1, 2, 3].map(|channel| one_value(picture, channel)),
+            mean: None,
+            is_translucent: picture.rgba8.iter().skip(3).step_by(4).any(|alpha| *alpha < 255),
+            is_fine: !picture.rgba16.is_empty(),
+        }
+    }
+
+    fn is_fine_for(&self, used: &Use) -> bool {
+        self.is_fine && used.flags & IS_SRGB == 0
+    }
+
+    /// Appends the texels for a use, unless they are there.
+    fn put(&mut self, picture: &Texture, used: &Use, words: &mut Vec<u32>) {
+        self.size = [picture.width, picture.height];
+        if used.target == TextureTarget::Emission && self.mean.is_none() {
+            self.mean = Some(texture_mean(picture));
+        }
+        let is_fine = self.is_fine_for(used);
+        let first = &mut self.first_texels[variant(is_fine, used.is_flipped)];
+        if first.is_some() {
+            return;
+        }
+        *first = Some(words.len() as u32);
+        if is_fine {
+            let upside_down = if used.is_flipped { 0xffff_0000 } else { 0 };
+            let texels = picture.rgba16.as_chunks::<4>().0.iter();
+            words.extend(texels.flat_map(|[r, g, b, a]| {
+                let pair = |low: &u16, high: &u16| u32::from(*low) | u32::from(*high) << 16;
+                [pair(r, g) ^ upside_down, pair(b, a)]
+            }));
+        } else {
+            let upside_down = if used.is_flipped { 0x0000_ff00 } else { 0 };
+            let texels = picture.rgba8.as_chunks::<4>().0.iter();
+            words.extend(texels.map(|texel| u32::from_le_bytes(*texel) ^ upside_down));
+        }
+    }
+
+    fn record(&self, used: &Use) -> TextureRecord {
+        let is_fine = self.is_fine_for(used);
+        let [uu, uv, u1, vu, vv, v1] = used.picture_from_uv;
+        let [width, height] = self.size;
+        TextureRecord {
+            u_from_uv: [uu, uv, u1],
+            first_texel: self.first_texels[variant(is_fine, used.is_flipped)].unwrap_or_default(),
+            v_from_uv: [vu, vv, v1],
+            width,
+            height,
+            flags: used.flags | if is_fine { IS_FINE } else { 0 },
+            scale: used.scale,
+            offset: used.offset,
+        }
+    }
+
+    /// Linear RGB of what a use finds, or the number that counts in all three, where it is the same everywhere.
+    fn one_value(&self, used: &Use) -> Option<Vec3<f64>> {
+        let is_srgb = used.flags & IS_SRGB != 0;
+        let channel = |channel: usize| {
+            let code = self.channels[channel]?;
+            let is_code = is_srgb && channel < 3;
+            Some(if is_code {
+                linear_from_srgb(Vec3::splat(code)).x
+            } else {
+                code
+            })
+        };
+        let counts = match (used.flags >> CHANNEL_SHIFT) & 7 {
+            0 => match used.target {
+                TextureTarget::Roughness => Some(1),
+                TextureTarget::Metalness => Some(2),
+                TextureTarget::Opacity => Some(3),
+                TextureTarget::Coat => Some(0),
+                TextureTarget::BaseColor | TextureTarget::Normal | TextureTarget::Emission => None,
+            },
+            one => Some(one as usize - 1),
+        };
+        let value = match counts {
+            Some(one) => Vec3::splat(channel(one)?),
+            None => vec3(channel(0)?, channel(1)?, channel(2)?),
+        };
+        Some(value * f64::from(used.scale) + Vec3::splat(f64::from(used.offset)))
+    }
+
+    /// The mean of what a use finds, linear.
+    fn mean(&self, used: &Use) -> [f32; 3] {
+        self.mean.map_or([1.0; 3], |mean| {
+            let [r, g, b, _] = mean.codes;
+            let found = if used.flags & IS_SRGB != 0 {
+                mean.linear
+            } else {
+                [r, g, b]
+            };
+            found.map(|x| x * used.scale + used.offset)
+        })
+    }
+}
+
+impl Default for Textures {
+    fn default() -> Self {
+        Self::new(&Model::default())
+    }
+}
+
+impl Textures {
+    /// Bytes in memory, the texels left out, which are the [`Pack`]'s.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.records[..])
+    }
+
+    /// What a model's slots look up by themselves.
+    pub fn new(model: &Model) -> Self {
+        Self::within(model, WORDS_MAX)
+    }
+
+    /// The same within as many words.
+    pub fn within(model: &Model, words_max: usize) -> Self {
+        let none = |_: &Path, _: bool| Err(String::new());
+        Pack::within(model, &[], &none, words_max).textures(model, &[])
+    }
+
+    fn add(&mut self, record: TextureRecord) -> u32 {
+        let known = self.records.iter().position(|known| *known == record);
+        let place = known.unwrap_or_else(|| {
+            self.records.push(record);
+            self.records.len() - 1
+        });
+        place as u32
+    }
+}
+
+fn decoded_codes() -> impl Iterator<Item = u32> {
+    (0..DECODED).map(|code| {
+        let linear = linear_from_srgb(Vec3::<f64>::splat(code as f64 / 255.0)).x;
+        (linear as f32).to_bits()
+    })
+}
+
+/// Whether the triangles of each slot have texture coordinates: not the same ones at all corners.
+fn slots_with_coordinates(model: &Model) -> Vec<bool> {
+    let mut has = vec![false; model.slots.len()];
+    let mesh = &model.mesh;
+    for (triangle, slot) in mesh.triangles.iter().zip(&mesh.slots) {
+        let Some(has) = has.get_mut(*slot as usize).filter(|has| !**has) else {
+            continue;
+        };
+        let [a, b, c] = triangle.map(|vertex| mesh.uvs.get(vertex as usize));
+        *has = a != b || b != c;
+    }
+    has
+}
+
+/// The value of a channel of a picture, in [0, 1], where it is the same everywhere.
+fn one_value(picture: &Texture, channel: usize) -> Option<f64> {
+    fn same<C: PartialEq>(texels: &[C], channel: usize) -> bool {
+        let mut texels = texels.as_chunks::<4>().0.iter();
+        let first = texels.next();
+        first.is_some_and(|first| texels.all(|texel| texel[channel] == first[channel]))
+    }
+    let is_same = match picture.rgba16.is_empty() {
+        true => same(&picture.rgba8, channel),
+        false => same(&picture.rgba16, channel),
+    };
+    is_same.then(|| fraction(picture, channel))
+}
+
+/// The pictures that are used (the others without texels), the largest halved until all fit.
+fn fitting(
+    model: &Model,
+    pictures: &[&Texture],
+    uses: &[Use],
+    words_max: usize,
+    warnings: &mut Vec<String>,
+) -> Vec<Texture> {
+    let is_used = |index: usize| uses.iter().any(|used| used.picture == index);
+    let is_color = |index: usize| {
+        let mut of_it = uses.iter().filter(|used| used.picture == index);
+        of_it.any(|used| used.flags & IS_SRGB != 0)
+    };
+    // One texel does where all are the same.
+    let used = |(index, picture): (usize, &&Texture)| {
+        let is_one_value = (0..4).all(|channel| one_value(picture, channel).is_some());
+        let side = match is_one_value {
+            _ if !is_used(index) => 0,
+            true => 1,
+            false => return Texture::clone(picture),
+        };
+        Texture {
+            name: picture.name.clone(),
+            width: side,
+            height: side,
+            rgba8: picture.rgba8[..4 * side as usize].to_vec(),
+            rgba16: picture.rgba16.iter().take(4 * side as usize).copied().collect(),
+        }
+    };
+    let mut fitted: Vec<Texture> = pictures.iter().enumerate().map(used).collect();
+    let words = |picture: &Texture| match picture.rgba16.len() {
+        0 => picture.rgba8.len() / 4,
+        channels => channels / 2,
+    };
+    let whole: Vec<usize> = fitted.iter().map(words).collect();
+    while fitted.iter().map(words).sum::<usize>() > words_max {
+        let largest = (0..fitted.len()).max_by_key(|&index| words(&fitted[index]));
+        let Some(index) = largest.filter(|&index| fitted[index].rgba8.len() > 4) else {
+            break;
+        };
+        fitted[index] = halved(&fitted[index], is_color(index));
+    }
+    for ((picture, original), whole) in fitted.iter().zip(pictures).zip(whole) {
+        if words(picture) < whole {
+            warnings.push(format!(
+                "{}: the picture {} is used at {} × {} instead of {} × {}: together the pictures are more than {} \
+                 MiB; export smaller ones to choose which",
+                model.name,
+                picture.name,
+                picture.width,
+                picture.height,
+                original.width,
+                original.height,
+                words_max.next_power_of_two() >> 18,
+            ));
+        }
+    }
+    fitted
+}

@@ -1,0 +1,201 @@
+//! Pictures of one surface, recognised by their names: `wood_basecolor.png`, `Wood062_2K_NormalGL.jpg`, `wood_arm_4k.png`.
+
+use std::path::{Path, PathBuf};
+
+use super::own::{OwnTexture, TextureTarget};
+
+/// Endings of pictures that a material can have.
+pub const ENDINGS: [&str; 12] = [
+    "png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "tga", "exr", "ktx2", "dds", "gif",
+];
+
+/// What a word in a picture's name says.
+#[derive(Clone, Copy, PartialEq)]
+enum Meaning {
+    /// What it is put on.
+    Is(TextureTarget),
+    /// The same, its numbers upside down.
+    IsInverted(TextureTarget),
+    /// Occlusion, roughness and metalness in red, green and blue.
+    Packed,
+    /// Something that no material here has.
+    Other,
+}
+
+use Meaning::{Is, IsInverted, Other, Packed};
+use TextureTarget as To;
+
+/// Words by which pictures are named, in lower case without separators. A word of two parts stands before its parts.
+#[rustfmt::skip]
+const WORDS: &[(&str, Meaning)] = &[
+    ("basecolor", Is(To::BaseColor)), ("basecolour", Is(To::BaseColor)), ("albedo", Is(To::BaseColor)),
+    ("diffuse", Is(To::BaseColor)), ("diff", Is(To::BaseColor)), ("color", Is(To::BaseColor)),
+    ("colour", Is(To::BaseColor)), ("col", Is(To::BaseColor)), ("bc", Is(To::BaseColor)),
+    ("metallicroughness", Packed), ("roughnessmetallic", Packed), ("orm", Packed), ("arm", Packed), ("aorm", Packed),
+    ("roughness", Is(To::Roughness)), ("rough", Is(To::Roughness)), ("rgh", Is(To::Roughness)),
+    ("glossiness", IsInverted(To::Roughness)), ("gloss", IsInverted(To::Roughness)),
+    ("smoothness", IsInverted(To::Roughness)),
+    ("metalness", Is(To::Metalness)), ("metallic", Is(To::Metalness)), ("metal", Is(To::Metalness)),
+    ("normaldx", IsInverted(To::Normal)), ("nordx", IsInverted(To::Normal)), ("nrmdx", IsInverted(To::Normal)),
+    ("normaldirectx", IsInverted(To::Normal)),
+    ("normalgl", Is(To::Normal)), ("norgl", Is(To::Normal)), ("nrmgl", Is(To::Normal)),
+    ("normalopengl", Is(To::Normal)), ("normal", Is(To::Normal)), ("normals", Is(To::Normal)),
+    ("nor", Is(To::Normal)), ("nrm", Is(To::Normal)), ("norm", Is(To::Normal)),
+    ("opacity", Is(To::Opacity)), ("alpha", Is(To::Opacity)), ("opac", Is(To::Opacity)),
+    ("transparency", IsInverted(To::Opacity)),
+    ("emission", Is(To::Emission)), ("emissive", Is(To::Emission)), ("emit", Is(To::Emission)),
+    ("clearcoat", Is(To::Coat)), ("coat", Is(To::Coat)),
+    ("ao", Other), ("ambientocclusion", Other), ("occlusion", Other), ("displacement", Other), ("disp", Other),
+    ("height", Other), ("bump", Other), ("specular", Other), ("spec", Other), ("preview", Other), ("thumbnail", Other),
+    ("sheen", Other), ("anisotropy", Other), ("thickness", Other), ("curvature", Other), ("id", Other),
+];
+
+/// The words of a name in lower case: parted where something else than a letter or a digit stands, and where a capital
+/// follows a small letter.
+fn words(path: &Path) -> Vec<String> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let mut words = vec![String::new()];
+    let mut was_small = false;
+    for letter in stem.chars() {
+        let begins = letter.is_uppercase() && was_small;
+        if begins || !letter.is_alphanumeric() {
+            words.push(String::new());
+        }
+        if letter.is_alphanumeric()
+            && let Some(word) = words.last_mut()
+        {
+            word.extend(letter.to_lowercase());
+        }
+        was_small = letter.is_lowercase();
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
+/// What a picture's name says last: a resolution and the like may follow.
+fn meaning(path: &Path) -> Option<Meaning> {
+    let words = words(path);
+    let known = |text: &str| {
+        WORDS
+            .iter()
+            .find(|(word, _)| *word == text)
+            .map(|(_, meaning)| *meaning)
+    };
+    (1..=words.len()).rev().find_map(|end| {
+        let longest = (end.saturating_sub(3)..end).map(|start| words[start..end].concat());
+        longest.into_iter().find_map(|text| known(&text))
+    })
+}
+
+/// True where a picture is named for holding roughness in green and metalness in blue.
+pub fn is_packed(path: &Path) -> bool {
+    meaning(path) == Some(Packed)
+}
+
+/// What a picture's name says that it is put on; nothing where it does not say.
+pub fn targets_of(path: &Path) -> Vec<(TextureTarget, OwnTexture)> {
+    let plain = || OwnTexture::of(path.to_owned());
+    match meaning(path) {
+        Some(Is(target)) => vec![(target, plain())],
+        Some(IsInverted(target)) => {
+            let inverted = OwnTexture {
+                inverted: true,
+                ..plain()
+            };
+            vec![(target, inverted)]
+        }
+        Some(Packed) => vec![(To::Roughness, plain()), (To::Metalness, plain())],
+        Some(Other) | None => Vec::new(),
+    }
+}
+
+/// What is put on what of several pictures, one each; and those that are left over. Of two for the same target the first
+/// counts, a normal map whose green points upwards before one whose green points down, and a picture of one number before one of
+/// several.
+pub fn recognised(pictures: &[PathBuf]) -> (Vec<(TextureTarget, OwnTexture)>, Vec<PathBuf>) {
+    let mut found: Vec<(TextureTarget, OwnTexture)> = Vec::new();
+    let mut in_order: Vec<&PathBuf> = pictures.iter().collect();
+    let comes_late = |path: &Path| match meaning(path) {
+        Some(IsInverted(_)) => 1,
+        Some(Packed) => 2,
+        _ => 0,
+    };
+    in_order.sort_by_key(|path| comes_late(path));
+    for path in in_order {
+        for (target, texture) in targets_of(path) {
+            if found.iter().all(|(known, _)| *known != target) {
+                found.push((target, texture));
+            }
+        }
+    }
+    found.sort_by_key(|(target, _)| *target as u32);
+    let is_used = |path: &PathBuf| found.iter().any(|(_, texture)| texture.file == *path);
+    let left = pictures.iter().filter(|path| !is_used(path)).cloned().collect();
+    (found, left)
+}
+
+/// The pictures directly in a folder, by name.
+pub fn pictures_in(folder: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return Vec::new();
+    };
+    let is_picture = |path: &PathBuf| {
+        let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        ENDINGS.contains(&ending.as_str()) && path.is_file()
+    };
+    let mut pictures: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(is_picture).collect();
+    pictures.sort();
+    pictures
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(name: &str) -> Vec<(&'static str, bool)> {
+        let targets = targets_of(Path::new(name));
+        targets
+            .iter()
+            .map(|(target, texture)| (target.name(), texture.inverted))
+            .collect()
+    }
+
+    #[test]
+    fn pictures_are_known_by_their_names() {
+        assert_eq!(told("wood_BaseColor.png"), [("base-color", false)]);
+        assert_eq!(told("rusty_metal_02_diff_4k.jpg"), [("base-color", false)]);
+        assert_eq!(told("Wood062_2K_NormalGL.jpg"), [("normal", false)]);
+        assert_eq!(told("Wood062_2K_NormalDX.jpg"), [("normal", true)]);
+        assert_eq!(told("brick_nor_dx_1k.exr"), [("normal", true)]);
+        assert_eq!(told("brick_nor_gl_1k.exr"), [("normal", false)]);
+        assert_eq!(told("paint-Glossiness.tif"), [("roughness", true)]);
+        assert_eq!(
+            told("helmet_OcclusionRoughnessMetallic.png"),
+            [("roughness", false), ("metalness", false)]
+        );
+        assert_eq!(told("rock_arm_2k.png"), [("roughness", false), ("metalness", false)]);
+        assert_eq!(told("base_color.png"), [("base-color", false)]);
+        assert_eq!(told("metal_plate_rough.png"), [("roughness", false)]);
+        assert_eq!(told("rock_ao.png"), []);
+        assert_eq!(told("holiday.jpg"), []);
+    }
+
+    #[test]
+    fn of_two_for_one_target_the_better_is_taken() {
+        let paths = ["a_arm.png", "a_nor_dx.png", "a_nor_gl.png", "a_rough.png", "a_disp.png"].map(PathBuf::from);
+        let (found, left) = recognised(&paths);
+        let names: Vec<_> = found
+            .iter()
+            .map(|(target, texture)| (target.name(), texture.file.to_str().unwrap_or_default()))
+            .collect();
+        assert_eq!(
+            names,
+            [
+                ("roughness", "a_rough.png"),
+                ("metalness", "a_arm.png"),
+                ("normal", "a_nor_gl.png")
+            ]
+        );
+        assert_eq!(left, ["a_nor_dx.png", "a_disp.png"].map(PathBuf::from));
+    }
+}

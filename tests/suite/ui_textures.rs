@@ -1,0 +1,150 @@
+//! Textures of one's own in the window: chosen, dropped, placed, taken off.
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::Options;
+use glossmith::document::Document;
+use glossmith::scene::ModelSource;
+use glossmith::scene::texture::{OwnTexture, TextureTarget};
+use image::{Rgba, RgbaImage};
+
+use super::gltf_builder::Folder;
+use super::ui::{Editor, editor_of, editor_with, options, picture, see_label, settle, undo, wait};
+use super::ui_files::{drop_on, says};
+use super::worker::small_document;
+
+/// The editor on a sphere, with paths typed into a field.
+fn on_a_sphere(folder: &Folder) -> Editor {
+    let document = Document {
+        model: ModelSource::Sphere,
+        ..small_document()
+    };
+    let mut harness = editor_of(Options {
+        document: Some(document),
+        typed_paths: Some(folder.0.path().to_owned()),
+        ..options()
+    });
+    settle(&mut harness);
+    harness
+}
+
+fn write(folder: &Folder, name: &str) -> std::path::PathBuf {
+    let path = folder.path(name);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    let texels = |x: u32, y: u32| Rgba([(90 * x) as u8, (90 * y) as u8, 200, 255]);
+    RgbaImage::from_fn(3, 3, texels).save(&path).unwrap();
+    path
+}
+
+fn own(harness: &Editor, target: TextureTarget) -> Option<OwnTexture> {
+    harness.state().document().materials[0].own.get(target).cloned()
+}
+
+fn click(harness: &mut Editor, role: Role, label: &str) {
+    harness.get_by_role_and_label(role, label).click_accesskit();
+    harness.run_steps(4);
+}
+
+#[test]
+fn a_texture_is_chosen_placed_and_removed() {
+    let folder = Folder::new();
+    let file = write(&folder, "any.png");
+    let mut harness = on_a_sphere(&folder);
+    let plain = picture(&harness);
+    let before = harness.state().document().clone();
+    click(&mut harness, Role::Button, "Texture of the base colour");
+    see_label(&mut harness, "Choose a texture");
+    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
+    field.set_text_value_accesskit(file.to_str().unwrap());
+    harness.run_steps(2);
+    click(&mut harness, Role::Button, "Open");
+    wait(&mut harness, "the texture", |app| {
+        app.document().materials[0].own.get(TextureTarget::BaseColor).is_some()
+    });
+    settle(&mut harness);
+    let textured = picture(&harness);
+    assert!(textured != plain);
+    assert_eq!(own(&harness, TextureTarget::BaseColor), Some(OwnTexture::of(file)));
+    // Its switch, its placement.
+    click(&mut harness, Role::CheckBox, "Base colour texture");
+    settle(&mut harness);
+    assert!(picture(&harness) != textured && own(&harness, TextureTarget::BaseColor).is_some());
+    undo(&mut harness);
+    assert!(picture(&harness) == textured);
+    harness
+        .get_by_label("Placement of the base colour texture")
+        .click_accesskit();
+    // It unfolds by and by.
+    see_label(&mut harness, "Base colour texture rotation");
+    harness.run_steps(20);
+    let value = |harness: &mut Editor, label: &str, value: f64| {
+        let row = harness.get_by_role_and_label(Role::SpinButton, label);
+        row.set_value_accesskit(value);
+        settle(harness);
+    };
+    value(&mut harness, "Base colour texture rotation", 45.0);
+    value(&mut harness, "Base colour texture scale", 3.0);
+    let placed = own(&harness, TextureTarget::BaseColor).unwrap();
+    assert_eq!((placed.rotation_deg, placed.scale), (45.0, 3.0));
+    assert!(picture(&harness) != textured);
+    undo(&mut harness);
+    undo(&mut harness);
+    assert!(picture(&harness) == textured);
+    // Taken off by its menu, and brought back.
+    click(&mut harness, Role::Button, "Menu of the base colour texture");
+    click(&mut harness, Role::Button, "Remove");
+    settle(&mut harness);
+    assert_eq!(own(&harness, TextureTarget::BaseColor), None);
+    undo(&mut harness);
+    assert!(own(&harness, TextureTarget::BaseColor).is_some());
+    undo(&mut harness);
+    assert_eq!(*harness.state().document(), before);
+}
+
+/// The pictures of a set go where their names say, in one edit; by files and by their folder.
+#[test]
+fn a_set_is_dropped_at_once() {
+    let folder = Folder::new();
+    let names = [
+        "wood/wood_basecolor.png",
+        "wood/wood_rough.png",
+        "wood/wood_nor_dx.png",
+        "wood/wood_ao.png",
+    ];
+    let files = names.map(|name| write(&folder, name));
+    let mut harness = on_a_sphere(&folder);
+    let before = harness.state().document().clone();
+    for dropped in [files.to_vec(), vec![folder.path("wood")]] {
+        drop_on(&mut harness, &dropped);
+        settle(&mut harness);
+        assert_eq!(own(&harness, TextureTarget::BaseColor).unwrap().file, files[0]);
+        assert_eq!(own(&harness, TextureTarget::Roughness).unwrap().file, files[1]);
+        let normal = own(&harness, TextureTarget::Normal).unwrap();
+        assert!(normal.file == files[2] && normal.inverted, "green points down");
+        assert!(
+            says(&harness, "wood_ao.png: not used"),
+            "{:?}",
+            harness.state().messages()
+        );
+        undo(&mut harness);
+        assert_eq!(*harness.state().document(), before);
+    }
+}
+
+/// What is missing is told at its row, and all else goes on.
+#[test]
+fn a_missing_texture_is_told() {
+    let folder = Folder::new();
+    let mut document = Document {
+        model: ModelSource::Sphere,
+        ..small_document()
+    };
+    let here = OwnTexture::of(write(&folder, "here.png"));
+    document.materials[0].put_texture(TextureTarget::BaseColor, here);
+    let gone = OwnTexture::of(folder.path("gone.png"));
+    document.materials[0].put_texture(TextureTarget::Roughness, gone);
+    let mut harness = editor_with(document, Vec::new());
+    settle(&mut harness);
+    see_label(&mut harness, "gone.png: missing");
+    assert!(harness.query_all_by_label("here.png").count() > 0);
+}
