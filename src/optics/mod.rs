@@ -17,6 +17,7 @@ pub mod lobe;
 pub mod material;
 pub mod microfacet;
 pub mod numeric;
+pub mod primaries;
 pub mod random;
 pub mod real;
 pub mod refraction;

@@ -15,6 +15,7 @@ use super::sums::KeptFilm;
 use crate::document::Document;
 use crate::job::features::Features;
 use crate::job::film::{Film, Image};
+use crate::optics::primaries::REC709;
 use crate::store::FileError;
 use crate::store::picture::png_bytes;
 use crate::store::project::document_text;
@@ -192,8 +193,21 @@ fn write_exr(file: &mut (impl Write + Seek), rendered: Rendered<'_>, attributes:
         ..encoding
     };
     let layer = Layer::new(size, attributes, encoding, AnyChannels::sort(all));
-    let written = exr::prelude::Image::from_layer(layer).write().to_buffered(file);
-    written.map_err(io::Error::other)
+    let mut image = exr::prelude::Image::from_layer(layer);
+    image.attributes.chromaticities = Some(rec709());
+    image.write().to_buffered(file).map_err(io::Error::other)
+}
+
+/// The space of all colours here.
+fn rec709() -> exr::meta::attribute::Chromaticities {
+    let place = |[x, y]: [f64; 2]| exr::math::Vec2(x as f32, y as f32);
+    let [red, green, blue] = REC709.primaries.map(place);
+    exr::meta::attribute::Chromaticities {
+        red,
+        green,
+        blue,
+        white: place(REC709.white),
+    }
 }
 
 const COLORS: [&str; 4] = ["R", "G", "B", "A"];

@@ -7,10 +7,12 @@ use exr::prelude::{MetaData, ReadChannels, ReadLayers, ReadSpecificChannel, Vec2
 use image::error::{LimitError, LimitErrorKind};
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, ImageResult, Limits};
 
+use super::environment::open_exr;
 use super::float_tiff;
 use super::gpu_picture::{self, Texels};
 use super::model::Texture;
 use super::texture::scale::scaled_to;
+use crate::optics::primaries::{Matrix, transformed};
 use crate::optics::tone::srgb_from_linear;
 use crate::optics::vector::vec3;
 use crate::panics::contained;
@@ -31,6 +33,8 @@ pub(super) struct Decoded {
     height: u32,
     /// Red, green, blue and opacity of each texel, row by row from the top.
     texels: Numbers,
+    /// Brings its colours to linear Rec. 709, where they are not of it.
+    rec709_from: Option<Matrix>,
 }
 
 enum Numbers {
@@ -44,6 +48,7 @@ impl Decoded {
     /// The picture as it is looked up. One of colours has 8 bits a channel, of sRGB; any other as many as its file, up to
     /// 16: steps of 8 bits in a normal or in a small roughness are seen.
     pub fn texture(self, is_color: bool) -> Texture {
+        let rec709_from = self.rec709_from;
         let rgba16 = match self.texels {
             Numbers::Codes8(rgba8) => {
                 return Texture {
@@ -60,6 +65,7 @@ impl Decoded {
                 let texel = |texel: &[f32; 4]| {
                     let [r, g, b, a] = texel.map(|x| if x.is_finite() { f64::from(x) } else { 0.0 });
                     let [r, g, b] = if is_color {
+                        let [r, g, b] = rec709_from.map_or([r, g, b], |matrix| transformed(&matrix, [r, g, b]));
                         srgb_from_linear(vec3(r, g, b)).to_f64()
                     } else {
                         [r, g, b]
@@ -108,7 +114,17 @@ pub(super) fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String
         width,
         height,
         texels,
+        rec709_from: rec709_from(bytes),
     })
+}
+
+/// What brings the colours of an OpenEXR picture to linear Rec. 709, where its file says that they are of another space.
+fn rec709_from(bytes: &[u8]) -> Option<Matrix> {
+    if !bytes.starts_with(&EXR) {
+        return None;
+    }
+    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).ok()?;
+    open_exr::rec709_from(meta.headers.first()?.shared_attributes.chromaticities?)
 }
 
 fn decode(name: &str, bytes: &[u8]) -> Result<(u32, u32, Numbers), String> {

@@ -7,7 +7,7 @@ use std::path::Path;
 use clap::{Arg, ArgAction, Command, CommandFactory};
 use glossmith::cli::Arguments;
 use glossmith::document::effect::EFFECTS;
-use glossmith::document::{Kind, PARAMETERS, Parameter, SETTINGS, Value, parameter};
+use glossmith::document::{Kind, PARAMETERS, Parameter, SETTINGS, TEXTURE_PARAMETERS, Value, parameter};
 use glossmith::optics::curve::Curve;
 use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
@@ -228,6 +228,7 @@ fn block(name: &str) -> String {
     match name {
         "parameters" => parameters(&PARAMETERS),
         "settings" => parameters(&SETTINGS),
+        "texture parameters" => parameters(&TEXTURE_PARAMETERS),
         "lobes" => choices(Lobe::ALL.iter().map(|lobe| (lobe.name(), lobe.help()))),
         "curves" => curves(),
         "fresnel" => choices(Fresnel::ALL.iter().map(|fresnel| (fresnel.name(), fresnel.help()))),

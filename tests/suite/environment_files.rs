@@ -465,3 +465,59 @@ proptest! {
         }
     }
 }
+
+/// The file of colours of ACEScg, half of them white, half a saturated green.
+fn acescg_file(path: &std::path::Path) {
+    let place = |x, y| exr::math::Vec2(x, y);
+    let layer = exr_layer(&RGB, "float", Compression::Uncompressed, LayerAttributes::default());
+    let mut image = Image::from_layer(layer);
+    image.attributes.chromaticities = Some(exr::meta::attribute::Chromaticities {
+        red: place(0.713, 0.293),
+        green: place(0.165, 0.83),
+        blue: place(0.128, 0.044),
+        white: place(0.32168, 0.33767),
+    });
+    image.write().to_file(path).expect("a writable folder");
+}
+
+/// Colours of another space are brought to linear Rec. 709; a file that is of it stays to the bit.
+#[test]
+fn colours_of_wider_spaces_are_converted() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("acescg.exr");
+    acescg_file(&path);
+    let environment = load_file(&path).expect("loads");
+    // The Academy's matrix, by Bradford's adaptation.
+    let rows = [
+        [1.7051, -0.6218, -0.0833],
+        [-0.1303, 1.1408, -0.0105],
+        [-0.0240, -0.1290, 1.1530],
+    ];
+    let mut outside = 0;
+    for (index, texel) in environment.texels.iter().enumerate() {
+        let color = [0, 1, 2].map(|channel| f64::from(value(index % WIDTH, index / WIDTH, channel)));
+        for (found, row) in texel.iter().zip(rows) {
+            let expected: f64 = std::iter::zip(row, color).map(|(a, b)| a * b).sum();
+            let scale = color.iter().sum::<f64>();
+            assert!(
+                (f64::from(*found) - expected.max(0.0)).abs() < 4e-4 * scale + 1e-6,
+                "texel {index}: {found} in place of {expected}"
+            );
+            outside += usize::from(expected < -1e-3 * scale);
+        }
+    }
+    let told = environment
+        .warnings
+        .iter()
+        .any(|warning| warning.contains("more saturated than linear Rec. 709"));
+    assert_eq!(told, outside > 0, "{:?}", environment.warnings);
+    // As a picture on a model, too.
+    let [plain, wide] = ["plain.exr", "acescg.exr"].map(|name| {
+        let path = folder.path().join(name);
+        if name == "plain.exr" {
+            exr_file(&folder, name, &RGB, "float", Compression::Uncompressed);
+        }
+        glossmith::scene::texture::mean_of_file(&path).expect("loads").linear
+    });
+    assert!(plain != wide, "{plain:?}");
+}

@@ -270,7 +270,7 @@ fn on_a_box_a_picture_is_upright_from_every_side() {
     ];
     let mut seen = [0; 6];
     for triangle in 0..geometry.triangles.len() {
-        let corners = geometry.corners(triangle).map(|corner| Vec3::<f64>::from_f32(corner));
+        let corners = geometry.corners(triangle).map(Vec3::<f64>::from_f32);
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         let facing = sides
             .iter()

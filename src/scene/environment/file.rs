@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{Environment, EnvironmentEncoding, EnvironmentError};
 use super::{container, cube, display_referred, open_exr, radiance_hdr};
+use crate::optics::primaries::{Matrix, transformed};
 use crate::scene::loading::Loading;
 
 /// The most columns that are kept of a file's picture; larger ones are made smaller.
@@ -38,6 +39,31 @@ pub(super) struct Picture {
     pub warnings: Vec<String>,
     /// The file says that it holds the six faces of a cube, in OpenEXR's order.
     pub is_cube: bool,
+}
+
+impl Picture {
+    /// Brings its colours to Rec. 709. What that space can't hold is nearest without the channel that would be negative; how
+    /// much of it there is is told.
+    pub(super) fn transform(&mut self, path: &Path, matrix: &Matrix) {
+        let mut outside = 0;
+        for texel in &mut self.texels {
+            let [r, g, b, _] = texel.map(f64::from);
+            let color = transformed(matrix, [r, g, b]);
+            // Rounding alone makes no colour one that can't be held.
+            let least = -1e-4 * color.iter().sum::<f64>().abs();
+            outside += usize::from(color.iter().any(|x| *x < least));
+            for (channel, value) in texel.iter_mut().zip(color) {
+                *channel = value.max(0.0) as f32;
+            }
+        }
+        if outside > 0 {
+            self.warnings.push(format!(
+                "{}: {:.1} % of its colours are more saturated than linear Rec. 709 holds; they are shown less so",
+                path.display(),
+                100.0 * outside as f64 / self.texels.len().max(1) as f64
+            ));
+        }
+    }
 }
 
 /// Loads a picture of the whole sphere: a lat-long map or a cube map in a file, or the six faces of one in a folder.

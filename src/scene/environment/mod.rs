@@ -17,7 +17,7 @@ mod error;
 mod file;
 mod gain_map;
 mod luminance_chroma;
-mod open_exr;
+pub(super) mod open_exr;
 mod procedural;
 mod radiance_hdr;
 mod thumbnail;

@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use super::canvas::Canvas;
 use super::file::{Picture, Source, io};
 use super::{EnvironmentError, luminance_chroma};
+use crate::optics::primaries::{Chromaticities, Matrix};
 use crate::panics::contained;
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -81,9 +82,22 @@ fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     })?;
     let mut picture = canvas.finish();
     picture.warnings.extend(layer.warnings);
+    if let Some(matrix) = header.shared_attributes.chromaticities.and_then(rec709_from) {
+        picture.transform(path, &matrix);
+    }
     let layout = header.shared_attributes.other.get(&Text::from("envmap"));
     picture.is_cube = matches!(layout, Some(AttributeValue::EnvironmentMap(EnvironmentMap::Cube)));
     Ok(picture)
+}
+
+/// Linear Rec. 709 from a file's colours, where those are of another space.
+pub(in crate::scene) fn rec709_from(file: exr::meta::attribute::Chromaticities) -> Option<Matrix> {
+    let place = |Vec2(x, y): Vec2<f32>| [f64::from(x), f64::from(y)];
+    let space = Chromaticities {
+        primaries: [file.red, file.green, file.blue].map(place),
+        white: place(file.white),
+    };
+    space.rec709_from()
 }
 
 /// Looks at the first eight bytes, which the crate's errors do not tell apart; returns the length of the file.

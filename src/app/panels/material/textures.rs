@@ -231,7 +231,10 @@ impl Picture {
         }
         let width = (ui.available_width() - theme::ROW_HEIGHT - ui.spacing().item_spacing.x).max(0.0);
         let label = egui::Label::new(name).truncate();
-        ui.add_sized([width, theme::ROW_HEIGHT], label).on_hover_text(about)
+        let size = egui::vec2(width, theme::ROW_HEIGHT);
+        let layout = egui::Layout::left_to_right(egui::Align::Center);
+        let shown = ui.allocate_ui_with_layout(size, layout, |ui| ui.add(label).on_hover_text(about));
+        shown.inner
     }
 
     /// The picture, where it is there, and what its small copy is remembered by.
