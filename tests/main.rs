@@ -99,6 +99,8 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/lut.rs"]
+mod lut;
 #[path = "suite/memory.rs"]
 mod memory;
 #[path = "suite/merge.rs"]

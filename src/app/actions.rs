@@ -38,6 +38,8 @@ pub enum Action {
     UseEnvironment(EnvironmentSource),
     /// Replaces the selected material, keeping nothing of it.
     UseMaterial(Box<MaterialSettings>),
+    /// Asks for a table of colours for the picture.
+    ChooseLut,
     /// Asks for a picture to put on the selected material.
     ChooseTexture(TextureTarget),
     /// Asks where to write a material for another program.

@@ -17,6 +17,7 @@ use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource}
 use crate::scene::{Model, ModelOptions, ModelSource, is_model};
 use crate::store::exchange::{self, ReadOptions};
 use crate::store::file::Opened;
+use crate::store::lut;
 use crate::store::replace::save_atomically;
 
 /// Arguments that describe what is rendered, and how. Options stand over what files say.
@@ -86,6 +87,9 @@ pub struct SceneArguments {
     /// Where the camera is, in degrees around and above its target.
     #[arg(long, value_name = "YAW,PITCH", value_parser = parse::orbit, allow_hyphen_values = true, conflicts_with = "camera-position")]
     camera_orbit: Option<[f64; 2]>,
+    /// A table of colours (.cube) that the picture for screens goes through last, as codes of sRGB: a look.
+    #[arg(long, value_name = "FILE")]
+    lut: Option<PathBuf>,
     /// Width and height in pixels [default: 512x512]. A picture takes some 100 bytes of memory a pixel, 160 more and
     /// up to 1.6 GB for the library where it is denoised; one that does not fit the memory is refused before it is begun.
     #[arg(long, value_name = "WxH", value_parser = parse::size)]
@@ -136,7 +140,7 @@ impl SceneArguments {
             }
         }
         self.put_light(&mut document);
-        self.put_view(&mut document);
+        self.put_view(&mut document)?;
         self.put_limits(&mut document);
         self.settings.apply(&mut document)?;
         for assignment in &self.assignments {
@@ -218,7 +222,11 @@ impl SceneArguments {
         lighting.background = self.background.unwrap_or(lighting.background);
     }
 
-    fn put_view(&self, document: &mut Document) {
+    fn put_view(&self, document: &mut Document) -> anyhow::Result<()> {
+        if let Some(path) = &self.lut {
+            lut::load(path)?;
+            document.view.lut = Some(path.clone());
+        }
         let camera = &mut document.camera;
         if let Some([yaw_deg, pitch_deg]) = self.camera_orbit {
             (camera.yaw_deg, camera.pitch_deg) = (yaw_deg, pitch_deg);
@@ -235,6 +243,7 @@ impl SceneArguments {
         if let Some(effects) = self.effects {
             render.effects = effects;
         }
+        Ok(())
     }
 
     /// With a time or noise to reach only, samples are not limited.

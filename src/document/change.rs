@@ -61,6 +61,7 @@ impl Change {
         let (render, other) = (&old.render, &new.render);
         self.environment |= (&light.environment, light.environment_encoding)
             != (&other_light.environment, other_light.environment_encoding);
+        self.display |= old.view.lut != new.view.lut;
         self.lighting |= light.background != other_light.background;
         self.materials |= !look_alike(old, new) || !emit_alike(lights, other_lights);
         self.geometry |= (&old.model, &old.import, &old.hidden_objects)

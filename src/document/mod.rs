@@ -21,6 +21,7 @@ pub mod technique;
 pub mod turntable;
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
@@ -110,6 +111,12 @@ impl Document {
     /// The first setting that is out of range.
     pub fn check(&self) -> Result<(), SettingError> {
         settings::check(self)
+    }
+
+    /// The files that it names beside model and environment: its materials' textures, and the view's table of colours.
+    pub fn pictures(&self) -> impl Iterator<Item = &PathBuf> {
+        let textures = self.materials.iter().flat_map(|material| material.own.iter());
+        textures.map(|(_, texture)| &texture.file).chain(&self.view.lut)
     }
 
     /// The material that a slot shows.

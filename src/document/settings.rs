@@ -1,5 +1,7 @@
 //! Light, camera, view and render settings, and the ranges of their numbers.
 
+use std::path::PathBuf;
+
 use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
@@ -189,7 +191,7 @@ pub struct Bookmark {
 }
 
 /// How radiance becomes a picture.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewSettings {
     /// The tone curve.
@@ -198,6 +200,9 @@ pub struct ViewSettings {
     pub exposure_ev: f32,
     /// The exposure is added to one that brings the picture's mean brightness to middle grey.
     pub auto_exposure: bool,
+    /// A table of colours in a `.cube` file that the picture goes through last, as codes of sRGB.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lut: Option<PathBuf>,
     /// Whether the picture's noise is taken out, and how.
     pub denoise: Denoise,
     /// When that is done in the window.

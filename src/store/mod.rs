@@ -1,11 +1,12 @@
 //! What is kept in files: projects, presets and the user's folder of them, pictures with a document inside, copies of
 //! unsaved documents, pinned states; materials in other programs' formats; examples to begin with;
-//! folders that are watched.
+//! folders that are watched; tables of colours.
 
 pub mod examples;
 pub mod exchange;
 pub mod file;
 pub mod library;
+pub mod lut;
 pub mod picture;
 pub mod preset;
 pub mod project;

@@ -179,6 +179,9 @@ fn map_paths(document: &mut Document, map: impl Fn(&Path) -> PathBuf) {
     for file in &mut document.import.beside {
         *file = map(file);
     }
+    if let Some(file) = &mut document.view.lut {
+        *file = map(file);
+    }
     for material in &mut document.materials {
         material.own.map_files(&map);
     }

@@ -5,6 +5,7 @@ use std::io::{BufRead as _, BufReader};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
+use glossmith::scene::texture::{OwnTexture, TextureTarget};
 use glossmith::store::PRESETS;
 use serde_json::Value as Json;
 
@@ -228,7 +229,14 @@ fn a_joined_picture_is_denoised() {
 fn files_are_found_beside_the_batch_and_pictures_go_there() {
     let place = Workplace::new();
     std::fs::create_dir(place.path("deep")).unwrap();
-    glossmith::store::save_material(&place.path("deep/mine.json"), &PRESETS[2]).unwrap();
+    let mut mine = PRESETS[2].clone();
+    let paint = |code: u8| {
+        let grey = image::RgbImage::from_pixel(2, 2, image::Rgb([code; 3]));
+        grey.save(place.path("deep/paint.png")).unwrap();
+    };
+    paint(200);
+    mine.put_texture(TextureTarget::BaseColor, OwnTexture::of(place.path("deep/paint.png")));
+    glossmith::store::save_material(&place.path("deep/mine.json"), &mine).unwrap();
     crate::cli_support::write_hdr(&place.path("deep/sky.hdr"), 8, 4, |_, _| [1.0; 3]);
     place.write(
         "deep/a.toml",
@@ -248,4 +256,8 @@ fn files_are_found_beside_the_batch_and_pictures_go_there() {
         (again["mine-sky"].as_str(), again["mine-furnace"].as_str()),
         ("rendered", "kept")
     );
+    // So do those of a texture.
+    paint(100);
+    let again = outcomes(&place.done("batch deep/a.toml --engine cpu"));
+    assert!(again.values().all(|status| status == "rendered"), "{again:?}");
 }

@@ -34,6 +34,7 @@ impl App {
             Action::UseEnvironment(source) => self.worker.open_environment(source),
             Action::ImportAs(lobe) => self.shared.import_lobe = lobe,
             Action::UseMaterial(material) => self.use_material(*material),
+            Action::ChooseLut => self.dialogs.ask(Purpose::OpenLut, String::new(), ctx),
             Action::ChooseTexture(target) => self.dialogs.ask(Purpose::Texture(target), String::new(), ctx),
             Action::Export(material) => self.ask_export(ctx, Some(*material)),
             Action::CopyAs(material, format) => self.copy_as(*material, format),

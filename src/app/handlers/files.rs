@@ -18,7 +18,7 @@ use crate::scene::texture::OwnTexture;
 use crate::scene::{ModelOptions, ModelSource, holds_model, is_model};
 use crate::store::exchange::{self, ExchangeError, ReadOptions};
 use crate::store::file::Opened;
-use crate::store::{FileError, Loaded, preset, save_document, save_material};
+use crate::store::{FileError, Loaded, lut, preset, save_document, save_material};
 
 /// What the names of projects end with before .json: by it desktops know them from other files.
 const KIND: &str = ".glossmith";
@@ -306,6 +306,7 @@ impl App {
             Purpose::Open | Purpose::OpenModel | Purpose::OpenEnvironment | Purpose::OpenMaterial => {
                 self.open(path);
             }
+            Purpose::OpenLut => self.use_lut(path),
             Purpose::Texture(target) => self.put_textures(&[(target, OwnTexture::of(path))]),
             Purpose::OpenMeasured => self.shared.measured = Some(path),
             Purpose::WatchFolder => self.shared.shelves.watch(path),
@@ -317,6 +318,19 @@ impl App {
             Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
             Purpose::SaveWindow => self.window_picture = Some(path.with_extension("png")),
             Purpose::SavePicture => self.want_picture(Destination::File(with_ending(path, "png"))),
+        }
+    }
+
+    /// Shows the picture through a table of colours.
+    fn use_lut(&mut self, path: PathBuf) {
+        // Tables are small: read at once, so that what is wrong is told here.
+        match lut::load(&path) {
+            Ok(_) => {
+                let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                self.document.view.lut = Some(path);
+                self.edits.note(format!("Show through {name}"), "");
+            }
+            Err(error) => self.say(Level::Error, error.to_string()),
         }
     }
 

@@ -42,6 +42,7 @@ pub(in crate::app) enum Purpose {
     SaveWindow,
     WatchFolder,
     Texture(TextureTarget),
+    OpenLut,
 }
 
 impl Purpose {
@@ -60,6 +61,7 @@ impl Purpose {
             Self::SaveWindow => "Save a picture of the window",
             Self::WatchFolder => "Watch a folder",
             Self::Texture(_) => "Choose a texture",
+            Self::OpenLut => "Choose a table of colours",
         }
     }
 
@@ -84,6 +86,7 @@ impl Purpose {
             Self::SaveWindow => ("PNG pictures", &["png"]),
             Self::WatchFolder => ("Folders", &[]),
             Self::Texture(_) => ("Pictures", &set::ENDINGS),
+            Self::OpenLut => ("Tables of colours", &["cube"]),
         }
     }
 

@@ -37,13 +37,20 @@ impl Inputs {
         self.0.write(bytes);
     }
 
-    /// Adds a document, the contents of its model, and the environment's files. Files beside the batch's file may move with
+    /// Adds a document, the contents of its model, the environment's files, the user's own textures and the table of colours. Files beside the batch's file may move with
     /// it.
     pub(super) fn document(&mut self, document: &Document, model: &Model, batch: &Path) -> anyhow::Result<()> {
         self.text(&document_text(batch, document)?);
         self.model(model);
         if let EnvironmentSource::File(path) = &document.lighting.environment {
             self.file(path)?;
+        }
+        for path in document.pictures() {
+            // Renders go on without what is missing.
+            match path.exists() {
+                true => self.file(path)?,
+                false => self.text("missing"),
+            }
         }
         Ok(())
     }

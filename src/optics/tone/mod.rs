@@ -3,12 +3,14 @@
 //! To add a curve: a function here, a line in the list of curves, one in [`tone_map`].
 
 mod aces2;
+mod lut;
 
 use super::real::Real;
 use super::vector::{Vec3, vec3};
 use crate::named::named;
 
 pub use aces2::tone_aces2;
+pub use lut::Lut;
 
 named! {
     /// The tone curve.

@@ -164,7 +164,12 @@ impl Key {
             precision: format!("{precision:?}"),
             // A document is plain data: this does not fail.
             document: serde_json::to_value(&canonical).unwrap_or_default(),
-            files: [model, environment].into_iter().flatten().map(stamp).collect(),
+            files: [model, environment]
+                .into_iter()
+                .flatten()
+                .chain(document.pictures())
+                .map(stamp)
+                .collect(),
         }
     }
 

@@ -25,11 +25,42 @@ impl Panel for CameraPanel {
         widgets::group(ui, "Camera", |ui| camera(ui, desk));
         widgets::group(ui, "Lens", |ui| self.photographic.show(ui, desk));
         widgets::group(ui, "Bookmarks", |ui| bookmarks(ui, desk));
-        widgets::group(ui, "View", |ui| desk.settings(ui, "View"));
+        widgets::group(ui, "View", |ui| view(ui, desk));
         widgets::group(ui, "Picture", |ui| picture(ui, desk));
         widgets::group(ui, "Accuracy", |ui| desk.settings(ui, "Accuracy"));
         widgets::group(ui, "Sampling", |ui| desk.settings(ui, "Sampling"));
     }
+}
+
+/// How radiance becomes a picture, and the table of colours that it goes through last.
+fn view(ui: &mut Ui, desk: &mut Desk<'_>) {
+    desk.settings(ui, "View");
+    let help = "A table of colours (.cube) that the picture goes through last: a look. Pictures of light (.exr, .hdr) stay as they are.";
+    let file = desk.document.view.lut.clone();
+    let name = Name::new("Table of colours", "LUT", help);
+    widgets::row(ui, name, |ui| {
+        let Some(file) = file else {
+            let choose = ui.button("Choose…");
+            if choose.clicked() {
+                desk.actions.push(Action::ChooseLut);
+            }
+            return choose;
+        };
+        if icons::button(
+            ui,
+            Icon::Close,
+            "Remove the table of colours",
+            "Shows the picture without it",
+        )
+        .clicked()
+        {
+            desk.document.view.lut = None;
+            desk.edits.note("Remove the table of colours", "");
+        }
+        let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy();
+        ui.add(egui::Label::new(name).truncate())
+            .on_hover_text(file.display().to_string())
+    });
 }
 
 fn camera(ui: &mut Ui, desk: &mut Desk<'_>) {

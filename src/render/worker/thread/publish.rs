@@ -80,7 +80,7 @@ impl State<'_> {
     ) -> Result<(), SessionError> {
         let wanted = self.shown;
         let looks_closer = self.looks_closer;
-        let Some(view) = self.stage.as_ref().map(|stage| stage.submission.document.view) else {
+        let Some(view) = self.stage.as_ref().map(|stage| stage.submission.document.view.clone()) else {
             return Ok(());
         };
         let denoised_errors = self.denoised.as_ref().map(|denoised| denoised.error_map.clone());

@@ -1,0 +1,136 @@
+//! Tables of colours in `.cube` files (Adobe, "Cube LUT Specification" 1.0, and DaVinci Resolve's additions to it).
+//!
+//! The crates there are (`lut_parser` 2.1) refuse tables without a title, which most have none of.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::SystemTime;
+
+use super::file::{self, FileError};
+use crate::optics::tone::Lut;
+
+/// Most entries along a side, of a cube and of curves.
+const SIZES: [usize; 2] = [129, 65536];
+/// Tables that are remembered.
+const REMEMBERED: usize = 4;
+
+/// The table in a file.
+///
+/// # Errors
+/// What is wrong with the file, and in which line.
+pub fn load(path: &Path) -> Result<Lut, FileError> {
+    let bytes = file::read(path)?;
+    parse(&String::from_utf8_lossy(&bytes)).map_err(|reason| FileError::Content {
+        path: path.to_owned(),
+        reason: format!("not a table of colours: {reason}; choose a .cube file"),
+    })
+}
+
+fn parse(text: &str) -> Result<Lut, String> {
+    let mut size = None;
+    let mut domain = [[0.0; 3], [1.0; 3]];
+    let mut entries: Vec<[f32; 3]> = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let line = line.trim().trim_start_matches('\u{feff}');
+        let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+        let wrong = || format!("line {number} is \"{}\"", line.chars().take(40).collect::<String>());
+        match word {
+            "" | "TITLE" => {}
+            comment if comment.starts_with('#') => {}
+            "LUT_1D_SIZE" | "LUT_3D_SIZE" if size.is_some() => {
+                return Err("it holds two tables; save curves and cube apart".to_owned());
+            }
+            "LUT_1D_SIZE" | "LUT_3D_SIZE" => {
+                let is_one_dimensional = word == "LUT_1D_SIZE";
+                let most = SIZES[usize::from(is_one_dimensional)];
+                let count = rest.trim().parse().ok().filter(|count| (2..=most).contains(count));
+                size = Some((count.ok_or_else(wrong)?, is_one_dimensional));
+            }
+            "DOMAIN_MIN" => domain[0] = numbers(rest).ok_or_else(wrong)?,
+            "DOMAIN_MAX" => domain[1] = numbers(rest).ok_or_else(wrong)?,
+            "LUT_1D_INPUT_RANGE" | "LUT_3D_INPUT_RANGE" => {
+                let [low, high] = numbers(rest).ok_or_else(wrong)?;
+                domain = [[low; 3], [high; 3]];
+            }
+            _ => entries.push(numbers(line).ok_or_else(wrong)?),
+        }
+    }
+    let (size, is_one_dimensional) = size.ok_or("it does not say its size (LUT_3D_SIZE)")?;
+    let wanted = if is_one_dimensional { size } else { size.pow(3) };
+    if entries.len() != wanted {
+        return Err(format!("it has {} of {wanted} entries", entries.len()));
+    }
+    if (0..3).any(|i| domain[0][i] >= domain[1][i]) {
+        return Err("its domain is empty".to_owned());
+    }
+    Ok(Lut {
+        size,
+        is_one_dimensional,
+        domain,
+        entries,
+    })
+}
+
+/// Finite numbers with blanks between them.
+fn numbers<const N: usize>(text: &str) -> Option<[f32; N]> {
+    let number = |word: &str| word.parse().ok().filter(|x: &f32| x.is_finite());
+    let all: Option<Vec<f32>> = text.split_whitespace().map(number).collect();
+    all?.try_into().ok()
+}
+
+/// A file, when it was saved, and what it holds.
+type Remembered = (PathBuf, Option<SystemTime>, Option<Arc<Lut>>);
+
+/// The tables that were asked for last, the latest at the end.
+static TABLES: Mutex<Vec<Remembered>> = Mutex::new(Vec::new());
+
+/// The table in a file, read anew where it was saved since. Where it can't be had, none, which the log says once.
+pub fn remembered(path: &Path) -> Option<Arc<Lut>> {
+    let saved = std::fs::metadata(path).and_then(|file| file.modified()).ok();
+    let mut tables = TABLES.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((.., table)) = tables.iter().find(|(of, at, _)| of == path && *at == saved) {
+        return table.clone();
+    }
+    let table = match load(path) {
+        Ok(table) => Some(Arc::new(table)),
+        Err(error) => {
+            log::warn!("{error}; the picture is shown without it");
+            None
+        }
+    };
+    tables.retain(|(of, ..)| of != path);
+    if tables.len() >= REMEMBERED {
+        tables.remove(0);
+    }
+    tables.push((path.to_owned(), saved, table.clone()));
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_are_read_as_programs_write_them() {
+        let curve = "# by hand\n\nLUT_1D_SIZE 2\nDOMAIN_MIN 0 0 0\nDOMAIN_MAX 1 1 2\n 0 0 0\n1 1\t1\r\n";
+        let lut = parse(curve).expect("a table");
+        assert!(lut.is_one_dimensional && lut.domain[1] == [1.0, 1.0, 2.0]);
+        let cube = format!(
+            "\u{feff}TITLE \"a\"\nLUT_3D_SIZE 2\nLUT_3D_INPUT_RANGE 0.0 4.0\n{}",
+            "0.5 0.5 0.5\n".repeat(8)
+        );
+        assert_eq!(parse(&cube).expect("a cube").domain, [[0.0; 3], [4.0; 3]]);
+        for (text, words) in [
+            ("", "does not say its size"),
+            ("LUT_3D_SIZE 2\n0 0 0\n", "1 of 8 entries"),
+            ("LUT_3D_SIZE 999\n", "line 1"),
+            ("LUT_1D_SIZE 2\n0 0\n", "line 2"),
+            ("LUT_1D_SIZE 2\n0 0 nan\n", "line 2"),
+            ("LUT_1D_SIZE 2\nDOMAIN_MAX 0 0 0\n0 0 0\n0 0 0\n", "domain is empty"),
+            ("LUT_1D_SIZE 2\nLUT_3D_SIZE 2\n", "two tables"),
+        ] {
+            let error = parse(text).expect_err(text);
+            assert!(error.contains(words), "{text}: {error}");
+        }
+    }
+}

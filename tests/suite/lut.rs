@@ -1,0 +1,109 @@
+//! Tables of colours: by the command line, in projects, in the window.
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::Options;
+use glossmith::app::actions::Action;
+use glossmith::document::Document;
+use glossmith::scene::ModelSource;
+use glossmith::store::{load_document, save_document};
+
+use super::cli_support::Workplace;
+use super::ui::{Editor, editor_of, options, request, see, settle, undo};
+use super::ui_files::says;
+use super::worker::small_document;
+
+/// Black for white and white for black.
+const NEGATIVE: &str = "TITLE \"negative\"\nLUT_1D_SIZE 2\n1 1 1\n0 0 0\n";
+
+#[test]
+fn a_picture_goes_through_a_table_last() {
+    let place = Workplace::new();
+    place.write("negative.cube", NEGATIVE.as_bytes());
+    let scene = "--model sphere --engine cpu --size 12x12 --samples 2";
+    let codes = |name: &str| image::open(place.path(name)).unwrap().to_rgb8().into_raw();
+    place.done(&format!("render {scene} --output plain.png"));
+    place.done(&format!("render {scene} --output negative.png --lut negative.cube"));
+    for (plain, negative) in std::iter::zip(codes("plain.png"), codes("negative.png")) {
+        assert!((i32::from(plain) + i32::from(negative) - 255).abs() <= 1);
+    }
+    // Light stays light.
+    place.done(&format!("render {scene} --output plain.exr"));
+    place.done(&format!("render {scene} --output negative.exr --lut negative.cube"));
+    let light = |name: &str| super::cli_support::read_exr(&place.path(name));
+    assert!(light("plain.exr") == light("negative.exr"));
+    place.write("broken.cube", b"LUT_3D_SIZE 2\n0 0 0\n");
+    place.refused(
+        1,
+        &format!("render {scene} --output a.png --lut broken.cube"),
+        &["broken.cube: not a table of colours: it has 1 of 8 entries"],
+    );
+    place.refused(
+        1,
+        &format!("render {scene} --output a.png --lut gone.cube"),
+        &["gone.cube: cannot be read"],
+    );
+    // A project names it relative to itself; where it is missing that is told, and the picture is made.
+    let mut document = Document {
+        model: ModelSource::Sphere,
+        ..Document::default()
+    };
+    document.view.lut = Some(place.path("negative.cube"));
+    (document.render.width, document.render.height, document.render.samples) = (12, 12, 2);
+    save_document(&place.path("p.json"), &document).unwrap();
+    assert!(
+        place.read("p.json").contains("\"lut\": \"negative.cube\""),
+        "{}",
+        place.read("p.json")
+    );
+    assert_eq!(load_document(&place.path("p.json")).unwrap().value, document);
+    place.done("render p.json --engine cpu --output saved.png");
+    assert_eq!(codes("saved.png"), codes("negative.png"));
+    std::fs::remove_file(place.path("negative.cube")).unwrap();
+    let run = place.done("render p.json --engine cpu --output without.png");
+    assert!(run.stderr.contains("negative.cube: cannot be read"), "{}", run.stderr);
+    assert_eq!(codes("without.png"), codes("plain.png"));
+}
+
+fn shown(harness: &Editor) -> Vec<u8> {
+    harness.state().snapshot().picture.as_ref().unwrap().rgba.clone()
+}
+
+fn choose(harness: &mut Editor, path: &std::path::Path) {
+    request(harness, Action::ChooseLut);
+    see(harness, "the path field", |harness| {
+        harness.query_by_role_and_label(Role::TextInput, "Path").is_some()
+    });
+    let field = harness.get_by_role_and_label(Role::TextInput, "Path");
+    field.set_text_value_accesskit(&path.display().to_string());
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::Button, "Open").click_accesskit();
+    harness.run_steps(4);
+    settle(harness);
+}
+
+#[test]
+fn a_table_is_chosen_and_removed_in_the_window() {
+    let place = Workplace::new();
+    place.write("negative.cube", NEGATIVE.as_bytes());
+    place.write("broken.cube", b"LUT_1D_SIZE 2\n0 0\n");
+    let mut harness = editor_of(Options {
+        document: Some(small_document()),
+        typed_paths: Some(place.path("")),
+        ..options()
+    });
+    settle(&mut harness);
+    let plain = shown(&harness);
+    choose(&mut harness, &place.path("broken.cube"));
+    assert!(says(&harness, "broken.cube: not a table of colours"));
+    assert_eq!(harness.state().document().view.lut, None);
+    choose(&mut harness, &place.path("negative.cube"));
+    let samples = harness.state().snapshot().picture.as_ref().unwrap().samples_per_pixel;
+    assert!(samples > 0, "the samples stay");
+    let negative = shown(&harness);
+    for (a, b) in std::iter::zip(plain.chunks_exact(4), negative.chunks_exact(4)) {
+        assert!((i32::from(a[0]) + i32::from(b[0]) - 255).abs() <= 1);
+    }
+    undo(&mut harness);
+    assert_eq!(shown(&harness), plain);
+}
