@@ -198,6 +198,7 @@ fn what_a_format_shows_of_a_stretch_is_what_its_widths_are() {
         transmission: true,
         absorption: false,
         textures: false,
+        own_textures: false,
     };
     let taken = surface.as_taken(&material, &takes);
     let stretch = stretch_from_anisotropy(f64::from(taken.anisotropy));

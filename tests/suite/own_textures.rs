@@ -525,3 +525,59 @@ fn the_command_line_puts_pictures_on_materials() {
         run.stderr
     );
 }
+
+/// What a glTF file can say of them goes with it, and looks the same there; what it can't is told.
+#[test]
+fn pictures_of_ones_own_travel_in_gltf() {
+    let folder = Folder::new();
+    let place = Workplace::new();
+    let (buffer, json) = textured_square(&json!({"name": "Square"}), &[], &json!({}));
+    std::fs::write(place.path("square.glb"), crate::gltf_builder::glb(&json, &buffer.bytes)).unwrap();
+    let own = own_texture(&folder);
+    let mut document = Document {
+        model: ModelSource::File(place.path("square.glb")),
+        ..Document::default()
+    };
+    document.lighting.environment = EnvironmentSource::Studio;
+    (document.camera.yaw_deg, document.camera.pitch_deg) = (20.0, 15.0);
+    (document.render.width, document.render.height, document.render.samples) = (32, 32, 128);
+    let material = document.material_mut(0);
+    material.lobe = glossmith::optics::lobe::Lobe::Ggx;
+    for (target, channel) in [
+        (TextureTarget::BaseColor, TextureChannel::Auto),
+        (TextureTarget::Roughness, TextureChannel::Green),
+        (TextureTarget::Metalness, TextureChannel::Red),
+        (TextureTarget::Emission, TextureChannel::Auto),
+    ] {
+        let texture = OwnTexture {
+            channel,
+            scale: 2.0,
+            rotation_deg: 30.0,
+            strength: 0.6,
+            inverted: target == TextureTarget::Roughness,
+            ..own.clone()
+        };
+        material.put_texture(target, texture);
+    }
+    let boxed = OwnTexture {
+        projection: TextureProjection::Box,
+        ..own
+    };
+    material.put_texture(TextureTarget::Coat, boxed);
+    (material.coat_weight, material.emission_strength) = (0.0, 0.3);
+    material.textures.coat = true;
+    save_document(&place.path("scene.json"), &document).unwrap();
+    place.done("convert scene.json scene.glb --report losses.json");
+    let told = place.read("losses.json");
+    assert!(told.contains("your texture of the roughness") && told.contains("your texture of the metalness"));
+    assert!(told.contains("no projection from the sides of a box"), "{told}");
+    let mut there = document.clone();
+    there.model = ModelSource::File(place.path("scene.glb"));
+    let model = scene::load(&there.model).unwrap();
+    assert_eq!(model.textures.len(), 3, "{:?}", model.slots[0]);
+    there.materials = glossmith::document::of_model::materials_of(&model, glossmith::document::ImportLobe::Ggx);
+    there.materials[0].fresnel = document.materials[0].fresnel;
+    let [here, there] = [&document, &there].map(|document| render(EngineChoice::Cpu, document));
+    let means = [here, there].map(|film| film.luminance().iter().sum::<f64>());
+    assert!((means[0] / means[1] - 1.0).abs() < 0.02, "{means:?}");
+}

@@ -24,7 +24,7 @@ use crate::optics::vector::{Vec3, vec3};
 
 pub use mean::{TextureMean, mean_of_file, texture_mean};
 pub use own::{OwnTexture, TextureChannel, TextureProjection, TextureSpace, TextureTarget};
-pub use pack::{OwnPicture, Pack, Pictures, SlotTextures, Textures, WORDS_MAX};
+pub use pack::{OwnPicture, Pack, Pictures, SlotTextures, Textures, WORDS_MAX, slots_with_coordinates};
 pub use uses::TextureAssignment;
 
 /// How a picture goes on beyond its edges: from the start again.

@@ -453,7 +453,7 @@ fn decoded_codes() -> impl Iterator<Item = u32> {
 }
 
 /// Whether the triangles of each slot have texture coordinates: not the same ones at all corners.
-fn slots_with_coordinates(model: &Model) -> Vec<bool> {
+pub fn slots_with_coordinates(model: &Model) -> Vec<bool> {
     let mut has = vec![false; model.slots.len()];
     let mesh = &model.mesh;
     for (triangle, slot) in mesh.triangles.iter().zip(&mesh.slots) {

@@ -60,6 +60,7 @@ impl Kind {
             transmission: true,
             absorption: false,
             textures: false,
+            own_textures: false,
         }
     }
 }

@@ -47,6 +47,7 @@ impl Takes {
         transmission: true,
         absorption: true,
         textures: false,
+        own_textures: false,
     };
 }
 

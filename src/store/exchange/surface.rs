@@ -87,6 +87,8 @@ pub struct Takes {
     pub absorption: bool,
     /// Pictures that vary a parameter over the surface.
     pub textures: bool,
+    /// The user's own pictures, of which the format tells more itself.
+    pub own_textures: bool,
 }
 
 /// Least difference that is worth a word.
@@ -439,10 +441,10 @@ impl Surface {
         );
         let has_own = material.own.iter().any(|(target, _)| material.uses_texture(target));
         layer(
-            has_own,
+            has_own && !takes.own_textures,
             false,
             "textures of your own",
-            "put them on again in the other program",
+            "convert to a glTF model to take them along",
         );
         if material.coat_weight > 0.0 && takes.coat {
             let detail = format!("GGX of roughness {} stands for its geometric lobe", self.coat_roughness);

@@ -1,6 +1,7 @@
 //! glTF 2.0: the model of a document with its materials and textures, or a ball with one material; and materials back.
 
 mod material;
+mod own;
 
 use std::path::Path;
 
@@ -31,6 +32,7 @@ const TAKES: Takes = Takes {
     transmission: true,
     absorption: true,
     textures: true,
+    own_textures: true,
 };
 
 /// α is 1 there at most.
@@ -48,7 +50,7 @@ const INDICES: u32 = 34963;
 
 impl Format for Gltf {
     fn write(&self, subject: &Subject, path: &Path) -> Result<Written, ExchangeError> {
-        let model = match &subject.document {
+        let mut model = match &subject.document {
             Some(document) => load_with(&document.model, &document.import)?,
             None => load(&ModelSource::Sphere)?,
         };
@@ -67,7 +69,14 @@ impl Format for Gltf {
             let Some(material) = subject.materials.get(slot).or(subject.materials.last()) else {
                 continue;
             };
+            let mut material = material.clone();
+            let of_own = match model.slots.get(slot) {
+                Some(_) => own::hand_over(&mut model, slot, &mut material),
+                None => Vec::new(),
+            };
+            let material = &material;
             let (surface, mut report) = shown(material, &TAKES);
+            report.entries.extend(of_own);
             let textures = file.textures(&model, slot, material);
             if textures.roughness_mean.is_some() && surface.anisotropy != 0.0 {
                 let detail = "the strength is that of the roughness texture's mean";

@@ -1,0 +1,152 @@
+//! Textures of the user's own as pictures of a glTF file, as far as the format can say how they are put on.
+
+use crate::document::MaterialSettings;
+use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
+use crate::optics::vector::vec3;
+use crate::scene::picture::read_texture;
+use crate::scene::texture::{OwnTexture, TextureProjection, TextureTarget, slots_with_coordinates};
+use crate::scene::{Filter, Model, Texture, TextureRef, Wrap};
+use crate::store::exchange::report::Entry;
+
+/// Puts a material's own textures into the model's slot where the file can have them, and takes them from the material;
+/// what became of each.
+pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings) -> Vec<Entry> {
+    let mut entries = Vec::new();
+    // A picture for each target that can be had and said.
+    let mut pictures: Vec<(TextureTarget, OwnTexture, Texture)> = Vec::new();
+    for &target in TextureTarget::ALL {
+        let Some(texture) = material.own.get(target).filter(|_| material.uses_texture(target)) else {
+            continue;
+        };
+        match picture(model, slot, target, texture) {
+            Ok(picture) => pictures.push((target, texture.clone(), picture)),
+            Err(why) => entries.push(dropped(target, &why)),
+        }
+    }
+    let taken = |target: TextureTarget| pictures.iter().position(|(of, ..)| *of == target);
+    // Roughness and metalness are channels of one picture.
+    match (taken(TextureTarget::Roughness), taken(TextureTarget::Metalness)) {
+        (Some(roughness), Some(metalness)) => {
+            let [(_, rough, a), (_, metal, b)] = [&pictures[roughness], &pictures[metalness]];
+            if rough.picture_from_uv() == metal.picture_from_uv() && [a.width, a.height] == [b.width, b.height] {
+                let metalness = b.rgba8.clone();
+                let joined = &mut pictures[roughness].2.rgba8;
+                for (texel, other) in joined.chunks_exact_mut(4).zip(metalness.chunks_exact(4)) {
+                    texel[2] = other[2];
+                }
+            } else {
+                let why =
+                    "it has another size or place than that of the roughness, and the format has one picture for both";
+                entries.push(dropped(TextureTarget::Metalness, why));
+            }
+        }
+        (None, None) => {}
+        _ if model.slots[slot].metallic_roughness_texture.is_some() && material.textures.roughness => {
+            let why = "the format has one picture for roughness and metalness, and one of them is the model's";
+            pictures.retain(|(target, ..)| {
+                let is_half = [TextureTarget::Roughness, TextureTarget::Metalness].contains(target);
+                if is_half {
+                    entries.push(dropped(*target, why));
+                }
+                !is_half
+            });
+        }
+        _ => {}
+    }
+    let is_dropped = |entries: &[Entry], target| entries.iter().any(|entry| entry.what == words(target));
+    let has_roughness = pictures.iter().any(|(target, ..)| *target == TextureTarget::Roughness);
+    for (target, texture, picture) in pictures {
+        if is_dropped(&entries, target) {
+            continue;
+        }
+        let place = TextureRef {
+            texture: model.textures.len(),
+            uv_set: usize::from(texture.projection == TextureProjection::Second),
+            texture_from_mesh_uv: texture.picture_from_uv(),
+            wrap: [Wrap::Repeat; 2],
+            filter: Filter::Linear,
+        };
+        let of = &mut model.slots[slot];
+        match target {
+            TextureTarget::BaseColor => of.base_color_texture = Some(place),
+            TextureTarget::Metalness if has_roughness => {}
+            TextureTarget::Roughness | TextureTarget::Metalness => of.metallic_roughness_texture = Some(place),
+            TextureTarget::Normal => of.normal_texture = Some(place),
+            TextureTarget::Emission => of.emissive_texture = Some(place),
+            TextureTarget::Coat => of.coat_texture = Some(place),
+            TextureTarget::Opacity => {}
+        }
+        model.textures.push(picture);
+        material.own.set(target, None);
+        entries.push(Entry::exact(&words(target)));
+    }
+    entries
+}
+
+fn words(target: TextureTarget) -> String {
+    format!("your texture of the {}", target.label().to_lowercase())
+}
+
+fn dropped(target: TextureTarget, why: &str) -> Entry {
+    Entry::dropped(&words(target), why)
+}
+
+/// A picture with all that is done to its numbers done.
+fn picture(model: &Model, slot: usize, target: TextureTarget, texture: &OwnTexture) -> Result<Texture, String> {
+    let has_coordinates = slots_with_coordinates(model).get(slot).copied().unwrap_or(false);
+    let is_box = texture.projection == TextureProjection::Box
+        || (texture.projection == TextureProjection::Auto && !has_coordinates);
+    if is_box {
+        return Err("the format has no projection from the sides of a box".to_owned());
+    }
+    if target == TextureTarget::Opacity {
+        return Err("the format has opacity in the picture of the base colour alone".to_owned());
+    }
+    if target == TextureTarget::Normal && texture.rotation_deg != 0.0 {
+        return Err("the format does not turn normals with their picture".to_owned());
+    }
+    let read = read_texture(&texture.file, target.is_color(), u32::MAX)?;
+    let has_alpha = read.rgba8.iter().skip(3).step_by(4).any(|alpha| *alpha < 255);
+    let channel = texture.channel_of(target, has_alpha) as usize;
+    let changed = |texel: &[u8; 4]| changed(target, texture, channel, *texel);
+    Ok(Texture {
+        rgba8: read.rgba8.as_chunks::<4>().0.iter().flat_map(changed).collect(),
+        rgba16: Vec::new(),
+        ..read
+    })
+}
+
+/// A texel of a file: sRGB codes of a colour, a normal, or a number in all channels.
+fn changed(target: TextureTarget, texture: &OwnTexture, channel: usize, [r, g, b, a]: [u8; 4]) -> [u8; 4] {
+    if target == TextureTarget::Normal {
+        return [r, if texture.inverted { 255 - g } else { g }, b, 255];
+    }
+    let decoded = |code: [u8; 3]| {
+        let share = code.map(|code| f64::from(code) / 255.0);
+        match texture.is_srgb(target) {
+            true => linear_from_srgb(vec3(share[0], share[1], share[2])),
+            false => vec3(share[0], share[1], share[2]),
+        }
+    };
+    let strength = f64::from(texture.strength);
+    let put_on = |x: f64| match texture.inverted {
+        true => 1.0 - strength * x,
+        false => 1.0 - strength + strength * x,
+    };
+    let code = |x: f64| (255.0 * x).round().clamp(0.0, 255.0) as u8;
+    if target.is_color() {
+        let [r, g, b] = srgb_from_linear(decoded([r, g, b]).map(put_on)).to_f64().map(code);
+        return [r, g, b, 255];
+    }
+    let number = match channel {
+        3 => f64::from(a) / 255.0,
+        _ => decoded([r, g, b]).to_f64()[channel],
+    };
+    let code = code(put_on(number));
+    // What shares the picture with it is left as it is.
+    match target {
+        TextureTarget::Roughness => [255, code, 255, 255],
+        TextureTarget::Metalness => [255, 255, code, 255],
+        _ => [code, 255, 255, 255],
+    }
+}
