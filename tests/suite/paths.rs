@@ -272,8 +272,9 @@ fn paths_find_the_same_together_as_alone_to_the_last_bit() {
                 assert_eq!(
                     bits(path),
                     bits(&alone),
-                    "{}, {place:?}: {path:?} instead of {alone:?}",
-                    scene.name
+                    "{}, {place:?}, sample {sample}: {path:?} instead of {alone:?}: {:?}",
+                    scene.name,
+                    scene.document
                 );
                 rays += path.rays;
             }

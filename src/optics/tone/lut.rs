@@ -24,7 +24,7 @@ impl Lut {
         let place = |i: usize| {
             let share = (codes[i] - low[i]) / (high[i] - low[i]);
             // What is no number counts as the least.
-            let at = last * share.max(0.0).min(1.0);
+            let at = last * if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
             let entry = (at as usize).min(self.size - 2);
             (entry, at - entry as f32)
         };

@@ -82,6 +82,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
             ..record
         });
     }
+    let mut of_others = Rng::new(23);
     let mut materials = Vec::new();
     for lobe in Lobe::ALL {
         for curve in Curve::ALL {
@@ -98,12 +99,10 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
                 };
                 material.textures = [(); 4].map(|()| texture());
                 material.opacity_texture = texture();
-                material.metalness_texture = if materials.len() % 2 == 0 {
-                    material.textures[1]
-                } else {
-                    texture()
-                };
-                material.coat_texture = texture();
+                // Of the metalness that of the roughness, or any other.
+                let others = [material.textures[1], of_others.below(textures.records.len()) as u32];
+                material.metalness_texture = others[of_others.below(2)];
+                material.coat_texture = of_others.below(textures.records.len()) as u32;
                 materials.push(material);
             }
         }

@@ -78,7 +78,7 @@ pub fn hand_over(model: &mut Model, slot: usize, material: &mut MaterialSettings
         }
         model.textures.push(picture);
         material.own.set(target, None);
-        entries.push(Entry::exact(&words(target)));
+        entries.push(Entry::exact(words(target)));
     }
     entries
 }
@@ -88,7 +88,7 @@ fn words(target: TextureTarget) -> String {
 }
 
 fn dropped(target: TextureTarget, why: &str) -> Entry {
-    Entry::dropped(&words(target), why)
+    Entry::dropped(words(target), why)
 }
 
 /// A picture with all that is done to its numbers done.
