@@ -361,7 +361,7 @@ fn both_engines_show_pictures_of_ones_own() {
     }
 }
 
-/// Editing how a picture lies uploads and packs none of it anew.
+/// Editing how a picture lies packs none of it anew.
 #[test]
 fn turning_a_picture_keeps_its_texels() {
     let folder = Folder::new();
