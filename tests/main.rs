@@ -93,6 +93,8 @@ mod installed;
 mod killed;
 #[path = "suite/library.rs"]
 mod library;
+#[path = "suite/light_paths.rs"]
+mod light_paths;
 #[path = "suite/lights.rs"]
 mod lights;
 #[path = "suite/lobe_cases.rs"]
@@ -173,10 +175,14 @@ mod ui_lights;
 mod ui_look;
 #[path = "suite/ui_objects.rs"]
 mod ui_objects;
+#[path = "suite/ui_pages.rs"]
+mod ui_pages;
 #[path = "suite/ui_panels.rs"]
 mod ui_panels;
 #[path = "suite/ui_pictures.rs"]
 mod ui_pictures;
+#[path = "suite/ui_queue.rs"]
+mod ui_queue;
 #[path = "suite/ui_scene.rs"]
 mod ui_scene;
 #[path = "suite/ui_study.rs"]
@@ -185,6 +191,8 @@ mod ui_study;
 mod ui_textures;
 #[path = "suite/ui_workshop.rs"]
 mod ui_workshop;
+#[path = "suite/walk.rs"]
+mod walk;
 #[path = "suite/worker.rs"]
 mod worker;
 #[path = "suite/xdotool_session.rs"]

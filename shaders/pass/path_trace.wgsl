@@ -202,6 +202,9 @@ fn meets_nothing(point: SurfacePoint, wi: vec3f) -> bool {
 
 // What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
 fn limited(contribution: vec3f, reflections: u32, taken: ptr<function, f32>) -> vec3f {
+    if reflections < globals.least_reflections {
+        return vec3f(0.0);
+    }
     let largest = max(max(contribution.x, contribution.y), contribution.z);
     if PLAN_FIREFLY_CLAMP == 0u || reflections <= 1u || !(largest > globals.firefly_clamp) {
         return contribution;
@@ -224,6 +227,14 @@ fn camera_background(direction: vec3f, state: RandomState, dimension: u32, rays:
     let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
     let color = select(globals.background, vec3f(0.0), is_transparent);
     return PathResult(color, select(1.0, 0.0, is_transparent), rays, 0.0, GuideSums());
+}
+
+// The end of a camera ray that met nothing: the numbers of the first bounce, which there is none of.
+fn background_alone(direction: vec3f, state: RandomState, rays: u32) -> PathResult {
+    let found = camera_background(direction, state, FIRST_DIMENSION, rays);
+    var clamped = 0.0;
+    let radiance = limited(found.radiance, 0u, &clamped);
+    return PathResult(radiance, found.alpha, rays, clamped, found.seen);
 }
 
 // How a path begins anew at the shadow catcher.
@@ -278,11 +289,11 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         if hit.triangle == NO_HIT {
             if bounce == 0u {
-                // The numbers of the first bounce, which there is none of.
-                return camera_background(ray.direction, state, FIRST_DIMENSION, rays);
+                return background_alone(ray.direction, state, rays);
             }
             if PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_MIRRORED {
-                return PathResult(radiance + below.radiance, below.alpha, rays, clamped, seen);
+                radiance += limited(below.radiance, bounce, &clamped);
+                return PathResult(radiance, below.alpha, rays, clamped, seen);
             }
             let found = throughput * far_light(ray.direction, lobe_density, was_mirror);
             radiance += limited(found, bounce, &clamped);
@@ -298,13 +309,13 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
                 below = catch_shadow(point.position, ray.direction, state);
                 caught = below.kind;
                 if caught == CAUGHT_NOT {
-                    return camera_background(ray.direction, state, FIRST_DIMENSION, rays);
+                    return background_alone(ray.direction, state, rays);
                 }
                 throughput = below.throughput;
                 if caught == CAUGHT_MIRRORED {
                     slot = globals.catcher_reflection_slot;
                 } else {
-                    radiance = below.radiance;
+                    radiance = limited(below.radiance, 0u, &clamped);
                 }
             }
         }
@@ -366,7 +377,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
     }
     if PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_ALPHA {
-        return PathResult(vec3f(0.0), 1.0 - luminance(radiance), rays, clamped, seen);
+        // A part of the light alone casts no shadow.
+        let alpha = select(1.0 - luminance(radiance), 0.0, globals.least_reflections > 0u);
+        return PathResult(vec3f(0.0), alpha, rays, clamped, seen);
     }
     return PathResult(radiance, 1.0, rays, clamped, seen);
 }

@@ -42,6 +42,12 @@ struct Globals {
     catcher_slot: u32,
     catcher_reflection_slot: u32,
     catcher_table: u32,
+    // Light that was reflected less often does not count.
+    least_reflections: u32,
+    // To a multiple of 16 bytes.
+    unused_1: u32,
+    unused_2: u32,
+    unused_3: u32,
 }
 
 struct Material {

@@ -1,4 +1,4 @@
-// The pictures of a model: filtered by hand, so that both engines find the same numbers. Twin of src/scene/texture.rs.
+// The pictures of a model: filtered by hand, so that both engines find the same numbers. Twin of src/scene/texture/mod.rs.
 #import "optics/frame"
 #import "optics/material"
 #import "scene/bvh"

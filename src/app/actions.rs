@@ -173,7 +173,6 @@ commands! {
     SaveLayers, File, "Save picture with layers…", "Saves albedo, normal, depth, samples and variance beside the colour (.exr).", None, 1;
     CopyPicture, File, "Copy picture", "Copies what has been rendered so far to the clipboard.", keys(CTRL_SHIFT, Key::C), 1;
     SaveWindow, File, "Save picture of the window…", "Saves the window as it is shown, panels and all (.png).", None, 1;
-    Turntable, File, "Turntable…", "Renders a turn of camera, model or light as numbered pictures.", None, 1;
     Quit, File, "Quit", "Closes the window.", keys(CTRL, Key::Q), 2;
     Undo, Edit, "Undo", "Takes the last change back.", keys(CTRL, Key::Z), 0;
     Redo, Edit, "Redo", "Makes the change again that was taken back.", keys(CTRL_SHIFT, Key::Z), 0;
@@ -192,6 +191,7 @@ commands! {
     ZoomOut, View, "Less magnified", "Shows the picture's own pixels smaller, as far as the whole picture.", key(Key::Minus), 3;
     ZoomFit, View, "Whole picture", "Shows the whole picture again, as large as it fits.", key(Key::Num0), 3;
     Denoise, View, "Denoise on or off", "Takes the noise out of the picture, by Open Image Denoise, or shows the samples as they are. How and when: Camera & picture.", key(Key::D), 2;
+    PreviewTurn, View, "Turntable preview", "Turns camera, model or light in the viewport, as a turntable would, until it is chosen again, the camera is moved, or escape.", key(Key::T), 2;
     Pin, View, "Pin a snapshot", "Keeps material, light and camera with the picture, to come back to.", key(Key::P), 2;
     Maximise, View, "Viewport only", "Hides the panels, or shows them again.", key(Key::F11), 1;
     ToggleTheme, View, "Light or dark", "Changes between the light and the dark theme.", None, 1;
@@ -202,6 +202,8 @@ commands! {
     ClearRegion, Render, "Clear the render region", "Renders the whole picture again. In the viewport: escape.", None, 1;
     Measure, Render, "Measure cost of effects", "Renders this scene with and without each effect and setting, and tells what each costs.", None, 2;
     Race, Render, "Run the race", "Holds techniques against each other on this view: time to a given noise, and bias.", None, 2;
+    QueuePicture, Render, "Render to a file…", "Renders the document as it is, at its own picture size and with all its samples, into a file (.png, .exr, .hdr), while one goes on editing.", None, 3;
+    Turntable, Render, "Render a turntable…", "Renders a turn of camera, model or light as a video (.mp4, .gif) or as numbered pictures, while one goes on editing.", None, 3;
     Palette, Help, "Find a command…", "Lists every command, panel and parameter; type to search.", keys(CTRL, Key::K), 0;
     Shortcuts, Help, "Keys and mouse", "Shows what keys and mouse buttons do.", key(Key::F1), 0;
     About, Help, "About Glossmith", "Version, licence and the paper.", None, 1;

@@ -20,6 +20,7 @@ use crate::app::services::shelves::Shelves;
 use crate::app::services::snapshots::Snapshots;
 use crate::document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting};
 use crate::render::EngineChoice;
+use crate::render::queue::Queue;
 use crate::render::shown::Shown;
 use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Scene, Snapshot};
@@ -84,6 +85,8 @@ pub(super) struct Shared {
     pub(super) snapshots: Snapshots,
     /// The comparison of the document with something else.
     pub(super) compare: Compare,
+    /// Renders that go on beside the window.
+    pub(super) queue: Queue,
 }
 
 /// What a click in the viewport can be for instead of choosing.

@@ -49,6 +49,7 @@ use viewport::Viewport;
 
 use crate::document::{Change, Denoise, Document, MaterialSettings};
 use crate::render::EngineChoice;
+use crate::render::queue::Queue;
 use crate::render::shown::Shown;
 use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
@@ -175,6 +176,8 @@ impl App {
             given => given,
         };
         let worker = Worker::spawn(engine, move || ctx.request_repaint())?;
+        let ctx = creation.egui_ctx.clone();
+        let queue = Queue::new(worker.assets().clone(), move || ctx.request_repaint())?;
         let document = options
             .document
             .unwrap_or_else(|| match kept.is_first && options.files.is_empty() {
@@ -222,6 +225,7 @@ impl App {
                 shelves: services::shelves::Shelves::new(kept.shelves),
                 snapshots: snapshots::Snapshots::new(options.data.as_ref().map(|data| data.join("snapshots"))),
                 compare: compare::Compare::default(),
+                queue,
             },
             panels: Panels::default(),
             layout: kept.layout.unwrap_or_else(layout::default_layout),
@@ -302,6 +306,7 @@ impl App {
     fn take_events(&mut self, ctx: &egui::Context) {
         self.take_files(ctx);
         self.take_autosave_reports();
+        self.take_queue_news();
         if self.awaited > 0 && self.files.is_reading() {
             // Projects and materials first, whichever is read faster: a model given beside a project changes it.
             return;
@@ -368,7 +373,7 @@ impl App {
         if self.awaited > 0 {
             return;
         }
-        let mut wanted = self.document.clone();
+        let (mut wanted, is_turning) = self.document_shown(ctx);
         match self.viewport.fill_size(self.shared.resolution) {
             Some(size) => self.set_size(&mut wanted, size),
             // The first frame has not been laid out: the size would be wrong.
@@ -379,7 +384,7 @@ impl App {
             .submitted
             .as_ref()
             .map_or(Change::everything(), |old| Change::between(old, &wanted));
-        let is_moving = is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
+        let is_moving = is_turning || is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
         let pace = if is_moving { Pace::Moving } else { Pace::Still };
         self.keep_up_rival(ctx, &wanted, pace);
         if change.is_none() {
@@ -410,11 +415,12 @@ impl App {
         }
     }
 
-    /// Small pictures of materials wait until the picture is there, and while something is being changed.
+    /// Small pictures of materials wait until the picture is there, and while something is being changed; so do renders.
     fn hold_thumbnails(&self, ctx: &egui::Context) {
         let has_picture = self.worker.snapshot().picture.is_some();
         let is_changing = is_dragging(ctx) || self.edits.is_in_flow();
         self.shared.library.hold(!has_picture || is_changing);
+        self.shared.queue.give_way(is_changing);
         if is_changing {
             ctx.request_repaint_after(MOVING);
         }
@@ -473,12 +479,13 @@ impl App {
         self.show_export(ui.ctx());
         self.show_recovery(ui.ctx());
         self.show_question(ui.ctx());
+        self.show_queue_question(ui.ctx());
     }
 
     /// Whether something lies over the window that takes the keys.
     fn is_covered(&self) -> bool {
         let is_asked = self.dialogs.is_open()
-            || self.turntable.is_open()
+            || self.turntable.is_open
             || self.export.is_open()
             || self.unsaved.is_open()
             || !self.leftovers.is_empty();

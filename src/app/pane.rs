@@ -22,6 +22,8 @@ macro_rules! list {
             Scene, "Scene", UpperLeft, scene::ScenePanel;
             /// Pinned states.
             Snapshots, "Snapshots", UpperLeft, snapshots::SnapshotsPanel;
+            /// Renders that go on beside.
+            Queue, "Queue", UpperLeft, queue::QueuePanel;
             /// What was said.
             Log, "Log", UpperLeft, log::LogPanel;
             /// The proof on this machine.

@@ -20,7 +20,7 @@ const KEY: &str = "editor";
 /// The window's options.
 pub(super) fn native_options() -> eframe::NativeOptions {
     let viewport = egui::ViewportBuilder::default()
-        .with_app_id("glossmith")
+        .with_app_id(app_id())
         .with_icon(icon())
         .with_title("Glossmith")
         .with_inner_size([1440.0, 900.0])
@@ -33,6 +33,11 @@ pub(super) fn native_options() -> eframe::NativeOptions {
         setup.device_descriptor = Arc::new(device_descriptor);
     }
     options
+}
+
+/// The name of the menu entry that desktops find the window's icon by: inside a Flatpak the program's id there.
+fn app_id() -> String {
+    std::env::var("FLATPAK_ID").unwrap_or_else(|_| "glossmith".to_owned())
 }
 
 /// The window's picture, which desktops show beside its name.

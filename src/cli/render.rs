@@ -2,7 +2,7 @@
 
 use std::io::IsTerminal;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use anyhow::bail;
 use clap::Args;
@@ -15,10 +15,8 @@ use super::waiting::Waiting;
 use crate::document::{Denoise, Document};
 use crate::render::denoise::{Attendant, Denoised};
 use crate::render::output::{self, Format, Rendered};
-use crate::render::{EngineChoice, Progress, Session, SessionError, StopReason};
+use crate::render::{EngineChoice, Progress, Session, StopReason, to_end};
 
-/// Step of the session between two looks at the clock and the progress bar.
-const STEP: Duration = Duration::from_millis(200);
 /// How long the picture may take that is rendered in the window's place, seconds: as long as one waits gladly.
 const DEFAULT_SCENE_SECONDS: f64 = 8.0;
 
@@ -142,7 +140,7 @@ fn render(
         session.keep_guides("sums of the picture are kept");
     }
     let waiting = Waiting::on(session.assets().loading());
-    submit(&mut session, engine, document)?;
+    to_end::submit(&mut session, engine, document)?;
     drop(waiting);
     eprintln!("{} ({})", session.engine(), session.engine().reason);
     let setup_seconds = begun.elapsed().as_secs_f64();
@@ -219,13 +217,8 @@ pub(super) fn render_to_end(
     engine: EngineChoice,
     document: &Document,
 ) -> anyhow::Result<(Progress, Option<Denoised>)> {
-    submit(session, engine, document)?;
+    to_end::submit(session, engine, document)?;
     step_to_end(session, engine, document)
-}
-
-fn submit(session: &mut Session, engine: EngineChoice, document: &Document) -> Result<(), SessionError> {
-    let submitted = session.submit(document).map(|_| ());
-    or_fall_back(submitted, session, engine, document)
 }
 
 /// Steps until the session is done, with a progress bar on a terminal, and denoises the picture where that is asked for.
@@ -236,30 +229,17 @@ fn step_to_end(
 ) -> anyhow::Result<(Progress, Option<Denoised>)> {
     const BAR_STEPS: f64 = 1000.0;
     let bar = bar("{bar:40} {msg}, {eta} left", BAR_STEPS as u64)?;
-    let mut attendant = Attendant::new(document);
-    loop {
-        let budget = attendant.budget(&session.progress(), STEP);
-        // What the GPU has is taken while it can be rendered again.
-        let stepped = session.step(budget).and_then(|progress| {
-            if progress.is_done {
-                session.film()?;
-            }
-            Ok(())
-        });
-        or_fall_back(stepped, session, engine, document)?;
-        attendant.attend(session, &session.progress())?;
-        let progress = session.progress();
+    let mut tell = |progress: &Progress| {
         bar.set_position((BAR_STEPS * progress.share_done(document.render.time_s)) as u64);
         let error = progress.noise.map_or(String::new(), |noise| {
             format!(", error {:.2} %", 100.0 * noise.relative)
         });
         bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
-        if progress.is_done {
-            bar.finish_and_clear();
-            let denoised = attendant.finish(session)?;
-            return Ok((session.progress(), denoised));
-        }
-    }
+        true
+    };
+    let ended = to_end::step_to_end(session, engine, document, &mut Attendant::new(document), &mut tell)?;
+    bar.finish_and_clear();
+    Ok((ended.progress, ended.denoised))
 }
 
 /// What came of a render, in a line.
@@ -281,24 +261,6 @@ fn told(progress: &Progress) -> String {
         (false, ..) => ", less exact than was asked for: no more samples are allowed",
     };
     format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){denoised}{why}")
-}
-
-/// Goes on where the GPU's device was lost, and on the processor after any other failure of it, unless the GPU was asked
-/// for by name.
-fn or_fall_back(
-    outcome: Result<(), SessionError>,
-    session: &mut Session,
-    engine: EngineChoice,
-    document: &Document,
-) -> Result<(), SessionError> {
-    match outcome {
-        Err(SessionError::Gpu(error)) if engine == EngineChoice::Auto || error.is_lost() => {
-            log::warn!("{}", session.recover(&error));
-            let submitted = session.submit(document).map(|_| ());
-            or_fall_back(submitted, session, engine, document)
-        }
-        outcome => outcome,
-    }
 }
 
 /// The report of `--report`.

@@ -1,17 +1,19 @@
-//! `glossmith turntable`: a document turned once, as numbered pictures.
+//! `glossmith turntable`: a document turned once, as numbered pictures or a video.
 
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
+use clap::builder::ArgPredicate;
 
 use super::answer::{Destination, write_json};
-use super::names;
 use super::render::bar;
 use super::scene::SceneArguments;
+use super::{names, parse};
 use crate::document::turntable::Turn;
 use crate::render::Session;
-use crate::render::turntable::{Turntable, frame_path, render};
+use crate::render::turntable::{FPS, Turntable, frame_path, render};
+use crate::store::video::{self, VideoFormat};
 
 /// Arguments of `glossmith turntable`.
 #[derive(Debug, Args)]
@@ -22,14 +24,39 @@ pub struct TurntableArguments {
     /// What turns, anticlockwise seen from above.
     #[arg(long, default_value = "camera", value_name = "camera|model|light", value_parser = names::choice::<Turn>)]
     turn: Turn,
-    /// The folder for the pictures frame-0001.png, frame-0002.png and so on; made where it is not there.
-    #[arg(long, default_value = "turntable", value_name = "FOLDER")]
-    output: PathBuf,
+    /// The folder for the pictures frame-0001.png, frame-0002.png and so on; made where it is not there. With --video they
+    /// are only written where this is given.
+    #[arg(
+        long,
+        default_value = "turntable",
+        value_name = "FOLDER",
+        default_value_if("video", ArgPredicate::IsPresent, None)
+    )]
+    output: Option<PathBuf>,
+    /// Write a video: .mp4 (H.264) or .gif, which repeats for ever.
+    #[arg(long, value_name = "FILE", value_parser = video)]
+    video: Option<PathBuf>,
+    /// Frames a second of the video, 1 to 120.
+    #[arg(long, default_value_t = FPS, value_name = "N", allow_negative_numbers = true, value_parser = fps)]
+    fps: f64,
     /// Write what was rendered, how and how fast, as JSON; - is standard output.
     #[arg(long, visible_alias = "json", value_name = "FILE|-")]
     report: Option<Destination>,
     #[command(flatten)]
     scene: SceneArguments,
+}
+
+fn video(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let checked = VideoFormat::of(&path).map(|_| ());
+    checked.map_err(|error| error.to_string()).map(|()| path)
+}
+
+fn fps(text: &str) -> Result<f64, String> {
+    let fps: Option<f64> = text.trim().parse().ok();
+    let [from, to] = [video::FPS.start(), video::FPS.end()];
+    fps.filter(|fps| video::FPS.contains(fps))
+        .ok_or_else(|| format!("give frames a second from {from} to {to}"))
 }
 
 /// Renders the frames as the arguments say.
@@ -39,6 +66,10 @@ pub struct TurntableArguments {
 pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
     const BAR_STEPS: f64 = 1000.0;
     arguments.report.iter().try_for_each(Destination::check_writable)?;
+    arguments
+        .video
+        .iter()
+        .try_for_each(|path| parse::check_writable(path))?;
     let begun = Instant::now();
     let mut session = Session::open(arguments.scene.engine)?;
     let table = Turntable {
@@ -46,20 +77,30 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         turn: arguments.turn,
         frames: arguments.frames,
         folder: arguments.output.clone(),
+        video: arguments.video.clone(),
+        fps: arguments.fps,
     };
     eprintln!("{} ({})", session.engine(), session.engine().reason);
     let bar = bar(
         "{bar:40} frame {msg}, {eta} left",
         u64::from(table.frames) * BAR_STEPS as u64,
     )?;
-    let outcome = render(&mut session, &table, &mut |progress| {
+    let outcome = render(&mut session, arguments.scene.engine, &table, &mut |progress| {
         bar.set_position((BAR_STEPS * (f64::from(progress.done) + progress.share)) as u64);
         bar.set_message(format!("{} of {}", progress.done + 1, table.frames));
         true
     })?;
     bar.finish_and_clear();
-    let last = frame_path(&table.folder, table.frames);
-    eprintln!("wrote {} frames up to {}", outcome.frames, last.display());
+    let pictures: Vec<PathBuf> = match &table.folder {
+        Some(folder) => (1..=outcome.frames).map(|frame| frame_path(folder, frame)).collect(),
+        None => Vec::new(),
+    };
+    if let Some(last) = pictures.last() {
+        eprintln!("wrote {} frames up to {}", outcome.frames, last.display());
+    }
+    if let Some(path) = &table.video {
+        eprintln!("wrote {}: {} frames", path.display(), outcome.frames);
+    }
     if outcome.dropped > 0 {
         eprintln!("{} samples were left out because they were not finite", outcome.dropped);
     }
@@ -82,7 +123,9 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         "render_seconds": outcome.render_seconds,
         "dropped_samples": outcome.dropped,
         "seed": render.seed,
-        "files": (1..=outcome.frames).map(|frame| frame_path(&table.folder, frame)).collect::<Vec<_>>(),
+        "files": pictures.iter().chain(&table.video).collect::<Vec<_>>(),
+        "video": table.video,
+        "fps": table.video.as_ref().map(|_| table.fps),
     });
     write_json(destination, &report)
 }

@@ -45,7 +45,7 @@ pub use settings::{
     range,
 };
 
-pub use crate::job::Strategy;
+pub use crate::job::{LightPaths, Strategy};
 pub use crate::scene::camera::PixelFilter;
 
 use crate::scene::{ModelOptions, ModelSource};

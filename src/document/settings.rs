@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use super::effect::{EffectSwitches, Switch};
 use super::parameter::{ParameterError, SETTINGS, Stage};
 use super::{AreaLight, Document, GroundSettings};
-use crate::job::Strategy;
 use crate::job::effect::EffectId;
+use crate::job::{LightPaths, Strategy};
 use crate::named::named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
@@ -261,6 +261,8 @@ pub struct RenderSettings {
     pub sequence: Sequence,
     /// How light is found.
     pub strategy: Strategy,
+    /// Which light the picture shows.
+    pub light_paths: LightPaths,
     /// Which of the possible pictures' noise: any number.
     pub seed: u32,
     /// How samples are spread over a pixel and its neighbours.
@@ -286,6 +288,7 @@ impl Default for RenderSettings {
             firefly_clamp: None,
             sequence: Sequence::default(),
             strategy: Strategy::default(),
+            light_paths: LightPaths::default(),
             seed: 0,
             filter: PixelFilter::default(),
             region: None,

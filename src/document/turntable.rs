@@ -18,6 +18,11 @@ named! {
 /// itself. `center_world` is the middle of the model, which a camera without a target looks at.
 pub fn turned(document: &Document, turn: Turn, frame: u32, frames: u32, center_world: [f64; 3]) -> Document {
     let angle_deg = 360.0 * f64::from(frame) / f64::from(frames.max(1));
+    turned_by(document, turn, angle_deg, center_world)
+}
+
+/// The same at an angle, anticlockwise seen from above.
+pub fn turned_by(document: &Document, turn: Turn, angle_deg: f64, center_world: [f64; 3]) -> Document {
     let mut document = document.clone();
     match turn {
         Turn::Camera => {

@@ -62,6 +62,14 @@ pub struct Globals {
     pub catcher_reflection_slot: u32,
     /// Where its table begins.
     pub catcher_table: u32,
+    /// Light that was reflected less often does not count.
+    pub least_reflections: u32,
+    /// To a multiple of 16 bytes.
+    pub unused_1: u32,
+    /// The same.
+    pub unused_2: u32,
+    /// The same.
+    pub unused_3: u32,
 }
 
 /// What a dispatch renders of one tile.
@@ -139,6 +147,10 @@ impl Globals {
             catcher_slot,
             catcher_reflection_slot,
             catcher_table,
+            least_reflections: settings.least_reflections,
+            unused_1: 0,
+            unused_2: 0,
+            unused_3: 0,
         }
     }
 }

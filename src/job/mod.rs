@@ -64,6 +64,8 @@ pub struct Settings {
     pub light_choice: LightChoice,
     /// Reflections a path may have.
     pub bounces: u32,
+    /// Light that was reflected less often does not count.
+    pub least_reflections: u32,
     /// The largest radiance that light keeps that was reflected twice or more; infinite where all is kept.
     pub firefly_clamp: f64,
     /// Random numbers.
@@ -84,6 +86,28 @@ named! {
         Light = 1, "light", "Light", "Sample the light and see how the material reflects it.";
         #[default]
         Mis = 2, "mis", "Both (MIS)", "Sample both, each weighed by its density (Veach 1997).";
+    }
+}
+
+named! {
+    /// Which light the picture shows. Direct and indirect light together are all of it.
+    #[derive(Default)]
+    LightPaths {
+        #[default]
+        All, "all", "All light", "The picture as it is.";
+        Direct, "direct", "Direct light", "What shines, and light that was reflected once: straight from a light or the environment.";
+        Indirect, "indirect", "Indirect light", "Light that was reflected twice or more: between the surfaces of the scene.";
+    }
+}
+
+impl LightPaths {
+    /// How often light is reflected that counts: at least and, where paths may have so many bounces, at most.
+    pub fn reflections(self, bounces: u32) -> [u32; 2] {
+        match self {
+            Self::All => [0, bounces],
+            Self::Direct => [0, bounces.min(1)],
+            Self::Indirect => [2, bounces],
+        }
     }
 }
 

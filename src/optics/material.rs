@@ -232,11 +232,8 @@ impl<T: Real> Material<T> {
 
     /// The material where its textures make it the least metallic: what calls for a base or for transmission.
     pub fn least_metallic(&self) -> Self {
-        let metalness = if self.metalness_texture == NO_TEXTURE {
-            self.metalness
-        } else {
-            T::zero()
-        };
+        let is_fixed = self.metalness_texture == NO_TEXTURE;
+        let metalness = if is_fixed { self.metalness } else { T::zero() };
         Self { metalness, ..*self }
     }
 

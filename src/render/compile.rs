@@ -97,6 +97,7 @@ impl Compiler {
             environment: switches.get(EffectId::LightSampling) != Switch::Off,
             emitters: switches.get(EffectId::EmitterSampling) != Switch::Off,
         };
+        let [least_reflections, bounces] = document.render.light_paths.reflections(document.render.bounces);
         let settings = Settings {
             image_size: [document.render.width, document.render.height],
             camera: camera(&document.camera, &document.render, &geometry),
@@ -112,7 +113,8 @@ impl Compiler {
             environment_rotation: cosine_and_sine(document.lighting.rotation_deg),
             environment_strength,
             light_choice: LightChoice::new(&environment, environment_strength, &lights, sampled),
-            bounces: document.render.bounces,
+            bounces,
+            least_reflections,
             firefly_clamp: document.render.firefly_clamp.map_or(f64::INFINITY, f64::from),
             sequence: document.render.sequence,
             strategy: document.render.strategy,

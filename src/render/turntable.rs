@@ -1,17 +1,21 @@
-//! Turntables: a session that renders one frame after the other into numbered files.
+//! Turntables: a session that renders one frame after the other, into numbered files, a video, or both.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use super::denoise::Attendant;
+use super::display::display;
+use super::engine::EngineChoice;
 use super::output::{self, OutputError, Rendered};
 use super::session::{Session, SessionError};
+use super::to_end::{step_to_end, submit};
 use crate::document::Document;
 use crate::document::turntable::{Turn, turned};
 use crate::store::FileError;
+use crate::store::replace::check_saving;
+use crate::store::video::{Video, VideoError};
 
-/// Step of the session between two looks at whether to go on.
-const STEP: Duration = Duration::from_millis(100);
+/// Frames a second of a video at first.
+pub const FPS: f64 = 24.0;
 
 /// What a turntable is.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,8 +26,12 @@ pub struct Turntable {
     pub turn: Turn,
     /// Frames of a whole turn, at least 1.
     pub frames: u32,
-    /// The folder of the pictures.
-    pub folder: PathBuf,
+    /// The folder of the pictures, where they are wanted.
+    pub folder: Option<PathBuf>,
+    /// The file of the video, where one is wanted.
+    pub video: Option<PathBuf>,
+    /// Frames a second of the video.
+    pub fps: f64,
 }
 
 /// How far it has come.
@@ -38,7 +46,7 @@ pub struct TurntableProgress {
 /// What it came to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TurntableOutcome {
-    /// Frames written.
+    /// Frames rendered.
     pub frames: u32,
     /// The engine's own time, seconds.
     pub render_seconds: f64,
@@ -49,15 +57,18 @@ pub struct TurntableOutcome {
 /// Why there are not all frames.
 #[derive(Debug, thiserror::Error)]
 pub enum TurntableError {
-    /// The folder cannot be made.
+    /// The folder cannot be made, or the video's file not be written.
     #[error(transparent)]
-    Folder(#[from] FileError),
+    File(#[from] FileError),
     /// The scene or the engine.
     #[error(transparent)]
     Session(#[from] SessionError),
     /// A picture.
     #[error(transparent)]
     Output(#[from] OutputError),
+    /// The video.
+    #[error(transparent)]
+    Video(#[from] VideoError),
 }
 
 /// The file of a frame, counted from 1: `frame-0001.png`.
@@ -65,60 +76,67 @@ pub fn frame_path(folder: &Path, number: u32) -> PathBuf {
     folder.join(format!("frame-{number:04}.png"))
 }
 
-/// Renders the frames in order. `go_on` is told the progress after every step, and stops the whole by `false`: what was
-/// written stays.
+impl Turntable {
+    /// Makes the folder, and begins the video: what fails here does so before anything is rendered.
+    fn begin(&self) -> Result<Option<Video>, TurntableError> {
+        if let Some(folder) = &self.folder {
+            std::fs::create_dir_all(folder).map_err(|source| FileError::Write {
+                path: folder.clone(),
+                source,
+            })?;
+        }
+        let Some(path) = &self.video else { return Ok(None) };
+        check_saving(path)?;
+        let render = &self.document.render;
+        Ok(Some(Video::begin(path, [render.width, render.height], self.fps)?))
+    }
+}
+
+/// Renders the frames in order, falling back to another engine as [`submit`] does. `go_on` is told the progress after
+/// every step, and stops the whole by `false`: pictures that were written stay, a video is only written whole.
 ///
 /// # Errors
 /// [`TurntableError`] naming the file; frames before stay.
 pub fn render(
     session: &mut Session,
+    engine: EngineChoice,
     table: &Turntable,
     go_on: &mut dyn FnMut(TurntableProgress) -> bool,
 ) -> Result<TurntableOutcome, TurntableError> {
-    std::fs::create_dir_all(&table.folder).map_err(|source| FileError::Write {
-        path: table.folder.clone(),
-        source,
-    })?;
+    let mut video = table.begin()?;
     let mut outcome = TurntableOutcome::default();
     let mut center_world = [0.0; 3];
     let mut attendant = Attendant::new(&table.document);
     for frame in 0..table.frames {
         let document = turned(&table.document, table.turn, frame, table.frames, center_world);
-        session.submit(&document)?;
+        submit(session, engine, &document)?;
         if let (0, Some(job)) = (frame, session.job()) {
             // Frame 0 does not need it.
             center_world = job.geometry.center_world.to_array();
         }
-        loop {
-            session.step(attendant.budget(&session.progress(), STEP))?;
-            attendant.attend(session, &session.progress())?;
-            let progress = session.progress();
-            let by_samples = f64::from(progress.samples_per_pixel) / f64::from(progress.samples_wanted.max(1));
-            let by_time = document
-                .render
-                .time_s
-                .map_or(0.0, |limit| progress.render_seconds / limit);
-            let told = TurntableProgress {
-                done: frame,
-                share: by_samples.max(by_time).min(1.0),
-            };
-            if !go_on(told) {
-                return Ok(outcome);
-            }
-            if progress.is_done {
-                outcome.render_seconds += progress.render_seconds;
-                break;
-            }
+        let ended = step_to_end(session, engine, &document, &mut attendant, &mut |progress| {
+            let share = progress.share_done(document.render.time_s);
+            go_on(TurntableProgress { done: frame, share })
+        })?;
+        if !ended.progress.is_done {
+            return Ok(outcome);
         }
+        outcome.render_seconds += ended.progress.render_seconds;
         outcome.dropped += session.film()?.dropped();
-        let denoised = attendant.finish(session)?;
         let image = session.image()?;
-        let rendered = Rendered {
-            denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
-            ..Rendered::from(&image)
-        };
-        output::write(&frame_path(&table.folder, frame + 1), rendered, &document)?;
+        let denoised = ended.denoised.as_ref().map(|denoised| denoised.image.as_ref());
+        if let Some(folder) = &table.folder {
+            let rendered = Rendered {
+                denoised,
+                ..Rendered::from(&image)
+            };
+            output::write(&frame_path(folder, frame + 1), rendered, &document)?;
+        }
+        if let Some(video) = &mut video {
+            video.add(&display(denoised.unwrap_or(&image), &document.view))?;
+        }
         outcome.frames = frame + 1;
     }
+    video.map_or(Ok(()), Video::finish)?;
     Ok(outcome)
 }

@@ -451,6 +451,11 @@ impl Texture {
     pub fn bytes(&self) -> usize {
         size_of_val(&self.rgba8[..]) + size_of_val(&self.rgba16[..])
     }
+
+    /// Whether a texel is not opaque.
+    pub fn is_translucent(&self) -> bool {
+        self.rgba8.iter().skip(3).step_by(4).any(|alpha| *alpha < 255)
+    }
 }
 
 impl fmt::Debug for Texture {

@@ -14,6 +14,7 @@ pub mod recovery;
 pub mod replace;
 pub mod shelf;
 pub mod snapshots;
+pub mod video;
 
 pub use file::{FileError, Loaded};
 pub use preset::{PRESETS, load_material, material_by_name, save_material};

@@ -186,6 +186,41 @@ fn a_turntable_is_numbered_frames_of_a_turn() {
 }
 
 #[test]
+fn a_turntable_is_a_video_where_that_is_asked_for() {
+    let place = Workplace::new();
+    let scene = "--frames 3 --size 24x16 --samples 1 --environment furnace --engine cpu";
+    place.done(&format!(
+        "turntable {scene} --video turn.gif --fps 10 --report report.json"
+    ));
+    assert!(!place.path("turntable").exists(), "pictures were not asked for");
+    let report: Value = serde_json::from_str(&place.read("report.json")).unwrap();
+    assert_eq!((&report["video"], &report["fps"]), (&"turn.gif".into(), &10.0.into()));
+    assert_eq!(report["files"], serde_json::json!(["turn.gif"]));
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let file = std::fs::File::open(place.path("turn.gif")).unwrap();
+    let mut video = options.read_info(file).unwrap();
+    place.done(&format!("turntable {scene} --video turn.mp4 --output turn"));
+    assert_eq!(&std::fs::read(place.path("turn.mp4")).unwrap()[4..8], b"ftyp");
+    for number in 1..=3 {
+        // The pictures of the same turn, but for what 256 colours leave.
+        let frame = video.read_next_frame().unwrap().unwrap();
+        assert_eq!(frame.delay, 10, "hundredths of a second");
+        let picture = image::open(place.path(&format!("turn/frame-000{number}.png"))).unwrap();
+        let pairs = std::iter::zip(&frame.buffer[..], picture.into_rgba8().into_raw());
+        let error = pairs.map(|(a, b)| u64::from(a.abs_diff(b))).sum::<u64>() as f64 / frame.buffer.len() as f64;
+        assert!(error < 2.0, "frame {number} is off by {error} codes");
+    }
+    place.refused(2, "turntable --video turn.avi", &["turn.avi", ".mp4 or .gif"]);
+    place.refused(2, "turntable --video turn.mp4 --fps 0", &["frames a second"]);
+    place.refused(
+        1,
+        &format!("turntable {scene} --video nowhere/turn.mp4"),
+        &["nowhere/turn.mp4"],
+    );
+}
+
+#[test]
 fn the_model_turns_against_a_light_that_stays() {
     // A round model: its turn shows nothing, the light's does.
     let place = Workplace::new();

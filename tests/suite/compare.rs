@@ -1,4 +1,4 @@
-//! Comparing, pinning, pictures that bring their document back, turntables: in the editor with the real renderer.
+//! Comparing, pinning, pictures that bring their document back: in the editor with the real renderer.
 
 use std::path::Path;
 use std::time::Duration;
@@ -17,7 +17,7 @@ use glossmith::optics::lobe::Lobe;
 use glossmith::render::worker::{Activity, Picture};
 use glossmith::store::PRESETS;
 
-use super::ui::{Editor, editor, editor_of, editor_with, options, request, see, settle, wait};
+use super::ui::{Editor, editor, editor_of, editor_with, options, press, request, see, settle, wait};
 use super::ui_scene;
 use super::worker::small_document;
 
@@ -272,11 +272,6 @@ fn swapping_and_taking_b_are_one_step_each() {
     assert_eq!(*harness.state().document(), before);
 }
 
-fn press(harness: &mut Editor, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click();
-    harness.run_steps(3);
-}
-
 fn has_button(harness: &Editor, label: &str) -> bool {
     harness.query_by_role_and_label(Role::Button, label).is_some()
 }
@@ -401,41 +396,4 @@ fn layers_are_saved_from_the_window() {
         .collect();
     assert_eq!(names.len(), 13, "{names:?}");
     assert!(names.contains(&"normal.X".to_owned()) && names.contains(&"variance.Y".to_owned()));
-}
-
-#[test]
-fn a_turntable_is_rendered_beside_the_window_and_cancelled() {
-    let folder = tempfile::tempdir().expect("a temporary folder");
-    let mut harness = editor();
-    let set = |harness: &mut Editor, label: &str, value: f64| {
-        harness
-            .get_by_role_and_label(Role::SpinButton, label)
-            .set_value_accesskit(value);
-        harness.run_steps(2);
-    };
-    request(&mut harness, Action::Do(Command::Turntable));
-    // A sheet is first measured, then shown.
-    harness.run_steps(2);
-    harness.check_accessibility();
-    set(&mut harness, "Turntable frames", 3.0);
-    set(&mut harness, "Turntable width", 20.0);
-    set(&mut harness, "Turntable height", 12.0);
-    let field = harness.get_by_role_and_label(Role::TextInput, "Turntable folder");
-    field.set_text_value_accesskit(&folder.path().join("turn").display().to_string());
-    harness.run_steps(2);
-    press(&mut harness, "Render frames");
-    wait(&mut harness, "the frames", |app| {
-        app.messages().iter().any(|text| text.contains("turntable: 3 frames"))
-    });
-    assert_eq!(std::fs::read_dir(folder.path().join("turn")).expect("made").count(), 3);
-    let size = image::image_dimensions(folder.path().join("turn/frame-0003.png")).expect("a picture");
-    assert_eq!(size, (20, 12));
-    set(&mut harness, "Turntable frames", 9000.0);
-    set(&mut harness, "Turntable samples", 4000.0);
-    press(&mut harness, "Render frames");
-    harness.run_steps(2);
-    press(&mut harness, "Cancel the turntable");
-    wait(&mut harness, "its end", |app| {
-        app.messages().iter().any(|text| text.contains("turntable cancelled"))
-    });
 }

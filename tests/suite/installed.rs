@@ -66,6 +66,11 @@ fn it_is_installed_for_the_user_and_taken_away_again() {
             "models that end in {ending} do not open"
         );
     }
+    let about = std::fs::read_to_string(prefix.join("share/metainfo/glossmith.metainfo.xml")).expect("a description");
+    let about = roxmltree::Document::parse(&about).expect("XML");
+    let release = about.descendants().find(|node| node.has_tag_name("release"));
+    let version = release.and_then(|release| release.attribute("version"));
+    assert_eq!(version, Some(env!("CARGO_PKG_VERSION")), "what software centres show");
     let output = script(&prefix, "none", &["--remove"]);
     assert!(output.status.success(), "{output:?}");
     let left: Vec<_> = files(&prefix)
@@ -73,6 +78,58 @@ fn it_is_installed_for_the_user_and_taken_away_again() {
         .filter(|path| path.to_string_lossy().contains("glossmith"))
         .collect();
     assert!(left.is_empty(), "{left:?}");
+}
+
+/// Not built here, which needs flatpak-builder and its runtime: that every crate of the lock file is there to build from,
+/// and that what is renamed is what is installed.
+#[test]
+fn a_flatpak_has_all_that_it_is_built_from_without_a_network() {
+    let home = tempfile::tempdir().expect("a temporary folder");
+    let index = home.path().join("registry/index/some");
+    std::fs::create_dir_all(&index).expect("a folder");
+    let config = r#"{"dl": "https://crates.example/{prefix}/{crate}/{version}"}"#;
+    std::fs::write(index.join("config.json"), config).expect("a file");
+    let output = Command::new("python3")
+        .arg(Path::new(ROOT).join("scripts/flatpak"))
+        .arg("--output")
+        .arg(home.path())
+        .env("CARGO_HOME", home.path())
+        .output()
+        .expect("python3");
+    assert!(output.status.success(), "{output:?}");
+    let text = std::fs::read_to_string(home.path().join("io.github.glossmith.Glossmith.json")).expect("a manifest");
+    let manifest: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let sources = manifest["modules"][0]["sources"].as_array().expect("sources");
+    let lock = std::fs::read_to_string(Path::new(ROOT).join("Cargo.lock")).expect("the lock file");
+    let checksums: Vec<&str> = lock
+        .lines()
+        .filter_map(|line| line.strip_prefix("checksum = "))
+        .collect();
+    assert!(checksums.len() > 300);
+    for checksum in checksums {
+        let checksum = checksum.trim_matches('"');
+        let is_it = |source: &&serde_json::Value| source["sha256"] == checksum;
+        let source = sources.iter().find(is_it).expect("a crate of the lock file");
+        let address = source["url"].as_str().expect("where it is");
+        assert!(
+            address.starts_with("https://crates.example/") && !address.contains('{'),
+            "{address}"
+        );
+    }
+    let config = sources.last().expect("cargo's configuration");
+    assert!(
+        config["contents"]
+            .as_str()
+            .is_some_and(|text| text.contains("replace-with = \"vendored\""))
+    );
+    let prefix = home.path().join("installed");
+    assert!(script(&prefix, env!("CARGO_BIN_EXE_glossmith"), &[]).status.success());
+    for kind in ["desktop-file", "mime-file", "icon", "appdata-file"] {
+        let renamed = manifest[format!("rename-{kind}")].as_str().expect("a name");
+        let is_installed =
+            |path: &PathBuf| path.file_stem().is_some_and(|stem| stem == renamed) || path.ends_with(renamed);
+        assert!(files(&prefix).iter().any(is_installed), "{renamed} is not installed");
+    }
 }
 
 #[test]

@@ -11,7 +11,7 @@ use glossmith::document::MaterialSettings;
 use glossmith::render::thumbnails::key;
 use glossmith::store::{PRESETS, load_material};
 
-use super::ui::{Editor, editor_of, options, request, see, wait};
+use super::ui::{Editor, editor_of, options, press, request, see, wait};
 
 /// An editor with the user's folder, its panel showing only what has this in its name.
 fn editor_showing(data: &Path, name: &str) -> Editor {
@@ -28,11 +28,6 @@ fn editor_showing(data: &Path, name: &str) -> Editor {
 
 fn has_button(harness: &Editor, label: &str) -> bool {
     harness.query_by_role_and_label(Role::Button, label).is_some()
-}
-
-fn press(harness: &mut Editor, label: &str) {
-    harness.get_by_role_and_label(Role::Button, label).click();
-    harness.run_steps(3);
 }
 
 fn files(folder: &Path) -> Vec<MaterialSettings> {

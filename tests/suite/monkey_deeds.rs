@@ -46,7 +46,7 @@ const KEYS_OF_PATHS: [Key; 3] = [Key::Tab, Key::Enter, Key::Escape];
 /// Sides of pictures: large ones would take the machine's memory.
 const SIDES: [&str; 4] = ["Width", "Height", "Turntable width", "Turntable height"];
 /// Fields whose text names files.
-const PATHS: [&str; 2] = ["Path", "Turntable folder"];
+const PATHS: [&str; 2] = ["Path", "Turntable output"];
 /// Takes minutes of both cores, and can't be stopped.
 const ENDLESS: [&str; 1] = ["Check this machine"];
 

@@ -71,7 +71,7 @@ fn favourites_come_first_tags_are_found_and_both_are_kept() {
     let mut harness = editor_of(options());
     harness.run_steps(3);
     click(&mut harness, "More of Amber");
-    click(&mut harness, "Favourite");
+    click(&mut harness, "Add to favourites");
     assert!(place(&harness, "Amber").top() < place(&harness, "Rubber").top());
     click(&mut harness, "More of Gold");
     click(&mut harness, "Tags…");

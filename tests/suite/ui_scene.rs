@@ -22,7 +22,7 @@ pub(super) fn choose(harness: &mut Editor, menu: &str, item: &str) {
     settle(harness);
 }
 
-fn click_at(harness: &mut Editor, at: Pos2) {
+pub(super) fn click_at(harness: &mut Editor, at: Pos2) {
     harness.hover_at(at);
     harness.step();
     harness.drag_at(at);

@@ -220,6 +220,7 @@ impl App {
                 self.reveal(Pane::Race);
             }
             Command::Turntable => self.open_turntable(),
+            Command::PreviewTurn => self.toggle_preview(),
             Command::Palette => {
                 palette::focus(ctx);
                 self.sheet = Sheet::Palette {

@@ -293,6 +293,7 @@ impl App {
             }
             Command::SaveLayers => (Purpose::SaveLayers, format!("{}.exr", self.files.project_name())),
             Command::SaveWindow => (Purpose::SaveWindow, "glossmith-window.png".to_owned()),
+            Command::QueuePicture => (Purpose::QueuePicture, format!("{}.png", self.files.project_name())),
             Command::SavePicture => (Purpose::SavePicture, format!("{}.png", self.files.project_name())),
             // The others are done where this is called.
             _ => return,
@@ -317,6 +318,7 @@ impl App {
             Purpose::Export => self.prepare_export(path),
             Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
             Purpose::SaveWindow => self.window_picture = Some(path.with_extension("png")),
+            Purpose::QueuePicture => self.enqueue_picture(with_ending(path, "png")),
             Purpose::SavePicture => self.want_picture(Destination::File(with_ending(path, "png"))),
         }
     }

@@ -100,7 +100,7 @@ impl App {
         if let EnvironmentSource::File(path) = &scene.document.lighting.environment {
             files.push(path.clone());
         }
-        files.extend(scene.job.textures.own.iter().map(|own| own.file.clone()));
+        files.extend(scene.document.pictures().cloned());
         self.files.watched.watch(&files);
         if !self.files.watched.take_changed().is_empty() {
             self.worker.reload();

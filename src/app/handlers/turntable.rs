@@ -1,13 +1,19 @@
 //! What the window does about turntables.
 
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use crate::app::App;
 use crate::app::kit::theme;
-use crate::app::services::disk::words;
-use crate::app::sheets::turntable::Running;
-use crate::render::EngineChoice;
-use crate::render::worker::Level;
+use crate::app::sheets::turntable::Preview;
+use crate::document::Document;
+use crate::document::turntable::turned_by;
+use crate::render::queue::Task;
+
+/// How long a turn takes in the viewport.
+const PREVIEW_TURN: Duration = Duration::from_secs(12);
+/// Between two pictures of it.
+const PREVIEW_STEP: Duration = Duration::from_millis(33);
 
 impl App {
     /// Opens the sheet, with the size of the picture as it is.
@@ -24,18 +30,39 @@ impl App {
         sheet.is_open = true;
         sheet.size = [render.width, render.height];
         sheet.samples = render.samples.min(65536);
-        if sheet.folder.is_empty() {
-            sheet.folder = folder.display().to_string();
+        if sheet.output.is_empty() {
+            sheet.output = folder.display().to_string();
         }
     }
 
-    /// Shows the sheet where it is open, and says how the turntable ended.
-    pub(in crate::app) fn show_turntable(&mut self, ctx: &egui::Context) {
-        if let Some(done) = self.turntable.running.as_ref().and_then(Running::outcome) {
-            self.turntable.running = None;
-            let (level, text) = words(done);
-            self.say(level, text);
+    /// Begins a turn in the viewport, or ends it.
+    pub(in crate::app) fn toggle_preview(&mut self) {
+        let camera = self.document.camera.clone();
+        let since = Instant::now();
+        let preview = &mut self.turntable.preview;
+        *preview = preview.is_none().then_some(Preview { since, camera });
+    }
+
+    /// The document as the viewport shows it, and whether that turns.
+    pub(in crate::app) fn document_shown(&mut self, ctx: &egui::Context) -> (Document, bool) {
+        let is_called_off = !self.is_covered() && ctx.input(|input| input.key_pressed(egui::Key::Escape));
+        let is_over = |preview: &Preview| is_called_off || preview.camera != self.document.camera;
+        if self.turntable.preview.as_ref().is_some_and(is_over) {
+            self.turntable.preview = None;
         }
+        let snapshot = self.worker.snapshot();
+        let (Some(preview), Some(scene)) = (&self.turntable.preview, &snapshot.scene) else {
+            return (self.document.clone(), false);
+        };
+        ctx.request_repaint_after(PREVIEW_STEP);
+        let angle_deg = 360.0 * preview.since.elapsed().as_secs_f64() / PREVIEW_TURN.as_secs_f64();
+        let center_world = scene.job.geometry.center_world.to_array();
+        let turned = turned_by(&self.document, self.turntable.turn, angle_deg, center_world);
+        (turned, true)
+    }
+
+    /// Shows the sheet where it is open.
+    pub(in crate::app) fn show_turntable(&mut self, ctx: &egui::Context) {
         if !self.turntable.is_open {
             return;
         }
@@ -45,22 +72,14 @@ impl App {
             ui.set_width(440.0);
             ui.heading("Turntable");
             ui.add_space(theme::GAP);
-            match &sheet.running {
-                Some(running) => running.show(ui),
-                None => begins = sheet.settings(ui),
-            }
+            begins = sheet.settings(ui);
         });
-        if modal.should_close() {
+        if modal.should_close() || begins {
             sheet.is_open = false;
         }
         if begins {
-            let kind = self.worker.snapshot().engine.as_ref().map(|engine| engine.kind);
-            let engine = kind.map_or(EngineChoice::Cpu, EngineChoice::from);
             let table = self.turntable.order(&self.document);
-            match Running::begin(ctx, table, engine) {
-                Ok(running) => self.turntable.running = Some(running),
-                Err(error) => self.say(Level::Error, format!("cannot start a thread to render: {error}")),
-            }
+            self.enqueue(Task::Turntable(Box::new(table)));
         }
     }
 }

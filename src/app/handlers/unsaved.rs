@@ -28,13 +28,16 @@ impl App {
         }
     }
 
-    /// Keeps the window open where edits or files being written would be lost with it.
+    /// Keeps the window open where edits, files being written or renders would be lost with it.
     pub(in crate::app) fn guard_close(&mut self, ctx: &egui::Context) {
         let is_asked = ctx.input(|input| input.viewport().close_requested());
         if !is_asked || self.unsaved.may_close {
             return;
         }
-        if self.files.is_saving() {
+        if self.shared.queue.is_busy() && !self.unsaved.gives_queue_up {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.unsaved.asks_about_queue = true;
+        } else if self.files.is_saving() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
             self.unsaved.after_save = Some(Then::Close);
         } else if !self.edits.is_saved(&self.document) {

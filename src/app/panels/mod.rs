@@ -11,6 +11,7 @@ mod lobe;
 mod log;
 mod material;
 mod presets;
+mod queue;
 mod race;
 mod samples;
 mod scene;

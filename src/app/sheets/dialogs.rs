@@ -39,6 +39,7 @@ pub(in crate::app) enum Purpose {
     Export,
     SavePicture,
     SaveLayers,
+    QueuePicture,
     SaveWindow,
     WatchFolder,
     Texture(TextureTarget),
@@ -58,6 +59,7 @@ impl Purpose {
             Self::Export => "Export for another program",
             Self::SavePicture => "Save the picture",
             Self::SaveLayers => "Save the picture with layers",
+            Self::QueuePicture => "Render to a picture",
             Self::SaveWindow => "Save a picture of the window",
             Self::WatchFolder => "Watch a folder",
             Self::Texture(_) => "Choose a texture",
@@ -81,7 +83,7 @@ impl Purpose {
             Self::SaveMaterial => ("Materials", &["json"]),
             Self::Export => ("Files of other programs", &EXPORTS),
             Self::OpenMeasured => ("Measured materials (MERL)", &["binary"]),
-            Self::SavePicture => ("Pictures", &["png", "exr", "hdr"]),
+            Self::SavePicture | Self::QueuePicture => ("Pictures", &["png", "exr", "hdr"]),
             Self::SaveLayers => ("OpenEXR pictures", &["exr"]),
             Self::SaveWindow => ("PNG pictures", &["png"]),
             Self::WatchFolder => ("Folders", &[]),
@@ -98,6 +100,7 @@ impl Purpose {
                 | Self::Export
                 | Self::SavePicture
                 | Self::SaveLayers
+                | Self::QueuePicture
                 | Self::SaveWindow
         )
     }

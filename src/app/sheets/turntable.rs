@@ -1,54 +1,70 @@
-//! The turntable: what turns and how often it is taken, then a renderer of its own beside the window.
+//! The turntable: what turns, how often it is taken, and where it goes; the queue renders it.
 
-use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use egui::Ui;
 
 use crate::app::kit::{theme, widgets};
-use crate::document::Document;
 use crate::document::turntable::Turn;
-use crate::render::background::{self, Background};
-use crate::render::turntable::{Turntable, TurntableProgress, render};
-use crate::render::{EngineChoice, Session};
+use crate::document::{CameraSettings, Document};
+use crate::render::turntable::{FPS, Turntable};
+use crate::store::video;
 
 /// Frames at first.
 const FRAMES: u32 = 36;
 
-/// How a turntable stands.
-#[derive(Clone, Debug)]
-enum State {
-    Progress(TurntableProgress),
-    /// What to say in the end.
-    Done(Result<String, String>),
+/// What a turntable is written as.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Form {
+    Pictures,
+    #[default]
+    Mp4,
+    Gif,
 }
 
-/// What is rendered, with what, and whether it is to go on.
-struct Order {
-    table: Turntable,
-    engine: EngineChoice,
-    is_cancelled: Arc<AtomicBool>,
+/// All of them, with their labels and what they are.
+const FORMS: [(Form, &str, &str); 3] = [
+    (Form::Pictures, "Pictures", "Numbered pictures (.png) in a folder."),
+    (Form::Mp4, "Video (.mp4)", "H.264, which everything plays."),
+    (
+        Form::Gif,
+        "Animation (.gif)",
+        "256 colours a frame, in an endless loop.",
+    ),
+];
+
+impl Form {
+    /// The ending of its file; none for a folder.
+    fn ending(self) -> &'static str {
+        match self {
+            Self::Pictures => "",
+            Self::Mp4 => "mp4",
+            Self::Gif => "gif",
+        }
+    }
 }
 
-type Renderer = Background<Order, State>;
+/// A turn in the viewport.
+pub(in crate::app) struct Preview {
+    pub(in crate::app) since: Instant,
+    /// The document's camera: a turn ends where that is moved.
+    pub(in crate::app) camera: CameraSettings,
+}
 
-/// The sheet, and the turntable that is being rendered.
+/// The sheet.
 pub(in crate::app) struct TurntableSheet {
     pub(in crate::app) is_open: bool,
     frames: u32,
-    turn: Turn,
+    pub(in crate::app) turn: Turn,
+    /// The turn that the viewport shows.
+    pub(in crate::app) preview: Option<Preview>,
+    form: Form,
+    fps: f64,
     pub(in crate::app) samples: u32,
     pub(in crate::app) size: [u32; 2],
-    pub(in crate::app) folder: String,
-    pub(in crate::app) running: Option<Running>,
-}
-
-/// A turntable that is being rendered.
-pub(in crate::app) struct Running {
-    renderer: Renderer,
-    is_cancelled: Arc<AtomicBool>,
-    frames: u32,
+    /// The folder or the file.
+    pub(in crate::app) output: String,
 }
 
 impl Default for TurntableSheet {
@@ -57,38 +73,31 @@ impl Default for TurntableSheet {
             is_open: false,
             frames: FRAMES,
             turn: Turn::default(),
+            preview: None,
+            form: Form::default(),
+            fps: FPS,
             samples: 0,
             size: [0; 2],
-            folder: String::new(),
-            running: None,
-        }
-    }
-}
-
-impl Drop for TurntableSheet {
-    fn drop(&mut self) {
-        if let Some(running) = &self.running {
-            running.is_cancelled.store(true, Ordering::Relaxed);
+            output: String::new(),
         }
     }
 }
 
 impl TurntableSheet {
-    /// Whether it lies over the window.
-    pub(in crate::app) fn is_open(&self) -> bool {
-        self.is_open
-    }
-
     pub(in crate::app) fn order(&self, document: &Document) -> Turntable {
         let mut document = document.clone();
         [document.render.width, document.render.height] = self.size;
         document.render.samples = self.samples;
         document.render.time_s = None;
+        let path = PathBuf::from(self.output.trim());
+        let is_video = self.form != Form::Pictures;
         Turntable {
             document,
             turn: self.turn,
             frames: self.frames,
-            folder: PathBuf::from(self.folder.trim()),
+            folder: (!is_video).then(|| path.clone()),
+            video: is_video.then(|| path.with_extension(self.form.ending())),
+            fps: self.fps,
         }
     }
 
@@ -104,16 +113,8 @@ impl TurntableSheet {
         });
         let mut number =
             |name: &str, label: &str, help: &str, value: &mut u32, range: std::ops::RangeInclusive<f64>| {
-                let style = widgets::NumberStyle {
-                    range,
-                    bar: None,
-                    unit: "",
-                    speed: 0.2,
-                    decimals: 0,
-                };
-                widgets::row(ui, widgets::Name::new(name, label, help), |ui| {
-                    widgets::number(ui, value, &style)
-                });
+                let name = widgets::Name::new(name, label, help);
+                widgets::row(ui, name, |ui| widgets::number(ui, value, &style(range, 0)));
             };
         number(
             "Turntable frames",
@@ -132,11 +133,26 @@ impl TurntableSheet {
         let [width, height] = &mut self.size;
         number("Turntable width", "Width", "Columns of each.", width, 1.0..=8192.0);
         number("Turntable height", "Height", "Rows of each.", height, 1.0..=8192.0);
-        let help =
-            "For frame-0001.png, frame-0002.png and so on; made where it is not there. What is there is replaced.";
-        widgets::row(ui, widgets::Name::new("Turntable folder", "Folder", help), |ui| {
+        let name = widgets::Name::new("Turntable form", "Written as", "What the frames are written as.");
+        widgets::row(ui, name, |ui| {
+            widgets::choice(ui, "turntable form", &mut self.form, &FORMS)
+        });
+        let is_video = self.form != Form::Pictures;
+        let name = widgets::Name::new("Turntable frames a second", "Frames/s", "How fast a video plays.");
+        ui.add_enabled_ui(is_video, |ui| {
+            widgets::row(ui, name, |ui| widgets::number(ui, &mut self.fps, &style(video::FPS, 3)))
+        });
+        let help = match is_video {
+            true => "The file; what is there is replaced.",
+            false => {
+                "The folder for frame-0001.png, frame-0002.png and so on; made where it is not there. What is there is \
+                 replaced."
+            }
+        };
+        self.output = with_ending(&self.output, self.form.ending());
+        widgets::row(ui, widgets::Name::new("Turntable output", "Output", help), |ui| {
             ui.add(
-                egui::TextEdit::singleline(&mut self.folder)
+                egui::TextEdit::singleline(&mut self.output)
                     .desired_width(f32::INFINITY)
                     .margin(egui::vec2(6.0, 4.0)),
             )
@@ -144,8 +160,10 @@ impl TurntableSheet {
         ui.add_space(theme::GAP);
         let mut begins = false;
         ui.horizontal(|ui| {
-            let is_usable = !self.folder.trim().is_empty();
-            begins = ui.add_enabled(is_usable, egui::Button::new("Render frames")).clicked();
+            let is_usable = !self.output.trim().is_empty();
+            begins = ui
+                .add_enabled(is_usable, egui::Button::new("Add to the queue"))
+                .clicked();
             if ui.button("Close").clicked() {
                 ui.close();
             }
@@ -154,75 +172,25 @@ impl TurntableSheet {
     }
 }
 
-impl Running {
-    pub(in crate::app) fn begin(ctx: &egui::Context, table: Turntable, engine: EngineChoice) -> std::io::Result<Self> {
-        let is_cancelled = Arc::new(AtomicBool::new(false));
-        let repainting = ctx.clone();
-        let work =
-            |order: Order, desk: &background::Desk<'_, Order, State>| desk.publish(State::Done(run(&order, desk)));
-        let renderer = Renderer::spawn("turntable", move || repainting.request_repaint(), work)?;
-        let frames = table.frames;
-        renderer.ask(Order {
-            table,
-            engine,
-            is_cancelled: is_cancelled.clone(),
-        });
-        Ok(Self {
-            renderer,
-            is_cancelled,
-            frames,
-        })
-    }
-
-    /// What to say in the end, once it has come.
-    pub(in crate::app) fn outcome(&self) -> Option<Result<String, String>> {
-        match self.renderer.latest() {
-            Some(State::Done(done)) => Some(done),
-            _ => self.renderer.failure().map(|why| Err(format!("turntable: {why}"))),
-        }
-    }
-
-    pub(in crate::app) fn show(&self, ui: &mut Ui) {
-        let progress = match self.renderer.latest() {
-            Some(State::Progress(progress)) => progress,
-            _ => TurntableProgress::default(),
-        };
-        let share = (f64::from(progress.done) + progress.share) / f64::from(self.frames.max(1));
-        let text = format!("Frame {} of {}", (progress.done + 1).min(self.frames), self.frames);
-        ui.add(egui::ProgressBar::new(share as f32).text(text));
-        ui.add_space(theme::GAP);
-        ui.horizontal(|ui| {
-            if ui.button("Cancel the turntable").clicked() {
-                self.is_cancelled.store(true, Ordering::Relaxed);
-            }
-            if ui
-                .button("Go on beside")
-                .on_hover_text("Closes this; the frames go on being rendered.")
-                .clicked()
-            {
-                ui.close();
-            }
-        });
+fn style(range: std::ops::RangeInclusive<f64>, decimals: usize) -> widgets::NumberStyle<'static> {
+    widgets::NumberStyle {
+        range,
+        bar: None,
+        unit: "",
+        speed: 0.2,
+        decimals,
     }
 }
 
-/// Renders all frames; the words for the end.
-fn run(order: &Order, desk: &background::Desk<'_, Order, State>) -> Result<String, String> {
-    let table = &order.table;
-    let words = |error: &dyn std::fmt::Display| error.to_string();
-    let mut session = Session::open(order.engine).map_err(|error| words(&error))?;
-    let mut go_on = |progress| {
-        desk.publish(State::Progress(progress));
-        !order.is_cancelled.load(Ordering::Relaxed) && !desk.is_superseded()
-    };
-    let outcome = render(&mut session, table, &mut go_on).map_err(|error| words(&error))?;
-    let folder = table.folder.display();
-    Ok(if outcome.frames < table.frames {
-        format!(
-            "turntable cancelled: {} of {} frames are in {folder}",
-            outcome.frames, table.frames
-        )
-    } else {
-        format!("turntable: {} frames in {folder}", outcome.frames)
-    })
+/// A path with another of the endings that turntables have, or with none; as it is while it is being typed.
+fn with_ending(path: &str, ending: &str) -> String {
+    let has = Path::new(path)
+        .extension()
+        .and_then(|has| has.to_str())
+        .unwrap_or_default();
+    let is_known = FORMS.iter().any(|(form, ..)| form.ending() == has);
+    match is_known && has != ending && !path.is_empty() {
+        true => Path::new(path).with_extension(ending).display().to_string(),
+        false => path.to_owned(),
+    }
 }

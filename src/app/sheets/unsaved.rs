@@ -35,6 +35,10 @@ pub(in crate::app) struct Unsaved {
     pub(in crate::app) after_save: Option<Then>,
     /// Asked and answered: the window may go.
     pub(in crate::app) may_close: bool,
+    /// The question whether to give renders in the queue up is open.
+    pub(in crate::app) asks_about_queue: bool,
+    /// That was answered with yes.
+    pub(in crate::app) gives_queue_up: bool,
 }
 
 /// The open question.
@@ -53,7 +57,7 @@ pub(in crate::app) enum Answer {
 impl Unsaved {
     /// Whether an answer is waited for.
     pub(in crate::app) fn is_open(&self) -> bool {
-        self.question.is_some()
+        self.question.is_some() || self.asks_about_queue
     }
 }
 

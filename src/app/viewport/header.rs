@@ -7,7 +7,7 @@ use crate::app::desk::{Desk, RESOLUTIONS};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::{theme, widgets};
 use crate::app::services::environments;
-use crate::document::Denoise;
+use crate::document::{Denoise, LightPaths};
 use crate::optics::tone::ToneCurve;
 use crate::render::shown::Shown;
 use crate::scene::ModelSource;
@@ -178,17 +178,16 @@ fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
             compares.accessible_name("Compare");
         }
         Item::Shown => {
-            let response = widgets::choice(ui, "header shown", &mut desk.shared.shown, &Shown::ALL);
-            if response.changed() {
-                desk.actions.push(Action::Show(desk.shared.shown));
-            }
+            let mut seen = seen(desk);
+            let response = widgets::choice(ui, "header shown", &mut seen, &all_seen(desk));
+            show_seen(desk, seen);
             response
                 .accessible_name("Viewport shows")
-                .on_hover_text("Picture, error, samples or precision");
+                .on_hover_text("The picture, a part of its light, or what is known of its pixels");
         }
         Item::Pause => {
             let (icon, help) = if desk.shared.is_paused {
-                (Icon::Play, "Go on (space)")
+                (Icon::Play, "Resume (space)")
             } else {
                 (Icon::Pause, "Pause (space)")
             };
@@ -196,6 +195,36 @@ fn show_item(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
                 desk.act(Command::Pause);
             }
         }
+    }
+}
+
+/// What the viewport shows of a render, and which light is rendered.
+type Seen = (Shown, LightPaths);
+
+fn seen(desk: &Desk<'_>) -> Seen {
+    (desk.shared.shown, desk.document.render.light_paths)
+}
+
+/// What there is to be seen: parts of the light behind the picture; maps of the light that is rendered.
+fn all_seen(desk: &Desk<'_>) -> Vec<(Seen, &'static str, &'static str)> {
+    let rendered = desk.document.render.light_paths;
+    let maps = Shown::ALL.iter().filter(|(shown, ..)| *shown != Shown::Picture);
+    let maps = maps.map(|(shown, label, help)| ((*shown, rendered), *label, *help));
+    let (_, picture, help) = Shown::ALL[0];
+    let whole = ((Shown::Picture, LightPaths::All), picture, help);
+    let parts = [LightPaths::Direct, LightPaths::Indirect];
+    let parts = parts.map(|part| ((Shown::Picture, part), part.label(), part.help()));
+    std::iter::once(whole).chain(parts).chain(maps).collect()
+}
+
+fn show_seen(desk: &mut Desk<'_>, (shown, paths): Seen) {
+    if desk.shared.shown != shown {
+        desk.shared.shown = shown;
+        desk.actions.push(Action::Show(shown));
+    }
+    if desk.document.render.light_paths != paths {
+        desk.document.render.light_paths = paths;
+        desk.edits.note("Light shown", "");
     }
 }
 
@@ -229,9 +258,9 @@ fn menu_entry(ui: &mut Ui, desk: &mut Desk<'_>, item: Item) {
             widgets::choice_menu(ui, "Resolution", &mut desk.shared.resolution, &RESOLUTIONS);
         }
         Item::Shown => {
-            if widgets::choice_menu(ui, "Viewport shows", &mut desk.shared.shown, &Shown::ALL) {
-                desk.actions.push(Action::Show(desk.shared.shown));
-            }
+            let mut seen = seen(desk);
+            widgets::choice_menu(ui, "Viewport shows", &mut seen, &all_seen(desk));
+            show_seen(desk, seen);
         }
         Item::Exposure => {
             ui.horizontal(|ui| {

@@ -113,11 +113,14 @@ impl<T: Real> Caught<T> {
         matches!(self, Self::Mirrored { .. })
     }
 
-    /// What the path found, which over a transparent background is a shadow's alpha.
-    pub(super) fn result(self, found: PathResult<T>) -> PathResult<T> {
+    /// What the path found, which over a transparent background is a shadow's alpha. A part of the light alone casts none.
+    pub(super) fn result(self, found: PathResult<T>, is_all_light: bool) -> PathResult<T> {
         match self {
             Self::Shadow { is_transparent: true } => PathResult {
-                alpha: T::one() - found.radiance.luminance(),
+                alpha: match is_all_light {
+                    true => T::one() - found.radiance.luminance(),
+                    false => T::zero(),
+                },
                 radiance: Vec3::zero(),
                 ..found
             },

@@ -150,7 +150,12 @@ impl<'a, T: Real> Integrator<'a, T> {
             };
             ray = next;
         }
-        path.result(T::one())
+        self.result(&path, T::one())
+    }
+
+    /// What a path found that has come to its end.
+    fn result<R: Recorder>(&self, path: &Path<'_, T, R>, alpha: T) -> PathResult<T> {
+        path.result(alpha, self.settings.least_reflections == 0)
     }
 
     /// A path before its first ray.
@@ -262,7 +267,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             self.add(Source::Environment, found, bounce, path);
         }
         path.record(|| Event::Ended { why: End::Left });
-        path.result(alpha)
+        self.result(path, alpha)
     }
 
     /// Adds light that was reflected so many times, no more than firefly limiting allows.
@@ -283,6 +288,9 @@ impl<'a, T: Real> Integrator<'a, T> {
     /// What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
     #[inline(always)]
     fn limited(&self, contribution: Vec3<T>, reflections: u32, taken: &mut T) -> Vec3<T> {
+        if reflections < self.settings.least_reflections {
+            return Vec3::zero();
+        }
         let Some(limit) = self.firefly_clamp.filter(|_| reflections > 1) else {
             return contribution;
         };

@@ -121,14 +121,15 @@ impl<'r, T: Real, R: Recorder> Path<'r, T, R> {
         self.recorder.record(event);
     }
 
-    /// What the path found.
-    pub fn result(&self, alpha: T) -> PathResult<T> {
-        self.caught.result(PathResult {
+    /// What the path found, of all light or of a part.
+    pub fn result(&self, alpha: T, is_all_light: bool) -> PathResult<T> {
+        let found = PathResult {
             radiance: self.radiance,
             alpha,
             rays: self.rays,
             clamped: self.clamped,
             seen: self.seen,
-        })
+        };
+        self.caught.result(found, is_all_light)
     }
 }

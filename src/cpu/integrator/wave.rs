@@ -82,7 +82,7 @@ impl<T: Real> Integrator<'_, T> {
             self.arrive_all(&mut travellers, bounce);
             travellers.retain(|traveller| {
                 if !traveller.goes_on {
-                    results[traveller.pixel] = traveller.path.result(T::one());
+                    results[traveller.pixel] = self.result(&traveller.path, T::one());
                 }
                 traveller.goes_on
             });

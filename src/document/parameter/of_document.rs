@@ -4,7 +4,9 @@ use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
 use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
-use crate::document::{Background, Denoise, DenoiseWhen, Document, GroundKind, PixelFilter, Strategy, range};
+use crate::document::{
+    Background, Denoise, DenoiseWhen, Document, GroundKind, LightPaths, PixelFilter, Strategy, range,
+};
 use crate::named::Named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
@@ -154,6 +156,8 @@ fn sampling() -> Vec<Parameter<Document>> {
             .named("Bounces").group("Sampling").flag("bounces").bar(1.0, 64.0),
         of("render.strategy", Sampling, "Light sampling", "How light is found: by sampling the lobe, the light, or both weighed against each other. All converge to the same picture.", choices::<Strategy>(), choice!(render.strategy))
             .named("Light sampling").group("Sampling").flag("strategy"),
+        of("render.light_paths", Sampling, "Light shown", "All light, or only what was reflected once, or more often: in the viewport, too, under what it shows.", choices::<LightPaths>(), choice!(render.light_paths))
+            .named("Light shown").group("Sampling").flag("light-paths"),
         of("render.sequence", Sampling, "Sequence", "The random numbers that are drawn.", choices::<Sequence>(), choice!(render.sequence))
             .named("Sequence").group("Sampling").flag("sequence"),
         of("render.filter", Sampling, "Pixel filter", "How samples are spread over a pixel and its neighbours.", choices::<PixelFilter>(), choice!(render.filter))

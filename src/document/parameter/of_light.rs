@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
-use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
+use super::{Kind, Parameter, Stage, Value, choices};
 use crate::document::{AreaLight, AreaLightShape, range};
 use crate::named::Named as _;
 
@@ -24,7 +24,7 @@ macro_rules! field {
     };
 }
 
-type Accessors = (fn(&AreaLight) -> Value, fn(&mut AreaLight, Value));
+type Accessors = super::Accessors<AreaLight>;
 
 #[rustfmt::skip]
 fn all() -> Vec<Parameter<AreaLight>> {
@@ -80,38 +80,17 @@ fn of(
     label: &'static str,
     help: &'static str,
     kind: Kind,
-    (get, set): Accessors,
+    accessors: Accessors,
     idle: fn(&AreaLight) -> Option<&'static str>,
 ) -> Parameter<AreaLight> {
     Parameter {
-        key,
         group: "Area light",
-        label,
-        name: "",
-        flag: None,
-        symbol: "",
-        help,
-        kind,
-        row: RowStyle {
-            bar: None,
-            step: 0.01,
-            decimals: 3,
-            is_percent: false,
-        },
-        stage: Stage::Geometry,
-        applies: |_| true,
         idle,
-        get,
-        set,
+        ..Parameter::of_part(key, label, help, kind, Stage::Geometry, accessors)
     }
 }
 
 impl Parameter<AreaLight> {
-    fn row(mut self, bar: [f64; 2], decimals: usize) -> Self {
-        (self.row.bar, self.row.decimals) = (Some(bar), decimals);
-        self
-    }
-
     /// The word for it on the command line: its key within the light, without the unit.
     pub fn word(&self) -> &'static str {
         let last = self.key.rsplit('.').next().unwrap_or(self.key);

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
+use super::{Kind, Parameter, Stage, Value, choices};
 use crate::named::Named;
 use crate::scene::texture::{OwnTexture, TextureChannel, TextureProjection, TextureSpace};
 
@@ -10,7 +10,7 @@ use crate::scene::texture::{OwnTexture, TextureChannel, TextureProjection, Textu
 /// the command line behind that of what it is put on.
 pub static TEXTURE_PARAMETERS: LazyLock<Vec<Parameter<OwnTexture>>> = LazyLock::new(all);
 
-type Accessors = (fn(&OwnTexture) -> Value, fn(&mut OwnTexture, Value));
+type Accessors = super::Accessors<OwnTexture>;
 
 /// Reads and writes a number.
 macro_rules! number {
@@ -75,34 +75,10 @@ fn of(
     label: &'static str,
     help: &'static str,
     kind: Kind,
-    (get, set): Accessors,
+    accessors: Accessors,
 ) -> Parameter<OwnTexture> {
     Parameter {
-        key,
         group: "Texture",
-        label,
-        name: "",
-        flag: None,
-        symbol: "",
-        help,
-        kind,
-        row: RowStyle {
-            bar: None,
-            step: 0.01,
-            decimals: 3,
-            is_percent: false,
-        },
-        stage: Stage::Materials,
-        applies: |_| true,
-        idle: |_| None,
-        get,
-        set,
-    }
-}
-
-impl Parameter<OwnTexture> {
-    fn row(mut self, bar: [f64; 2], decimals: usize) -> Self {
-        (self.row.bar, self.row.decimals) = (Some(bar), decimals);
-        self
+        ..Parameter::of_part(key, label, help, kind, Stage::Materials, accessors)
     }
 }

@@ -307,6 +307,11 @@ impl Worker {
         Self::spawn_with(choice, self.assets.clone(), repaint)
     }
 
+    /// The models and environments that it keeps, to be shared.
+    pub fn assets(&self) -> &Assets {
+        &self.assets
+    }
+
     fn spawn_with(choice: EngineChoice, assets: Assets, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
         let shared = Arc::new(Shared::default());
         let (of_thread, its_assets) = (shared.clone(), assets.clone());

@@ -198,7 +198,7 @@ impl Pack {
         let uses: Vec<Use> = pack.uses(model, assigned).into_iter().flatten().flatten().collect();
         let fitted = fitting(
             model,
-            &all,
+            (&all, &pack.pictures),
             &uses,
             words_max.saturating_sub(DECODED),
             &mut pack.warnings,
@@ -318,7 +318,7 @@ impl Packed {
             first_texels: [None; 4],
             channels: [0, 1, 2, 3].map(|channel| one_value(picture, channel)),
             mean: None,
-            is_translucent: picture.rgba8.iter().skip(3).step_by(4).any(|alpha| *alpha < 255),
+            is_translucent: picture.is_translucent(),
             is_fine: !picture.rgba16.is_empty(),
         }
     }
@@ -483,7 +483,7 @@ fn one_value(picture: &Texture, channel: usize) -> Option<f64> {
 /// The pictures that are used (the others without texels), the largest halved until all fit.
 fn fitting(
     model: &Model,
-    pictures: &[&Texture],
+    (pictures, packed): (&[&Texture], &[Packed]),
     uses: &[Use],
     words_max: usize,
     warnings: &mut Vec<String>,
@@ -495,7 +495,7 @@ fn fitting(
     };
     // One texel does where all are the same.
     let used = |(index, picture): (usize, &&Texture)| {
-        let is_one_value = (0..4).all(|channel| one_value(picture, channel).is_some());
+        let is_one_value = packed[index].channels.iter().all(Option::is_some);
         let side = match is_one_value {
             _ if !is_used(index) => 0,
             true => 1,

@@ -414,6 +414,7 @@ fn settings() -> Settings {
         environment_strength: 1.0,
         light_choice: SCENE.light_choice(),
         bounces: 8,
+        least_reflections: 0,
         sequence: Sequence::Sobol,
         strategy: Strategy::Mis,
         seed: 0,

@@ -8,6 +8,7 @@ use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::tile::{Layout, Tile};
 use crate::app::kit::widgets;
+use crate::app::services::compare::Rival;
 use crate::app::services::environments::{BUILT_IN, environment_label};
 use crate::app::services::library::Change;
 use crate::app::services::shelves::KeptShelves;
@@ -184,7 +185,11 @@ impl Entry {
     fn menu(&self, ui: &mut Ui, desk: &mut Desk<'_>, tagging: &mut Option<(String, String)>) {
         let kept = &mut desk.shared.shelves.kept;
         let is_favourite = kept.favourites.contains(&self.key);
-        let label = if is_favourite { "No favourite" } else { "Favourite" };
+        let label = if is_favourite {
+            "Remove from favourites"
+        } else {
+            "Add to favourites"
+        };
         if ui.button(label).on_hover_text("Favourites stand at the top.").clicked() {
             kept.favour(&self.key);
         }
@@ -192,6 +197,11 @@ impl Entry {
             *tagging = Some((self.key.clone(), kept.tags_of(&self.key)));
         }
         if let EntryKind::Material(material) = &self.kind {
+            let help = "Shows it beside the material that is edited.";
+            if ui.button("Compare as B").on_hover_text(help).clicked() {
+                desk.actions
+                    .push(Action::CompareWith(Rival::Material(material.clone())));
+            }
             ui.separator();
             taking_along(ui, material, desk.actions);
         }

@@ -106,8 +106,7 @@ fn picture(model: &Model, slot: usize, target: TextureTarget, texture: &OwnTextu
         return Err("the format does not turn normals with their picture".to_owned());
     }
     let read = read_texture(&texture.file, target.is_color(), u32::MAX)?;
-    let has_alpha = read.rgba8.iter().skip(3).step_by(4).any(|alpha| *alpha < 255);
-    let channel = texture.channel_of(target, has_alpha) as usize;
+    let channel = texture.channel_of(target, read.is_translucent()) as usize;
     let changed = |texel: &[u8; 4]| changed(target, texture, channel, *texel);
     Ok(Texture {
         rgba8: read.rgba8.as_chunks::<4>().0.iter().flat_map(changed).collect(),

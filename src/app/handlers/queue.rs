@@ -1,0 +1,62 @@
+//! What the window does about renders beside it.
+
+use std::path::PathBuf;
+
+use egui::ViewportCommand;
+
+use crate::app::App;
+use crate::app::kit::{theme, widgets};
+use crate::app::layout::Pane;
+use crate::app::services::disk::words;
+use crate::render::EngineChoice;
+use crate::render::queue::Task;
+
+impl App {
+    /// Has a task rendered by the engine that renders the viewport, and shows the queue.
+    pub(in crate::app) fn enqueue(&mut self, task: Task) {
+        let kind = self.worker.snapshot().engine.as_ref().map(|engine| engine.kind);
+        let engine = kind.map_or(EngineChoice::Cpu, EngineChoice::from);
+        self.shared.queue.add(task, engine);
+        self.reveal(Pane::Queue);
+    }
+
+    /// Has the document rendered as it is, with its own picture size.
+    pub(in crate::app) fn enqueue_picture(&mut self, path: PathBuf) {
+        let document = Box::new(self.document.clone());
+        self.enqueue(Task::Picture { document, path });
+    }
+
+    /// Says how tasks ended.
+    pub(in crate::app) fn take_queue_news(&mut self) {
+        for ended in self.shared.queue.take_news() {
+            let (level, text) = words(ended);
+            self.say(level, text);
+        }
+    }
+
+    /// Asks before the window is closed over renders that are not done.
+    pub(in crate::app) fn show_queue_question(&mut self, ctx: &egui::Context) {
+        if !self.unsaved.asks_about_queue {
+            return;
+        }
+        let modal = egui::Modal::new(egui::Id::unique("queue question")).show(ctx, |ui| {
+            ui.set_width(380.0);
+            ui.heading("Renders in the queue are not done");
+            widgets::note(ui, "They would be given up by closing. Escape goes on rendering.");
+            ui.add_space(theme::GAP);
+            ui.horizontal(|ui| {
+                if ui.button("Go on rendering").clicked() {
+                    ui.close();
+                }
+                if ui.button("Close anyway").clicked() {
+                    self.unsaved.gives_queue_up = true;
+                    ui.ctx().send_viewport_cmd(ViewportCommand::Close);
+                    ui.close();
+                }
+            });
+        });
+        if modal.should_close() {
+            self.unsaved.asks_about_queue = false;
+        }
+    }
+}

@@ -1,0 +1,494 @@
+//! Renders that go on beside the window, one after the other, on a thread and by a session of their own.
+
+use std::io;
+use std::path::PathBuf;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use super::assets::Assets;
+use super::denoise::Attendant;
+use super::engine::EngineChoice;
+use super::output::{self, OutputError, Rendered};
+use super::quiet;
+use super::session::{Session, SessionError};
+use super::to_end::{step_to_end, submit};
+use super::turntable::{self, Turntable, TurntableError};
+use crate::document::Document;
+use crate::panics::caught;
+use crate::store::FileError;
+use crate::store::replace::check_saving;
+
+/// How long a render gives way at once while something moves in the window.
+const GIVES_WAY: Duration = Duration::from_millis(50);
+
+/// Something to render.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Task {
+    /// A document as a picture, of its own size.
+    Picture {
+        /// The document.
+        document: Box<Document>,
+        /// The picture's file.
+        path: PathBuf,
+    },
+    /// A document turned once.
+    Turntable(Box<Turntable>),
+}
+
+/// How a task stands.
+#[derive(Clone, Debug, PartialEq)]
+pub enum State {
+    /// Others are before it.
+    Waiting,
+    /// The share of it that is done, in [0, 1].
+    Rendering(f64),
+    /// What came of it.
+    Done(String),
+    /// Why nothing came of it.
+    Failed(String),
+    /// The user called it off; what is there.
+    Cancelled(String),
+}
+
+/// A task as it is listed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// Never used again.
+    pub id: u64,
+    /// What it is called: its file's name, with a number where another one is called so.
+    pub name: String,
+    /// How it stands.
+    pub state: State,
+}
+
+impl Entry {
+    /// Whether nothing more happens to it.
+    pub fn is_over(&self) -> bool {
+        !matches!(self.state, State::Waiting | State::Rendering(_))
+    }
+}
+
+/// The list, and the thread that works it off. What is waiting or under way when this is dropped is given up.
+pub struct Queue {
+    shared: Arc<Shared>,
+}
+
+#[derive(Default)]
+struct Shared {
+    book: Mutex<Book>,
+    changed: Condvar,
+}
+
+#[derive(Default)]
+struct Book {
+    entries: Vec<Entry>,
+    /// Those of the entries that wait.
+    tasks: Vec<(u64, Task, EngineChoice)>,
+    /// Ends of tasks that nobody was told yet.
+    news: Vec<Result<String, String>>,
+    last_id: u64,
+    /// The task under way is to end.
+    is_cancelled: bool,
+    is_paused: bool,
+    /// Something moves in the window.
+    gives_way: bool,
+    quits: bool,
+}
+
+/// Why a task came to nothing.
+#[derive(Debug, thiserror::Error)]
+enum TaskError {
+    #[error(transparent)]
+    Session(#[from] SessionError),
+    #[error(transparent)]
+    File(#[from] FileError),
+    #[error(transparent)]
+    Output(#[from] OutputError),
+    #[error(transparent)]
+    Turntable(#[from] TurntableError),
+}
+
+impl Shared {
+    /// What a panic left is whole: every change is a single assignment.
+    fn book(&self) -> MutexGuard<'_, Book> {
+        self.book.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The next task, once there is one; `None` when it is time to go.
+    fn next(&self) -> Option<(u64, Task, EngineChoice)> {
+        let mut book = self.book();
+        loop {
+            if book.quits {
+                return None;
+            }
+            if !book.is_paused && !book.tasks.is_empty() {
+                let next = book.tasks.remove(0);
+                book.is_cancelled = false;
+                book.set(next.0, State::Rendering(0.0));
+                return Some(next);
+            }
+            book = self.changed.wait(book).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+
+    /// Tells how far a task has come, and waits while it has to; false where it is to end.
+    fn goes_on(&self, id: u64, share: f64) -> bool {
+        let mut book = self.book();
+        book.set(id, State::Rendering(share));
+        if book.gives_way {
+            let waited = self.changed.wait_timeout(book, GIVES_WAY);
+            book = waited.unwrap_or_else(PoisonError::into_inner).0;
+        }
+        while book.is_paused && !book.is_cancelled && !book.quits {
+            book = self.changed.wait(book).unwrap_or_else(PoisonError::into_inner);
+        }
+        !book.is_cancelled && !book.quits
+    }
+
+    fn end(&self, id: u64, ended: Result<String, String>) {
+        let mut book = self.book();
+        let state = match &ended {
+            Ok(words) if book.is_cancelled => State::Cancelled(words.clone()),
+            Ok(words) => State::Done(words.clone()),
+            Err(why) => State::Failed(why.clone()),
+        };
+        book.set(id, state);
+        book.news.push(ended);
+    }
+}
+
+impl Book {
+    fn set(&mut self, id: u64, state: State) {
+        if let Some(entry) = self.entries.iter_mut().find(|entry| entry.id == id) {
+            entry.state = state;
+        }
+    }
+}
+
+impl Queue {
+    /// An empty queue; models and environments are shared. `repaint` is called when there is something new to show.
+    ///
+    /// # Errors
+    /// If no thread can be started.
+    pub fn new(assets: Assets, repaint: impl Fn() + Send + 'static) -> io::Result<Self> {
+        let shared = Arc::new(Shared::default());
+        let of_thread = shared.clone();
+        std::thread::Builder::new().name("queue".to_owned()).spawn(move || {
+            super::priority::lower_thread_priority();
+            let mut session: Option<(EngineChoice, Session)> = None;
+            while let Some((id, task, engine)) = of_thread.next() {
+                repaint();
+                let _at_work = quiet::at_work();
+                let mut go_on = |share: f64| {
+                    let goes_on = of_thread.goes_on(id, share);
+                    repaint();
+                    goes_on
+                };
+                let rendered = caught(|| {
+                    let session = opened(&mut session, engine, &assets)?;
+                    render(session, engine, &task, &mut go_on)
+                });
+                let ended = match rendered {
+                    Ok(Ok(words)) => Ok(words),
+                    Ok(Err(error)) => Err(error.to_string()),
+                    Err(why) => {
+                        // What a panic left of a session is not used again.
+                        session = None;
+                        Err(format!("an internal error: {why}"))
+                    }
+                };
+                of_thread.end(id, ended);
+                if of_thread.book().tasks.is_empty() {
+                    // An engine's memory is the viewport's again.
+                    session = None;
+                }
+                repaint();
+            }
+        })?;
+        Ok(Self { shared })
+    }
+
+    /// Appends a task, to be rendered by an engine.
+    pub fn add(&self, task: Task, engine: EngineChoice) {
+        let mut book = self.shared.book();
+        book.last_id += 1;
+        let (id, name) = (book.last_id, free_name(&book.entries, &task.name()));
+        book.entries.push(Entry {
+            id,
+            name,
+            state: State::Waiting,
+        });
+        book.tasks.push((id, task, engine));
+        drop(book);
+        self.shared.changed.notify_all();
+    }
+
+    /// All tasks, those under way and waiting in their order.
+    pub fn entries(&self) -> Vec<Entry> {
+        self.shared.book().entries.clone()
+    }
+
+    /// Ends of tasks since this was last asked: what came of them, or why nothing did.
+    pub fn take_news(&self) -> Vec<Result<String, String>> {
+        std::mem::take(&mut self.shared.book().news)
+    }
+
+    /// Whether tasks are waiting or under way.
+    pub fn is_busy(&self) -> bool {
+        self.shared.book().entries.iter().any(|entry| !entry.is_over())
+    }
+
+    /// Calls a task off, or takes it from the list where it is over.
+    pub fn remove(&self, id: u64) {
+        let mut book = self.shared.book();
+        let is_under_way = |entry: &Entry| entry.id == id && matches!(entry.state, State::Rendering(_));
+        if book.entries.iter().any(is_under_way) {
+            book.is_cancelled = true;
+        } else {
+            book.entries.retain(|entry| entry.id != id);
+            book.tasks.retain(|(of, ..)| *of != id);
+        }
+        drop(book);
+        self.shared.changed.notify_all();
+    }
+
+    /// Takes those that are over from the list.
+    pub fn remove_over(&self) {
+        self.shared.book().entries.retain(|entry| !entry.is_over());
+    }
+
+    /// Puts a waiting task before all that wait.
+    pub fn put_first(&self, id: u64) {
+        let mut book = self.shared.book();
+        if let Some(from) = book.tasks.iter().position(|(of, ..)| *of == id) {
+            book.tasks[..=from].rotate_right(1);
+        }
+        let is_waiting = |entry: &Entry| entry.state == State::Waiting;
+        let first = book.entries.iter().position(is_waiting);
+        let from = book
+            .entries
+            .iter()
+            .position(|entry| entry.id == id && is_waiting(entry));
+        if let (Some(first), Some(from)) = (first, from) {
+            book.entries[first..=from].rotate_right(1);
+        }
+    }
+
+    /// Stops rendering where it is, or goes on.
+    pub fn pause(&self, is_paused: bool) {
+        self.shared.book().is_paused = is_paused;
+        self.shared.changed.notify_all();
+    }
+
+    /// Whether it was stopped.
+    pub fn is_paused(&self) -> bool {
+        self.shared.book().is_paused
+    }
+
+    /// Leaves most of the time to the window, or takes it again.
+    pub fn give_way(&self, gives_way: bool) {
+        self.shared.book().gives_way = gives_way;
+    }
+}
+
+impl Drop for Queue {
+    fn drop(&mut self) {
+        self.shared.book().quits = true;
+        self.shared.changed.notify_all();
+    }
+}
+
+impl Task {
+    /// The name of what it makes.
+    fn name(&self) -> String {
+        let path = match self {
+            Self::Picture { path, .. } => Some(path),
+            Self::Turntable(table) => table.video.as_ref().or(table.folder.as_ref()),
+        };
+        let name = path.and_then(|path| path.file_name()).unwrap_or_default();
+        name.to_string_lossy().into_owned()
+    }
+}
+
+/// A name that no entry has yet: with a number behind it where it is taken.
+fn free_name(entries: &[Entry], name: &str) -> String {
+    let numbered = (2..).map(|number| format!("{name} ({number})"));
+    let mut names = std::iter::once(name.to_owned()).chain(numbered);
+    let is_free = |name: &String| entries.iter().all(|entry| entry.name != *name);
+    names.find(is_free).unwrap_or_default()
+}
+
+/// The session for an engine: the one that is there, unless it has another.
+fn opened<'a>(
+    session: &'a mut Option<(EngineChoice, Session)>,
+    engine: EngineChoice,
+    assets: &Assets,
+) -> Result<&'a mut Session, SessionError> {
+    if session.as_ref().is_none_or(|(choice, _)| *choice != engine) {
+        *session = None;
+    }
+    Ok(match session {
+        Some((_, session)) => session,
+        None => &mut session.insert((engine, Session::open_with(engine, assets.clone())?)).1,
+    })
+}
+
+/// Renders a task; what came of it.
+fn render(
+    session: &mut Session,
+    engine: EngineChoice,
+    task: &Task,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<String, TaskError> {
+    match task {
+        Task::Picture { document, path } => picture(session, engine, document, path, go_on),
+        Task::Turntable(table) => {
+            let outcome = turntable::render(session, engine, table, &mut |progress| {
+                go_on((f64::from(progress.done) + progress.share) / f64::from(table.frames.max(1)))
+            })?;
+            Ok(told(table, outcome.frames))
+        }
+    }
+}
+
+fn picture(
+    session: &mut Session,
+    engine: EngineChoice,
+    document: &Document,
+    path: &std::path::Path,
+    go_on: &mut dyn FnMut(f64) -> bool,
+) -> Result<String, TaskError> {
+    output::format_of(path)?;
+    check_saving(path)?;
+    submit(session, engine, document)?;
+    let limit_s = document.render.time_s;
+    let mut attendant = Attendant::new(document);
+    let ended = step_to_end(session, engine, document, &mut attendant, &mut |progress| {
+        go_on(progress.share_done(limit_s))
+    })?;
+    if !ended.progress.is_done {
+        return Ok(format!("{} cancelled: nothing was written", path.display()));
+    }
+    let image = session.image()?;
+    let rendered = Rendered {
+        denoised: ended.denoised.as_ref().map(|denoised| denoised.image.as_ref()),
+        ..Rendered::from(&image)
+    };
+    output::write(path, rendered, document)?;
+    let [samples, seconds] = [ended.progress.mean_samples, ended.progress.render_seconds];
+    let path = path.display();
+    Ok(format!(
+        "rendered {path}: {samples:.0} samples a pixel in {seconds:.1} s"
+    ))
+}
+
+/// What came of a turntable of which so many frames were rendered.
+fn told(table: &Turntable, frames: u32) -> String {
+    let is_whole = frames >= table.frames;
+    let all = match is_whole {
+        true => format!("turntable: {frames} frames"),
+        false => format!("turntable cancelled: {frames} of {} frames", table.frames),
+    };
+    let folder = table.folder.as_ref().map(|folder| folder.display().to_string());
+    let video = table.video.as_ref().filter(|_| is_whole);
+    let places: Vec<String> = folder
+        .into_iter()
+        .chain(video.map(|video| video.display().to_string()))
+        .collect();
+    match places[..] {
+        [] => all,
+        _ => format!("{all} in {}", places.join(" and ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+
+    fn small(samples: u32) -> Box<Document> {
+        let mut document = Box::new(Document::default());
+        (document.render.width, document.render.height) = (8, 6);
+        document.render.samples = samples;
+        document
+    }
+
+    fn picture_of(samples: u32, path: PathBuf) -> Task {
+        let document = small(samples);
+        Task::Picture { document, path }
+    }
+
+    fn wait(what: &str, is_there: impl Fn() -> bool) {
+        let begun = Instant::now();
+        while !is_there() {
+            assert!(begun.elapsed() < Duration::from_secs(120), "{what} never came");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+    }
+
+    fn states(queue: &Queue) -> Vec<(String, State)> {
+        queue
+            .entries()
+            .into_iter()
+            .map(|entry| (entry.name, entry.state))
+            .collect()
+    }
+
+    #[test]
+    fn tasks_are_done_in_turn_and_what_fails_does_not_stop_the_rest() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let queue = Queue::new(Assets::default(), || {}).expect("a queue");
+        queue.pause(true);
+        let path = |name: &str| folder.path().join(name);
+        queue.add(picture_of(2, path("a.png")), EngineChoice::Cpu);
+        queue.add(picture_of(2, path("nowhere/b.png")), EngineChoice::Cpu);
+        queue.add(picture_of(2, path("c.exr")), EngineChoice::Cpu);
+        queue.add(picture_of(2, path("a.png")), EngineChoice::Cpu);
+        queue.put_first(3);
+        let names: Vec<String> = states(&queue).into_iter().map(|(name, _)| name).collect();
+        assert_eq!(names, ["c.exr", "a.png", "b.png", "a.png (2)"]);
+        queue.remove(4);
+        queue.pause(false);
+        wait("the end", || !queue.is_busy());
+        let states = states(&queue);
+        assert!(
+            matches!(&states[0].1, State::Done(words) if words.contains("2 samples")),
+            "{states:?}"
+        );
+        assert!(matches!(&states[1].1, State::Done(_)), "{states:?}");
+        assert!(
+            matches!(&states[2].1, State::Failed(why) if why.contains("b.png")),
+            "{states:?}"
+        );
+        assert_eq!(queue.take_news().len(), 3);
+        assert!(path("a.png").exists() && path("c.exr").exists());
+        queue.remove_over();
+        assert_eq!(queue.entries(), []);
+    }
+
+    #[test]
+    fn a_task_under_way_is_paused_and_called_off() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let queue = Queue::new(Assets::default(), || {}).expect("a queue");
+        let path = folder.path().join("long.png");
+        queue.add(picture_of(60_000, path.clone()), EngineChoice::Cpu);
+        let share = || match queue.entries()[0].state {
+            State::Rendering(share) => share,
+            _ => 0.0,
+        };
+        wait("a start", || share() > 0.0);
+        queue.pause(true);
+        // A step may be under way.
+        std::thread::sleep(Duration::from_millis(400));
+        let before = share();
+        std::thread::sleep(Duration::from_millis(300));
+        assert_eq!(share(), before, "it went on");
+        queue.remove(1);
+        wait("the end", || !queue.is_busy());
+        assert!(matches!(queue.entries()[0].state, State::Cancelled(_)));
+        assert!(!path.exists());
+        queue.remove(1);
+        assert_eq!(queue.entries(), []);
+    }
+}

@@ -1,0 +1,82 @@
+//! A document rendered to its end by a session that is stepped: on the command line, in turntables and in the queue.
+
+use std::time::Duration;
+
+use super::denoise::{Attendant, Denoised};
+use super::engine::EngineChoice;
+use super::session::{Progress, Session, SessionError};
+use crate::document::Document;
+
+/// Step of the session between two looks at whether to go on.
+const STEP: Duration = Duration::from_millis(100);
+
+/// What a render came to.
+pub struct Ended {
+    /// How far it came: not to its end where it was stopped.
+    pub progress: Progress,
+    /// The picture without noise, where that was asked for and can be had.
+    pub denoised: Option<Denoised>,
+}
+
+/// Hands a session a document. Where the GPU's device was lost it goes on with another, and on the processor after any other
+/// failure of it, unless the GPU was asked for by name.
+///
+/// # Errors
+/// What the engine says, or the files that the document names.
+pub fn submit(session: &mut Session, engine: EngineChoice, document: &Document) -> Result<(), SessionError> {
+    let submitted = session.submit(document).map(|_| ());
+    or_fall_back(submitted, session, engine, document)
+}
+
+/// Steps until the document that was submitted is done, falling back as [`submit`] does, and denoises the picture where
+/// that is asked for. `go_on` is told the progress after every step, and stops it by `false`.
+///
+/// # Errors
+/// What the engine says.
+pub fn step_to_end(
+    session: &mut Session,
+    engine: EngineChoice,
+    document: &Document,
+    attendant: &mut Attendant,
+    go_on: &mut dyn FnMut(&Progress) -> bool,
+) -> Result<Ended, SessionError> {
+    loop {
+        let budget = attendant.budget(&session.progress(), STEP);
+        // What the GPU has is taken while it can be rendered again.
+        let stepped = session.step(budget).and_then(|progress| {
+            if progress.is_done {
+                session.film()?;
+            }
+            Ok(())
+        });
+        or_fall_back(stepped, session, engine, document)?;
+        attendant.attend(session, &session.progress())?;
+        let progress = session.progress();
+        let is_stopped = !go_on(&progress);
+        if progress.is_done {
+            let denoised = attendant.finish(session)?;
+            let progress = session.progress();
+            return Ok(Ended { progress, denoised });
+        }
+        if is_stopped {
+            let denoised = None;
+            return Ok(Ended { progress, denoised });
+        }
+    }
+}
+
+fn or_fall_back(
+    outcome: Result<(), SessionError>,
+    session: &mut Session,
+    engine: EngineChoice,
+    document: &Document,
+) -> Result<(), SessionError> {
+    match outcome {
+        Err(SessionError::Gpu(error)) if engine == EngineChoice::Auto || error.is_lost() => {
+            log::warn!("{}", session.recover(&error));
+            let submitted = session.submit(document).map(|_| ());
+            or_fall_back(submitted, session, engine, document)
+        }
+        outcome => outcome,
+    }
+}

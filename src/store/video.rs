@@ -1,0 +1,428 @@
+//! Videos written to files, frame by frame: H.264 in MP4, and GIF.
+
+use std::num::NonZeroU32;
+use std::path::{Path, PathBuf};
+
+use openh264::encoder::{
+    BitRate, Encoder, EncoderConfig, FrameRate, FrameType, MatrixCoefficients, QpRange, RateControlMode, VuiConfig,
+};
+use openh264::formats::{RgbSliceU8, YUVBuffer};
+use openh264::{OpenH264API, Timestamp};
+use shiguredo_mp4::TrackKind;
+use shiguredo_mp4::bitstream::h264::{
+    H264NalUnitType, H264SampleEntryConfig, LengthSize, build_avc1_box_from_annexb, parse_annexb_nal_units,
+};
+use shiguredo_mp4::boxes::SampleEntry;
+use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_maximum_moov_box_size};
+
+use super::FileError;
+use super::replace::save_atomically;
+
+/// Frames a second that a video may have.
+pub const FPS: std::ops::RangeInclusive<f64> = 1.0..=120.0;
+/// Bits of a pixel of an MP4 in the mean: gradients of clean pictures stay free of steps.
+const BITS_PER_PIXEL: f64 = 0.25;
+/// Fewest rows and columns that the encoder takes.
+const SIDE_MIN: u32 = 16;
+/// Finest and coarsest steps of an MP4's coefficients: beyond the second blocks are seen.
+const QUANTIZERS: [u8; 2] = [12, 26];
+/// How much of a GIF's pixels its palette is learnt from: 1 is all, 30 is fast.
+const PALETTE_SPEED: i32 = 5;
+/// Ticks of an MP4's clock in a frame.
+const TICKS: u32 = 1000;
+/// Alpha from which a GIF's pixel is there at all.
+const OPAQUE_FROM: u8 = 128;
+
+/// Why a video can't be written.
+#[derive(Debug, thiserror::Error)]
+pub enum VideoError {
+    /// The name's ending says no format that is written.
+    #[error("{}: videos are written as .mp4 or .gif; give the file one of these endings", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The encoder refuses, mostly for its size.
+    #[error("{}: no video of {width} × {height} pixels: {why}; choose another size", path.display())]
+    Encoder {
+        /// The file.
+        path: PathBuf,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// What it says.
+        why: String,
+    },
+    /// The file could not be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+/// The formats, by a file's ending.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VideoFormat {
+    /// H.264, which everything plays. Sides are even: an odd one loses its last row. What is transparent is black.
+    Mp4,
+    /// 256 colours a frame, in an endless loop; transparency is kept.
+    Gif,
+}
+
+impl VideoFormat {
+    /// The format that a file's ending asks for.
+    ///
+    /// # Errors
+    /// [`VideoError::Format`] for another ending: ask before hours of rendering.
+    pub fn of(path: &Path) -> Result<Self, VideoError> {
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        match ending.to_ascii_lowercase().as_str() {
+            "mp4" => Ok(Self::Mp4),
+            "gif" => Ok(Self::Gif),
+            _ => Err(VideoError::Format { path: path.to_owned() }),
+        }
+    }
+}
+
+/// A video under way. Its file is written when it is finished, at once.
+pub struct Video {
+    path: PathBuf,
+    size: [u32; 2],
+    frames: Frames,
+}
+
+enum Frames {
+    Mp4(Box<Mp4>),
+    Gif(Box<Gif>),
+}
+
+impl Video {
+    /// A video of `fps` frames a second, in [`FPS`], in the format of the file's ending.
+    ///
+    /// # Errors
+    /// [`VideoError`], also for a size that the format does not take.
+    pub fn begin(path: &Path, size: [u32; 2], fps: f64) -> Result<Self, VideoError> {
+        let fps = fps.clamp(*FPS.start(), *FPS.end());
+        let frames = match VideoFormat::of(path)? {
+            VideoFormat::Mp4 => Mp4::new(size, fps).map(|mp4| Frames::Mp4(Box::new(mp4))),
+            VideoFormat::Gif => Gif::new(size, fps).map(|gif| Frames::Gif(Box::new(gif))),
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            size,
+            frames: frames.map_err(|why| refused(path, size, why))?,
+        })
+    }
+
+    /// Adds a frame: red, green, blue, alpha of 8 bits as the screen shows them, row by row from the top.
+    ///
+    /// # Errors
+    /// [`VideoError::Encoder`].
+    pub fn add(&mut self, rgba: &[u8]) -> Result<(), VideoError> {
+        let added = match &mut self.frames {
+            Frames::Mp4(mp4) => mp4.add(self.size, rgba),
+            Frames::Gif(gif) => gif.add(rgba),
+        };
+        added.map_err(|why| refused(&self.path, self.size, why))
+    }
+
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// [`VideoError`] naming the file, which is then as it was.
+    pub fn finish(self) -> Result<(), VideoError> {
+        let bytes = match self.frames {
+            Frames::Mp4(mp4) => mp4.bytes(),
+            Frames::Gif(gif) => gif.encoder.into_inner().map_err(|error| error.to_string()),
+        };
+        let bytes = bytes.map_err(|why| refused(&self.path, self.size, why))?;
+        Ok(save_atomically(&self.path, &bytes)?)
+    }
+}
+
+fn refused(path: &Path, [width, height]: [u32; 2], why: String) -> VideoError {
+    VideoError::Encoder {
+        path: path.to_owned(),
+        width,
+        height,
+        why,
+    }
+}
+
+/// Frames as H.264.
+struct Mp4 {
+    encoder: Encoder,
+    fps: f64,
+    /// What a player must know before the first frame.
+    entry: Option<SampleEntry>,
+    /// Each frame's units with their lengths, and whether it stands for itself.
+    frames: Vec<(Vec<u8>, bool)>,
+}
+
+impl Mp4 {
+    fn new(size: [u32; 2], fps: f64) -> Result<Self, String> {
+        let [width, height] = even(size);
+        if width < SIDE_MIN || height < SIDE_MIN {
+            return Err(format!("an MP4's sides have at least {SIDE_MIN} pixels"));
+        }
+        let bits_per_second = BITS_PER_PIXEL * f64::from(width) * f64::from(height) * fps;
+        // The library converts by the matrix of BT.601, which the file says.
+        let colors = VuiConfig::bt709().matrix_coefficients(MatrixCoefficients::Smpte170M);
+        let config = EncoderConfig::new()
+            .bitrate(BitRate::from_bps(bits_per_second.clamp(1e5, 1e8) as u32))
+            .max_frame_rate(FrameRate::from_hz(fps as f32))
+            .rate_control_mode(RateControlMode::Bufferbased)
+            .qp(QpRange::new(QUANTIZERS[0], QUANTIZERS[1]))
+            .skip_frames(false)
+            .vui(colors);
+        // It only looks at sizes when it is given a frame.
+        let black = YUVBuffer::new(width as usize, height as usize);
+        encoder_of(config)?.encode(&black).map_err(refusal)?;
+        Ok(Self {
+            encoder: encoder_of(config)?,
+            fps,
+            entry: None,
+            frames: Vec::new(),
+        })
+    }
+
+    fn add(&mut self, size: [u32; 2], rgba: &[u8]) -> Result<(), String> {
+        let [width, height] = even(size).map(|side| side as usize);
+        let rows = rgba.chunks_exact(4 * size[0] as usize).take(height);
+        let rgb: Vec<u8> = rows
+            .flat_map(|row| row.as_chunks::<4>().0.iter().take(width))
+            .flat_map(|[r, g, b, alpha]| [r, g, b].map(|code| over_black(*code, *alpha)))
+            .collect();
+        let picture = YUVBuffer::from_rgb8_source(RgbSliceU8::new(&rgb, (width, height)));
+        let millis = (1e3 * self.frames.len() as f64 / self.fps).round() as u64;
+        let encoded = self.encoder.encode_at(&picture, Timestamp::from_millis(millis));
+        let encoded = encoded.map_err(refusal)?;
+        let is_whole = encoded.frame_type() == FrameType::IDR;
+        let stream = encoded.to_vec();
+        let words = |error: shiguredo_mp4::Error| error.to_string();
+        if self.entry.is_none() {
+            let length_size = LengthSize::FourBytes;
+            let entry = build_avc1_box_from_annexb(&stream, &H264SampleEntryConfig { length_size }).map_err(words)?;
+            self.entry = Some(SampleEntry::Avc1(entry));
+        }
+        let mut frame = Vec::with_capacity(stream.len());
+        for unit in parse_annexb_nal_units(&stream).map_err(words)? {
+            // These stand in the entry.
+            if !matches!(unit.nal_unit_type, H264NalUnitType::Sps | H264NalUnitType::Pps) {
+                frame.extend((unit.data.len() as u32).to_be_bytes());
+                frame.extend(unit.data);
+            }
+        }
+        self.frames.push((frame, is_whole));
+        Ok(())
+    }
+
+    fn bytes(self) -> Result<Vec<u8>, String> {
+        let words = |error: shiguredo_mp4::mux::MuxError| error.to_string();
+        let mut muxer = Mp4FileMuxer::with_options(Mp4FileMuxerOptions {
+            // The index before the frames: a browser plays what it has of the file.
+            reserved_moov_box_size: estimate_maximum_moov_box_size(&[self.frames.len()]),
+            ..Mp4FileMuxerOptions::default()
+        })
+        .map_err(words)?;
+        let timescale = NonZeroU32::new((self.fps * f64::from(TICKS)).round() as u32).unwrap_or(NonZeroU32::MIN);
+        let mut bytes = muxer.initial_boxes_bytes().to_vec();
+        let mut entry = self.entry;
+        for (frame, is_whole) in &self.frames {
+            let sample = Sample {
+                track_kind: TrackKind::Video,
+                sample_entry: entry.take(),
+                keyframe: *is_whole,
+                timescale,
+                duration: TICKS,
+                composition_time_offset: None,
+                data_offset: bytes.len() as u64,
+                data_size: frame.len(),
+            };
+            muxer.append_sample(&sample).map_err(words)?;
+            bytes.extend(frame);
+        }
+        for (offset, part) in muxer.finalize().map_err(words)?.offset_and_bytes_pairs() {
+            let (from, to) = (offset as usize, offset as usize + part.len());
+            bytes.resize(bytes.len().max(to), 0);
+            bytes[from..to].copy_from_slice(part);
+        }
+        Ok(bytes)
+    }
+}
+
+fn encoder_of(config: EncoderConfig) -> Result<Encoder, String> {
+    Encoder::with_api_config(OpenH264API::from_source(), config).map_err(refusal)
+}
+
+fn refusal(error: openh264::Error) -> String {
+    log::debug!("{error}");
+    "the encoder refuses it".to_owned()
+}
+
+/// A code where nothing but black is behind.
+fn over_black(code: u8, alpha: u8) -> u8 {
+    ((u32::from(code) * u32::from(alpha) + 127) / 255) as u8
+}
+
+fn even(size: [u32; 2]) -> [u32; 2] {
+    size.map(|side| side / 2 * 2)
+}
+
+/// Frames as a GIF.
+struct Gif {
+    encoder: gif::Encoder<Vec<u8>>,
+    size: [u16; 2],
+    fps: f64,
+    count: u32,
+}
+
+impl Gif {
+    fn new(size: [u32; 2], fps: f64) -> Result<Self, String> {
+        let [Ok(width), Ok(height)] = size.map(u16::try_from) else {
+            return Err("a GIF's sides are at most 65535 pixels".to_owned());
+        };
+        let mut encoder = gif::Encoder::new(Vec::new(), width, height, &[]).map_err(|error| error.to_string())?;
+        encoder
+            .set_repeat(gif::Repeat::Infinite)
+            .map_err(|error| error.to_string())?;
+        Ok(Self {
+            encoder,
+            size: [width, height],
+            fps,
+            count: 0,
+        })
+    }
+
+    fn add(&mut self, rgba: &[u8]) -> Result<(), String> {
+        let mut pixels = rgba.to_vec();
+        for pixel in pixels.chunks_exact_mut(4) {
+            match pixel[3] {
+                OPAQUE_FROM.. => pixel[3] = 255,
+                _ => pixel.fill(0),
+            }
+        }
+        let [width, height] = self.size;
+        let mut frame = gif::Frame::from_rgba_speed(width, height, &mut pixels, PALETTE_SPEED);
+        // Hundredths of a second, rounded so that all of them together take the right time.
+        let until = |frames: u32| (100.0 * f64::from(frames) / self.fps).round() as u32;
+        frame.delay = (until(self.count + 1) - until(self.count)) as u16;
+        frame.dispose = gif::DisposalMethod::Background;
+        self.count += 1;
+        self.encoder.write_frame(&frame).map_err(|error| error.to_string())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use openh264::decoder::Decoder;
+    use openh264::formats::YUVSource as _;
+    use shiguredo_mp4::demux::{Input, Mp4FileDemuxer};
+
+    use super::*;
+
+    const SIZE: [u32; 2] = [48, 33];
+
+    /// A frame of one colour with a bright square that moves.
+    fn frame(number: u32) -> Vec<u8> {
+        let [width, height] = SIZE;
+        let pixel = |index: u32| match (index % width / 8, index / width / 8) {
+            (x, 1) if x == number => [250, 240, 230, 255],
+            _ => [180, 60, 30, 255],
+        };
+        (0..width * height).flat_map(pixel).collect()
+    }
+
+    fn written(path: &Path, fps: f64) {
+        let mut video = Video::begin(path, SIZE, fps).expect("a video");
+        (0..4).for_each(|number| video.add(&frame(number)).expect("a frame"));
+        video.finish().expect("written");
+    }
+
+    /// Mean difference of two pictures' channels.
+    fn difference(a: &[u8], b: &[u8]) -> f64 {
+        assert_eq!(a.len(), b.len());
+        let of_bytes = a.iter().zip(b).map(|(a, b)| f64::from(a.abs_diff(*b)));
+        of_bytes.sum::<f64>() / a.len() as f64
+    }
+
+    #[test]
+    fn an_mp4_is_played_back_frame_by_frame() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("turn.mp4");
+        written(&path, 25.0);
+        let bytes = std::fs::read(&path).expect("the file");
+        let mut demuxer = Mp4FileDemuxer::new();
+        demuxer.handle_input(Input {
+            position: 0,
+            data: &bytes,
+        });
+        let seconds = demuxer.tracks().expect("tracks")[0].duration as f64 / 25e3;
+        assert!((seconds - 0.16).abs() < 1e-9, "{seconds} s");
+        let mut decoder = Decoder::new().expect("a decoder");
+        let mut number = 0;
+        while let Some(sample) = demuxer.next_sample().expect("a sample") {
+            let mut stream = Vec::new();
+            let annex_b = |unit: &[u8], stream: &mut Vec<u8>| {
+                stream.extend([0, 0, 0, 1]);
+                stream.extend(unit);
+            };
+            if let Some(SampleEntry::Avc1(entry)) = sample.sample_entry {
+                let sets = entry.avcc_box.sps_list.iter().chain(&entry.avcc_box.pps_list);
+                sets.for_each(|set| annex_b(set, &mut stream));
+            }
+            let mut data = &bytes[sample.data_offset as usize..][..sample.data_size];
+            while let Some((length, rest)) = data.split_first_chunk::<4>() {
+                let (unit, rest) = rest.split_at(u32::from_be_bytes(*length) as usize);
+                annex_b(unit, &mut stream);
+                data = rest;
+            }
+            let picture = decoder.decode(&stream).expect("it decodes").expect("a picture");
+            assert_eq!(picture.dimensions(), (48, 32), "the odd row is left out");
+            let mut rgb = vec![0; 3 * 48 * 32];
+            picture.write_rgb8(&mut rgb);
+            let expected = frame(number);
+            let expected: Vec<u8> = expected[..4 * 48 * 32]
+                .chunks(4)
+                .flat_map(|p| [p[0], p[1], p[2]])
+                .collect();
+            let error = difference(&rgb, &expected);
+            assert!(error < 4.0, "frame {number} is off by {error} codes");
+            number += 1;
+        }
+        assert_eq!(number, 4);
+    }
+
+    #[test]
+    fn a_gif_is_read_back_frame_by_frame_and_takes_its_time() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("turn.GIF");
+        written(&path, 30.0);
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::RGBA);
+        let mut decoder = options
+            .read_info(std::fs::File::open(&path).expect("the file"))
+            .expect("a GIF");
+        let mut delays = Vec::new();
+        while let Some(read) = decoder.read_next_frame().expect("a frame") {
+            let error = difference(&read.buffer, &frame(delays.len() as u32));
+            assert!(error < 1.0, "frame {} is off by {error} codes", delays.len());
+            delays.push(read.delay);
+        }
+        assert_eq!(delays, [3, 4, 3, 3], "hundredths of a second");
+    }
+
+    #[test]
+    fn what_no_video_can_be_is_told() {
+        let wrong = Video::begin(Path::new("turn.avi"), SIZE, 24.0)
+            .err()
+            .expect("no format");
+        assert!(wrong.to_string().contains(".mp4 or .gif"), "{wrong}");
+        let huge = Video::begin(Path::new("turn.gif"), [70_000, 2], 24.0)
+            .err()
+            .expect("too wide");
+        assert!(
+            huge.to_string().starts_with("turn.gif: no video of 70000 × 2 pixels"),
+            "{huge}"
+        );
+    }
+}

@@ -1,0 +1,154 @@
+//! Parts of the light: direct and indirect light are all of it, path by path, on both engines.
+
+use std::f32::consts::SQRT_2;
+
+use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable as _;
+use glossmith::document::{Background, Document, GroundKind, LightPaths, Strategy};
+use glossmith::render::EngineChoice;
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+
+use super::cli_support::{Workplace, read_exr};
+use super::lights::lit_scenes;
+use super::parting::Pair;
+use super::renders::{document, render};
+use super::ui::{Editor, editor, picture, settle, undo};
+
+/// Scenes where light is reflected between surfaces, with lights and without, and with a shadow catcher.
+fn scenes() -> Vec<(&'static str, Document)> {
+    let mut scenes = lit_scenes();
+    let glass = ["base.metalness=0", "transmission.weight=0.9", "specular.roughness=0.3"];
+    scenes.push((
+        "glass",
+        document(ModelSource::Teapot, EnvironmentSource::Studio, &glass),
+    ));
+    let mut caught = document(ModelSource::Teapot, EnvironmentSource::Sky, &["base.metalness=0"]);
+    caught.ground = true;
+    (caught.lighting.ground.kind, caught.lighting.ground.reflection) = (GroundKind::ShadowCatcher, 0.5);
+    caught.lighting.background = Background::Environment;
+    scenes.push(("shadow catcher", caught));
+    for (_, document) in &mut scenes {
+        (document.render.width, document.render.height, document.render.samples) = (24, 24, 4);
+        document.render.bounces = 6;
+    }
+    scenes
+}
+
+fn of(document: &Document, paths: LightPaths) -> Document {
+    let mut document = document.clone();
+    document.render.light_paths = paths;
+    document
+}
+
+#[test]
+fn direct_and_indirect_light_are_all_light() {
+    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let mut with_both = 0;
+        for (name, document) in scenes() {
+            let film = |paths| render(engine, &of(&document, paths));
+            let [all, direct, indirect] = [LightPaths::All, LightPaths::Direct, LightPaths::Indirect].map(film);
+            let sum = |film: &glossmith::job::film::Film| film.colors().map(|[r, g, b, _]| r + g + b).sum::<f64>();
+            assert!(sum(&direct) > 1e-3 * sum(&all), "{name}: there is direct light");
+            with_both += usize::from(sum(&indirect) > 1e-3 * sum(&all));
+            let mut off = 0;
+            for pixel in 0..all.pixel_count() {
+                let [whole, direct, indirect] = [&all, &direct, &indirect].map(|film| film.color(pixel));
+                let differs = (0..3).any(|channel| {
+                    let parts = direct[channel] + indirect[channel];
+                    (parts - whole[channel]).abs() > 1e-4 * (1.0 + whole[channel])
+                });
+                off += usize::from(differs);
+            }
+            // On the GPU another kernel may round a path another way.
+            let allowed = if engine == EngineChoice::Cpu {
+                0
+            } else {
+                all.pixel_count() / 100
+            };
+            assert!(
+                off <= allowed,
+                "{engine:?}, {name}: {off} pixels are not the sum of their parts"
+            );
+        }
+        assert!(with_both >= 4, "light is reflected twice in most scenes");
+    }
+}
+
+#[test]
+fn engines_find_the_same_parts() {
+    let mut pair = Pair::open();
+    for (name, mut document) in scenes() {
+        document.render.samples = 1;
+        for strategy in Strategy::ALL {
+            document.render.strategy = *strategy;
+            for paths in [LightPaths::Direct, LightPaths::Indirect] {
+                let what = format!("{name}, {strategy:?}, {paths:?}");
+                pair.assert_same_paths(&of(&document, paths), [5e-3, 1e-3], &what);
+            }
+        }
+    }
+    // A part of the light casts no shadow into alpha.
+    let (_, mut caught) = scenes().pop().expect("the shadow catcher");
+    caught.lighting.background = Background::Transparent;
+    caught.render.samples = 1;
+    pair.assert_same_paths(&of(&caught, LightPaths::Indirect), [5e-3, 1e-3], "alpha");
+    let film = render(EngineChoice::Cpu, &of(&caught, LightPaths::Indirect));
+    let below = film.color(24 * 24 - 12);
+    assert_eq!(below, [0.0; 4], "the ground before the teapot");
+}
+
+#[test]
+fn a_convex_body_in_the_open_has_no_indirect_light() {
+    let sphere = document(ModelSource::Sphere, EnvironmentSource::Studio, &[]);
+    let film = render(EngineChoice::Cpu, &of(&sphere, LightPaths::Indirect));
+    assert!(film.colors().all(|[r, g, b, _]| [r, g, b] == [0.0; 3]));
+    assert!(
+        (film.image().pixels[0][3] - 1.0).abs() < SQRT_2 * f32::EPSILON,
+        "what is covered stays so"
+    );
+}
+
+#[test]
+fn the_command_line_renders_parts_of_the_light() {
+    let place = Workplace::new();
+    let scene = "--size 16x16 --samples 4 --engine cpu";
+    for part in ["all", "direct", "indirect"] {
+        place.done(&format!("render {scene} --light-paths {part} --output {part}.exr"));
+    }
+    let pictures = ["all.exr", "direct.exr", "indirect.exr"].map(|name| read_exr(&place.path(name)));
+    for index in 0..16 * 16 {
+        let [whole, direct, indirect] = [0, 1, 2].map(|part: usize| pictures[part].pixels[index][0]);
+        assert!((whole - direct - indirect).abs() <= 1e-4 * (1.0 + whole));
+    }
+    place.refused(2, "render --light-paths some", &["direct", "indirect"]);
+}
+
+fn look_at(harness: &mut Editor, part: &str) {
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Viewport shows")
+        .click_accesskit();
+    harness.run_steps(2);
+    harness.get_by_label(part).click_accesskit();
+    harness.run_steps(2);
+    settle(harness);
+}
+
+#[test]
+fn the_viewport_shows_parts_of_the_light() {
+    let mut harness = editor();
+    settle(&mut harness);
+    let all = picture(&harness);
+    look_at(&mut harness, "Indirect light");
+    assert_eq!(harness.state().document().render.light_paths, LightPaths::Indirect);
+    assert!(
+        picture(&harness).iter().all(|[r, g, b, _]| r + g + b == 0.0),
+        "a sphere has none"
+    );
+    look_at(&mut harness, "Direct light");
+    assert_eq!(harness.state().document().render.light_paths, LightPaths::Direct);
+    look_at(&mut harness, "Picture");
+    assert_eq!(picture(&harness), all);
+    undo(&mut harness);
+    assert_eq!(harness.state().document().render.light_paths, LightPaths::Direct);
+}

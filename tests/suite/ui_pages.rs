@@ -1,0 +1,179 @@
+//! Pictures of every panel with something in it, at two sizes and in both themes, for docs/PANELS.md;
+//! `UPDATE_DOCS=1 cargo test ui_pages` makes them anew.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use egui::Vec2;
+use egui::accesskit::Role;
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::layout::Pane;
+use glossmith::app::{App, Options, Resolution};
+use glossmith::document::{Denoise, Document};
+use glossmith::scene::texture::TextureTarget;
+use glossmith::store::examples::EXAMPLES;
+
+use super::ui::{Editor, options, press, request, see, see_label, settle, type_path};
+use super::ui_study::race_strategies;
+
+/// What is docked together, and what the page is called.
+const PAGES: [(&str, &[Pane]); 6] = [
+    ("start", &[Pane::Presets, Pane::Lighting, Pane::Material, Pane::Curve]),
+    ("scene", &[Pane::Scene, Pane::Camera, Pane::Material, Pane::Lobe]),
+    ("cost", &[Pane::Snapshots, Pane::Effects, Pane::Material, Pane::Samples]),
+    ("race", &[Pane::Queue, Pane::Race, Pane::Material, Pane::Inspector]),
+    ("error", &[Pane::Log, Pane::Race, Pane::Material, Pane::Convergence]),
+    (
+        "check",
+        &[Pane::Check, Pane::Lighting, Pane::Material, Pane::Convergence],
+    ),
+];
+/// Width and height of the window, pixels.
+const SIZES: [[u32; 2]; 2] = [[1366, 768], [1920, 1080]];
+const THEMES: [&str; 2] = ["dark", "light"];
+/// Of 100.
+const JPEG_QUALITY: u8 = 88;
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn path(page: &str, [width, height]: [u32; 2], theme: &str) -> String {
+    format!("pictures/panels/{page}-{width}x{height}-{theme}.jpg")
+}
+
+fn document() -> Document {
+    let mut document = (EXAMPLES[0].document)();
+    document.render.samples = 48;
+    document.view.denoise = Denoise::High;
+    document
+}
+
+/// Shows small pictures for as long as they take.
+fn rest(harness: &mut Editor, seconds: f64) {
+    let begun = Instant::now();
+    while begun.elapsed() < Duration::from_secs_f64(seconds) {
+        std::thread::sleep(Duration::from_millis(50));
+        harness.step();
+    }
+}
+
+/// A window in which something has been done in every panel.
+fn worked_in(folder: &Path, [width, height]: [u32; 2]) -> Editor {
+    let made = Options {
+        document: Some(document()),
+        resolution: Some(Resolution::Auto),
+        data: Some(folder.join("data")),
+        cache: Some(folder.join("cache")),
+        typed_paths: Some(folder.to_owned()),
+        ..options()
+    };
+    let mut harness: Editor = Harness::builder()
+        .with_size(Vec2::new(width as f32, height as f32))
+        .build_eframe(move |creation| App::new(creation, made).expect("a thread to render on"));
+    settle(&mut harness);
+    request(&mut harness, Action::Do(Command::Pin));
+    rest(&mut harness, 1.0);
+    request(&mut harness, Action::LookFrom(60.0, 15.0));
+    settle(&mut harness);
+    request(&mut harness, Action::Do(Command::Pin));
+    rest(&mut harness, 1.0);
+    request(&mut harness, Action::Do(Command::Undo));
+    settle(&mut harness);
+    let oak = folder.join("oak_rough.png");
+    image::RgbImage::from_fn(64, 64, |x, y| image::Rgb([120 + ((x / 4 + y / 16) % 8 * 12) as u8; 3]))
+        .save(&oak)
+        .expect("a picture");
+    request(&mut harness, Action::ChooseTexture(TextureTarget::Roughness));
+    type_path(&mut harness, &oak, "Open");
+    settle(&mut harness);
+    race_strategies(&mut harness, 0.5);
+    see_label(&mut harness, "Run the race");
+    request(&mut harness, Action::Do(Command::Measure));
+    see(&mut harness, "the ledger", |harness| {
+        harness
+            .query_by_label_contains("ms for one sample of every pixel")
+            .is_some()
+    });
+    request(&mut harness, Action::Reveal(Pane::Check));
+    harness.run_steps(2);
+    press(&mut harness, "Check this machine");
+    see(&mut harness, "the checks", |harness| {
+        harness.query_by_label_contains("checks passed").is_some()
+    });
+    request(&mut harness, Action::Do(Command::QueuePicture));
+    type_path(&mut harness, &folder.join("teapot.exr"), "Save");
+    request(&mut harness, Action::Do(Command::Turntable));
+    harness.run_steps(3);
+    press(&mut harness, "Add to the queue");
+    harness.get_by_role_and_label(Role::CheckBox, "Pause the queue").click();
+    let viewport = harness.get_by_label("Viewport").rect();
+    harness.hover_at(viewport.center() + Vec2::new(-0.04 * viewport.width(), 0.0));
+    harness.run_steps(3);
+    request(&mut harness, Action::Do(Command::Inspect));
+    settle(&mut harness);
+    harness
+}
+
+fn write(harness: &mut Editor, to: &Path) {
+    let window = harness
+        .render()
+        .expect("a Vulkan driver: apt install mesa-vulkan-drivers");
+    let window = image::DynamicImage::ImageRgba8(window).into_rgb8();
+    std::fs::create_dir_all(to.parent().expect("it lies in a folder")).expect("a folder");
+    let file = std::fs::File::create(to).expect("a file");
+    let encoder = image::codecs::jpeg::JpegEncoder::new_with_quality(file, JPEG_QUALITY);
+    window.write_with_encoder(encoder).expect("written");
+}
+
+fn make_all() {
+    for size in SIZES {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let mut harness = worked_in(folder.path(), size);
+        for theme in THEMES {
+            for (page, panes) in PAGES {
+                for pane in panes {
+                    request(&mut harness, Action::Reveal(*pane));
+                }
+                harness.hover_at(egui::pos2(-10.0, -10.0));
+                settle(&mut harness);
+                rest(&mut harness, 4.0);
+                write(&mut harness, &root().join("docs").join(path(page, size, theme)));
+            }
+            request(&mut harness, Action::Do(Command::ToggleTheme));
+        }
+    }
+}
+
+#[test]
+fn every_panel_has_a_picture_at_each_size_and_in_each_theme() {
+    if std::env::var_os("UPDATE_DOCS").is_some() {
+        make_all();
+    }
+    let told = std::fs::read_to_string(root().join("docs/PANELS.md")).expect("the page");
+    for pane in Pane::ALL {
+        let is_shown = pane == Pane::Viewport || PAGES.iter().any(|(_, panes)| panes.contains(&pane));
+        assert!(is_shown, "{} is on no page", pane.title());
+        assert!(
+            told.contains(&format!("*{}*", pane.title())),
+            "docs/PANELS.md is silent about {}",
+            pane.title()
+        );
+    }
+    for (page, _) in PAGES {
+        for size in SIZES {
+            for theme in THEMES {
+                let path = path(page, size, theme);
+                assert!(told.contains(&path), "docs/PANELS.md does not show {path}");
+                let found = image::image_dimensions(root().join("docs").join(&path));
+                assert_eq!(
+                    found.ok(),
+                    Some(size.into()),
+                    "{path}: run UPDATE_DOCS=1 cargo test ui_pages"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! Renders beside the window: pictures and turntables in the queue, and the turntable's preview in the viewport.
+
+use std::path::Path;
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
+use egui_kittest::kittest::Queryable as _;
+use glossmith::app::actions::{Action, Command};
+use glossmith::app::layout::Pane;
+
+use super::ui::{Editor, editor, press, request, see, settle, type_path, wait};
+use super::ui_files::says;
+
+fn set(harness: &mut Editor, label: &str, value: f64) {
+    let field = harness.get_by_role_and_label(Role::SpinButton, label);
+    field.set_value_accesskit(value);
+    harness.run_steps(2);
+}
+
+/// Has a turn queued, of so many frames and samples, written as this.
+fn turn(harness: &mut Editor, form: &str, output: &Path, [frames, samples]: [f64; 2]) {
+    request(harness, Action::Do(Command::Turntable));
+    // A sheet is first measured, then shown.
+    harness.run_steps(2);
+    harness.check_accessibility();
+    set(harness, "Turntable frames", frames);
+    set(harness, "Turntable samples", samples);
+    set(harness, "Turntable width", 20.0);
+    set(harness, "Turntable height", 16.0);
+    harness
+        .get_by_role_and_label(Role::ComboBox, "Turntable form")
+        .click_accesskit();
+    harness.run_steps(2);
+    harness.get_by_label(form).click_accesskit();
+    harness.run_steps(2);
+    let field = harness.get_by_role_and_label(Role::TextInput, "Turntable output");
+    field.set_text_value_accesskit(&output.display().to_string());
+    harness.run_steps(2);
+    press(harness, "Add to the queue");
+}
+
+#[test]
+fn a_turntable_becomes_pictures_and_a_video_beside_the_window() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name);
+    let mut harness = editor();
+    turn(&mut harness, "Pictures", &path("turn"), [3.0, 2.0]);
+    wait(&mut harness, "the frames", |app| {
+        app.messages().iter().any(|text| text.contains("turntable: 3 frames"))
+    });
+    assert_eq!(std::fs::read_dir(path("turn")).expect("made").count(), 3);
+    let size = image::image_dimensions(path("turn/frame-0003.png")).expect("a picture");
+    assert_eq!(size, (20, 16));
+    // The ending follows what was chosen.
+    turn(&mut harness, "Video (.mp4)", &path("film.gif"), [4.0, 2.0]);
+    wait(&mut harness, "the video", |app| {
+        app.messages().iter().any(|text| text.contains("film.mp4"))
+    });
+    let bytes = std::fs::read(path("film.mp4")).expect("the video");
+    assert_eq!(&bytes[4..8], b"ftyp");
+    harness.run_steps(2);
+    harness.check_accessibility();
+    press(&mut harness, "Remove turn");
+    assert!(harness.query_by_label("Remove turn").is_none());
+    press(&mut harness, "Clear finished");
+    assert!(harness.query_by_label("Remove film.mp4").is_none());
+}
+
+#[test]
+fn the_queue_is_paused_reordered_called_off_and_asked_about() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let path = |name: &str| folder.path().join(name);
+    let mut harness = editor();
+    request(&mut harness, Action::Reveal(Pane::Queue));
+    harness.run_steps(2);
+    harness.get_by_role_and_label(Role::CheckBox, "Pause the queue").click();
+    harness.run_steps(2);
+    turn(&mut harness, "Animation (.gif)", &path("long.gif"), [9000.0, 4000.0]);
+    for name in ["first.png", "second.exr"] {
+        request(&mut harness, Action::Do(Command::QueuePicture));
+        type_path(&mut harness, &path(name), "Save");
+    }
+    press(&mut harness, "Next second.exr");
+    press(&mut harness, "Cancel first.png");
+    // What is edited afterwards is no part of it.
+    request(&mut harness, Action::LookFrom(90.0, 0.0));
+    settle(&mut harness);
+    harness.get_by_role_and_label(Role::CheckBox, "Pause the queue").click();
+    wait(&mut harness, "the picture", |app| {
+        app.messages()
+            .iter()
+            .any(|text| text.contains("second.exr: 3 samples a pixel"))
+    });
+    assert!(!path("first.png").exists());
+    see(&mut harness, "the turn under way", |harness| {
+        harness.query_by_label("Progress of long.gif").is_some()
+    });
+    let close = |harness: &mut Editor| {
+        let viewport = harness.input_mut().viewports.get_mut(&ViewportId::ROOT);
+        viewport.expect("the window").events.push(ViewportEvent::Close);
+        harness.step();
+        let commands = harness.output().viewport_output[&ViewportId::ROOT].commands.clone();
+        let viewport = harness.input_mut().viewports.get_mut(&ViewportId::ROOT);
+        viewport.expect("the window").events.clear();
+        harness.run_steps(3);
+        !commands.contains(&ViewportCommand::CancelClose)
+    };
+    assert!(!close(&mut harness), "it asks first");
+    harness.check_accessibility();
+    press(&mut harness, "Go on rendering");
+    assert!(harness.query_by_label("Progress of long.gif").is_some());
+    press(&mut harness, "Cancel long.gif");
+    wait(&mut harness, "its end", |app| {
+        app.messages().iter().any(|text| text.contains("turntable cancelled"))
+    });
+    assert!(!path("long.gif").exists(), "a video is whole or not there");
+    assert!(!says(&harness, "internal error"));
+}
+
+#[test]
+fn the_viewport_turns_until_escape_and_the_document_stays() {
+    let mut harness = editor();
+    settle(&mut harness);
+    let document = harness.state().document().clone();
+    harness.key_press(Key::T);
+    let yaw = |harness: &Editor| {
+        let scene = harness.state().snapshot().scene.clone();
+        scene.expect("a scene").document.camera.yaw_deg
+    };
+    for _ in 0..2 {
+        let before = yaw(&harness);
+        see(&mut harness, "a turn", |harness| yaw(harness) != before);
+    }
+    assert_eq!(*harness.state().document(), document);
+    // What is edited meanwhile is seen while it goes on.
+    request(&mut harness, Action::Do(Command::ResetMaterial));
+    let before = yaw(&harness);
+    see(&mut harness, "a turn", |harness| yaw(harness) != before);
+    harness.key_press_modifiers(Modifiers::NONE, Key::Escape);
+    settle(&mut harness);
+    assert_eq!(yaw(&harness), document.camera.yaw_deg);
+    harness.key_press(Key::T);
+    let before = yaw(&harness);
+    see(&mut harness, "a turn", |harness| yaw(harness) != before);
+    request(&mut harness, Action::LookFrom(90.0, 0.0));
+    settle(&mut harness);
+    assert_eq!(yaw(&harness), 90.0, "who moves the camera has it");
+}
