@@ -24,10 +24,6 @@ macro_rules! list {
             Snapshots, "Snapshots", UpperLeft, snapshots::SnapshotsPanel;
             /// Renders that go on beside.
             Queue, "Queue", UpperLeft, queue::QueuePanel;
-            /// What was said.
-            Log, "Log", UpperLeft, log::LogPanel;
-            /// The proof on this machine.
-            Check, "Check", UpperLeft, check::CheckPanel;
             /// Environment, background, ground.
             Lighting, "Light", LowerLeft, lighting::LightingPanel;
             /// Camera, view and render settings.
@@ -38,6 +34,10 @@ macro_rules! list {
             Race, "Race", LowerLeft, race::RacePanel;
             /// The material's parameters.
             Material, "Material", UpperRight, material::MaterialPanel;
+            /// The proof on this machine.
+            Check, "Check", UpperRight, check::CheckPanel;
+            /// What was said.
+            Log, "Log", UpperRight, log::LogPanel;
             /// The geometric lobe's curve.
             Curve, "Curve", LowerRight, curve::CurvePanel;
             /// What the lobe draws.

@@ -88,7 +88,11 @@ fn scene(gpu: &GpuDevice, job: &Job, old: Option<&Resources>) -> Result<SceneGro
         },
         textures: match kept(|a, b| Arc::ptr_eq(&a.textures, &b.textures)) {
             Some(old) => old.textures.clone(),
-            None => scene_group::textures(gpu, &job.textures)?,
+            None => {
+                // Another way of putting the same pictures on a surface changes their uses alone.
+                let old = kept(|a, b| Arc::ptr_eq(&a.textures.words, &b.textures.words));
+                scene_group::textures(gpu, &job.textures, old.map(|old| old.textures[1].clone()))?
+            }
         },
     })
 }

@@ -262,13 +262,19 @@ pub fn light_cells(gpu: &GpuDevice, geometry: &Geometry, lights: &Lights) -> Res
     array::texture(gpu, "the triangles that emit", &cells)
 }
 
-/// The uses of a model's pictures, and their words.
+/// The uses of a model's pictures, and their words: those that are there, where they are the same.
 ///
 /// # Errors
 /// If the device fails.
-pub fn textures(gpu: &GpuDevice, textures: &Textures) -> Result<[wgpu::TextureView; 2], GpuError> {
-    Ok([
-        array::texture(gpu, "the model's textures", &Values::of(&textures.records))?,
-        array::texture(gpu, "the model's pictures", &Values::of(&textures.words))?,
-    ])
+pub fn textures(
+    gpu: &GpuDevice,
+    textures: &Textures,
+    words: Option<wgpu::TextureView>,
+) -> Result<[wgpu::TextureView; 2], GpuError> {
+    let records = array::texture(gpu, "the model's textures", &Values::of(&textures.records))?;
+    let words = match words {
+        Some(words) => words,
+        None => array::texture(gpu, "the model's pictures", &Values::of(&textures.words))?,
+    };
+    Ok([records, words])
 }

@@ -19,16 +19,12 @@ use super::ui::{Editor, options, press, request, see, see_label, settle, type_pa
 use super::ui_study::race_strategies;
 
 /// What is docked together, and what the page is called.
-const PAGES: [(&str, &[Pane]); 6] = [
+const PAGES: [(&str, &[Pane]); 5] = [
     ("start", &[Pane::Presets, Pane::Lighting, Pane::Material, Pane::Curve]),
     ("scene", &[Pane::Scene, Pane::Camera, Pane::Material, Pane::Lobe]),
-    ("cost", &[Pane::Snapshots, Pane::Effects, Pane::Material, Pane::Samples]),
+    ("cost", &[Pane::Snapshots, Pane::Effects, Pane::Check, Pane::Samples]),
     ("race", &[Pane::Queue, Pane::Race, Pane::Material, Pane::Inspector]),
-    ("error", &[Pane::Log, Pane::Race, Pane::Material, Pane::Convergence]),
-    (
-        "check",
-        &[Pane::Check, Pane::Lighting, Pane::Material, Pane::Convergence],
-    ),
+    ("error", &[Pane::Presets, Pane::Race, Pane::Log, Pane::Convergence]),
 ];
 /// Width and height of the window, pixels.
 const SIZES: [[u32; 2]; 2] = [[1366, 768], [1920, 1080]];
@@ -46,7 +42,7 @@ fn path(page: &str, [width, height]: [u32; 2], theme: &str) -> String {
 
 fn document() -> Document {
     let mut document = (EXAMPLES[0].document)();
-    document.render.samples = 48;
+    document.render.samples = 12;
     document.view.denoise = Denoise::High;
     document
 }
@@ -138,8 +134,7 @@ fn make_all() {
                     request(&mut harness, Action::Reveal(*pane));
                 }
                 harness.hover_at(egui::pos2(-10.0, -10.0));
-                settle(&mut harness);
-                rest(&mut harness, 4.0);
+                rest(&mut harness, 3.0);
                 write(&mut harness, &root().join("docs").join(path(page, size, theme)));
             }
             request(&mut harness, Action::Do(Command::ToggleTheme));

@@ -9,7 +9,8 @@ use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options};
 use glossmith::document::Document;
 
-use super::ui::{options, request, settle, wait};
+use super::ui::{options, request, see_label, settle, wait};
+use super::ui_study::race_strategies;
 
 /// Drivers rasterise edges and blend text a little differently.
 const COLOR_TOLERANCE: f32 = 2.0;
@@ -27,6 +28,11 @@ fn editor(options: Options) -> Harness<'static, App> {
 /// Compares the window with its picture, in both themes. The renderer's picture, numbers made from it, and the status bar,
 /// which has times in it, are left out: other tests look at them.
 fn compare(harness: &mut Harness<'static, App>, name: &str) {
+    compare_but(harness, name, &[]);
+}
+
+/// The same, with other places left out, too.
+fn compare_but(harness: &mut Harness<'static, App>, name: &str, changing: &[Rect]) {
     for theme in ["dark", "light"] {
         // The pointer lies where it changes nothing.
         harness.hover_at(egui::pos2(-10.0, -10.0));
@@ -39,7 +45,11 @@ fn compare(harness: &mut Harness<'static, App>, name: &str) {
         // A number that goes on changing while pictures come.
         let rms = harness.query_by_label_contains("RMS").map(|label| label.rect());
         let rms = rms.map(|label| Rect::from_min_max(label.right_top() - Vec2::new(140.0, 0.0), label.max));
-        for covered in [viewport, status].into_iter().chain(rms) {
+        for covered in [viewport, status]
+            .into_iter()
+            .chain(rms)
+            .chain(changing.iter().copied())
+        {
             cover(&mut window, covered);
         }
         let options = SnapshotOptions::new()
@@ -91,4 +101,34 @@ fn the_scene_as_a_tree() {
     harness.state_mut().reveal(Pane::Camera);
     settle(&mut harness);
     compare(&mut harness, "scene");
+}
+
+/// All but what was measured: the points, and the numbers beside them.
+#[test]
+fn the_race_beside_the_convergence() {
+    let mut harness = editor(options());
+    race_strategies(&mut harness, 0.02);
+    see_label(&mut harness, "Run the race");
+    harness.state_mut().reveal(Pane::Convergence);
+    harness.run_steps(4);
+    let place = |label: &str| harness.get_by_label(label).rect();
+    let (race, error) = (place("Time against bias"), place("Error against time"));
+    let around = |chart: Rect| Rect::from_min_max(chart.min - Vec2::new(60.0, 0.0), chart.max + Vec2::new(10.0, 22.0));
+    let below = Rect::from_min_max(egui::pos2(0.0, race.bottom()), egui::pos2(race.right() + 20.0, 690.0));
+    let over = Rect::from_min_max(egui::pos2(error.left() - 60.0, error.top() - 70.0), error.right_top());
+    compare_but(
+        &mut harness,
+        "race-and-convergence",
+        &[around(race), below, around(error), over],
+    );
+}
+
+/// Without its small pictures, which come when they are made.
+#[test]
+fn the_browser_of_presets() {
+    let mut harness = editor(options());
+    harness.state_mut().reveal(Pane::Presets);
+    harness.state_mut().reveal(Pane::Camera);
+    settle(&mut harness);
+    compare(&mut harness, "browser");
 }

@@ -183,24 +183,36 @@ fn a_lobes_chart_is_never_shown_under_another_name() {
     });
 }
 
-/// The rectangles of what the status bar says.
+/// The rectangles of what the status bar says, as it is painted.
 fn of_status_bar(harness: &Editor, size: Vec2) -> Vec<(Rect, String)> {
     let bar = size.y - 30.0;
-    let nodes = harness.root().children_recursive();
-    let placed = nodes.filter(|node| node.accesskit_node().bounding_box().is_some());
-    // What panels have scrolled away lies below the window.
-    let lies_in_bar = |rect: Rect| rect.top() >= bar && rect.bottom() <= size.y;
-    let of_bar = placed.filter(|node| lies_in_bar(node.rect()) && node.accesskit_node().role() == Role::Label);
-    of_bar
-        .filter_map(|node| Some((node.rect(), node.accesskit_node().value()?)))
-        .collect()
+    let painted = texts(harness).into_iter().filter(|(rect, ..)| rect.top() >= bar);
+    painted.map(|(rect, text, _)| (rect, text)).collect()
+}
+
+#[test]
+fn all_tabs_fit_a_small_screen() {
+    let mut harness = editor();
+    harness.set_size(Vec2::new(1366.0, 768.0));
+    settle(&mut harness);
+    let viewport = harness.get_by_label("Viewport").rect();
+    for pane in Pane::ALL.into_iter().filter(|pane| *pane != Pane::Viewport) {
+        let mut tabs = harness.query_all_by_label(pane.title()).map(|node| node.rect());
+        let tab = tabs.find(|tab| tab.height() > 20.0).expect("a tab");
+        let docks = [(0.0, viewport.left()), (viewport.right(), 1366.0)];
+        let (left, right) = docks[usize::from(tab.left() > viewport.left())];
+        // Beside the arrows that would scroll them there would be less room.
+        assert!(
+            tab.left() >= left && tab.right() <= right,
+            "{}: {tab} in {left} to {right}",
+            pane.title()
+        );
+    }
 }
 
 #[test]
 fn the_status_bar_fits_a_narrow_window() {
     let mut harness = editor();
-    // What it has scrolled away would lie in the bar.
-    request(&mut harness, Action::Close(Pane::Material));
     for width in [760.0, 800.0, 1024.0, 1366.0, 1920.0] {
         let size = Vec2::new(width, 768.0);
         harness.set_size(size);

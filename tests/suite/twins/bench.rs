@@ -441,7 +441,7 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
         tables: scene_group::tables(gpu, tables)?,
         environment: scene_group::environment(gpu, environment)?,
         light_cells: scene_group::light_cells(gpu, geometry, lights)?,
-        textures: scene_group::textures(gpu, textures)?,
+        textures: scene_group::textures(gpu, textures, None)?,
     };
     Ok(group.bind(gpu, layout, &gpu.uniforms(&globals)))
 }
