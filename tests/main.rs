@@ -169,6 +169,8 @@ mod ui_browser;
 mod ui_export;
 #[path = "suite/ui_files.rs"]
 mod ui_files;
+#[path = "suite/ui_hands.rs"]
+mod ui_hands;
 #[path = "suite/ui_lights.rs"]
 mod ui_lights;
 #[path = "suite/ui_look.rs"]

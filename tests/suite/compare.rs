@@ -17,7 +17,8 @@ use glossmith::optics::lobe::Lobe;
 use glossmith::render::worker::{Activity, Picture};
 use glossmith::store::PRESETS;
 
-use super::ui::{Editor, editor, editor_of, editor_with, options, press, request, see, settle, wait};
+use super::ui::{Editor, editor, editor_of, editor_with, options, request, see, settle, wait};
+use super::ui_hands::press;
 use super::ui_scene;
 use super::worker::small_document;
 

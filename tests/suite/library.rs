@@ -11,7 +11,8 @@ use glossmith::document::MaterialSettings;
 use glossmith::render::thumbnails::key;
 use glossmith::store::{PRESETS, load_material};
 
-use super::ui::{Editor, editor_of, options, press, request, see, wait};
+use super::ui::{Editor, editor_of, options, request, see, wait};
+use super::ui_hands::press;
 
 /// An editor with the user's folder, its panel showing only what has this in its name.
 fn editor_showing(data: &Path, name: &str) -> Editor {

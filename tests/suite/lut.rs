@@ -7,8 +7,9 @@ use glossmith::scene::ModelSource;
 use glossmith::store::{load_document, save_document};
 
 use super::cli_support::Workplace;
-use super::ui::{Editor, editor_of, options, request, see, settle, type_path, undo};
+use super::ui::{Editor, editor_of, options, request, see, settle, undo};
 use super::ui_files::says;
+use super::ui_hands::type_path;
 use super::worker::small_document;
 
 /// Black for white and white for black.

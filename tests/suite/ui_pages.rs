@@ -15,7 +15,8 @@ use glossmith::document::{Denoise, Document};
 use glossmith::scene::texture::TextureTarget;
 use glossmith::store::examples::EXAMPLES;
 
-use super::ui::{Editor, options, press, request, see, see_label, settle, type_path};
+use super::ui::{Editor, options, request, see, see_label, settle};
+use super::ui_hands::{press, type_path};
 use super::ui_study::race_strategies;
 
 /// What is docked together, and what the page is called.
@@ -126,8 +127,11 @@ fn write(harness: &mut Editor, to: &Path) {
 
 fn make_all() {
     for size in SIZES {
-        let folder = tempfile::tempdir().expect("a temporary folder");
-        let mut harness = worked_in(folder.path(), size);
+        // Its name is seen in the pictures.
+        let folder = Path::new("target/panels");
+        let _ = std::fs::remove_dir_all(folder);
+        std::fs::create_dir_all(folder).expect("a folder");
+        let mut harness = worked_in(folder, size);
         for theme in THEMES {
             for (page, panes) in PAGES {
                 for pane in panes {

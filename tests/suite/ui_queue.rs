@@ -8,8 +8,9 @@ use egui_kittest::kittest::Queryable as _;
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 
-use super::ui::{Editor, editor, press, request, see, settle, type_path, wait};
+use super::ui::{Editor, editor, request, see, settle, wait};
 use super::ui_files::says;
+use super::ui_hands::{press, type_path};
 
 fn set(harness: &mut Editor, label: &str, value: f64) {
     let field = harness.get_by_role_and_label(Role::SpinButton, label);

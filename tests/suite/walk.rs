@@ -135,7 +135,7 @@ fn a_set_of_textures_is_put_on_the_material() {
 #[test]
 fn a_highlight_is_put_where_it_is_wanted() {
     let mut walk = Walk::new(|document| document.lighting.area_lights.push(AreaLight::default()));
-    let before = walk.app().document().lighting.area_lights[0].clone();
+    let before = walk.app().document().lighting.area_lights[0];
     let label = "Place highlight of area light 1";
     walk.harness.get_by_label(label).scroll_to_me();
     walk.harness.run_steps(3);

@@ -37,7 +37,7 @@ impl App {
 
     /// Begins a turn in the viewport, or ends it.
     pub(in crate::app) fn toggle_preview(&mut self) {
-        let camera = self.document.camera.clone();
+        let camera = self.document.camera;
         let since = Instant::now();
         let preview = &mut self.turntable.preview;
         *preview = preview.is_none().then_some(Preview { since, camera });
