@@ -1,7 +1,7 @@
 //! Renders that go on beside the window, one after the other, on a thread and by a session of their own.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
@@ -355,7 +355,7 @@ fn picture(
     session: &mut Session,
     engine: EngineChoice,
     document: &Document,
-    path: &std::path::Path,
+    path: &Path,
     go_on: &mut dyn FnMut(f64) -> bool,
 ) -> Result<String, TaskError> {
     output::format_of(path)?;

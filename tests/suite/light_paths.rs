@@ -121,6 +121,11 @@ fn the_command_line_renders_parts_of_the_light() {
         let [whole, direct, indirect] = [0, 1, 2].map(|part: usize| pictures[part].pixels[index][0]);
         assert!((whole - direct - indirect).abs() <= 1e-4 * (1.0 + whole));
     }
+    // What is left out is told.
+    let told = place
+        .done("explain --pixel 8,8 --size 16x16 --samples 4 --engine cpu --light-paths indirect")
+        .stdout;
+    assert!(told.contains("is not of the light that is shown"), "{told}");
     place.refused(2, "render --light-paths some", &["direct", "indirect"]);
 }
 

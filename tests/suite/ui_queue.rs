@@ -4,7 +4,7 @@ use std::path::Path;
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 
@@ -61,8 +61,11 @@ fn a_turntable_becomes_pictures_and_a_video_beside_the_window() {
     assert_eq!(&bytes[4..8], b"ftyp");
     harness.run_steps(2);
     harness.check_accessibility();
+    // What is below stays the control that it was.
+    let below = harness.get_by_label("Remove film.mp4").accesskit_node().locate();
     press(&mut harness, "Remove turn");
     assert!(harness.query_by_label("Remove turn").is_none());
+    assert_eq!(harness.get_by_label("Remove film.mp4").accesskit_node().locate(), below);
     press(&mut harness, "Clear finished");
     assert!(harness.query_by_label("Remove film.mp4").is_none());
 }

@@ -49,7 +49,10 @@ impl Panel for QueuePanel {
         let first = entries.iter().position(|entry| entry.state == State::Waiting);
         for (index, entry) in entries.iter().enumerate() {
             let can_be_first = entry.state == State::Waiting && first.is_some_and(|first| first < index);
-            ui.push_id(entry.id, |ui| row(ui, desk, entry, can_be_first));
+            // By its number: those above come to their ends and go.
+            let id = egui::Id::unique(("queue", entry.id));
+            let apart = egui::UiBuilder::new().scope_id(id);
+            ui.scope_builder(apart, |ui| row(ui, desk, entry, can_be_first));
         }
     }
 }

@@ -59,7 +59,11 @@ pub(in crate::app) fn show(
         ui.set_min_width(ui.available_width());
         for (index, entry) in found.iter().enumerate() {
             let button = egui::Button::selectable(index == *selected, &entry.label).shortcut_text(&entry.keys);
-            let response = ui.add_sized(vec2(ui.available_width(), theme::ROW_HEIGHT), button);
+            // By its words: entries come and go with what is loaded meanwhile.
+            let id = egui::Id::unique(("palette", &entry.label, &entry.text));
+            let size = vec2(ui.available_width(), theme::ROW_HEIGHT);
+            let apart = egui::UiBuilder::new().scope_id(id);
+            let response = ui.scope_builder(apart, |ui| ui.add_sized(size, button)).inner;
             let response = if entry.help.is_empty() {
                 response
             } else {

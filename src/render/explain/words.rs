@@ -351,10 +351,11 @@ fn added(event: &Event) -> [String; 2] {
     else {
         return Default::default();
     };
-    let limited = if found == added {
-        String::new()
-    } else {
-        format!(", limited from {}", vector(found))
+    let limited = match added {
+        _ if found == added => String::new(),
+        // Limiting leaves something of what there is.
+        [0.0, 0.0, 0.0] => format!(": {} is not of the light that is shown", vector(found)),
+        _ => format!(", limited from {}", vector(found)),
     };
     [
         "+".into(),
