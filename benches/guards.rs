@@ -64,7 +64,7 @@ impl Scene {
             .map(|i| uniform_sphere([unit(hash_bits(i)), unit(hash_bits(i ^ 0x9e37_79b9))]).normalize())
             .collect();
         let ray = |(i, direction): (usize, &Vec3<f32>)| {
-            let triangle = hash_bits(i as u32 ^ 0x55) as usize % geometry.triangles.len();
+            let triangle = hash_bits(i as u32 ^ 0x55) as usize % geometry.triangle_count();
             let [a, b, c] = geometry.corners(triangle).map(Vec3::from_f32);
             let middle = (a + b + c) / 3.0;
             ((middle - *direction * 2.0).to_f32(), direction.to_f32(), triangle)
@@ -160,7 +160,7 @@ fn edges(scene: &Scene) {
 fn whole_rays(scene: &Scene) {
     let geometry = &scene.geometry;
     let guarded = CompressedRays::new(geometry);
-    let compressed = geometry.compressed();
+    let compressed = geometry.model.compressed();
     let naive = CwBvh {
         nodes: compressed.nodes.clone(),
         ..CwBvh::default()

@@ -52,7 +52,7 @@ fn main() {
             compare(&geometry, &sets, &kind);
             compare_packets(&geometry, &sets, &kind);
         }
-        let count = geometry.triangles.len();
+        let count = geometry.triangle_count();
         println!(
             "| {count} | | built in {seconds:.2} s, {} bytes a triangle |",
             bytes / count
@@ -80,7 +80,7 @@ fn compare(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
         .map(|rate| format!("{:.2} | {:.2}", rate / 1e6, rate / best[0]));
     println!(
         "| {} | {} | {:.2} | {} |",
-        geometry.triangles.len(),
+        geometry.triangle_count(),
         kind.name,
         best[0] / 1e6,
         rates.collect::<Vec<_>>().join(" | ")
@@ -122,7 +122,7 @@ fn compare_packets(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
         cells.push(format!("{:.2} | {:.2}", together / 1e6, together / alone));
     }
     let name = format!("{} in packets, against alone", kind.name);
-    println!("| {} | {name} | | {} |", geometry.triangles.len(), cells.join(" | "));
+    println!("| {} | {name} | | {} |", geometry.triangle_count(), cells.join(" | "));
 }
 
 /// Rays a second.

@@ -115,6 +115,8 @@ mod model_parts;
 mod monkey;
 #[path = "suite/monkey_deeds.rs"]
 mod monkey_deeds;
+#[path = "suite/moved_lights.rs"]
+mod moved_lights;
 #[path = "suite/noise.rs"]
 mod noise;
 #[path = "suite/nothing_lost.rs"]

@@ -30,7 +30,7 @@ pub struct CompressedRays<'a> {
 
 impl<'a> CompressedRays<'a> {
     pub fn new(geometry: &'a Geometry) -> Self {
-        let compressed = geometry.compressed();
+        let compressed = geometry.model.compressed();
         let corners = |&triangle: &u32| geometry.corners(triangle as usize).map(Vec3A::from_array);
         Self {
             compressed,

@@ -2,8 +2,9 @@
 // intersect_triangle is the twin of the function in src/scene/intersect.rs.
 #import "scene/layout"
 
-// Hierarchies are built no deeper than this (src/scene/bvh.rs): a level adds one entry at most.
-const STACK_SIZE: u32 = 32u;
+// Hierarchies are built no deeper than 32 levels (DEPTH_MAX in src/scene/hierarchy/mod.rs), each of which adds one entry at
+// most; one more waits for what is around the model.
+const STACK_SIZE: u32 = 33u;
 const NO_HIT: u32 = 0xffffffffu;
 
 struct Hit {
@@ -162,6 +163,10 @@ fn trace(origin: vec3f, direction: vec3f, t_max: f32, any_hit: bool) -> Hit {
     // x: where the children begin; y: hit mask in the high byte, which children are inner in the low one.
     var node_group = vec2u(0u, 0x80000000u);
     var triangle_group = vec2u(0u);
+    if globals.around_root != 0u {
+        stack[0] = vec2u(globals.around_root, 0x80000000u);
+        stack_height = 1u;
+    }
     loop {
         while triangle_group.y != 0u {
             let local = firstLeadingBit(triangle_group.y);

@@ -44,8 +44,9 @@ struct Globals {
     catcher_table: u32,
     // Light that was reflected less often does not count.
     least_reflections: u32,
+    // Where the hierarchy of what is around the model begins; 0 where there is no second one.
+    around_root: u32,
     // To a multiple of 16 bytes.
-    unused_1: u32,
     unused_2: u32,
     unused_3: u32,
 }

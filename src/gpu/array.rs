@@ -82,11 +82,24 @@ impl<'a, T: Pod> Values<'a, T> {
 /// [`GpuError::TooLarge`] beyond the adapter's limit; [`GpuError::Lost`].
 pub fn buffer<T: Pod>(gpu: &GpuDevice, what: &'static str, values: &Values<'_, T>) -> Result<wgpu::Buffer, GpuError> {
     let buffer = gpu.empty_storage(what, values.bytes())?;
-    values.write(gpu, |first, part| {
-        let offset = (first * size_of::<T>()) as u64;
-        gpu.queue.write_buffer(&buffer, offset, bytemuck::cast_slice(part));
-    })?;
+    write_buffer(gpu, &buffer, 0, values)?;
     Ok(buffer)
+}
+
+/// Writes values into a storage buffer, from a place on.
+///
+/// # Errors
+/// [`GpuError::Lost`].
+pub fn write_buffer<T: Pod>(
+    gpu: &GpuDevice,
+    buffer: &wgpu::Buffer,
+    place: usize,
+    values: &Values<'_, T>,
+) -> Result<(), GpuError> {
+    values.write(gpu, |first, part| {
+        let offset = ((place + first) * size_of::<T>()) as u64;
+        gpu.queue.write_buffer(buffer, offset, bytemuck::cast_slice(part));
+    })
 }
 
 /// A texture of these values, one or four words a texel: `u32`s, or what is as long as some `[u32; 4]`s. Shaders find the
@@ -99,12 +112,23 @@ pub fn texture<T: Pod>(
     what: &'static str,
     values: &Values<'_, T>,
 ) -> Result<wgpu::TextureView, GpuError> {
-    let (format, texel_bytes) = if size_of::<T>() == 4 {
-        (wgpu::TextureFormat::R32Uint, 4)
-    } else {
-        (wgpu::TextureFormat::Rgba32Uint, 16)
+    let texture = empty_texture::<T>(gpu, what, values.count);
+    write_texture(gpu, &texture, 0, values)?;
+    Ok(texture)
+}
+
+/// Bytes of a texel that holds values of a kind, or a part of one.
+fn texel_bytes<T>() -> usize {
+    size_of::<T>().min(16)
+}
+
+/// A texture for so many values, as [`texture`] makes them.
+pub fn empty_texture<T: Pod>(gpu: &GpuDevice, what: &'static str, count: usize) -> wgpu::TextureView {
+    let format = match texel_bytes::<T>() {
+        4 => wgpu::TextureFormat::R32Uint,
+        _ => wgpu::TextureFormat::Rgba32Uint,
     };
-    let texels = (values.bytes() as usize / texel_bytes).max(1);
+    let texels = (count * size_of::<T>() / texel_bytes::<T>()).max(1);
     let rows = texels.div_ceil(TEXEL_ROW);
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(what),
@@ -116,18 +140,33 @@ pub fn texture<T: Pod>(
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    values.write(gpu, |first, part| {
-        let bytes: &[u8] = bytemuck::cast_slice(part);
-        // A part begins with a row, as its number of values is a multiple of a row's.
-        let first_row = first * size_of::<T>() / texel_bytes / TEXEL_ROW;
-        for (row, line) in (first_row..).zip(bytes.chunks(TEXEL_ROW * texel_bytes)) {
-            write_row(gpu, &texture, row, line, texel_bytes);
-        }
-    })?;
-    Ok(texture.create_view(&wgpu::TextureViewDescriptor {
+    texture.create_view(&wgpu::TextureViewDescriptor {
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()
-    }))
+    })
+}
+
+/// Writes values into an array's texture, from a place on.
+///
+/// # Errors
+/// [`GpuError::Lost`].
+pub fn write_texture<T: Pod>(
+    gpu: &GpuDevice,
+    texture: &wgpu::TextureView,
+    place: usize,
+    values: &Values<'_, T>,
+) -> Result<(), GpuError> {
+    let bytes_each = texel_bytes::<T>();
+    values.write(gpu, |first, part| {
+        let mut texel = (place + first) * size_of::<T>() / bytes_each;
+        let mut rest: &[u8] = bytemuck::cast_slice(part);
+        while !rest.is_empty() {
+            let in_row = TEXEL_ROW - texel % TEXEL_ROW;
+            let (line, after) = rest.split_at(rest.len().min(in_row * bytes_each));
+            write_in_row(gpu, texture.texture(), texel, line, bytes_each);
+            (texel, rest) = (texel + line.len() / bytes_each, after);
+        }
+    })
 }
 
 fn extent(width: usize, height: usize, layers: usize) -> wgpu::Extent3d {
@@ -138,10 +177,11 @@ fn extent(width: usize, height: usize, layers: usize) -> wgpu::Extent3d {
     }
 }
 
-/// Writes a row of an array's texture, counted through all layers.
-fn write_row(gpu: &GpuDevice, texture: &wgpu::Texture, row: usize, line: &[u8], texel_bytes: usize) {
+/// Writes texels of one row of an array's texture, the first of them counted through all rows.
+fn write_in_row(gpu: &GpuDevice, texture: &wgpu::Texture, texel: usize, line: &[u8], texel_bytes: usize) {
+    let row = texel / TEXEL_ROW;
     let origin = wgpu::Origin3d {
-        x: 0,
+        x: (texel % TEXEL_ROW) as u32,
         y: (row % LAYER_ROWS) as u32,
         z: (row / LAYER_ROWS) as u32,
     };

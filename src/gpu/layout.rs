@@ -4,8 +4,8 @@
 use bytemuck::{Pod, Zeroable};
 
 use crate::job::{BackgroundKind, Settings};
-use crate::scene::Geometry;
 use crate::scene::camera::Camera;
+use crate::scene::{Geometry, Part};
 
 const BACKGROUND_ENVIRONMENT: u32 = 0;
 const BACKGROUND_TRANSPARENT: u32 = 1;
@@ -46,7 +46,7 @@ pub struct Globals {
     pub strategy: u32,
     /// Changes all random numbers.
     pub seed: u32,
-    /// Nodes of the hierarchy; 0 where there is nothing to meet.
+    /// Nodes of the hierarchies; 0 where there is nothing to meet.
     pub node_count: u32,
     /// Columns and rows of the table of emitting triangles.
     pub light_cells_size: [u32; 2],
@@ -64,9 +64,9 @@ pub struct Globals {
     pub catcher_table: u32,
     /// Light that was reflected less often does not count.
     pub least_reflections: u32,
+    /// Where the hierarchy of what is around the model begins, in a node of its own; 0 where there is no second one.
+    pub around_root: u32,
     /// To a multiple of 16 bytes.
-    pub unused_1: u32,
-    /// The same.
     pub unused_2: u32,
     /// The same.
     pub unused_3: u32,
@@ -114,15 +114,26 @@ pub struct PixelStatistics {
     pub clamped: f32,
 }
 
+/// Nodes of the hierarchies of the model and of what is around it.
+pub fn node_counts(geometry: &Geometry) -> [u32; 2] {
+    geometry.parts().map(|(part, _)| part.compressed().nodes.len() as u32)
+}
+
+/// See [`Globals::around_root`].
+pub fn around_root([model, around]: [u32; 2]) -> u32 {
+    if around == 0 { 0 } else { model }
+}
+
 impl Globals {
     /// The uniforms of a job.
-    pub fn new(settings: &Settings, node_count: usize, environment_cells_size: [u32; 2]) -> Self {
+    pub fn new(settings: &Settings, geometry: &Geometry, environment_cells_size: [u32; 2]) -> Self {
         let (background_kind, background) = match settings.background {
             BackgroundKind::Environment => (BACKGROUND_ENVIRONMENT, [0.0; 3]),
             BackgroundKind::Transparent => (BACKGROUND_TRANSPARENT, [0.0; 3]),
             BackgroundKind::Color(color) => (BACKGROUND_COLOR, color),
             BackgroundKind::Blurred(sine) => (BACKGROUND_BLURRED, [sine as f32, 0.0, 0.0]),
         };
+        let nodes = node_counts(geometry);
         let [catcher_slot, catcher_reflection_slot, catcher_table] =
             settings.catcher.map_or([u32::MAX, u32::MAX, 0], |catcher| {
                 [catcher.slot, catcher.reflection_slot, catcher.table]
@@ -139,7 +150,7 @@ impl Globals {
             environment_strength: settings.environment_strength as f32,
             strategy: settings.strategy as u32,
             seed: settings.seed,
-            node_count: node_count as u32,
+            node_count: nodes.iter().sum(),
             light_cells_size: settings.light_choice.cells_size,
             environment_probability: settings.light_choice.environment_probability as f32,
             density_per_luminance: settings.light_choice.density_per_luminance as f32,
@@ -148,7 +159,7 @@ impl Globals {
             catcher_reflection_slot,
             catcher_table,
             least_reflections: settings.least_reflections,
-            unused_1: 0,
+            around_root: around_root(nodes),
             unused_2: 0,
             unused_3: 0,
         }
@@ -164,13 +175,13 @@ pub struct Triangle {
 }
 
 /// The triangle at a place in the order of [`Compressed::triangles`](crate::scene::Compressed).
-pub fn triangle(geometry: &Geometry, place: usize) -> Triangle {
+pub fn triangle(part: &Part, place: usize) -> Triangle {
     let corner = |vertex: u32| {
-        let [x, y, z] = geometry.positions[vertex as usize].map(f32::to_bits);
+        let [x, y, z] = part.positions[vertex as usize].map(f32::to_bits);
         [x, y, z, vertex]
     };
-    let triangle = geometry.compressed().triangles[place];
+    let triangle = part.compressed().triangles[place];
     Triangle {
-        corners: geometry.triangles[triangle as usize].map(corner),
+        corners: part.triangles[triangle as usize].map(corner),
     }
 }

@@ -6,6 +6,7 @@ mod compute;
 pub mod device;
 mod engine;
 mod generated_shader;
+pub mod geometry_arrays;
 mod kernel_cache;
 pub mod layout;
 mod pipeline;

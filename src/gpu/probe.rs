@@ -7,8 +7,9 @@ use bytemuck::{Pod, Zeroable};
 
 use super::compute::{self, READ, WRITE};
 use super::device::{GpuDevice, GpuError};
-use super::layout::Globals;
-use super::scene_group::{self, GeometryArrays, SceneGroup, geometry_constant};
+use super::geometry_arrays::GeometryArrays;
+use super::layout::{self, Globals};
+use super::scene_group::{self, SceneGroup, geometry_constant};
 use crate::job::probe::ProbeScene;
 
 /// Questions a dispatch: within the limit of 65 535 workgroups of 64.
@@ -94,10 +95,10 @@ impl Probe {
         if let Some(geometry) = scene.geometry {
             group.geometry = GeometryArrays::new(gpu, geometry)?;
         }
+        let nodes = scene.geometry.map_or([0; 2], layout::node_counts);
         let globals = gpu.uniforms(&Globals {
-            node_count: scene
-                .geometry
-                .map_or(0, |geometry| geometry.compressed().nodes.len() as u32),
+            node_count: nodes.iter().sum(),
+            around_root: layout::around_root(nodes),
             ..Globals::zeroed()
         });
         let bound = group.bind(gpu, &self.groups[0], &globals);

@@ -3,11 +3,13 @@
 use std::sync::Arc;
 
 use super::device::{GpuDevice, GpuError, Moment};
+use super::geometry_arrays::GeometryArrays;
 use super::layout::Globals;
 use super::pipeline::Pipelines;
-use super::scene_group::{self, GeometryArrays, SceneGroup};
+use super::scene_group::{self, SceneGroup};
 use super::sums::Sums;
 use crate::job::Job;
+use crate::scene::Geometry;
 
 /// Buffers and textures of a job; what a new job shares with the old one is kept.
 #[derive(Debug)]
@@ -28,21 +30,23 @@ impl Resources {
     /// `old` holds is as it was.
     pub fn new(gpu: &GpuDevice, pipelines: &Pipelines, job: Arc<Job>, old: Option<&Self>) -> Result<Self, GpuError> {
         gpu.reach(Moment::Uploading);
-        gpu.checked(GpuError::Refused, |_| Self::made(gpu, pipelines, job, old))?
+        let made = gpu.checked(GpuError::Refused, |_| Self::made(gpu, pipelines, job, old));
+        made.flatten().inspect_err(|_| {
+            // It may have been overwritten by the new job's. A device that is lost by now is found out by its next work.
+            if let Some(old) = old {
+                let _ = old.scene.geometry.write_around(gpu, &old.job.geometry);
+            }
+        })
     }
 
     fn made(gpu: &GpuDevice, pipelines: &Pipelines, job: Arc<Job>, old: Option<&Self>) -> Result<Self, GpuError> {
-        let scene = scene(gpu, &job, old)?;
         let sums = match old.filter(|old| old.sums.fit(&job)) {
             Some(old) => old.sums.clone(),
             None => Sums::new(gpu, &pipelines.sums_layout, &job)?,
         };
+        let scene = scene(gpu, &job, old)?;
         let cells = [job.environment.cells_width, job.environment.cells_height];
-        let globals = gpu.uniforms(&Globals::new(
-            &job.settings,
-            job.geometry.compressed().nodes.len(),
-            cells,
-        ));
+        let globals = gpu.uniforms(&Globals::new(&job.settings, &job.geometry, cells));
         Ok(Self {
             scene_group: scene.bind(gpu, &pipelines.scene_layout, &globals),
             job,
@@ -66,10 +70,6 @@ impl Resources {
 fn scene(gpu: &GpuDevice, job: &Job, old: Option<&Resources>) -> Result<SceneGroup, GpuError> {
     let kept = |is_kept: fn(&Job, &Job) -> bool| old.filter(|old| is_kept(&old.job, job)).map(|old| &old.scene);
     Ok(SceneGroup {
-        geometry: match kept(|a, b| Arc::ptr_eq(&a.geometry, &b.geometry)) {
-            Some(old) => old.geometry.clone(),
-            None => GeometryArrays::new(gpu, &job.geometry)?,
-        },
         materials: match kept(|a, b| Arc::ptr_eq(&a.materials, &b.materials)) {
             Some(old) => old.materials.clone(),
             None => scene_group::materials(gpu, &job.materials)?,
@@ -94,5 +94,26 @@ fn scene(gpu: &GpuDevice, job: &Job, old: Option<&Resources>) -> Result<SceneGro
                 scene_group::textures(gpu, &job.textures, old.map(|old| old.textures[1].clone()))?
             }
         },
+        // The last, as a part of what `old` has may be overwritten.
+        geometry: match kept(|a, b| Arc::ptr_eq(&a.geometry, &b.geometry)) {
+            Some(old) => old.geometry.clone(),
+            None => geometry(
+                gpu,
+                &job.geometry,
+                kept(|a, b| Arc::ptr_eq(&a.geometry.model, &b.geometry.model)),
+            )?,
+        },
     })
+}
+
+/// A geometry that is not there yet, though its model may be.
+fn geometry(gpu: &GpuDevice, geometry: &Geometry, of_model: Option<&SceneGroup>) -> Result<GeometryArrays, GpuError> {
+    let arrays = of_model.map(|old| &old.geometry);
+    match arrays.filter(|arrays| arrays.has_room_for(geometry)) {
+        Some(arrays) => {
+            arrays.write_around(gpu, geometry)?;
+            Ok(arrays.clone())
+        }
+        None => GeometryArrays::new(gpu, geometry),
+    }
 }

@@ -1,14 +1,16 @@
 //! Group 0 of the passes: all that shaders read of a scene (`shaders/scene/layout.wgsl`).
 
+use std::cell::LazyCell;
+
 use super::array::{self, Values};
 use super::compute::{self, READ, UNIFORMS, buffer_entry, texture_entry};
 use super::device::{GpuDevice, GpuError};
-use super::layout::{self, Triangle};
+use super::geometry_arrays::GeometryArrays;
 use crate::optics::material::Material;
+use crate::scene::Geometry;
 use crate::scene::environment::Environment;
 use crate::scene::light::Lights;
 use crate::scene::texture::Textures;
-use crate::scene::{Geometry, Vertex};
 
 /// The binding of the materials' tables, for passes that read nothing else.
 pub const TABLES_BINDING: u32 = 5;
@@ -34,7 +36,7 @@ pub fn layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
 /// What a scene is on the GPU. The parts are shared: a new scene may have some of an old one's.
 #[derive(Clone, Debug)]
 pub struct SceneGroup {
-    /// The model.
+    /// What rays meet.
     pub geometry: GeometryArrays,
     /// See [`materials`].
     pub materials: wgpu::Buffer,
@@ -67,16 +69,16 @@ impl SceneGroup {
 
     /// The group with its uniforms, a [`layout::Globals`].
     pub fn bind(&self, gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, globals: &wgpu::Buffer) -> wgpu::BindGroup {
-        let [nodes, triangles, vertices] = &self.geometry.buffers;
+        let [nodes, triangles, vertices] = self.geometry.buffers();
         let buffers = [globals, nodes, triangles, vertices, &self.materials, &self.tables];
         let [map, cells] = &self.environment;
         let [records, words] = &self.textures;
-        let [node_texels, triangle_texels, vertex_texels] = &self.geometry.textures;
+        let [node_texels, triangle_texels, vertex_texels, slots] = self.geometry.textures();
         let textures = [
             map,
             cells,
             &self.light_cells,
-            &self.geometry.slots,
+            slots,
             records,
             words,
             node_texels,
@@ -89,94 +91,9 @@ impl SceneGroup {
     }
 }
 
-/// A model's hierarchy, triangles and vertices on the GPU: in buffers or, where one of them is larger than a binding may
-/// be, all in textures, which may be larger.
-#[derive(Clone, Debug)]
-pub struct GeometryArrays {
-    buffers: [wgpu::Buffer; 3],
-    textures: [wgpu::TextureView; 3],
-    slots: wgpu::TextureView,
-    is_in_textures: bool,
-}
-
-impl GeometryArrays {
-    fn empty(gpu: &GpuDevice) -> Result<Self, GpuError> {
-        let (none, no_texels) = (Values::<Triangle>::of(&[]), Values::<u32>::of(&[]));
-        let buffer = || array::buffer(gpu, "nothing", &none);
-        let texture = || array::texture(gpu, "nothing", &no_texels);
-        Ok(Self {
-            buffers: [buffer()?, buffer()?, buffer()?],
-            textures: [texture()?, texture()?, texture()?],
-            slots: texture()?,
-            is_in_textures: false,
-        })
-    }
-
-    /// Brings a model to the GPU.
-    ///
-    /// # Errors
-    /// If the device fails.
-    pub fn new(gpu: &GpuDevice, geometry: &Geometry) -> Result<Self, GpuError> {
-        let compressed = geometry.compressed();
-        let nodes = Values::of(bytemuck::cast_slice::<_, NodeWords>(&compressed.nodes));
-        let count = compressed.triangles.len();
-        let triangles = Values::made(count, |place| layout::triangle(geometry, place));
-        let vertices = Values::of(&geometry.vertices);
-        let slots = Values::made(count, |place| geometry.slots[compressed.triangles[place] as usize]);
-        let mut arrays = Self {
-            slots: array::texture(gpu, "the model's material slots", &slots)?,
-            is_in_textures: Self::wants_textures(gpu, geometry),
-            ..Self::empty(gpu)?
-        };
-        let names = [
-            "the hierarchy of boxes",
-            "the model's triangles",
-            "the model's vertices",
-        ];
-        if arrays.is_in_textures {
-            arrays.textures = [
-                array::texture(gpu, names[0], &nodes)?,
-                array::texture(gpu, names[1], &triangles)?,
-                array::texture(gpu, names[2], &vertices.map(vertex_words))?,
-            ];
-        } else {
-            arrays.buffers = [
-                array::buffer(gpu, names[0], &nodes)?,
-                array::buffer(gpu, names[1], &triangles)?,
-                array::buffer(gpu, names[2], &vertices)?,
-            ];
-        }
-        Ok(arrays)
-    }
-
-    /// Whether shaders find it in the textures.
-    pub fn is_in_textures(&self) -> bool {
-        self.is_in_textures
-    }
-
-    /// Whether a model is too large for the bindings of this adapter: kernels are made for one or the other. Nodes, which
-    /// may not be built yet, take less than the triangles.
-    pub fn wants_textures(gpu: &GpuDevice, geometry: &Geometry) -> bool {
-        let triangles = geometry.triangles.len() * size_of::<Triangle>();
-        let largest = triangles.max(size_of_val(&geometry.vertices[..]));
-        largest as u64 > gpu.binding_bytes()
-    }
-}
-
 /// The override constant that tells a pipeline where the geometry is.
 pub fn geometry_constant(is_in_textures: bool) -> (&'static str, f64) {
     ("GEOMETRY_IN_TEXTURES", f64::from(u8::from(is_in_textures)))
-}
-
-/// A node of the hierarchy: whole texels of 16 bytes.
-type NodeWords = [[u32; 4]; 5];
-
-/// A vertex in whole texels.
-fn vertex_words(vertex: &Vertex) -> [u32; 16] {
-    let mut words = [0; 16];
-    let own: &[u32] = bytemuck::cast_slice(std::slice::from_ref(vertex));
-    words[..own.len()].copy_from_slice(own);
-    words
 }
 
 /// The materials of a scene.
@@ -250,15 +167,16 @@ fn environment_map(gpu: &GpuDevice, [width, height]: [u32; 2], texels: &[[f32; 4
 /// # Errors
 /// If the device fails.
 pub fn light_cells(gpu: &GpuDevice, geometry: &Geometry, lights: &Lights) -> Result<wgpu::TextureView, GpuError> {
-    let places = geometry.compressed().places();
-    let cells = Values::of(&lights.cells).map(|cell| {
-        [
-            cell.threshold.to_bits(),
-            cell.alias_index,
-            places[cell.triangle as usize],
-            0,
-        ]
-    });
+    // Where the model's triangles are need not be known where only lights around it emit.
+    let places = geometry
+        .parts()
+        .map(|(part, first)| (LazyCell::new(|| part.compressed().places()), first as u32));
+    let place = |triangle: u32| match triangle.checked_sub(places[1].1) {
+        None => places[0].0[triangle as usize],
+        Some(after) => places[1].0[after as usize] + places[1].1,
+    };
+    let cells =
+        Values::of(&lights.cells).map(|cell| [cell.threshold.to_bits(), cell.alias_index, place(cell.triangle), 0]);
     array::texture(gpu, "the triangles that emit", &cells)
 }
 

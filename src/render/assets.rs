@@ -30,7 +30,7 @@ type EnvironmentKey = (EnvironmentSource, EnvironmentEncoding);
 /// Bytes that are kept: what was used last of each kind whatever it takes, and what else fits.
 const MEMORY: usize = 1 << 30;
 
-/// Geometries that are kept of one model: each place of a light that is dragged is another one.
+/// Geometries that are kept of one model: each place of a light that is dragged is another one, made of one that is kept.
 const GEOMETRIES_OF_MODEL: usize = 2;
 
 /// Ways of putting pictures on that are kept.
@@ -289,8 +289,15 @@ impl Kept {
         }
         let (of_model, ground, area_lights, hidden) = &key;
         let model = self.model(of_model, loading)?;
-        let geometry = Geometry::build_watched(&model, *ground, area_lights, hidden, loading);
-        let geometry = Arc::new(geometry.map_err(ModelError::from)?);
+        let is_of_same = |(of, _, _, without): &GeometryKey| of == of_model && without == hidden;
+        let alike = self.geometries.find(is_of_same);
+        let geometry = match alike {
+            Some(alike) => alike.surrounded(*ground, area_lights),
+            None => Geometry::of_model(&model, hidden, loading)
+                .map_err(ModelError::from)?
+                .surrounded(*ground, area_lights),
+        };
+        let geometry = Arc::new(geometry);
         let others = |(of, ..): &GeometryKey| of == of_model;
         while self.geometries.count(others) >= GEOMETRIES_OF_MODEL {
             self.geometries.drop_oldest(others);
@@ -359,6 +366,12 @@ impl<K: PartialEq, V> Shelf<K, V> {
     fn get(&mut self, key: &K, now: u64) -> Option<Arc<V>> {
         let entry = self.entries.iter_mut().find(|entry| entry.key == *key)?;
         entry.used = now;
+        Some(entry.value.clone())
+    }
+
+    /// Some value whose key is as wanted.
+    fn find(&self, is_wanted: impl Fn(&K) -> bool) -> Option<Arc<V>> {
+        let entry = self.entries.iter().find(|entry| is_wanted(&entry.key))?;
         Some(entry.value.clone())
     }
 

@@ -89,9 +89,8 @@ impl Prober {
                 let mut answers: Vec<RayAnswer> = probe.ask("probe_ray", scene, questions)?;
                 let is_hit = |answer: &&mut RayAnswer| answer.triangle != NO_HIT;
                 if let Some(geometry) = scene.geometry {
-                    let triangles = &geometry.compressed().triangles;
                     for answer in answers.iter_mut().filter(is_hit) {
-                        answer.triangle = triangles[answer.triangle as usize];
+                        answer.triangle = geometry.triangle_at(answer.triangle);
                     }
                 }
                 Ok(answers)

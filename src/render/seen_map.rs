@@ -83,7 +83,7 @@ fn seen_at(job: &Job, pixel: [u32; 2], size: [u32; 2]) -> [u32; 2] {
     let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
     hit.map_or([NOTHING; 2], |hit| {
         let triangle = hit.triangle as usize;
-        [geometry.objects[triangle], geometry.slots[triangle]]
+        [geometry.object(triangle), geometry.slot(triangle)]
     })
 }
 

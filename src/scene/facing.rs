@@ -3,7 +3,8 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::geometry::{Geometry, Vertex};
+use super::geometry::Geometry;
+use super::part::Vertex;
 
 /// How far a corner's normal may be from its face's, as 1 − cosine: the rounding of f32 normals.
 const TOLERANCE: f64 = 1e-6;
@@ -12,14 +13,16 @@ const TOLERANCE: f64 = 1e-6;
 /// smooth surface's normals lean from its faces, and nothing is proven.
 pub fn least_view_cosine(geometry: &Geometry, eye: [f64; 3]) -> f64 {
     let eye = DVec3::from_array(eye);
-    let of_face = |triangle: &[u32; 3]| {
-        let [a, b, c] = triangle.map(|v| DVec3::from_array(geometry.positions[v as usize].map(f64::from)));
+    let of_face = |triangle: usize| {
+        let [a, b, c] = geometry
+            .corners(triangle)
+            .map(|corner| DVec3::from_array(corner.map(f64::from)));
         let normal = (b - a).cross(c - a).normalize_or_zero();
         let is_along = |vertex: &Vertex| {
             let shading = DVec3::from_array(vertex.normal.map(f64::from)).normalize_or_zero();
             shading == DVec3::ZERO || shading.dot(normal).abs() > 1.0 - TOLERANCE
         };
-        if !triangle.iter().all(|&v| is_along(&geometry.vertices[v as usize])) {
+        if !geometry.vertices(triangle).into_iter().all(is_along) {
             return 0.0;
         }
         // The height of the eye above the face is the same everywhere on it, and its farthest place is a corner.
@@ -29,5 +32,6 @@ pub fn least_view_cosine(geometry: &Geometry, eye: [f64; 3]) -> f64 {
             .fold(0.0, f64::max);
         ((eye - a).dot(normal) / farthest).abs()
     };
-    geometry.triangles.par_iter().map(of_face).reduce(|| 1.0, f64::min)
+    let triangles = (0..geometry.triangle_count()).into_par_iter();
+    triangles.map(of_face).reduce(|| 1.0, f64::min)
 }

@@ -17,6 +17,7 @@ use super::environment::Environment;
 use super::geometry::Geometry;
 use super::intersect::triangle_normal;
 use super::mesh::Mesh;
+use super::part::Part;
 use super::shapes;
 use super::surface::{POSITION_ERROR, position_error};
 use super::texture::{Textures, emission_at, uvs_at};
@@ -119,7 +120,7 @@ pub struct LightCell {
     pub threshold: f32,
     /// The entry to take instead when it is not kept.
     pub alias_index: u32,
-    /// Which of [`Geometry::triangles`].
+    /// Which of the geometry's triangles.
     pub triangle: u32,
 }
 
@@ -144,12 +145,19 @@ impl Lights {
         if luminances.iter().all(|luminance| *luminance <= 0.0) {
             return Self::default();
         }
-        let emitting = geometry
-            .slots
-            .iter()
-            .map(|&slot| luminances[slot as usize])
-            .zip(0u32..)
-            .filter(|(luminance, _)| *luminance > 0.0);
+        // A model none of whose materials emits is not looked through.
+        let has_any = |(_, first): &(&Part, usize)| {
+            let slots = if *first == 0 {
+                ..geometry.model_slots()
+            } else {
+                ..luminances.len()
+            };
+            luminances[slots].iter().any(|luminance| *luminance > 0.0)
+        };
+        let emitting = geometry.parts().into_iter().filter(has_any).flat_map(|(part, first)| {
+            let luminances = part.slots.iter().map(|&slot| luminances[slot as usize]);
+            luminances.zip(first as u32..).filter(|(luminance, _)| *luminance > 0.0)
+        });
         let (mut weights, triangles): (Vec<f64>, Vec<u32>) = emitting
             .map(|(luminance, triangle)| (area(geometry, triangle) * luminance, triangle))
             .unzip();
@@ -160,7 +168,8 @@ impl Lights {
         let columns = (weights.len() as f64).sqrt().ceil() as usize;
         let rows = weights.len().div_ceil(columns);
         weights.resize(columns * rows, 0.0);
-        let triangles = triangles.into_iter().chain(std::iter::repeat(0));
+        let filler = triangles[0];
+        let triangles = triangles.into_iter().chain(std::iter::repeat(filler));
         let cell = |(entry, triangle): (AliasEntry, u32)| LightCell {
             threshold: entry.threshold,
             alias_index: entry.alias_index,
@@ -288,7 +297,7 @@ pub fn light_sample<T: Real>(
     let distance = towards.length();
     let direction = normalize_or(towards, vec3(T::zero(), T::one(), T::zero()));
     let normal = normalize_or(triangle_normal([p0, p1, p2]), direction);
-    let material = &emitters.materials[geometry.slots[triangle] as usize];
+    let material = &emitters.materials[geometry.slot(triangle) as usize];
     let mut radiance = material.emission;
     if material.is_textured() || material.has_holes() {
         let uvs = uvs_at(geometry, triangle, weights, material.has_box_projection == 1);

@@ -21,6 +21,7 @@ mod memory;
 pub mod mesh;
 mod model;
 mod obj;
+mod part;
 pub(crate) mod picture;
 mod ply;
 pub mod report;
@@ -31,7 +32,7 @@ mod tangents;
 pub mod teapot;
 pub mod texture;
 
-pub use geometry::{Geometry, NO_OBJECT, Vertex};
+pub use geometry::{Geometry, NO_OBJECT};
 pub use gltf::{Widths, gltf_from_widths, kept_keys, widths_from_gltf};
 pub use hierarchy::{Compressed, PACKET, Packet, WAYS, ray_way};
 pub use import::{MODEL_ENDINGS, holds_model, is_model};
@@ -41,4 +42,5 @@ pub use model::{
     AlphaMode, Filter, LightKind, Model, ModelCamera, ModelError, ModelLight, ModelObject, ModelOptions, ModelSource,
     Slot, Texture, TextureRef, Wrap, load, load_watched, load_with,
 };
+pub use part::{Part, Vertex};
 pub use report::{Entry, Fate, ImportReport};

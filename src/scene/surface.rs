@@ -127,14 +127,14 @@ pub fn surface_at<T: Real>(
         is_back,
     } = hit_place(geometry, hit, direction);
     let wo = -direction;
-    let corners = geometry.triangles[index].map(|vertex| &geometry.vertices[vertex as usize]);
+    let corners = geometry.vertices(index);
     let interpolate =
         |a: [f32; 3], b: [f32; 3], c: [f32; 3]| Vec3::from_f32(a) * w + Vec3::from_f32(b) * u + Vec3::from_f32(c) * v;
     let interpolated = interpolate(corners[0].normal, corners[1].normal, corners[2].normal);
     let smoothed = normalize_or(interpolated, normal);
     let is_turned = smoothed.dot(normal).less(T::zero());
     let facing = |shading: Vec3<T>| bent_normal(Vec3::select(is_turned, -shading, shading), wo);
-    let slot = geometry.slots[index];
+    let slot = geometry.slot(index);
     let material = &materials[slot as usize];
     let uvs = if material.is_textured() {
         uvs_at(geometry, index, [w, u, v], material.has_box_projection == 1)
@@ -191,7 +191,7 @@ fn vertex_color<T: Real>(vertex: &Vertex) -> Vec3<T> {
 /// The share of light that is stopped where a ray met the geometry, in [0, 1].
 #[inline(always)]
 pub fn hit_opacity<T: Real>(geometry: &Geometry, materials: &[Material<T>], textures: &Textures, hit: &Hit) -> T {
-    let material = &materials[geometry.slots[hit.triangle as usize] as usize];
+    let material = &materials[geometry.slot(hit.triangle as usize) as usize];
     if !material.has_holes() {
         return T::one();
     }

@@ -77,4 +77,5 @@ fn lights_that_are_dragged_leave_no_trail_of_geometries() {
     assert!(Arc::ptr_eq(&lit(&assets, 4.0), &made[4]));
     assert!(Arc::ptr_eq(&lit(&assets, 3.0), &made[3]), "two that are compared");
     assert!(made[..3].iter().all(|geometry| Arc::strong_count(geometry) == 1));
+    assert!(made.iter().all(|geometry| Arc::ptr_eq(&geometry.model, &made[0].model)));
 }

@@ -248,7 +248,7 @@ fn escaping_rays(geometry: &Geometry, start: impl Fn(&mut Random) -> Vec3, count
     let mut escaped = 0;
     for i in 0..count {
         let corners = geometry
-            .corners(random.below(geometry.triangles.len()))
+            .corners(random.below(geometry.triangle_count()))
             .map(Vec3::from_array);
         let target = match i % 3 {
             0 => corners[0],
@@ -320,7 +320,7 @@ fn neighbours_share_an_edge_to_the_last_bit() {
 
 fn brute_force(geometry: &Geometry, ray: &RayFrame, t_max: f32) -> Option<Hit> {
     let mut nearest: Option<Hit> = None;
-    for triangle in 0..geometry.triangles.len() {
+    for triangle in 0..geometry.triangle_count() {
         let [v0, v1, v2] = geometry.corners(triangle).map(Vec3A::from_array);
         let limit = nearest.map_or(t_max, |hit| hit.t);
         if let Some((t, u, v)) = intersect_triangle(ray, v0, v1, v2, limit) {
@@ -405,7 +405,7 @@ fn hits_of_the_sphere_are_where_they_should_be() {
 fn broken_triangles_are_left_out_and_counted() {
     let good = [DVec3::ZERO, DVec3::X, DVec3::Y];
     let geometry = Geometry::build(&model_of(Mesh::default()), false);
-    assert!(geometry.triangles.is_empty() && geometry.compressed().nodes.is_empty());
+    assert!(geometry.triangle_count() == 0 && geometry.model.compressed().nodes.is_empty());
     assert_eq!(
         geometry.intersect([0.0, 0.0, -1.0], [0.0, 0.0, 1.0], f32::INFINITY),
         None
@@ -432,7 +432,7 @@ fn broken_triangles_are_left_out_and_counted() {
     let geometry = Geometry::build(&model_of(mesh_of_triangles(&all)), false);
     assert_eq!((geometry.dropped_not_finite, geometry.dropped_no_area), (2, 2));
     assert_eq!(geometry.warnings().len(), 2, "{:?}", geometry.warnings());
-    assert_eq!(geometry.triangles.len(), 100_000);
+    assert_eq!(geometry.triangle_count(), 100_000);
     assert_eq!(geometry.bounds_world, [DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0)]);
     let center = geometry.units_from_world(DVec3::new(0.25, 0.25, -1.0)).as_vec3();
     assert!(
@@ -458,14 +458,14 @@ fn the_ground_is_below_and_changes_nothing_else() {
         assert_eq!(with.center_world, without.center_world);
         assert_eq!(with.world_units_per_unit, without.world_units_per_unit);
         assert_eq!(with.bounds_world, without.bounds_world);
-        assert_eq!(with.triangles.len(), without.triangles.len() + 2);
+        assert_eq!(with.triangle_count(), without.triangle_count() + 2);
         let ground = model.slots.len() as u32;
-        assert!(without.slots.iter().all(|&slot| slot < ground));
-        assert_eq!(with.slots.iter().filter(|&&slot| slot == ground).count(), 2);
+        assert!(without.model.slots.iter().all(|&slot| slot < ground));
+        assert_eq!(with.around.slots, [ground; 2]);
         let hit = with
             .intersect([10.0, 3.0, -15.0], [0.0, -1.0, 0.0], f32::INFINITY)
             .expect("the ground");
-        assert_eq!(with.slots[hit.triangle as usize], ground);
+        assert_eq!(with.slot(hit.triangle as usize), ground);
         let place = with.world_from_units([10.0, 3.0 - hit.t, -15.0]);
         let gap = (without.bounds_world[0].y - place.y) / with.world_units_per_unit;
         assert!(
@@ -478,35 +478,34 @@ fn the_ground_is_below_and_changes_nothing_else() {
 #[test]
 fn every_triangle_is_in_one_box_of_the_compressed_hierarchy() {
     let geometry = Geometry::build(&built_in(&ModelSource::Teapot), true);
-    assert_eq!(geometry.slots.len(), geometry.triangles.len());
-    assert_eq!(geometry.vertices.len(), geometry.positions.len());
-    let compressed = geometry.compressed();
-    let mut covered = vec![0; geometry.triangles.len()];
-    for node in &compressed.nodes {
-        for child in (0..8).filter(|&child| node.is_leaf(child) && !node.is_child_empty(child)) {
-            let (first, count) = node.child_primitives(child);
-            let aabb = node.child_aabb(child);
-            for place in first..first + count {
-                let triangle = compressed.triangles[place as usize] as usize;
-                covered[triangle] += 1;
-                for corner in geometry.corners(triangle).map(Vec3A::from_array) {
-                    assert!(aabb.contains_point(corner), "triangle {triangle} is not in its box");
+    for (part, first) in geometry.parts() {
+        assert_eq!(part.slots.len(), part.triangles.len());
+        assert_eq!(part.vertices.len(), part.positions.len());
+        let compressed = part.compressed();
+        let mut covered = vec![0; part.triangles.len()];
+        for node in &compressed.nodes {
+            for child in (0..8).filter(|&child| node.is_leaf(child) && !node.is_child_empty(child)) {
+                let (start, count) = node.child_primitives(child);
+                let aabb = node.child_aabb(child);
+                for place in start..start + count {
+                    let triangle = compressed.triangles[place as usize] as usize;
+                    assert_eq!(geometry.triangle_at(place + first as u32), (triangle + first) as u32);
+                    covered[triangle] += 1;
+                    for corner in part.corners(triangle).map(Vec3A::from_array) {
+                        assert!(aabb.contains_point(corner), "triangle {triangle} is not in its box");
+                    }
                 }
             }
         }
+        assert!(covered.iter().all(|&times| times == 1), "every triangle is in one leaf");
+        let is_place = |(triangle, &place): (usize, &u32)| compressed.triangles[place as usize] as usize == triangle;
+        assert!(
+            compressed.places().iter().enumerate().all(is_place),
+            "places are those of the triangles"
+        );
     }
-    assert!(covered.iter().all(|&times| times == 1), "every triangle is in one leaf");
-    let is_place = |(triangle, &place): (usize, &u32)| compressed.triangles[place as usize] as usize == triangle;
-    assert!(
-        compressed.places().iter().enumerate().all(is_place),
-        "places are those of the triangles"
-    );
-    let radius = geometry
-        .positions
-        .iter()
-        .map(|&p| Vec3::from_array(p))
-        .filter(|p| p.abs().max_element() < 2.0);
-    let radius = radius.map(Vec3::length).fold(0.0, f32::max);
+    let lengths = geometry.model.positions.iter().map(|&p| Vec3::from_array(p).length());
+    let radius = lengths.fold(0.0, f32::max);
     assert!((radius - 1.0).abs() < 1e-6, "bounding radius {radius}");
 }
 

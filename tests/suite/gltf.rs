@@ -387,7 +387,7 @@ fn soup_geometry(folder: &Folder, scale: f64, translation: [f64; 3]) -> Geometry
 fn scale_and_place_do_not_change_the_geometry() {
     let folder = Folder::new();
     let sorted = |geometry: &Geometry| {
-        let mut positions = geometry.positions.clone();
+        let mut positions = geometry.model.positions.clone();
         positions.sort_by(|a, b| a.partial_cmp(b).expect("finite"));
         positions
     };

@@ -39,7 +39,7 @@ struct Ray {
 fn random_ray(random: &mut Random, geometry: &Geometry) -> Ray {
     let distance = [1.0, 4.0, 1000.0][random.below(3)];
     let mut origin = random.in_ball() * distance;
-    let corners = geometry.corners(random.below(geometry.triangles.len()));
+    let corners = geometry.corners(random.below(geometry.triangle_count()));
     let [a, b, _] = corners.map(Vec3::from_array);
     let target = match random.below(4) {
         0 => a,
@@ -111,7 +111,7 @@ fn needles() -> Mesh {
 fn exact(geometry: &Geometry, ray: &Ray) -> Option<Option<f64>> {
     let [origin, direction] = [ray.origin, ray.direction].map(|v| DVec3::from_array(v.map(f64::from)));
     let mut nearest = f64::INFINITY;
-    for triangle in 0..geometry.triangles.len() {
+    for triangle in 0..geometry.triangle_count() {
         let [a, b, c] = geometry.corners(triangle).map(|v| DVec3::from_array(v.map(f64::from)));
         let normal = (b - a).cross(c - a);
         let sine = normal.dot(direction) / (normal.length() * direction.length());
@@ -318,7 +318,7 @@ fn nothing_leaks_under_any_instruction_set() {
         let mut escaped = 0;
         for i in 0..100_000 {
             let [a, b, c] = sphere
-                .corners(random.below(sphere.triangles.len()))
+                .corners(random.below(sphere.triangle_count()))
                 .map(Vec3::from_array);
             let target = [a, a.lerp(b, random.unit()), b.midpoint(c)][i % 3];
             let origin = random.in_ball() * 0.9;
@@ -368,7 +368,7 @@ fn rays_that_are_no_rays_meet_nothing() {
 fn the_hierarchy_takes_less_than_200_bytes_a_triangle() {
     for segments in [9, 40] {
         let geometry = Geometry::build(&model_of(teapot::mesh(segments)), true);
-        let (bytes, triangles) = (geometry.prepare(), geometry.triangles.len());
+        let (bytes, triangles) = (geometry.prepare(), geometry.triangle_count());
         println!("{} bytes a triangle", bytes / triangles);
         assert!(
             bytes > 48 * triangles,

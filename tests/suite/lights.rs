@@ -96,9 +96,9 @@ fn chi_square_p<T: Real>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> f6
     let lights = Lights::new(&geometry, &materials);
     let per_luminance = 1.0 / lights.power;
     let from = DVec3::from_array(origin.to_f64());
-    let mut expected = vec![0.0; geometry.triangles.len() * CELLS];
-    for triangle in 0..geometry.triangles.len() {
-        let luminance = f64::from(materials[geometry.slots[triangle] as usize].light_luminance);
+    let mut expected = vec![0.0; geometry.triangle_count() * CELLS];
+    for triangle in 0..geometry.triangle_count() {
+        let luminance = f64::from(materials[geometry.slot(triangle) as usize].light_luminance);
         let corners = geometry.corners(triangle);
         let [a, b, c] = corners.map(|corner| DVec3::from_array(corner.map(f64::from)) - from);
         let normal = (b - a).cross(c - a).normalize();
@@ -128,7 +128,7 @@ fn chi_square_p<T: Real>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> f6
         let hit = geometry.intersect(origin.to_f32(), sample.direction.to_f32(), f32::MAX);
         // Rounding at an edge.
         let Some(hit) = hit else { continue };
-        let luminance = materials[geometry.slots[hit.triangle as usize] as usize].light_luminance;
+        let luminance = materials[geometry.slot(hit.triangle as usize) as usize].light_luminance;
         let [a, b, c] = geometry
             .corners(hit.triangle as usize)
             .map(|corner| DVec3::from_array(corner.map(f64::from)));
@@ -161,7 +161,7 @@ fn triangles_are_sampled_with_their_density() {
 fn the_table_holds_what_emits_and_nothing_else() {
     let (geometry, materials) = shards();
     let lights = Lights::new(&geometry, &materials);
-    let emitting = geometry.slots.iter().filter(|&&slot| slot < 2).count();
+    let emitting = geometry.model.slots.iter().filter(|&&slot| slot < 2).count();
     assert_eq!((emitting, lights.cells_size), (7, [3, 3]));
     let chosen = |index: usize| {
         let kept = f64::from(lights.cells[index].threshold);

@@ -103,9 +103,9 @@ fn loading_tells_what_it_does_and_ends_when_it_is_called_off() {
     let error = load_watched(&source, &options, &loading).expect_err("called off");
     assert!(matches!(error, ModelError::Cancelled(_)), "{error}");
     let model = load_with(&source, &options).expect("loads");
-    assert!(Geometry::build_watched(&model, true, &[], &[], &loading).is_err());
+    assert!(Geometry::of_model(&model, &[], &loading).is_err());
     loading.begin();
-    assert!(Geometry::build_watched(&model, true, &[], &[], &loading).is_ok());
+    assert!(Geometry::of_model(&model, &[], &loading).is_ok());
     let (hdr, exr) = (folder.path("light.hdr"), folder.path("light.exr"));
     write_hdr(&hdr, 8, 4, |_, _| [1.0; 3]);
     write_exr(&exr, 8, 4, |_, _| [1.0; 3]);

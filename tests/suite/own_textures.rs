@@ -269,7 +269,7 @@ fn on_a_box_a_picture_is_upright_from_every_side() {
         ([0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]),
     ];
     let mut seen = [0; 6];
-    for triangle in 0..geometry.triangles.len() {
+    for triangle in 0..geometry.triangle_count() {
         let corners = geometry.corners(triangle).map(Vec3::<f64>::from_f32);
         let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
         let facing = sides

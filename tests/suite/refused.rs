@@ -21,7 +21,7 @@ fn gpu() -> Session {
     Session::open(EngineChoice::Gpu).expect("a Vulkan driver: apt install mesa-vulkan-drivers")
 }
 
-fn render(session: &mut Session) {
+pub fn render(session: &mut Session) {
     for _ in 0..STEPS {
         if session.step(STEP).expect("nothing fails here").is_done {
             return;
@@ -31,7 +31,7 @@ fn render(session: &mut Session) {
 }
 
 /// Where the GPU's sums are taken over depends on the clock, and with it their rounding.
-fn is_alike(a: &Image, b: &Image) -> bool {
+pub fn is_alike(a: &Image, b: &Image) -> bool {
     let is_near = |(a, b): (&[f32; 4], &[f32; 4])| {
         let channels = a.iter().zip(b);
         channels

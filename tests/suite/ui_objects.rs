@@ -163,7 +163,7 @@ fn what_is_hidden_and_renamed_is_saved_and_the_command_line_hides_it() {
     let mut session = Session::open(EngineChoice::Cpu).expect("the processor");
     session.submit(&loaded).expect("a scene");
     let geometry = session.job().expect("it was submitted").geometry.clone();
-    assert_eq!(geometry.objects, [0, 0], "the triangles of the left square");
+    assert_eq!(geometry.model.objects, [0, 0], "the triangles of the left square");
 }
 
 #[test]

@@ -267,8 +267,8 @@ impl App {
         let selection = &self.shared.selection;
         let slots = selection.slots(self.shared.slot);
         let is_chosen = |triangle: usize| match selection.objects.is_empty() {
-            true => slots.contains(&(geometry.slots[triangle] as usize)),
-            false => selection.objects.contains(&(geometry.objects[triangle] as usize)),
+            true => slots.contains(&(geometry.slot(triangle) as usize)),
+            false => selection.objects.contains(&(geometry.object(triangle) as usize)),
         };
         let Some((center, radius)) = geometry.sphere_around(is_chosen) else {
             return;

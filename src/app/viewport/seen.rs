@@ -24,7 +24,7 @@ pub(super) fn hit_at(pixel: [f64; 2], scene: &Scene) -> Option<SeenSurface> {
     let (camera, geometry) = (&scene.job.settings.camera, &scene.job.geometry);
     let [origin, direction] = camera_ray(camera, pixel, size, [0.5; 2]);
     let hit = geometry.intersect(origin.to_f32(), direction.to_f32(), f32::INFINITY)?;
-    let slot = *geometry.slots.get(hit.triangle as usize)? as usize;
+    let slot = geometry.slot(hit.triangle as usize) as usize;
     let materials: Vec<_> = scene.job.materials.iter().map(Material::cast).collect();
     let point = surface_at(geometry, &materials, &scene.job.textures, &hit, direction);
     let cosine: f64 = point.surface.frame.normal.dot(point.surface.wo);
@@ -34,7 +34,7 @@ pub(super) fn hit_at(pixel: [f64; 2], scene: &Scene) -> Option<SeenSurface> {
         place: vector(point.position),
         mirrored: vector(surface.wo.mirrored_about(surface.frame.normal)).normalize(),
         slot: (slot < scene.model.slots.len()).then_some(slot),
-        object: Some(geometry.objects[hit.triangle as usize] as usize)
+        object: Some(geometry.object(hit.triangle as usize) as usize)
             .filter(|object| *object < scene.model.objects.len()),
         depth: f64::from(hit.t) * direction.dot(camera.forward) * geometry.world_units_per_unit,
         view_angle_deg: cosine.clamp(0.0, 1.0).acos().to_degrees() as f32,

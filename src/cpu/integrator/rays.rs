@@ -89,7 +89,7 @@ impl<T: Real> Integrator<'_, T> {
                 return Some((self.met(&hit, ray, distance, bounce, path), distance));
             }
             path.record(|| Event::Passed {
-                slot: self.geometry.slots[hit.triangle as usize],
+                slot: self.geometry.slot(hit.triangle as usize),
                 distance: hit.t,
                 opacity: single(opacity),
             });

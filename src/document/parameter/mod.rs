@@ -329,8 +329,8 @@ fn within<N: PartialOrd + Copy>([low, high]: [N; 2], value: N) -> bool {
 type Accessors<T> = (fn(&T) -> Value, fn(&mut T, Value));
 
 impl<T> Parameter<T> {
-    /// A parameter of something that a document has several of, in no group.
-    fn of_part(
+    /// A parameter in no group, which always has an effect.
+    fn plain(
         key: &'static str,
         label: &'static str,
         help: &'static str,

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
-use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
+use super::{Kind, Parameter, Stage, Value, choices};
 use crate::document::{
     Background, Denoise, DenoiseWhen, Document, GroundKind, LightPaths, PixelFilter, Strategy, range,
 };
@@ -11,7 +11,7 @@ use crate::named::Named;
 use crate::optics::random::Sequence;
 use crate::optics::tone::ToneCurve;
 
-type Accessors = (fn(&Document) -> Value, fn(&mut Document, Value));
+type Accessors = super::Accessors<Document>;
 
 /// Reads and writes a field through the variant of [`Value`] that holds it.
 macro_rules! field {
@@ -192,34 +192,16 @@ fn of(
     label: &'static str,
     help: &'static str,
     kind: Kind,
-    (get, set): Accessors,
+    accessors: Accessors,
 ) -> Parameter<Document> {
     let group = match key.split('.').next() {
         Some("lighting") => "Environment",
         Some("camera") => "Camera",
         _ => "View",
     };
-    Parameter {
-        key,
-        group,
-        label,
-        name: "",
-        flag: None,
-        symbol: "",
-        help,
-        kind,
-        row: RowStyle {
-            bar: None,
-            step: 1.0,
-            decimals: 3,
-            is_percent: false,
-        },
-        stage,
-        applies: |_| true,
-        idle: |_| None,
-        get,
-        set,
-    }
+    let mut parameter = Parameter::plain(key, label, help, kind, stage, accessors);
+    (parameter.group, parameter.row.step) = (group, 1.0);
+    parameter
 }
 
 /// What a line of the tables above may add.

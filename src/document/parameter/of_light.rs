@@ -86,7 +86,7 @@ fn of(
     Parameter {
         group: "Area light",
         idle,
-        ..Parameter::of_part(key, label, help, kind, Stage::Geometry, accessors)
+        ..Parameter::plain(key, label, help, kind, Stage::Geometry, accessors)
     }
 }
 

@@ -79,6 +79,6 @@ fn of(
 ) -> Parameter<OwnTexture> {
     Parameter {
         group: "Texture",
-        ..Parameter::of_part(key, label, help, kind, Stage::Materials, accessors)
+        ..Parameter::plain(key, label, help, kind, Stage::Materials, accessors)
     }
 }

@@ -206,7 +206,7 @@ pub(super) const CASES: &[HardCase] = &[
         limit: 0.0,
         find: |stage| {
             let geometry = Geometry::build(&model(spirals()), false);
-            let rays: Vec<_> = (0..geometry.triangles.len())
+            let rays: Vec<_> = (0..geometry.triangle_count())
                 .map(|triangle| geometry.corners(triangle).map(Vec3::from_array))
                 // The ray's own place rounds to 3e-8.
                 .filter(|[a, b, _]| a.distance(*b) > 3e-6)

@@ -39,7 +39,7 @@ pub(super) fn ray(origin: Vec3, direction: Vec3) -> RayQuestion {
 
 /// A vertex, or a place on an edge, of a triangle.
 pub(super) fn edge_aim(geometry: &Geometry, i: u32) -> Vec3 {
-    let triangle = hash_bits(i ^ 0x1234) as usize % geometry.triangles.len();
+    let triangle = hash_bits(i ^ 0x1234) as usize % geometry.triangle_count();
     let corners = geometry.corners(triangle).map(Vec3::from_array);
     aim_at(corners, i)
 }
@@ -125,7 +125,7 @@ pub(super) fn leaving_rays(stage: &Stage) -> Result<f64, HardError> {
         let mut rays = Vec::new();
         let mut is_outward = Vec::new();
         for i in 0..stage.rays() / 4 {
-            let triangle = hash_bits(i ^ 0x4321) % geometry.triangles.len() as u32;
+            let triangle = hash_bits(i ^ 0x4321) % geometry.triangle_count() as u32;
             let corners = geometry.corners(triangle as usize).map(Vec3::from_array);
             if radius < 1.0 && corners[0].distance(corners[1]) > 0.05 {
                 continue;

@@ -95,6 +95,18 @@ impl Found {
         }
         is_new
     }
+
+    /// Takes what the same rays, no farther than they were found to go, met of other triangles, which are numbered from
+    /// `first` on.
+    #[inline(always)]
+    pub fn take(&mut self, other: &Self, first: u32) {
+        for lane in 0..PACKET {
+            if other.marks[lane] != 0 {
+                self.t[lane] = other.t[lane];
+                self.marks[lane] = other.marks[lane] + first;
+            }
+        }
+    }
 }
 
 /// Which way a ray goes: the signs of its direction, and its longest axis. Rays of a packet go the same way.

@@ -13,7 +13,8 @@ mod uses;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::geometry::{Geometry, Vertex};
+use super::geometry::Geometry;
+use super::part::Vertex;
 use super::triangle_normal;
 use crate::optics::albedo::table_lookup;
 use crate::optics::frame::frame_from_tangent;
@@ -181,7 +182,7 @@ fn texel<T: Real>(textures: &Textures, record: &TextureRecord, column: u32, row:
 /// `has_box` says that they are needed.
 #[inline(always)]
 pub fn uvs_at<T: Real>(geometry: &Geometry, triangle: usize, weights: [T; 3], has_box: bool) -> Uvs<T> {
-    let corners = geometry.triangles[triangle].map(|vertex| &geometry.vertices[vertex as usize]);
+    let corners = geometry.vertices(triangle);
     let sum = |number: &dyn Fn(&Vertex) -> f32| {
         let part = |i: usize| T::from_f64(f64::from(number(corners[i]))) * weights[i];
         part(0) + part(1) + part(2)

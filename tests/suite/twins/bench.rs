@@ -4,8 +4,9 @@ use std::sync::{LazyLock, OnceLock};
 
 use bytemuck::cast_slice;
 use glam::Vec2;
+use glossmith::gpu::geometry_arrays::GeometryArrays;
 use glossmith::gpu::layout::Globals;
-use glossmith::gpu::scene_group::{self, GeometryArrays, SceneGroup};
+use glossmith::gpu::scene_group::{self, SceneGroup};
 use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
 use glossmith::job::{BackgroundKind, Settings, Strategy};
 use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
@@ -434,7 +435,7 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
         ..
     } = &*SCENE;
     let cells_size = [environment.cells_width, environment.cells_height];
-    let globals = Globals::new(&settings(), geometry.compressed().nodes.len(), cells_size);
+    let globals = Globals::new(&settings(), geometry, cells_size);
     let group = SceneGroup {
         geometry: GeometryArrays::new(gpu, geometry)?,
         materials: scene_group::materials(gpu, materials)?,

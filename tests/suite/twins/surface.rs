@@ -16,7 +16,7 @@ const COORDINATE: Output = Output::Number(1.0);
 
 /// A random triangle of the scene, and a place in it.
 fn place_in_triangle(rng: &mut Rng) -> (u32, f32, f32) {
-    let triangle = rng.below(SCENE.geometry.triangles.len()) as u32;
+    let triangle = rng.below(SCENE.geometry.triangle_count()) as u32;
     let (u, v) = (rng.unit(), rng.unit());
     if u + v > 1.0 {
         (triangle, 1.0 - u, 1.0 - v)
@@ -32,7 +32,7 @@ fn slots<T: Real>() -> [Material<T>; 2] {
 
 #[test]
 fn surfaces_agree() {
-    assert!(SCENE.geometry.slots.iter().all(|&slot| slot < 2));
+    assert!((0..SCENE.geometry.triangle_count()).all(|triangle| SCENE.geometry.slot(triangle) < 2));
     check(
         &["scene/surface"],
         &[
@@ -41,7 +41,7 @@ fn surfaces_agree() {
                 "triangle t u v direction",
                 "let p = surface_at(Hit(t, triangle, u, v), direction);",
                 twin!(|row| {
-                    let triangle = SCENE.geometry.compressed().triangles[row.bits() as usize];
+                    let triangle = SCENE.geometry.triangle_at(row.bits());
                     let [t, u, v] = row.numbers().map(|x: T| x.to_f64() as f32);
                     let hit = Hit { t, triangle, u, v };
                     let point = surface_at(&SCENE.geometry, &slots(), &SCENE.textures, &hit, row.vector());
@@ -81,7 +81,7 @@ fn surfaces_agree() {
                 "triangle u v",
                 "var boxed = materials[0]; boxed.has_box_projection = 1u; let uvs = hit_uvs(Hit(1.0, triangle, u, v), boxed);",
                 twin!(|row| {
-                    let triangle = SCENE.geometry.compressed().triangles[row.bits() as usize];
+                    let triangle = SCENE.geometry.triangle_at(row.bits());
                     let [u, v]: [T; 2] = row.numbers();
                     let weights = [T::one() - u - v, u, v];
                     let sets = uvs_at(&SCENE.geometry, triangle as usize, weights, true);

@@ -45,7 +45,7 @@ struct Ray {
 fn random_ray(rng: &mut Rng, geometry: &Geometry) -> Ray {
     let origin: Vec3<f32> = rng.direction() * rng.range(0.0, 4.0);
     let target: Vec3<f32> = match rng.below(8) {
-        0 => Vec3::from_f32(geometry.positions[rng.below(geometry.positions.len())]),
+        0 => Vec3::from_f32(geometry.corners(rng.below(geometry.triangle_count()))[0]),
         _ => vec3(rng.range(-1.0, 1.0), rng.range(-0.8, 0.8), rng.range(-1.0, 1.0)),
     };
     let mut direction = target - origin;
@@ -126,7 +126,7 @@ fn compare(geometry: &Geometry, ray: &Ray, out: &[u32]) -> Outcome {
     let agrees = match rust {
         None => triangle == NO_HIT,
         Some(hit) if triangle != NO_HIT => {
-            outcome.is_other_triangle = hit.triangle != geometry.compressed().triangles[triangle as usize];
+            outcome.is_other_triangle = hit.triangle != geometry.triangle_at(triangle);
             outcome.difference = (hit.t - t).abs() / hit.t.max(1.0);
             let weights = (hit.u - u).abs().max((hit.v - v).abs());
             outcome.difference <= SAME_DISTANCE && (outcome.is_other_triangle || weights < 1e-3)

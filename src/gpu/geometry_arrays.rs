@@ -1,0 +1,210 @@
+//! What rays meet, on the GPU: the model's hierarchy, triangles and vertices, and after them those of what is around it.
+
+use super::array::{self, Values};
+use super::device::{GpuDevice, GpuError};
+use super::layout::{self, Triangle};
+use crate::scene::{Geometry, Part, Vertex};
+
+/// Triangles around a model for which there is always room, so that lights move and come without the model being brought to
+/// the GPU again.
+const ROOM: usize = 1024;
+
+/// Hierarchy, triangles and vertices in buffers or, where one of them is larger than a binding may be, all in textures,
+/// which may be larger.
+#[derive(Clone, Debug)]
+pub struct GeometryArrays {
+    buffers: [wgpu::Buffer; 3],
+    textures: [wgpu::TextureView; 3],
+    slots: wgpu::TextureView,
+    is_in_textures: bool,
+    /// Triangles around the model that there is room for.
+    room: usize,
+}
+
+impl GeometryArrays {
+    /// Nothing to meet.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn empty(gpu: &GpuDevice) -> Result<Self, GpuError> {
+        let buffer = || gpu.empty_storage("nothing", 0);
+        let texture = || array::empty_texture::<u32>(gpu, "nothing", 0);
+        Ok(Self {
+            buffers: [buffer()?, buffer()?, buffer()?],
+            textures: [texture(), texture(), texture()],
+            slots: texture(),
+            is_in_textures: false,
+            room: 0,
+        })
+    }
+
+    /// Brings a geometry to the GPU.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`]; if the device fails.
+    pub fn new(gpu: &GpuDevice, geometry: &Geometry) -> Result<Self, GpuError> {
+        let room = room(&geometry.around);
+        let counts = Counts::with_room(geometry.model.compressed().nodes.len(), &geometry.model, room);
+        let mut arrays = Self {
+            slots: array::empty_texture::<u32>(gpu, "the model's material slots", counts.triangles),
+            is_in_textures: Self::wants_textures(gpu, geometry),
+            room,
+            ..Self::empty(gpu)?
+        };
+        let names = [
+            "the hierarchy of boxes",
+            "the model's triangles",
+            "the model's vertices",
+        ];
+        if arrays.is_in_textures {
+            arrays.textures = [
+                array::empty_texture::<NodeWords>(gpu, names[0], counts.nodes),
+                array::empty_texture::<Triangle>(gpu, names[1], counts.triangles),
+                array::empty_texture::<VertexWords>(gpu, names[2], counts.vertices),
+            ];
+        } else {
+            let bytes = counts.bytes();
+            arrays.buffers = [
+                gpu.empty_storage(names[0], bytes[0])?,
+                gpu.empty_storage(names[1], bytes[1])?,
+                gpu.empty_storage(names[2], bytes[2])?,
+            ];
+        }
+        arrays.write(gpu, &geometry.model, Counts::default())?;
+        arrays.write_around(gpu, geometry)?;
+        Ok(arrays)
+    }
+
+    /// Whether what is around the same model can take the place of what is there.
+    pub fn has_room_for(&self, geometry: &Geometry) -> bool {
+        self.room == room(&geometry.around)
+    }
+
+    /// Brings what is around the model to the GPU, in the place of what was there. There must be room for it.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn write_around(&self, gpu: &GpuDevice, geometry: &Geometry) -> Result<(), GpuError> {
+        self.write(gpu, &geometry.around, Counts::of(&geometry.model))
+    }
+
+    /// Brings a part to the GPU, after so much else.
+    fn write(&self, gpu: &GpuDevice, part: &Part, before: Counts) -> Result<(), GpuError> {
+        let compressed = part.compressed();
+        let count = compressed.triangles.len();
+        let nodes: &[NodeWords] = bytemuck::cast_slice(&compressed.nodes);
+        let nodes = Values::made(nodes.len(), |place| before.node(nodes[place]));
+        let triangles = Values::made(count, |place| before.triangle(layout::triangle(part, place)));
+        let vertices = Values::of(&part.vertices);
+        let slots = Values::made(count, |place| part.slots[compressed.triangles[place] as usize]);
+        array::write_texture(gpu, &self.slots, before.triangles, &slots)?;
+        if self.is_in_textures {
+            array::write_texture(gpu, &self.textures[0], before.nodes, &nodes)?;
+            array::write_texture(gpu, &self.textures[1], before.triangles, &triangles)?;
+            array::write_texture(gpu, &self.textures[2], before.vertices, &vertices.map(vertex_words))
+        } else {
+            array::write_buffer(gpu, &self.buffers[0], before.nodes, &nodes)?;
+            array::write_buffer(gpu, &self.buffers[1], before.triangles, &triangles)?;
+            array::write_buffer(gpu, &self.buffers[2], before.vertices, &vertices)
+        }
+    }
+
+    /// Nodes, triangles, vertices.
+    pub fn buffers(&self) -> [&wgpu::Buffer; 3] {
+        self.buffers.each_ref()
+    }
+
+    /// Nodes, triangles, vertices, and the triangles' material slots.
+    pub fn textures(&self) -> [&wgpu::TextureView; 4] {
+        let [nodes, triangles, vertices] = &self.textures;
+        [nodes, triangles, vertices, &self.slots]
+    }
+
+    /// Whether shaders find it in the textures.
+    pub fn is_in_textures(&self) -> bool {
+        self.is_in_textures
+    }
+
+    /// Whether a model is too large for the bindings of this adapter: kernels are made for one or the other. Nodes, which
+    /// may not be built yet, take less than the triangles.
+    pub fn wants_textures(gpu: &GpuDevice, geometry: &Geometry) -> bool {
+        let counts = Counts::with_room(0, &geometry.model, room(&geometry.around));
+        counts.bytes().into_iter().any(|bytes| bytes > gpu.binding_bytes())
+    }
+}
+
+/// Room, in triangles, that is kept for what is around a model.
+fn room(around: &Part) -> usize {
+    around.triangles.len().next_power_of_two().max(ROOM)
+}
+
+/// Elements of the arrays.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    nodes: usize,
+    triangles: usize,
+    vertices: usize,
+}
+
+impl Counts {
+    /// What a part has.
+    fn of(part: &Part) -> Self {
+        Self {
+            nodes: part.compressed().nodes.len(),
+            triangles: part.triangles.len(),
+            vertices: part.vertices.len(),
+        }
+    }
+
+    /// So many nodes, what else a part has, and room for so many triangles.
+    fn with_room(nodes: usize, part: &Part, room: usize) -> Self {
+        Self {
+            nodes: nodes + room,
+            triangles: part.triangles.len() + room,
+            vertices: part.vertices.len() + 3 * room,
+        }
+    }
+
+    /// Bytes of nodes, triangles and vertices in buffers.
+    fn bytes(self) -> [u64; 3] {
+        let Self {
+            nodes,
+            triangles,
+            vertices,
+        } = self;
+        [
+            nodes * size_of::<NodeWords>(),
+            triangles * size_of::<Triangle>(),
+            vertices * size_of::<Vertex>(),
+        ]
+        .map(|bytes| bytes as u64)
+    }
+
+    /// A node whose children and triangles come after so many others.
+    fn node(self, mut node: NodeWords) -> NodeWords {
+        node[1][0] += self.nodes as u32;
+        node[1][1] += self.triangles as u32;
+        node
+    }
+
+    /// A triangle whose vertices come after so many others.
+    fn triangle(self, mut triangle: Triangle) -> Triangle {
+        for corner in &mut triangle.corners {
+            corner[3] += self.vertices as u32;
+        }
+        triangle
+    }
+}
+
+/// A node of the hierarchy, whole texels of 16 bytes: the second begins with the first of its children and of its triangles.
+type NodeWords = [[u32; 4]; 5];
+
+/// A vertex in whole texels.
+type VertexWords = [u32; 16];
+
+fn vertex_words(vertex: &Vertex) -> VertexWords {
+    let mut words = [0; 16];
+    let own: &[u32] = bytemuck::cast_slice(std::slice::from_ref(vertex));
+    words[..own.len()].copy_from_slice(own);
+    words
+}

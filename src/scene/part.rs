@@ -1,0 +1,208 @@
+//! Triangles with the hierarchy by which rays find them: the model's, or those around it.
+
+use bytemuck::{Pod, Zeroable};
+use fearless_simd::Level;
+use glam::DVec3;
+
+use super::convex::is_convex;
+use super::hierarchy::{Compressed, Hierarchy, Wide};
+use super::intersect::RayFrame;
+use super::loading::{Cancelled, Loading};
+use super::memory::{in_large_pages, room_in_large_pages};
+use super::mesh::{Mesh, any_tangent};
+
+/// What shading needs of a vertex besides its position. 52 bytes, scalars only: the same layout in WGSL.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Vertex {
+    /// Unit shading normal, or 0 for that of the triangle's plane.
+    pub normal: [f32; 3],
+    /// Texture coordinates, v downwards.
+    pub uv: [f32; 2],
+    /// The second set of texture coordinates.
+    pub second_uv: [f32; 2],
+    /// Unit tangent and the sign of the bitangent, see [`Mesh::tangents`].
+    pub tangent: [f32; 4],
+    /// Linear red, green and blue in [0, 1] that multiply the material's, and 1, as 16-bit fractions, two in a word.
+    pub color: [u32; 2],
+}
+
+impl Vertex {
+    /// A vertex's colour, packed.
+    fn packed_color(color: [f32; 4]) -> [u32; 2] {
+        let bits = |value: f32| (value.clamp(0.0, 1.0) * 65535.0).round() as u32;
+        let [r, g, b, _] = color.map(bits);
+        [r | g << 16, b | bits(1.0) << 16]
+    }
+
+    /// The linear colour that multiplies the material's.
+    pub fn rgb(&self) -> [f32; 3] {
+        let fraction = |bits: u32| f32::from(bits as u16) / 65535.0;
+        [
+            fraction(self.color[0]),
+            fraction(self.color[0] >> 16),
+            fraction(self.color[1]),
+        ]
+    }
+}
+
+/// Triangles in one f32 coordinate system, in the order in which their hierarchy's leaves refer to them.
+#[derive(Clone, Debug, Default)]
+pub struct Part {
+    /// Places of the vertices.
+    pub positions: Vec<[f32; 3]>,
+    /// The other attributes of the vertices, as many as `positions`.
+    pub vertices: Vec<Vertex>,
+    /// The vertices of each triangle, counter-clockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// The material slot of each triangle.
+    pub slots: Vec<u32>,
+    /// The model's object that each triangle belongs to; [`NO_OBJECT`](super::NO_OBJECT) for what is none of the model's.
+    pub objects: Vec<u32>,
+    /// No ray that leaves a face on its outside meets anything: they are one convex body.
+    pub is_convex: bool,
+    /// How rays find them.
+    hierarchy: Hierarchy,
+}
+
+impl Part {
+    /// Builds the hierarchy over the triangles that have been added, and puts them into its order.
+    pub(super) fn build(&mut self, loading: &Loading) -> Result<(), Cancelled> {
+        let corners = |triangle| self.corners(triangle as usize);
+        let (hierarchy, order) = Hierarchy::new(self.triangles.len(), corners, loading)?;
+        self.hierarchy = hierarchy;
+        self.sort(&order);
+        self.is_convex = is_convex(&self.positions, &self.triangles);
+        Ok(())
+    }
+
+    /// True where there is nothing to meet.
+    #[inline(always)]
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// The hierarchy as the GPU reads it, built when it is first asked for.
+    pub fn compressed(&self) -> &Compressed {
+        self.hierarchy.compressed(|triangle| self.corners(triangle as usize))
+    }
+
+    /// The hierarchy as the processor reads it, built when it is first asked for.
+    #[inline(always)]
+    pub(super) fn wide(&self) -> &Wide {
+        self.hierarchy.wide(|triangle| self.corners(triangle as usize))
+    }
+
+    /// Bytes in memory, with the hierarchies that have been built.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.positions[..])
+            + size_of_val(&self.vertices[..])
+            + size_of_val(&self.triangles[..])
+            + size_of_val(&self.slots[..])
+            + size_of_val(&self.objects[..])
+            + self.hierarchy.bytes()
+    }
+
+    /// The corners of a triangle.
+    #[inline(always)]
+    pub fn corners(&self, triangle: usize) -> [[f32; 3]; 3] {
+        self.corners_of(&self.triangles[triangle])
+    }
+
+    #[inline(always)]
+    fn corners_of(&self, triangle: &[u32; 3]) -> [[f32; 3]; 3] {
+        triangle.map(|vertex| self.positions[vertex as usize])
+    }
+
+    /// The nearest triangle with 0 < t < `t_max` along a ray, and t.
+    #[inline(always)]
+    pub(super) fn nearest(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<(f32, u32)> {
+        match self.is_empty() {
+            true => None,
+            false => self.wide().nearest(level, frame, t_max),
+        }
+    }
+
+    /// Whether any triangle is met with 0 < t < `t_max`.
+    #[inline(always)]
+    pub(super) fn is_met(&self, level: Level, frame: &RayFrame, t_max: f32) -> bool {
+        !self.is_empty() && self.wide().any(level, frame, t_max).is_some()
+    }
+
+    /// Adds the chosen triangles of a mesh that have an area; how many have lost theirs by rounding.
+    pub(super) fn add(
+        &mut self,
+        mesh: &Mesh,
+        chosen: impl Iterator<Item = usize>,
+        object_of: impl Fn(usize) -> u32,
+        to_units: impl Fn(DVec3) -> [f32; 3],
+    ) -> usize {
+        let base = self.positions.len() as u32;
+        self.positions.reserve_exact(mesh.positions.len());
+        self.vertices.reserve_exact(mesh.positions.len());
+        for (vertex, &position) in mesh.positions.iter().enumerate() {
+            self.positions.push(to_units(position));
+            let (normal, tangent) = (mesh.normals[vertex], mesh.tangents[vertex]);
+            let tangent = if tangent.is_finite() {
+                tangent
+            } else {
+                any_tangent(normal).extend(1.0)
+            };
+            self.vertices.push(Vertex {
+                normal: normal.to_array(),
+                uv: mesh.uvs[vertex].to_array(),
+                second_uv: mesh.second_uvs.get(vertex).copied().unwrap_or_default().to_array(),
+                tangent: tangent.to_array(),
+                color: Vertex::packed_color(mesh.colors.get(vertex).copied().unwrap_or([1.0; 4])),
+            });
+        }
+        let mut dropped = 0;
+        for index in chosen {
+            let triangle = mesh.triangles[index].map(|vertex| vertex + base);
+            // Rounding to f32 may have closed a sliver; corners and their products are exact in f64.
+            if has_area(
+                self.corners_of(&triangle)
+                    .map(|corner| DVec3::from_array(corner.map(f64::from))),
+            ) {
+                self.triangles.push(triangle);
+                self.slots.push(mesh.slots[index]);
+                self.objects.push(object_of(index));
+            } else {
+                dropped += 1;
+            }
+        }
+        dropped
+    }
+
+    /// Puts triangles into an order and vertices into that of their first use, which keeps what rays read together close
+    /// together; drops vertices that no triangle uses.
+    fn sort(&mut self, order: &[u32]) {
+        self.slots = order.iter().map(|&triangle| self.slots[triangle as usize]).collect();
+        self.objects = order.iter().map(|&triangle| self.objects[triangle as usize]).collect();
+        const UNUSED: u32 = u32::MAX;
+        let mut new_of_old = vec![UNUSED; self.positions.len()];
+        let mut positions = room_in_large_pages(self.positions.len());
+        let mut vertices = room_in_large_pages(self.positions.len());
+        let sorted = order.iter().map(|&triangle| {
+            self.triangles[triangle as usize].map(|vertex| {
+                let new = &mut new_of_old[vertex as usize];
+                if *new == UNUSED {
+                    *new = positions.len() as u32;
+                    positions.push(self.positions[vertex as usize]);
+                    vertices.push(self.vertices[vertex as usize]);
+                }
+                *new
+            })
+        });
+        let mut triangles = room_in_large_pages(order.len());
+        triangles.extend(sorted);
+        self.triangles = in_large_pages(triangles);
+        self.positions = in_large_pages(positions);
+        self.vertices = in_large_pages(vertices);
+    }
+}
+
+/// Whether a triangle covers anything.
+pub(super) fn has_area([a, b, c]: [DVec3; 3]) -> bool {
+    (b - a).cross(c - a) != DVec3::ZERO
+}
