@@ -159,7 +159,7 @@ fn edges(scene: &Scene) {
 
 fn whole_rays(scene: &Scene) {
     let geometry = &scene.geometry;
-    let guarded = CompressedRays::new(geometry);
+    let guarded = CompressedRays::new(&geometry.model);
     let compressed = geometry.model.compressed();
     let naive = CwBvh {
         nodes: compressed.nodes.clone(),

@@ -1,14 +1,16 @@
-//! How soon a drag shows: from a changed roughness, or a changed plan, to the first picture of it; quoted in
+//! How soon a drag shows: from a changed roughness, a changed plan, or a moved light to the first picture of it; quoted in
 //! docs/PERFORMANCE.md.
 //!
-//! `cargo bench --bench latency`. The viewport of a window of 1440 × 900, the default scene. Reduced resolutions count,
-//! as they do in the window.
+//! `cargo bench --bench latency [-- light]`. The viewport of a window of 1440 × 900, the default scene, and a light over a
+//! model of 600 000 triangles. Reduced resolutions count, as they do in the window.
 
 use std::time::{Duration, Instant};
 
-use glossmith::document::Document;
+use glossmith::document::{AreaLight, Document};
 use glossmith::render::EngineChoice;
 use glossmith::render::worker::{Activity, Pace, Worker};
+use glossmith::scene::shapes::bumpy_sphere;
+use glossmith::scene::{Model, ModelSource, Slot};
 
 /// Steps of a drag.
 const STEPS: u32 = 60;
@@ -19,17 +21,15 @@ fn main() -> std::io::Result<()> {
     println!("| engine | edit | median ms | 95 % ms | longest ms |");
     println!("| --- | --- | --- | --- | --- |");
     for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        light_dragged(engine)?;
+        if std::env::args().any(|argument| argument == "light") {
+            continue;
+        }
         let worker = Worker::spawn(engine, || {})?;
-        let mut document = Document::default();
-        (document.render.width, document.render.height) = (806, 780);
-        document.render.samples = 1 << 20;
+        let mut document = viewport();
         first_picture(&worker, &document);
         await_kernel(&worker);
-        let name = worker
-            .snapshot()
-            .engine
-            .as_ref()
-            .map_or_else(String::new, ToString::to_string);
+        let name = name(&worker);
         let drag = (0..STEPS).map(|step| {
             document.materials[0].roughness = 0.1 + 0.8 * step as f32 / STEPS as f32;
             let milliseconds = first_picture(&worker, &document);
@@ -63,6 +63,43 @@ fn main() -> std::io::Result<()> {
         report(&name, "plan changed", crossed.collect());
     }
     Ok(())
+}
+
+/// Drags an area light over a large model.
+fn light_dragged(engine: EngineChoice) -> std::io::Result<()> {
+    let worker = Worker::spawn(engine, || {})?;
+    let mut document = viewport();
+    document.model = ModelSource::File("bumpy sphere of 600 000 triangles".into());
+    let model = Model {
+        mesh: bumpy_sphere(600_000),
+        slots: vec![Slot::neutral("sphere")],
+        ..Model::default()
+    };
+    worker.assets().keep_model(document.model.clone(), model);
+    document.lighting.area_lights = vec![AreaLight::default()];
+    first_picture(&worker, &document);
+    await_kernel(&worker);
+    let drag = (0..STEPS).map(|step| {
+        document.lighting.area_lights[0].yaw_deg = f64::from(step);
+        let milliseconds = first_picture(&worker, &document);
+        std::thread::sleep(INTERVAL);
+        milliseconds
+    });
+    report(&name(&worker), "light dragged, 600 000 triangles", drag.collect());
+    Ok(())
+}
+
+/// The default scene in the viewport of a window of 1440 × 900.
+fn viewport() -> Document {
+    let mut document = Document::default();
+    (document.render.width, document.render.height) = (806, 780);
+    document.render.samples = 1 << 20;
+    document
+}
+
+fn name(worker: &Worker) -> String {
+    let snapshot = worker.snapshot();
+    snapshot.engine.as_ref().map_or_else(String::new, ToString::to_string)
 }
 
 /// Milliseconds from submitting a document to its first picture.

@@ -61,7 +61,7 @@ fn main() {
 }
 
 fn compare(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
-    let compressed = CompressedRays::new(geometry);
+    let compressed = CompressedRays::new(&geometry.model);
     let mut best = vec![0.0_f64; 1 + sets.len()];
     for _ in 0..TURNS {
         best[0] = best[0].max(rate(kind, |(origin, direction)| match kind.any {

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use glossmith::document::{Document, Strategy};
 use glossmith::job::scatter::ScatterRequest;
 use glossmith::optics::curve::Curve;
+use glossmith::optics::lobe::model::LobeModel;
 use glossmith::optics::lobe::{Horizon, Lobe, raw_density, raw_sample};
 use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::render::{EngineChoice, Session};
@@ -82,19 +83,16 @@ fn lobes() {
         };
         for &curve in curves {
             let request = ScatterRequest {
-                lobe,
-                curve,
-                horizon: Horizon::None,
-                roughness: 0.3,
-                anisotropy: 0.0,
-                eta: 0.0,
-                table: Vec::new(),
+                model: LobeModel {
+                    horizon: Horizon::None,
+                    ..LobeModel::new(lobe, 0.3, curve)
+                },
                 view_angle_deg: 45.0,
                 count: 0,
                 seed: 0,
             };
             let (shape, frame, wo) = (
-                request.shape::<f32>(),
+                request.model.shape::<f32>(),
                 ScatterRequest::frame::<f32>(),
                 request.wo::<f32>(),
             );

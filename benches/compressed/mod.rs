@@ -6,7 +6,7 @@
 //! and uses 128-bit vectors at most. Here a box is lost only if the ray passes it by, and eight boxes are tested at
 //! once where the processor has AVX2.
 use glam::Vec3A;
-use glossmith::scene::{Compressed, Geometry, Hit, RayFrame, intersect_triangle};
+use glossmith::scene::{Compressed, Hit, Part, RayFrame, intersect_triangle};
 use obvhs::cwbvh::node::CwBvhNode;
 
 /// Groups of nodes still to be visited. A level adds one at most, and hierarchies are built no deeper.
@@ -29,9 +29,9 @@ pub struct CompressedRays<'a> {
 }
 
 impl<'a> CompressedRays<'a> {
-    pub fn new(geometry: &'a Geometry) -> Self {
-        let compressed = geometry.model.compressed();
-        let corners = |&triangle: &u32| geometry.corners(triangle as usize).map(Vec3A::from_array);
+    pub fn new(part: &'a Part) -> Self {
+        let compressed = part.compressed();
+        let corners = |&triangle: &u32| part.corners(triangle as usize).map(Vec3A::from_array);
         Self {
             compressed,
             corners: compressed.triangles.iter().map(corners).collect(),

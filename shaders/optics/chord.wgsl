@@ -55,19 +55,20 @@ fn chord_density(
         return 0.0;
     }
     var integral = 0.0;
-    let how = curve_integral(curve);
+    // Each integral is called at one place: drivers inline, and compile in more than proportion to the size.
+    var how = curve_integral(curve);
+    var pairs = select(10u, 6u, kappa <= SHORT_RULE_ROUGHNESS);
+    if how == INTEGRAL_POLYNOMIAL_TO_ZERO {
+        how = INTEGRAL_POLYNOMIAL;
+        if chord_range(chord) < SHORT_RANGE {
+            how = INTEGRAL_QUADRATURE;
+            pairs = 3u;
+        }
+    }
     switch how {
         case INTEGRAL_RECIPROCAL: { integral = chord_reciprocal_integral(chord); }
-        case INTEGRAL_POLYNOMIAL, INTEGRAL_POLYNOMIAL_TO_ZERO: {
-            if how == INTEGRAL_POLYNOMIAL_TO_ZERO && chord_range(chord) < SHORT_RANGE {
-                integral = chord_quadrature(curve, 3u, chord);
-            } else {
-                integral = chord_polynomial_integral(chord, curve_polynomial(curve));
-            }
-        }
-        case INTEGRAL_QUADRATURE: {
-            integral = chord_quadrature(curve, select(10u, 6u, kappa <= SHORT_RULE_ROUGHNESS), chord);
-        }
+        case INTEGRAL_POLYNOMIAL: { integral = chord_polynomial_integral(chord, curve_polynomial(curve)); }
+        case INTEGRAL_QUADRATURE: { integral = chord_quadrature(curve, pairs, chord); }
         default: { integral = chord_table_integral(table, chord); }
     }
     return max(0.25 * INV_PI * integral / chord.a_root, 0.0);
@@ -200,13 +201,14 @@ fn chord_integrand(curve: u32, chord: Chord, mu: f32, exp_v: f32) -> f32 {
 
 fn chord_table_integral(table: u32, chord: Chord) -> f32 {
     var sum = 0.0;
-    // Spheres that are met twice ahead of the surface point: what is odd in W cancels.
-    if chord.first.y > 0.0 {
-        sum += 2.0 * chord_table_section(table, chord, vec2f(chord.nearest, 0.0), chord.first.x, 0.0);
-    }
-    // Spheres around the surface point: met once.
-    if chord.first.x < chord.last.x {
-        sum += chord_table_section(table, chord, vec2f(chord.first.x, abs(chord.first.y)), chord.last.x, 1.0);
+    // Spheres that are met twice ahead of the surface point, where what is odd in W cancels; then those around it, met once.
+    for (var times = 2u; times > 0u; times--) {
+        let is_around = times == 1u;
+        let start = select(vec2f(chord.nearest, 0.0), vec2f(chord.first.x, abs(chord.first.y)), is_around);
+        let end = select(chord.first.x, chord.last.x, is_around);
+        if select(chord.first.y > 0.0, start.x < end, is_around) {
+            sum += f32(times) * chord_table_section(table, chord, start, end, select(0.0, 1.0, is_around));
+        }
     }
     return sum;
 }

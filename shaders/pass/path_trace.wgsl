@@ -216,13 +216,13 @@ fn limited(contribution: vec3f, reflections: u32, taken: ptr<function, f32>) -> 
 
 // What the camera sees where it meets nothing; a blur is drawn with the pair of this dimension.
 fn camera_background(direction: vec3f, state: RandomState, dimension: u32, rays: u32) -> PathResult {
-    if globals.background_kind == BACKGROUND_BLURRED {
-        let disc = globals.background.x * uniform_disc(random_pair(state, dimension));
-        let blurred = world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
-        return PathResult(far_radiance(blurred), 1.0, rays, 0.0, GuideSums());
-    }
-    if globals.background_kind == BACKGROUND_ENVIRONMENT {
-        return PathResult(far_radiance(direction), 1.0, rays, 0.0, GuideSums());
+    if globals.background_kind == BACKGROUND_BLURRED || globals.background_kind == BACKGROUND_ENVIRONMENT {
+        var seen = direction;
+        if globals.background_kind == BACKGROUND_BLURRED {
+            let disc = globals.background.x * uniform_disc(random_pair(state, dimension));
+            seen = world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
+        }
+        return PathResult(far_radiance(seen), 1.0, rays, 0.0, GuideSums());
     }
     let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
     let color = select(globals.background, vec3f(0.0), is_transparent);

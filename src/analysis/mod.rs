@@ -11,7 +11,6 @@ pub mod error;
 pub mod fit;
 pub mod halves;
 pub mod histogram;
-pub mod lobe_model;
 pub mod noise;
 pub mod quadrature;
 pub mod sphere_grid;

@@ -10,12 +10,13 @@ use crate::optics::vector::{Vec3, vec3};
 /// Halvings of a patch after which its integral is taken as it is.
 const DEPTH_MAX: u32 = 9;
 /// Halvings before agreement is believed.
-const DEPTH_MIN: u32 = 2;
-/// Nodes of the adaptive rule along each coordinate.
-const PATCH_NODES: [[f64; 2]; 3] = [
-    [-0.774_596_669_241_483_4, 0.555_555_555_555_555_6],
-    [0.0, 8.0 / 9.0],
-    [0.774_596_669_241_483_4, 0.555_555_555_555_555_6],
+const DEPTH_MIN: u32 = 1;
+/// Nodes and weights of the adaptive rule along each coordinate: Gauss's of four, exact to the seventh degree.
+const PATCH_NODES: [[f64; 2]; 4] = [
+    [-0.861_136_311_594_052_6, 0.347_854_845_137_453_85],
+    [-0.339_981_043_584_856_26, 0.652_145_154_862_546_2],
+    [0.339_981_043_584_856_26, 0.652_145_154_862_546_2],
+    [0.861_136_311_594_052_6, 0.347_854_845_137_453_85],
 ];
 
 /// Nodes and weights of the Gauss–Legendre rule with `order` nodes on [−1, 1], ascending. Exact for polynomials up to

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::lobe_model::{NORMAL, view_direction};
+use crate::optics::lobe::model::{NORMAL, view_direction};
 use crate::optics::vector::{Vec3, vec3};
 
 /// Which side of the surface is integrated over.

@@ -1,7 +1,7 @@
 //! A lobe written as one word: `ggx:0.1`, `ggx:alpha=0.01`, `geometric:0.3/sqrt`.
 
-use crate::analysis::lobe_model::{LobeModel, roughness_min};
 use crate::optics::curve::Curve;
+use crate::optics::lobe::model::{LobeModel, roughness_min};
 use crate::optics::lobe::{Lobe, Width};
 
 use super::names::choice;

@@ -9,6 +9,7 @@ use clap::Args;
 
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::curve::Curve;
+use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::render::EngineChoice;
 
@@ -67,13 +68,11 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
     check_writable(&arguments.output)?;
     arguments.answer.check_writable()?;
     let request = ScatterRequest {
-        lobe: arguments.lobe,
-        curve: arguments.curve,
-        horizon: arguments.horizon,
-        roughness: arguments.roughness as f32,
-        anisotropy: 0.0,
-        eta: arguments.ior.map_or(0.0, |ior| ior as f32),
-        table: Vec::new(),
+        model: LobeModel {
+            horizon: arguments.horizon,
+            eta: arguments.ior.unwrap_or(0.0),
+            ..LobeModel::new(arguments.lobe, arguments.roughness, arguments.curve)
+        },
         view_angle_deg: arguments.view_angle as f32,
         count: arguments.count,
         seed: arguments.seed,
@@ -93,8 +92,8 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
     eprintln!("wrote {}", arguments.output.display());
     arguments.answer.write(&serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
-        "lobe": request.lobe.name(),
-        "curve": request.curve.name(),
+        "lobe": arguments.lobe.name(),
+        "curve": arguments.curve.name(),
         "roughness": arguments.roughness,
         "view_angle_deg": arguments.view_angle,
         "samples": request.count,

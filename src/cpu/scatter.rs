@@ -8,7 +8,7 @@ use crate::optics::random::{Sequence, random_pair, random_state};
 
 /// Draws the samples.
 pub fn scatter(request: &ScatterRequest) -> ScatterCloud {
-    let shape = request.shape::<f32>();
+    let shape = request.model.shape::<f32>();
     let frame = ScatterRequest::frame();
     let wo = request.wo();
     let draw = |i: u32| {

@@ -7,9 +7,9 @@ use super::{MaterialSettings, measured_look};
 use crate::analysis::fit::{
     CurveFit, CurveTarget, Measure, Merl, Nearest, fit_curve, nearest_roughness, roughness, total_variation,
 };
-use crate::analysis::lobe_model::{LobeModel, roughness_min, view_direction};
 use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
 use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
+use crate::optics::lobe::model::{LobeModel, roughness_min, view_direction};
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::vector::{Vec3, vec3};
 use crate::plot::lobe_view::{Axis, LinePlot, Series, slice_angles_deg};

@@ -4,10 +4,10 @@ use std::f64::consts::FRAC_1_PI;
 
 use super::MaterialSettings;
 use crate::analysis::fit::{CurveTarget, Merl, fit_curve, roughness};
-use crate::analysis::lobe_model::{LobeModel, NORMAL, view_direction};
 use crate::analysis::sphere_grid::{Side, SphereGrid};
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Horizon;
+use crate::optics::lobe::model::{LobeModel, NORMAL, view_direction};
 use crate::optics::vector::Vec3;
 
 /// Roughnesses between which the highlight is looked for: a rougher lobe cannot be told from the base.

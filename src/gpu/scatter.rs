@@ -61,10 +61,9 @@ impl Scatterer {
     /// If the device fails.
     pub fn draw(&self, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
         let gpu = &self.gpu;
-        let table: &[f32] = if request.table.is_empty() {
-            &[0.0]
-        } else {
-            &request.table
+        let table: &[f32] = match &request.model.table[..] {
+            [] => &[0.0],
+            table => table,
         };
         let tables = gpu.storage("the curve", bytemuck::cast_slice(table))?;
         let out = gpu.empty_storage("the samples", u64::from(request.count.min(BATCH)) * 16)?;
@@ -81,14 +80,15 @@ impl Scatterer {
 }
 
 fn uniforms(request: &ScatterRequest, first: u32, count: u32) -> Scatter {
+    let shape = request.model.shape();
     Scatter {
         wo: request.wo(),
-        roughness: request.roughness,
-        anisotropy: request.anisotropy,
-        eta: request.eta,
-        lobe: request.lobe as u32,
-        curve: request.curve as u32,
-        horizon: request.horizon as u32,
+        roughness: shape.roughness,
+        anisotropy: shape.anisotropy,
+        eta: shape.eta,
+        lobe: shape.lobe as u32,
+        curve: shape.curve as u32,
+        horizon: shape.horizon as u32,
         seed: request.seed,
         first,
         count,

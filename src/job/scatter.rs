@@ -1,8 +1,8 @@
 //! Clouds of samples: what is asked for and what comes back, whichever engine draws them.
 
-use crate::optics::curve::Curve;
 use crate::optics::frame::Frame;
-use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_middle};
+use crate::optics::lobe::lobe_middle;
+use crate::optics::lobe::model::LobeModel;
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
@@ -10,20 +10,8 @@ use crate::optics::vector::{Vec3, vec3};
 /// x ≥ 0; what is refracted has z < 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScatterRequest {
-    /// The lobe.
-    pub lobe: Lobe,
-    /// The geometric lobe's curve.
-    pub curve: Curve,
-    /// What happens below the horizon.
-    pub horizon: Horizon,
-    /// Roughness in [0, 1].
-    pub roughness: f32,
-    /// Stretch in [−1, 1].
-    pub anisotropy: f32,
-    /// 0 where the lobe reflects. Where it refracts: the index of refraction behind the surface over that before it.
-    pub eta: f32,
-    /// The custom curve's table; empty where the curve has a name.
-    pub table: Vec<f32>,
+    /// The lobe, not turned out of the plane of incidence.
+    pub model: LobeModel,
     /// Angle between view and normal, degrees in [0, 90].
     pub view_angle_deg: f32,
     /// How many to draw; absorbed ones count.
@@ -33,19 +21,6 @@ pub struct ScatterRequest {
 }
 
 impl ScatterRequest {
-    /// The lobe in a precision.
-    pub fn shape<T: Real>(&self) -> LobeShape<'_, T> {
-        LobeShape {
-            lobe: self.lobe,
-            curve: self.curve,
-            horizon: self.horizon,
-            roughness: T::from_f64(f64::from(self.roughness)),
-            anisotropy: T::from_f64(f64::from(self.anisotropy)),
-            eta: T::from_f64(f64::from(self.eta)),
-            table: &self.table,
-        }
-    }
-
     /// Towards the viewer.
     pub fn wo<T: Real>(&self) -> Vec3<T> {
         let angle_rad = f64::from(self.view_angle_deg).to_radians();
@@ -55,7 +30,7 @@ impl ScatterRequest {
     /// The middle of the lobe: the mirror direction, or the refracted one.
     pub fn middle(&self) -> Vec3<f64> {
         let frame = Self::frame();
-        lobe_middle(&self.shape(), &frame, frame.normal, self.wo())
+        lobe_middle(&self.model.shape(), &frame, frame.normal, self.wo())
     }
 
     /// The frame: the axes.

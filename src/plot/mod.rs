@@ -131,18 +131,19 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
     let reach = points.clone().map(|(x, y)| x.abs().max(y.abs())).fold(0.01, f32::max) * 1.05;
     let root = BitMapBackend::new(path, (800, 810)).into_drawing_area();
     root.fill(&WHITE)?;
-    let mut lobe = request.lobe.label().to_owned();
-    if request.lobe.has_curves() {
-        lobe += &format!(", {}", request.curve.label().to_lowercase());
+    let model = &request.model;
+    let mut lobe = model.lobe.label().to_owned();
+    if model.lobe.has_curves() {
+        lobe += &format!(", {}", model.curve.label().to_lowercase());
     }
-    let refracted = if request.eta == 0.0 {
+    let refracted = if model.eta == 0.0 {
         String::new()
     } else {
-        format!(", index {}", request.eta)
+        format!(", index {}", model.eta)
     };
     let caption = format!(
         "{lobe}, roughness {}, view {}°{refracted}",
-        request.roughness, request.view_angle_deg
+        model.roughness, request.view_angle_deg
     );
     let mut chart = ChartBuilder::on(&root)
         .caption(caption, ("sans-serif", 26))
@@ -159,9 +160,10 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
     let opacity = (4000.0 / cloud.samples.len().max(1) as f64).clamp(0.04, 0.8);
     let dot = RGBColor(20, 90, 170).mix(opacity).filled();
     chart.draw_series(points.map(|point| Circle::new(point, 1, dot)))?;
-    if request.lobe.has_curves() {
+    if model.lobe.has_curves() {
+        let roughness = model.roughness as f32;
         let circle = (0..=180).map(|i| (i as f32 * 2.0).to_radians());
-        let circle = circle.map(|phi_rad| (request.roughness * phi_rad.cos(), request.roughness * phi_rad.sin()));
+        let circle = circle.map(|phi_rad| (roughness * phi_rad.cos(), roughness * phi_rad.sin()));
         chart.draw_series(LineSeries::new(circle, RGBColor(220, 90, 30).mix(0.7)))?;
     }
     root.present()?;

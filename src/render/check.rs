@@ -14,6 +14,7 @@ use crate::job::film::Film;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::curve::Curve;
 use crate::optics::frame::frame_from_normal;
+use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Facets, Horizon, Lobe, LobeSample, lobe_evaluate, lobe_sample};
 use crate::optics::random::{Sequence, random_pair, random_state};
 use crate::optics::vector::Vec3;
@@ -147,13 +148,13 @@ pub fn sample_cases(thorough: bool) -> Vec<ScatterRequest> {
                         continue;
                     }
                     cases.push(ScatterRequest {
-                        lobe,
-                        curve,
-                        horizon,
-                        roughness,
-                        anisotropy,
-                        eta,
-                        table: table(curve),
+                        model: LobeModel {
+                            horizon,
+                            anisotropy: f64::from(anisotropy),
+                            eta: f64::from(eta),
+                            table: table(curve),
+                            ..LobeModel::new(lobe, f64::from(roughness), curve)
+                        },
                         view_angle_deg,
                         count: if thorough { 60_000 } else { 20_000 },
                         seed: cases.len() as u32,
@@ -193,7 +194,7 @@ pub fn chi_square(
     cloud: &ScatterCloud,
     density_factor: impl Fn(Vec3<f64>) -> f64 + Sync,
 ) -> f64 {
-    let shape = request.shape::<f64>();
+    let shape = request.model.shape::<f64>();
     let frame = ScatterRequest::frame::<f64>();
     let wo = request.wo::<f64>();
     // The rings follow the lobe: equal shares of a pilot drawn by the twin.
@@ -269,26 +270,27 @@ fn samples(options: CheckOptions, stop: &AtomicBool) -> Result<Vec<Check>, Sessi
 
 /// The name of a case.
 fn describe(case: &ScatterRequest) -> String {
-    let curve = if case.lobe.has_curves() {
-        format!("/{}", case.curve.name())
+    let curve = if case.model.lobe.has_curves() {
+        format!("/{}", case.model.curve.name())
     } else {
         String::new()
     };
-    let stretch = if case.anisotropy == 0.0 {
+    // In the precision in which they were given.
+    let [roughness, anisotropy] = [case.model.roughness, case.model.anisotropy].map(|x| x as f32);
+    let stretch = if anisotropy == 0.0 {
         String::new()
     } else {
-        format!(" stretched {}", case.anisotropy)
+        format!(" stretched {anisotropy}")
     };
-    let index = if case.eta == 0.0 {
+    let index = if case.model.eta == 0.0 {
         String::new()
     } else {
-        format!(" refracted {:.3}", case.eta)
+        format!(" refracted {:.3}", case.model.eta)
     };
     format!(
-        "{}{curve} {} roughness {}{stretch}{index} view {}°",
-        case.lobe.name(),
-        case.horizon.name(),
-        case.roughness,
+        "{}{curve} {} roughness {roughness}{stretch}{index} view {}°",
+        case.model.lobe.name(),
+        case.model.horizon.name(),
         case.view_angle_deg
     )
 }
@@ -309,7 +311,7 @@ fn twin_samples(case: &ScatterRequest, count: u32) -> impl Iterator<Item = LobeS
     (0..count).map(move |i| {
         let state = random_state(2, 0, case.seed, i, Sequence::Sobol);
         let ([a, b], [c, _]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
-        lobe_sample(&case.shape(), &frame, frame.normal, case.wo(), [a, b, c])
+        lobe_sample(&case.model.shape(), &frame, frame.normal, case.wo(), [a, b, c])
     })
 }
 
@@ -317,14 +319,18 @@ fn twin_samples(case: &ScatterRequest, count: u32) -> impl Iterator<Item = LobeS
 fn energy(stop: &AtomicBool) -> Vec<Check> {
     let check = |case: &ScatterRequest| {
         let mean = twin_samples(case, 4096).map(|drawn| drawn.weight).sum::<f64>() / 4096.0;
-        let is_conserving = case.lobe.traits().weighs_one && case.horizon == Horizon::Mirror;
+        let is_conserving = case.model.lobe.traits().weighs_one && case.model.horizon == Horizon::Mirror;
         let value = if is_conserving {
             (mean - 1.0).abs()
         } else {
             (mean - 1.0).max(0.0)
         };
         // Facets drawn whether or not they are seen have noisy weights at grazing angles.
-        let limit = if case.lobe.facets() == Facets::All { 0.15 } else { 2e-3 };
+        let limit = if case.model.lobe.facets() == Facets::All {
+            0.15
+        } else {
+            2e-3
+        };
         Check::new("energy", describe(case), "error", value, limit)
     };
     summed_up("energy", "mean weight", of_all_cases(stop, check))
@@ -344,7 +350,7 @@ fn weights(stop: &AtomicBool) -> Vec<Check> {
             if drawn.weight <= 0.0 {
                 return 0.0;
             }
-            let [value, density] = lobe_evaluate(&case.shape(), &frame, frame.normal, case.wo(), drawn.wi);
+            let [value, density] = lobe_evaluate(&case.model.shape(), &frame, frame.normal, case.wo(), drawn.wi);
             (value - drawn.weight * density).abs() / value.max(f64::MIN_POSITIVE)
         };
         let value = twin_samples(case, 256).map(error).fold(0.0, f64::max);

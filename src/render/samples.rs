@@ -7,10 +7,10 @@ use super::background::{Background, Desk};
 use super::engine::{EngineChoice, Sampler};
 use crate::analysis::fit::{Measure, Nearest, nearest_roughness};
 use crate::analysis::histogram::{angle_density, angle_histogram};
-use crate::analysis::lobe_model::{LobeModel, view_direction};
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::curve::Curve;
 use crate::optics::frame::frame_from_normal;
+use crate::optics::lobe::model::{LobeModel, view_direction};
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::optics::vector::Vec3;
 
@@ -104,7 +104,10 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
     let request = &query.request;
     let cloud = opened.draw(request).map_err(|error| error.to_string())?;
     let free = ScatterRequest {
-        horizon: Horizon::None,
+        model: LobeModel {
+            horizon: Horizon::None,
+            ..request.model.clone()
+        },
         count: BELOW_COUNT,
         ..request.clone()
     };
@@ -117,10 +120,9 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
     // Absorbed samples count as drawn, as in the density.
     let kept = cloud.samples.len() as f64 / f64::from(request.count.max(1));
     counted.iter_mut().for_each(|[_, density]| *density *= kept);
-    let model = model(request);
     let angle = AnglePlot {
         counted,
-        analytic: analytic(&model, request),
+        analytic: analytic(&request.model, request),
         others: Vec::new(),
     };
     Ok(SampleReport {
@@ -134,20 +136,17 @@ fn draw(sampler: &mut Option<(EngineChoice, Sampler)>, query: &SampleQuery) -> R
 /// Adds the lobes of equal look, one after the other, unless something else is asked for meanwhile.
 fn compare(mut report: SampleReport, desk: &Desk<'_, SampleQuery, SampleAnswer>) {
     let request = report.query.request.clone();
-    let target = model(&request);
+    let target = &request.model;
     if !target.has_density() {
         return;
     }
-    for lobe in [Lobe::Phong, Lobe::Ggx]
-        .into_iter()
-        .filter(|lobe| *lobe != request.lobe)
-    {
+    for lobe in [Lobe::Phong, Lobe::Ggx].into_iter().filter(|lobe| *lobe != target.lobe) {
         if desk.is_superseded() {
             return;
         }
         // Looks are matched head-on, where every model is at its most comparable.
         let wo = view_direction(0.0);
-        let profile = |wi: Vec3<f64>| Measure::Density.of(&target, wo, wi);
+        let profile = |wi: Vec3<f64>| Measure::Density.of(target, wo, wi);
         let other = LobeModel::new(lobe, 0.5, Curve::Smooth);
         let nearest = nearest_roughness(&profile, &other, 0.0, Measure::Density);
         let matched = other.with_roughness(nearest.roughness);
@@ -157,16 +156,6 @@ fn compare(mut report: SampleReport, desk: &Desk<'_, SampleQuery, SampleAnswer>)
             analytic: analytic(&matched, &request),
         });
         desk.publish(Ok(Arc::new(report.clone())));
-    }
-}
-
-fn model(request: &ScatterRequest) -> LobeModel {
-    LobeModel {
-        horizon: request.horizon,
-        anisotropy: f64::from(request.anisotropy),
-        eta: f64::from(request.eta),
-        table: request.table.clone(),
-        ..LobeModel::new(request.lobe, f64::from(request.roughness), request.curve)
     }
 }
 

@@ -1,9 +1,9 @@
 //! Materials to other programs' formats and back, through the command line.
 
-use glossmith::analysis::lobe_model::LobeModel;
 use glossmith::document::MaterialSettings;
 use glossmith::document::match_look::lobe_of_material;
 use glossmith::optics::fresnel::{Fresnel, FresnelTerms, fresnel};
+use glossmith::optics::lobe::model::LobeModel;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::store::exchange::FORMATS;
 use glossmith::store::preset::{command_line_name, load_material, material_text};

@@ -8,13 +8,13 @@ use glossmith::analysis::fit::merl::{CELLS, SCALES};
 use glossmith::analysis::fit::{
     CurveFit, CurveTarget, Measure, Merl, MerlError, Nearest, fit_curve, nearest_roughness, total_variation,
 };
-use glossmith::analysis::lobe_model::{LobeModel, NORMAL, view_direction};
 use glossmith::document::MaterialSettings;
 use glossmith::document::custom_curve::POINTS_MAX;
 use glossmith::document::match_look::{
     Candidate, MatchError, Target, comparison, curve_from_fit, match_look, nearest_ggx,
 };
 use glossmith::optics::curve::Curve;
+use glossmith::optics::lobe::model::{LobeModel, NORMAL, view_direction};
 use glossmith::optics::lobe::{Horizon, Lobe, phong};
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::store::load_material;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use glossmith::analysis::lobe_model::{LobeModel, NORMAL, view_direction};
 use glossmith::optics::curve::Curve;
+use glossmith::optics::lobe::model::{LobeModel, NORMAL, view_direction};
 use glossmith::optics::lobe::{Horizon, Lobe, lobe_sample};
 use glossmith::plot::lobe_view::{LinePlot, LobeView, ViewKind, lobe_view};
 use glossmith::plot::lobe_view_file;

@@ -22,23 +22,27 @@ fn geometric_sample(shape: LobeShape, frame: Frame, wo: vec3f, xi: vec3f) -> vec
 }
 
 fn geometric_density(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {
-    let mirror_world = mirrored_about(wo, frame.normal);
-    if shape.anisotropy == 0.0 {
-        let stretch = 1.0 / shape.roughness;
-        return chord_density(shape.curve, shape.table, shape.roughness, stretch, frame.normal, mirror_world, wi);
+    // The density is called at one place, stretched or not: drivers inline it.
+    var normal = frame.normal;
+    var mirror = mirrored_about(wo, frame.normal);
+    var light = wi;
+    var stretch = 1.0 / shape.roughness;
+    var factor = 1.0;
+    if shape.anisotropy != 0.0 {
+        // The density of the ball's directions, in coordinates in which it is a ball.
+        let width = geometric_widths(shape);
+        mirror = local_from_world(frame, mirror) / width;
+        light = local_from_world(frame, wi) / width;
+        stretch = length(mirror);
+        let light_length = length(light);
+        mirror /= stretch;
+        light /= light_length;
+        normal = vec3f(0.0, 0.0, 1.0);
+        factor = 1.0 / (width.x * width.y * width.z * light_length * light_length * light_length);
     }
-    let width = geometric_widths(shape);
-    let mirror = local_from_world(frame, mirror_world) / width;
-    let light = local_from_world(frame, wi) / width;
-    let mirror_length = length(mirror);
-    let light_length = length(light);
-    let up = vec3f(0.0, 0.0, 1.0);
-    let value = chord_density(
-        shape.curve, shape.table, shape.roughness, mirror_length, up, mirror / mirror_length, light / light_length,
-    );
-    let density = value / (width.x * width.y * width.z * light_length * light_length * light_length);
-    // A mirror has none: there the widths and the lengths measured in them are 0 and infinite.
-    return select(0.0, density, shape.roughness > 0.0);
+    let density = chord_density(shape.curve, shape.table, shape.roughness, stretch, normal, mirror, light) * factor;
+    // A stretched mirror has none: there the widths and the lengths measured in them are 0 and infinite.
+    return select(0.0, density, shape.anisotropy == 0.0 || shape.roughness > 0.0);
 }
 
 fn geometric_weight(shape: LobeShape, frame: Frame, wo: vec3f, wi: vec3f) -> f32 {

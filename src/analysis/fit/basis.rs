@@ -5,8 +5,8 @@
 
 use std::sync::LazyLock;
 
-use crate::analysis::lobe_model::NORMAL;
 use crate::analysis::quadrature::gauss_legendre;
+use crate::optics::lobe::model::NORMAL;
 use crate::optics::vector::Vec3;
 
 /// The rule within a panel.

@@ -8,9 +8,9 @@ use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 
 use super::basis::Hats;
-use crate::analysis::lobe_model::{NORMAL, view_direction};
 use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
 use crate::optics::lobe::Horizon;
+use crate::optics::lobe::model::{NORMAL, view_direction};
 use crate::optics::vector::Vec3;
 use crate::panics::contained;
 

@@ -12,8 +12,8 @@ pub use curve::{CurveFit, CurveTarget, fit_curve};
 pub use merl::{Merl, MerlError};
 pub use roughness::{Nearest, nearest_roughness};
 
-use super::lobe_model::{LobeModel, view_direction};
 use super::sphere_grid::{Profile, Side, SphereGrid};
+use crate::optics::lobe::model::{LobeModel, view_direction};
 use crate::optics::vector::Vec3;
 
 /// What of a lobe is compared.

@@ -1,8 +1,8 @@
 //! The roughness at which a lobe comes closest to a target.
 
 use super::{Measure, total_variation};
-use crate::analysis::lobe_model::{LobeModel, roughness_min};
 use crate::analysis::sphere_grid::Profile;
+use crate::optics::lobe::model::{LobeModel, roughness_min};
 
 /// A roughness and how far the lobe then is from the target.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -11,8 +11,10 @@ use crate::app::kit::charts::{short, still};
 use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, Name};
 use crate::app::kit::words::short_number;
+use crate::document::match_look::lobe_of_material;
 use crate::job::scatter::ScatterRequest;
 use crate::optics::lobe::Horizon;
+use crate::optics::lobe::model::LobeModel;
 use crate::optics::vector::Vec3;
 use crate::render::EngineChoice;
 use crate::render::samples::{SampleQuery, SampleReport, SampleWorker, spawn_samples};
@@ -123,23 +125,15 @@ impl Panel for SamplesPanel {
 fn query(state: &SamplesPanel, desk: &Desk<'_>) -> Option<SampleQuery> {
     let engine = desk.snapshot.engine.as_ref()?;
     let material = desk.material();
-    let is_custom = material.lobe.has_curves() && material.curve.has_table();
+    let mut model = LobeModel {
+        rotation_rad: 0.0,
+        ..lobe_of_material(&material)
+    };
+    if !model.lobe.is_anisotropic() {
+        model.anisotropy = 0.0;
+    }
     let request = ScatterRequest {
-        lobe: material.lobe,
-        curve: material.curve,
-        horizon: material.horizon,
-        roughness: material.roughness,
-        anisotropy: if material.lobe.is_anisotropic() {
-            material.anisotropy
-        } else {
-            0.0
-        },
-        eta: 0.0,
-        table: if is_custom {
-            material.custom_curve.table()
-        } else {
-            Vec::new()
-        },
+        model,
         view_angle_deg: desk.shared.view_angle_deg,
         count: state.count.unwrap_or(COUNTS[1].0),
         seed: desk.document.render.seed,
@@ -286,8 +280,8 @@ fn marks(ui: &Ui, rect: Rect, drawn: &Drawn) {
     };
     match drawn.look {
         Look::Mirror | Look::Angle => {
-            if request.lobe.has_curves() {
-                painter.circle_stroke(rect.center(), scale * request.roughness, stroke);
+            if request.model.lobe.has_curves() {
+                painter.circle_stroke(rect.center(), scale * request.model.roughness as f32, stroke);
             }
             letter(rect.center(), "r");
         }
@@ -366,7 +360,7 @@ fn numbers(ui: &mut Ui, report: &SampleReport) {
         text += &format!(", {:.1} % absorbed", 100.0 * share);
     }
     ui.label(text);
-    let what = match request.horizon {
+    let what = match request.model.horizon {
         Horizon::Mirror => "mirrored at the surface",
         Horizon::Absorb => "absorbed",
         Horizon::None => "kept",

@@ -4,10 +4,10 @@
 use std::sync::Arc;
 
 use crate::analysis::difference::difference;
-use crate::analysis::lobe_model::LobeModel;
 use crate::document::match_look::{lobe_of_material, matched_lobe};
 use crate::document::{Document, MaterialSettings};
 use crate::optics::lobe::Lobe;
+use crate::optics::lobe::model::LobeModel;
 use crate::render::EngineKind;
 use crate::render::background::{self, Background};
 use crate::render::worker::{Picture, Snapshot, Worker};

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 use std::sync::LazyLock;
 
-use super::{Kind, Parameter, Stage, Value, choices};
+use super::{Kind, Parameter, RowStyle, Stage, Value, choices};
 use crate::document::{
     Background, Denoise, DenoiseWhen, Document, GroundKind, LightPaths, PixelFilter, Strategy, range,
 };

@@ -6,6 +6,8 @@
 //!
 //! To add a lobe: one Rust file with its [`LobeTraits`], one WGSL file of the same name, one line in the registry below.
 
+pub mod model;
+
 use super::curve::Curve;
 use super::frame::Frame;
 use super::numeric::normalize_or;

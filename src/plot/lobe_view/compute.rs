@@ -3,9 +3,9 @@
 use rayon::prelude::*;
 
 use super::{Axis, DiscMap, LinePlot, LobeView, MapPlot, Series, Solid, SolidPlot, ViewKind};
-use crate::analysis::lobe_model::{LobeModel, view_direction};
 use crate::analysis::sphere_grid::{Side, SphereGrid, rings};
 use crate::optics::curve::{curve_density, curve_distance_max};
+use crate::optics::lobe::model::{LobeModel, view_direction};
 use crate::optics::vector::{Vec3, vec3};
 
 /// Pixels along a side of a map.

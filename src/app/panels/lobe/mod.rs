@@ -12,12 +12,12 @@ use line_plot::{line_plot, plot_height};
 use matching::MatchState;
 
 use super::Panel;
-use crate::analysis::lobe_model::LobeModel;
 use crate::app::desk::Desk;
 use crate::app::kit::widgets::{self, Name, NumberStyle};
 use crate::document::match_look::lobe_of_material;
 use crate::optics::curve::Curve;
 use crate::optics::lobe::Lobe;
+use crate::optics::lobe::model::LobeModel;
 use crate::plot::lobe_view::{LinePlot, LobeView, MapPlot, SolidPlot, ViewKind, lobe_view};
 use crate::plot::lobe_view_picture;
 use crate::render::background::Background;

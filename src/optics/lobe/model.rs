@@ -1,12 +1,12 @@
-//! A lobe with all its settings in f64: what fits and views compare.
+//! A lobe with all its settings: what is sampled, fitted, drawn and compared.
 
+use super::{ALPHA_MIN, Horizon, Lobe, LobeShape, MIRROR_WIDTH, Width, lobe_evaluate, raw_density};
 use crate::optics::curve::Curve;
 use crate::optics::frame::{Frame, frame_from_tangent};
-use crate::optics::lobe::{ALPHA_MIN, Horizon, Lobe, LobeShape, MIRROR_WIDTH, Width, lobe_evaluate, raw_density};
+use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
-/// A lobe with its settings. Directions are in the frame with the normal +z and the view in the half plane x ≤ 0, as in
-/// [`crate::job::scatter`].
+/// A lobe with its settings. Directions are in the frame with the normal +z and the view in the half plane x ≤ 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LobeModel {
     /// Name in legends and columns.
@@ -60,15 +60,15 @@ impl LobeModel {
         }
     }
 
-    /// As the optics take it.
-    pub fn shape(&self) -> LobeShape<'_, f64> {
+    /// As the optics take it, in a precision.
+    pub fn shape<T: Real>(&self) -> LobeShape<'_, T> {
         LobeShape {
             lobe: self.lobe,
             curve: self.curve,
             horizon: self.horizon,
-            roughness: self.roughness,
-            anisotropy: self.anisotropy,
-            eta: self.eta,
+            roughness: T::from_f64(self.roughness),
+            anisotropy: T::from_f64(self.anisotropy),
+            eta: T::from_f64(self.eta),
             table: &self.table,
         }
     }
