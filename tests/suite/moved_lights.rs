@@ -59,7 +59,7 @@ fn all_light_falls_on_the_same_triangles() {
     assert!(geometries[4].is_convex && !geometries[3].is_convex);
 }
 
-/// Both where the model is in buffers, and where it is in textures.
+/// Both where the model is in buffers, and where it is in textures; only scenes that have the same kernel.
 #[test]
 fn lights_move_on_the_gpu_as_if_they_had_been_there() {
     for binding_bytes in [u64::MAX, 100 << 10] {
@@ -69,10 +69,13 @@ fn lights_move_on_the_gpu_as_if_they_had_been_there() {
             session
         };
         let mut moved = open();
-        for (index, document) in lit().iter().enumerate() {
+        let lit = lit()
+            .into_iter()
+            .filter(|document| !document.lighting.area_lights.is_empty());
+        for (index, document) in lit.enumerate() {
             let mut fresh = open();
             let [moved, fresh] = [&mut moved, &mut fresh].map(|session| {
-                submitted(session, document);
+                submitted(session, &document);
                 render(session);
                 session.image().expect("it is done")
             });
