@@ -114,14 +114,10 @@ pub struct PixelStatistics {
     pub clamped: f32,
 }
 
-/// Nodes of the hierarchies of the model and of what is around it.
-pub fn node_counts(geometry: &Geometry) -> [u32; 2] {
-    geometry.parts().map(|(part, _)| part.compressed().nodes.len() as u32)
-}
-
-/// See [`Globals::around_root`].
-pub fn around_root([model, around]: [u32; 2]) -> u32 {
-    if around == 0 { 0 } else { model }
+/// [`Globals::node_count`] and [`Globals::around_root`].
+pub fn hierarchies(geometry: &Geometry) -> [u32; 2] {
+    let [model, around] = geometry.parts().map(|(part, _)| part.compressed().nodes.len() as u32);
+    [model + around, if around == 0 { 0 } else { model }]
 }
 
 impl Globals {
@@ -133,7 +129,7 @@ impl Globals {
             BackgroundKind::Color(color) => (BACKGROUND_COLOR, color),
             BackgroundKind::Blurred(sine) => (BACKGROUND_BLURRED, [sine as f32, 0.0, 0.0]),
         };
-        let nodes = node_counts(geometry);
+        let [node_count, around_root] = hierarchies(geometry);
         let [catcher_slot, catcher_reflection_slot, catcher_table] =
             settings.catcher.map_or([u32::MAX, u32::MAX, 0], |catcher| {
                 [catcher.slot, catcher.reflection_slot, catcher.table]
@@ -150,7 +146,7 @@ impl Globals {
             environment_strength: settings.environment_strength as f32,
             strategy: settings.strategy as u32,
             seed: settings.seed,
-            node_count: nodes.iter().sum(),
+            node_count,
             light_cells_size: settings.light_choice.cells_size,
             environment_probability: settings.light_choice.environment_probability as f32,
             density_per_luminance: settings.light_choice.density_per_luminance as f32,
@@ -159,7 +155,7 @@ impl Globals {
             catcher_reflection_slot,
             catcher_table,
             least_reflections: settings.least_reflections,
-            around_root: around_root(nodes),
+            around_root,
             unused_2: 0,
             unused_3: 0,
         }

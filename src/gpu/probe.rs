@@ -95,10 +95,10 @@ impl Probe {
         if let Some(geometry) = scene.geometry {
             group.geometry = GeometryArrays::new(gpu, geometry)?;
         }
-        let nodes = scene.geometry.map_or([0; 2], layout::node_counts);
+        let [node_count, around_root] = scene.geometry.map_or([0; 2], layout::hierarchies);
         let globals = gpu.uniforms(&Globals {
-            node_count: nodes.iter().sum(),
-            around_root: layout::around_root(nodes),
+            node_count,
+            around_root,
             ..Globals::zeroed()
         });
         let bound = group.bind(gpu, &self.groups[0], &globals);

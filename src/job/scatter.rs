@@ -2,7 +2,7 @@
 
 use crate::optics::frame::Frame;
 use crate::optics::lobe::lobe_middle;
-use crate::optics::lobe::model::LobeModel;
+use crate::optics::lobe::model::{LobeModel, view_direction};
 use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
@@ -23,8 +23,7 @@ pub struct ScatterRequest {
 impl ScatterRequest {
     /// Towards the viewer.
     pub fn wo<T: Real>(&self) -> Vec3<T> {
-        let angle_rad = f64::from(self.view_angle_deg).to_radians();
-        Vec3::from_f64([-angle_rad.sin(), 0.0, angle_rad.cos()])
+        Vec3::from_f64(view_direction(f64::from(self.view_angle_deg).to_radians()).to_f64())
     }
 
     /// The middle of the lobe: the mirror direction, or the refracted one.

@@ -288,16 +288,15 @@ impl Kept {
             return Ok(geometry);
         }
         let (of_model, ground, area_lights, hidden) = &key;
-        let model = self.model(of_model, loading)?;
         let is_of_same = |(of, _, _, without): &GeometryKey| of == of_model && without == hidden;
-        let alike = self.geometries.find(is_of_same);
-        let geometry = match alike {
-            Some(alike) => alike.surrounded(*ground, area_lights),
-            None => Geometry::of_model(&model, hidden, loading)
-                .map_err(ModelError::from)?
-                .surrounded(*ground, area_lights),
+        let alike = match self.geometries.find(is_of_same) {
+            Some(alike) => alike,
+            None => {
+                let model = self.model(of_model, loading)?;
+                Arc::new(Geometry::of_model(&model, hidden, loading).map_err(ModelError::from)?)
+            }
         };
-        let geometry = Arc::new(geometry);
+        let geometry = Arc::new(alike.surrounded(*ground, area_lights));
         let others = |(of, ..): &GeometryKey| of == of_model;
         while self.geometries.count(others) >= GEOMETRIES_OF_MODEL {
             self.geometries.drop_oldest(others);

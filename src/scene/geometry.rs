@@ -7,8 +7,9 @@ use fearless_simd::Level;
 use glam::{DVec3, Vec3A};
 use rayon::prelude::*;
 
+use super::convex::is_convex;
 use super::ground::Ground;
-use super::hierarchy::{Found, PACKET, Packet};
+use super::hierarchy::{Found, PACKET, Packet, Wide};
 use super::intersect::{Hit, RayFrame};
 use super::light::AreaShape;
 use super::loading::{Cancelled, Loading};
@@ -39,8 +40,8 @@ pub struct Geometry {
     pub around: Part,
     /// Slots of the model.
     model_slots: u32,
-    /// No ray that leaves a face on its outside meets anything: the scene is one convex body.
-    pub is_convex: bool,
+    /// The model is one convex body.
+    model_is_convex: bool,
     /// The middle of the model's bounding box in the world.
     pub center_world: DVec3,
     /// The model's bounding radius in the world: from that middle to the farthest vertex of a triangle; 1 where there
@@ -58,17 +59,12 @@ impl Geometry {
     /// Makes a model ready to trace; a ground touches its lowest point, in the slot after the model's (see
     /// [`Geometry::ground_slot`]).
     pub fn build(model: &Model, ground: impl Into<Ground>) -> Self {
-        Self::build_lit(model, ground, &[], &[])
+        let alone = Self::of_model(model, &[], &Loading::default()).expect("nobody cancels it");
+        alone.surrounded(ground, &[])
     }
 
-    /// The same with area lights, each in a slot of its own after the model's and the ground's, and without the objects
-    /// whose numbers are hidden: place and scale stay those of the whole model.
-    pub fn build_lit(model: &Model, ground: impl Into<Ground>, area_lights: &[AreaShape], hidden: &[usize]) -> Self {
-        let alone = Self::of_model(model, hidden, &Loading::default()).expect("nobody cancels it");
-        alone.surrounded(ground, area_lights)
-    }
-
-    /// A model with nothing around it, for those who wait.
+    /// A model with nothing around it, for those who wait, without the objects whose numbers are hidden: place and scale stay
+    /// those of the whole model.
     ///
     /// # Errors
     /// Where it was cancelled.
@@ -98,7 +94,7 @@ impl Geometry {
         };
         part.build(loading)?;
         Ok(Self {
-            is_convex: part.is_convex,
+            model_is_convex: is_convex(&part.positions, &part.triangles),
             model: Arc::new(part),
             around: Part::default(),
             model_slots: model.slots.len() as u32,
@@ -110,8 +106,8 @@ impl Geometry {
         })
     }
 
-    /// The same model on another ground and with other area lights: shares the model's triangles, and builds what is around
-    /// it.
+    /// The same model on another ground and with other area lights, each in a slot of its own: shares the model's triangles,
+    /// and builds what is around it.
     pub fn surrounded(&self, ground: impl Into<Ground>, area_lights: &[AreaShape]) -> Self {
         let mut around = Part::default();
         let ground = ground.into().mesh(self.ground_height(), self.model_slots);
@@ -127,10 +123,14 @@ impl Geometry {
         around.build(&Loading::default()).expect("nobody cancels it");
         Self {
             model: self.model.clone(),
-            is_convex: self.model.is_convex && around.is_empty(),
             around,
             ..*self
         }
+    }
+
+    /// No ray that leaves a face on its outside meets anything: the scene is one convex body.
+    pub fn is_convex(&self) -> bool {
+        self.model_is_convex && self.around.is_empty()
     }
 
     /// How many triangles there are.
@@ -242,7 +242,8 @@ impl Geometry {
 
     /// What each ray of a packet meets, as [`Geometry::intersect`] says, the instructions forced by `level`.
     pub fn intersect_packet(&self, level: Level, packet: &Packet) -> [Option<Hit>; PACKET] {
-        let Some(Found { t, marks }) = self.nearest_of(level, packet) else {
+        let Some(Found { t, marks }) = self.packet_through(packet, |wide, packet| wide.nearest_of(level, packet))
+        else {
             let alone =
                 |lane| self.intersect_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]);
             return std::array::from_fn(alone);
@@ -254,15 +255,18 @@ impl Geometry {
         })
     }
 
-    /// The nearest triangles along the rays of a packet; `None` where these do not go the same way.
-    fn nearest_of(&self, level: Level, packet: &Packet) -> Option<Found> {
-        let mut found = self.model.wide().nearest_of(level, packet)?;
+    /// What the rays of a packet meet of both parts by a way of tracing one; `None` where they do not go the same way.
+    #[inline(always)]
+    fn packet_through(&self, packet: &Packet, trace: impl Fn(&Wide, &Packet) -> Option<Found>) -> Option<Found> {
+        let mut found = trace(self.model.wide(), packet)?;
         if !self.around.is_empty() {
+            // No farther than what was met; where any triangle would do, what has met one goes nowhere: its distance is
+            // negative.
             let packet = Packet {
                 t_max: found.t,
                 ..*packet
             };
-            let around = self.around.wide().nearest_of(level, &packet)?;
+            let around = trace(self.around.wide(), &packet)?;
             found.take(&around, self.model.triangles.len() as u32);
         }
         Some(found)
@@ -270,26 +274,11 @@ impl Geometry {
 
     /// Whether any triangle is met on each ray of a packet, as [`Geometry::occluded`] says.
     pub fn occluded_packet(&self, level: Level, packet: &Packet) -> [bool; PACKET] {
-        let Some(Found { marks, .. }) = self.any_of(level, packet) else {
+        let Some(Found { marks, .. }) = self.packet_through(packet, |wide, packet| wide.any_of(level, packet)) else {
             let alone = |lane| self.occluded_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]);
             return std::array::from_fn(alone);
         };
         marks.map(|mark| mark != 0)
-    }
-
-    /// Some triangles along the rays of a packet; `None` where these do not go the same way.
-    fn any_of(&self, level: Level, packet: &Packet) -> Option<Found> {
-        let mut found = self.model.wide().any_of(level, packet)?;
-        if !self.around.is_empty() {
-            // What has met something goes no farther: its distance is negative.
-            let packet = Packet {
-                t_max: found.t,
-                ..*packet
-            };
-            let around = self.around.wide().any_of(level, &packet)?;
-            found.take(&around, self.model.triangles.len() as u32);
-        }
-        Some(found)
     }
 
     /// Has the processor fetch what shading a triangle looks up.

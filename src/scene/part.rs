@@ -4,7 +4,6 @@ use bytemuck::{Pod, Zeroable};
 use fearless_simd::Level;
 use glam::DVec3;
 
-use super::convex::is_convex;
 use super::hierarchy::{Compressed, Hierarchy, Wide};
 use super::intersect::RayFrame;
 use super::loading::{Cancelled, Loading};
@@ -59,8 +58,6 @@ pub struct Part {
     pub slots: Vec<u32>,
     /// The model's object that each triangle belongs to; [`NO_OBJECT`](super::NO_OBJECT) for what is none of the model's.
     pub objects: Vec<u32>,
-    /// No ray that leaves a face on its outside meets anything: they are one convex body.
-    pub is_convex: bool,
     /// How rays find them.
     hierarchy: Hierarchy,
 }
@@ -72,7 +69,6 @@ impl Part {
         let (hierarchy, order) = Hierarchy::new(self.triangles.len(), corners, loading)?;
         self.hierarchy = hierarchy;
         self.sort(&order);
-        self.is_convex = is_convex(&self.positions, &self.triangles);
         Ok(())
     }
 

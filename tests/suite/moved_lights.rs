@@ -56,7 +56,7 @@ fn all_light_falls_on_the_same_triangles() {
     assert_eq!(around[0], around[1]);
     assert!(around[2] > around[0] && around[0] > around[3] && around[3] > 0);
     assert_eq!(around[4], 0);
-    assert!(geometries[4].is_convex && !geometries[3].is_convex);
+    assert!(geometries[4].is_convex() && !geometries[3].is_convex());
 }
 
 /// Both where the model is in buffers, and where it is in textures; only scenes that have the same kernel.

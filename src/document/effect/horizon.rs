@@ -51,7 +51,7 @@ fn stays_above(facts: &Facts<'_>) -> bool {
             && !material.transmits()
     };
     let camera = &facts.settings.camera;
-    if !facts.geometry.is_convex || camera.lens_radius > 0.0 || !facts.reflecting().all(|m| is_bounded(&m)) {
+    if !facts.geometry.is_convex() || camera.lens_radius > 0.0 || !facts.reflecting().all(|m| is_bounded(&m)) {
         return false;
     }
     let roughest = facts.reflecting().map(|m| f64::from(m.roughness)).fold(0.0, f64::max);

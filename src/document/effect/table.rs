@@ -136,7 +136,7 @@ pub static EFFECTS: &[Effect] = &[
         label: "Shadows and interreflection",
         help: "Rays that leave a surface and may meet another one.",
         decide: |facts| {
-            if facts.geometry.is_convex {
+            if facts.geometry.is_convex() {
                 Decision::off("the scene is one convex body: what leaves its outside meets nothing")
             } else if facts.settings.bounces <= 1 {
                 Decision::on("paths end at the first surface, but shadows are cast")
