@@ -6,8 +6,10 @@ use egui_plot::{AxisHints, GridInput, GridMark, Plot};
 
 use crate::app::kit::words::{duration, percent_short};
 
-/// The share of an axis at either end in which there are no labels: half of a label in a small chart.
+/// The share of an axis at either end in which there are no labels: half of a label's height in a small chart.
 const LABEL_GAP: f64 = 0.05;
+/// Half of a character's width as a share of a small chart's.
+const HALF_CHARACTER: f64 = 0.0135;
 /// Least distances between two labels of an axis, points. What is not drawn in full is not drawn at all: egui's own labels
 /// fade where they come near to each other, until nobody can read them.
 const LABEL_SPACING: [f32; 2] = [36.0, 19.0];
@@ -18,7 +20,10 @@ const MARGIN: [f32; 2] = [0.07, 0.07];
 pub(in crate::app) fn still<'a>(name: &str, height: f32, in_words: [fn(f64) -> String; 2]) -> Plot<'a> {
     let formatter = |axis: usize| {
         move |mark: GridMark, range: &RangeInclusive<f64>| {
-            label_within(mark.value, range, || in_words[axis](mark.value))
+            let label = in_words[axis](mark.value);
+            let length = if axis == 0 { label.chars().count() } else { 0 };
+            let fits = is_within(mark.value, range, length);
+            if fits { label } else { String::new() }
         }
     };
     let spacing = |axis: usize| egui::Rangef::new(LABEL_SPACING[axis] - 0.5, LABEL_SPACING[axis]);
@@ -60,14 +65,10 @@ pub(in crate::app) fn short(value: f64) -> String {
     }
 }
 
-/// A mark's label, unless it is so near an end of the axis that it would be drawn over what stands beside the chart.
-fn label_within(value: f64, range: &RangeInclusive<f64>, label: impl FnOnce() -> String) -> String {
-    let gap = LABEL_GAP * (range.end() - range.start());
-    if (range.start() + gap..=range.end() - gap).contains(&value) {
-        label()
-    } else {
-        String::new()
-    }
+/// Whether a label with as many characters along its axis stays within the chart, as beside it there stands something else.
+fn is_within(value: f64, range: &RangeInclusive<f64>, characters: usize) -> bool {
+    let gap = LABEL_GAP.max(HALF_CHARACTER * characters as f64) * (range.end() - range.start());
+    (range.start() + gap..=range.end() - gap).contains(&value)
 }
 
 /// A line for each power of ten, fainter ones for its 2 and 5: those that lie in the chart, as labels of others would be
@@ -99,9 +100,11 @@ mod tests {
             for mark in &marks {
                 assert!(range.contains(&mark.value), "{mark:?} beside {bounds:?}");
             }
-            let label = |value| label_within(value, &range, || "label".to_owned());
-            assert_eq!(label(0.5 * (bounds.0 + bounds.1)), "label");
-            assert_eq!([label(bounds.0), label(bounds.1)], ["", ""]);
+            let within = |value| is_within(value, &range, 5);
+            assert!(within(0.5 * (bounds.0 + bounds.1)));
+            assert!(!within(bounds.0) && !within(bounds.1));
         }
+        // Wide labels end sooner: 34 points at 14 points from the end of a chart of 265.
+        assert!(is_within(0.947, &(0.0..=1.0), 1) && !is_within(0.947, &(0.0..=1.0), "50 ms".len()));
     }
 }
