@@ -91,6 +91,8 @@ mod import_report;
 mod installed;
 #[path = "suite/killed.rs"]
 mod killed;
+#[path = "suite/lanes.rs"]
+mod lanes;
 #[path = "suite/library.rs"]
 mod library;
 #[path = "suite/light_paths.rs"]

@@ -12,12 +12,14 @@ use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
 
+use crate::instructions;
 use crate::job::Job;
 use crate::job::features::GUIDE_SAMPLES;
 use crate::job::film::Film;
 use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
-use crate::optics::real::Real;
-use integrator::{Integrator, is_sound};
+use crate::optics::lanes::{InLanes, in_lanes};
+use crate::optics::real::{Real, Scalar};
+use integrator::{Integrator, Tile, WAVE_SAMPLES, is_sound};
 
 /// Renders on the processor's cores, which take a tile each at a time.
 #[derive(Default)]
@@ -46,19 +48,33 @@ impl CpuEngine {
         self.job = Some(job);
     }
 
-    /// Renders for about `budget`, at most up to `samples` a pixel; f32.
+    /// Renders for about `budget`, at most up to `samples` a pixel; f32 in lanes.
     pub fn step(&mut self, budget: Duration, samples: u32) {
-        self.step_in::<f32>(budget, samples);
-    }
-
-    /// The same with shading in `T`; rays meet the geometry in f32 in either case.
-    pub fn step_in<T: Real>(&mut self, budget: Duration, samples: u32) {
         let goals = vec![samples; self.schedule.grid().tiles()];
-        self.step_towards::<T>(budget, &goals);
+        self.step_towards(budget, &goals);
     }
 
     /// The same up to a number of samples a pixel for each tile.
-    pub fn step_towards<T: Real>(&mut self, budget: Duration, goals: &[u32]) {
+    pub fn step_towards(&mut self, budget: Duration, goals: &[u32]) {
+        /// The step, to be taken in lanes.
+        struct Step<'a>(&'a mut CpuEngine, Duration, &'a [u32]);
+        impl InLanes for Step<'_> {
+            type Output = ();
+            fn run<T: Real<Scalar = f32>>(self) {
+                self.0.step_towards_in::<T>(self.1, self.2);
+            }
+        }
+        in_lanes(instructions::level(), Step(self, budget, goals));
+    }
+
+    /// Renders as [`CpuEngine::step`] does with shading in `T`; rays meet the geometry in f32 in any case.
+    pub fn step_in<T: Real>(&mut self, budget: Duration, samples: u32) {
+        let goals = vec![samples; self.schedule.grid().tiles()];
+        self.step_towards_in::<T>(budget, &goals);
+    }
+
+    /// The same up to a number of samples a pixel for each tile.
+    pub fn step_towards_in<T: Real>(&mut self, budget: Duration, goals: &[u32]) {
         let Some(job) = self.job.clone() else { return };
         let integrator = Integrator::<T>::new(&job);
         self.schedule.aim(goals);
@@ -131,13 +147,14 @@ impl CpuEngine {
 fn render_tile<T: Real>(integrator: &Integrator<'_, T>, origin: [u32; 2], work: &Work, sums: &mut Film) {
     let mut costs = sums.costs[0];
     let mut halves: Vec<_> = (0..sums.pixel_count()).map(|pixel| sums.halves(pixel)).collect();
-    for sample in work.first_sample..work.first_sample + work.count {
-        let paths = integrator.trace_tile(origin, [sums.width, sums.height], sample);
-        for (pixel, path) in paths.iter().enumerate() {
+    let tile = Tile::new(origin, [sums.width, sums.height]);
+    let end = work.first_sample + work.count;
+    for first in (work.first_sample..end).step_by(WAVE_SAMPLES as usize) {
+        integrator.trace_tile(&tile, [first, WAVE_SAMPLES.min(end - first)], |pixel, sample, path| {
             costs.rays += f64::from(path.rays);
             if !is_sound(path.radiance) {
                 costs.dropped += 1;
-                continue;
+                return;
             }
             halves[pixel][sample as usize % 2].add(path.radiance.to_f64());
             sums.add_coverage(pixel, path.alpha.to_f64());
@@ -147,7 +164,7 @@ fn render_tile<T: Real>(integrator: &Integrator<'_, T>, origin: [u32; 2], work: 
             {
                 guides.add(&path.seen);
             }
-        }
+        });
     }
     for (pixel, halves) in halves.iter().enumerate() {
         sums.set_halves(pixel, halves);

@@ -13,7 +13,7 @@ use crate::optics::fresnel::{fresnel_conductor, fresnel_dielectric};
 use crate::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample};
 use crate::optics::material::{Material, Surface, material_evaluate};
 use crate::optics::random::{Sequence, random_pair_bits, random_state};
-use crate::optics::real::Real;
+use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::Vec3;
 
 fn by_number<E: Copy>(all: &[E], number: u32) -> E {
@@ -77,7 +77,7 @@ pub fn moved_direction<T: Real>(wi: Vec3<T>, moved: [f64; 2]) -> Vec3<T> {
 
 /// A material's evaluate for light from a direction that was drawn with some density, in the precision `T`; the direction
 /// is moved as by [`moved_direction`].
-pub fn probe_material<T: Real>(scene: &ProbeScene<'_>, question: &MaterialQuestion, moved: [f64; 2]) -> Vec3<T> {
+pub fn probe_material<T: Scalar>(scene: &ProbeScene<'_>, question: &MaterialQuestion, moved: [f64; 2]) -> Vec3<T> {
     let q = question;
     let vector = |v: Vec3<f32>| Vec3::<T>::from_f64(v.to_f64());
     let material: Material<T> = scene.materials[q.material as usize].cast();

@@ -4,23 +4,36 @@
 use serde::Serialize;
 
 use crate::optics::material::Layer;
-use crate::optics::real::Real;
+use crate::optics::real::Scalar;
 
 /// What is told of the events of a path, in their order.
 pub trait Recorder {
+    /// Whether anything is kept of the events.
+    const KEEPS: bool;
     /// Takes an event. Making it may cost something: only who keeps it calls for it.
     fn record(&mut self, event: impl FnOnce() -> Event);
 }
 
+impl<R: Recorder> Recorder for &mut R {
+    const KEEPS: bool = R::KEEPS;
+    #[inline(always)]
+    fn record(&mut self, event: impl FnOnce() -> Event) {
+        (**self).record(event);
+    }
+}
+
 /// Keeps nothing.
+#[derive(Clone, Copy)]
 pub struct Unrecorded;
 
 impl Recorder for Unrecorded {
+    const KEEPS: bool = false;
     #[inline(always)]
     fn record(&mut self, _: impl FnOnce() -> Event) {}
 }
 
 impl Recorder for Vec<Event> {
+    const KEEPS: bool = true;
     fn record(&mut self, event: impl FnOnce() -> Event) {
         self.push(event());
     }
@@ -223,6 +236,6 @@ pub enum Event {
 }
 
 /// As f32: exact where the path is traced in it.
-pub(super) fn single<T: Real>(value: T) -> f32 {
+pub(super) fn single<S: Scalar>(value: S) -> f32 {
     value.to_f64() as f32
 }

@@ -29,28 +29,41 @@ pub const ROUGH_ALBEDO_LENGTH: usize = 4 * ROUGHNESS_NODES * ALBEDO_NODES;
 
 /// The specular albedo at a `place` of a table, linear between its nodes: from without the view's cosine, from within
 /// what [`albedo_place`] makes of it.
+#[inline(always)]
 pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> Vec3<T> {
     let last = T::from_f64(ALBEDO_NODES as f64 - 1.0);
     let position = place.clamp(T::zero(), T::one()) * last;
     let low = position.floor().min(last - T::one());
-    let first = albedo_table as usize + 3 * low.to_f64() as usize;
-    let number = |i: usize| T::from_f64(f64::from(tables[i]));
-    let node = |i: usize| vec3(number(i), number(i + 1), number(i + 2));
-    node(first).mix(node(first + 3), position - low)
+    let first = T::from_f64(3.0) * low;
+    let table = &tables[albedo_table as usize..];
+    albedo_node(table, first).mix(albedo_node(&table[3..], first), position - low)
+}
+
+/// The three numbers from a place of a table on.
+#[inline(always)]
+fn albedo_node<T: Real>(table: &[f32], first: T) -> Vec3<T> {
+    vec3(
+        T::look_up(table, first),
+        T::look_up(&table[1..], first),
+        T::look_up(&table[2..], first),
+    )
 }
 
 /// Where in a table a view is found, in [0, 1]. At the critical angle the albedo of a smooth interface rises with a
 /// vertical tangent: below it the nodes are equidistant in the view's cosine, above it in that of the refracted direction.
+#[inline(always)]
 pub fn albedo_place<T: Real>(cosine: T, eta: T) -> T {
     let critical = (-refracted_square(T::zero(), eta)).safe_sqrt();
     let share = T::from_f64(TOTAL_NODES as f64 / (ALBEDO_NODES as f64 - 1.0));
-    if !T::zero().less(critical).any() {
+    let is_total_somewhere = T::zero().less(critical);
+    if !is_total_somewhere.any() {
         return cosine;
     }
     let square = refracted_square(cosine, eta);
     let above = share + (T::one() - share) * (square.safe_sqrt() / eta);
     let below = share * (cosine.max(T::zero()) / critical);
-    T::select(square.less(T::zero()), below, above)
+    let place = T::select(square.less(T::zero()), below, above);
+    T::select(is_total_somewhere, place, cosine)
 }
 
 /// The view's cosine at a node of a table: [`albedo_place`] backwards.
@@ -149,49 +162,64 @@ fn fresnel_basis(terms: &FresnelTerms<f64>, cosine: f64) -> [f64; 4] {
 }
 
 /// A value between the equidistant nodes of a table, the first for 0, the last for 1; linear.
+#[inline(always)]
 pub fn table_lookup<T: Real>(tables: &[f32], table: u32, nodes: usize, place: T) -> T {
     let last = T::from_f64(nodes as f64 - 1.0);
     let position = place.clamp(T::zero(), T::one()) * last;
     let low = position.floor().min(last - T::one());
-    let first = table as usize + low.to_f64() as usize;
-    let [left, right] = [first, first + 1].map(|i| T::from_f64(f64::from(tables[i])));
+    let table = &tables[table as usize..];
+    let (left, right) = (T::look_up(table, low), T::look_up(&table[1..], low));
     left + (right - left) * (position - low)
 }
 
 /// The four integrals at a `place` as in [`albedo_lookup`] and a roughness, linear between the nodes.
+#[inline(always)]
 pub fn rough_albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T, roughness: T) -> [T; 4] {
-    let node = |value: T, nodes: usize| {
-        let last = T::from_f64(nodes as f64 - 1.0);
-        let position = value.clamp(T::zero(), T::one()) * last;
-        let low = position.floor().min(last - T::one());
-        (low.to_f64() as usize, position - low)
-    };
-    let (step, between_steps) = node(roughness, ROUGHNESS_NODES);
-    let (low, between) = node(place, ALBEDO_NODES);
-    let first = albedo_table as usize + 4 * (step * ALBEDO_NODES + low);
-    [0, 1, 2, 3].map(|i| {
-        let number = |offset: usize| T::from_f64(f64::from(tables[first + offset + i]));
-        let mix = |a: T, b: T, t: T| a + (b - a) * t;
-        let row = 4 * ALBEDO_NODES;
-        let smooth = mix(number(0), number(4), between);
-        let rough = mix(number(row), number(row + 4), between);
-        mix(smooth, rough, between_steps)
-    })
+    let [step, between_steps] = node_below(roughness, ROUGHNESS_NODES);
+    let [low, between] = node_below(place, ALBEDO_NODES);
+    let first = T::from_f64(4.0) * (step * T::from_f64(ALBEDO_NODES as f64) + low);
+    let table = &tables[albedo_table as usize..];
+    [
+        between_nodes(table, first, [between, between_steps]),
+        between_nodes(&table[1..], first, [between, between_steps]),
+        between_nodes(&table[2..], first, [between, between_steps]),
+        between_nodes(&table[3..], first, [between, between_steps]),
+    ]
+}
+
+/// The last of the equidistant nodes that is not above a value in [0, 1], and how far the value is beyond it.
+#[inline(always)]
+fn node_below<T: Real>(value: T, nodes: usize) -> [T; 2] {
+    let last = T::from_f64(nodes as f64 - 1.0);
+    let position = value.clamp(T::zero(), T::one()) * last;
+    let low = position.floor().min(last - T::one());
+    [low, position - low]
+}
+
+/// An integral between four nodes of a rough albedo table.
+#[inline(always)]
+fn between_nodes<T: Real>(table: &[f32], first: T, [between, between_steps]: [T; 2]) -> T {
+    let row = &table[4 * ALBEDO_NODES..];
+    let (a, b) = (T::look_up(table, first), T::look_up(&table[4..], first));
+    let (c, d) = (T::look_up(row, first), T::look_up(&row[4..], first));
+    let (smooth, rough) = (a + (b - a) * between, c + (d - c) * between);
+    smooth + (rough - smooth) * between_steps
 }
 
 /// The albedo under a Fresnel factor, from its integrals.
+#[inline(always)]
 pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4]) -> Vec3<T> {
     let [first, constant, grazing, edge] = integrals;
     if matches!(terms.model, Fresnel::None | Fresnel::Conductor) {
         return vec3(first, constant, grazing) * terms.tint * terms.weight;
     }
-    let schlick = |f0: Vec3<T>| f0 * constant + Vec3::splat(grazing);
     let dielectric = if terms.model == Fresnel::Schlick {
-        schlick(terms.tint * fresnel_f0(terms.ior))
+        terms.tint * fresnel_f0(terms.ior) * constant + Vec3::splat(grazing)
     } else {
         terms.tint * first
     };
     let darkening = edge_darkening(terms.metal_f0, terms.edge_tint) * edge;
-    let metal = (schlick(terms.metal_f0) - darkening).map(|x| x.max(T::zero())) * terms.tint;
+    let metal = terms.metal_f0 * constant + Vec3::splat(grazing);
+    let metal = (metal - darkening).at_least_zero() * terms.tint;
     dielectric.mix(metal, terms.metalness) * terms.weight
 }

@@ -11,7 +11,7 @@
 
 use super::curve::{CUSTOM_INTERVALS, Curve, Integral, curve_distance_max, curve_h};
 use super::numeric::log1p;
-use super::real::{Mask, Real};
+use super::real::{Mask, Real, Scalar};
 use super::vector::Vec3;
 
 /// Closest to the mirror direction, in radians, that f32 tells apart: within it a density's peak is cut off.
@@ -80,6 +80,28 @@ struct Chord<T> {
     first: [T; 2],
 }
 
+impl<T: Real> Chord<T> {
+    /// That of one lane.
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> Chord<T::Scalar> {
+        Chord {
+            centre: self.centre.lane(lane),
+            spread: self.spread.lane(lane),
+            product: self.product.lane(lane),
+            nearest: self.nearest.lane(lane),
+            even: [
+                self.even[0].lane(lane),
+                self.even[1].lane(lane),
+                self.even[2].lane(lane),
+            ],
+            odd: [self.odd[0].lane(lane), self.odd[1].lane(lane)],
+            a_root: self.a_root.lane(lane),
+            last: [self.last[0].lane(lane), self.last[1].lane(lane)],
+            first: [self.first[0].lane(lane), self.first[1].lane(lane)],
+        }
+    }
+}
+
 /// The density per steradian for roughness `kappa`: `mirror`, `light` and `normal` unit vectors of the unit ball's frame,
 /// a = (1 − κ) `stretch` × `mirror`. `table` holds the custom curve and is not read for the others.
 pub fn chord_density<T: Real>(
@@ -91,23 +113,53 @@ pub fn chord_density<T: Real>(
     mirror: Vec3<T>,
     light: Vec3<T>,
 ) -> T {
-    let chord = chord_through(curve_distance_max(curve, table), kappa, stretch, normal, mirror, light);
-    let integral = match curve.traits().integral {
-        Integral::Reciprocal => chord_reciprocal_integral(&chord),
-        Integral::PolynomialToZero(_) if chord_range(&chord).less(T::from_f64(SHORT_RANGE)).any() => {
-            chord_quadrature(curve, &GAUSS_6, &chord)
+    T::vectorize(
+        #[inline(always)]
+        || {
+            let reach = curve_distance_max(curve, table);
+            let chord = chord_through(reach, kappa, stretch, normal, mirror, light);
+            // Nothing is met, or nothing ahead: without the test the second would be the rounding of two ends that cancel.
+            let is_met = chord.nearest.less(chord.last[0]) & (-chord.last[1]).less(chord.first[1]);
+            if !is_met.any() {
+                return T::zero();
+            }
+            let integral = chord_integral(curve, table, kappa, &chord);
+            let value = T::from_f64(0.25 * std::f64::consts::FRAC_1_PI) * integral / chord.a_root;
+            T::select(is_met, value.max(T::zero()), T::zero())
+        },
+    )
+}
+
+/// ∫ t² h dv over the chord.
+#[inline(always)]
+fn chord_integral<T: Real>(curve: Curve, table: &[f32], kappa: T, chord: &Chord<T>) -> T {
+    match curve.traits().integral {
+        Integral::Reciprocal => chord_reciprocal_integral(chord),
+        Integral::Polynomial(h) => chord_polynomial_integral(chord, h),
+        Integral::PolynomialToZero(h) => {
+            let is_short = chord_range(chord).less(T::from_f64(SHORT_RANGE));
+            let mut integral = T::zero();
+            if is_short.any() {
+                integral = chord_quadrature(curve, &GAUSS_6, chord);
+            }
+            if is_short.all() {
+                return integral;
+            }
+            T::select(is_short, integral, chord_polynomial_integral(chord, h))
         }
-        Integral::Polynomial(h) | Integral::PolynomialToZero(h) => {
-            chord_polynomial_integral(&chord, h.map(T::from_f64))
+        Integral::Quadrature => {
+            let is_long = T::from_f64(SHORT_RULE_ROUGHNESS).less(kappa);
+            let mut integral = T::zero();
+            if is_long.any() {
+                integral = chord_quadrature(curve, &GAUSS_20, chord);
+            }
+            if is_long.all() {
+                return integral;
+            }
+            T::select(is_long, integral, chord_quadrature(curve, &GAUSS_12, chord))
         }
-        Integral::Quadrature if kappa.to_f64() <= SHORT_RULE_ROUGHNESS => chord_quadrature(curve, &GAUSS_12, &chord),
-        Integral::Quadrature => chord_quadrature(curve, &GAUSS_20, &chord),
-        Integral::Table => chord_table_integral(table, chord),
-    };
-    let value = T::from_f64(0.25 * std::f64::consts::FRAC_1_PI) * integral / chord.a_root;
-    // Nothing is met, or nothing ahead: without the test the second would be the rounding of two ends that cancel.
-    let is_met = chord.nearest.less(chord.last[0]) & (-chord.last[1]).less(chord.first[1]);
-    T::select(is_met, value.max(T::zero()), T::zero())
+        Integral::Table => T::from_lanes(|lane| chord_table_integral(table, chord.lane(lane))),
+    }
 }
 
 /// The chord's geometry, written with the part of a that is perpendicular to ω, so that nothing cancels where the lobe is
@@ -139,16 +191,13 @@ fn chord_through<T: Real>(
     let is_left = centre.less(T::zero());
     let larger = spread + centre.abs();
     let nearest = T::select(is_left, product / larger, larger);
-    let half_chord = |distance: T| {
-        let x = distance - nearest;
-        (x * (x + c(2.0) * spread)).safe_sqrt()
-    };
     // The sphere through the surface point: k D² − 2κ (n·a) D − |a|² = 0, 1 − κ divided out.
     let tilt = kappa * normal.dot(mirror);
     let root = (tilt * tilt + k).safe_sqrt();
     let through = T::select(tilt.less(T::zero()), k / (root + tilt.abs()), root + tilt);
     let start = (stretch * through / (T::one() + kappa)).max(nearest).min(reach);
-    let last = half_chord(reach);
+    let beyond = reach - nearest;
+    let last = (beyond * (beyond + c(2.0) * spread)).safe_sqrt();
     Chord {
         centre,
         spread,
@@ -189,9 +238,9 @@ fn chord_reciprocal_integral<T: Real>(chord: &Chord<T>) -> T {
     let ([last, w_last], [first, w_first]) = (chord.last, chord.first);
     let product_root = chord.product.sqrt();
     // ∫ dv/D is the angle with the tangent y/x, doubled, over √product; the angles of both ends added.
-    let leg = |end: T| chord.nearest * (end - chord.nearest + T::from_f64(2.0) * chord.spread);
-    let (x1, y1) = (leg(last), product_root * w_last);
-    let (x0, y0) = (leg(first), product_root * w_first);
+    let double = T::from_f64(2.0) * chord.spread;
+    let (x1, y1) = (chord.nearest * (last - chord.nearest + double), product_root * w_last);
+    let (x0, y0) = (chord.nearest * (first - chord.nearest + double), product_root * w_first);
     let angle = (y1 * x0 + y0 * x1).atan2(x1 * x0 - y1 * y0);
     let inverse = T::from_f64(2.0) * angle / product_root;
     let zeroth = chord_range(chord);
@@ -205,7 +254,7 @@ fn chord_reciprocal_integral<T: Real>(chord: &Chord<T>) -> T {
 
 /// ∫ t² h dv for h = h₀ + h₁ D + h₂ D².
 #[inline(always)]
-fn chord_polynomial_integral<T: Real>(chord: &Chord<T>, h: [T; 3]) -> T {
+fn chord_polynomial_integral<T: Real>(chord: &Chord<T>, h: [f64; 3]) -> T {
     let c = T::from_f64;
     let ([last, w_last], [first, w_first]) = (chord.last, chord.first);
     let (centre, product) = (chord.centre, chord.product);
@@ -223,26 +272,28 @@ fn chord_polynomial_integral<T: Real>(chord: &Chord<T>, h: [T; 3]) -> T {
     let d2 = c(0.5) * (last2 - first2);
     let d3 = c(1.0 / 3.0) * (last2 * last - first2 * first);
     let d4 = c(0.25) * (last2 * last2 - first2 * first2);
-    h[0] * chord_weighed(chord, [i0, i1, i2], [d1, d2])
-        + h[1] * chord_weighed(chord, [i1, i2, i3], [d2, d3])
-        + h[2] * chord_weighed(chord, [i2, i3, i4], [d3, d4])
+    c(h[0]) * chord_weighed(chord, [i0, i1, i2], [d1, d2])
+        + c(h[1]) * chord_weighed(chord, [i1, i2, i3], [d2, d3])
+        + c(h[2]) * chord_weighed(chord, [i2, i3, i4], [d3, d4])
 }
 
 /// ∫ t² h dv by Gauss–Legendre in v, for curves without a closed form, or where it cancels.
+#[inline(always)]
 fn chord_quadrature<T: Real>(curve: Curve, rule: &[[f64; 2]], chord: &Chord<T>) -> T {
     let half = T::from_f64(0.5);
     let mu = half * chord.odd[0] / chord.a_root;
     let range_max = T::from_f64(RANGE_MAX[0]) + T::from_f64(RANGE_MAX[1]) * mu.max(T::zero());
     let half_range = half * chord_range(chord).min(range_max);
     let middle = (T::one() + chord_growth(chord, chord.last)) * (-half_range).exp();
+    let mut sum = T::zero();
     // The nodes' exponentials come in pairs, e^(m + d) and e^(m − d).
-    let pair = |sum: T, &[node, weight]: &[f64; 2]| {
+    for &[node, weight] in rule {
         let factor = (half_range * T::from_f64(node)).exp();
-        let values =
-            chord_integrand(curve, chord, mu, middle * factor) + chord_integrand(curve, chord, mu, middle / factor);
-        sum + values * T::from_f64(weight)
-    };
-    rule.iter().fold(T::zero(), pair) * half_range
+        let (more, less) = (middle * factor, middle / factor);
+        let values = chord_integrand(curve, chord, mu, more) + chord_integrand(curve, chord, mu, less);
+        sum += values * T::from_f64(weight);
+    }
+    sum * half_range
 }
 
 /// t² h at e^v.
@@ -257,7 +308,7 @@ fn chord_integrand<T: Real>(curve: Curve, chord: &Chord<T>, mu: T, exp_v: T) -> 
 }
 
 /// ∫ t² h dv for a custom curve: D's density is linear in each interval of its table.
-fn chord_table_integral<T: Real>(table: &[f32], chord: Chord<T>) -> T {
+fn chord_table_integral<T: Scalar>(table: &[f32], chord: Chord<T>) -> T {
     let chord = &chord;
     let ([last, _], [first, w_first]) = (chord.last, chord.first);
     let mut sum = T::zero();
@@ -274,7 +325,7 @@ fn chord_table_integral<T: Real>(table: &[f32], chord: Chord<T>) -> T {
 
 /// The part of [`chord_table_integral`] on one side of the chord's middle, from the end `from` (D and W) to the distance
 /// `to`, with `odd` times what is odd in W.
-fn chord_table_section<T: Real>(table: &[f32], chord: &Chord<T>, from: [T; 2], to: T, odd: T) -> T {
+fn chord_table_section<T: Scalar>(table: &[f32], chord: &Chord<T>, from: [T; 2], to: T, odd: T) -> T {
     let c = T::from_f64;
     let number = |i: usize| c(f64::from(table[i]));
     let width = chord.last[0] * c(1.0 / CUSTOM_INTERVALS as f64);

@@ -18,8 +18,8 @@ use super::vector::Vec3;
 impl<T: Real> Material<T> {
     /// True where this side of the surface has a coat.
     #[inline(always)]
-    pub fn has_coat(&self, surface: &Surface<T>) -> bool {
-        self.coat_weight.to_f64() > 0.0 && !(surface.is_inside && self.transmits())
+    pub fn has_coat(&self, surface: &Surface<T>) -> T::Mask {
+        T::zero().less(self.coat_weight) & !(surface.is_inside & self.transmits())
     }
 }
 
@@ -38,25 +38,32 @@ pub fn coat_shape<T: Real>(material: &Material<T>) -> LobeShape<'static, T> {
 }
 
 /// What the coat reflects of this view, in [0, 1].
+#[inline(always)]
 pub fn coat_share<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> T {
-    if !material.has_coat(surface) {
+    let has_coat = material.has_coat(surface);
+    if !has_coat.any() {
         return T::zero();
     }
     let cosine = surface.coat_normal.dot(surface.wo);
-    material.coat_weight * albedo_lookup(tables, material.coat_table, cosine).x
+    let share = material.coat_weight * albedo_lookup(tables, material.coat_table, cosine).x;
+    T::select(has_coat, share, T::zero())
 }
 
 /// What a coat that reflects `share` leaves of the light that the layers below it reflect.
+#[inline(always)]
 pub fn coat_transmittance<T: Real>(material: &Material<T>, surface: &Surface<T>, share: T) -> Vec3<T> {
     let white = Vec3::splat(T::one());
-    if !material.has_coat(surface) {
+    let has_coat = material.has_coat(surface);
+    if !has_coat.any() {
         return white;
     }
-    white.mix(material.coat_color, material.coat_weight) * (T::one() - share).max(T::zero())
+    let left = white.mix(material.coat_color, material.coat_weight) * (T::one() - share).max(T::zero());
+    Vec3::select(has_coat, left, white)
 }
 
 /// How often the coat is sampled where it reflects `share` and what is below would reflect `below`: as [`sampled_share`]
 /// says; always where there is nothing below.
+#[inline(always)]
 pub fn coat_probability<T: Real>(share: T, below: T) -> T {
     let (zero, one) = (T::zero(), T::one());
     let rest = (one - share) * below;
@@ -72,6 +79,7 @@ fn coat_fresnel<T: Real>(material: &Material<T>, wo: Vec3<T>, wi: Vec3<T>) -> T 
 }
 
 /// Draws a direction from the coat, which was chosen with this probability.
+#[inline(always)]
 pub fn coat_sample<T: Real>(
     material: &Material<T>,
     surface: &Surface<T>,
@@ -82,12 +90,12 @@ pub fn coat_sample<T: Real>(
     let shape = coat_shape(material);
     let frame = frame_from_normal(surface.coat_normal);
     let drawn = lobe_sample(&shape, &frame, surface.normal, surface.wo, xi);
-    let is_mirror = is_mirror(&shape).any();
-    let density = if wants_density && !is_mirror {
-        probability * lobe_evaluate(&shape, &frame, surface.normal, surface.wo, drawn.wi)[1]
-    } else {
-        T::zero()
-    };
+    let is_mirror = is_mirror(&shape);
+    let mut density = T::zero();
+    if wants_density && !is_mirror.all() {
+        let [_, of_shape] = lobe_evaluate(&shape, &frame, surface.normal, surface.wo, drawn.wi);
+        density = T::select(is_mirror, T::zero(), probability * of_shape);
+    }
     let reflected = coat_fresnel(material, surface.wo, drawn.wi);
     MaterialSample {
         wi: drawn.wi,
@@ -99,12 +107,18 @@ pub fn coat_sample<T: Real>(
 }
 
 /// (evaluate, density) of the coat for a direction; both 0 where it is weighed as a mirror.
+#[inline(always)]
 pub fn coat_evaluate<T: Real>(material: &Material<T>, surface: &Surface<T>, wi: Vec3<T>) -> [T; 2] {
     let shape = coat_shape(material);
-    if is_mirror(&shape).any() {
+    let is_mirror = is_mirror(&shape);
+    if is_mirror.all() {
         return [T::zero(), T::zero()];
     }
     let frame = frame_from_normal(surface.coat_normal);
     let [value, density] = lobe_evaluate(&shape, &frame, surface.normal, surface.wo, wi);
-    [value * coat_fresnel(material, surface.wo, wi), density]
+    let value = value * coat_fresnel(material, surface.wo, wi);
+    [
+        T::select(is_mirror, T::zero(), value),
+        T::select(is_mirror, T::zero(), density),
+    ]
 }

@@ -1,48 +1,301 @@
-//! Elementary functions of f32 in plain arithmetic: the same bits on every processor, and quicker than the system's, whose
-//! calls hold up everything around them. The GPU has its own, and f64, the oracle, the system's.
+//! Elementary functions of f32 in plain arithmetic: the same bits on every processor, alone and in lanes, and quicker than the
+//! system's, whose calls hold up everything around them. The GPU has its own, and f64, the oracle, the system's.
+//!
+//! No operation is fused with another: so it does not matter whether the processor could. Polynomials for the exponential, the
+//! logarithm, sine and cosine: Moshier's Cephes library (1989).
 
-use std::f32::consts::{FRAC_PI_2, PI};
+use std::f32::consts::{FRAC_2_PI, FRAC_PI_2, LOG2_E, PI};
+
+use super::real::Real;
+
+/// A number in single precision, or several in lanes, with its bits.
+pub trait Single: Real<Scalar = f32> {
+    /// The bits.
+    type Bits: Bits;
+    /// The number's bits.
+    fn to_bits(self) -> Self::Bits;
+    /// The inverse of [`Single::to_bits`].
+    fn from_bits(bits: Self::Bits) -> Self;
+    /// A number that is whole, as a signed integer; anything where it does not fit.
+    fn to_whole(self) -> Self::Bits;
+    /// The inverse of [`Single::to_whole`].
+    fn from_whole(whole: Self::Bits) -> Self;
+    /// The nearest whole number.
+    fn round_ties_even(self) -> Self;
+}
+
+/// 32 bits, or those of each lane.
+pub trait Bits: Copy {
+    /// The same in each lane.
+    fn splat(word: u32) -> Self;
+    /// The sum modulo 2³².
+    fn plus(self, other: Self) -> Self;
+    /// The bits that both have.
+    fn and(self, other: Self) -> Self;
+    /// The bits that either has.
+    fn or(self, other: Self) -> Self;
+    /// The bits that one of the two has.
+    fn xor(self, other: Self) -> Self;
+    /// Moved towards the high end.
+    fn left<const BY: u32>(self) -> Self;
+    /// Moved towards the low end, zeros behind.
+    fn right<const BY: u32>(self) -> Self;
+}
+
+impl Single for f32 {
+    type Bits = u32;
+    #[inline(always)]
+    fn to_bits(self) -> u32 {
+        f32::to_bits(self)
+    }
+    #[inline(always)]
+    fn from_bits(bits: u32) -> Self {
+        f32::from_bits(bits)
+    }
+    #[inline(always)]
+    fn to_whole(self) -> u32 {
+        self as i32 as u32
+    }
+    #[inline(always)]
+    fn from_whole(whole: u32) -> Self {
+        whole as i32 as f32
+    }
+    #[inline(always)]
+    fn round_ties_even(self) -> Self {
+        f32::round_ties_even(self)
+    }
+}
+
+impl Bits for u32 {
+    #[inline(always)]
+    fn splat(word: u32) -> Self {
+        word
+    }
+    #[inline(always)]
+    fn plus(self, other: Self) -> Self {
+        self.wrapping_add(other)
+    }
+    #[inline(always)]
+    fn and(self, other: Self) -> Self {
+        self & other
+    }
+    #[inline(always)]
+    fn or(self, other: Self) -> Self {
+        self | other
+    }
+    #[inline(always)]
+    fn xor(self, other: Self) -> Self {
+        self ^ other
+    }
+    #[inline(always)]
+    fn left<const BY: u32>(self) -> Self {
+        self << BY
+    }
+    #[inline(always)]
+    fn right<const BY: u32>(self) -> Self {
+        self >> BY
+    }
+}
+
+/// The sign's bit.
+const SIGN: u32 = 1 << 31;
+
+#[inline(always)]
+fn c<T: Real>(value: f32) -> T {
+    T::from_f64(f64::from(value))
+}
+
+/// A polynomial, its coefficients from the highest power down to that of x⁰.
+#[inline(always)]
+fn polynomial<T: Real, const N: usize>(x: T, coefficients: [f32; N]) -> T {
+    let mut sum = c::<T>(coefficients[0]);
+    let mut i = 1;
+    while i < N {
+        sum = sum * x + c(coefficients[i]);
+        i += 1;
+    }
+    sum
+}
+
+/// π/2 in three parts, of which multiples by small whole numbers are exact.
+const FRAC_PI_2_PARTS: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_789_9e-8];
+
+/// Sine and cosine of an angle in radians, of some turns at most: within two units in the last place.
+#[inline(always)]
+fn sin_cos<T: Single>(angle: T) -> [T; 2] {
+    let quarters = (angle * c(FRAC_2_PI)).round_ties_even();
+    let [high, middle, low] = FRAC_PI_2_PARTS;
+    let x = ((angle - quarters * c(high)) - quarters * c(middle)) - quarters * c(low);
+    let square = x * x;
+    let sine = polynomial(square, [-1.951_529_6e-4, 8.332_161e-3, -0.166_666_55]) * square * x + x;
+    let cosine = polynomial(square, [2.443_315_7e-5, -1.388_731_6e-3, 4.166_664_6e-2]) * (square * square)
+        - c::<T>(0.5) * square
+        + T::one();
+    let quarter = quarters.to_whole();
+    let is_odd = T::zero().less(T::from_whole(quarter.and(Bits::splat(1))));
+    // The second half of the turn is negative; of the cosine a quarter sooner.
+    let sine_sign = quarter.and(Bits::splat(2)).left::<30>();
+    let cosine_sign = quarter.plus(Bits::splat(1)).and(Bits::splat(2)).left::<30>();
+    [
+        T::from_bits(T::select(is_odd, cosine, sine).to_bits().xor(sine_sign)),
+        T::from_bits(T::select(is_odd, sine, cosine).to_bits().xor(cosine_sign)),
+    ]
+}
+
+/// See [`Real::sin`].
+#[inline(always)]
+pub fn sin<T: Single>(angle: T) -> T {
+    sin_cos(angle)[0]
+}
+
+/// See [`Real::cos`].
+#[inline(always)]
+pub fn cos<T: Single>(angle: T) -> T {
+    sin_cos(angle)[1]
+}
+
+/// The exponents between which e to their power is a normal number.
+const EXPONENTS: [f32; 2] = [-87.336_54, 88.722_83];
+
+/// e to a power, within two units in the last place; 0 where that is less than the least normal number.
+#[inline(always)]
+pub fn exp<T: Single>(x: T) -> T {
+    let [low, high] = EXPONENTS;
+    let within = x.max(c(low)).min(c(high));
+    let doublings = (within * c(LOG2_E)).round_ties_even();
+    let rest = (within - doublings * c(0.693_359_4)) - doublings * c(-2.121_944_4e-4);
+    let series = polynomial(
+        rest,
+        [
+            1.987_569_2e-4,
+            1.398_2e-3,
+            8.333_452e-3,
+            4.166_579_6e-2,
+            0.166_666_65,
+            0.5,
+        ],
+    );
+    let grown = series * (rest * rest) + rest + T::one();
+    // In two steps: the last doubling alone would be infinite.
+    let first = (doublings * c(0.5)).floor();
+    let value = grown * power_of_two(first) * power_of_two(doublings - first);
+    let value = T::select(x.less(c(low)), T::zero(), value);
+    let value = T::select(c::<T>(high).less(x), c(f32::INFINITY), value);
+    T::select(x.is_nan(), x, value)
+}
+
+/// 2 to a whole power of at most 127 and at least -126.
+#[inline(always)]
+fn power_of_two<T: Single>(power: T) -> T {
+    T::from_bits(power.to_whole().plus(Bits::splat(127)).left::<23>())
+}
+
+/// The mantissa's bits, and those of √½, from which on it counts.
+const MANTISSA: u32 = 0x007f_ffff;
+const ROOT_HALF: u32 = 0x3f35_04f3;
+
+/// The natural logarithm, within two units in the last place; minus infinity for 0, no number for less.
+#[inline(always)]
+pub fn ln<T: Single>(x: T) -> T {
+    // Numbers that are not normal are made so.
+    let is_small = x.less(c(f32::MIN_POSITIVE));
+    let raised = T::select(is_small, x * c(8_388_608.0), x);
+    let bits = raised.to_bits().plus(Bits::splat(0_u32.wrapping_sub(ROOT_HALF)));
+    // The exponent is below 0 where the sum above wrapped: its sign is kept by way of a number that is not.
+    let exponent = T::from_whole(bits.plus(Bits::splat(1 << 30)).right::<23>()) - c(128.0);
+    let exponent = T::select(is_small, exponent - c(23.0), exponent);
+    let m = T::from_bits(bits.and(Bits::splat(MANTISSA)).plus(Bits::splat(ROOT_HALF))) - T::one();
+    let square = m * m;
+    let series = polynomial(
+        m,
+        [
+            7.037_683_6e-2,
+            -0.115_146_1,
+            0.116_769_99,
+            -0.124_201_41,
+            0.142_493_23,
+            -0.166_680_58,
+            0.200_007_15,
+            -0.249_999_94,
+            0.333_333_3,
+        ],
+    );
+    let tail = series * m * square + exponent * c(-2.121_944_4e-4) - c::<T>(0.5) * square;
+    let value = m + tail + exponent * c(0.693_359_4);
+    let value = T::select(x.less(c(f32::INFINITY)), value, x);
+    let is_positive = T::zero().less(x);
+    let nothing = T::select(x.differs(T::zero()), c(f32::NAN), c(f32::NEG_INFINITY));
+    T::select(is_positive, value, nothing)
+}
+
+/// Positive `base` to the power of `exponent`, within two units in the last place.
+#[inline(always)]
+pub fn powf<T: Single>(base: T, exponent: T) -> T {
+    let (bases, exponents) = (base.to_each(), exponent.to_each());
+    T::from_lanes(
+        #[inline(always)]
+        |lane| power(f64::from(bases.as_ref()[lane]), f64::from(exponents.as_ref()[lane])) as f32,
+    )
+}
+
+/// The same by way of f64, as a logarithm in f32 would not do: an exponent of a thousand magnifies its error as much.
+/// Without branches, so that compilers turn it into lanes.
+#[inline(always)]
+fn power(base: f64, exponent: f64) -> f64 {
+    /// 1.5 · 2⁵²: added to a number it leaves the nearest whole one in the lowest bits.
+    const WHOLE: f64 = 6_755_399_441_055_744.0;
+    const ROOT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
+    const LN_2: f64 = std::f64::consts::LN_2;
+    let bits = base.to_bits().wrapping_sub(ROOT_HALF);
+    let doublings = ((bits as i64) >> 52) as i32;
+    let mantissa = f64::from_bits((bits & 0x000f_ffff_ffff_ffff).wrapping_add(ROOT_HALF));
+    let s = (mantissa - 1.0) / (mantissa + 1.0);
+    let z = s * s;
+    // 2 artanh s: the next term is below 1e-12.
+    let series = 1.0 + z * (1.0 / 3.0 + z * (0.2 + z * (1.0 / 7.0 + z * (1.0 / 9.0 + z * (1.0 / 11.0 + z / 13.0)))));
+    let logarithm = 2.0 * s * series + f64::from(doublings) * LN_2;
+    let power = (exponent * logarithm).max(-200.0).min(200.0);
+    let whole = power * std::f64::consts::LOG2_E + WHOLE;
+    let rest = power - (whole - WHOLE) * LN_2;
+    let mut grown = 1.0 + rest / 10.0;
+    for n in [9.0, 8.0, 7.0, 6.0, 5.0, 4.0, 3.0, 2.0, 1.0] {
+        grown = 1.0 + rest / n * grown;
+    }
+    let value = grown * f64::from_bits(whole.to_bits().wrapping_add(1023) << 52);
+    if base.is_nan() || exponent.is_nan() {
+        f64::NAN
+    } else {
+        value
+    }
+}
 
 /// What π/2 in f32 is too large by; twice that for π.
 const FRAC_PI_2_EXCESS: f32 = 4.371_139e-8;
 
-/// Of (atan(t)/t − 1)/t² over t² in [0, 1]: minimax.
-const ATAN: [f32; 8] = [
-    -0.333_331_02,
-    0.199_926_96,
-    -0.142_027_36,
-    0.106_347_93,
-    -0.074_890_09,
-    0.042_504_99,
-    -0.015_956_903,
-    0.002_823_639,
-];
-
 /// The angle of the vector (`x`, `y`), both finite, in radians, in [−π, π]: within two units in the last place. 0 where both
 /// are.
 #[inline(always)]
-pub fn atan2(y: f32, x: f32) -> f32 {
+pub fn atan2<T: Single>(y: T, x: T) -> T {
     let (width, height) = (x.abs(), y.abs());
-    let is_steep = width < height;
-    let (less, more) = if is_steep { (width, height) } else { (height, width) };
-    let t = less / more.max(f32::MIN_POSITIVE);
+    let is_steep = width.less(height);
+    let less = T::select(is_steep, width, height);
+    let more = T::select(is_steep, height, width);
+    let t = less / more.max(c(f32::MIN_POSITIVE));
     let square = t * t;
     let fourth = square * square;
-    let [a, b, c, d, e, f, g, h] = ATAN;
-    let low = (a + b * square) + (c + d * square) * fourth;
-    let high = (e + f * square) + (g + h * square) * fourth;
+    // Of (atan(t)/t − 1)/t² over t² in [0, 1]: minimax.
+    let low = (c::<T>(-0.333_331_02) + c::<T>(0.199_926_96) * square)
+        + (c::<T>(-0.142_027_36) + c::<T>(0.106_347_93) * square) * fourth;
+    let high = (c::<T>(-0.074_890_09) + c::<T>(0.042_504_99) * square)
+        + (c::<T>(-0.015_956_903) + c::<T>(0.002_823_639) * square) * fourth;
     let angle = t + t * (square * (low + high * (fourth * fourth)));
-    let angle = if is_steep {
-        FRAC_PI_2 - (angle + FRAC_PI_2_EXCESS)
-    } else {
-        angle
-    };
-    let angle = if x < 0.0 {
-        PI - (angle + 2.0 * FRAC_PI_2_EXCESS)
-    } else {
-        angle
-    };
-    angle.copysign(y)
+    let angle = T::select(is_steep, c::<T>(FRAC_PI_2) - (angle + c(FRAC_PI_2_EXCESS)), angle);
+    let angle = T::select(
+        x.less(T::zero()),
+        c::<T>(PI) - (angle + c(2.0 * FRAC_PI_2_EXCESS)),
+        angle,
+    );
+    T::from_bits(angle.to_bits().or(y.to_bits().and(Bits::splat(SIGN))))
 }
 
 #[cfg(test)]

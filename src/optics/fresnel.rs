@@ -1,6 +1,6 @@
 //! The Fresnel factor: which share of the light is reflected at the half vector of view and sampled direction.
 
-use super::real::Real;
+use super::real::{Mask, Real};
 use super::refraction::refracted_square;
 use super::vector::{Vec3, vec3};
 use crate::named::named;
@@ -50,16 +50,16 @@ impl<T: Real> FresnelTerms<T> {
 /// The share reflected, linear RGB in [0, 1]; `cosine` between the half vector and either direction, in [0, 1].
 #[inline(always)]
 pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
-    let metal = |metal_f0| fresnel_metal(metal_f0, terms.edge_tint, cosine) * terms.tint;
     let share = match terms.model {
         Fresnel::None => terms.tint,
-        Fresnel::Schlick => {
-            let dielectric = fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine);
-            dielectric.mix(metal(terms.metal_f0), terms.metalness)
-        }
-        Fresnel::Dielectric => {
-            let dielectric = terms.tint * fresnel_dielectric(cosine, terms.ior);
-            dielectric.mix(metal(terms.metal_f0), terms.metalness)
+        Fresnel::Schlick | Fresnel::Dielectric => {
+            let dielectric = if terms.model == Fresnel::Schlick {
+                fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine)
+            } else {
+                terms.tint * fresnel_dielectric(cosine, terms.ior)
+            };
+            let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.tint;
+            dielectric.mix(metal, terms.metalness)
         }
         Fresnel::Conductor => {
             let channels = vec3(
@@ -100,11 +100,13 @@ pub fn fresnel_schlick<T: Real>(f0: Vec3<T>, cosine: T) -> Vec3<T> {
 /// F82-tint model: Kutz, Hasan and Edmondson, "Novel aspects of the Adobe Standard Material", 2021; OpenPBR 1.1).
 #[inline(always)]
 pub fn fresnel_metal<T: Real>(f0: Vec3<T>, edge_tint: Vec3<T>, cosine: T) -> Vec3<T> {
-    if (edge_tint.x + edge_tint.y + edge_tint.z).to_f64() >= 3.0 {
-        return fresnel_schlick(f0, cosine);
+    let plain = fresnel_schlick(f0, cosine);
+    let is_tinted = (edge_tint.x + edge_tint.y + edge_tint.z).less(T::from_f64(3.0));
+    if !is_tinted.any() {
+        return plain;
     }
     let darkening = edge_darkening(f0, edge_tint) * edge_shape(cosine);
-    (fresnel_schlick(f0, cosine) - darkening).map(|x| x.max(T::zero()))
+    Vec3::select(is_tinted, (plain - darkening).at_least_zero(), plain)
 }
 
 /// What [`edge_shape`] is multiplied by, so that at a cosine of 1/7 the tint is what is left.
@@ -199,7 +201,7 @@ pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> V
             white - terms.tint + terms.tint * through
         }
     };
-    (white * (T::one() - terms.weight) + left * terms.weight).map(|x| x.max(T::zero()))
+    (white * (T::one() - terms.weight) + left * terms.weight).at_least_zero()
 }
 
 /// The share that a boundary of two dielectrics lets through, by the cosines on both sides; `ior` as in
@@ -207,13 +209,14 @@ pub fn fresnel_left<T: Real>(terms: &FresnelTerms<T>, cosine: T, behind: T) -> V
 /// lose half of its digits.
 #[inline(always)]
 pub fn fresnel_transmitted<T: Real>(cosine: T, behind: T, ior: T) -> T {
-    let tiny = T::from_f64(1e-12);
-    // 1 − ((a − b)/(a + b))².
-    let passed = |a: T, b: T| {
-        let sum = (a + b).max(tiny);
-        T::from_f64(4.0) * (a / sum) * (b / sum)
-    };
     T::from_f64(0.5) * (passed(cosine, ior * behind) + passed(ior * cosine, behind))
+}
+
+/// 1 − ((a − b)/(a + b))².
+#[inline(always)]
+fn passed<T: Real>(a: T, b: T) -> T {
+    let sum = (a + b).max(T::from_f64(1e-12));
+    T::from_f64(4.0) * (a / sum) * (b / sum)
 }
 
 /// A metal of the preset list.

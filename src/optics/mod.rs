@@ -13,6 +13,7 @@ pub mod curve;
 pub mod elementary;
 pub mod frame;
 pub mod fresnel;
+pub mod lanes;
 pub mod lobe;
 pub mod material;
 pub mod microfacet;

@@ -23,9 +23,14 @@ pub fn log1p<T: Real>(x: T) -> T {
 /// of the two is small. Continuous where a share vanishes, so that it does not matter how 0 was rounded.
 #[inline(always)]
 pub fn sampled_share<T: Real>(share: T) -> T {
-    let c = T::from_f64;
-    let raised = |small: T| small.max((c(20.0) * small).min(c(0.05)));
-    T::select(share.less(c(0.5)), raised(share), T::one() - raised(T::one() - share))
+    let is_small = share.less(T::from_f64(0.5));
+    T::select(is_small, raised(share), T::one() - raised(T::one() - share))
+}
+
+/// The share of the smaller of two layers.
+#[inline(always)]
+fn raised<T: Real>(small: T) -> T {
+    small.max((T::from_f64(20.0) * small).min(T::from_f64(0.05)))
 }
 
 /// `v` scaled to length 1, or `fallback` where `v` is so short that its direction is rounding noise.

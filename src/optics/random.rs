@@ -70,7 +70,7 @@ pub fn hash_bits(bits: u32) -> u32 {
 /// A number in [0, 1) of 24 bits: never 1, in any precision.
 #[inline(always)]
 pub fn unit_from_bits<T: Real>(bits: u32) -> T {
-    T::from_f64(f64::from(bits >> 8) / 16_777_216.0)
+    T::from_f64(f64::from(bits >> 8) * (1.0 / 16_777_216.0))
 }
 
 /// The independent sequence: for a fixed key and dimension a permutation of the 2³² samples, so no number of a pixel's
@@ -114,12 +114,29 @@ pub fn random_pair_bits(state: RandomState, dimension: u32) -> [u32; 2] {
 
 #[inline(always)]
 fn sobol_pair_bits(key: u32, sample: u32, dimension: u32) -> [u32; 2] {
-    let seed = hash_bits(key ^ dimension.wrapping_mul(0x9e37_79b9).wrapping_add(0x2545_f491));
-    let index = scramble_from_low(sample.reverse_bits(), seed).reverse_bits();
-    [
-        scramble_from_low(index, hash_bits(seed ^ 0x68bc_21eb)).reverse_bits(),
-        scramble_from_low(sobol_second_reversed(index), hash_bits(seed ^ 0x02e5_be93)).reverse_bits(),
-    ]
+    let seed = sobol_seed(key, dimension);
+    let index = sobol_index(sample, seed);
+    [sobol_first(index, seed), sobol_second(index, seed)]
+}
+
+#[inline(always)]
+fn sobol_seed(key: u32, dimension: u32) -> u32 {
+    hash_bits(key ^ dimension.wrapping_mul(0x9e37_79b9).wrapping_add(0x2545_f491))
+}
+
+#[inline(always)]
+fn sobol_index(sample: u32, seed: u32) -> u32 {
+    scramble_from_low(sample.reverse_bits(), seed).reverse_bits()
+}
+
+#[inline(always)]
+fn sobol_first(index: u32, seed: u32) -> u32 {
+    scramble_from_low(index, hash_bits(seed ^ 0x68bc_21eb)).reverse_bits()
+}
+
+#[inline(always)]
+fn sobol_second(index: u32, seed: u32) -> u32 {
+    scramble_from_low(sobol_second_reversed(index), hash_bits(seed ^ 0x02e5_be93)).reverse_bits()
 }
 
 #[inline(always)]
@@ -130,23 +147,31 @@ fn independent_pair_bits(key: u32, sample: u32, dimension: u32) -> [u32; 2] {
     ]
 }
 
-/// The same of paths that differ in their keys alone. Written so that compilers turn it into lanes.
+/// The same of some paths at once, by their keys and samples. Written so that compilers turn it into lanes.
 #[inline(always)]
-pub fn random_pairs_bits<const N: usize>(keys: [u32; N], state: RandomState, dimension: u32) -> [[u32; N]; 2] {
-    let mut pairs = [[0; N]; 2];
-    match state.sequence {
+pub fn random_pairs_bits<T: Real>(
+    keys: &T::Each<u32>,
+    samples: &T::Each<u32>,
+    sequence: Sequence,
+    dimension: u32,
+) -> [T::Each<u32>; 2] {
+    let (keys, samples) = (keys.as_ref(), samples.as_ref());
+    match sequence {
         Sequence::Sobol => {
-            for i in 0..N {
-                [pairs[0][i], pairs[1][i]] = sobol_pair_bits(keys[i], state.sample, dimension);
-            }
+            let seeds = T::each(|lane| sobol_seed(keys[lane], dimension));
+            let seeds = seeds.as_ref();
+            let indices = T::each(|lane| sobol_index(samples[lane], seeds[lane]));
+            let indices = indices.as_ref();
+            [
+                T::each(|lane| sobol_first(indices[lane], seeds[lane])),
+                T::each(|lane| sobol_second(indices[lane], seeds[lane])),
+            ]
         }
-        Sequence::Independent => {
-            for i in 0..N {
-                [pairs[0][i], pairs[1][i]] = independent_pair_bits(keys[i], state.sample, dimension);
-            }
-        }
+        Sequence::Independent => [
+            T::each(|lane| random_bits(keys[lane], samples[lane], 2 * dimension)),
+            T::each(|lane| random_bits(keys[lane], samples[lane], 2 * dimension + 1)),
+        ],
     }
-    pairs
 }
 
 /// The pair of numbers in [0, 1) number `dimension` of this path.

@@ -1,7 +1,9 @@
-//! The number type that the optics are written over: f32 to render with, f64 as the tests' oracle.
+//! The number type that the optics are written over: f32 to render with, f64 as the tests' oracle, and sixteen f32 side by
+//! side ([`lanes`](super::lanes)), which is how the processor renders.
 //!
-//! Comparisons give a [`Mask`] and choices go through [`Real::select`], so that a SIMD lane type can implement
-//! [`Real`] later without a change to the formulas.
+//! Comparisons give a [`Mask`] and choices go through [`Real::select`]. What is generic over [`Real`] serves all three: where
+//! it branches, it asks whether a mask holds in *any* lane, and keeps what each lane needs by `select`. What can only be done
+//! for one number at a time is generic over [`Scalar`], and lanes call it one by one.
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -9,19 +11,45 @@ use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 use super::elementary;
 
 /// The outcome of a comparison: `bool`, or one truth value a lane.
-pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+pub trait Mask:
+    Copy + Debug + Send + Sync + 'static + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+{
+    /// The same in each lane.
+    fn splat(value: bool) -> Self;
+    /// The truth values of the lanes, the first one in the lowest bit.
+    fn from_bits(bits: u32) -> Self;
+    /// The inverse of [`Mask::from_bits`]; 0 beyond the last lane.
+    fn to_bits(self) -> u32;
     /// True where any lane is true.
     fn any(self) -> bool;
+    /// True where all lanes are.
+    fn all(self) -> bool;
 }
 
 impl Mask for bool {
     #[inline(always)]
+    fn splat(value: bool) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn from_bits(bits: u32) -> Self {
+        bits & 1 == 1
+    }
+    #[inline(always)]
+    fn to_bits(self) -> u32 {
+        u32::from(self)
+    }
+    #[inline(always)]
     fn any(self) -> bool {
+        self
+    }
+    #[inline(always)]
+    fn all(self) -> bool {
         self
     }
 }
 
-/// A real number with the elementary functions that the optics need.
+/// A real number with the elementary functions that the optics need; one a lane, where there are several.
 pub trait Real:
     Copy
     + Debug
@@ -38,11 +66,16 @@ pub trait Real:
 {
     /// What comparisons of this type give.
     type Mask: Mask;
+    /// The number in one lane.
+    type Scalar: Scalar;
+    /// Something for each lane.
+    type Each<E: Copy + Default>: Copy + AsRef<[E]> + AsMut<[E]>;
 
-    /// The nearest value of this type.
+    /// How many numbers go side by side.
+    const LANES: usize;
+
+    /// The nearest value of this type, the same in each lane.
     fn from_f64(value: f64) -> Self;
-    /// The value as f64, exact for f32.
-    fn to_f64(self) -> f64;
     /// `self < other`.
     fn less(self, other: Self) -> Self::Mask;
     /// `if_true` where the mask holds, else `if_false`.
@@ -55,9 +88,9 @@ pub trait Real:
     fn abs(self) -> Self;
     /// Square root of a number that is not negative.
     fn sqrt(self) -> Self;
-    /// Sine of an angle in radians.
+    /// Sine of an angle in radians, of some turns at most.
     fn sin(self) -> Self;
-    /// Cosine of an angle in radians.
+    /// Cosine of an angle in radians, of some turns at most.
     fn cos(self) -> Self;
     /// e to the power of `self`.
     fn exp(self) -> Self;
@@ -69,6 +102,16 @@ pub trait Real:
     fn atan2(self, other: Self) -> Self;
     /// The largest integer that is not above `self`.
     fn floor(self) -> Self;
+
+    /// What `f` says for each lane.
+    fn each<E: Copy + Default>(f: impl FnMut(usize) -> E) -> Self::Each<E>;
+    /// The numbers of the lanes.
+    fn from_each(numbers: &Self::Each<Self::Scalar>) -> Self;
+    /// The numbers of the lanes.
+    fn to_each(self) -> Self::Each<Self::Scalar>;
+    /// Runs `f`, compiled for the instructions that these numbers need. A function that is not inlined must begin with it, as
+    /// what it is inlined into is compiled for other instructions; all that it calls must be inlined (`benches/lanes`).
+    fn vectorize<R>(f: impl FnOnce() -> R) -> R;
 
     /// 0.
     #[inline(always)]
@@ -90,19 +133,73 @@ pub trait Real:
     fn safe_sqrt(self) -> Self {
         self.max(Self::zero()).sqrt()
     }
+    /// `self ≠ other`; true where one is NaN.
+    #[inline(always)]
+    fn differs(self, other: Self) -> Self::Mask {
+        let (less, more) = (self.less(other), other.less(self));
+        less | more
+    }
+    /// Where the lane's number is at least `other`; false where one is NaN.
+    #[inline(always)]
+    fn at_least(self, other: Self) -> Self::Mask {
+        let same = !self.less(other);
+        same & !self.is_nan() & !other.is_nan()
+    }
+    /// Where the lane holds no number.
+    #[inline(always)]
+    fn is_nan(self) -> Self::Mask {
+        let below = self.less(Self::one());
+        !(below | Self::zero().less(self))
+    }
+    /// The same number in each lane.
+    #[inline(always)]
+    fn splat(number: Self::Scalar) -> Self {
+        Self::from_f64(number.to_f64())
+    }
+    /// The number of one lane.
+    #[inline(always)]
+    fn lane(self, lane: usize) -> Self::Scalar {
+        self.to_each().as_ref()[lane]
+    }
+    /// The numbers that `f` says for the lanes.
+    #[inline(always)]
+    fn from_lanes(f: impl FnMut(usize) -> Self::Scalar) -> Self {
+        Self::from_each(&Self::each(f))
+    }
+    /// The numbers of a table at places that are whole and within it.
+    #[inline(always)]
+    fn look_up(table: &[f32], place: Self) -> Self {
+        let places = place.to_each();
+        Self::from_lanes(
+            #[inline(always)]
+            |lane| Self::Scalar::from_f64(f64::from(table[places.as_ref()[lane].to_f64() as usize])),
+        )
+    }
+}
+
+/// A single number.
+pub trait Scalar: Real<Mask = bool, Scalar = Self, Each<Self> = [Self; 1]> + PartialOrd {
+    /// The value as f64, exact for f32.
+    fn to_f64(self) -> f64;
 }
 
 macro_rules! real {
-    ($type:ident, $atan2:path) => {
-        impl Real for $type {
-            type Mask = bool;
-            #[inline(always)]
-            fn from_f64(value: f64) -> Self {
-                value as $type
-            }
+    ($type:ident, $functions:path) => {
+        impl Scalar for $type {
             #[inline(always)]
             fn to_f64(self) -> f64 {
                 f64::from(self)
+            }
+        }
+
+        impl Real for $type {
+            type Mask = bool;
+            type Scalar = Self;
+            type Each<E: Copy + Default> = [E; 1];
+            const LANES: usize = 1;
+            #[inline(always)]
+            fn from_f64(value: f64) -> Self {
+                value as $type
             }
             #[inline(always)]
             fn less(self, other: Self) -> bool {
@@ -129,36 +226,60 @@ macro_rules! real {
                 $type::sqrt(self)
             }
             #[inline(always)]
-            fn sin(self) -> Self {
-                $type::sin(self)
-            }
-            #[inline(always)]
-            fn cos(self) -> Self {
-                $type::cos(self)
-            }
-            #[inline(always)]
-            fn exp(self) -> Self {
-                $type::exp(self)
-            }
-            #[inline(always)]
-            fn ln(self) -> Self {
-                $type::ln(self)
-            }
-            #[inline(always)]
-            fn powf(self, exponent: Self) -> Self {
-                $type::powf(self, exponent)
-            }
-            #[inline(always)]
-            fn atan2(self, other: Self) -> Self {
-                $atan2(self, other)
-            }
-            #[inline(always)]
             fn floor(self) -> Self {
                 $type::floor(self)
             }
+            #[inline(always)]
+            fn each<E: Copy + Default>(mut f: impl FnMut(usize) -> E) -> [E; 1] {
+                [f(0)]
+            }
+            #[inline(always)]
+            fn from_each(numbers: &[Self; 1]) -> Self {
+                numbers[0]
+            }
+            #[inline(always)]
+            fn to_each(self) -> [Self; 1] {
+                [self]
+            }
+            #[inline(always)]
+            fn vectorize<R>(f: impl FnOnce() -> R) -> R {
+                f()
+            }
+            $functions! { $type }
         }
     };
 }
 
-real!(f32, elementary::atan2);
-real!(f64, f64::atan2);
+/// The system's functions.
+macro_rules! by_the_system {
+    ($type:ident) => {
+        by_the_system! { $type: sin() cos() exp() ln() powf(exponent) atan2(other) }
+    };
+    ($type:ident: $($name:ident($($argument:ident)?))*) => {
+        $(
+            #[inline(always)]
+            fn $name(self $(, $argument: Self)?) -> Self {
+                $type::$name(self $(, $argument)?)
+            }
+        )*
+    };
+}
+
+/// Those of [`elementary`], which lanes have as well: the same bits.
+macro_rules! by_arithmetic {
+    ($type:ident) => {
+        by_arithmetic! { $type: sin() cos() exp() ln() powf(exponent) atan2(other) }
+    };
+    ($type:ident: $($name:ident($($argument:ident)?))*) => {
+        $(
+            #[inline(always)]
+            fn $name(self $(, $argument: Self)?) -> Self {
+                elementary::$name(self $(, $argument)?)
+            }
+        )*
+    };
+}
+pub(super) use by_arithmetic;
+
+real!(f32, by_arithmetic);
+real!(f64, by_the_system);

@@ -59,7 +59,8 @@ pub fn refracting_normal<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> Vec3<T> {
 #[inline(always)]
 pub fn refracting_cosines<T: Real>(wo: Vec3<T>, wi: Vec3<T>, eta: T) -> [T; 2] {
     let h = normalize_or(refracting_normal(wo, wi, eta), wo);
-    [wo.dot(h), -wi.dot(h)].map(|cosine| cosine.clamp(T::zero(), T::one()))
+    let (zero, one) = (T::zero(), T::one());
+    [wo.dot(h).clamp(zero, one), (-wi.dot(h)).clamp(zero, one)]
 }
 
 /// What turns the density of the direction that a facet mirrors `wo` to into the density of the refracted `wi`, per

@@ -3,7 +3,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-use super::real::Real;
+use super::real::{Real, Scalar};
 
 /// Three components; directions are unit vectors that point away from the surface unless a name says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -49,15 +49,28 @@ impl<T: Real> Vec3<T> {
     pub fn from_f32(value: [f32; 3]) -> Self {
         Self::from_f64(value.map(f64::from))
     }
-    /// The components as f64.
+    /// The vectors that `f` says for the lanes.
     #[inline(always)]
-    pub fn to_f64(self) -> [f64; 3] {
-        [self.x.to_f64(), self.y.to_f64(), self.z.to_f64()]
+    pub fn from_lanes(f: impl Fn(usize) -> Vec3<T::Scalar>) -> Self {
+        let vectors = T::each(f);
+        let vectors = vectors.as_ref();
+        vec3(
+            T::from_each(&T::each(|lane| vectors[lane].x)),
+            T::from_each(&T::each(|lane| vectors[lane].y)),
+            T::from_each(&T::each(|lane| vectors[lane].z)),
+        )
     }
-    /// The components as f32.
+    /// The vectors of the lanes.
     #[inline(always)]
-    pub fn to_f32(self) -> [f32; 3] {
-        self.to_f64().map(|v| v as f32)
+    pub fn to_each(self) -> T::Each<Vec3<T::Scalar>> {
+        let (x, y, z) = (self.x.to_each(), self.y.to_each(), self.z.to_each());
+        T::each(|lane| vec3(x.as_ref()[lane], y.as_ref()[lane], z.as_ref()[lane]))
+    }
+    /// True where a component is not 0.
+    #[inline(always)]
+    pub fn is_any(self) -> T::Mask {
+        let zero = T::zero();
+        self.x.differs(zero) | self.y.differs(zero) | self.z.differs(zero)
     }
     /// Scalar product.
     #[inline(always)]
@@ -93,6 +106,17 @@ impl<T: Real> Vec3<T> {
     pub fn max_component(self) -> T {
         self.x.max(self.y).max(self.z)
     }
+    /// The absolute values of the components.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        vec3(self.x.abs(), self.y.abs(), self.z.abs())
+    }
+    /// No component below 0.
+    #[inline(always)]
+    pub fn at_least_zero(self) -> Self {
+        let zero = T::zero();
+        vec3(self.x.max(zero), self.y.max(zero), self.z.max(zero))
+    }
     /// `if_true` where the mask holds, else `if_false`.
     #[inline(always)]
     pub fn select(mask: T::Mask, if_true: Self, if_false: Self) -> Self {
@@ -121,6 +145,19 @@ impl<T: Real> Vec3<T> {
     #[inline(always)]
     pub fn luminance(self) -> T {
         T::from_f64(0.2126) * self.x + T::from_f64(0.7152) * self.y + T::from_f64(0.0722) * self.z
+    }
+}
+
+impl<T: Scalar> Vec3<T> {
+    /// The components as f64.
+    #[inline(always)]
+    pub fn to_f64(self) -> [f64; 3] {
+        [self.x.to_f64(), self.y.to_f64(), self.z.to_f64()]
+    }
+    /// The components as f32.
+    #[inline(always)]
+    pub fn to_f32(self) -> [f32; 3] {
+        self.to_f64().map(|v| v as f32)
     }
 }
 

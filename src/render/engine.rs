@@ -117,8 +117,8 @@ impl Engine {
         match self {
             Engine::Cpu(engine) => {
                 match precision {
-                    Precision::Single => engine.step_towards::<f32>(budget, goals),
-                    Precision::Double => engine.step_towards::<f64>(budget, goals),
+                    Precision::Single => engine.step_towards(budget, goals),
+                    Precision::Double => engine.step_towards_in::<f64>(budget, goals),
                 }
                 Ok(())
             }

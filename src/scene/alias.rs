@@ -1,6 +1,6 @@
 //! Draws from many weights in constant time: alias tables (Walker 1977, Vose 1991), their entries in the rows of a grid.
 
-use crate::optics::real::Real;
+use crate::optics::real::{Real, Scalar};
 
 /// An entry of an alias table: drawing an entry uniformly, and keeping it or taking its alias, chooses each index in
 /// proportion to its weight.
@@ -49,16 +49,26 @@ pub(super) fn alias_table(weights: &[f64]) -> Vec<AliasEntry> {
 /// The index of the cell of a grid of `size` columns and rows that a place in [0, 1)² falls in, and the place inside it,
 /// in [0, 1]². Two numbers for the cell, since of one of 24 bits a large table would leave few bits for each entry.
 #[inline(always)]
-pub fn grid_place<T: Real>(xi: [T; 2], size: [u32; 2]) -> (u32, [T; 2]) {
-    let (column, x) = split(xi[0], size[0]);
-    let (row, y) = split(xi[1], size[1]);
-    (row * size[0] + column, [x, y])
+pub fn grid_place<T: Scalar>(xi: [T; 2], size: [u32; 2]) -> (u32, [T; 2]) {
+    let (cells, place) = grid_places(xi, size);
+    (cells.as_ref()[0], place)
+}
+
+/// The same for each lane.
+#[inline(always)]
+pub fn grid_places<T: Real>(xi: [T; 2], size: [u32; 2]) -> (T::Each<u32>, [T; 2]) {
+    let [column, x] = split(xi[0], size[0]);
+    let [row, y] = split(xi[1], size[1]);
+    let (columns, rows) = (column.to_each(), row.to_each());
+    let number = |whole: T::Scalar| whole.to_f64() as u32;
+    let cell = |lane| number(rows.as_ref()[lane]) * size[0] + number(columns.as_ref()[lane]);
+    (T::each(cell), [x, y])
 }
 
 /// The whole and the fractional part of `xi` × `count`, the whole part below `count`.
 #[inline(always)]
-fn split<T: Real>(xi: T, count: u32) -> (u32, T) {
+fn split<T: Real>(xi: T, count: u32) -> [T; 2] {
     let scaled = xi * T::from_f64(f64::from(count));
-    let whole = (scaled.to_f64() as u32).min(count - 1);
-    (whole, (scaled - T::from_f64(f64::from(whole))).min(T::one()))
+    let whole = scaled.floor().min(T::from_f64(f64::from(count - 1)));
+    [whole, (scaled - whole).min(T::one())]
 }

@@ -3,7 +3,7 @@
 use crate::named::named;
 use glam::DVec3;
 
-use crate::optics::real::Real;
+use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 use crate::optics::warp::uniform_disc;
 
@@ -119,18 +119,18 @@ pub fn filter_offset<T: Real>(filter_kind: u32, xi: [T; 2]) -> [T; 2] {
     [radius * phi_rad.cos(), radius * phi_rad.sin()]
 }
 
-/// The ray of a sample through its pixel, drawn with two pairs of numbers, for the place in the pixel and on the lens:
+/// The ray of a sample through its `pixel`, two whole numbers, drawn with two pairs of numbers, for the place in the pixel and on the lens:
 /// (origin, unit direction).
 #[inline(always)]
 pub fn pixel_ray<T: Real>(
     camera: &Camera<T>,
-    pixel: [u32; 2],
+    pixel: [T; 2],
     image_size: [u32; 2],
     [xi_pixel, xi_lens]: [[T; 2]; 2],
 ) -> [Vec3<T>; 2] {
     let offset: [T; 2] = filter_offset(camera.filter_kind, xi_pixel);
     let half = T::from_f64(0.5);
-    let place = [0, 1].map(|i| T::from_f64(f64::from(pixel[i])) + half + offset[i]);
+    let place = [pixel[0] + half + offset[0], pixel[1] + half + offset[1]];
     camera_ray(camera, place, image_size, xi_lens)
 }
 
@@ -141,7 +141,7 @@ pub fn camera_ray<T: Real>(camera: &Camera<T>, place: [T; 2], image_size: [u32; 
     let x = two * place[0] / T::from_f64(f64::from(image_size[0])) - T::one();
     let y = T::one() - two * place[1] / T::from_f64(f64::from(image_size[1]));
     let along = camera.forward + camera.right * x + camera.up * y;
-    if camera.lens_radius.to_f64() <= 0.0 {
+    if !T::zero().less(camera.lens_radius).any() {
         return [camera.origin, along.normalize()];
     }
     let disc = uniform_disc(xi_lens);

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::environment::{Environment, environment_local_from_world, environment_radiance};
 use super::ground::HALF_SIDE;
 use super::light::AreaShape;
-use crate::optics::real::Real;
+use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
 
 /// Nodes along each side where area lights shine; without them the light is the same all over.
@@ -203,7 +203,7 @@ fn form_factor(place: DVec3, corners: &[DVec3; 3]) -> f64 {
 
 /// The radiance that a white matt plane would have at a place, lit by all lights with nothing in their way: bilinear
 /// between the table's nodes.
-pub fn catcher_light<T: Real>(tables: &[f32], table: u32, position: Vec3<T>) -> Vec3<T> {
+pub fn catcher_light<T: Scalar>(tables: &[f32], table: u32, position: Vec3<T>) -> Vec3<T> {
     let first = table as usize + HEADER;
     let side = tables[table as usize] as usize;
     let node = |along: T| {
@@ -227,6 +227,7 @@ pub fn catcher_light<T: Real>(tables: &[f32], table: u32, position: Vec3<T>) -> 
 }
 
 /// The share of what is seen of the plane under this cosine that is mirrored in it (Schlick 1994, eq. 15).
+#[inline(always)]
 pub fn catcher_reflectance<T: Real>(tables: &[f32], table: u32, cosine: T) -> T {
     let reflection = T::from_f64(f64::from(tables[table as usize + 1]));
     let straight = T::from_f64(f64::from(CATCHER_REFLECTANCE));

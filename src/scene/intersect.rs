@@ -6,7 +6,7 @@ use crate::optics::real::Real;
 use crate::optics::vector::{Vec3, vec3};
 
 /// Where a ray meets a triangle.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Hit {
     /// Distance in lengths of the ray's direction, above 0.
     pub t: f32,

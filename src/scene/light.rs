@@ -23,7 +23,7 @@ use super::surface::{POSITION_ERROR, position_error};
 use super::texture::{Textures, emission_at, uvs_at};
 use crate::optics::material::Material;
 use crate::optics::numeric::normalize_or;
-use crate::optics::real::{Mask, Real};
+use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
 
 /// Where an area light is and what it looks at. Places are relative to the centre of the model's bounding box, they and
@@ -246,7 +246,7 @@ impl LightChoice {
 }
 
 /// A place on an emitting triangle, seen from a point.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct LightSample<T> {
     /// Towards the place.
     pub direction: Vec3<T>,
@@ -276,7 +276,7 @@ pub struct Emitters<'a, T> {
 /// A place on an emitting triangle, drawn with three uniform numbers in [0, 1): `xi.x` and `xi.y` choose an entry of the
 /// table and the place, `xi.z` whether the entry or its alias is taken. There must be such a triangle. The ray towards it
 /// may start up to `origin_error` off `origin`.
-pub fn light_sample<T: Real>(
+pub fn light_sample<T: Scalar>(
     emitters: &Emitters<'_, T>,
     origin: Vec3<T>,
     origin_error: T,
@@ -286,7 +286,7 @@ pub fn light_sample<T: Real>(
     let (drawn, [x, y]) = grid_place([xi.x, xi.y], lights.cells_size);
     let cell = lights.cells[drawn as usize];
     let keep = xi.z.less(T::from_f64(f64::from(cell.threshold)));
-    let chosen = if keep.any() { drawn } else { cell.alias_index };
+    let chosen = if keep { drawn } else { cell.alias_index };
     let triangle = lights.cells[chosen as usize].triangle as usize;
     let [p0, p1, p2] = geometry.corners(triangle).map(Vec3::from_f32);
     // Uniform in area.
@@ -324,7 +324,7 @@ pub fn light_sample<T: Real>(
 /// True where what a material emits depends on the direction.
 #[inline(always)]
 pub fn is_spot<T: Real>(material: &Material<T>) -> bool {
-    material.spot_scale.to_f64() != 0.0
+    material.spot_scale.differs(T::zero()).any()
 }
 
 /// The share of its radiance that a spot sends in a direction under this cosine to the way it faces: 1 within the inner
@@ -343,6 +343,7 @@ pub const COSINE_MIN: f64 = 1e-6;
 
 /// The density, per steradian, with which [`light_sample`] draws the direction to a place of a material with this
 /// `light_luminance` that is seen under this cosine from this distance.
+#[inline(always)]
 pub fn light_density<T: Real>(light_luminance: T, cosine: T, distance: T, density_per_luminance: T) -> T {
     let per_area = density_per_luminance * light_luminance;
     per_area * distance * distance / cosine.max(T::from_f64(COSINE_MIN))

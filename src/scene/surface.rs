@@ -3,8 +3,8 @@
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
 use crate::optics::material::{Material, NO_TEXTURE, Surface};
 use crate::optics::numeric::normalize_or;
-use crate::optics::real::{Mask, Real};
-use crate::optics::vector::{Vec3, vec3};
+use crate::optics::real::{Mask, Real, Scalar};
+use crate::optics::vector::Vec3;
 
 use super::texture::{Textures, Uvs, mapped_normal, opacity_at, uvs_at};
 use super::{Geometry, Hit, Vertex, triangle_normal};
@@ -19,17 +19,17 @@ pub const MIRROR_HEIGHT_MIN: f64 = 0.01;
 
 /// A point on a surface, ready to shade.
 #[derive(Clone, Copy, Debug)]
-pub struct SurfacePoint<T> {
+pub struct SurfacePoint<T: Real> {
     /// Frame, geometric normal and view.
     pub surface: Surface<T>,
     /// The point, in the geometry's units.
     pub position: Vec3<T>,
     /// How far off the true place `position` may be, along the normal.
     pub error: T,
-    /// Material slot.
+    /// Material slot: the same in all lanes.
     pub slot: u32,
     /// The texture coordinates; zero where the material looks up no texture.
-    pub uvs: Uvs<T>,
+    pub uvs: T::Each<Uvs<T::Scalar>>,
     /// The colour between the vertices, linear RGB; white where the material takes none.
     pub vertex_color: Vec3<T>,
 }
@@ -38,9 +38,9 @@ impl<T: Real> SurfacePoint<T> {
     /// Where a ray from the surface towards `wi` starts: outside the bound on the position's error. Only a surface that
     /// `transmits` lets it start behind.
     #[inline(always)]
-    pub fn ray_origin(&self, wi: Vec3<T>, transmits: bool) -> Vec3<T> {
-        let is_behind = transmits && self.surface.normal.dot(wi).to_f64() < 0.0;
-        self.position + self.surface.normal * if is_behind { -self.error } else { self.error }
+    pub fn ray_origin(&self, wi: Vec3<T>, transmits: T::Mask) -> Vec3<T> {
+        let is_behind = transmits & self.surface.normal.dot(wi).less(T::zero());
+        self.position + self.surface.normal * T::select(is_behind, -self.error, self.error)
     }
 }
 
@@ -67,7 +67,7 @@ pub fn lifted_normal<T: Real>(shading: Vec3<T>, geometric: Vec3<T>, wo: Vec3<T>)
 
 /// Where a ray met the geometry.
 #[derive(Clone, Copy, Debug)]
-pub struct HitPlace<T> {
+pub struct HitPlace<T: Real> {
     /// The point, in the geometry's units.
     pub position: Vec3<T>,
     /// How far off the true place `position` may be, along the normal.
@@ -75,94 +75,153 @@ pub struct HitPlace<T> {
     /// The geometric normal, on the side of the ray's origin.
     pub normal: Vec3<T>,
     /// True where the back of the triangle was met.
-    pub is_back: bool,
+    pub is_back: T::Mask,
 }
 
-/// The weights of a hit triangle's corners.
+/// What rays met, one a lane.
+pub type Hits<T> = <T as Real>::Each<Hit>;
+
+/// The weights of the hit triangles' corners.
 #[inline(always)]
-fn hit_weights<T: Real>(hit: &Hit) -> [T; 3] {
-    let (u, v) = (T::from_f64(f64::from(hit.u)), T::from_f64(f64::from(hit.v)));
+fn hit_weights<T: Real>(hits: &Hits<T>) -> [T; 3] {
+    let number = |weight: f32| T::Scalar::from_f64(f64::from(weight));
+    let u = T::from_lanes(|lane| number(hits.as_ref()[lane].u));
+    let v = T::from_lanes(|lane| number(hits.as_ref()[lane].v));
     [T::one() - u - v, u, v]
 }
 
-/// The place where a ray of unit `direction` met the geometry.
+/// Three vectors a triangle, one of each corner.
 #[inline(always)]
-pub fn hit_place<T: Real>(geometry: &Geometry, hit: &Hit, direction: Vec3<T>) -> HitPlace<T> {
-    let corners = geometry.corners(hit.triangle as usize).map(Vec3::from_f32);
-    let [p0, p1, p2] = corners;
-    let weights: [T; 3] = hit_weights(hit);
+fn at_corners<T: Real>(hits: &Hits<T>, vectors: impl Fn(usize) -> [[f32; 3]; 3]) -> [Vec3<T>; 3] {
+    let vectors = T::each(|lane| vectors(hits.as_ref()[lane].triangle as usize));
+    let vectors = vectors.as_ref();
+    [
+        Vec3::from_lanes(|lane| Vec3::from_f32(vectors[lane][0])),
+        Vec3::from_lanes(|lane| Vec3::from_f32(vectors[lane][1])),
+        Vec3::from_lanes(|lane| Vec3::from_f32(vectors[lane][2])),
+    ]
+}
+
+/// What lies between three corners.
+#[inline(always)]
+fn between<T: Real>(corners: &[Vec3<T>; 3], weights: &[T; 3]) -> Vec3<T> {
+    corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]
+}
+
+/// The places where rays of unit `direction` met the geometry.
+#[inline(always)]
+pub fn hit_place<T: Real>(geometry: &Geometry, hits: &Hits<T>, direction: Vec3<T>) -> HitPlace<T> {
+    let corners = at_corners(hits, |triangle| geometry.corners(triangle));
+    let weights = hit_weights::<T>(hits);
     let out = normalize_or(triangle_normal(corners), -direction);
     let is_back = out.dot(-direction).less(T::zero());
     let normal = Vec3::select(is_back, -out, out);
     HitPlace {
-        position: p0 * weights[0] + p1 * weights[1] + p2 * weights[2],
+        position: between(&corners, &weights),
         error: position_error(corners, weights, normal),
         normal,
-        is_back: is_back.any(),
+        is_back,
     }
 }
 
 /// Where a ray goes on that a surface did not stop.
 #[inline(always)]
-pub fn passed_origin<T: Real>(geometry: &Geometry, hit: &Hit, direction: Vec3<T>) -> Vec3<T> {
-    let place = hit_place(geometry, hit, direction);
+pub fn passed_origin<T: Scalar>(geometry: &Geometry, hit: &Hit, direction: Vec3<T>) -> Vec3<T> {
+    let place = hit_place(geometry, &T::each(|_| *hit), direction);
     place.position - place.normal * place.error
 }
 
 /// The surface where a ray of unit `direction` met the geometry.
 #[inline(always)]
-pub fn surface_at<T: Real>(
+pub fn surface_at<T: Scalar>(
     geometry: &Geometry,
     materials: &[Material<T>],
     textures: &Textures,
     hit: &Hit,
     direction: Vec3<T>,
 ) -> SurfacePoint<T> {
-    let index = hit.triangle as usize;
-    let [w, u, v] = hit_weights(hit);
+    let slot = geometry.slot(hit.triangle as usize);
+    let material = &materials[slot as usize];
+    surfaces_at(
+        geometry,
+        slot,
+        (material, material),
+        textures,
+        &T::each(|_| *hit),
+        direction,
+    )
+}
+
+/// The surfaces where rays of unit `direction` met triangles of one slot, given its material, the second time for one lane.
+#[inline(always)]
+pub fn surfaces_at<T: Real>(
+    geometry: &Geometry,
+    slot: u32,
+    (material, of_lane): (&Material<T>, &Material<T::Scalar>),
+    textures: &Textures,
+    hits: &Hits<T>,
+    direction: Vec3<T>,
+) -> SurfacePoint<T> {
+    let weights = hit_weights::<T>(hits);
     let HitPlace {
         position,
         error,
         normal,
         is_back,
-    } = hit_place(geometry, hit, direction);
+    } = hit_place(geometry, hits, direction);
     let wo = -direction;
-    let corners = geometry.vertices(index);
-    let interpolate =
-        |a: [f32; 3], b: [f32; 3], c: [f32; 3]| Vec3::from_f32(a) * w + Vec3::from_f32(b) * u + Vec3::from_f32(c) * v;
-    let interpolated = interpolate(corners[0].normal, corners[1].normal, corners[2].normal);
+    let normals = at_corners(hits, |triangle| geometry.vertices(triangle).map(|vertex| vertex.normal));
+    let interpolated = between(&normals, &weights);
     let smoothed = normalize_or(interpolated, normal);
     let is_turned = smoothed.dot(normal).less(T::zero());
-    let facing = |shading: Vec3<T>| bent_normal(Vec3::select(is_turned, -shading, shading), wo);
-    let slot = geometry.slot(index);
-    let material = &materials[slot as usize];
-    let uvs = if material.is_textured() {
-        uvs_at(geometry, index, [w, u, v], material.has_box_projection == 1)
-    } else {
-        [[T::zero(); 2]; 3]
-    };
-    let tangent = || {
-        let axis = |i: usize| [corners[i].tangent[0], corners[i].tangent[1], corners[i].tangent[2]];
-        interpolate(axis(0), axis(1), axis(2))
-    };
-    let color = if material.has_vertex_colors == 1 {
-        let [a, b, c] = corners.map(vertex_color);
-        a * w + b * u + c * v
-    } else {
-        Vec3::splat(T::one())
-    };
-    let coat_normal = facing(smoothed);
+    let triangle = |lane: usize| hits.as_ref()[lane].triangle as usize;
+    let weights_of_lanes = [weights[0].to_each(), weights[1].to_each(), weights[2].to_each()];
+    let mut uvs = T::each(|_| Uvs::default());
+    if of_lane.is_textured() {
+        uvs = T::each(|lane| {
+            let weights = [0, 1, 2].map(|i| weights_of_lanes[i].as_ref()[lane]);
+            uvs_at(geometry, triangle(lane), weights, of_lane.has_box_projection == 1)
+        });
+    }
+    let mut vertex_color = Vec3::splat(T::one());
+    if of_lane.has_vertex_colors == 1 {
+        let colors = at_corners(hits, |triangle| geometry.vertices(triangle).map(Vertex::rgb));
+        vertex_color = between(&colors, &weights);
+    }
+    let has_map = of_lane.textures[2] != NO_TEXTURE;
+    let is_stretched = material.anisotropy.differs(T::zero()).any();
+    let mut tangent = Vec3::zero();
+    if has_map || is_stretched {
+        let axis = |vertex: &Vertex| [vertex.tangent[0], vertex.tangent[1], vertex.tangent[2]];
+        tangent = between(
+            &at_corners(hits, |triangle| geometry.vertices(triangle).map(axis)),
+            &weights,
+        );
+    }
+    let coat_normal = bent_normal(Vec3::select(is_turned, -smoothed, smoothed), wo);
     let mut shading = coat_normal;
-    if material.textures[2] != NO_TEXTURE {
-        let side = |i: usize| T::from_f64(f64::from(corners[i].tangent[3]));
-        let sign = side(0) * w + side(1) * u + side(2) * v;
-        let outward = normalize_or(interpolated, if is_back { -normal } else { normal });
-        let normals = [smoothed, tangent(), outward];
-        shading = facing(mapped_normal(textures, material, uvs, normals, sign));
+    if has_map {
+        let outward = normalize_or(interpolated, Vec3::select(is_back, -normal, normal));
+        let normals = [smoothed.to_each(), tangent.to_each(), outward.to_each()];
+        let mapped = Vec3::from_lanes(|lane| {
+            let sides = geometry
+                .vertices(triangle(lane))
+                .map(|vertex| T::Scalar::from_f64(f64::from(vertex.tangent[3])));
+            let part = |i: usize| sides[i] * weights_of_lanes[i].as_ref()[lane];
+            let normals = [0, 1, 2].map(|i| normals[i].as_ref()[lane]);
+            mapped_normal(
+                textures,
+                of_lane,
+                uvs.as_ref()[lane],
+                normals,
+                part(0) + part(1) + part(2),
+            )
+        });
+        shading = bent_normal(Vec3::select(is_turned, -mapped, mapped), wo);
         shading = lifted_normal(shading, normal, wo);
     }
-    let frame = if material.anisotropy.to_f64() != 0.0 {
-        frame_from_tangent(shading, tangent(), material.rotation_rad)
+    let frame = if is_stretched {
+        frame_from_tangent(shading, tangent, material.rotation_rad)
     } else {
         frame_from_normal(shading)
     };
@@ -178,25 +237,24 @@ pub fn surface_at<T: Real>(
         error,
         slot,
         uvs,
-        vertex_color: color,
+        vertex_color,
     }
-}
-
-/// The linear colour of a vertex that multiplies the material's.
-#[inline(always)]
-fn vertex_color<T: Real>(vertex: &Vertex) -> Vec3<T> {
-    Vec3::from_f32(vertex.rgb())
 }
 
 /// The share of light that is stopped where a ray met the geometry, in [0, 1].
 #[inline(always)]
-pub fn hit_opacity<T: Real>(geometry: &Geometry, materials: &[Material<T>], textures: &Textures, hit: &Hit) -> T {
+pub fn hit_opacity<T: Scalar>(geometry: &Geometry, materials: &[Material<T>], textures: &Textures, hit: &Hit) -> T {
     let material = &materials[geometry.slot(hit.triangle as usize) as usize];
     if !material.has_holes() {
         return T::one();
     }
     let has_box = material.has_box_projection == 1;
-    let uvs = uvs_at(geometry, hit.triangle as usize, hit_weights(hit), has_box);
+    let uvs = uvs_at(
+        geometry,
+        hit.triangle as usize,
+        hit_weights::<T>(&T::each(|_| *hit)),
+        has_box,
+    );
     opacity_at(textures, material, uvs)
 }
 
@@ -204,11 +262,8 @@ pub fn hit_opacity<T: Real>(geometry: &Geometry, materials: &[Material<T>], text
 /// with these weights.
 #[inline(always)]
 pub fn position_error<T: Real>(corners: [Vec3<T>; 3], weights: [T; 3], normal: Vec3<T>) -> T {
-    let [p0, p1, p2] = corners.map(|corner| corner.map(T::abs));
-    let [w, u, v] = weights.map(T::abs);
-    let margin = T::from_f64(0.05);
-    T::from_f64(POSITION_ERROR)
-        * normal
-            .map(T::abs)
-            .dot(p0 * w + p1 * u + p2 * v + vec3(margin, margin, margin))
+    let [p0, p1, p2] = corners;
+    let [w, u, v] = weights;
+    let extent = p0.abs() * w.abs() + p1.abs() * u.abs() + p2.abs() * v.abs();
+    T::from_f64(POSITION_ERROR) * normal.abs().dot(extent + Vec3::splat(T::from_f64(0.05)))
 }

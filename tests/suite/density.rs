@@ -12,7 +12,7 @@ use glossmith::optics::lobe::{
     Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample, lobe_view, stretch_from_anisotropy,
 };
 use glossmith::optics::random::{Sequence, random_pair, random_state};
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 use rayon::prelude::*;
 
@@ -36,7 +36,7 @@ struct Inputs<T> {
     wo: Vec3<T>,
 }
 
-fn inputs<T: Real>(case: &Case) -> Inputs<T> {
+fn inputs<T: Scalar>(case: &Case) -> Inputs<T> {
     let single = |v: Vec3<f64>| Vec3::from_f32(v.to_f32());
     let number = |x: f64| T::from_f64(f64::from(x as f32));
     let frame = case.frame();
@@ -214,7 +214,7 @@ fn drawn(case: &Case, single: &Inputs<f32>, i: u32) -> Option<Vec3<f32>> {
     (sample.weight > 0.0).then_some(sample.wi)
 }
 
-fn density<T: Real>(inputs: &Inputs<T>, light: Vec3<T>) -> T {
+fn density<T: Scalar>(inputs: &Inputs<T>, light: Vec3<T>) -> T {
     lobe_evaluate(&inputs.shape, &inputs.frame, inputs.frame.normal, inputs.wo, light)[1]
 }
 

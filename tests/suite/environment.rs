@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::environment::{
     Environment, EnvironmentSource, SkyParams, environment_direction, environment_local_from_world,
@@ -26,7 +26,7 @@ pub fn number(random: &mut Random) -> f64 {
 }
 
 /// What a sample is drawn with.
-pub fn triple<T: Real>(random: &mut Random) -> Vec3<T> {
+pub fn triple<T: Scalar>(random: &mut Random) -> Vec3<T> {
     Vec3::from_f64([number(random), number(random), number(random)])
 }
 

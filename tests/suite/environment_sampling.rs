@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::environment::{
     Environment, EnvironmentSource, SkyParams, environment_density, environment_direction, environment_radiance,
@@ -101,7 +101,12 @@ fn cell_solid_angle(environment: &Environment, index: usize) -> f64 {
 
 /// The p-value of `count` samples against the integral of the density over blocks of cells, each expectation times
 /// `tamper(block)`.
-fn chi_square_p<T: Real>(environment: &Environment, block: [u32; 2], count: u32, tamper: impl Fn(usize) -> f64) -> f64 {
+fn chi_square_p<T: Scalar>(
+    environment: &Environment,
+    block: [u32; 2],
+    count: u32,
+    tamper: impl Fn(usize) -> f64,
+) -> f64 {
     let columns = environment.cells_width.div_ceil(block[0]) as usize;
     let rows = environment.cells_height.div_ceil(block[1]) as usize;
     let block_of = |cell: [u32; 2]| (cell[1] / block[1]) as usize * columns + (cell[0] / block[0]) as usize;

@@ -9,17 +9,12 @@ use glossmith::scene::{Geometry, Hit, Model, ModelSource, PACKET, Packet, Slot, 
 use rayon::prelude::*;
 
 use super::cli_support::Workplace;
+use super::lanes::sets;
 use super::support::Random;
 
 #[path = "../../benches/compressed/mod.rs"]
 mod compressed;
 use compressed::CompressedRays;
-
-/// The instruction sets of this processor, with their names.
-fn sets() -> Vec<(&'static str, Level)> {
-    let sets = Instructions::ALL.iter().filter(|set| **set != Instructions::Auto);
-    sets.filter_map(|set| Some((set.name(), set.level()?))).collect()
-}
 
 fn model_of(mesh: Mesh) -> Model {
     Model {

@@ -9,7 +9,7 @@ use glossmith::cpu::CpuEngine;
 use glossmith::document::{AreaLight, Background, Document, Strategy};
 use glossmith::job::film::Film;
 use glossmith::optics::material::Material;
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
@@ -91,7 +91,7 @@ fn cells() -> Vec<[[f64; 2]; 3]> {
 
 /// The p-value of samples of the triangles seen from `origin` against their density integrated over the solid angle of
 /// each cell, times `tamper(cell)`.
-fn chi_square_p<T: Real>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> f64 {
+fn chi_square_p<T: Scalar>(origin: Vec3<f64>, tamper: impl Fn(usize) -> f64) -> f64 {
     let (geometry, materials) = shards();
     let lights = Lights::new(&geometry, &materials);
     let per_luminance = 1.0 / lights.power;

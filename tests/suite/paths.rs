@@ -3,18 +3,22 @@
 use std::collections::HashSet;
 use std::time::Duration;
 
-use glossmith::cpu::integrator::{Integrator, PathResult};
+use glossmith::cpu::integrator::{Integrator, PathResult, Tile, WAVE_SAMPLES};
 use glossmith::cpu::recorder::{Event, Purpose};
 use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{AreaLight, Document, Strategy};
+use glossmith::job::Job;
 use glossmith::job::tiles::TileGrid;
+use glossmith::optics::lanes::{InLanes, in_lanes};
 use glossmith::optics::random::Sequence;
+use glossmith::optics::real::Real;
 use glossmith::render::explain::explain;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{Model, ModelSource, Slot};
 
 use crate::analytic_scenes::room;
+use crate::lanes::sets;
 use crate::lights::lit_scenes;
 use crate::random_documents::random_document;
 use crate::renders::document;
@@ -240,7 +244,30 @@ fn bits(path: &PathResult<f32>) -> Vec<u32> {
     numbers.map(f32::to_bits).chain([path.rays]).collect()
 }
 
-/// The engine has the paths of a tile go on together: each must find what it finds alone, as it is told of by `explain`.
+/// What some samples of a tile find together, in lanes.
+struct Together<'a> {
+    job: &'a Job,
+    origin: [u32; 2],
+    size: [u32; 2],
+    /// The first of them and how many there are.
+    samples: [u32; 2],
+}
+
+impl InLanes for Together<'_> {
+    type Output = Vec<PathResult<f32>>;
+    fn run<T: Real<Scalar = f32>>(self) -> Self::Output {
+        let pixels = (self.size[0] * self.size[1]) as usize;
+        let mut found = vec![PathResult::default(); pixels * self.samples[1] as usize];
+        let tile = Tile::new(self.origin, self.size);
+        Integrator::<T>::new(self.job).trace_tile(&tile, self.samples, |pixel, sample, path| {
+            found[(sample - self.samples[0]) as usize * pixels + pixel] = *path;
+        });
+        found
+    }
+}
+
+/// The engine has the paths of a tile go on together, in lanes of any instruction set: each must find what it finds alone,
+/// as it is told of by `explain`.
 #[test]
 fn paths_find_the_same_together_as_alone_to_the_last_bit() {
     let mut random = Random::new(29);
@@ -263,20 +290,36 @@ fn paths_find_the_same_together_as_alone_to_the_last_bit() {
         let grid = TileGrid { width, height };
         for tile in (0..grid.tiles()).step_by(3) {
             let ([left, top], size) = (grid.origin(tile), grid.size(tile));
-            let sample = tile as u32 % 3;
-            let together = integrator.trace_tile([left, top], size, sample);
-            assert_eq!(together.len() as u64, grid.pixels(tile));
-            for (pixel, path) in (0..).zip(&together) {
-                let place = [left + pixel % size[0], top + pixel / size[0]];
-                let alone = integrator.trace_path(place, sample);
-                assert_eq!(
-                    bits(path),
-                    bits(&alone),
-                    "{}, {place:?}, sample {sample}: {path:?} instead of {alone:?}: {:?}",
-                    scene.name,
-                    scene.document
+            let [first, count] = [tile as u32 % 3, 1 + tile as u32 / 3 % WAVE_SAMPLES];
+            let pixels = grid.pixels(tile) as u32;
+            let place = |pixel: u32| [left + pixel % size[0], top + pixel / size[0]];
+            let alone = |path: u32| integrator.trace_path(place(path % pixels), first + path / pixels);
+            let alone: Vec<_> = (0..count * pixels).map(alone).collect();
+            for (set, level) in sets() {
+                let samples = [first, count];
+                let origin = [left, top];
+                let together = in_lanes(
+                    level,
+                    Together {
+                        job,
+                        origin,
+                        size,
+                        samples,
+                    },
                 );
-                rays += path.rays;
+                assert_eq!(together.len(), alone.len());
+                for (i, (path, alone)) in (0..).zip(together.iter().zip(&alone)) {
+                    assert_eq!(
+                        bits(path),
+                        bits(alone),
+                        "{} under {set}, {:?}, sample {}: {path:?} instead of {alone:?}: {:?}",
+                        scene.name,
+                        place(i % pixels),
+                        first + i / pixels,
+                        scene.document
+                    );
+                    rays += path.rays;
+                }
             }
         }
     }

@@ -5,11 +5,11 @@
 //! place over what would reach it were nothing there. Both are the background itself where nothing stands in the way.
 //! Over a transparent background the shadow's light is taken from 1, which is its alpha.
 
-use super::path::{Path, Ray};
-use super::{Integrator, PathResult};
+use super::path::Path;
+use super::{Arrival, Integrator, PathResult};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source};
 use crate::job::Catcher;
-use crate::optics::real::{Mask, Real};
+use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
 use crate::scene::catcher::{catcher_light, catcher_reflectance};
 use crate::scene::surface::SurfacePoint;
@@ -20,7 +20,7 @@ pub const CATCHER_DIMENSION: u32 = 12288;
 
 /// What a shadow catcher makes of a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) enum Caught<T> {
+pub(super) enum Caught<S> {
     /// It has met none.
     #[default]
     Not,
@@ -32,81 +32,123 @@ pub(super) enum Caught<T> {
     /// It is mirrored: where it then meets nothing it shows the background with its alpha.
     Mirrored {
         /// Linear RGB.
-        background: Vec3<T>,
+        background: Vec3<S>,
         /// See [`PathResult`].
-        alpha: T,
+        alpha: S,
     },
 }
 
+/// What a shadow catcher does with the paths of a group.
+#[derive(Clone, Copy)]
+pub(super) struct Passed<T: Real> {
+    /// Where there is a surface: elsewhere the background is shown as it is.
+    pub is_there: T::Mask,
+    /// Where it mirrors the path.
+    pub is_mirrored: T::Mask,
+}
+
 impl<T: Real> Integrator<'_, T> {
-    /// What a shadow catcher has to do with a path that met a surface; false where it shows the background as it is.
+    /// What a shadow catcher has to do with paths that met a surface.
     #[inline(always)]
     pub(super) fn pass_catcher<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
-        ray: &Ray<T>,
-        bounce: u32,
-        path: &mut Path<'_, T, R>,
-    ) -> bool {
-        if path.caught.is_mirrored() {
-            path.caught = Caught::Not;
+        arrival: &mut Arrival<T>,
+        paths: &mut [Path<T::Scalar, R>],
+    ) -> Passed<T> {
+        let nothing = T::Mask::splat(false);
+        let mut passed = Passed {
+            is_there: arrival.on,
+            is_mirrored: nothing,
+        };
+        let Some(catcher) = self.settings.catcher else {
+            return passed;
+        };
+        if arrival.bounce > 0 {
+            arrival.group.for_each(paths, arrival.on, |path, _| {
+                if path.caught.is_mirrored() {
+                    path.caught = Caught::Not;
+                }
+            });
+        } else if catcher.slot == point.slot {
+            passed = self.catch(catcher, point, arrival, paths);
         }
-        let here = |catcher: &Catcher| bounce == 0 && catcher.slot == point.slot;
-        match self.settings.catcher.filter(here) {
-            Some(catcher) => self.catch(catcher, point, ray, path),
-            None => true,
-        }
+        passed
     }
 
-    /// Begins the path anew at the shadow catcher; false where it is not there: seen from below, or without light.
+    /// Begins paths anew at the shadow catcher. It is not there where it is seen from below, or gets no light.
+    #[inline(always)]
     fn catch<R: Recorder>(
         &self,
         catcher: Catcher,
         point: &SurfacePoint<T>,
-        ray: &Ray<T>,
-        path: &mut Path<'_, T, R>,
-    ) -> bool {
-        let light = catcher_light(self.tables, catcher.table, point.position);
-        if ray.direction.y.to_f64() >= 0.0 || light.max_component().to_f64() <= 0.0 {
-            return false;
-        }
-        let place = self.left_place(ray, 0);
-        let (background, alpha) = self.camera_background(ray.direction, place, CATCHER_DIMENSION + 1, path);
-        let [choice, _] = path.pair(CATCHER_DIMENSION, [Purpose::Catcher, Purpose::Unused]);
-        let share = catcher_reflectance(self.tables, catcher.table, -ray.direction.y);
-        let is_mirrored = choice.less(share).any();
-        let is_transparent = alpha.to_f64() <= 0.0;
-        let shown = if is_transparent {
-            Vec3::splat(T::one())
-        } else {
-            background
-        };
+        arrival: &mut Arrival<T>,
+        paths: &mut [Path<T::Scalar, R>],
+    ) -> Passed<T> {
+        let (zero, one) = (T::zero(), T::one());
+        let group = arrival.group;
+        let positions = point.position.to_each();
+        let light = Vec3::from_lanes(|lane| catcher_light(self.tables, catcher.table, positions.as_ref()[lane]));
+        let is_there = arrival.on & arrival.direction.y.less(zero) & zero.less(light.max_component());
+        let place = self.left_places(arrival.direction, 0);
+        let (background, alpha) =
+            self.camera_background(&group, arrival.direction, place, CATCHER_DIMENSION + 1, paths);
+        let [choice, _] = group.pairs(paths, CATCHER_DIMENSION, [Purpose::Catcher, Purpose::Unused]);
+        let share = catcher_reflectance(self.tables, catcher.table, -arrival.direction.y);
+        let is_mirrored = is_there & choice.less(share);
+        let is_transparent = !zero.less(alpha);
+        let white = Vec3::splat(one);
+        let shown = Vec3::select(is_transparent, white, background);
         let albedo = self.materials[catcher.slot as usize].base_color;
-        let is_lit = light.map(|light| T::select(T::zero().less(light), T::one(), T::zero()));
-        if is_mirrored {
-            path.caught = Caught::Mirrored { background, alpha };
-        } else {
-            path.caught = Caught::Shadow { is_transparent };
-            let reflected = light * albedo + (Vec3::splat(T::one()) - is_lit);
-            path.throughput = shown * is_lit * reflected.map(|reflected| T::one() / reflected);
-        }
-        let throughput = path.throughput.to_f32();
-        path.record(|| Event::Caught {
-            is_mirrored,
-            background: shown.to_f32(),
-            light: light.to_f32(),
-            throughput,
+        let lit = |light: T| T::select(zero.less(light), one, zero);
+        let is_lit = Vec3 {
+            x: lit(light.x),
+            y: lit(light.y),
+            z: lit(light.z),
+        };
+        let reflected = light * albedo + (white - is_lit);
+        let kept = Vec3 {
+            x: one / reflected.x,
+            y: one / reflected.y,
+            z: one / reflected.z,
+        };
+        arrival.throughput = Vec3::select(is_mirrored, arrival.throughput, shown * is_lit * kept);
+        let (backgrounds, alphas) = (background.to_each(), alpha.to_each());
+        let (mirrors, gaps) = (is_mirrored.to_bits(), is_transparent.to_bits());
+        group.for_each(paths, is_there, |path, lane| {
+            path.caught = if mirrors >> lane & 1 == 1 {
+                Caught::Mirrored {
+                    background: backgrounds.as_ref()[lane],
+                    alpha: alphas.as_ref()[lane],
+                }
+            } else {
+                Caught::Shadow {
+                    is_transparent: gaps >> lane & 1 == 1,
+                }
+            };
         });
-        if is_mirrored {
-            return true;
-        }
+        let throughput = arrival.throughput;
+        group.record(paths, is_there, |lane| Event::Caught {
+            is_mirrored: mirrors >> lane & 1 == 1,
+            background: shown.to_each().as_ref()[lane].to_f32(),
+            light: light.to_each().as_ref()[lane].to_f32(),
+            throughput: throughput.to_each().as_ref()[lane].to_f32(),
+        });
         // A colour of which no light would reach the place has no shadow.
-        self.add(Source::Background, shown * (Vec3::splat(T::one()) - is_lit), 0, path);
-        true
+        let unshadowed = shown * (white - is_lit);
+        self.add(
+            &group,
+            is_there & !is_mirrored,
+            Source::Background,
+            unshadowed,
+            0,
+            paths,
+        );
+        Passed { is_there, is_mirrored }
     }
 }
 
-impl<T: Real> Caught<T> {
+impl<S: Scalar> Caught<S> {
     /// Whether the path's last surface was a shadow catcher that mirrors it.
     #[inline(always)]
     pub(super) fn is_mirrored(self) -> bool {
@@ -114,12 +156,12 @@ impl<T: Real> Caught<T> {
     }
 
     /// What the path found, which over a transparent background is a shadow's alpha. A part of the light alone casts none.
-    pub(super) fn result(self, found: PathResult<T>, is_all_light: bool) -> PathResult<T> {
+    pub(super) fn result(self, found: PathResult<S>, is_all_light: bool) -> PathResult<S> {
         match self {
             Self::Shadow { is_transparent: true } => PathResult {
                 alpha: match is_all_light {
-                    true => T::one() - found.radiance.luminance(),
-                    false => T::zero(),
+                    true => S::one() - found.radiance.luminance(),
+                    false => S::zero(),
                 },
                 radiance: Vec3::zero(),
                 ..found

@@ -1,12 +1,13 @@
 //! Light on a path: what it meets by itself, and what is drawn towards.
 
-use super::path::{Path, Ray};
-use super::{BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator};
+use super::group::Group;
+use super::path::Path;
+use super::{Arrival, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source, single};
 use crate::job::{BackgroundKind, Strategy};
 use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::material::{Material, material_evaluate};
-use crate::optics::real::{Mask, Real};
+use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_disc;
 use crate::scene::environment::{
@@ -17,9 +18,9 @@ use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_s
 use crate::scene::surface::SurfacePoint;
 
 impl<T: Real> Integrator<'_, T> {
-    /// Where a world direction lies in the environment's map.
+    /// Where world directions lie in the environment's map.
     #[inline(always)]
-    pub(super) fn far_place(&self, direction: Vec3<T>) -> [T; 2] {
+    fn far_places(&self, direction: Vec3<T>) -> [T; 2] {
         environment_uv(environment_local_from_world(direction, self.rotation))
     }
 
@@ -29,247 +30,322 @@ impl<T: Real> Integrator<'_, T> {
         environment_radiance_at(self.environment, place) * T::from_f64(self.settings.environment_strength)
     }
 
-    /// What a path that left the scene sees at a place in the environment's map, weighed against light sampling.
-    pub(super) fn far_light<R: Recorder>(&self, ray: &Ray<T>, place: [T; 2], path: &mut Path<'_, T, R>) -> Vec3<T> {
+    /// What paths that left the scene see at a place in the environment's map, weighed against light sampling.
+    #[inline(always)]
+    pub(super) fn far_light<R: Recorder>(
+        &self,
+        ray: &Arrival<T>,
+        place: [T; 2],
+        paths: &mut [Path<T::Scalar, R>],
+    ) -> Vec3<T> {
         let radiance = self.far_radiance(place);
-        let light_density = || self.environment_probability * environment_density_at(self.environment, place);
-        self.weighed(Source::Environment, radiance, ray, light_density, path)
+        let mut density = T::zero();
+        if self.samples_environment {
+            density = self.environment_probability * environment_density_at(self.environment, place);
+        }
+        self.weighed(Source::Environment, radiance, density, ray, paths)
     }
 
-    /// Where what a ray that met nothing sees lies in the environment's map; 0 where it does not see the map as it is.
+    /// Where what rays that met nothing see lies in the environment's map; 0 where they do not see the map as it is.
     #[inline(always)]
-    pub(super) fn left_place(&self, ray: &Ray<T>, bounce: u32) -> [T; 2] {
+    pub(super) fn left_places(&self, direction: Vec3<T>, bounce: u32) -> [T; 2] {
         if bounce > 0 || self.settings.background == BackgroundKind::Environment {
-            self.far_place(ray.direction)
+            self.far_places(direction)
         } else {
             [T::zero(); 2]
         }
     }
 
-    /// Has the processor fetch what is looked up at a place in the environment's map, the density too where one is.
+    /// Finds where paths that met nothing look at the environment's map, and has the processor fetch what they see there.
     #[inline(always)]
-    pub(super) fn fetch_far(&self, place: [T; 2], with_density: bool) {
-        fetch_place(self.environment, place, with_density && self.samples_environment);
+    pub(super) fn locate_left<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut [Path<T::Scalar, R>]) {
+        let place = self.left_places(group.vectors(paths, |path| path.ray.direction), bounce);
+        fetch_place(self.environment, place, bounce > 0 && self.samples_environment);
+        set_places(group, place, paths);
     }
 
-    /// The numbers with which a direction to a light is drawn.
+    /// Finds where the environment's lights lie that paths are aimed at, and has the processor fetch what shines there.
     #[inline(always)]
-    pub(super) fn light_numbers<R: Recorder>(&self, bounce: u32, path: &mut Path<'_, T, R>) -> Vec3<T> {
-        if !self.samples_light() || path.caught.is_mirrored() {
-            return Vec3::zero();
-        }
+    pub(super) fn locate_lights<R: Recorder>(&self, group: &Group<T>, paths: &mut [Path<T::Scalar, R>]) {
+        let place = self.far_places(group.vectors(paths, |path| path.light().drawn.direction));
+        fetch_place(self.environment, place, false);
+        set_places(group, place, paths);
+    }
+
+    /// Draws the numbers with which directions to lights are drawn, and has the processor fetch what they are looked up in.
+    #[inline(always)]
+    pub(super) fn light_numbers<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut [Path<T::Scalar, R>]) {
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 2;
-        let [a, b] = path.pair(dimension, [Purpose::Light; 2]);
-        let [c, _] = path.pair(dimension + 1, [Purpose::Light, Purpose::Unused]);
-        vec3(a, b, c)
+        let [a, b] = group.pairs(paths, dimension, [Purpose::Light; 2]);
+        let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Light, Purpose::Unused]);
+        let numbers = vec3(a, b, c).to_each();
+        group.for_each(paths, group.mask(), |path, lane| {
+            path.light_numbers = numbers.as_ref()[lane]
+        });
+        if self.samples_environment {
+            fetch_cell(self.environment, [a, b]);
+        }
     }
 
-    /// Has the processor fetch what drawing with these numbers looks up first, or once that is there, what it looks up then.
+    /// Has the processor fetch what drawing with these numbers looks up next.
     #[inline(always)]
-    pub(super) fn fetch_light(&self, numbers: Vec3<T>, is_first_there: bool) {
+    pub(super) fn fetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &[Path<T::Scalar, R>]) {
+        let numbers = group.vectors(paths, |path| path.light_numbers);
         // Where there are emitters, too, the last number chooses between them and the environment first.
         let numbers = vec3(numbers.x, numbers.y, numbers.z / self.environment_probability);
-        if self.samples_environment && is_first_there {
-            fetch_chosen(self.environment, numbers);
-        } else if self.samples_environment {
-            fetch_cell(self.environment, [numbers.x, numbers.y]);
-        }
+        fetch_chosen(self.environment, numbers);
     }
 
-    /// What a surface emits that a path met at `distance`, weighed against light sampling.
+    /// What surfaces emit that paths met, weighed against light sampling.
+    #[inline(always)]
     pub(super) fn emitted_light<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
-        distance: T,
-        ray: &Ray<T>,
-        path: &mut Path<'_, T, R>,
+        arrival: &Arrival<T>,
+        paths: &mut [Path<T::Scalar, R>],
     ) -> Vec3<T> {
         let cosine = point.surface.normal.dot(point.surface.wo);
         let mut emission = material.emission;
         if is_spot(material) {
-            let facing = if point.surface.is_inside { -cosine } else { cosine };
+            let facing = T::select(point.surface.is_inside, -cosine, cosine);
             emission = emission * spot_share(material, facing);
         }
-        let density = || light_density(material.light_luminance, cosine, distance, self.density_per_luminance);
-        self.weighed(Source::Surface, emission, ray, density, path)
+        let density = light_density(
+            material.light_luminance,
+            cosine,
+            arrival.distance,
+            self.density_per_luminance,
+        );
+        self.weighed(Source::Surface, emission, density, arrival, paths)
     }
 
-    /// The share of light that the ray has where it met it by itself: all of it where light sampling does not draw from
+    /// The share of light that rays have where they met it by themselves: all of it where light sampling does not draw from
     /// this source or could not have drawn this direction.
     #[inline(always)]
     fn weighed<R: Recorder>(
         &self,
         source: Source,
         radiance: Vec3<T>,
-        ray: &Ray<T>,
-        light_density: impl FnOnce() -> T,
-        path: &mut Path<'_, T, R>,
+        light_density: T,
+        arrival: &Arrival<T>,
+        paths: &mut [Path<T::Scalar, R>],
     ) -> Vec3<T> {
         let is_sampled = match source {
             Source::Surface => self.samples_emitters,
             _ => self.samples_environment,
         };
-        let mut density = T::zero();
-        let mut weight = T::one();
-        let mut found = radiance;
-        if is_sampled && !ray.is_mirror {
-            if self.settings.strategy == Strategy::Light {
-                weight = T::zero();
-                found = Vec3::zero();
-            } else {
-                density = light_density();
-                weight = lobe_share(ray.lobe_density, density);
-                found = radiance * weight;
-            }
+        let (zero, one) = (T::zero(), T::one());
+        let (mut density, mut weight) = (zero, one);
+        if is_sampled {
+            let is_only_sampled = self.settings.strategy == Strategy::Light;
+            let share = lobe_share(arrival.lobe_density, light_density);
+            let share = if is_only_sampled { zero } else { share };
+            weight = T::select(arrival.is_mirror, one, share);
+            density = T::select(
+                arrival.is_mirror,
+                zero,
+                if is_only_sampled { zero } else { light_density },
+            );
         }
-        if radiance.to_f64() != [0.0; 3] {
-            path.record(|| Event::Found {
-                source,
-                radiance: radiance.to_f32(),
-                lobe_density: single(ray.lobe_density),
-                light_density: single(density),
-                weight: single(weight),
-            });
+        if R::KEEPS {
+            arrival
+                .group
+                .record(paths, arrival.on & radiance.is_any(), |lane| Event::Found {
+                    source,
+                    radiance: radiance.to_each().as_ref()[lane].to_f32(),
+                    lobe_density: single(arrival.lobe_density.lane(lane)),
+                    light_density: single(density.lane(lane)),
+                    weight: single(weight.lane(lane)),
+                });
         }
-        found
+        // Also of what is not a number nothing is left where nothing counts.
+        Vec3::select(zero.less(weight), radiance * weight, Vec3::zero())
     }
 
-    /// A direction drawn from the triangles that emit or from the environment; true for the latter, whose radiance is
+    /// Directions drawn from the triangles that emit or from the environment; true for the latter, whose radiance is
     /// looked up once it is known to arrive.
-    fn draw_light(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> (LightSample<T>, bool) {
+    #[inline(always)]
+    fn draw_lights(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> (LightSample<T>, T::Mask) {
         let share = self.environment_probability;
-        if self.samples_emitters && !(self.samples_environment && xi.z.less(share).any()) {
-            let xi = vec3(xi.x, xi.y, (xi.z - share) / (T::one() - share));
-            let emitters = Emitters {
-                geometry: self.geometry,
-                materials: &self.materials,
-                textures: self.textures,
-                lights: self.lights,
-                density_per_luminance: self.density_per_luminance,
-            };
-            return (light_sample(&emitters, point.position, point.error, xi), false);
-        }
-        let (local, density) = environment_sample(self.environment, vec3(xi.x, xi.y, xi.z / share));
-        let sample = LightSample {
-            direction: environment_world_from_local(local, self.rotation),
-            density: density * share,
+        let is_far = if !self.samples_emitters {
+            T::Mask::splat(true)
+        } else if self.samples_environment {
+            xi.z.less(share)
+        } else {
+            T::Mask::splat(false)
+        };
+        let mut drawn = LightSample {
+            direction: Vec3::zero(),
+            density: T::zero(),
             distance: T::from_f64(f64::from(f32::MAX)),
             radiance: Vec3::zero(),
         };
-        (sample, true)
+        if is_far.any() {
+            let (local, density) = environment_sample(self.environment, vec3(xi.x, xi.y, xi.z / share));
+            drawn.direction = environment_world_from_local(local, self.rotation);
+            drawn.density = density * share;
+        }
+        if is_far.all() {
+            return (drawn, is_far);
+        }
+        let near = self.draw_emitters(point, vec3(xi.x, xi.y, (xi.z - share) / (T::one() - share)));
+        let drawn = LightSample {
+            direction: Vec3::select(is_far, drawn.direction, near.direction),
+            density: T::select(is_far, drawn.density, near.density),
+            distance: T::select(is_far, drawn.distance, near.distance),
+            radiance: Vec3::select(is_far, drawn.radiance, near.radiance),
+        };
+        (drawn, is_far)
     }
 
-    /// One direction drawn towards the environment or what emits; `None` where nothing can come from there.
+    /// Directions drawn from the triangles that emit, one lane after the other.
+    #[inline(always)]
+    fn draw_emitters(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> LightSample<T> {
+        let emitters = Emitters {
+            geometry: self.geometry,
+            materials: &self.of_lane,
+            textures: self.textures,
+            lights: self.lights,
+            density_per_luminance: self.density_per_luminance.lane(0),
+        };
+        let (positions, errors, numbers) = (point.position.to_each(), point.error.to_each(), xi.to_each());
+        let samples = T::each(|lane| {
+            let number = numbers.as_ref()[lane];
+            light_sample(&emitters, positions.as_ref()[lane], errors.as_ref()[lane], number)
+        });
+        let samples = samples.as_ref();
+        LightSample {
+            direction: Vec3::from_lanes(|lane| samples[lane].direction),
+            density: T::from_lanes(|lane| samples[lane].density),
+            distance: T::from_lanes(|lane| samples[lane].distance),
+            radiance: Vec3::from_lanes(|lane| samples[lane].radiance),
+        }
+    }
+
+    /// Aims paths at lights: one direction each, drawn towards the environment or what emits, unless nothing can come from
+    /// there. What the material reflects or refracts of it is returned without the weight, where it is told.
     #[inline(always)]
     pub(super) fn aim<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
-        numbers: Vec3<T>,
-        path: &mut Path<'_, T, R>,
-    ) -> Option<LightRay<T>> {
-        if !self.samples_light() || path.caught.is_mirrored() {
-            return None;
-        }
-        let (drawn, is_far) = self.draw_light(point, numbers);
+        arrival: &Arrival<T>,
+        paths: &mut [Path<T::Scalar, R>],
+    ) -> Vec3<T> {
+        let (group, zero) = (arrival.group, T::zero());
+        let (drawn, is_far) = self.draw_lights(point, group.vectors(paths, |path| path.light_numbers));
         let wi = drawn.direction;
-        let is_behind = point.surface.normal.dot(wi).to_f64() <= 0.0;
-        let mut light = LightRay {
-            drawn,
-            is_far,
-            value: Vec3::zero(),
-            throughput: path.throughput,
-            origin: point.position,
-            meets_nothing: true,
+        let transmits = material.transmits();
+        let is_ahead = zero.less(point.surface.normal.dot(wi)) | transmits;
+        let reaches = arrival.on & zero.less(drawn.density) & is_ahead;
+        let competing = match self.settings.strategy {
+            Strategy::Mis => T::one(),
+            _ => zero,
         };
-        if light.drawn.density.to_f64() > 0.0 && (!is_behind || material.transmits()) {
-            let competing = match self.settings.strategy {
-                Strategy::Mis => T::one(),
-                _ => T::zero(),
-            };
-            let density = light.drawn.density;
-            light.value = material_evaluate(material, self.tables, &point.surface, wi, density, competing);
+        let evaluate =
+            |competing| material_evaluate(material, self.tables, &point.surface, wi, drawn.density, competing);
+        let mut value = Vec3::zero();
+        if reaches.any() {
+            value = Vec3::select(reaches, evaluate(competing), value);
         }
-        if light.value.max_component().to_f64() <= 0.0 {
-            path.record(|| light.told(self.unweighed(point, material, &light), T::zero(), Vec3::zero()));
-            return None;
+        let mut whole = Vec3::zero();
+        if R::KEEPS {
+            whole = Vec3::select(zero.less(drawn.density), evaluate(zero), whole);
         }
-        light.meets_nothing = self.meets_nothing(point, wi);
-        light.origin = point.ray_origin(wi, material.transmits());
-        Some(light)
+        let largest = value.max_component();
+        let is_lit = arrival.on & (zero.less(largest) | largest.is_nan());
+        let meets_nothing = self.meets_nothing(point, wi).to_bits();
+        let origins = point.ray_origin(wi, transmits).to_each();
+        let (directions, densities) = (wi.to_each(), drawn.density.to_each());
+        let (distances, radiances) = (drawn.distance.to_each(), drawn.radiance.to_each());
+        let (values, throughputs) = (value.to_each(), arrival.throughput.to_each());
+        let far = is_far.to_bits();
+        let light = |lane: usize| LightRay {
+            drawn: LightSample {
+                direction: directions.as_ref()[lane],
+                density: densities.as_ref()[lane],
+                distance: distances.as_ref()[lane],
+                radiance: radiances.as_ref()[lane],
+            },
+            is_far: far >> lane & 1 == 1,
+            value: values.as_ref()[lane],
+            throughput: throughputs.as_ref()[lane],
+            origin: origins.as_ref()[lane],
+            meets_nothing: meets_nothing >> lane & 1 == 1,
+            visible: T::Scalar::one(),
+        };
+        group.for_each(paths, is_lit, |path, lane| path.light = Some(light(lane)));
+        group.record(paths, arrival.on & !is_lit, |lane| {
+            light(lane).told(whole.to_each().as_ref()[lane], T::Scalar::zero(), Vec3::zero())
+        });
+        whole
     }
 
-    /// What the material reflects or refracts of a direction that was drawn, without the weight.
-    pub(super) fn unweighed(&self, point: &SurfacePoint<T>, material: &Material<T>, light: &LightRay<T>) -> Vec3<T> {
-        let LightSample { direction, density, .. } = light.drawn;
-        if density.to_f64() > 0.0 {
-            material_evaluate(material, self.tables, &point.surface, direction, density, T::zero())
-        } else {
-            Vec3::zero()
-        }
-    }
-
-    /// The share of the light that is not stopped on its way.
+    /// The share of the light that a path is aimed at that is not stopped on its way.
     #[inline(always)]
-    pub(super) fn visible(&self, light: &LightRay<T>, rays: &mut u32) -> T {
+    pub(super) fn visible(&self, light: &LightRay<T::Scalar>, rays: &mut u32) -> T::Scalar {
         if light.meets_nothing {
-            return T::one();
+            return T::Scalar::one();
         }
         self.transmittance(light.origin, light.drawn.direction, light.drawn.distance, rays)
     }
 
-    /// Where a light that was drawn lies in the environment's map; 0 where it is not there.
-    #[inline(always)]
-    pub(super) fn light_place(&self, light: &LightRay<T>) -> [T; 2] {
-        if light.is_far {
-            self.far_place(light.drawn.direction)
-        } else {
-            [T::zero(); 2]
-        }
-    }
-
-    /// Adds what arrives from a light, at this place in the environment's map, of which this share is visible; `unweighed` is called for only where it is told.
+    /// Adds what arrives from the lights that paths are aimed at; `whole` is what [`Integrator::aim`] told.
     #[inline(always)]
     pub(super) fn arrive<R: Recorder>(
         &self,
-        light: &LightRay<T>,
-        (visible, place): (T, [T; 2]),
+        group: &Group<T>,
         bounce: u32,
-        path: &mut Path<'_, T, R>,
-        unweighed: impl FnOnce() -> Vec3<T>,
+        whole: Vec3<T>,
+        paths: &mut [Path<T::Scalar, R>],
     ) {
-        if visible.to_f64() <= 0.0 {
-            path.record(|| light.told(unweighed(), visible, Vec3::zero()));
-            return;
+        let is_far = group.truths(paths, |path| path.light().is_far);
+        let visible = group.numbers(paths, |path| path.light().visible);
+        let density = group.numbers(paths, |path| path.light().drawn.density);
+        let value = group.vectors(paths, |path| path.light().value);
+        let throughput = group.vectors(paths, |path| path.light().throughput);
+        let mut radiance = Vec3::zero();
+        if is_far.any() {
+            radiance = self.far_radiance(places(group, paths));
         }
-        let radiance = if light.is_far {
-            self.far_radiance(place)
-        } else {
-            light.drawn.radiance
-        };
-        path.record(|| light.told(unweighed(), visible, radiance));
-        let found = light.throughput * (light.value * radiance * (visible / light.drawn.density));
-        self.add(light.source(), found, bounce + 1, path);
+        if !is_far.all() {
+            let near = group.vectors(paths, |path| path.light().drawn.radiance);
+            radiance = Vec3::select(is_far, radiance, near);
+        }
+        let found = throughput * (value * radiance * (visible / density));
+        if R::KEEPS {
+            group.for_each(paths, group.mask(), |path, lane| {
+                let (whole, radiance) = (whole.to_each().as_ref()[lane], radiance.to_each().as_ref()[lane]);
+                let light = *path.light();
+                path.record(|| light.told(whole, light.visible, radiance));
+            });
+        }
+        // Both sources together: each light adds to its own path.
+        let (near, far) = (group.mask() & !is_far, group.mask() & is_far);
+        self.add(group, near, Source::Surface, found, bounce + 1, paths);
+        self.add(group, far, Source::Environment, found, bounce + 1, paths);
     }
 
     /// What the camera sees where it meets nothing, and its alpha; a blur is drawn with the pair of this dimension.
+    #[inline(always)]
     pub(super) fn camera_background<R: Recorder>(
         &self,
+        group: &Group<T>,
         direction: Vec3<T>,
         place: [T; 2],
         dimension: u32,
-        path: &mut Path<'_, T, R>,
+        paths: &mut [Path<T::Scalar, R>],
     ) -> (Vec3<T>, T) {
         match self.settings.background {
             BackgroundKind::Environment => (self.far_radiance(place), T::one()),
             BackgroundKind::Blurred(sine) => {
-                let disc: [T; 2] = uniform_disc(path.pair(dimension, [Purpose::Blur; 2]));
-                let disc = disc.map(|x| x * T::from_f64(sine));
-                let height = (T::one() - disc[0] * disc[0] - disc[1] * disc[1]).safe_sqrt();
+                let [x, y] = uniform_disc(group.pairs(paths, dimension, [Purpose::Blur; 2]));
+                let (x, y) = (x * T::from_f64(sine), y * T::from_f64(sine));
+                let height = (T::one() - x * x - y * y).safe_sqrt();
                 let around = frame_from_normal(direction);
-                let blurred = world_from_local(&around, vec3(disc[0], disc[1], height));
-                (self.far_radiance(self.far_place(blurred)), T::one())
+                let blurred = world_from_local(&around, vec3(x, y, height));
+                (self.far_radiance(self.far_places(blurred)), T::one())
             }
             BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
             BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
@@ -277,23 +353,43 @@ impl<T: Real> Integrator<'_, T> {
     }
 }
 
-/// A ray towards a light.
-pub(super) struct LightRay<T> {
-    /// How it was drawn.
-    pub drawn: LightSample<T>,
-    /// True where it was drawn from the environment, whose radiance is looked up once it is known to arrive.
-    is_far: bool,
-    /// What the material reflects or refracts from there, weighed against sampling the lobe.
-    value: Vec3<T>,
-    /// Of the path before the surface.
-    throughput: Vec3<T>,
-    /// Where it starts.
-    pub origin: Vec3<T>,
-    /// True where it is proven that nothing lies ahead.
-    pub meets_nothing: bool,
+/// Where paths look at the environment's map.
+#[inline(always)]
+pub(super) fn places<T: Real, R: Recorder>(group: &Group<T>, paths: &[Path<T::Scalar, R>]) -> [T; 2] {
+    [
+        group.numbers(paths, |path| path.place[0]),
+        group.numbers(paths, |path| path.place[1]),
+    ]
 }
 
-impl<T: Real> LightRay<T> {
+#[inline(always)]
+fn set_places<T: Real, R: Recorder>(group: &Group<T>, place: [T; 2], paths: &mut [Path<T::Scalar, R>]) {
+    let [u, v] = [place[0].to_each(), place[1].to_each()];
+    group.for_each(paths, group.mask(), |path, lane| {
+        path.place = [u.as_ref()[lane], v.as_ref()[lane]];
+    });
+}
+
+/// A ray towards a light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LightRay<S> {
+    /// How it was drawn.
+    pub drawn: LightSample<S>,
+    /// True where it was drawn from the environment, whose radiance is looked up once it is known to arrive.
+    pub is_far: bool,
+    /// What the material reflects or refracts from there, weighed against sampling the lobe.
+    value: Vec3<S>,
+    /// Of the path before the surface.
+    throughput: Vec3<S>,
+    /// Where it starts.
+    pub origin: Vec3<S>,
+    /// True where it is proven that nothing lies ahead.
+    pub meets_nothing: bool,
+    /// The share of the light that is not stopped on its way.
+    pub visible: S,
+}
+
+impl<S: Scalar> LightRay<S> {
     fn source(&self) -> Source {
         if self.is_far {
             Source::Environment
@@ -303,7 +399,7 @@ impl<T: Real> LightRay<T> {
     }
 
     /// The event of this light: `whole` is its value without the weight.
-    fn told(&self, whole: Vec3<T>, visible: T, radiance: Vec3<T>) -> Event {
+    pub fn told(&self, whole: Vec3<S>, visible: S, radiance: Vec3<S>) -> Event {
         let (whole, kept) = (whole.to_f32(), self.value.to_f32());
         Event::Light {
             source: self.source(),
@@ -318,6 +414,7 @@ impl<T: Real> LightRay<T> {
 }
 
 /// The share of the lobe under the balance heuristic (Veach 1997) where it met light by itself.
+#[inline(always)]
 fn lobe_share<T: Real>(lobe_density: T, light_density: T) -> T {
     lobe_density / (lobe_density + light_density).max(T::from_f64(1e-30))
 }

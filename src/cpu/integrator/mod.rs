@@ -1,32 +1,36 @@
-//! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the precision of the shading.
+//! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the numbers that it shades with, of which
+//! there may be many in lanes.
 
 mod catcher;
+mod group;
 mod light;
 mod path;
 mod rays;
+mod scatter;
 mod wave;
 
 use std::borrow::Cow;
 
-use super::recorder::{End, Event, Purpose, Recorder, Source, Unrecorded, single};
+use super::recorder::{End, Event, Recorder, Source, Unrecorded, single};
 use crate::job::effect::EffectId;
 use crate::job::features::{GUIDE_SAMPLES, GuideSums};
 use crate::job::{Job, Settings, Strategy};
-use crate::optics::material::{
-    Material, MaterialNumbers, MaterialSample, material_albedo, material_layers, material_sample,
-};
+use crate::optics::material::{Material, material_albedo};
 use crate::optics::random::path_state;
-use crate::optics::real::{Mask, Real};
+use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
 use crate::scene::Geometry;
 use crate::scene::camera::Camera;
 use crate::scene::environment::Environment;
 use crate::scene::light::Lights;
-use crate::scene::surface::SurfacePoint;
-use crate::scene::texture::{Textures, textured_material};
+use crate::scene::surface::{Hits, SurfacePoint, surfaces_at};
+use crate::scene::texture::{Textures, textured_materials};
 pub use catcher::CATCHER_DIMENSION;
 use catcher::Caught;
-use path::{Path, Ray};
+use group::Group;
+use light::places;
+use path::Path;
+pub use wave::{Tile, WAVE_SAMPLES};
 
 /// Pairs of numbers before the first bounce: pixel, lens.
 pub const FIRST_DIMENSION: u32 = 2;
@@ -59,7 +63,7 @@ pub struct PathResult<T> {
 }
 
 /// A job with its numbers in the precision of the shading.
-pub struct Integrator<'a, T> {
+pub struct Integrator<'a, T: Real> {
     geometry: &'a Geometry,
     environment: &'a Environment,
     tables: &'a [f32],
@@ -67,6 +71,8 @@ pub struct Integrator<'a, T> {
     has_holes: bool,
     settings: &'a Settings,
     materials: Vec<Material<T>>,
+    /// The materials for one lane.
+    of_lane: Vec<Material<T::Scalar>>,
     camera: Camera<T>,
     rotation: [T; 2],
     lights: &'a Lights,
@@ -79,6 +85,25 @@ pub struct Integrator<'a, T> {
     guide_samples: u32,
     /// Where fireflies are limited.
     firefly_clamp: Option<T>,
+}
+
+/// Paths of a group that have met surfaces, and how they got there.
+#[derive(Clone, Copy)]
+struct Arrival<T: Real> {
+    group: Group<T>,
+    bounce: u32,
+    /// Which of them it is about.
+    on: T::Mask,
+    /// What light from their rays' other ends is multiplied by.
+    throughput: Vec3<T>,
+    /// Of their rays.
+    direction: Vec3<T>,
+    lobe_density: T,
+    is_mirror: T::Mask,
+    /// From their rays' origins.
+    distance: T,
+    /// True where a shadow catcher mirrors them, all of them.
+    is_caught_mirrored: bool,
 }
 
 impl<'a, T: Real> Integrator<'a, T> {
@@ -94,6 +119,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             has_holes: job.plan.has(EffectId::Alpha),
             settings: &job.settings,
             materials: job.materials.iter().map(Material::cast).collect(),
+            of_lane: job.materials.iter().map(Material::cast).collect(),
             camera: job.settings.camera.cast(),
             rotation: job.settings.environment_rotation.map(T::from_f64),
             lights: &job.lights,
@@ -118,301 +144,320 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
     }
 
-    /// One path through a pixel.
-    pub fn trace_path(&self, pixel: [u32; 2], sample: u32) -> PathResult<T> {
-        self.record_path(pixel, sample, &mut Unrecorded)
-    }
-
-    /// The same path, its events told to a recorder.
-    pub fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<T> {
-        let mut path = self.begin(pixel, sample, recorder);
-        let mut ray = self.first_ray(pixel, &mut path);
-        for bounce in 0.. {
-            let Some((point, distance)) = self.stop(&ray, bounce, &mut path) else {
-                return self.left(&ray, self.left_place(&ray, bounce), bounce, &mut path);
-            };
-            if !self.pass_catcher(&point, &ray, bounce, &mut path) {
-                return self.left(&ray, self.left_place(&ray, bounce), bounce, &mut path);
-            }
-            let material = &*self.material(&point, &path);
-            if !self.meet(&point, material, distance, &ray, bounce, &mut path) {
-                break;
-            }
-            let numbers = self.light_numbers(bounce, &mut path);
-            if let Some(light) = self.aim(&point, material, numbers, &mut path) {
-                let visible = (self.visible(&light, &mut path.rays), self.light_place(&light));
-                self.arrive(&light, visible, bounce, &mut path, || {
-                    self.unweighed(&point, material, &light)
-                });
-            }
-            let Some(next) = self.scatter(&point, material, bounce, &mut path) else {
-                break;
-            };
-            ray = next;
-        }
-        self.result(&path, T::one())
-    }
-
-    /// What a path found that has come to its end.
-    fn result<R: Recorder>(&self, path: &Path<'_, T, R>, alpha: T) -> PathResult<T> {
-        path.result(alpha, self.settings.least_reflections == 0)
-    }
-
-    /// A path before its first ray.
-    #[inline(always)]
-    fn begin<'r, R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &'r mut R) -> Path<'r, T, R> {
-        let settings = self.settings;
-        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        Path::new(state, sample < self.guide_samples, recorder)
-    }
-
-    /// What a path finds at the surface that stopped it, by itself; false where it ends there.
-    #[inline(always)]
-    fn meet<R: Recorder>(
-        &self,
-        point: &SurfacePoint<T>,
-        material: &Material<T>,
-        distance: T,
-        ray: &Ray<T>,
-        bounce: u32,
-        path: &mut Path<'_, T, R>,
-    ) -> bool {
-        if point.surface.is_inside && material.transmits() {
-            self.absorb(material, distance, path);
-        }
-        if path.is_looking {
-            self.look(point, material, distance, ray, bounce, path);
-        }
-        let found = path.throughput * self.emitted_light(point, material, distance, ray, path);
-        self.add(Source::Surface, found, bounce, path);
-        let goes_on = bounce < self.settings.bounces;
-        if !goes_on {
-            path.record(|| Event::Ended { why: End::Bounces });
-        }
-        goes_on
-    }
-
     /// Whether directions to lights are drawn at all.
     fn samples_light(&self) -> bool {
         self.samples_environment || self.samples_emitters
     }
 
-    /// The material at a point where a path is, with what its textures say there.
+    /// A path before its first ray.
     #[inline(always)]
-    fn material<R>(&self, point: &SurfacePoint<T>, path: &Path<'_, T, R>) -> Cow<'_, Material<T>> {
+    fn begin<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: R) -> Path<T::Scalar, R> {
+        let settings = self.settings;
+        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
+        Path::new(state, pixel, sample < self.guide_samples, recorder)
+    }
+
+    /// What a path found that has come to its end.
+    fn result<R: Recorder>(&self, path: &Path<T::Scalar, R>) -> PathResult<T::Scalar> {
+        path.result(self.settings.least_reflections == 0)
+    }
+
+    /// The surfaces that paths met, all of one slot.
+    #[inline(always)]
+    fn surfaces<R: Recorder>(
+        &self,
+        arrival: &Arrival<T>,
+        slot: u32,
+        paths: &mut [Path<T::Scalar, R>],
+    ) -> SurfacePoint<T> {
+        let hits: Hits<T> = T::each(|lane| arrival.group.of(paths, lane).hit);
+        let materials = (&self.materials[slot as usize], &self.of_lane[slot as usize]);
+        let point = surfaces_at(self.geometry, slot, materials, self.textures, &hits, arrival.direction);
+        arrival.group.record(paths, arrival.on, |lane| Event::Hit {
+            bounce: arrival.bounce,
+            triangle: hits.as_ref()[lane].triangle,
+            slot,
+            distance: single(arrival.distance.lane(lane)),
+            position: point.position.to_each().as_ref()[lane].to_f32(),
+            normal: point.surface.normal.to_each().as_ref()[lane].to_f32(),
+            shading_normal: point.surface.frame.normal.to_each().as_ref()[lane].to_f32(),
+            is_inside: point.surface.is_inside.to_bits() >> lane & 1 == 1,
+        });
+        point
+    }
+
+    /// Where it is proven that nothing lies ahead: outside a convex body.
+    #[inline(always)]
+    fn meets_nothing(&self, point: &SurfacePoint<T>, wi: Vec3<T>) -> T::Mask {
+        let is_outside = !point.surface.is_inside & T::zero().less(point.surface.normal.dot(wi));
+        T::Mask::splat(!self.is_interreflecting) & is_outside
+    }
+
+    /// The material of paths that have met surfaces, with what its textures say there.
+    #[inline(always)]
+    fn material(&self, point: &SurfacePoint<T>, arrival: &Arrival<T>) -> Cow<'_, Material<T>> {
         let slot = match self.settings.catcher {
-            Some(catcher) if path.caught.is_mirrored() => catcher.reflection_slot,
+            Some(catcher) if arrival.is_caught_mirrored => catcher.reflection_slot,
             _ => point.slot,
         };
-        let plain = &self.materials[slot as usize];
-        if plain.is_textured() || plain.has_vertex_colors == 1 {
-            Cow::Owned(textured_material(
-                self.textures,
-                self.tables,
-                plain,
-                point.uvs,
+        let materials = (&self.materials[slot as usize], &self.of_lane[slot as usize]);
+        if materials.1.is_textured() || materials.1.has_vertex_colors == 1 {
+            let (textures, tables) = (self.textures, self.tables);
+            Cow::Owned(textured_materials(
+                textures,
+                tables,
+                materials,
+                &point.uvs,
                 point.vertex_color,
             ))
         } else {
-            Cow::Borrowed(plain)
+            Cow::Borrowed(materials.0)
         }
     }
 
-    /// What the interior leaves of light over this way through it.
-    fn absorb<R: Recorder>(&self, material: &Material<T>, distance: T, path: &mut Path<'_, T, R>) {
-        let kept = material.absorption.map(|absorption| (-absorption * distance).exp());
-        path.record(|| Event::Absorption {
-            distance: single(distance),
-            kept: kept.to_f32(),
-        });
-        path.throughput = path.throughput * kept;
+    /// What paths find at the surfaces that stopped them, by themselves; false where they end there.
+    #[inline(always)]
+    fn meet<R: Recorder>(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        arrival: &mut Arrival<T>,
+        paths: &mut [Path<T::Scalar, R>],
+    ) -> bool {
+        let is_within = arrival.on & point.surface.is_inside & material.transmits();
+        if is_within.any() {
+            absorb(material, is_within, arrival, paths);
+        }
+        self.look(point, material, arrival, paths);
+        if material.emission.is_any().any() {
+            let found = arrival.throughput * self.emitted_light(point, material, arrival, paths);
+            self.add(
+                &arrival.group,
+                arrival.on,
+                Source::Surface,
+                found,
+                arrival.bounce,
+                paths,
+            );
+        }
+        let goes_on = arrival.bounce < self.settings.bounces;
+        if !goes_on {
+            arrival
+                .group
+                .for_each(paths, arrival.on, |path, _| path.goes_on = false);
+            arrival
+                .group
+                .record(paths, arrival.on, |_| Event::Ended { why: End::Bounces });
+        }
+        goes_on
     }
 
     /// Notes what is seen here: at the first surface, and behind mirrors and clear glass.
+    #[inline(always)]
     fn look<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         material: &Material<T>,
-        distance: T,
-        ray: &Ray<T>,
-        bounce: u32,
-        path: &mut Path<'_, T, R>,
+        arrival: &Arrival<T>,
+        paths: &mut [Path<T::Scalar, R>],
     ) {
-        let albedo = path.throughput * material_albedo(material, self.tables, &point.surface);
-        path.seen.albedo = albedo.to_f32().map(|share| share.clamp(0.0, 1.0));
-        path.seen.normal = point.surface.frame.normal.to_f32();
-        if bounce == 0 {
-            path.seen.hits = 1.0;
-            path.seen.depth = single(distance * ray.direction.dot(self.camera.forward));
+        let group = arrival.group;
+        if self.guide_samples == 0 {
+            return;
         }
+        let is_looking = arrival.on & group.truths(paths, |path| path.is_looking);
+        if !is_looking.any() {
+            return;
+        }
+        let albedo = arrival.throughput * material_albedo(material, self.tables, &point.surface);
+        let depth = arrival.distance * arrival.direction.dot(self.camera.forward);
+        let (albedos, normals) = (albedo.to_each(), point.surface.frame.normal.to_each());
+        let depths = depth.to_each();
+        group.for_each(paths, is_looking, |path, lane| {
+            path.seen.albedo = albedos.as_ref()[lane].to_f32().map(|share| share.clamp(0.0, 1.0));
+            path.seen.normal = normals.as_ref()[lane].to_f32();
+            if arrival.bounce == 0 {
+                path.seen.hits = 1.0;
+                path.seen.depth = single(depths.as_ref()[lane]);
+            }
+        });
     }
 
-    /// The end of a path that met nothing, and sees this place in the environment's map.
-    fn left<R: Recorder>(&self, ray: &Ray<T>, place: [T; 2], bounce: u32, path: &mut Path<'_, T, R>) -> PathResult<T> {
-        let mut alpha = T::one();
+    /// The end of paths that met nothing, and see these places in the environment's map.
+    #[inline(always)]
+    fn leave<R: Recorder>(&self, arrival: &Arrival<T>, place: [T; 2], paths: &mut [Path<T::Scalar, R>]) {
+        let Arrival { group, bounce, on, .. } = *arrival;
         if bounce == 0 {
             // The numbers of the first bounce, which there is none of.
-            let (radiance, seen) = self.camera_background(ray.direction, place, FIRST_DIMENSION, path);
-            self.add(Source::Background, radiance, 0, path);
-            alpha = seen;
-        } else if let Caught::Mirrored {
-            background,
-            alpha: seen,
-        } = path.caught
-        {
-            self.add(Source::Background, background, bounce, path);
-            alpha = seen;
+            let (radiance, alpha) = self.camera_background(&group, arrival.direction, place, FIRST_DIMENSION, paths);
+            self.add(&group, on, Source::Background, radiance, 0, paths);
+            let alphas = alpha.to_each();
+            group.for_each(paths, on, |path, lane| path.alpha = alphas.as_ref()[lane]);
         } else {
-            let found = path.throughput * self.far_light(ray, place, path);
-            self.add(Source::Environment, found, bounce, path);
+            let is_caught = match self.settings.catcher {
+                Some(_) => on & group.truths(paths, |path| path.caught.is_mirrored()),
+                None => T::Mask::splat(false),
+            };
+            if is_caught.any() {
+                self.leave_catcher(&group, is_caught, bounce, paths);
+            }
+            let ray = Arrival {
+                on: on & !is_caught,
+                ..*arrival
+            };
+            if ray.on.any() {
+                let found = arrival.throughput * self.far_light(&ray, place, paths);
+                self.add(&group, ray.on, Source::Environment, found, bounce, paths);
+            }
         }
-        path.record(|| Event::Ended { why: End::Left });
-        self.result(path, alpha)
+        group.for_each(paths, on, |path, _| path.goes_on = false);
+        group.record(paths, on, |_| Event::Ended { why: End::Left });
+    }
+
+    /// The same of paths that a shadow catcher mirrors: they see the background.
+    #[inline(always)]
+    fn leave_catcher<R: Recorder>(&self, group: &Group<T>, on: T::Mask, bounce: u32, paths: &mut [Path<T::Scalar, R>]) {
+        let background = group.vectors(paths, |path| match path.caught {
+            Caught::Mirrored { background, .. } => background,
+            _ => Vec3::zero(),
+        });
+        self.add(group, on, Source::Background, background, bounce, paths);
+        group.for_each(paths, on, |path, _| {
+            if let Caught::Mirrored { alpha, .. } = path.caught {
+                path.alpha = alpha;
+            }
+        });
     }
 
     /// Adds light that was reflected so many times, no more than firefly limiting allows.
     #[inline(always)]
-    fn add<R: Recorder>(&self, source: Source, found: Vec3<T>, reflections: u32, path: &mut Path<'_, T, R>) {
-        let added = self.limited(found, reflections, &mut path.clamped);
-        path.radiance += added;
-        if found.to_f64() != [0.0; 3] {
-            path.record(|| Event::Contribution {
+    fn add<R: Recorder>(
+        &self,
+        group: &Group<T>,
+        on: T::Mask,
+        source: Source,
+        found: Vec3<T>,
+        reflections: u32,
+        paths: &mut [Path<T::Scalar, R>],
+    ) {
+        let [added, taken] = self.limited(found, reflections);
+        let (radiances, taken) = (added.to_each(), taken.luminance().to_each());
+        group.for_each(paths, on, |path, lane| {
+            path.radiance += radiances.as_ref()[lane];
+            path.clamped += taken.as_ref()[lane];
+        });
+        if R::KEEPS {
+            group.record(paths, on & found.is_any(), |lane| Event::Contribution {
                 source,
                 reflections,
-                found: found.to_f32(),
-                added: added.to_f32(),
+                found: found.to_each().as_ref()[lane].to_f32(),
+                added: added.to_each().as_ref()[lane].to_f32(),
             });
         }
     }
 
-    /// What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.
+    /// What contributions that were reflected so many times add, and what is beyond the limit.
     #[inline(always)]
-    fn limited(&self, contribution: Vec3<T>, reflections: u32, taken: &mut T) -> Vec3<T> {
+    fn limited(&self, contribution: Vec3<T>, reflections: u32) -> [Vec3<T>; 2] {
+        let nothing = Vec3::zero();
         if reflections < self.settings.least_reflections {
-            return Vec3::zero();
+            return [nothing, nothing];
         }
         let Some(limit) = self.firefly_clamp.filter(|_| reflections > 1) else {
-            return contribution;
+            return [contribution, nothing];
         };
         let largest = contribution.max_component();
-        if !limit.less(largest).any() {
-            return contribution;
-        }
+        let is_beyond = limit.less(largest);
         let kept = limit / largest;
-        *taken += contribution.luminance() * (T::one() - kept);
-        contribution * kept
-    }
-
-    /// The ray on which the path goes on; `None` where it ends.
-    #[inline(always)]
-    fn scatter<R: Recorder>(
-        &self,
-        point: &SurfacePoint<T>,
-        material: &Material<T>,
-        bounce: u32,
-        path: &mut Path<'_, T, R>,
-    ) -> Option<Ray<T>> {
-        let numbers = material_numbers(material, bounce, path);
-        let wants_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
-        let mut drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
-        let mut leaves = self.meets_nothing(point, drawn.wi);
-        path.is_looking &= drawn.is_mirror;
-        if path.caught.is_mirrored() {
-            // All of it goes on, also what the facets would keep, and none of what it meets is left to light sampling.
-            leaves |= drawn.throughput.max_component().to_f64() <= 0.0;
-            drawn.throughput = Vec3::splat(T::one());
-            drawn.is_mirror = true;
-        }
-        path.throughput = path.throughput * drawn.throughput;
-        let throughput = path.throughput;
-        path.record(|| self.scattered(point, material, &drawn, throughput));
-        if !survives(bounce, path) {
-            return None;
-        }
-        Some(Ray {
-            origin: point.ray_origin(drawn.wi, material.transmits()),
-            direction: drawn.wi,
-            lobe_density: drawn.density,
-            is_mirror: drawn.is_mirror,
-            leaves,
-        })
-    }
-
-    fn scattered(
-        &self,
-        point: &SurfacePoint<T>,
-        material: &Material<T>,
-        drawn: &MaterialSample<T>,
-        throughput: Vec3<T>,
-    ) -> Event {
-        let layers = material_layers(material, self.tables, &point.surface);
-        let below = T::one() - layers.coat_probability;
-        let probabilities = [
-            layers.coat_probability,
-            below * layers.specular_probability,
-            below * layers.base_probability(),
-            below * layers.transmission_probability,
-        ];
-        Event::Scattered {
-            layer: drawn.layer,
-            probabilities: probabilities.map(single),
-            direction: drawn.wi.to_f32(),
-            factor: drawn.throughput.to_f32(),
-            density: single(drawn.density),
-            is_mirror: drawn.is_mirror,
-            throughput: throughput.to_f32(),
-        }
+        [
+            Vec3::select(is_beyond, contribution * kept, contribution),
+            Vec3::select(is_beyond, contribution * (T::one() - kept), nothing),
+        ]
     }
 }
 
-/// The numbers with which a material's direction is drawn.
+impl<S: Scalar> Integrator<'_, S> {
+    /// One path through a pixel.
+    pub fn trace_path(&self, pixel: [u32; 2], sample: u32) -> PathResult<S> {
+        self.record_path(pixel, sample, &mut Unrecorded)
+    }
+
+    /// The same path, its events told to a recorder.
+    pub fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<S> {
+        let mut path = self.begin(pixel, sample, recorder);
+        let paths = std::slice::from_mut(&mut path);
+        let group = Group::new(&[0]);
+        self.first_rays(&group, paths);
+        for bounce in 0.. {
+            if !self.stop(bounce, &mut paths[0]) {
+                let arrival = Arrival::new(group, bounce, paths);
+                self.leave(&arrival, self.left_places(arrival.direction, bounce), paths);
+                break;
+            }
+            self.bounce_alone(Arrival::new(group, bounce, paths), paths);
+            if !paths[0].goes_on {
+                break;
+            }
+        }
+        self.result(&paths[0])
+    }
+
+    /// What a path does at the surface that stopped it.
+    fn bounce_alone<R: Recorder>(&self, mut arrival: Arrival<S>, paths: &mut [Path<S, R>]) {
+        let (group, bounce) = (arrival.group, arrival.bounce);
+        let slot = self.geometry.slot(paths[0].hit.triangle as usize);
+        let point = self.surfaces(&arrival, slot, paths);
+        let passed = self.pass_catcher(&point, &mut arrival, paths);
+        if !passed.is_there {
+            self.leave(&arrival, self.left_places(arrival.direction, bounce), paths);
+            return;
+        }
+        arrival.is_caught_mirrored = passed.is_mirrored;
+        let material = &*self.material(&point, &arrival);
+        if !self.meet(&point, material, &mut arrival, paths) {
+            return;
+        }
+        if self.samples_light() && !arrival.is_caught_mirrored {
+            self.light_numbers(&group, bounce, paths);
+            let whole = self.aim(&point, material, &arrival, paths);
+            if let Some(mut light) = paths[0].light {
+                light.visible = self.visible(&light, &mut paths[0].rays);
+                paths[0].light = Some(light);
+                if light.visible > S::zero() {
+                    self.locate_lights(&group, paths);
+                    self.arrive(&group, bounce, whole, paths);
+                } else {
+                    paths[0].record(|| light.told(whole, light.visible, Vec3::zero()));
+                }
+                paths[0].light = None;
+            }
+        }
+        self.scatter(&point, material, &arrival, paths);
+    }
+}
+
+/// What the interior leaves of the light that goes through it.
 #[inline(always)]
-fn material_numbers<T: Real, R: Recorder>(
+fn absorb<T: Real, R: Recorder>(
     material: &Material<T>,
-    bounce: u32,
-    path: &mut Path<'_, T, R>,
-) -> MaterialNumbers<T> {
-    let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
-    let [a, b] = path.pair(dimension, [Purpose::Lobe; 2]);
-    let [c, layer] = path.pair(dimension + 1, [Purpose::Lobe, Purpose::Layer]);
-    let lobe = [a, b, c];
-    let mut below = lobe;
-    if material.transmits() {
-        let dimension = BELOW_DIMENSION + 2 * bounce;
-        let [a, b] = path.pair(dimension, [Purpose::Below; 2]);
-        let [c, _] = path.pair(dimension + 1, [Purpose::Below, Purpose::Unused]);
-        below = [a, b, c];
-    }
-    MaterialNumbers { lobe, layer, below }
-}
-
-/// Whether a path goes on: Russian roulette, its survivors made up for by their throughput.
-#[inline(always)]
-fn survives<T: Real, R: Recorder>(bounce: u32, path: &mut Path<'_, T, R>) -> bool {
-    let strength = path.throughput.max_component();
-    // Also ends paths that are NaN.
-    if strength.to_f64().partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) {
-        path.record(|| Event::Ended { why: End::Absorbed });
-        return false;
-    }
-    if bounce < ROULETTE_START || strength.to_f64() >= 1.0 {
-        return true;
-    }
-    let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 3;
-    let [_, number] = path.pair(dimension, [Purpose::Unused, Purpose::Roulette]);
-    path.record(|| Event::Roulette {
-        survival: single(strength),
-        number: single(number),
+    on: T::Mask,
+    arrival: &mut Arrival<T>,
+    paths: &mut [Path<T::Scalar, R>],
+) {
+    let thickness = material.absorption * arrival.distance;
+    let kept = Vec3 {
+        x: (-thickness.x).exp(),
+        y: (-thickness.y).exp(),
+        z: (-thickness.z).exp(),
+    };
+    arrival.group.record(paths, on, |lane| Event::Absorption {
+        distance: single(arrival.distance.lane(lane)),
+        kept: kept.to_each().as_ref()[lane].to_f32(),
     });
-    if number.to_f64() >= strength.to_f64() {
-        path.record(|| Event::Ended { why: End::Roulette });
-        return false;
-    }
-    path.throughput = path.throughput / strength;
-    true
+    arrival.throughput = Vec3::select(on, arrival.throughput * kept, arrival.throughput);
 }
 
 /// Finite and not negative: what may be added to the picture.
-pub fn is_sound<T: Real>(color: Vec3<T>) -> bool {
+pub fn is_sound<S: Scalar>(color: Vec3<S>) -> bool {
     color.to_f64().iter().all(|x| (0.0..=RADIANCE_MAX).contains(x))
 }

@@ -1,118 +1,90 @@
 //! A path under way: its sums, and its random numbers as they are drawn.
 
+use super::PathResult;
 use super::catcher::Caught;
-use super::{BOUNCE_DIMENSIONS, PathResult};
-use crate::cpu::recorder::{Event, Purpose, Recorder, single};
+use super::light::LightRay;
+use crate::cpu::recorder::{Event, Recorder};
 use crate::job::features::GuideSums;
-use crate::optics::random::{RandomState, random_pair, unit_from_bits};
-use crate::optics::real::Real;
+use crate::optics::random::RandomState;
+use crate::optics::real::Scalar;
 use crate::optics::vector::Vec3;
+use crate::scene::Hit;
 
-/// A path under way. Every number that it takes is drawn by [`Path::pair`], every event told by [`Path::record`].
-pub(super) struct Path<'r, T, R> {
-    state: RandomState,
-    /// Numbers that were drawn ahead.
-    ahead: Ahead,
+/// A path under way.
+pub(super) struct Path<S: Scalar, R> {
+    /// The counters from which it draws its numbers.
+    pub state: RandomState,
+    /// Its pixel.
+    pub pixel: [u32; 2],
     /// What light from the ray's other end is multiplied by.
-    pub throughput: Vec3<T>,
+    pub throughput: Vec3<S>,
     /// What it has found.
-    pub radiance: Vec3<T>,
+    pub radiance: Vec3<S>,
     /// Luminance that limiting fireflies took.
-    pub clamped: T,
+    pub clamped: S,
     /// Rays traced.
     pub rays: u32,
     /// What is seen first.
     pub seen: GuideSums,
     /// What a shadow catcher has made of it.
-    pub caught: Caught<T>,
+    pub caught: Caught<S>,
     /// True while the path is one of those that tell what they see, and has met nothing but mirrors and clear glass.
     pub is_looking: bool,
-    recorder: &'r mut R,
-}
-
-/// Pairs of numbers that are drawn ahead: those of a bounce.
-pub(super) const AHEAD: usize = BOUNCE_DIMENSIONS as usize;
-
-/// The bits of pairs of numbers that were drawn for many paths at once, which is quicker.
-#[derive(Clone, Copy, Default)]
-struct Ahead {
-    /// Of the first pair.
-    dimension: u32,
-    /// How many pairs there are.
-    count: usize,
-    pairs: [[u32; 2]; AHEAD],
-}
-
-impl Ahead {
-    #[inline(always)]
-    fn pair(&self, dimension: u32) -> Option<[u32; 2]> {
-        let place = dimension.wrapping_sub(self.dimension) as usize;
-        self.pairs.get(place).filter(|_| place < self.count).copied()
-    }
+    /// Where it goes.
+    pub ray: Ray<S>,
+    /// What its ray met, and how far from the ray's origin.
+    pub hit: Hit,
+    /// See `hit`: longer where the ray went through surfaces before.
+    pub distance: S,
+    /// Where it looks at the environment's map.
+    pub place: [S; 2],
+    /// The numbers that draw its light.
+    pub light_numbers: Vec3<S>,
+    /// The light that it is aimed at.
+    pub light: Option<LightRay<S>>,
+    /// True until it has come to its end.
+    pub goes_on: bool,
+    /// 1 where it met something that is not transparent background.
+    pub alpha: S,
+    recorder: R,
 }
 
 /// A ray of a path, and how its direction was drawn.
-#[derive(Default)]
-pub(super) struct Ray<T> {
-    pub origin: Vec3<T>,
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Ray<S> {
+    pub origin: Vec3<S>,
     /// Unit vector.
-    pub direction: Vec3<T>,
+    pub direction: Vec3<S>,
     /// The density of the direction, for what competes with light sampling.
-    pub lobe_density: T,
+    pub lobe_density: S,
     /// True where light sampling could not have drawn the direction.
     pub is_mirror: bool,
     /// True where it is proven that nothing lies ahead.
     pub leaves: bool,
 }
 
-impl<'r, T: Real, R: Recorder> Path<'r, T, R> {
-    pub fn new(state: RandomState, is_looking: bool, recorder: &'r mut R) -> Self {
+impl<S: Scalar, R: Recorder> Path<S, R> {
+    pub fn new(state: RandomState, pixel: [u32; 2], is_looking: bool, recorder: R) -> Self {
         Self {
             state,
-            ahead: Ahead::default(),
-            throughput: Vec3::splat(T::one()),
+            pixel,
+            throughput: Vec3::splat(S::one()),
             radiance: Vec3::zero(),
-            clamped: T::zero(),
+            clamped: S::zero(),
             rays: 0,
             seen: GuideSums::default(),
             caught: Caught::Not,
             is_looking,
+            ray: Ray::default(),
+            hit: Hit::default(),
+            distance: S::zero(),
+            place: [S::zero(); 2],
+            light_numbers: Vec3::zero(),
+            light: None,
+            goes_on: true,
+            alpha: S::one(),
             recorder,
         }
-    }
-
-    /// The pair of numbers number `dimension`, each with its purpose.
-    #[inline(always)]
-    pub fn pair(&mut self, dimension: u32, purposes: [Purpose; 2]) -> [T; 2] {
-        let pair: [T; 2] = match self.ahead.pair(dimension) {
-            Some(bits) => bits.map(unit_from_bits),
-            None => random_pair(self.state, dimension),
-        };
-        for (half, purpose) in (0..).zip(purposes) {
-            if purpose != Purpose::Unused {
-                self.record(|| Event::Number {
-                    dimension,
-                    half,
-                    value: single(pair[half as usize]),
-                    purpose,
-                });
-            }
-        }
-        pair
-    }
-
-    /// The counters from which it draws its numbers.
-    pub fn state(&self) -> RandomState {
-        self.state
-    }
-
-    /// Takes the bits of so many pairs that were drawn ahead, from this dimension on.
-    pub fn set_ahead(&mut self, dimension: u32, count: usize, pairs: [[u32; 2]; AHEAD]) {
-        self.ahead = Ahead {
-            dimension,
-            count,
-            pairs,
-        };
     }
 
     /// Tells of an event.
@@ -121,11 +93,17 @@ impl<'r, T: Real, R: Recorder> Path<'r, T, R> {
         self.recorder.record(event);
     }
 
+    /// The light that it is aimed at: there must be one.
+    #[inline(always)]
+    pub fn light(&self) -> &LightRay<S> {
+        self.light.as_ref().expect("the path is aimed at a light")
+    }
+
     /// What the path found, of all light or of a part.
-    pub fn result(&self, alpha: T, is_all_light: bool) -> PathResult<T> {
+    pub fn result(&self, is_all_light: bool) -> PathResult<S> {
         let found = PathResult {
             radiance: self.radiance,
-            alpha,
+            alpha: self.alpha,
             rays: self.rays,
             clamped: self.clamped,
             seen: self.seen,

@@ -19,23 +19,21 @@ pub const CUSTOM_LENGTH: usize = 1 + 2 * (CUSTOM_INTERVALS + 1);
 #[inline(always)]
 pub fn distance<T: Real>(table: &[f32], xi: T) -> T {
     let c = T::from_f64;
-    let number = |i: usize| c(f64::from(table[i]));
     // Six halvings of 64 intervals; `low` counts the nodes that lie below ξ.
     let mut low = T::zero();
     let mut step = CUSTOM_INTERVALS / 2;
     while step > 0 {
         let middle = low + c(step as f64);
-        let node = number(1 + middle.to_f64() as usize);
+        let node = T::look_up(&table[1..], middle);
         low = T::select(xi.less(node), low, middle);
         step /= 2;
     }
-    let index = low.to_f64() as usize;
-    let width = number(0) * c(1.0 / CUSTOM_INTERVALS as f64);
+    let width = distance_max::<T>(table) * c(1.0 / CUSTOM_INTERVALS as f64);
     let (left, right) = (
-        number(CUSTOM_INTERVALS + 2 + index),
-        number(CUSTOM_INTERVALS + 3 + index),
+        T::look_up(&table[CUSTOM_INTERVALS + 2..], low),
+        T::look_up(&table[CUSTOM_INTERVALS + 3..], low),
     );
-    let missing = (xi - number(1 + index)).max(T::zero());
+    let missing = (xi - T::look_up(&table[1..], low)).max(T::zero());
     let root = (left * left + c(2.0) * (right - left) / width * missing).safe_sqrt();
     let step = c(2.0) * missing / (left + root).max(c(1e-12));
     width * low + step.min(width)
@@ -57,12 +55,12 @@ pub fn h<T: Real>(table: &[f32], distance: T) -> T {
 #[inline(always)]
 fn density<T: Real>(table: &[f32], distance: T) -> T {
     let c = T::from_f64;
-    let number = |i: usize| c(f64::from(table[i]));
-    let position = (distance / number(0) * c(CUSTOM_INTERVALS as f64)).clamp(T::zero(), c(CUSTOM_INTERVALS as f64));
-    let low = position.floor().min(c(CUSTOM_INTERVALS as f64 - 1.0));
-    let node = CUSTOM_INTERVALS + 2 + low.to_f64() as usize;
+    let last = c(CUSTOM_INTERVALS as f64);
+    let position = (distance / distance_max(table) * last).clamp(T::zero(), last);
+    let low = position.floor().min(last - T::one());
+    let nodes = &table[CUSTOM_INTERVALS + 2..];
     let fraction = position - low;
-    number(node) * (T::one() - fraction) + number(node + 1) * fraction
+    T::look_up(nodes, low) * (T::one() - fraction) + T::look_up(&nodes[1..], low) * fraction
 }
 
 /// A custom curve's table from the density of D at equidistant nodes over [0, `distance_max`] (65 values, not negative,

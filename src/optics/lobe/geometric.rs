@@ -9,7 +9,7 @@ use crate::optics::chord::chord_density;
 use crate::optics::curve::curve_distance;
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
 use crate::optics::numeric::normalize_or;
-use crate::optics::real::Real;
+use crate::optics::real::{Mask, Real};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_sphere;
 
@@ -62,11 +62,7 @@ pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>,
         return chord_density(shape.curve, shape.table, shape.roughness, stretch, frame.normal, mirror, wi);
     }
     let width = widths(shape);
-    let unstretched = |v: Vec3<T>| {
-        let local = local_from_world(frame, v);
-        vec3(local.x / width.x, local.y / width.y, local.z / width.z)
-    };
-    let (mirror, light) = (unstretched(mirror), unstretched(wi));
+    let (mirror, light) = (unstretched(frame, width, mirror), unstretched(frame, width, wi));
     let (mirror_length, light_length) = (mirror.length(), light.length());
     let up = vec3(T::zero(), T::zero(), T::one());
     let (mirror, light) = (mirror / mirror_length, light / light_length);
@@ -74,6 +70,13 @@ pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>,
     let density = value / (width.x * width.y * width.z * light_length * light_length * light_length);
     // A mirror has none: there the widths and the lengths measured in them are 0 and infinite.
     T::select(T::zero().less(shape.roughness), density, T::zero())
+}
+
+/// The local components of a vector in units of the lobe's widths.
+#[inline(always)]
+fn unstretched<T: Real>(frame: &Frame<T>, width: Vec3<T>, v: Vec3<T>) -> Vec3<T> {
+    let local = local_from_world(frame, v);
+    vec3(local.x / width.x, local.y / width.y, local.z / width.z)
 }
 
 /// Always 1: the lobe is its density.
@@ -85,5 +88,5 @@ pub fn weight<T: Real>(_shape: &LobeShape<'_, T>, _frame: &Frame<T>, _wo: Vec3<T
 /// True where the widths differ.
 #[inline(always)]
 fn is_stretched<T: Real>(shape: &LobeShape<'_, T>) -> bool {
-    shape.anisotropy.to_f64() != 0.0
+    shape.anisotropy.differs(T::zero()).any()
 }

@@ -41,7 +41,10 @@ macro_rules! lobes {
 
         /// The direction that the lobe itself draws, on either side of the horizon.
         pub fn raw_sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, xi: [T; 3]) -> Vec3<T> {
-            match shape.lobe { $(Lobe::$variant => $module::sample(shape, frame, wo, xi),)* }
+            T::vectorize(
+                #[inline(always)]
+                || match shape.lobe { $(Lobe::$variant => $module::sample(shape, frame, wo, xi),)* },
+            )
         }
 
         /// [`raw_sample`] of a lobe, without the choice at each call.
@@ -51,10 +54,14 @@ macro_rules! lobes {
 
         /// The density of [`raw_sample`], per steradian, not negative.
         pub fn raw_density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
-            match shape.lobe { $(Lobe::$variant => $module::density(shape, frame, wo, wi),)* }
+            T::vectorize(
+                #[inline(always)]
+                || match shape.lobe { $(Lobe::$variant => $module::density(shape, frame, wo, wi),)* },
+            )
         }
 
         /// Evaluate over density for a direction of [`raw_sample`].
+        #[inline(always)]
         pub fn raw_weight<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, wi: Vec3<T>) -> T {
             match shape.lobe { $(Lobe::$variant => $module::weight(shape, frame, wo, wi),)* }
         }
@@ -200,6 +207,14 @@ pub struct LobeShape<'a, T> {
     pub table: &'a [f32],
 }
 
+impl<T: Real> LobeShape<'_, T> {
+    /// True where the lobe refracts, which it does in all lanes or in none.
+    #[inline(always)]
+    pub fn refracts(&self) -> bool {
+        self.eta.differs(T::zero()).any()
+    }
+}
+
 /// A direction drawn from a lobe.
 #[derive(Clone, Copy, Debug)]
 pub struct LobeSample<T> {
@@ -249,7 +264,7 @@ pub fn is_mirror<T: Real>(shape: &LobeShape<'_, T>) -> T::Mask {
 /// True where the lobe refracts, and does so facet by facet.
 #[inline(always)]
 pub fn refracts_at_facets<T: Real>(shape: &LobeShape<'_, T>) -> bool {
-    shape.eta.to_f64() != 0.0 && shape.lobe.facets() != Facets::None
+    shape.refracts() && shape.lobe.facets() != Facets::None
 }
 
 /// How a lobe is seen: where it refracts as a whole, by a viewer behind the surface.
@@ -278,7 +293,7 @@ pub fn lobe_view<T: Real>(
         normal: surface_normal,
         wo,
     };
-    if shape.eta.to_f64() == 0.0 {
+    if !shape.refracts() {
         return seen;
     }
     if refracts_at_facets(shape) {
@@ -288,17 +303,15 @@ pub fn lobe_view<T: Real>(
         };
     }
     let behind = refracted(wo, frame.normal, shape.eta);
-    if behind.is_total.any() {
-        return seen;
-    }
+    let is_total = behind.is_total;
     LobeView {
         frame: Frame {
             tangent: frame.tangent,
-            bitangent: -frame.bitangent,
-            normal: -frame.normal,
+            bitangent: Vec3::select(is_total, frame.bitangent, -frame.bitangent),
+            normal: Vec3::select(is_total, frame.normal, -frame.normal),
         },
-        normal: -surface_normal,
-        wo: behind.wi.mirrored_about(frame.normal),
+        normal: Vec3::select(is_total, surface_normal, -surface_normal),
+        wo: Vec3::select(is_total, wo, behind.wi.mirrored_about(frame.normal)),
     }
 }
 
@@ -327,33 +340,38 @@ pub fn lobe_sample<T: Real>(
     wo: Vec3<T>,
     xi: [T; 3],
 ) -> LobeSample<T> {
-    let view = lobe_view(shape, frame, surface_normal, wo);
-    let mut raw = raw_sample(shape, &view.frame, view.wo, xi);
-    let weight = if refracts_at_facets(shape) {
-        let facet = facet_refracted(wo, raw, shape.eta);
-        raw = facet.wi;
-        T::select(facet.is_total, T::zero(), facet_weight(shape, frame, wo, raw))
-    } else {
-        let weight = raw_weight(shape, &view.frame, view.wo, raw);
-        let is_lost = !T::zero().less(view.frame.normal.dot(raw));
-        if shape.lobe.is_hemispherical() {
-            T::select(is_lost, T::zero(), weight)
-        } else {
-            weight
-        }
-    };
-    let below = view.normal.dot(raw).less(T::zero());
-    match shape.horizon {
-        Horizon::Mirror => LobeSample {
-            wi: Vec3::select(below, raw.reflected_at_plane(view.normal), raw),
-            weight,
+    T::vectorize(
+        #[inline(always)]
+        || {
+            let view = lobe_view(shape, frame, surface_normal, wo);
+            let mut raw = raw_sample(shape, &view.frame, view.wo, xi);
+            let weight = if refracts_at_facets(shape) {
+                let facet = facet_refracted(wo, raw, shape.eta);
+                raw = facet.wi;
+                T::select(facet.is_total, T::zero(), facet_weight(shape, frame, wo, raw))
+            } else {
+                let weight = raw_weight(shape, &view.frame, view.wo, raw);
+                let is_lost = !T::zero().less(view.frame.normal.dot(raw));
+                if shape.lobe.is_hemispherical() {
+                    T::select(is_lost, T::zero(), weight)
+                } else {
+                    weight
+                }
+            };
+            let below = view.normal.dot(raw).less(T::zero());
+            match shape.horizon {
+                Horizon::Mirror => LobeSample {
+                    wi: Vec3::select(below, raw.reflected_at_plane(view.normal), raw),
+                    weight,
+                },
+                Horizon::Absorb => LobeSample {
+                    wi: raw,
+                    weight: T::select(below, T::zero(), weight),
+                },
+                Horizon::None => LobeSample { wi: raw, weight },
+            }
         },
-        Horizon::Absorb => LobeSample {
-            wi: raw,
-            weight: T::select(below, T::zero(), weight),
-        },
-        Horizon::None => LobeSample { wi: raw, weight },
-    }
+    )
 }
 
 /// (evaluate, density) of [`lobe_sample`] for a direction: evaluate with the cosine included, density per steradian of
@@ -365,24 +383,30 @@ pub fn lobe_evaluate<T: Real>(
     wo: Vec3<T>,
     wi: Vec3<T>,
 ) -> [T; 2] {
-    let view = lobe_view(shape, frame, surface_normal, wo);
-    if shape.horizon == Horizon::None {
-        return raw_evaluate(shape, &view, wi);
-    }
-    let visible = T::zero().less(view.normal.dot(wi));
-    let [mut value, mut density] = raw_evaluate(shape, &view, wi);
-    if shape.horizon == Horizon::Mirror {
-        let [folded, folded_density] = raw_evaluate(shape, &view, wi.reflected_at_plane(view.normal));
-        value += folded;
-        density += folded_density;
-    }
-    [
-        T::select(visible, value, T::zero()),
-        T::select(visible, density, T::zero()),
-    ]
+    T::vectorize(
+        #[inline(always)]
+        || {
+            let view = lobe_view(shape, frame, surface_normal, wo);
+            if shape.horizon == Horizon::None {
+                return raw_evaluate(shape, &view, wi);
+            }
+            let visible = T::zero().less(view.normal.dot(wi));
+            let [mut value, mut density] = raw_evaluate(shape, &view, wi);
+            if shape.horizon == Horizon::Mirror {
+                let [folded, folded_density] = raw_evaluate(shape, &view, wi.reflected_at_plane(view.normal));
+                value += folded;
+                density += folded_density;
+            }
+            [
+                T::select(visible, value, T::zero()),
+                T::select(visible, density, T::zero()),
+            ]
+        },
+    )
 }
 
 /// (evaluate, density) before the horizon policy.
+#[inline(always)]
 fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<T>) -> [T; 2] {
     let LobeView { frame, wo, .. } = view;
     if refracts_at_facets(shape) {
@@ -396,9 +420,14 @@ fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<
         );
         return [density * facet_weight(shape, frame, *wo, wi), density];
     }
-    if shape.lobe.is_hemispherical() && !T::zero().less(frame.normal.dot(wi)).any() {
+    let is_above = T::zero().less(frame.normal.dot(wi)) | T::Mask::splat(!shape.lobe.is_hemispherical());
+    if !is_above.any() {
         return [T::zero(), T::zero()];
     }
     let density = raw_density(shape, frame, *wo, wi);
-    [density * raw_weight(shape, frame, *wo, wi), density]
+    let value = density * raw_weight(shape, frame, *wo, wi);
+    [
+        T::select(is_above, value, T::zero()),
+        T::select(is_above, density, T::zero()),
+    ]
 }

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use super::linear_from_srgb;
-use crate::optics::real::Real;
+use crate::optics::real::Scalar;
 use crate::optics::vector::Vec3;
 
 /// Nodes along each side of the table.
@@ -26,7 +26,7 @@ static TABLE: LazyLock<Vec<[f32; 3]>> = LazyLock::new(|| {
 /// ACES 2.0 (Academy of Motion Picture Arts and Sciences, 2024; 100 nit, Rec. 709), linear in the cells' six tetrahedra, so
 /// that greys stay grey. Within 0.006 of the transform, sRGB-encoded, for 99 of 100 colours, 0.0005 in the mean.
 #[inline(always)]
-pub fn tone_aces2<T: Real>(scene: Vec3<T>) -> Vec3<T> {
+pub fn tone_aces2<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let last = (SIDE - 1) as f64;
     let scale = last / ((CEILING + FLOOR) / FLOOR).ln();

@@ -5,7 +5,7 @@
 mod aces2;
 mod lut;
 
-use super::real::Real;
+use super::real::Scalar;
 use super::vector::{Vec3, vec3};
 use crate::named::named;
 
@@ -28,7 +28,7 @@ named! {
 /// Display-referred linear Rec. 709 in [0, 1] from exposed scene-referred linear Rec. 709. What is negative or not a
 /// number counts as 0, what is beyond [`SCENE_MAX`] as that.
 #[inline(always)]
-pub fn tone_map<T: Real>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
+pub fn tone_map<T: Scalar>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
     let scene = rgb_linear.map(|x| x.clamp(T::zero(), T::from_f64(SCENE_MAX)));
     let display = match curve {
         ToneCurve::Agx => tone_agx(scene),
@@ -47,7 +47,7 @@ pub const SCENE_MAX: f64 = 65504.0;
 /// primaries; Wrensch's polynomial fit of the sigmoid over 16.5 stops around middle grey ("Minimal AgX implementation",
 /// 2023); the outset; display gamma 2.2.
 #[inline(always)]
-pub fn tone_agx<T: Real>(scene: Vec3<T>) -> Vec3<T> {
+pub fn tone_agx<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let inset = transform(AGX_INSET_FROM_REC709, scene);
     let log = inset.map(|x| {
@@ -66,7 +66,7 @@ pub const AGX_STOPS_MAX: f64 = 4.026069;
 
 /// AgX's sigmoid on [0, 1].
 #[inline(always)]
-fn agx_contrast<T: Real>(x: T) -> T {
+fn agx_contrast<T: Scalar>(x: T) -> T {
     let c = T::from_f64;
     let high = c(31.96) + x * (c(-40.14) + x * c(15.5));
     c(-0.00232) + x * (c(0.1191) + x * (c(0.4298) + x * (c(-6.868) + x * high)))
@@ -75,7 +75,7 @@ fn agx_contrast<T: Real>(x: T) -> T {
 /// Hill's fit of the ACES 1.0 reference rendering and output transforms for sRGB displays (BakingLab, 2016), without
 /// the exposure of 1/0.6 that some programs put before it.
 #[inline(always)]
-pub fn tone_aces<T: Real>(scene: Vec3<T>) -> Vec3<T> {
+pub fn tone_aces<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let fitted = transform(ACES_INPUT, scene).map(|x| {
         let a = x * (x + c(0.0245786)) - c(0.000090537);
@@ -87,7 +87,7 @@ pub fn tone_aces<T: Real>(scene: Vec3<T>) -> Vec3<T> {
 
 /// The Khronos PBR Neutral tone mapper (Khronos 3D Commerce, 2024), as specified.
 #[inline(always)]
-pub fn tone_pbr_neutral<T: Real>(scene: Vec3<T>) -> Vec3<T> {
+pub fn tone_pbr_neutral<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let darkest = scene.x.min(scene.y).min(scene.z);
     // Takes away the reflectance of 0.04 that every dielectric adds to its base colour.
@@ -107,13 +107,13 @@ pub const NEUTRAL_START: f64 = 0.8 - 0.04;
 
 /// As it is, cut off by [`tone_map`].
 #[inline(always)]
-pub fn tone_none<T: Real>(scene: Vec3<T>) -> Vec3<T> {
+pub fn tone_none<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
     scene
 }
 
 /// sRGB-encoded from linear, both in [0, 1] (IEC 61966-2-1).
 #[inline(always)]
-pub fn srgb_from_linear<T: Real>(linear: Vec3<T>) -> Vec3<T> {
+pub fn srgb_from_linear<T: Scalar>(linear: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     linear.map(|x| {
         let bright = c(1.055) * x.max(c(0.0031308)).powf(c(1.0 / 2.4)) - c(0.055);
@@ -123,7 +123,7 @@ pub fn srgb_from_linear<T: Real>(linear: Vec3<T>) -> Vec3<T> {
 
 /// Linear from sRGB-encoded, both in [0, 1] (IEC 61966-2-1).
 #[inline(always)]
-pub fn linear_from_srgb<T: Real>(srgb: Vec3<T>) -> Vec3<T> {
+pub fn linear_from_srgb<T: Scalar>(srgb: Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     srgb.map(|x| {
         let bright = ((x.max(c(0.04045)) + c(0.055)) / c(1.055)).powf(c(2.4));
@@ -133,7 +133,7 @@ pub fn linear_from_srgb<T: Real>(srgb: Vec3<T>) -> Vec3<T> {
 
 /// Rows of a matrix applied to a colour.
 #[inline(always)]
-fn transform<T: Real>(rows: [[f64; 3]; 3], color: Vec3<T>) -> Vec3<T> {
+fn transform<T: Scalar>(rows: [[f64; 3]; 3], color: Vec3<T>) -> Vec3<T> {
     let [x, y, z] = rows.map(|row| Vec3::from_f64(row).dot(color));
     vec3(x, y, z)
 }

@@ -198,7 +198,7 @@ fn background_error(stage: &mut Stage, document: &Document, environment: &Enviro
         let (x, y) = (i as u32 % film.width, i as u32 / film.width);
         let state = path_state(x, y, settings.seed, 0, settings.sequence);
         let numbers = [PIXEL_DIMENSION, LENS_DIMENSION].map(|dimension| random_pair(state, dimension));
-        let [_, direction] = pixel_ray(&settings.camera, [x, y], settings.image_size, numbers);
+        let [_, direction] = pixel_ray(&settings.camera, [x, y].map(f64::from), settings.image_size, numbers);
         let expected = environment_radiance(environment, direction).to_f64();
         for (found, expected) in pixel.iter().zip(expected) {
             worst = worst.max((f64::from(*found) / expected - 1.0).abs());

@@ -28,9 +28,9 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use crate::optics::real::{Mask, Real};
+use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
-use crate::scene::alias::grid_place;
+use crate::scene::alias::grid_places;
 use crate::scene::loading::Loading;
 use crate::scene::memory::{fetch, in_large_pages};
 
@@ -210,6 +210,7 @@ pub fn load_watched(
 
 /// The direction in the map's frame that a direction in the world meets when the map is turned by an angle about +Y,
 /// anticlockwise seen from above (+Z towards +X). `rotation` is the cosine and the sine of the angle.
+#[inline(always)]
 pub fn environment_local_from_world<T: Real>(direction_world: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
     let [cos, sin] = rotation;
     let d = direction_world;
@@ -217,6 +218,7 @@ pub fn environment_local_from_world<T: Real>(direction_world: Vec3<T>, rotation:
 }
 
 /// The inverse of [`environment_local_from_world`].
+#[inline(always)]
 pub fn environment_world_from_local<T: Real>(direction_local: Vec3<T>, rotation: [T; 2]) -> Vec3<T> {
     let [cos, sin] = rotation;
     let d = direction_local;
@@ -224,6 +226,7 @@ pub fn environment_world_from_local<T: Real>(direction_local: Vec3<T>, rotation:
 }
 
 /// Where a unit direction lies in the map: u in [0, 1), v in [0, 1]. At the poles u is 0.
+#[inline(always)]
 pub fn environment_uv<T: Real>(direction: Vec3<T>) -> [T; 2] {
     // atan2 instead of acos: near the poles y is 1 to within rounding and only x and z tell the angle.
     let horizontal = (direction.x * direction.x + direction.z * direction.z).sqrt();
@@ -238,12 +241,14 @@ pub fn environment_uv<T: Real>(direction: Vec3<T>) -> [T; 2] {
 }
 
 /// The unit direction of a place in the map, the inverse of [`environment_uv`].
+#[inline(always)]
 pub fn environment_direction<T: Real>(uv: [T; 2]) -> Vec3<T> {
     let polar_rad = uv[1] * T::from_f64(std::f64::consts::PI);
     environment_direction_from_angles(uv[0], polar_rad.cos(), polar_rad.sin())
 }
 
 /// The unit direction at `u` turns of azimuth with the given cosine and sine of the angle to +Y.
+#[inline(always)]
 fn environment_direction_from_angles<T: Real>(u: T, cos_polar: T, sin_polar: T) -> Vec3<T> {
     // Half a turn back, so that the argument stays in [−π, π], where GPUs promise accuracy.
     let azimuth_rad = (u - T::from_f64(0.5)) * T::from_f64(std::f64::consts::TAU);
@@ -260,22 +265,30 @@ pub fn environment_radiance<T: Real>(environment: &Environment, direction_local:
 }
 
 /// The same from a place in the map ([`environment_uv`]).
-#[inline]
+#[inline(always)]
 pub fn environment_radiance_at<T: Real>(environment: &Environment, uv: [T; 2]) -> Vec3<T> {
     let Bilinear { texels, shares } = bilinear(environment, uv);
-    let texel = |index: usize| {
-        let [red, green, blue, _] = environment.texels[texels[index]];
-        Vec3::from_f32([red, green, blue])
-    };
-    let upper = texel(0).mix(texel(1), shares[0]);
-    let lower = texel(2).mix(texel(3), shares[0]);
+    let upper = texel_radiance(environment, &texels, 0).mix(texel_radiance(environment, &texels, 1), shares[0]);
+    let lower = texel_radiance(environment, &texels, 2).mix(texel_radiance(environment, &texels, 3), shares[0]);
     upper.mix(lower, shares[1])
 }
 
+/// The radiance of one of the texels around each lane's place.
+#[inline(always)]
+fn texel_radiance<T: Real>(environment: &Environment, texels: &T::Each<[usize; 4]>, which: usize) -> Vec3<T> {
+    let texel = |lane: usize| &environment.texels[texels.as_ref()[lane][which]];
+    let number = |radiance: f32| T::Scalar::from_f64(f64::from(radiance));
+    vec3(
+        T::from_lanes(|lane| number(texel(lane)[0])),
+        T::from_lanes(|lane| number(texel(lane)[1])),
+        T::from_lanes(|lane| number(texel(lane)[2])),
+    )
+}
+
 /// The texels around a place in the map.
-struct Bilinear<T> {
+struct Bilinear<T: Real> {
     /// Which they are: two above, two below.
-    texels: [usize; 4],
+    texels: T::Each<[usize; 4]>,
     /// The shares of the right ones and of those below.
     shares: [T; 2],
 }
@@ -286,25 +299,26 @@ fn bilinear<T: Real>(environment: &Environment, uv: [T; 2]) -> Bilinear<T> {
     let x = uv[0] * T::from_f64(f64::from(environment.width)) - half;
     let y = uv[1] * T::from_f64(f64::from(environment.height)) - half;
     let (left, top) = (x.floor(), y.floor());
-    let (width, height) = (i64::from(environment.width), i64::from(environment.height));
-    // u is below 1: one step at most around the map.
-    let around = |column: i64| match column {
-        -1 => width - 1,
-        _ if column >= width => 0,
-        _ => column,
-    };
-    let line = |row: i64| row.clamp(0, height - 1) * width;
-    let (column, row) = (left.to_f64() as i64, top.to_f64() as i64);
-    let (left_column, right_column) = (around(column), around(column + 1));
-    let (upper, lower) = (line(row), line(row + 1));
-    let places = [
-        upper + left_column,
-        upper + right_column,
-        lower + left_column,
-        lower + right_column,
-    ];
+    let (columns, rows) = (left.to_each(), top.to_each());
+    let (width, height) = (environment.width as i32, environment.height as i32);
+    let texels = T::each(|lane| {
+        let column = columns.as_ref()[lane].to_f64() as i32;
+        let row = rows.as_ref()[lane].to_f64() as i32;
+        // u is below 1: one step at most around the map.
+        let left_column = if column < 0 { width - 1 } else { column };
+        let right_column = if column + 1 >= width { 0 } else { column + 1 };
+        let line = |row: i32| row.clamp(0, height - 1) as usize * width as usize;
+        let (upper, lower) = (line(row), line(row + 1));
+        let (left_column, right_column) = (left_column as usize, right_column as usize);
+        [
+            upper + left_column,
+            upper + right_column,
+            lower + left_column,
+            lower + right_column,
+        ]
+    });
     Bilinear {
-        texels: places.map(|place| place as usize),
+        texels,
         shares: [x - left, y - top],
     }
 }
@@ -312,8 +326,10 @@ fn bilinear<T: Real>(environment: &Environment, uv: [T; 2]) -> Bilinear<T> {
 /// Has the processor fetch what is looked up at a place in the map, so that it is there when it is needed.
 #[inline(always)]
 pub fn fetch_place<T: Real>(environment: &Environment, uv: [T; 2], with_density: bool) {
-    for texel in bilinear(environment, uv).texels {
-        fetch(&environment.texels, texel);
+    for texels in bilinear(environment, uv).texels.as_ref() {
+        for &texel in texels {
+            fetch(&environment.texels, texel);
+        }
     }
     if with_density {
         fetch_cell(environment, uv);
@@ -323,8 +339,10 @@ pub fn fetch_place<T: Real>(environment: &Environment, uv: [T; 2], with_density:
 /// The same for the cell at a place: what [`environment_sample`] looks up first for `xi.x` and `xi.y`.
 #[inline(always)]
 pub fn fetch_cell<T: Real>(environment: &Environment, place: [T; 2]) {
-    let (cell, _) = grid_place(place, [environment.cells_width, environment.cells_height]);
-    fetch(&environment.cells, cell as usize);
+    let (cells, _) = grid_places(place, [environment.cells_width, environment.cells_height]);
+    for &cell in cells.as_ref() {
+        fetch(&environment.cells, cell as usize);
+    }
 }
 
 /// A direction in the map's frame drawn with the density that is returned with it, per steradian, from three uniform
@@ -333,58 +351,79 @@ pub fn fetch_cell<T: Real>(environment: &Environment, place: [T; 2]) {
 /// `xi.x` and `xi.y` choose the column and the row of a cell and, with what is left of them, the place inside the cell
 /// that is kept or taken instead; `xi.z` alone decides which. One number for the cell would not do: of 24 bits, a table
 /// of 2 million cells leaves three, and a table whose size is no power of two would be off by several per cent.
+#[inline(always)]
 pub fn environment_sample<T: Real>(environment: &Environment, xi: Vec3<T>) -> (Vec3<T>, T) {
     let (width, height) = (environment.cells_width, environment.cells_height);
-    let (chosen, place) = choose_cell(environment, xi);
-    let density = T::from_f64(f64::from(environment.cells[chosen as usize].density));
+    let (chosen, place) = choose_cells(environment, xi);
+    let rows = T::each(|lane| chosen.as_ref()[lane] / width);
+    let number = |number: u32| T::Scalar::from_f64(f64::from(number));
+    let row = T::from_lanes(|lane| number(rows.as_ref()[lane]));
+    let column = T::from_lanes(|lane| number(chosen.as_ref()[lane] - rows.as_ref()[lane] * width));
     (
-        environment_direction_in_cell(chosen % width, chosen / width, place, width, height),
-        density,
+        environment_direction_in_cell([column, row], place, width, height),
+        densities(environment, &chosen),
     )
 }
 
-/// The cell that is drawn, and the place in it.
+/// The densities of cells.
 #[inline(always)]
-fn choose_cell<T: Real>(environment: &Environment, xi: Vec3<T>) -> (u32, [T; 2]) {
+fn densities<T: Real>(environment: &Environment, cells: &T::Each<u32>) -> T {
+    T::from_lanes(|lane| {
+        let cell = environment.cells[cells.as_ref()[lane] as usize];
+        T::Scalar::from_f64(f64::from(cell.density))
+    })
+}
+
+/// The cells that are drawn, and the places in them.
+#[inline(always)]
+fn choose_cells<T: Real>(environment: &Environment, xi: Vec3<T>) -> (T::Each<u32>, [T; 2]) {
     let size = [environment.cells_width, environment.cells_height];
-    let (drawn, place) = grid_place([xi.x, xi.y], size);
-    let cell = environment.cells[drawn as usize];
-    let keep = xi.z.less(T::from_f64(f64::from(cell.threshold)));
-    (if keep.any() { drawn } else { cell.alias_index }, place)
+    let (drawn, place) = grid_places([xi.x, xi.y], size);
+    let numbers = xi.z.to_each();
+    let chosen = T::each(|lane| {
+        let drawn = drawn.as_ref()[lane];
+        let cell = environment.cells[drawn as usize];
+        let is_kept = numbers.as_ref()[lane] < T::Scalar::from_f64(f64::from(cell.threshold));
+        if is_kept { drawn } else { cell.alias_index }
+    });
+    (chosen, place)
 }
 
 /// Has the processor fetch the cell that [`environment_sample`] draws, once that which it looks up first is there.
 #[inline(always)]
 pub fn fetch_chosen<T: Real>(environment: &Environment, xi: Vec3<T>) {
-    fetch(&environment.cells, choose_cell(environment, xi).0 as usize);
+    for &cell in choose_cells(environment, xi).0.as_ref() {
+        fetch(&environment.cells, cell as usize);
+    }
 }
 
 /// The direction at `place` (in [0, 1]², from the top left) of a cell, uniform in solid angle.
+#[inline(always)]
 fn environment_direction_in_cell<T: Real>(
-    column: u32,
-    row: u32,
+    [column, row]: [T; 2],
     place: [T; 2],
     cells_width: u32,
     cells_height: u32,
 ) -> Vec3<T> {
-    let number = |value: u32| T::from_f64(f64::from(value));
-    let u = (number(column) + place[0]) / number(cells_width);
+    let (width, height) = (
+        T::from_f64(f64::from(cells_width)),
+        T::from_f64(f64::from(cells_height)),
+    );
+    let u = (column + place[0]) / width;
     // sin² of half the angle is uniform in solid angle, and exact near the pole that the angle is counted from: the
     // nearer one.
-    let is_south = 2 * row >= cells_height;
-    let (row_from_pole, across) = if is_south {
-        (cells_height - 1 - row, T::one() - place[1])
-    } else {
-        (row, place[1])
-    };
+    let is_north = (row + row).less(height);
+    let row_from_pole = T::select(is_north, row, height - T::one() - row);
+    let across = T::select(is_north, place[1], T::one() - place[1]);
     let quarter_turn = T::from_f64(std::f64::consts::FRAC_PI_2);
-    let near = (quarter_turn * (number(row_from_pole) / number(cells_height))).sin();
-    let far = (quarter_turn * (number(row_from_pole + 1) / number(cells_height))).sin();
+    let near = (quarter_turn * (row_from_pole / height)).sin();
+    let far = (quarter_turn * ((row_from_pole + T::one()) / height)).sin();
     let near_squared = near * near;
     let s = near_squared + across * (far * far - near_squared);
     let cos_from_pole = T::one() - (s + s);
     let sin_polar = T::from_f64(2.0) * (s * (T::one() - s)).safe_sqrt();
-    environment_direction_from_angles(u, if is_south { -cos_from_pole } else { cos_from_pole }, sin_polar)
+    let cos_polar = T::select(is_north, cos_from_pole, -cos_from_pole);
+    environment_direction_from_angles(u, cos_polar, sin_polar)
 }
 
 /// The density, per steradian, with which [`environment_sample`] draws a unit direction in the map's frame.
@@ -393,9 +432,9 @@ pub fn environment_density<T: Real>(environment: &Environment, direction_local: 
 }
 
 /// The same at a place in the map ([`environment_uv`]).
-#[inline]
+#[inline(always)]
 pub fn environment_density_at<T: Real>(environment: &Environment, uv: [T; 2]) -> T {
     let size = [environment.cells_width, environment.cells_height];
-    let (cell, _) = grid_place(uv, size);
-    T::from_f64(f64::from(environment.cells[cell as usize].density))
+    let (cells, _) = grid_places(uv, size);
+    densities(environment, &cells)
 }

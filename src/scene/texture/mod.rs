@@ -20,7 +20,7 @@ use crate::optics::albedo::table_lookup;
 use crate::optics::frame::frame_from_tangent;
 use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
 use crate::optics::numeric::normalize_or;
-use crate::optics::real::Real;
+use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
 
 pub use mean::{TextureMean, mean_of_file, texture_mean};
@@ -79,7 +79,7 @@ pub type Uvs<T> = [[T; 2]; 3];
 
 /// Red, green, blue (linear) and alpha that a use of a picture gives at a surface point; the same four times where one channel
 /// counts.
-pub fn texture_lookup<T: Real>(textures: &Textures, index: u32, uvs: Uvs<T>) -> (Vec3<T>, T) {
+pub fn texture_lookup<T: Scalar>(textures: &Textures, index: u32, uvs: Uvs<T>) -> (Vec3<T>, T) {
     let record = &textures.records[index as usize];
     let (color, alpha) = filtered(textures, record, uvs);
     let (color, alpha) = match (record.flags >> CHANNEL_SHIFT) & 7 {
@@ -94,7 +94,7 @@ pub fn texture_lookup<T: Real>(textures: &Textures, index: u32, uvs: Uvs<T>) -> 
 }
 
 /// A picture at a surface point as it is: red, green, blue (linear) and alpha.
-fn filtered<T: Real>(textures: &Textures, record: &TextureRecord, uvs: Uvs<T>) -> (Vec3<T>, T) {
+fn filtered<T: Scalar>(textures: &Textures, record: &TextureRecord, uvs: Uvs<T>) -> (Vec3<T>, T) {
     let [u, v] = match record.flags & (IS_SECOND_SET | IS_BOX) {
         0 => uvs[0],
         IS_SECOND_SET => uvs[1],
@@ -126,7 +126,7 @@ fn filtered<T: Real>(textures: &Textures, record: &TextureRecord, uvs: Uvs<T>) -
 }
 
 /// A place along one side of a texture, brought into [0, 1].
-pub fn wrapped<T: Real>(place: T, wrap: u32) -> T {
+pub fn wrapped<T: Scalar>(place: T, wrap: u32) -> T {
     match wrap {
         WRAP_CLAMP => place.clamp(T::zero(), T::one()),
         WRAP_MIRRORED => {
@@ -139,7 +139,7 @@ pub fn wrapped<T: Real>(place: T, wrap: u32) -> T {
 }
 
 /// The texels on both sides of a place, whose left one is `low` (from −1 on).
-fn neighbours<T: Real>(low: T, size: u32, wrap: u32) -> [u32; 2] {
+fn neighbours<T: Scalar>(low: T, size: u32, wrap: u32) -> [u32; 2] {
     let last = size - 1;
     let low = low.to_f64();
     let is_first = low < 0.0;
@@ -154,7 +154,7 @@ fn neighbours<T: Real>(low: T, size: u32, wrap: u32) -> [u32; 2] {
     [left, right]
 }
 
-fn texel<T: Real>(textures: &Textures, record: &TextureRecord, column: u32, row: u32) -> (Vec3<T>, T) {
+fn texel<T: Scalar>(textures: &Textures, record: &TextureRecord, column: u32, row: u32) -> (Vec3<T>, T) {
     let place = row * record.width + column;
     if record.flags & IS_FINE != 0 {
         let first = (record.first_texel + 2 * place) as usize;
@@ -181,7 +181,7 @@ fn texel<T: Real>(textures: &Textures, record: &TextureRecord, column: u32, row:
 /// The texture coordinates at a place of a triangle, given by the weights of its corners; those of the box where
 /// `has_box` says that they are needed.
 #[inline(always)]
-pub fn uvs_at<T: Real>(geometry: &Geometry, triangle: usize, weights: [T; 3], has_box: bool) -> Uvs<T> {
+pub fn uvs_at<T: Scalar>(geometry: &Geometry, triangle: usize, weights: [T; 3], has_box: bool) -> Uvs<T> {
     let corners = geometry.vertices(triangle);
     let sum = |number: &dyn Fn(&Vertex) -> f32| {
         let part = |i: usize| T::from_f64(f64::from(number(corners[i]))) * weights[i];
@@ -203,7 +203,7 @@ pub fn uvs_at<T: Real>(geometry: &Geometry, triangle: usize, weights: [T; 3], ha
 
 /// The axis along which a picture lies to the right on the side of a box that a surface with this normal faces: seen from
 /// outside, with y upwards, and with −z upwards on top.
-pub fn box_right<T: Real>(normal: Vec3<T>) -> Vec3<T> {
+pub fn box_right<T: Scalar>(normal: Vec3<T>) -> Vec3<T> {
     let [x, y, z] = normal.to_f64();
     let axis = |x: f64, z: f64| vec3(T::from_f64(x), T::zero(), T::from_f64(z));
     if x.abs() >= y.abs() && x.abs() >= z.abs() {
@@ -217,7 +217,7 @@ pub fn box_right<T: Real>(normal: Vec3<T>) -> Vec3<T> {
 
 /// Where a place with this normal is on the side of the box around the model that it faces, v downwards. The box reaches from
 /// −1 to 1, the model's bounding radius.
-fn box_uv<T: Real>(position: Vec3<T>, normal: Vec3<T>) -> [T; 2] {
+fn box_uv<T: Scalar>(position: Vec3<T>, normal: Vec3<T>) -> [T; 2] {
     let [x, y, z] = normal.to_f64();
     let is_level = y.abs() > x.abs() && y.abs() >= z.abs();
     let down = match is_level {
@@ -231,7 +231,7 @@ fn box_uv<T: Real>(position: Vec3<T>, normal: Vec3<T>) -> [T; 2] {
 
 /// The material at a surface point: what its textures say and the colour between its vertices multiplied in.
 /// `tables` holds all materials' tables.
-pub fn textured_material<T: Real>(
+pub fn textured_material<T: Scalar>(
     textures: &Textures,
     tables: &[f32],
     material: &Material<T>,
@@ -275,8 +275,47 @@ pub fn textured_material<T: Real>(
     at_point
 }
 
+/// The materials at the surface points of lanes, all of one slot: its material is given in all lanes and for one.
+#[inline(always)]
+pub fn textured_materials<T: Real>(
+    textures: &Textures,
+    tables: &[f32],
+    (material, of_lane): (&Material<T>, &Material<T::Scalar>),
+    uvs: &T::Each<Uvs<T::Scalar>>,
+    vertex_color: Vec3<T>,
+) -> Material<T> {
+    let colors = vertex_color.to_each();
+    let at = T::each(|lane| {
+        let at = textured_material(textures, tables, of_lane, uvs.as_ref()[lane], colors.as_ref()[lane]);
+        TexturedNumbers {
+            colors: [at.base_color, at.transmission_tint, at.emission],
+            numbers: [at.metalness, at.roughness, at.transmission_roughness, at.coat_weight],
+        }
+    });
+    let at = at.as_ref();
+    Material {
+        base_color: Vec3::from_lanes(|lane| at[lane].colors[0]),
+        transmission_tint: Vec3::from_lanes(|lane| at[lane].colors[1]),
+        emission: Vec3::from_lanes(|lane| at[lane].colors[2]),
+        metalness: T::from_lanes(|lane| at[lane].numbers[0]),
+        roughness: T::from_lanes(|lane| at[lane].numbers[1]),
+        transmission_roughness: T::from_lanes(|lane| at[lane].numbers[2]),
+        coat_weight: T::from_lanes(|lane| at[lane].numbers[3]),
+        ..*material
+    }
+}
+
+/// What [`textured_material`] changes of a material.
+#[derive(Clone, Copy, Default)]
+struct TexturedNumbers<T> {
+    /// Base colour, tint of the transmission, emission.
+    colors: [Vec3<T>; 3],
+    /// Metalness, roughness, roughness of the refraction, weight of the coat.
+    numbers: [T; 4],
+}
+
 /// What a surface point emits, linear RGB, its holes left out.
-pub fn emission_at<T: Real>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> Vec3<T> {
+pub fn emission_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> Vec3<T> {
     let share = if material.has_holes() {
         opacity_at(textures, material, uvs)
     } else {
@@ -290,7 +329,7 @@ pub fn emission_at<T: Real>(textures: &Textures, material: &Material<T>, uvs: Uv
 }
 
 /// The share of light that a surface point stops, in [0, 1].
-pub fn opacity_at<T: Real>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> T {
+pub fn opacity_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> T {
     let mut opacity = material.opacity;
     if material.opacity_texture != NO_TEXTURE {
         opacity = opacity * texture_lookup(textures, material.opacity_texture, uvs).1;
@@ -303,7 +342,7 @@ pub fn opacity_at<T: Real>(textures: &Textures, material: &Material<T>, uvs: Uvs
 /// The normal that a normal texture gives, in world space. `tangent` and the sign of the bitangent as the geometry has
 /// them, `normal` the interpolated one, `outward` the same on the front of the surface; the plain normal where the texture
 /// says nothing.
-pub fn mapped_normal<T: Real>(
+pub fn mapped_normal<T: Scalar>(
     textures: &Textures,
     material: &Material<T>,
     uvs: Uvs<T>,

@@ -15,7 +15,7 @@ use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::{Horizon, Lobe};
 use glossmith::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
@@ -209,7 +209,7 @@ impl Scene {
     }
 
     /// A material in the precision of a twin.
-    pub fn material<T: Real>(&self, index: u32) -> Material<T> {
+    pub fn material<T: Scalar>(&self, index: u32) -> Material<T> {
         self.materials[index as usize].cast()
     }
 }

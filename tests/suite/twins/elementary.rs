@@ -6,7 +6,7 @@ use glossmith::optics::random::{
     RandomState, Sequence, hash_bits, path_state, random_bits, random_pair, random_pair_bits, random_state,
     scramble_from_low, sobol_second_reversed, unit_from_bits,
 };
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::warp::{uniform_disc, uniform_sphere};
 
 use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};
@@ -140,7 +140,7 @@ fn elementary_functions_agree() {
 }
 
 /// Any state, its sequence the given one.
-fn state<T: Real>(row: &mut Row<'_, T>) -> RandomState {
+fn state<T: Scalar>(row: &mut Row<'_, T>) -> RandomState {
     let [key, sample, sequence] = [(); 3].map(|()| row.bits());
     let sequence = if sequence == 0 {
         Sequence::Sobol
@@ -322,7 +322,7 @@ fn warps_agree() {
     );
 }
 
-fn put_frame<T: Real>(row: &mut Row<'_, T>, frame: Frame<T>) {
+fn put_frame<T: Scalar>(row: &mut Row<'_, T>, frame: Frame<T>) {
     row.put_vector(frame.tangent);
     row.put_vector(frame.bitangent);
     row.put_vector(frame.normal);

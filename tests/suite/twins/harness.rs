@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use glossmith::gpu::shader::link_with;
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 use rayon::prelude::*;
 
@@ -143,7 +143,7 @@ pub struct Row<'a, T> {
     number: std::marker::PhantomData<T>,
 }
 
-impl<T: Real> Row<'_, T> {
+impl<T: Scalar> Row<'_, T> {
     fn next(&mut self) -> Value {
         *self
             .values
@@ -240,7 +240,7 @@ impl Twin {
     }
 }
 
-fn call<T: Real>(function: fn(&mut Row<'_, T>), values: &[Value], moves: Option<Rng>) -> Vec<f64> {
+fn call<T: Scalar>(function: fn(&mut Row<'_, T>), values: &[Value], moves: Option<Rng>) -> Vec<f64> {
     let mut row = Row {
         values: values.iter(),
         moves,
@@ -255,7 +255,7 @@ fn call<T: Real>(function: fn(&mut Row<'_, T>), values: &[Value], moves: Option<
 /// A Rust function over `row: &mut Row<'_, T>` for f32 and f64.
 macro_rules! twin {
     (|$row:ident| $body:block) => {{
-        fn twin<T: glossmith::optics::real::Real>($row: &mut $crate::twins::harness::Row<'_, T>) $body
+        fn twin<T: glossmith::optics::real::Scalar>($row: &mut $crate::twins::harness::Row<'_, T>) $body
         $crate::twins::harness::Twin::generic(twin::<f32>, twin::<f64>)
     }};
 }

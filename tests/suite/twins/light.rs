@@ -1,7 +1,7 @@
 //! Sampling of triangles that emit: the teapot's many small ones and the ground's two large ones.
 
 use glossmith::optics::material::Material;
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::vec3;
 use glossmith::scene::light::{Emitters, light_density, light_sample, spot_share};
 
@@ -10,11 +10,11 @@ use super::harness::{Case, Output, Value, check, inputs, twin};
 
 const UNIT: Output = Output::Vector(1.0);
 
-fn materials<T: Real>() -> [Material<T>; 2] {
+fn materials<T: Scalar>() -> [Material<T>; 2] {
     [SCENE.material(0), SCENE.material(1)]
 }
 
-fn density_per_luminance<T: Real>() -> T {
+fn density_per_luminance<T: Scalar>() -> T {
     // The shader has it in f32.
     T::from_f64(f64::from(SCENE.light_choice().density_per_luminance as f32))
 }

@@ -11,7 +11,7 @@ use glossmith::optics::microfacet::{
     Alpha, Facet, distribution_weight, facet, ggx_distribution, isotropic_alpha, microfacet_alpha,
     smith_g1_over_cosine, smith_g2_over_cosine, smith_length, visible_density, visible_weight,
 };
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 
 use super::bench::{CUSTOM_CURVES, SCENE, random_roughness};
@@ -61,7 +61,7 @@ impl View {
 }
 
 /// What [`read_view`] takes: the frame, the geometric normal, the direction to the viewer.
-pub fn read_view<T: Real>(row: &mut Row<'_, T>) -> (Frame<T>, Vec3<T>, Vec3<T>) {
+pub fn read_view<T: Scalar>(row: &mut Row<'_, T>) -> (Frame<T>, Vec3<T>, Vec3<T>) {
     let frame = Frame {
         tangent: row.vector(),
         bitangent: row.vector(),
@@ -117,7 +117,7 @@ impl Shape {
     }
 }
 
-pub fn read_shape<T: Real>(row: &mut Row<'_, T>) -> LobeShape<'static, T> {
+pub fn read_shape<T: Scalar>(row: &mut Row<'_, T>) -> LobeShape<'static, T> {
     let [lobe, curve, horizon, table] = [(); 4].map(|()| row.bits() as usize);
     LobeShape {
         lobe: Lobe::ALL[lobe],
@@ -349,7 +349,7 @@ fn shapes_agree() {
     );
 }
 
-fn read_alpha<T: Real>(row: &mut Row<'_, T>) -> Alpha<T> {
+fn read_alpha<T: Scalar>(row: &mut Row<'_, T>) -> Alpha<T> {
     Alpha {
         x: row.number(),
         y: row.number(),

@@ -5,7 +5,7 @@ use glossmith::optics::lobe::{Lobe, lobe_sample, raw_sample};
 use glossmith::optics::material::{
     Material, MaterialNumbers, Surface, material_evaluate, material_layers, material_sample,
 };
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::scene::surface::bent_normal;
 
 use super::bench::SCENE;
@@ -15,7 +15,7 @@ use super::lobes::{View, read_view};
 /// Colours that a material multiplies by are about 1.
 const COLOUR: Output = Output::Vector(0.1);
 
-fn read_material_and_surface<T: Real>(row: &mut Row<'_, T>) -> (Material<T>, Surface<T>) {
+fn read_material_and_surface<T: Scalar>(row: &mut Row<'_, T>) -> (Material<T>, Surface<T>) {
     let material = SCENE.material(row.bits());
     let (frame, normal, wo) = read_view(row);
     let coat_normal = row.vector();

@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 use glossmith::optics::material::Material;
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::Vec3;
 use glossmith::scene::surface::{bent_normal, lifted_normal, surface_at};
 use glossmith::scene::texture::uvs_at;
@@ -26,7 +26,7 @@ fn place_in_triangle(rng: &mut Rng) -> (u32, f32, f32) {
 }
 
 /// The materials of the geometry's slots.
-fn slots<T: Real>() -> [Material<T>; 2] {
+fn slots<T: Scalar>() -> [Material<T>; 2] {
     [SCENE.material(0), SCENE.material(1)]
 }
 
@@ -126,7 +126,7 @@ fn surfaces_agree() {
     );
 }
 
-fn vec3a<T: Real>(v: Vec3<T>) -> Vec3A {
+fn vec3a<T: Scalar>(v: Vec3<T>) -> Vec3A {
     Vec3A::from_array(v.to_f32())
 }
 

@@ -1,7 +1,7 @@
 //! Textures: every wrap mode, filter and set of coordinates, and what they do to a material.
 
 use glossmith::optics::material::{Material, NO_TEXTURE};
-use glossmith::optics::real::Real;
+use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::Vec3;
 use glossmith::scene::texture::{Uvs, mapped_normal, opacity_at, texture_lookup, textured_material, wrapped};
 
@@ -12,7 +12,7 @@ const SHARE: Output = Output::Number(0.1);
 const COLOUR: Output = Output::Vector(0.1);
 const UVS: &str = "let uvs = Uvs(vec4f(u, v, second_u, second_v), vec2f(box_u, box_v));";
 
-fn uvs<T: Real>(row: &mut Row<'_, T>) -> Uvs<T> {
+fn uvs<T: Scalar>(row: &mut Row<'_, T>) -> Uvs<T> {
     [row.numbers(), row.numbers(), row.numbers()]
 }
 

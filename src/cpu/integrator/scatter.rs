@@ -1,0 +1,159 @@
+//! How paths go on from a surface.
+
+use super::group::Group;
+use super::path::{Path, Ray};
+use super::{Arrival, BELOW_DIMENSION, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, ROULETTE_START};
+use crate::cpu::recorder::{End, Event, Purpose, Recorder, single};
+use crate::job::Strategy;
+use crate::optics::material::{Material, MaterialNumbers, MaterialSample, material_layers, material_sample};
+use crate::optics::real::{Mask, Real};
+use crate::optics::vector::Vec3;
+use crate::scene::surface::SurfacePoint;
+
+impl<T: Real> Integrator<'_, T> {
+    /// Gives paths the rays on which they go on, or ends them.
+    #[inline(always)]
+    pub(super) fn scatter<R: Recorder>(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        arrival: &Arrival<T>,
+        paths: &mut [Path<T::Scalar, R>],
+    ) {
+        let group = arrival.group;
+        let numbers = material_numbers(material, arrival, paths);
+        let wants_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
+        let mut drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
+        let mut leaves = self.meets_nothing(point, drawn.wi);
+        let mirrors = drawn.is_mirror.to_bits();
+        group.for_each(paths, arrival.on, |path, lane| {
+            path.is_looking &= mirrors >> lane & 1 == 1
+        });
+        if arrival.is_caught_mirrored {
+            // All of it goes on, also what the facets would keep, and none of what it meets is left to light sampling.
+            leaves = leaves | !T::zero().less(drawn.throughput.max_component());
+            drawn.throughput = Vec3::splat(T::one());
+            drawn.is_mirror = T::Mask::splat(true);
+        }
+        let mut throughput = arrival.throughput * drawn.throughput;
+        self.record_scattered(point, material, arrival, &drawn, throughput, paths);
+        let goes_on = survive(arrival, &mut throughput, paths);
+        let origin = point.ray_origin(drawn.wi, material.transmits());
+        let (origins, directions) = (origin.to_each(), drawn.wi.to_each());
+        let (throughputs, densities) = (throughput.to_each(), drawn.density.to_each());
+        let (mirrors, leaving) = (drawn.is_mirror.to_bits(), leaves.to_bits());
+        let survivors = goes_on.to_bits();
+        group.for_each(paths, arrival.on, |path, lane| {
+            path.goes_on = survivors >> lane & 1 == 1;
+            path.throughput = throughputs.as_ref()[lane];
+            path.ray = Ray {
+                origin: origins.as_ref()[lane],
+                direction: directions.as_ref()[lane],
+                lobe_density: densities.as_ref()[lane],
+                is_mirror: mirrors >> lane & 1 == 1,
+                leaves: leaving >> lane & 1 == 1,
+            };
+        });
+    }
+
+    #[inline(always)]
+    fn record_scattered<R: Recorder>(
+        &self,
+        point: &SurfacePoint<T>,
+        material: &Material<T>,
+        arrival: &Arrival<T>,
+        drawn: &MaterialSample<T>,
+        throughput: Vec3<T>,
+        paths: &mut [Path<T::Scalar, R>],
+    ) {
+        if !R::KEEPS {
+            return;
+        }
+        let layers = material_layers(material, self.tables, &point.surface);
+        let below = T::one() - layers.coat_probability;
+        let probabilities = [
+            layers.coat_probability,
+            below * layers.specular_probability,
+            below * layers.base_probability(),
+            below * layers.transmission_probability,
+        ];
+        arrival.group.record(paths, arrival.on, |lane| Event::Scattered {
+            layer: drawn.layer,
+            probabilities: probabilities.map(|probability| single(probability.lane(lane))),
+            direction: drawn.wi.to_each().as_ref()[lane].to_f32(),
+            factor: drawn.throughput.to_each().as_ref()[lane].to_f32(),
+            density: single(drawn.density.lane(lane)),
+            is_mirror: drawn.is_mirror.to_bits() >> lane & 1 == 1,
+            throughput: throughput.to_each().as_ref()[lane].to_f32(),
+        });
+    }
+}
+
+/// The numbers with which a material's directions are drawn.
+#[inline(always)]
+fn material_numbers<T: Real, R: Recorder>(
+    material: &Material<T>,
+    arrival: &Arrival<T>,
+    paths: &mut [Path<T::Scalar, R>],
+) -> MaterialNumbers<T> {
+    let Arrival { group, bounce, .. } = *arrival;
+    let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
+    let [a, b] = group.pairs(paths, dimension, [Purpose::Lobe; 2]);
+    let [c, layer] = group.pairs(paths, dimension + 1, [Purpose::Lobe, Purpose::Layer]);
+    let lobe = [a, b, c];
+    let mut below = lobe;
+    if material.transmits().any() {
+        let dimension = BELOW_DIMENSION + 2 * bounce;
+        let [a, b] = group.pairs(paths, dimension, [Purpose::Below; 2]);
+        let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Below, Purpose::Unused]);
+        below = [a, b, c];
+    }
+    MaterialNumbers { lobe, layer, below }
+}
+
+/// Where paths go on: Russian roulette, its survivors made up for by their throughput.
+#[inline(always)]
+fn survive<T: Real, R: Recorder>(
+    arrival: &Arrival<T>,
+    throughput: &mut Vec3<T>,
+    paths: &mut [Path<T::Scalar, R>],
+) -> T::Mask {
+    let Arrival { group, bounce, on, .. } = *arrival;
+    let strength = throughput.max_component();
+    // Also ends paths that are NaN.
+    let is_left = T::zero().less(strength);
+    group.record(paths, on & !is_left, |_| Event::Ended { why: End::Absorbed });
+    let plays = on & is_left & strength.less(T::one());
+    if bounce < ROULETTE_START || !plays.any() {
+        return is_left;
+    }
+    let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 3;
+    let [_, number] = group.pairs(paths, dimension, [Purpose::Unused, Purpose::Roulette]);
+    group.record(paths, plays, |lane| Event::Roulette {
+        survival: single(strength.lane(lane)),
+        number: single(number.lane(lane)),
+    });
+    let is_out = plays & !number.less(strength);
+    group.record(paths, is_out, |_| Event::Ended { why: End::Roulette });
+    let raised = *throughput / strength;
+    *throughput = Vec3::select(plays, raised, *throughput);
+    is_left & !is_out
+}
+
+impl<T: Real> Arrival<T> {
+    /// Paths of a group that have met surfaces after so many bounces.
+    #[inline(always)]
+    pub(super) fn new<R: Recorder>(group: Group<T>, bounce: u32, paths: &[Path<T::Scalar, R>]) -> Self {
+        Self {
+            group,
+            bounce,
+            on: group.mask(),
+            throughput: group.vectors(paths, |path| path.throughput),
+            direction: group.vectors(paths, |path| path.ray.direction),
+            lobe_density: group.numbers(paths, |path| path.ray.lobe_density),
+            is_mirror: group.truths(paths, |path| path.ray.is_mirror),
+            distance: group.numbers(paths, |path| path.distance),
+            is_caught_mirrored: false,
+        }
+    }
+}

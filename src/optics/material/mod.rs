@@ -1,0 +1,301 @@
+//! The material as the integrators see it: a specular lobe over a base that is Lambertian, or refracts, or is a mixture
+//! of both.
+//!
+//! The specular lobe reflects the Fresnel share; what it leaves over reaches the base. How much that is on average over
+//! the lobe, its albedo, is tabulated for each material ([`albedo_table`]), so that a white base under any lobe reflects
+//! or transmits all light: the layering neither loses nor makes energy. A material that transmits has a second table for
+//! views from within. Lobes made of facets refract at each facet what that facet does not reflect.
+
+mod evaluate;
+mod layers;
+mod sample;
+
+use super::coat::coat_shape;
+use super::curve::Curve;
+use super::frame::Frame;
+use super::fresnel::{Fresnel, FresnelTerms};
+use super::lobe::{Horizon, Lobe, LobeShape, is_mirror};
+use super::real::{Mask, Real, Scalar};
+use super::vector::Vec3;
+pub use evaluate::material_evaluate;
+pub use layers::{Layers, material_albedo, material_layers};
+pub use sample::{Layer, MaterialNumbers, MaterialSample, material_sample};
+
+/// The number of a texture that is not there.
+pub const NO_TEXTURE: u32 = u32::MAX;
+/// Nodes of the table that has a lobe's roughness for that of GGX.
+pub const MATCHED_NODES: usize = 17;
+
+/// A material with its tables' places. The f32 form is what the GPU reads, byte for byte (`shaders/optics/material.wgsl`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Material<T> {
+    /// Albedo of the Lambertian base, or reflectance of the metal at normal incidence; linear RGB in [0, 1].
+    pub base_color: Vec3<T>,
+    /// 0: dielectric over a diffuse base; 1: metal.
+    pub metalness: T,
+    /// Tint of the specular reflection, linear RGB.
+    pub specular_color: Vec3<T>,
+    /// Share of the specular reflection that is kept, in [0, 1].
+    pub specular_weight: T,
+    /// Real part of the conductor's index of refraction.
+    pub eta: Vec3<T>,
+    /// The dielectric's index of refraction.
+    pub ior: T,
+    /// Imaginary part of the conductor's index of refraction.
+    pub k: Vec3<T>,
+    /// Roughness in [0, 1].
+    pub roughness: T,
+    /// Emitted radiance, linear RGB.
+    pub emission: Vec3<T>,
+    /// Stretch of the lobe in [−1, 1].
+    pub anisotropy: T,
+    /// Tint at each refraction, linear RGB in [0, 1].
+    pub transmission_tint: Vec3<T>,
+    /// Share of the base that refracts, in [0, 1].
+    pub transmission_weight: T,
+    /// What a length of 1 of the interior absorbs, as the negative logarithm of what it lets through; linear RGB.
+    pub absorption: Vec3<T>,
+    /// Roughness of the refraction in [0, 1].
+    pub transmission_roughness: T,
+    /// Turn of the tangent, radians.
+    pub rotation_rad: T,
+    /// [`Lobe`] as a number.
+    pub lobe: u32,
+    /// [`Curve`] as a number.
+    pub curve: u32,
+    /// [`Horizon`] as a number.
+    pub horizon: u32,
+    /// [`Fresnel`] as a number.
+    pub fresnel: u32,
+    /// Where the custom curve's table begins.
+    pub curve_table: u32,
+    /// Where the albedo table begins.
+    pub albedo_table: u32,
+    /// Where the albedo table for views from within begins.
+    pub inner_albedo_table: u32,
+    /// What the metal's reflection is multiplied by near 82 degrees, linear RGB in [0, 1].
+    pub edge_tint: Vec3<T>,
+    /// Share of light that the surface stops, in [0, 1].
+    pub opacity: T,
+    /// What a coat of weight 1 leaves of the light that crosses it twice, linear RGB in [0, 1].
+    pub coat_color: Vec3<T>,
+    /// Share of the surface that has a coat, in [0, 1].
+    pub coat_weight: T,
+    /// Roughness of the coat in [0, 1].
+    pub coat_roughness: T,
+    /// Index of refraction of the coat.
+    pub coat_ior: T,
+    /// Where the coat's albedo table begins.
+    pub coat_table: u32,
+    /// The luminance by which the surface is sampled as a light: the mean over its emission texture.
+    pub light_luminance: T,
+    /// Textures of base colour, roughness, normal, emission; [`NO_TEXTURE`] where there is none.
+    pub textures: [u32; 4],
+    /// The texture whose alpha multiplies the opacity, or [`NO_TEXTURE`].
+    pub opacity_texture: u32,
+    /// The surface is there where its opacity reaches this; negative where the opacity is a share.
+    pub alpha_cutoff: T,
+    /// Scales the slopes of the normal texture.
+    pub normal_strength: T,
+    /// 1 where the surface is metal in part or changes from point to point: the albedo tables go over the roughness too
+    /// ([`rough_albedo_table`](super::albedo::rough_albedo_table)).
+    pub has_rough_tables: u32,
+    /// The roughness that the texture multiplies: that of GGX where `roughness_table` is there.
+    pub texture_roughness: T,
+    /// Where the table begins that has the lobe's roughness for that of GGX; [`NO_TEXTURE`] where both are the same.
+    pub roughness_table: u32,
+    /// 1 where the colours at the vertices multiply the base colour.
+    pub has_vertex_colors: u32,
+    /// With `spot_offset`: the ramp of a spot's share over the cosine to the way it faces
+    /// ([`spot_share`](crate::scene::light::spot_share)); 0 and 1 where the surface shines into all directions.
+    pub spot_scale: T,
+    /// See `spot_scale`.
+    pub spot_offset: T,
+    /// The texture of the metalness, or [`NO_TEXTURE`].
+    pub metalness_texture: u32,
+    /// The texture that multiplies the weight of the coat, or [`NO_TEXTURE`].
+    pub coat_texture: u32,
+    /// 1 where a texture lies on the surface as on a box.
+    pub has_box_projection: u32,
+}
+
+// SAFETY: f32 and u32 fields without padding (16 × 16 bytes); any bit pattern is valid.
+unsafe impl bytemuck::Zeroable for Material<f32> {}
+// SAFETY: as above.
+unsafe impl bytemuck::Pod for Material<f32> {}
+
+impl<T: Real> Material<T> {
+    /// The same material in another precision.
+    pub fn cast<U: Real>(&self) -> Material<U>
+    where
+        T: Scalar,
+    {
+        let number = |x: T| U::from_f64(x.to_f64());
+        let vector = |v: Vec3<T>| Vec3::from_f64(v.to_f64());
+        Material {
+            base_color: vector(self.base_color),
+            metalness: number(self.metalness),
+            specular_color: vector(self.specular_color),
+            specular_weight: number(self.specular_weight),
+            eta: vector(self.eta),
+            ior: number(self.ior),
+            k: vector(self.k),
+            roughness: number(self.roughness),
+            emission: vector(self.emission),
+            anisotropy: number(self.anisotropy),
+            transmission_tint: vector(self.transmission_tint),
+            transmission_weight: number(self.transmission_weight),
+            absorption: vector(self.absorption),
+            transmission_roughness: number(self.transmission_roughness),
+            rotation_rad: number(self.rotation_rad),
+            lobe: self.lobe,
+            curve: self.curve,
+            horizon: self.horizon,
+            fresnel: self.fresnel,
+            curve_table: self.curve_table,
+            albedo_table: self.albedo_table,
+            inner_albedo_table: self.inner_albedo_table,
+            edge_tint: vector(self.edge_tint),
+            opacity: number(self.opacity),
+            coat_color: vector(self.coat_color),
+            coat_weight: number(self.coat_weight),
+            coat_roughness: number(self.coat_roughness),
+            coat_ior: number(self.coat_ior),
+            coat_table: self.coat_table,
+            light_luminance: number(self.light_luminance),
+            textures: self.textures,
+            opacity_texture: self.opacity_texture,
+            alpha_cutoff: number(self.alpha_cutoff),
+            normal_strength: number(self.normal_strength),
+            has_rough_tables: self.has_rough_tables,
+            texture_roughness: number(self.texture_roughness),
+            roughness_table: self.roughness_table,
+            has_vertex_colors: self.has_vertex_colors,
+            spot_scale: number(self.spot_scale),
+            spot_offset: number(self.spot_offset),
+            metalness_texture: self.metalness_texture,
+            coat_texture: self.coat_texture,
+            has_box_projection: self.has_box_projection,
+        }
+    }
+
+    /// The specular lobe. `tables` holds all materials' tables.
+    #[inline(always)]
+    pub fn shape<'a>(&self, tables: &'a [f32]) -> LobeShape<'a, T> {
+        LobeShape {
+            lobe: by_index(Lobe::ALL, self.lobe),
+            curve: by_index(Curve::ALL, self.curve),
+            horizon: by_index(Horizon::ALL, self.horizon),
+            roughness: self.roughness,
+            anisotropy: self.anisotropy,
+            eta: T::zero(),
+            table: tables.get(self.curve_table as usize..).unwrap_or_default(),
+        }
+    }
+
+    /// The refracting lobe, seen from within or without.
+    #[inline(always)]
+    pub fn transmission_shape<'a>(&self, tables: &'a [f32], is_inside: T::Mask) -> LobeShape<'a, T> {
+        LobeShape {
+            roughness: self.transmission_roughness,
+            eta: self.ior_ahead(is_inside),
+            ..self.shape(tables)
+        }
+    }
+
+    /// The index of refraction behind the surface over that before it: inverted where a material that transmits is seen
+    /// from within.
+    #[inline(always)]
+    pub fn ior_ahead(&self, is_inside: T::Mask) -> T {
+        T::select(is_inside & self.transmits(), T::one() / self.ior, self.ior)
+    }
+
+    /// The Fresnel factor's terms. From within, weight and tint have no effect: the interface is the bare dielectric, so
+    /// that what is reflected totally keeps its energy.
+    #[inline(always)]
+    pub fn fresnel_terms(&self, is_inside: T::Mask) -> FresnelTerms<T> {
+        let is_bare = is_inside & self.transmits();
+        FresnelTerms {
+            model: by_index(Fresnel::ALL, self.fresnel),
+            metal_f0: self.base_color,
+            metalness: self.metalness,
+            edge_tint: self.edge_tint,
+            tint: Vec3::select(is_bare, Vec3::splat(T::one()), self.specular_color),
+            weight: T::select(is_bare, T::one(), self.specular_weight),
+            ior: self.ior_ahead(is_inside),
+            eta: self.eta,
+            k: self.k,
+        }
+    }
+
+    /// The material where its textures make it the least metallic: what calls for a base or for transmission.
+    pub fn least_metallic(&self) -> Self {
+        let is_fixed = self.metalness_texture == NO_TEXTURE;
+        let metalness = if is_fixed { self.metalness } else { T::zero() };
+        Self { metalness, ..*self }
+    }
+
+    /// True where a texture is looked up.
+    #[inline(always)]
+    pub fn is_textured(&self) -> bool {
+        let others = [self.opacity_texture, self.metalness_texture, self.coat_texture];
+        others != [NO_TEXTURE; 3] || self.textures != [NO_TEXTURE; 4]
+    }
+
+    /// True where some light may go straight on, as if the surface were not there.
+    #[inline(always)]
+    pub fn has_holes(&self) -> bool {
+        let is_masked = self.opacity.less(self.alpha_cutoff);
+        let is_clear = self.alpha_cutoff.less(T::zero()) & self.opacity.less(T::one());
+        is_masked.any() || is_clear.any() || self.opacity_texture != NO_TEXTURE
+    }
+
+    /// True where a Lambertian base shows.
+    #[inline(always)]
+    pub fn has_base(&self) -> T::Mask {
+        let is_opaque = self.transmission_weight.less(T::one());
+        is_opaque & self.metalness.less(T::one()) & T::zero().less(self.base_color.max_component())
+    }
+
+    /// True where light goes through the surface.
+    #[inline(always)]
+    pub fn transmits(&self) -> T::Mask {
+        T::zero().less(self.transmission_weight) & self.metalness.less(T::one())
+    }
+
+    /// True where every direction that it can draw is weighed as a mirror's.
+    pub fn is_mirror(&self) -> T::Mask {
+        let through = self.transmission_shape(&[], T::Mask::splat(false));
+        let reflects_alike = !self.has_specular() | is_mirror(&self.shape(&[]));
+        let is_coat_alike = !T::zero().less(self.coat_weight) | is_mirror(&coat_shape(self));
+        !self.has_base() & reflects_alike & is_coat_alike & (!self.transmits() | is_mirror(&through))
+    }
+
+    /// True where the specular lobe reflects anything: if not from without, then from within.
+    #[inline(always)]
+    pub fn has_specular(&self) -> T::Mask {
+        T::zero().less(self.specular_weight) | self.transmits()
+    }
+}
+
+/// The registry's entry with this index; the first one where there is none.
+#[inline(always)]
+fn by_index<E: Copy>(all: &[E], index: u32) -> E {
+    all[(index as usize).min(all.len() - 1)]
+}
+
+/// How a surface point is lit and seen.
+#[derive(Clone, Copy, Debug)]
+pub struct Surface<T: Real> {
+    /// The shading frame, on the side of the viewer.
+    pub frame: Frame<T>,
+    /// The geometric normal, on the side of the viewer.
+    pub normal: Vec3<T>,
+    /// Towards the viewer.
+    pub wo: Vec3<T>,
+    /// The shading normal without the normal texture, on the side of the viewer: a coat is smooth over it.
+    pub coat_normal: Vec3<T>,
+    /// True where the viewer is on the back of the triangle: within the solid, if its mesh is closed.
+    pub is_inside: T::Mask,
+}

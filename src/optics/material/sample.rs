@@ -1,0 +1,223 @@
+//! Directions drawn from a material.
+
+use super::layers::{base_shape, passes_on, transmission_color};
+use super::{Layers, Material, Surface, material_layers};
+use crate::optics::coat::coat_sample;
+use crate::optics::fresnel::{fresnel, half_vector_cosine};
+use crate::optics::lobe::{LobeSample, LobeShape, is_mirror, lobe_evaluate, lobe_sample};
+use crate::optics::real::{Mask, Real};
+use crate::optics::vector::Vec3;
+
+/// A layer of a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Layer {
+    /// The coat.
+    Coat,
+    /// The specular lobe.
+    Specular,
+    /// The Lambertian base.
+    Base,
+    /// The refracting lobe.
+    Refraction,
+}
+
+/// A direction drawn from a material.
+#[derive(Clone, Copy, Debug)]
+pub struct MaterialSample<T: Real> {
+    /// Towards the light.
+    pub wi: Vec3<T>,
+    /// What the path's throughput is multiplied by; 0 where the sample was absorbed.
+    pub throughput: Vec3<T>,
+    /// Density of the lobe that was chosen times the probability of choosing it, per steradian; 0 where that lobe is
+    /// weighed as a mirror (or the strategy asks for no density).
+    pub density: T,
+    /// True where the lobe is weighed as a mirror: light sampling has no share in this direction.
+    pub is_mirror: T::Mask,
+    /// The layer that was chosen, in some lane: for accounts of paths, nothing is computed from it.
+    pub layer: Layer,
+}
+
+impl<T: Real> MaterialSample<T> {
+    /// No direction.
+    #[inline(always)]
+    fn nothing() -> Self {
+        Self {
+            wi: Vec3::zero(),
+            throughput: Vec3::zero(),
+            density: T::zero(),
+            is_mirror: T::Mask::splat(false),
+            layer: Layer::Specular,
+        }
+    }
+
+    /// `other` in its place where the mask holds.
+    #[inline(always)]
+    fn replaced(self, mask: T::Mask, other: Self) -> Self {
+        Self {
+            wi: Vec3::select(mask, other.wi, self.wi),
+            throughput: Vec3::select(mask, other.throughput, self.throughput),
+            density: T::select(mask, other.density, self.density),
+            is_mirror: (mask & other.is_mirror) | (!mask & self.is_mirror),
+            layer: other.layer,
+        }
+    }
+}
+
+/// The numbers that a sample of a material takes, each in [0, 1).
+#[derive(Clone, Copy, Debug)]
+pub struct MaterialNumbers<T> {
+    /// Draws the direction.
+    pub lobe: [T; 3],
+    /// Chooses the layer.
+    pub layer: T,
+    /// Draws the direction where the specular lobe passed it on to what is below.
+    pub below: [T; 3],
+}
+
+/// A number in [0, 1) that was not below `share`, stretched to [0, 1) again.
+#[inline(always)]
+fn rescaled<T: Real>(number: T, share: T) -> T {
+    let stretched = (number - share) / (T::one() - share).max(T::from_f64(1e-20));
+    stretched.min(T::from_f64(1.0 - 1.0 / 16_777_216.0))
+}
+
+/// Draws a direction: from the specular lobe, the base or the refracting lobe. `wants_density` is false where no other
+/// strategy competes: then the geometric lobe never computes its density.
+pub fn material_sample<T: Real>(
+    material: &Material<T>,
+    tables: &[f32],
+    surface: &Surface<T>,
+    numbers: MaterialNumbers<T>,
+    wants_density: bool,
+) -> MaterialSample<T> {
+    T::vectorize(
+        #[inline(always)]
+        || {
+            let drawing = Drawing {
+                material,
+                layers: material_layers(material, tables, surface),
+                surface,
+                wants_density,
+            };
+            drawing.sample(tables, numbers)
+        },
+    )
+}
+
+/// What directions are drawn from.
+struct Drawing<'a, T: Real> {
+    material: &'a Material<T>,
+    layers: Layers<T>,
+    surface: &'a Surface<T>,
+    wants_density: bool,
+}
+
+impl<T: Real> Drawing<'_, T> {
+    /// See [`material_sample`].
+    #[inline(always)]
+    fn sample(&self, tables: &[f32], numbers: MaterialNumbers<T>) -> MaterialSample<T> {
+        let Self {
+            material,
+            layers,
+            surface,
+            ..
+        } = self;
+        let (base, through) = (layers.base_probability(), layers.transmission_probability);
+        let has_coat = material.has_coat(surface);
+        let takes_coat = has_coat & numbers.layer.less(layers.coat_probability);
+        let mut sample = MaterialSample::nothing();
+        if takes_coat.any() {
+            sample = coat_sample(
+                material,
+                surface,
+                numbers.lobe,
+                layers.coat_probability,
+                self.wants_density,
+            );
+            if takes_coat.all() {
+                return sample;
+            }
+        }
+        let mut layer = numbers.layer;
+        if has_coat.any() {
+            layer = T::select(has_coat, rescaled(layer, layers.coat_probability), layer);
+        }
+        let mut left = !takes_coat;
+        let mut xi = numbers.lobe;
+        let mut specular = layers.specular_probability;
+        let is_passed_on = passes_on(material);
+        if (left & (is_passed_on | layer.less(specular))).any() {
+            let shape = material.shape(tables);
+            let drawn = self.draw(&shape, xi);
+            let terms = material.fresnel_terms(surface.is_inside);
+            let color = fresnel(&terms, half_vector_cosine(surface.wo, drawn.wi));
+            if is_passed_on.any() {
+                let reflected = T::select(T::zero().less(drawn.weight), color.luminance(), T::zero());
+                specular = T::select(is_passed_on, reflected, specular);
+                for (number, below) in xi.iter_mut().zip(numbers.below) {
+                    *number = T::select(is_passed_on, below, *number);
+                }
+            }
+            let takes = left & layer.less(specular);
+            if takes.any() {
+                let finished = self.finish(Layer::Specular, &shape, drawn, color, specular);
+                sample = sample.replaced(takes, finished);
+                left = left & !takes;
+            }
+        }
+        if !left.any() {
+            return sample;
+        }
+        let base_end = specular + (T::one() - specular) * (base / (base + through).max(T::from_f64(1e-20)));
+        let takes_base = layer.less(base_end) | !T::zero().less(through);
+        if (left & takes_base).any() {
+            let shape = base_shape();
+            let finished = self.finish(Layer::Base, &shape, self.draw(&shape, xi), layers.base, base);
+            sample = sample.replaced(left & takes_base, finished);
+            left = left & !takes_base;
+        }
+        if left.any() {
+            let shape = material.transmission_shape(tables, surface.is_inside);
+            let drawn = self.draw(&shape, xi);
+            let color = transmission_color(material, layers, &shape, surface, drawn.wi);
+            let finished = self.finish(Layer::Refraction, &shape, drawn, color, through);
+            sample = sample.replaced(left, finished);
+        }
+        sample
+    }
+
+    #[inline(always)]
+    fn draw(&self, shape: &LobeShape<'_, T>, xi: [T; 3]) -> LobeSample<T> {
+        let surface = self.surface;
+        lobe_sample(shape, &surface.frame, surface.normal, surface.wo, xi)
+    }
+
+    /// What a direction drawn from a layer below the coat, chosen with this probability, makes of a path.
+    #[inline(always)]
+    fn finish(
+        &self,
+        layer: Layer,
+        shape: &LobeShape<'_, T>,
+        drawn: LobeSample<T>,
+        color: Vec3<T>,
+        probability: T,
+    ) -> MaterialSample<T> {
+        let Self { layers, surface, .. } = self;
+        let below = T::one() - layers.coat_probability;
+        let is_mirror = is_mirror(shape);
+        let mut density = T::zero();
+        if self.wants_density && !is_mirror.all() {
+            let [_, of_shape] = lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, drawn.wi);
+            density = T::select(is_mirror, T::zero(), below * probability * of_shape);
+        }
+        let scale = drawn.weight / (below * probability).max(T::from_f64(1e-20));
+        MaterialSample {
+            wi: drawn.wi,
+            throughput: color * layers.below_coat * scale,
+            density,
+            is_mirror,
+            layer,
+        }
+    }
+}
