@@ -224,7 +224,8 @@ pub fn ln<T: Single>(x: T) -> T {
     let value = m + tail + exponent * c(0.693_359_4);
     let value = T::select(x.less(c(f32::INFINITY)), value, x);
     let is_positive = T::zero().less(x);
-    let nothing = T::select(x.differs(T::zero()), c(f32::NAN), c(f32::NEG_INFINITY));
+    let is_zero = !(x.differs(T::zero()) | x.is_nan());
+    let nothing = T::select(is_zero, c(f32::NEG_INFINITY), c(f32::NAN));
     T::select(is_positive, value, nothing)
 }
 

@@ -173,11 +173,20 @@ impl<S: Simd> Real for Lanes<S> {
     }
     #[inline(always)]
     fn min(self, other: Self) -> Self {
-        Self(self.0.min_precise(other.0))
+        // Of other processors' instructions a NaN on either side makes one.
+        if cfg!(target_arch = "x86_64") {
+            Self(self.0.min(other.0))
+        } else {
+            Self::select(self.less(other), self, other)
+        }
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
-        Self(self.0.max_precise(other.0))
+        if cfg!(target_arch = "x86_64") {
+            Self(self.0.max(other.0))
+        } else {
+            Self::select(other.less(self), self, other)
+        }
     }
     #[inline(always)]
     fn abs(self) -> Self {

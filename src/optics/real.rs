@@ -80,9 +80,9 @@ pub trait Real:
     fn less(self, other: Self) -> Self::Mask;
     /// `if_true` where the mask holds, else `if_false`.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
-    /// The smaller of the two; the other one if one is NaN.
+    /// The smaller of the two; `other` where one is NaN, as one instruction has it.
     fn min(self, other: Self) -> Self;
-    /// The larger of the two; the other one if one is NaN.
+    /// The larger of the two; `other` where one is NaN.
     fn max(self, other: Self) -> Self;
     /// Absolute value.
     fn abs(self) -> Self;
@@ -133,17 +133,10 @@ pub trait Real:
     fn safe_sqrt(self) -> Self {
         self.max(Self::zero()).sqrt()
     }
-    /// `self ≠ other`; true where one is NaN.
+    /// `self ≠ other`; false where one is NaN.
     #[inline(always)]
     fn differs(self, other: Self) -> Self::Mask {
-        let (less, more) = (self.less(other), other.less(self));
-        less | more
-    }
-    /// Where the lane's number is at least `other`; false where one is NaN.
-    #[inline(always)]
-    fn at_least(self, other: Self) -> Self::Mask {
-        let same = !self.less(other);
-        same & !self.is_nan() & !other.is_nan()
+        self.less(other) | other.less(self)
     }
     /// Where the lane holds no number.
     #[inline(always)]
@@ -211,11 +204,11 @@ macro_rules! real {
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {
-                $type::min(self, other)
+                if self < other { self } else { other }
             }
             #[inline(always)]
             fn max(self, other: Self) -> Self {
-                $type::max(self, other)
+                if self > other { self } else { other }
             }
             #[inline(always)]
             fn abs(self) -> Self {

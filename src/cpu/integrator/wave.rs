@@ -343,16 +343,15 @@ impl Ways {
 impl Tile {
     /// The tile at a place of the picture, of a size in pixels.
     pub fn new(origin: [u32; 2], size: [u32; 2]) -> Self {
-        let corners = |size: u32| (0..size).step_by(SIDE as usize);
-        let in_square = move |top: u32, left: u32| {
-            let rows = top..(top + SIDE).min(size[1]);
-            rows.flat_map(move |y| (left..(left + SIDE).min(size[0])).map(move |x| [x, y]))
-        };
-        let places = corners(size[1]).flat_map(|top| corners(size[0]).flat_map(move |left| in_square(top, left)));
-        Self {
-            origin,
-            size,
-            places: places.collect(),
+        let mut places = Vec::with_capacity(PIXELS);
+        let squares = |axis: usize| (0..size[axis]).step_by(SIDE as usize);
+        for top in squares(1) {
+            for left in squares(0) {
+                for y in top..(top + SIDE).min(size[1]) {
+                    places.extend((left..(left + SIDE).min(size[0])).map(|x| [x, y]));
+                }
+            }
         }
+        Self { origin, size, places }
     }
 }

@@ -129,7 +129,7 @@ fn albedos_in<T: Real>(
 /// is only the specular lobe, its Fresnel term at the view's angle.
 #[inline(always)]
 pub fn material_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Vec3<T> {
-    let has_more = material.has_base() | material.transmits();
+    let has_more = material.has_specular() & (material.has_base() | material.transmits());
     let cosine = surface.frame.normal.dot(surface.wo);
     let mut specular = fresnel(&material.fresnel_terms(surface.is_inside), cosine);
     if has_more.any() {
