@@ -237,7 +237,7 @@ impl InLanes for Drawn<'_> {
 #[test]
 fn lobes_give_the_same_bits_in_lanes_as_alone() {
     let mut random = Random::new(5);
-    let numbers: Vec<[f32; 3]> = (0..1024).map(|_| std::array::from_fn(|_| random.unit())).collect();
+    let numbers: Vec<[f32; 3]> = (0..3072).map(|_| std::array::from_fn(|_| random.unit())).collect();
     for (lobe, curve) in lobes_and_curves() {
         for &horizon in Horizon::ALL {
             let mut cases = Case::grid(

@@ -260,6 +260,7 @@ fn environment_direction_from_angles<T: Real>(u: T, cos_polar: T, sin_polar: T) 
 }
 
 /// Radiance from a unit direction: bilinear, wrapping in u, clamped at the poles in v.
+#[inline(always)]
 pub fn environment_radiance<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> Vec3<T> {
     environment_radiance_at(environment, environment_uv(direction_local))
 }
@@ -427,6 +428,7 @@ fn environment_direction_in_cell<T: Real>(
 }
 
 /// The density, per steradian, with which [`environment_sample`] draws a unit direction in the map's frame.
+#[inline(always)]
 pub fn environment_density<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> T {
     environment_density_at(environment, environment_uv(direction_local))
 }
