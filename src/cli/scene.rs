@@ -232,7 +232,7 @@ impl SceneArguments {
             (camera.yaw_deg, camera.pitch_deg) = (yaw_deg, pitch_deg);
         }
         if self.camera_orbit.is_some() || self.settings.has("camera.distance") {
-            // A position of the document's stands over both.
+            // A position in the document overrides both.
             camera.position = None;
         }
         let render = &mut document.render;

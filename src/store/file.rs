@@ -9,7 +9,7 @@ use serde_json::{Map, Value as Json};
 use super::{picture, preset, project};
 use crate::document::{Document, MaterialSettings};
 
-/// Bytes above which a file is taken for something else.
+/// Files larger than this many bytes are taken for something else.
 pub(super) const SIZE_MAX: u64 = 16 << 20;
 
 /// What was read from a file, and what was odd about it.
@@ -24,7 +24,7 @@ pub struct Loaded<T> {
 /// Why a material or project file cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// The system does not give it.
+    /// The system can't read it.
     #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
     Read {
         /// The file.

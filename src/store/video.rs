@@ -20,7 +20,7 @@ use super::replace::save_atomically;
 
 /// Frames a second that a video may have.
 pub const FPS: std::ops::RangeInclusive<f64> = 1.0..=120.0;
-/// Bits of a pixel of an MP4 in the mean: gradients of clean pictures stay free of steps.
+/// Mean bits per pixel of an MP4: enough that gradients of clean pictures show no banding.
 const BITS_PER_PIXEL: f64 = 0.25;
 /// Fewest rows and columns that the encoder takes.
 const SIDE_MIN: u32 = 16;
@@ -36,7 +36,7 @@ const OPAQUE_FROM: u8 = 128;
 /// Why a video can't be written.
 #[derive(Debug, thiserror::Error)]
 pub enum VideoError {
-    /// The name's ending says no format that is written.
+    /// The extension is not that of a format that can be written.
     #[error("{}: videos are written as .mp4 or .gif; give the file one of these endings", path.display())]
     Format {
         /// The file.
@@ -154,7 +154,7 @@ struct Mp4 {
     fps: f64,
     /// What a player must know before the first frame.
     entry: Option<SampleEntry>,
-    /// Each frame's units with their lengths, and whether it stands for itself.
+    /// Each frame's units with their lengths, and whether it is a key frame.
     frames: Vec<(Vec<u8>, bool)>,
 }
 

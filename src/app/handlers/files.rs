@@ -325,7 +325,7 @@ impl App {
 
     /// Shows the picture through a table of colours.
     fn use_lut(&mut self, path: PathBuf) {
-        // Tables are small: read at once, so that what is wrong is told here.
+        // Tables are small: this one is read at once, so that errors are reported here.
         match lut::load(&path) {
             Ok(_) => {
                 let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
