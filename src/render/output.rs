@@ -17,6 +17,7 @@ use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::optics::primaries::REC709;
 use crate::store::FileError;
+use crate::store::file::ending;
 use crate::store::picture::png_bytes;
 use crate::store::project::document_text;
 use crate::store::replace::save_by;
@@ -114,12 +115,7 @@ pub enum Format {
 /// # Errors
 /// [`OutputError::Format`] for another ending: ask before hours of rendering.
 pub fn format_of(path: &Path) -> Result<Format, OutputError> {
-    let ending = path
-        .extension()
-        .and_then(|ending| ending.to_str())
-        .unwrap_or_default()
-        .to_ascii_lowercase();
-    match ending.as_str() {
+    match ending(path).as_str() {
         "png" => Ok(Format::Png),
         "exr" => Ok(Format::Exr),
         "hdr" => Ok(Format::Hdr),

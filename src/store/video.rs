@@ -16,6 +16,7 @@ use shiguredo_mp4::boxes::SampleEntry;
 use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_maximum_moov_box_size};
 
 use super::FileError;
+use super::file::ending;
 use super::replace::save_atomically;
 
 /// Frames a second that a video may have.
@@ -74,8 +75,7 @@ impl VideoFormat {
     /// # Errors
     /// [`VideoError::Format`] for another ending: ask before hours of rendering.
     pub fn of(path: &Path) -> Result<Self, VideoError> {
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        match ending.to_ascii_lowercase().as_str() {
+        match ending(path).as_str() {
             "mp4" => Ok(Self::Mp4),
             "gif" => Ok(Self::Gif),
             _ => Err(VideoError::Format { path: path.to_owned() }),
