@@ -25,14 +25,14 @@ check: ## The quick loop: format, lints, the tests that concern what you changed
 
 test: ## Check format and lints, then run every test
 	@scripts/setup test
-	@if cargo fmt --version >/dev/null 2>&1; then set -x; cargo fmt --check; \
+	@if cargo fmt --version >/dev/null 2>&1; then set -x; scripts/format --check; \
 	else echo "note: rustfmt is not installed, the format is not checked (rustup component add rustfmt)"; fi
 	@if cargo clippy --version >/dev/null 2>&1; then set -x; cargo clippy --all-targets -- -D warnings; \
 	else echo "note: clippy is not installed, lints are not checked (rustup component add clippy)"; fi
 	cargo test $(ARGS)
 
 test-thorough: export GLOSSMITH_THOROUGH = 1
-test-thorough: test ## The same, for an hour more: what is random more often, shaders on a second Vulkan driver
+test-thorough: test ## The same, for an hour more: what is random or repeats others at greater length, shaders on a second Vulkan driver
 	@scripts/setup thorough
 	scripts/second-driver
 	@if cargo deny --version >/dev/null 2>&1; then set -x; cargo deny check; \

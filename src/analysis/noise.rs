@@ -49,12 +49,6 @@ pub fn half_difference_variance([even, odd]: &[HalfSums; 2]) -> f64 {
     difference * difference * even.samples * odd.samples / (even.samples + odd.samples).powi(2)
 }
 
-/// The same of each pixel.
-pub fn half_difference_variances(film: &Film) -> Vec<f64> {
-    let of_pixel = |pixel: usize| half_difference_variance(&film.halves(pixel));
-    (0..film.pixel_count()).into_par_iter().map(of_pixel).collect()
-}
-
 /// The relative error of a picture; `None` before there are samples in both halves. A picture without light has none.
 pub fn noise(film: &Film) -> Option<Noise> {
     let bands: Vec<Sums> = bands(film.grid())

@@ -51,7 +51,7 @@ pub fn integrate(rule: &[[f64; 2]], low: f64, high: f64, f: impl Fn(f64) -> f64)
 }
 
 /// ∫ f(ω) dω over the directions with n·ω > 0, n = +z: `order` nodes in the cosine, twice as many equal steps in azimuth.
-/// Meant for functions without narrow peaks; see [`integrate_sphere`] for those.
+/// Meant for functions without narrow peaks; see [`SphereFunction`] for those.
 pub fn integrate_hemisphere(order: usize, f: impl Fn(Vec3<f64>) -> f64) -> f64 {
     let steps = 2 * order;
     integrate(&gauss_legendre(order), 0.0, 1.0, |cosine| {
@@ -158,31 +158,31 @@ fn jump_azimuths(cut: Vec3<f64>, sine: f64, cosine: f64) -> [Option<f64>; 2] {
     [Some(wrapped(middle - half)), Some(wrapped(middle + half))]
 }
 
-/// ∫ f dω over the whole sphere: rings that shrink towards the axis by halves, so that peaks of any width on the axis
-/// are met. Error about `tolerance` where the integral is about 1.
-pub fn integrate_sphere<F: Fn(Vec3<f64>) -> f64>(function: &SphereFunction<'_, F>, tolerance: f64) -> f64 {
-    const RINGS: i32 = 24;
-    const SECTORS: i32 = 4;
-    let mut sum = 0.0;
-    for ring in 0..RINGS {
-        let outer = PI * 0.5_f64.powi(ring);
-        let inner = if ring + 1 == RINGS { 0.0 } else { 0.5 * outer };
-        for sector in 0..SECTORS {
-            let azimuth = |i: i32| TAU * f64::from(i) / f64::from(SECTORS) - PI;
-            let patch = Patch {
-                polar_rad: [inner, outer],
-                azimuth_rad: [azimuth(sector), azimuth(sector + 1)],
-            };
-            sum += function.integrate(patch, tolerance, 0.1 * tolerance);
-        }
-    }
-    sum
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::optics::frame::frame_from_normal;
+
+    /// ∫ f dω over the whole sphere: rings that shrink towards the axis by halves, so that peaks of any width on the axis
+    /// are met. Error about `tolerance` where the integral is about 1.
+    fn integrate_sphere<F: Fn(Vec3<f64>) -> f64>(function: &SphereFunction<'_, F>, tolerance: f64) -> f64 {
+        const RINGS: i32 = 24;
+        const SECTORS: i32 = 4;
+        let mut sum = 0.0;
+        for ring in 0..RINGS {
+            let outer = PI * 0.5_f64.powi(ring);
+            let inner = if ring + 1 == RINGS { 0.0 } else { 0.5 * outer };
+            for sector in 0..SECTORS {
+                let azimuth = |i: i32| TAU * f64::from(i) / f64::from(SECTORS) - PI;
+                let patch = Patch {
+                    polar_rad: [inner, outer],
+                    azimuth_rad: [azimuth(sector), azimuth(sector + 1)],
+                };
+                sum += function.integrate(patch, tolerance, 0.1 * tolerance);
+            }
+        }
+        sum
+    }
 
     #[test]
     fn gauss_legendre_is_exact_for_polynomials() {

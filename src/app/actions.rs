@@ -28,11 +28,11 @@ pub enum Action {
     Drop(Vec<PathBuf>),
     /// Takes text that was pasted into the window: names of files.
     Paste(String),
-    /// Calls off what is being loaded or made ready.
+    /// Cancels what is being loaded or prepared.
     CancelLoading,
     /// Changes the model.
     UseModel(ModelSource),
-    /// Loads a model's file anew, to show another scene, variant or pose of it.
+    /// Reloads a model's file to show another scene, variant or pose of it.
     ImportModel(ModelSource, ModelOptions),
     /// Changes the environment.
     UseEnvironment(EnvironmentSource),

@@ -25,6 +25,7 @@ use crate::render::shown::Shown;
 use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Scene, Snapshot};
 use crate::scene::ModelSource;
+use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::TextureTarget;
 
 /// What panels work on.
@@ -155,6 +156,18 @@ impl Desk<'_> {
             self.shared.picks = (!is_on).then_some(pick);
         }
         response
+    }
+
+    /// Asks for the pictures of the environments that a part of the window shows, and takes those that are there.
+    pub(super) fn make_environment_pictures(
+        &mut self,
+        ctx: &egui::Context,
+        shown_by: &'static str,
+        shown: &[EnvironmentSource],
+    ) {
+        let scene = self.snapshot.scene.as_deref();
+        let loaded = scene.map(|scene| (&scene.document.lighting.environment, &scene.job.environment));
+        self.shared.environments.make_pictures(ctx, (shown_by, shown), loaded);
     }
 
     /// The scene being rendered, where it is of the document's model.

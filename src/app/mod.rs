@@ -170,7 +170,7 @@ impl App {
         let kept = settings::Kept::load(creation);
         creation.egui_ctx.set_theme(kept.theme);
         let ctx = creation.egui_ctx.clone();
-        // What the command line says stands over what was chosen in the window.
+        // The command line overrides what was chosen in the window.
         let engine = match options.engine {
             EngineChoice::Auto => kept.engine,
             given => given,

@@ -12,7 +12,7 @@ pub(super) enum Home {
 }
 
 /// Hands the list of the panels to a macro: name in saved layouts, title of the tab, where it is docked at first, and the
-/// type in [`super::panels`] that it is.
+/// module in `src/app/panels/` with the type that it is. A line here is all that a new file there needs.
 macro_rules! list {
     ($make:ident) => {
         $make! {
@@ -54,7 +54,7 @@ macro_rules! list {
 pub(super) use list;
 
 macro_rules! panes {
-    ($($(#[$doc:meta])* $name:ident, $title:literal, $home:ident, $panel:ty;)*) => {
+    ($($(#[$doc:meta])* $name:ident, $title:literal, $home:ident, $module:ident::$panel:ident;)*) => {
         /// A part of the window with a tab: the viewport or a panel.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
         pub enum Pane {

@@ -177,7 +177,7 @@ impl Kept {
     }
 }
 
-/// Pictures are clean at once where that can be had.
+/// Denoises from the start where the library is installed.
 fn first_denoise() -> Denoise {
     if Library::get().is_ok() {
         Denoise::Auto

@@ -42,7 +42,7 @@ impl Destination {
         }
     }
 
-    /// Opens it; a file is begun anew.
+    /// Opens it; an existing file is overwritten.
     fn open(&self) -> anyhow::Result<Box<dyn std::io::Write>> {
         Ok(match self {
             Self::Output => Box::new(std::io::stdout()),
@@ -96,14 +96,14 @@ impl Answer {
     }
 }
 
-/// Values that are told while others are still to come: a line of JSON each.
+/// Values that are printed as they become known: a line of JSON each.
 pub(super) struct Lines {
     to: Destination,
     file: Box<dyn std::io::Write>,
 }
 
 impl Lines {
-    /// Where they go; a file is begun anew.
+    /// Opens the destination; an existing file is overwritten.
     ///
     /// # Errors
     /// If it cannot be written there.

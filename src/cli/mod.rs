@@ -56,37 +56,58 @@ pub struct Arguments {
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, rendered or written; 2 wrong \
                           arguments; 3 some of several were done.";
 
-/// The subcommands.
-#[derive(Debug, Subcommand)]
-pub enum Command {
+macro_rules! subcommands {
+    ($($(#[$doc:meta])* $name:ident($arguments:ty) => $run:path;)*) => {
+        /// The subcommands.
+        #[derive(Debug, Subcommand)]
+        pub enum Command {
+            $($(#[$doc])* $name($arguments),)*
+        }
+
+        impl Command {
+            /// Runs the subcommand.
+            ///
+            /// # Errors
+            /// One line that names the file, what is wrong and what to do.
+            pub fn run(self) -> anyhow::Result<()> {
+                match self {
+                    $(Self::$name(arguments) => $run(&arguments),)*
+                }
+            }
+        }
+    };
+}
+
+// In the order of the help text, which quotes the comments.
+subcommands! {
     /// Render a picture.
-    Render(Box<render::RenderArguments>),
+    Render(Box<render::RenderArguments>) => render::run;
     /// Show which effects a scene calls for, and why.
-    Plan(Box<plan::PlanArguments>),
+    Plan(Box<plan::PlanArguments>) => plan::run;
     /// Show everything that made one sample of one pixel.
-    Explain(Box<explain::ExplainArguments>),
+    Explain(Box<explain::ExplainArguments>) => explain::run;
     /// Render a turn about the model as numbered pictures.
-    Turntable(Box<turntable::TurntableArguments>),
+    Turntable(Box<turntable::TurntableArguments>) => turntable::run;
     /// Prove on this machine that the renderer is right.
-    Check(check::CheckArguments),
+    Check(check::CheckArguments) => check::run;
     /// Draw samples of a lobe, as the renderer draws them.
-    Scatter(scatter::ScatterArguments),
+    Scatter(scatter::ScatterArguments) => scatter::run;
     /// Match the look of another lobe or of a measured material.
-    Fit(fit::FitArguments),
+    Fit(fit::FitArguments) => fit::run;
     /// Take materials to other programs and back, and tell what is lost.
-    Convert(convert::ConvertArguments),
+    Convert(convert::ConvertArguments) => convert::run;
     /// Render all combinations of models, materials, environments, cameras and settings.
-    Batch(batch::BatchArguments),
+    Batch(batch::BatchArguments) => batch::run;
     /// Join films of the same picture, rendered apart.
-    Merge(merge::MergeArguments),
+    Merge(merge::MergeArguments) => merge::run;
     /// Show lobes: slices, bodies, densities, albedo, reciprocity, losses.
-    Lobe(lobe::LobeArguments),
+    Lobe(lobe::LobeArguments) => lobe::run;
     /// Measure what accuracy costs in time.
-    Study(study::StudyArguments),
+    Study(study::StudyArguments) => study::run;
     /// Print a script that completes these arguments in a shell.
-    Completions(shell::CompletionsArguments),
+    Completions(shell::CompletionsArguments) => shell::completions;
     /// Print a manual page.
-    Manual(shell::ManualArguments),
+    Manual(shell::ManualArguments) => shell::manual;
 }
 
 /// Of several things some were done and others could not be.
@@ -97,31 +118,6 @@ struct PartialFailure(String);
 /// The exit code of a subcommand that failed.
 pub fn exit_code(error: &anyhow::Error) -> u8 {
     if error.is::<PartialFailure>() { 3 } else { 1 }
-}
-
-impl Command {
-    /// Runs the subcommand.
-    ///
-    /// # Errors
-    /// One line that names the file, what is wrong and what to do.
-    pub fn run(self) -> anyhow::Result<()> {
-        match self {
-            Command::Render(arguments) => render::run(&arguments),
-            Command::Plan(arguments) => plan::run(&arguments),
-            Command::Explain(arguments) => explain::run(&arguments),
-            Command::Turntable(arguments) => turntable::run(&arguments),
-            Command::Check(arguments) => check::run(&arguments),
-            Command::Scatter(arguments) => scatter::run(&arguments),
-            Command::Fit(arguments) => fit::run(&arguments),
-            Command::Convert(arguments) => convert::run(&arguments),
-            Command::Batch(arguments) => batch::run(&arguments),
-            Command::Merge(arguments) => merge::run(&arguments),
-            Command::Lobe(arguments) => lobe::run(&arguments),
-            Command::Study(arguments) => study::run(&arguments),
-            Command::Completions(arguments) => shell::completions(&arguments),
-            Command::Manual(arguments) => shell::manual(&arguments),
-        }
-    }
 }
 
 /// Renders the default scene, with these files in the place of its parts, to a picture and says where it is: what the

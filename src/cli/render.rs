@@ -17,7 +17,7 @@ use crate::render::denoise::{Attendant, Denoised};
 use crate::render::output::{self, Format, Rendered};
 use crate::render::{EngineChoice, Progress, Session, StopReason, to_end};
 
-/// How long the picture may take that is rendered in the window's place, seconds: as long as one waits gladly.
+/// Time limit of the picture that is rendered where no window can be opened, seconds.
 const DEFAULT_SCENE_SECONDS: f64 = 8.0;
 
 /// Arguments of `glossmith render`.

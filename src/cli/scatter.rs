@@ -12,6 +12,7 @@ use crate::optics::curve::Curve;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::render::EngineChoice;
+use crate::store::file::ending;
 
 use super::answer::Answer;
 use super::names::choice;
@@ -118,8 +119,7 @@ enum Format {
 }
 
 fn format_of(path: &Path) -> anyhow::Result<Format> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    match ending.to_ascii_lowercase().as_str() {
+    match ending(path).as_str() {
         "csv" => Ok(Format::Csv),
         "png" => Ok(Format::Png),
         _ => bail!(

@@ -16,7 +16,7 @@ use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
 use crate::scene::{Model, ModelOptions, ModelSource, is_model};
 use crate::store::exchange::{self, ReadOptions};
-use crate::store::file::Opened;
+use crate::store::file::{Opened, ending};
 use crate::store::lut;
 use crate::store::replace::save_atomically;
 
@@ -232,7 +232,7 @@ impl SceneArguments {
             (camera.yaw_deg, camera.pitch_deg) = (yaw_deg, pitch_deg);
         }
         if self.camera_orbit.is_some() || self.settings.has("camera.distance") {
-            // A position of the document's stands over both.
+            // A position in the document overrides both.
             camera.position = None;
         }
         let render = &mut document.render;
@@ -261,9 +261,7 @@ fn is_model_file(path: &Path) -> bool {
 
 /// Puts what a file holds in the document: an environment, a material or a whole project. Models are left alone.
 fn open(path: &Path, document: &mut Document, options: ReadOptions) -> anyhow::Result<()> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let ending = ending.to_ascii_lowercase();
-    match ending.as_str() {
+    match ending(path).as_str() {
         _ if is_model_file(path) => {}
         ending if ending != "png" && ENDINGS.contains(&ending) => {
             document.lighting.environment = EnvironmentSource::File(path.to_owned())

@@ -39,7 +39,7 @@ impl Waiting {
         let thread = is_seen.then(|| std::thread::Builder::new().name("waiting".to_owned()).spawn(tell));
         Self {
             is_over,
-            // Without a thread nothing is told.
+            // Without a thread nothing is reported.
             thread: thread.and_then(Result::ok),
         }
     }

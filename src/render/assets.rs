@@ -21,19 +21,19 @@ type ModelKey = (ModelSource, ModelOptions);
 /// A picture's file, and whether its numbers are read as colours.
 type PictureKey = (PathBuf, bool);
 
-/// A model's pictures, and those of the user's own with whether each has green upside down.
+/// A model's textures, and the user's own, each with whether its green channel is flipped.
 type PackKey = (ModelKey, Vec<(PictureKey, bool)>);
 
 /// An environment's file, and what its numbers stand for.
 type EnvironmentKey = (EnvironmentSource, EnvironmentEncoding);
 
-/// Bytes that are kept: what was used last of each kind whatever it takes, and what else fits.
+/// Memory budget in bytes. The most recently used asset of each kind is kept whatever its size.
 const MEMORY: usize = 1 << 30;
 
-/// Geometries that are kept of one model: each place of a light that is dragged is another one, made of one that is kept.
+/// Geometries kept per model: each position of a dragged light makes a new one, built from one that is kept.
 const GEOMETRIES_OF_MODEL: usize = 2;
 
-/// Ways of putting pictures on that are kept.
+/// Texture assignments that are kept.
 const TEXTURES: usize = 8;
 
 /// What was asked for lately: an edit that leaves a source alone costs nothing, and neither does going back and forth between
@@ -97,12 +97,12 @@ impl Assets {
         }
     }
 
-    /// What is being loaded, to be told and called off by those who wait.
+    /// The loading in progress, to be reported and cancelled.
     pub fn loading(&self) -> &Loading {
         &self.loading
     }
 
-    /// What a panic left is whole: every change is a single assignment.
+    /// A panic leaves consistent state behind: every change is a single assignment.
     fn kept(&self) -> MutexGuard<'_, Kept> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -118,7 +118,7 @@ impl Assets {
         Ok(model)
     }
 
-    /// The textures of a source, and those of the user's own on its slots, packed. What is missing of these is told.
+    /// The textures of a source, and those of the user's own on its slots, packed. Missing ones are reported.
     ///
     /// # Errors
     /// As [`Assets::model`].
@@ -248,7 +248,7 @@ impl Kept {
         }
         let model = self.model(&key.0, loading)?;
         let textures = Arc::new(self.pack(&key.0, &model, assigned).textures(&model, assigned));
-        // Each way to put a picture on is another entry, and takes next to nothing; only the last few come back.
+        // Each assignment is an entry of its own and takes little memory; only the last few are ever needed again.
         while self.textures.count(|_| true) >= TEXTURES {
             self.textures.drop_oldest(|_| true);
         }
@@ -256,7 +256,7 @@ impl Kept {
         Ok(textures)
     }
 
-    /// The texels for a model and pictures of the user's own, whatever the way in which these are put on.
+    /// The texels of a model's and the user's own textures, whatever their placement.
     fn pack(&mut self, of: &ModelKey, model: &Model, assigned: &[TextureAssignment]) -> Arc<Pack> {
         let now = self.now();
         let mut own: Vec<_> = assigned.iter().map(|one| (one.picture(), one.is_flipped())).collect();
@@ -368,7 +368,7 @@ impl<K: PartialEq, V> Shelf<K, V> {
         Some(entry.value.clone())
     }
 
-    /// Some value whose key is as wanted.
+    /// Any value whose key satisfies the predicate.
     fn find(&self, is_wanted: impl Fn(&K) -> bool) -> Option<Arc<V>> {
         let entry = self.entries.iter().find(|entry| is_wanted(&entry.key))?;
         Some(entry.value.clone())
@@ -387,7 +387,7 @@ impl<K: PartialEq, V> Shelf<K, V> {
         self.entries.iter().filter(|entry| counts(&entry.key)).count()
     }
 
-    /// Lets go what was not used for longest among some.
+    /// Drops the least recently used of some entries.
     fn drop_oldest(&mut self, among: impl Fn(&K) -> bool) {
         let candidates = self.entries.iter().filter(|entry| among(&entry.key));
         if let Some(oldest) = candidates.map(|entry| entry.used).min() {
@@ -396,10 +396,10 @@ impl<K: PartialEq, V> Shelf<K, V> {
     }
 }
 
-/// A shelf whatever is on it.
+/// A shelf of any type of value.
 trait Tidied {
     fn bytes(&self) -> usize;
-    /// When it was last used what can be let go first, if anything can: not the last of its kind.
+    /// Last use of the entry to drop first, if any can be dropped: the last one of its kind can't.
     fn spare(&self) -> Option<u64>;
     fn drop_spare(&mut self);
 }

@@ -45,7 +45,7 @@ impl<Q, A> Desk<'_, Q, A> {
         (self.repaint)();
     }
 
-    /// Waits while `hold` is set; false where nobody waits for the answer any more.
+    /// Waits while `hold` is set; false once the answer is no longer wanted.
     pub fn may_go_on(&self, hold: &AtomicBool) -> bool {
         while hold.load(Ordering::Relaxed) && !self.is_superseded() {
             std::thread::sleep(HOLD_STEP);
@@ -53,7 +53,7 @@ impl<Q, A> Desk<'_, Q, A> {
         !self.is_superseded()
     }
 
-    /// Whether nobody waits for the answer any more.
+    /// Whether the answer is no longer wanted.
     pub fn is_superseded(&self) -> bool {
         let orders = lock(&self.shared.orders);
         orders.quit || orders.query.is_some()

@@ -27,7 +27,7 @@ const GLANCE: Duration = Duration::from_millis(20);
 /// By how much software Vulkan must be slower than the processor on the same picture for another measurement.
 const DOUBT: f64 = 1.1;
 
-/// Opens whichever engine is faster. Where that is to be measured and nobody may wait for it, the processor's is opened:
+/// Opens whichever engine is faster. Where that is to be measured and the caller must not wait, the processor's is opened:
 /// compiling a kernel to measure takes software Vulkan some ten seconds, and what is found counts the next time.
 pub(super) fn fastest_without_hardware(may_wait: bool) -> (Engine, EngineInfo) {
     let device = match GpuDevice::open(AdapterKind::Software) {

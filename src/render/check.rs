@@ -218,7 +218,7 @@ pub fn chi_square(
     test_samples(&grid, &samples, &[frame.normal], density).p_value
 }
 
-/// Runs the checks; `progress` is told the name of each group before it starts. `None` where `stop` was set meanwhile.
+/// Runs the checks; `progress` receives the name of each group before it starts. `None` where `stop` was set meanwhile.
 ///
 /// # Errors
 /// Where the engine can't be opened or fails.

@@ -28,7 +28,7 @@ type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>, Vec<(usize, Shine)>);
 /// What the table of emitting triangles depends on: geometry, and the emission of each slot.
 type LightsKey = (Arc<Geometry>, Vec<f32>);
 
-/// What the table of a shadow catcher depends on, and the tables that it follows.
+/// What a shadow catcher's table depends on, and the tables in front of it.
 #[derive(Debug)]
 struct CatcherKey {
     environment: Arc<Environment>,

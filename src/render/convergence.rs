@@ -23,7 +23,7 @@ const GROWTH_COLD: f64 = 8.0;
 pub struct Measurement {
     /// The engine's own time until then, seconds.
     pub engine_seconds: f64,
-    /// Samples a pixel until then, in the mean over the picture.
+    /// Samples per pixel until then, averaged over the picture.
     pub samples_per_pixel: f64,
     /// What was seen.
     pub noise: Noise,
@@ -59,8 +59,8 @@ impl Convergence {
         self.history.last().map(|measurement| measurement.noise)
     }
 
-    /// By how much the error may be less than what was seen, at least 1. Who aims at what was seen goes too far half of
-    /// the time, and far too far where few pixels or samples tell little.
+    /// Factor, at least 1, by which the true error may be below the estimate. Aiming at the estimate itself would render
+    /// too much half of the time, and far too much where the estimate rests on few pixels or samples.
     fn doubt(&self) -> f64 {
         let ratio = self.noise().map_or(1.0, |noise| noise.relative / noise.low);
         if ratio.is_finite() { ratio.max(1.0) } else { 1.0 }
@@ -71,13 +71,13 @@ impl Convergence {
         schedule.pixel_samples() > self.measured_samples
     }
 
-    /// Takes note of how long a look took.
+    /// Records how long estimating the error took.
     pub(super) fn looked(&mut self, seconds: f64) {
         self.total_seconds += seconds;
         self.look_seconds = lesser(self.look_seconds, seconds);
     }
 
-    /// Takes note of how long it took to set goals.
+    /// Records how long setting the goals took.
     pub(super) fn planned(&mut self, seconds: f64) {
         self.total_seconds += seconds;
         self.plan_seconds = lesser(self.plan_seconds, seconds);
@@ -154,7 +154,7 @@ impl Convergence {
             return;
         }
         let growth = match (settings.noise, self.noise()) {
-            // As the error falls with 1/√n, and a little short of it if need be.
+            // The error falls as 1/√n; rather a little short of the target than beyond it.
             (Some(wanted), Some(noise)) => {
                 let aim = wanted * self.doubt();
                 (noise.relative / aim).powi(2).min(paced.max(GROWTH_AIMED))
@@ -163,7 +163,7 @@ impl Convergence {
         };
         let growth = growth.max(growth_min);
         let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0) as u32;
-        // With two samples of every pixel the error can be told for the first time.
+        // Two samples in every pixel are the fewest from which the error can be estimated.
         let goal = if most < 2 { goal.min(2) } else { goal };
         self.goals = vec![goal.min(settings.samples); samples.len()];
     }
@@ -173,7 +173,7 @@ fn lesser(least: Option<f64>, seconds: f64) -> Option<f64> {
     Some(least.map_or(seconds, |least| least.min(seconds)))
 }
 
-/// Samples a pixel, in the mean over the picture.
+/// Samples per pixel, averaged over the picture.
 pub(super) fn mean_samples(schedule: &Schedule) -> f64 {
     let grid = schedule.grid();
     let pixels = u64::from(grid.width) * u64::from(grid.height);

@@ -88,7 +88,7 @@ pub(super) enum Engine {
     Gpu(Box<GpuEngine>),
 }
 
-/// Why an engine renders that was not chosen automatically.
+/// The reason given for an engine that the user chose.
 const CHOSEN: &str = "chosen by you";
 
 impl Engine {

@@ -13,7 +13,7 @@ use crate::scene::environment::{Environment, EnvironmentError, EnvironmentSource
 
 /// Columns and rows of a thumbnail.
 pub const SIZE: [u32; 2] = [256, 128];
-/// To be raised where thumbnails of the same environment come out otherwise than before.
+/// Version of the thumbnails: raise it when the same environment is drawn differently.
 const VERSION: u32 = 1;
 
 /// An environment whose picture is wanted.
@@ -26,11 +26,11 @@ pub struct Wanted {
 }
 
 /// A picture: opaque red, green, blue and alpha of 8 bits, [`SIZE`] pixels from the top; `None` where the environment
-/// can't be had.
+/// can't be loaded.
 pub type EnvironmentThumbnail = Option<Arc<Vec<u8>>>;
 /// Thumbnails by what they show.
 pub type EnvironmentThumbnails = Arc<HashMap<EnvironmentSource, EnvironmentThumbnail>>;
-/// Makes the thumbnails that it was asked for last, in their order; answers grow.
+/// Makes the thumbnails of the latest request, in its order; each answer holds those made so far.
 pub type EnvironmentThumbnailWorker = Background<Vec<Wanted>, EnvironmentThumbnails>;
 
 /// Starts the worker; `folder` keeps the pictures from one start to the next. Nothing is made while `hold` is set: the
@@ -60,7 +60,7 @@ pub fn spawn_environment_thumbnails(
                 }
                 None => make(&wanted),
             };
-            // It is said where it is chosen.
+            // Reported where the environment is chosen.
             let picture = picture.unwrap_or_else(|error| {
                 log::debug!("no small picture: {error}");
                 None

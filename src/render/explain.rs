@@ -1,6 +1,6 @@
 //! The account of one path: everything that made one sample of one pixel, in words and as JSON.
 //!
-//! The path is traced by the processor's integrator itself, told to a recorder: there is no second one.
+//! The path is traced by the CPU engine's own integrator with a recorder attached: there is no second integrator.
 
 use serde::Serialize;
 
@@ -47,7 +47,7 @@ pub struct PathAccount {
     pub is_dropped: bool,
 }
 
-/// The account of a sample of a pixel of a job that a document with this model compiled to.
+/// The account of one sample of a pixel, for a job compiled from a document with this model.
 pub fn explain(document: &Document, model: &Model, job: &Job, pixel: [u32; 2], sample: u32) -> PathAccount {
     let mut events = Vec::new();
     let path = Integrator::<f32>::new(job).record_path(pixel, sample, &mut events);
@@ -108,7 +108,7 @@ fn surfaces(document: &Document, model: &Model) -> Vec<String> {
     materials.iter().enumerate().map(name).collect()
 }
 
-/// Brings what is in the geometry's units to the model's.
+/// Converts lengths and positions from the geometry's units to the model's.
 fn to_model_units(event: &mut Event, geometry: &Geometry) {
     let place = |place: &mut [f32; 3]| {
         let center = geometry.center_world.to_array();

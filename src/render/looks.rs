@@ -1,4 +1,4 @@
-//! Two materials held against each other: a ball of each in the studio, and how far their pictures are apart.
+//! Two materials compared: a ball of each in the studio, and how far their pictures differ.
 
 use std::time::Duration;
 

@@ -17,6 +17,7 @@ use crate::job::features::Features;
 use crate::job::film::{Film, Image};
 use crate::optics::primaries::REC709;
 use crate::store::FileError;
+use crate::store::file::ending;
 use crate::store::picture::png_bytes;
 use crate::store::project::document_text;
 use crate::store::replace::save_by;
@@ -24,7 +25,7 @@ use crate::store::replace::save_by;
 /// Why a picture can't be written.
 #[derive(Debug, thiserror::Error)]
 pub enum OutputError {
-    /// The name's ending says no format that is written.
+    /// The extension is not that of a format that can be written.
     #[error("{}: pictures are written as .png, .exr or .hdr; give the file one of these endings", path.display())]
     Format {
         /// The file.
@@ -40,9 +41,9 @@ pub enum OutputError {
 pub struct Rendered<'a> {
     /// The mean of the samples, linear.
     pub image: &'a Image,
-    /// The same denoised: what is shown, where it is there.
+    /// The denoised image, if there is one; it is the one shown.
     pub denoised: Option<&'a Image>,
-    /// What stands beside the colours in an .exr file.
+    /// Layers written beside the colours in an .exr file.
     pub layers: Option<&'a Layers>,
     /// The sums that an .exr file keeps, to be joined with others.
     pub sums: Option<&'a KeptFilm>,
@@ -69,7 +70,7 @@ impl<'a> From<&'a Layers> for Rendered<'a> {
     }
 }
 
-/// A picture with what is known beside it about each pixel.
+/// A picture with the per-pixel quantities that are written as layers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
     /// The linear picture.
@@ -85,7 +86,7 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// What a film knows of its pixels, beside what is seen there.
+    /// The layers of a film, apart from what is seen at each pixel.
     pub fn of(film: &Film, features: Features) -> Self {
         let pixels = 0..film.pixel_count();
         Self {
@@ -114,12 +115,7 @@ pub enum Format {
 /// # Errors
 /// [`OutputError::Format`] for another ending: ask before hours of rendering.
 pub fn format_of(path: &Path) -> Result<Format, OutputError> {
-    let ending = path
-        .extension()
-        .and_then(|ending| ending.to_str())
-        .unwrap_or_default()
-        .to_ascii_lowercase();
-    match ending.as_str() {
+    match ending(path).as_str() {
         "png" => Ok(Format::Png),
         "exr" => Ok(Format::Exr),
         "hdr" => Ok(Format::Hdr),
@@ -166,7 +162,7 @@ fn png(path: &Path, image: &Image, document: &Document) -> io::Result<Vec<u8>> {
     png_bytes([image.width, image.height], &pixels, text.as_deref().ok()).map_err(io::Error::other)
 }
 
-/// Writes what is known of a picture as named channels.
+/// Writes a picture's layers as named channels.
 fn write_exr(file: &mut (impl Write + Seek), rendered: Rendered<'_>, attributes: LayerAttributes) -> io::Result<()> {
     let mut channels = color_channels("", rendered.image, &COLORS);
     if let Some(denoised) = rendered.denoised {
@@ -187,7 +183,7 @@ fn write_exr(file: &mut (impl Write + Seek), rendered: Rendered<'_>, attributes:
     } else {
         Encoding::FAST_LOSSLESS
     };
-    // Tiles in the order in which they are ready would make another file of the same picture each time.
+    // Tiles in order of completion would make a different file of the same picture each time.
     let encoding = Encoding {
         line_order: LineOrder::Increasing,
         ..encoding

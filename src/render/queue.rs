@@ -68,7 +68,7 @@ impl Entry {
     }
 }
 
-/// The list, and the thread that works it off. What is waiting or under way when this is dropped is given up.
+/// The list, and the thread that works through it. Dropping it cancels what is waiting or in progress.
 pub struct Queue {
     shared: Arc<Shared>,
 }
@@ -84,7 +84,7 @@ struct Book {
     entries: Vec<Entry>,
     /// Those of the entries that wait.
     tasks: Vec<(u64, Task, EngineChoice)>,
-    /// Ends of tasks that nobody was told yet.
+    /// Ends of tasks not yet reported.
     news: Vec<Result<String, String>>,
     last_id: u64,
     /// The task under way is to end.
@@ -192,7 +192,7 @@ impl Queue {
                     Ok(Ok(words)) => Ok(words),
                     Ok(Err(error)) => Err(error.to_string()),
                     Err(why) => {
-                        // What a panic left of a session is not used again.
+                        // A session that panicked is not used again.
                         session = None;
                         Err(format!("an internal error: {why}"))
                     }
@@ -238,7 +238,7 @@ impl Queue {
         self.shared.book().entries.iter().any(|entry| !entry.is_over())
     }
 
-    /// Calls a task off, or takes it from the list where it is over.
+    /// Cancels a task, or removes it from the list once it has ended.
     pub fn remove(&self, id: u64) {
         let mut book = self.shared.book();
         let is_under_way = |entry: &Entry| entry.id == id && matches!(entry.state, State::Rendering(_));
@@ -382,7 +382,7 @@ fn picture(
     ))
 }
 
-/// What came of a turntable of which so many frames were rendered.
+/// The outcome of a turntable, by the number of frames rendered.
 fn told(table: &Turntable, frames: u32) -> String {
     let is_whole = frames >= table.frames;
     let all = match is_whole {

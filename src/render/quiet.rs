@@ -1,4 +1,4 @@
-//! Whether this process is at work: what takes part of the processor's time must not be when engines are measured.
+//! Whether this process is busy: engines are only measured while nothing else of ours uses the CPU.
 
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
@@ -43,7 +43,7 @@ impl Quiet {
         AtWork(self)
     }
 
-    /// The number of the quiet time that this is: another one once work was begun. `None` while something is at work.
+    /// The number of the current idle period, which changes whenever work begins; `None` while work is in progress.
     pub fn span(&self) -> Option<u64> {
         let begun = self.begun.load(Ordering::SeqCst);
         (self.at_work.load(Ordering::SeqCst) == 0).then_some(begun)

@@ -67,7 +67,7 @@ pub struct SampleReport {
     pub angle: AnglePlot,
 }
 
-/// What is known of a query's samples so far, or why there are none.
+/// The answer to a query so far, or why there is none.
 pub type SampleAnswer = Result<Arc<SampleReport>, String>;
 
 /// Draws samples on a thread of its own; the latest query wins.

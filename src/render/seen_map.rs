@@ -12,9 +12,9 @@ use crate::scene::camera::camera_ray;
 
 /// Longest side of the map in pixels.
 const SIDE_MAX_PX: u32 = 1024;
-/// What stands for nothing.
+/// Marks pixels where nothing is seen.
 pub const NOTHING: u32 = NO_OBJECT;
-/// Rows after which is asked whether somebody still waits.
+/// Rows between two checks whether the map is still wanted.
 const ROWS: usize = 32;
 
 /// Makes maps of jobs; the latest job wins.
@@ -45,7 +45,7 @@ pub fn spawn(repaint: impl Fn() + Send + 'static) -> io::Result<SeenMaps> {
     })
 }
 
-/// The map of a job; `None` where nobody waits for it any more.
+/// The map of a job; `None` if it is no longer wanted.
 pub fn seen_map(job: &Arc<Job>, is_superseded: impl Fn() -> bool) -> Option<SeenMap> {
     let [columns, rows] = job.settings.image_size;
     let longest = columns.max(rows).max(1);

@@ -30,7 +30,7 @@ const GUIDES: [&str; 8] = [
     "albedo.R", "albedo.G", "albedo.B", "hits", "normal.X", "normal.Y", "normal.Z", "depth",
 ];
 
-/// A film with what it is of.
+/// A film, the document that it shows and the range of samples in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct KeptFilm {
     /// The sums.

@@ -83,7 +83,7 @@ pub fn spawn_thumbnails(
 
 /// The document of a thumbnail.
 fn document(material: &MaterialSettings) -> Document {
-    // Where there is no denoiser nothing is said of it: nobody asked for one.
+    // A missing denoiser is not reported: the user did not ask for one.
     let denoise = if Library::get().is_ok() {
         Denoise::High
     } else {

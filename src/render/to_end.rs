@@ -14,7 +14,7 @@ const STEP: Duration = Duration::from_millis(100);
 pub struct Ended {
     /// How far it came: not to its end where it was stopped.
     pub progress: Progress,
-    /// The picture without noise, where that was asked for and can be had.
+    /// The denoised picture, if it was requested and is available.
     pub denoised: Option<Denoised>,
 }
 
@@ -29,7 +29,7 @@ pub fn submit(session: &mut Session, engine: EngineChoice, document: &Document) 
 }
 
 /// Steps until the document that was submitted is done, falling back as [`submit`] does, and denoises the picture where
-/// that is asked for. `go_on` is told the progress after every step, and stops it by `false`.
+/// that is asked for. `go_on` receives the progress after every step and stops the render by returning `false`.
 ///
 /// # Errors
 /// What the engine says.
@@ -42,7 +42,7 @@ pub fn step_to_end(
 ) -> Result<Ended, SessionError> {
     loop {
         let budget = attendant.budget(&session.progress(), STEP);
-        // What the GPU has is taken while it can be rendered again.
+        // Read back what the GPU has: if that fails, it can still be rendered again.
         let stepped = session.step(budget).and_then(|progress| {
             if progress.is_done {
                 session.film()?;

@@ -92,7 +92,7 @@ impl Turntable {
     }
 }
 
-/// Renders the frames in order, falling back to another engine as [`submit`] does. `go_on` is told the progress after
+/// Renders the frames in order, falling back to another engine as [`submit`] does. `go_on` receives the progress after
 /// every step, and stops the whole by `false`: pictures that were written stay, a video is only written whole.
 ///
 /// # Errors

@@ -9,7 +9,7 @@ use serde_json::{Map, Value as Json};
 use super::{picture, preset, project};
 use crate::document::{Document, MaterialSettings};
 
-/// Bytes above which a file is taken for something else.
+/// Files larger than this many bytes are taken for something else.
 pub(super) const SIZE_MAX: u64 = 16 << 20;
 
 /// What was read from a file, and what was odd about it.
@@ -24,7 +24,7 @@ pub struct Loaded<T> {
 /// Why a material or project file cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// The system does not give it.
+    /// The system can't read it.
     #[error("{}: cannot be read: {source}; check the path and its permissions", path.display())]
     Read {
         /// The file.
@@ -127,6 +127,11 @@ pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
         Ok(_) if bytes.len() as u64 > SIZE_MAX => Err(FileError::TooLarge { path: path.to_owned() }),
         Ok(_) => Ok(bytes),
     }
+}
+
+/// The extension of a file's name in lower case, without its dot; empty where there is none.
+pub fn ending(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
 /// The folder of a file.

@@ -1,6 +1,6 @@
 //! Tables of colours in `.cube` files (Adobe, "Cube LUT Specification" 1.0, and DaVinci Resolve's additions to it).
 //!
-//! The crates there are (`lut_parser` 2.1) refuse tables without a title, which most have none of.
+//! The crate that exists (`lut_parser` 2.1) refuses tables without a title, and most tables have none.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -84,7 +84,7 @@ type Remembered = (PathBuf, Option<SystemTime>, Option<Arc<Lut>>);
 /// The tables that were asked for last, the latest at the end.
 static TABLES: Mutex<Vec<Remembered>> = Mutex::new(Vec::new());
 
-/// The table in a file, read anew where it was saved since. Where it can't be had, none, which the log says once.
+/// The table in a file, read again if the file was saved since. `None`, logged once, if it can't be read.
 pub fn remembered(path: &Path) -> Option<Arc<Lut>> {
     let saved = std::fs::metadata(path).and_then(|file| file.modified()).ok();
     let mut tables = TABLES.lock().unwrap_or_else(PoisonError::into_inner);

@@ -72,7 +72,7 @@ pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, Fil
     })
 }
 
-/// Takes the pictures out that files of before had for the base colours of slots, beside the model.
+/// Removes the base-colour textures of slots that older files kept beside the model.
 fn pictures_of_slots(object: &mut Map<String, Json>) -> Vec<(usize, PathBuf)> {
     let import = object.get_mut("import").and_then(Json::as_object_mut);
     let Some(Json::Array(pictures)) = import.and_then(|import| import.shift_remove("pictures")) else {

@@ -1,4 +1,4 @@
-//! Replacing a file at once: whoever reads it, or whatever fails meanwhile, finds the old or the new contents, never a part.
+//! Atomic replacement of a file: readers, and restarts after a crash, find the old contents or the new, never a part.
 //!
 //! The new contents grow in a hidden file beside it, which its writer keeps locked. What a killed program has left there is
 //! locked by nobody, and [`remove_leftovers`] takes it away.
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use super::FileError;
 
-/// What names of files end with whose contents are not whole yet.
+/// The suffix of files that are still being written.
 const ENDING: &str = ".glossmith-part";
 /// Most files that grow for one name at the same time.
 const ATTEMPTS: u32 = 100;

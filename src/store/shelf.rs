@@ -118,7 +118,7 @@ fn walk(folder: &Path, depth: usize, paths: &mut Vec<PathBuf>) -> Result<(), Str
     }
     folders.sort();
     for folder in folders.iter().filter(|_| depth < DEPTH) {
-        // What can't be looked into is left out; the watched folder itself is told of.
+        // What can't be looked into is left out; a watched folder itself is reported.
         _ = walk(folder, depth + 1, paths);
     }
     Ok(())

@@ -16,11 +16,12 @@ use shiguredo_mp4::boxes::SampleEntry;
 use shiguredo_mp4::mux::{Mp4FileMuxer, Mp4FileMuxerOptions, Sample, estimate_maximum_moov_box_size};
 
 use super::FileError;
+use super::file::ending;
 use super::replace::save_atomically;
 
 /// Frames a second that a video may have.
 pub const FPS: std::ops::RangeInclusive<f64> = 1.0..=120.0;
-/// Bits of a pixel of an MP4 in the mean: gradients of clean pictures stay free of steps.
+/// Mean bits per pixel of an MP4: enough that gradients of clean pictures show no banding.
 const BITS_PER_PIXEL: f64 = 0.25;
 /// Fewest rows and columns that the encoder takes.
 const SIDE_MIN: u32 = 16;
@@ -36,7 +37,7 @@ const OPAQUE_FROM: u8 = 128;
 /// Why a video can't be written.
 #[derive(Debug, thiserror::Error)]
 pub enum VideoError {
-    /// The name's ending says no format that is written.
+    /// The extension is not that of a format that can be written.
     #[error("{}: videos are written as .mp4 or .gif; give the file one of these endings", path.display())]
     Format {
         /// The file.
@@ -74,8 +75,7 @@ impl VideoFormat {
     /// # Errors
     /// [`VideoError::Format`] for another ending: ask before hours of rendering.
     pub fn of(path: &Path) -> Result<Self, VideoError> {
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        match ending.to_ascii_lowercase().as_str() {
+        match ending(path).as_str() {
             "mp4" => Ok(Self::Mp4),
             "gif" => Ok(Self::Gif),
             _ => Err(VideoError::Format { path: path.to_owned() }),
@@ -154,7 +154,7 @@ struct Mp4 {
     fps: f64,
     /// What a player must know before the first frame.
     entry: Option<SampleEntry>,
-    /// Each frame's units with their lengths, and whether it stands for itself.
+    /// Each frame's units with their lengths, and whether it is a key frame.
     frames: Vec<(Vec<u8>, bool)>,
 }
 

@@ -7,6 +7,8 @@ use glossmith::job::film::Film;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
 
+use super::renders::render;
+
 /// A shader ball in front of its light: much is reflected twice.
 fn scene(firefly_clamp: Option<f32>) -> Document {
     let mut document = Document {
@@ -25,8 +27,7 @@ fn scene(firefly_clamp: Option<f32>) -> Document {
     document
 }
 
-fn film(engine: EngineChoice, document: &Document) -> (Film, Vec<&'static str>) {
-    let mut session = Session::open(engine).unwrap();
+fn film(session: &mut Session, document: &Document) -> (Film, Vec<&'static str>) {
     session.submit(document).unwrap();
     while !session.step(Duration::from_secs(1)).unwrap().is_done {}
     let effects = session.job().unwrap().plan.effects();
@@ -44,10 +45,11 @@ fn energy(film: &Film) -> f64 {
 fn what_is_taken_is_told() {
     let mut taken = Vec::new();
     for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
-        let (free, effects) = film(engine, &scene(None));
+        let mut session = Session::open(engine).unwrap();
+        let (free, effects) = film(&mut session, &scene(None));
         assert_eq!(free.clamped(), 0.0);
         assert!(!effects.contains(&"firefly-clamp"));
-        let (limited, effects) = film(engine, &scene(Some(0.5)));
+        let (limited, effects) = film(&mut session, &scene(Some(0.5)));
         assert!(effects.contains(&"firefly-clamp"));
         let missing = energy(&free) - energy(&limited);
         assert!(
@@ -62,7 +64,7 @@ fn what_is_taken_is_told() {
         );
         assert!((limited.clamped_share() - missing / energy(&free)).abs() < 1e-4);
         // A limit that nothing reaches takes nothing, to the bit on the processor.
-        let (loose, _) = film(engine, &scene(Some(1e9)));
+        let (loose, _) = film(&mut session, &scene(Some(1e9)));
         assert_eq!(loose.clamped(), 0.0, "{engine:?}");
         if engine == EngineChoice::Cpu {
             assert!(loose.colors().eq(free.colors()));
@@ -79,7 +81,7 @@ fn direct_light_is_left_alone() {
         let direct = |firefly_clamp| {
             let mut document = scene(firefly_clamp);
             document.render.bounces = 1;
-            film(engine, &document).0
+            render(engine, &document)
         };
         assert_eq!(direct(Some(1e-3)).clamped(), 0.0, "{engine:?}");
         assert!(

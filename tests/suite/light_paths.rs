@@ -60,7 +60,7 @@ fn direct_and_indirect_light_are_all_light() {
                 });
                 off += usize::from(differs);
             }
-            // On the GPU another kernel may round a path another way.
+            // The GPU sums in single precision.
             let allowed = if engine == EngineChoice::Cpu {
                 0
             } else {

@@ -21,7 +21,7 @@ use tempfile::TempDir;
 use super::cli_support::write_hdr;
 use super::monkey_deeds::{Deed, Gesture, Surroundings};
 use super::random_documents::random_document;
-use super::support::Random;
+use super::support::{Random, is_thorough};
 use super::ui::{Editor, assert_same_controls, controls};
 use super::ui_panels::write_textured_square;
 
@@ -323,7 +323,7 @@ fn play_all(remainder: u64) {
         }
         return;
     }
-    let is_thorough = std::env::var_os("GLOSSMITH_THOROUGH").is_some();
+    let is_thorough = is_thorough();
     let begun = Instant::now();
     let mut seeds = (0..).map(|turn| 2 * turn + remainder);
     let is_enough = |seed: u64| seed >= EPISODES && !(is_thorough && begun.elapsed() < THOROUGH);

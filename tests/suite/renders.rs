@@ -1,14 +1,15 @@
 //! Pictures: the engines against each other, against analytic values, and the strategies against each other.
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::time::Duration;
 
 use glossmith::analysis::error::{Estimates, z_test};
+use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{Background, Document, MaterialSettings, PixelFilter, Strategy, assign};
 use glossmith::job::Job;
 use glossmith::job::film::Film;
 use glossmith::optics::random::Sequence;
-use glossmith::render::{EngineChoice, Session};
+use glossmith::render::{Assets, EngineChoice, Session};
 use glossmith::scene::ModelSource;
 use glossmith::scene::environment::{self, Environment, EnvironmentSource};
 
@@ -32,9 +33,41 @@ pub fn document(model: ModelSource, light: EnvironmentSource, assignments: &[&st
     document
 }
 
-/// Renders to the end.
+/// Sessions that no test is using at the moment. They keep their kernels, and share the built-in models and environments.
+static IDLE: Mutex<Vec<(EngineChoice, Session)>> = Mutex::new(Vec::new());
+static ASSETS: LazyLock<Assets> = LazyLock::new(Assets::default);
+
+/// Renders to the end. The GPU uses the general kernel unless the document switches effects: compiling a kernel for each
+/// document would take longer than rendering it, and `plan_kernels.rs` compares specialised kernels with the general one.
 pub fn render(choice: EngineChoice, document: &Document) -> Film {
-    let mut session = Session::open(choice).unwrap();
+    let mut document = document.clone();
+    if choice == EngineChoice::Gpu && document.render.effects == EffectSwitches::default() {
+        document.render.effects = EffectSwitches::all_on();
+    }
+    // Files may be written again under the same name.
+    if !is_built_in(&document) {
+        return render_with(&mut Session::open(choice).unwrap(), &document);
+    }
+    let mut idle = IDLE.lock().unwrap_or_else(PoisonError::into_inner);
+    let place = idle.iter().position(|(of, _)| *of == choice);
+    let kept = place.map(|place| idle.swap_remove(place).1);
+    drop(idle);
+    let mut session = kept.unwrap_or_else(|| Session::open_with(choice, ASSETS.clone()).unwrap());
+    session.forget();
+    let film = render_with(&mut session, &document);
+    IDLE.lock()
+        .unwrap_or_else(PoisonError::into_inner)
+        .push((choice, session));
+    film
+}
+
+fn is_built_in(document: &Document) -> bool {
+    !matches!(document.model, ModelSource::File(_))
+        && !matches!(document.lighting.environment, EnvironmentSource::File(_))
+        && document.pictures().next().is_none()
+}
+
+fn render_with(session: &mut Session, document: &Document) -> Film {
     session.submit(document).unwrap();
     while !session.step(Duration::from_secs(1)).unwrap().is_done {}
     session.film().unwrap().clone()

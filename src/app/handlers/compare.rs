@@ -131,7 +131,7 @@ impl App {
         }
     }
 
-    /// Renders B anew, as A.
+    /// Restarts B's render, as A's.
     pub(in crate::app) fn restart_rival(&self) {
         if let Some(renderer) = &self.shared.compare.renderer {
             renderer.worker.restart();

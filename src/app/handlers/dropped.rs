@@ -8,6 +8,7 @@ use crate::render::worker::Level;
 use crate::scene::environment::{self, EnvironmentSource};
 use crate::scene::texture::set;
 use crate::scene::{Model, ModelOptions, ModelSource, holds_model, is_model};
+use crate::store::file::ending;
 
 /// Endings of pictures for screens: environments where they are opened, textures where they are dropped.
 const PICTURES: [&str; 8] = ["png", "jpg", "jpeg", "tif", "tiff", "webp", "bmp", "tga"];
@@ -33,10 +34,6 @@ pub(in crate::app) fn handed_over(ctx: &egui::Context, takes_text: bool) -> Vec<
         let files = (!dropped.is_empty()).then_some(Action::Drop(dropped));
         files.into_iter().chain(pasted.map(Action::Paste)).collect()
     })
-}
-
-fn ending(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
 fn has_ending(path: &Path, endings: &[&str]) -> bool {

@@ -17,7 +17,7 @@ use crate::scene::environment::{ENDINGS, EnvironmentSource};
 use crate::scene::texture::OwnTexture;
 use crate::scene::{ModelOptions, ModelSource, holds_model, is_model};
 use crate::store::exchange::{self, ExchangeError, ReadOptions};
-use crate::store::file::Opened;
+use crate::store::file::{Opened, ending};
 use crate::store::{FileError, Loaded, lut, preset, save_document, save_material};
 
 /// What the names of projects end with before .json: by it desktops know them from other files.
@@ -82,12 +82,7 @@ enum FileKind {
 }
 
 fn kind_of(path: &Path) -> FileKind {
-    let ending = path
-        .extension()
-        .and_then(|ending| ending.to_str())
-        .unwrap_or_default()
-        .to_ascii_lowercase();
-    match ending.as_str() {
+    match ending(path).as_str() {
         _ if is_model(path) => FileKind::Model,
         _ if path.is_dir() && holds_model(path) => FileKind::Model,
         _ if !textures_in(path).is_empty() => FileKind::Textures,
@@ -325,7 +320,7 @@ impl App {
 
     /// Shows the picture through a table of colours.
     fn use_lut(&mut self, path: PathBuf) {
-        // Tables are small: read at once, so that what is wrong is told here.
+        // Tables are small: this one is read at once, so that errors are reported here.
         match lut::load(&path) {
             Ok(_) => {
                 let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -362,16 +357,12 @@ impl App {
 
 /// Whether a file of this name is a picture.
 fn is_picture(path: &Path) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    ["png", "exr", "hdr"].contains(&ending.to_ascii_lowercase().as_str())
+    ["png", "exr", "hdr"].contains(&ending(path).as_str())
 }
 
 /// The path with the ending of what is written as JSON, after any other that it has: that would say something else.
 fn as_json(path: PathBuf) -> PathBuf {
-    if path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("json"))
-    {
+    if ending(&path) == "json" {
         return path;
     }
     let mut name = path.into_os_string();

@@ -24,8 +24,8 @@ impl App {
         }
     }
 
-    /// Hands the picture over where one is wanted. While something is changed there are only small ones, which nobody
-    /// wants, unless nothing better comes because rendering was stopped.
+    /// Delivers the picture if one was requested. While something is being changed there are only small previews, which
+    /// do not count, unless rendering was stopped and nothing better will come.
     pub(in crate::app) fn hand_over_pictures(&mut self, ctx: &egui::Context) {
         if self.files.wanted_pictures.is_empty() {
             return;

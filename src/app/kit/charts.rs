@@ -11,7 +11,7 @@ const LABEL_GAP: f64 = 0.05;
 /// Half of a character's width as a share of a small chart's.
 const HALF_CHARACTER: f64 = 0.0135;
 /// Least distances between two labels of an axis, points. What is not drawn in full is not drawn at all: egui's own labels
-/// fade where they come near to each other, until nobody can read them.
+/// fade as they come near each other, until they can't be read.
 const LABEL_SPACING: [f32; 2] = [36.0, 19.0];
 /// The margin around what is drawn, as shares of it: the first and the last label stay within the chart.
 const MARGIN: [f32; 2] = [0.07, 0.07];
@@ -65,7 +65,7 @@ pub(in crate::app) fn short(value: f64) -> String {
     }
 }
 
-/// Whether a label with as many characters along its axis stays within the chart, as beside it there stands something else.
+/// Whether a label of this many characters along its axis stays within the chart: other things are drawn beside it.
 fn is_within(value: f64, range: &RangeInclusive<f64>, characters: usize) -> bool {
     let gap = LABEL_GAP.max(HALF_CHARACTER * characters as f64) * (range.end() - range.start());
     (range.start() + gap..=range.end() - gap).contains(&value)

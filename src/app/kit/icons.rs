@@ -1,4 +1,4 @@
-//! Small pictures on buttons, drawn: the fonts have none that look alike everywhere.
+//! Icons on buttons, drawn as shapes: no glyph of the fonts looks the same everywhere.
 
 use egui::{Painter, Rect, Response, Sense, Shape, Stroke, Ui, Vec2, vec2};
 

@@ -64,7 +64,7 @@ struct Wish {
     frame: u64,
 }
 
-/// How many frames a wish stands: a panel that was brought to the front is there with the next.
+/// For how many frames a request stands: a panel that was brought to the front appears in the next one.
 const WISH_FRAMES: u64 = 4;
 
 fn wish_id() -> egui::Id {
@@ -231,7 +231,7 @@ pub(in crate::app) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N
     response
 }
 
-/// A number with at most so many decimals, zeros at its end left out as far as two.
+/// A number with at most this many decimals; trailing zeros beyond the second are dropped.
 fn trimmed(value: f64, decimals: usize) -> String {
     let mut text = format!("{value:.decimals$}");
     let least = text.len().saturating_sub(decimals.saturating_sub(2));
@@ -273,7 +273,7 @@ const PICKER_ROUNDING: f32 = 1e-5;
 pub(in crate::app) fn color(ui: &mut Ui, name: &str, linear: &mut [f32; 3]) -> Response {
     let spacing = ui.spacing().item_spacing.x;
     let swatch_width = (ui.available_width() - HEX_WIDTH - spacing).max(30.0);
-    // The picker goes over hue and saturation, which rounds, also where nobody touches it: it calls that a change.
+    // The picker goes over hue and saturation, which rounds, even when it is not touched, and reports that as a change.
     let mut picked = *linear;
     let swatch = ui
         .scope(|ui| {
@@ -475,7 +475,7 @@ fn show_focus(ui: &Ui, response: &Response) {
     }
 }
 
-/// Content that comes, goes and changes by itself, as what other threads answer does, above controls that stay. egui
+/// Content that appears and disappears by itself, such as answers of other threads, above controls that stay. egui
 /// tells controls apart by their order: without this those below would be others once it came, and a click, a drag or
 /// the keys that one of them had would be lost.
 pub(in crate::app) fn comes_and_goes<R>(ui: &mut Ui, content: impl FnOnce(&mut Ui) -> R) -> R {

@@ -1,21 +1,5 @@
-//! The panels, one a file. A panel keeps what it remembers to itself; it sees the desk and no other panel.
-
-mod camera;
-mod check;
-mod convergence;
-mod curve;
-mod effects;
-mod inspector;
-mod lighting;
-mod lobe;
-mod log;
-mod material;
-mod presets;
-mod queue;
-mod race;
-mod samples;
-mod scene;
-mod snapshots;
+//! The panels, one a file, listed in [`crate::app::pane`]. A panel keeps its state to itself: it sees the desk and no
+//! other panel.
 
 use egui::Ui;
 
@@ -36,10 +20,12 @@ pub(super) trait Panel {
 }
 
 macro_rules! panels {
-    ($($(#[$doc:meta])* $name:ident, $title:literal, $home:ident, $panel:ty;)*) => {
+    ($($(#[$doc:meta])* $name:ident, $title:literal, $home:ident, $module:ident::$panel:ident;)*) => {
+        $(mod $module;)*
+
         impl Default for Panels {
             fn default() -> Self {
-                Self(vec![$((Pane::$name, Box::<$panel>::default()),)*])
+                Self(vec![$((Pane::$name, Box::<$module::$panel>::default()),)*])
             }
         }
     };

@@ -28,7 +28,7 @@ const THUMBNAIL: f32 = 112.0;
 const REACH: f32 = 14.0;
 /// Kinds that are chosen at first.
 const CHOSEN: [&str; 3] = ["strategy", "bounces", "fresnel"];
-/// References are rendered up to so many times as long as each one races.
+/// References are rendered for up to this many times each technique's racing time.
 const REFERENCE_TIMES: f64 = 4.0;
 
 /// Techniques against each other on this view.

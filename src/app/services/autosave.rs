@@ -10,7 +10,7 @@ use crate::document::Document;
 use crate::store::FileError;
 use crate::store::recovery::{self, Recovered, Slot};
 
-/// At least so long between two copies of a document that goes on changing.
+/// Shortest time between two copies of a document that keeps changing.
 pub(in crate::app) const INTERVAL: Duration = Duration::from_secs(5);
 /// How long the window waits for the thread to end when it is closed.
 const FAREWELL: Duration = Duration::from_secs(2);
@@ -186,7 +186,7 @@ fn work(folder: &Path, witness: &Witness, ordered: &Receiver<Order>, report: &dy
     }
 }
 
-/// Does as it is told until the window is gone.
+/// Carries out orders until the window is gone.
 fn obey(slot: Slot, mut leftovers: Vec<Option<Slot>>, ordered: &Receiver<Order>, report: &dyn Fn(Report)) {
     let mut is_kept = true;
     let mut is_empty = true;

@@ -108,7 +108,7 @@ pub(in crate::app) struct Compare {
     asked_match: Option<MatchQuery>,
     differing: Option<Background<DifferenceQuery, Arc<Compared>>>,
     asked_difference: Option<([u64; 3], Option<f32>)>,
-    /// Counts B's renderers: serials begin anew with each.
+    /// Counts B's renderers: serial numbers restart with each.
     pub(in crate::app) generation: u64,
 }
 
@@ -228,7 +228,7 @@ impl Compare {
         self.asked_match = Some(query);
     }
 
-    /// Asks how the pictures differ, where they are new and alike in size.
+    /// Requests the difference of the pictures if they are new and of the same size.
     pub(in crate::app) fn take_difference(&mut self, ctx: &egui::Context, a: Option<&Arc<Picture>>) {
         let (Some(a), Some(b)) = (a, self.picture()) else {
             return;

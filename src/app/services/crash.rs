@@ -15,7 +15,7 @@ use crate::document::Document;
 use crate::panics;
 use crate::store::recovery;
 
-/// Most that a report tells of what was done.
+/// Most actions that a report lists.
 const DEEDS: usize = 40;
 /// Longest line about one of them, characters.
 const DEED_LENGTH: usize = 160;
@@ -23,7 +23,7 @@ const DEED_LENGTH: usize = 160;
 /// The witnesses of all windows.
 static WITNESSES: Mutex<Vec<Weak<Mutex<Known>>>> = Mutex::new(Vec::new());
 
-/// What a window tells in case that something panics.
+/// What a window records in case something panics.
 #[derive(Clone)]
 pub(in crate::app) struct Witness(Arc<Mutex<Known>>);
 
@@ -88,7 +88,7 @@ impl Witness {
         }
     }
 
-    /// Takes note of something that was done.
+    /// Records an action.
     pub(in crate::app) fn note(&self, deed: impl Into<String>) {
         let deed: String = deed.into().chars().take(DEED_LENGTH).collect();
         let deeds = &mut self.known().deeds;
@@ -125,7 +125,7 @@ fn testify(known: &Mutex<Known>, panic: &std::panic::PanicHookInfo<'_>) {
     let mut known = match known.try_lock() {
         Ok(known) => known,
         Err(TryLockError::Poisoned(known)) => known.into_inner(),
-        // The very thread that holds it panics: there is nothing to be had.
+        // The panicking thread itself holds the lock: nothing can be read.
         Err(TryLockError::WouldBlock) => return,
     };
     let Some(copy) = known.copy.clone() else { return };

@@ -167,12 +167,12 @@ impl Disk {
     }
 }
 
-/// What came of a job, also where it panicked: the thread goes on, and nobody waits for ever.
+/// The outcome of a job, panics included: the thread goes on, so that no caller waits for ever.
 fn outcome(task: Task, job: impl FnOnce() -> Done) -> Done {
     caught(job).unwrap_or_else(|why| Done::Broke(task, why))
 }
 
-/// How a result is said.
+/// A result as a message.
 pub(in crate::app) fn words(result: Result<String, String>) -> (Level, String) {
     match result {
         Ok(text) => (Level::Info, text),

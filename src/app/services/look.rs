@@ -20,10 +20,10 @@ pub(in crate::app) struct SeenSurface {
     pub(in crate::app) mirrored: glam::DVec3,
 }
 
-/// The pixel that the inspector tells of.
+/// The pixel that the inspector describes.
 #[derive(Clone, Debug, Default)]
 pub(in crate::app) struct Look {
-    /// The inspector was shown in this frame, and in the one before: pixels need not be told of otherwise.
+    /// Whether the inspector was shown in this frame, and in the one before: only then are pixels reported.
     pub(in crate::app) is_shown: bool,
     pub(in crate::app) was_shown: bool,
     /// The pixel under the pointer, or the one that it was at last, or that it is pinned to.
@@ -40,7 +40,7 @@ impl Look {
         self.was_shown = std::mem::take(&mut self.is_shown);
     }
 
-    /// Stays at a place until it is let go.
+    /// Pins the pixel until it is released.
     pub(in crate::app) fn pin(&mut self, at: Place) {
         (self.at, self.is_pinned) = (Some(at), true);
     }

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use crate::render::background::Background;
 use crate::scene::environment::EnvironmentSource;
+use crate::store::file::ending;
 
 /// Most that are remembered.
 const COUNT: usize = 12;
@@ -40,10 +41,7 @@ impl Recent {
 
     /// Those that are environments.
     pub(in crate::app) fn environments(&self) -> impl Iterator<Item = EnvironmentSource> {
-        let is_map = |path: &&PathBuf| {
-            let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
-            ending.is_some_and(|ending| ending == "hdr" || ending == "exr")
-        };
+        let is_map = |path: &&PathBuf| ["hdr", "exr"].contains(&ending(path).as_str());
         self.paths.iter().filter(is_map).cloned().map(EnvironmentSource::File)
     }
 

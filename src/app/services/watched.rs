@@ -82,7 +82,7 @@ impl Watched {
         Ok(Self(files))
     }
 
-    /// These are looked at from now on; those that were already are not read anew.
+    /// Watches these files from now on; those already watched keep their state.
     pub(in crate::app) fn watch(&self, paths: &[PathBuf]) {
         let mut files = lock(&self.0);
         let is_same = files.len() == paths.len() && files.iter().zip(paths).all(|(file, path)| file.path == *path);

@@ -12,7 +12,7 @@ use crate::scene::MODEL_ENDINGS;
 use crate::scene::environment::ENDINGS;
 use crate::scene::texture::{TextureTarget, set};
 
-/// A dialog that is back sooner with nothing was never there: nobody cancels that fast.
+/// A dialog that returns empty-handed sooner than this never opened: no user cancels that fast.
 const NO_DIALOG: Duration = Duration::from_millis(400);
 /// Most completions that are listed.
 const COMPLETIONS: usize = 12;

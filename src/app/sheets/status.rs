@@ -9,7 +9,7 @@ use crate::app::kit::words::{percent, short_number};
 use crate::render::Progress;
 use crate::render::worker::{Activity, Snapshot};
 
-/// How often what is being loaded is told anew.
+/// How often the loading message is refreshed.
 const LOADING_REPAINT: Duration = Duration::from_millis(200);
 /// How long a frame counts as recent.
 const RECENT: Duration = Duration::from_secs(10);

@@ -1,11 +1,11 @@
-//! What a new user is told, one thing after the other, until it is closed.
+//! Hints for new users, shown one after the other until they are closed.
 
 use egui::{Rect, Ui, pos2, vec2};
 
 use super::LOADING_MARGIN;
 use crate::app::desk::Desk;
 
-/// What is told, in order.
+/// The hints, in order.
 const HINTS: [&str; 4] = [
     "Drag to turn the camera, the wheel to come closer; shift and drag turns the light.",
     "A click on a preset gives it to the model; dragged onto a part of it, to that part.",

@@ -1,4 +1,4 @@
-//! The pixel that the inspector tells of, in the viewport.
+//! The pixel that the inspector describes, in the viewport.
 
 use egui::{Color32, Rect, Response, Stroke, StrokeKind, Ui, vec2};
 

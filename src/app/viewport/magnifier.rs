@@ -2,7 +2,7 @@
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
-/// Points that a pixel of the picture is large at most.
+/// Largest size of one of the picture's pixels, points.
 const PIXEL_MAX: f32 = 48.0;
 
 /// How much larger than it fits the picture is shown, and which part of it.
@@ -52,7 +52,7 @@ impl Magnifier {
         Rect::from_min_size(min, size)
     }
 
-    /// Shows it so many times larger, so that what is at a place stays there. `width_px` is the picture's width.
+    /// Magnifies the picture by a factor around a fixed place. `width_px` is the picture's width.
     pub(super) fn zoom(&mut self, by: f32, at: Pos2, area: Rect, fitted: Rect, width_px: u32) {
         let before = self.place(area, fitted);
         let share = (at - before.min) / before.size();
@@ -61,7 +61,7 @@ impl Magnifier {
         self.center = share + (area.center() - at) / (self.factor * fitted.size());
     }
 
-    /// Moves it by so many points.
+    /// Moves it by a distance in points.
     pub(super) fn pan(&mut self, by: Vec2, fitted: Rect) {
         self.center -= by / (self.factor * fitted.size()).max(vec2(1.0, 1.0));
     }

@@ -143,7 +143,7 @@ impl Viewport {
         self.region.arm();
     }
 
-    /// Shows the picture so many times larger from the next frame on; all of it where that is 0.
+    /// Magnifies the picture by a factor from the next frame on; 0 shows all of it.
     pub(super) fn magnify(&mut self, by: f32) {
         self.magnifies = Some(by);
     }

@@ -44,7 +44,7 @@ impl Status {
     }
 }
 
-/// What is told of a picture in a line of JSON, and kept beside it.
+/// A picture's record: printed as a line of JSON, and kept beside it.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Row {
     /// Its number from 1.
@@ -156,7 +156,7 @@ impl<'a> Maker<'a> {
         let mut inputs = Inputs::new();
         inputs.document(document, &model, &self.file.path)?;
         inputs.text(&format!("{:?}", (picture.frame, self.file.frames, self.file.turn)));
-        // Which files of a whole picture are there, is seen by their names.
+        // Which files of a whole picture exist is seen from their names.
         inputs.text(&format!("{part:?}"));
         Ok(inputs.hash())
     }

@@ -87,7 +87,7 @@ enum Part {
     Whole,
     /// From a number up to another.
     Numbers([u32; 2]),
-    /// The part of this number, of so many.
+    /// A part of each picture's samples: its number, and how many parts there are.
     Slice([u32; 2]),
 }
 
@@ -103,7 +103,7 @@ impl Part {
         })
     }
 
-    /// The first number and the one after the last of a picture of so many samples.
+    /// The first sample of a part and the one after its last, of a picture with this many samples.
     fn range(self, samples: u32) -> Option<[u32; 2]> {
         match self {
             Self::Whole => None,
@@ -160,7 +160,7 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
         tell(&row, &mut lines, all.len())?;
         failed += usize::from(row.status == Status::Failed);
     }
-    // Of many that render at once, none has all pictures.
+    // Where several programs render at once, none of them has all pictures.
     if part == Part::Whole && (chosen.len() == all.len() || arguments.merge) {
         sheet::write(&file, &all)?;
     }

@@ -30,9 +30,9 @@ const ROUGHNESS: [f32; 12] = [
     1.0,
 ];
 const VIEW_ANGLES_DEG: [f32; 5] = [0.0, 45.0, 80.0, 89.99, 90.0];
-/// Longest deviation of a direction's length from 1.
+/// Largest deviation of a direction's length from 1.
 const LENGTH_ERROR: f32 = 1e-5;
-/// A number that is nobody's end.
+/// A number in the interior of every range.
 const ANY_XI: [f32; 3] = [0.37, 0.61, 0.53];
 
 pub(super) const CASES: &[HardCase] = &[

@@ -99,7 +99,7 @@ pub struct HardOptions {
     pub only: String,
 }
 
-/// Runs the catalogue; `progress` is told each case's name before it starts.
+/// Runs the catalogue; `progress` receives each case's name before it starts.
 ///
 /// # Errors
 /// Where the engine can't be opened or fails, or a file of a case can't be written.

@@ -23,13 +23,13 @@ use crate::job::effect::{Decision, EffectId};
 use crate::scene::ModelError;
 use crate::scene::environment::EnvironmentError;
 
-/// What a session can't do.
+/// Why a session refuses a document or fails.
 #[derive(Debug, thiserror::Error)]
 pub enum SessionError {
-    /// The model can't be had.
+    /// The model can't be loaded.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The environment can't be had.
+    /// The environment can't be loaded.
     #[error(transparent)]
     Environment(#[from] EnvironmentError),
     /// The GPU can't be used.
@@ -41,7 +41,7 @@ pub enum SessionError {
 }
 
 impl SessionError {
-    /// Whether nothing is wrong: somebody called it off.
+    /// Whether it was cancelled rather than failed.
     pub fn is_cancelled(&self) -> bool {
         matches!(
             self,
@@ -69,7 +69,7 @@ pub struct Progress {
     pub samples_per_pixel: u32,
     /// Samples a pixel to reach.
     pub samples_wanted: u32,
-    /// Samples a pixel in the mean over the picture: fewer where tiles rest.
+    /// Samples per pixel, averaged over the picture: fewer where tiles have been left at rest.
     pub mean_samples: f64,
     /// Pixel samples a second by the engine's own time, over the whole render.
     pub samples_per_second: f64,
@@ -104,7 +104,8 @@ impl Progress {
         pair.is_some_and(|(error, wanted)| error <= wanted)
     }
 
-    /// The relative error of which so much is to be left as was asked for.
+    /// The relative error that is compared with the target: the samples' or, where it counts and is lower, the denoised
+    /// picture's.
     fn error_aimed_at(&self) -> Option<f64> {
         let noisy = self.noise.map(|noise| noise.relative);
         let denoised = self.denoised.filter(|_| self.aims_at_denoised).map(|error| error.value);
@@ -140,7 +141,7 @@ pub struct Session {
     /// Engine time of the stand-in, before the engine took over, seconds; and what it rendered, pixel samples.
     stand_in_seconds: f64,
     stand_in_samples: u64,
-    /// Nobody said which engine renders.
+    /// The engine was chosen automatically.
     is_automatic: bool,
     /// Where kernels are compiled beside the picture; `None` where the session waits for them.
     workshop: Option<Workshop>,
@@ -357,7 +358,7 @@ impl Session {
         Ok(memory::check(job, is_software_gpu, allowed)?)
     }
 
-    /// Has the engine begin anew; after an error it goes on with what it had.
+    /// Restarts the engine with a job; after an error it goes on with the one that it had.
     fn start(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         match &mut self.workshop {
             Some(workshop) => workshop.begin(&job, &mut self.engine)?,

@@ -7,7 +7,7 @@ use crate::job::tiles::Schedule;
 use crate::render::engine::{Engine, cpu};
 use crate::render::workshop::Workshop;
 
-/// How often a device that was lost is opened anew: one that is lost once more would go on like that.
+/// How often a lost device is reopened: one that is lost yet again is taken to be broken.
 const REPLACEMENTS: u32 = 3;
 
 impl Session {

@@ -152,7 +152,7 @@ struct Rival {
     document: Document,
 }
 
-/// Measures a ledger. `watch` is told how far it has come, and may stop it.
+/// Measures a ledger. `watch` receives the progress and may stop it.
 ///
 /// # Errors
 /// What can't be rendered; [`StudyError::Stopped`].

@@ -34,7 +34,7 @@ pub struct RaceOptions {
     pub techniques: Vec<Technique>,
     /// Engine time that each has, seconds.
     pub seconds: f64,
-    /// The noise to which times are told: 0.02 is 2 %.
+    /// The noise at which times are compared: 0.02 is 2 %.
     pub noise: f64,
     /// How long one renders before it is the next one's turn.
     pub slice: Duration,
@@ -70,7 +70,7 @@ pub struct Race {
     pub height: u32,
     /// Engine time that each had, seconds.
     pub seconds: f64,
-    /// The noise to which times are told.
+    /// The noise at which times are compared.
     pub noise: f64,
     /// The noise of the pictures of equal error: the largest after equal time.
     pub equal_error: f64,
@@ -89,7 +89,7 @@ pub struct Runner {
     pub seconds: f64,
     /// Samples a pixel after it, in the mean.
     pub samples_per_pixel: f64,
-    /// The relative error that it told of itself, without any reference.
+    /// Its own estimate of the relative error, made without a reference.
     pub told_noise: f64,
     /// Its relative error against its own reference.
     pub error: Distance,
@@ -169,7 +169,7 @@ impl Lane {
     }
 }
 
-/// Runs a race. `watch` is told how far it has come, and may stop it.
+/// Runs a race. `watch` receives the progress and may stop it.
 ///
 /// # Errors
 /// What can't be rendered; [`StudyError::Stopped`]; [`StudyError::Black`].
@@ -317,7 +317,7 @@ fn references_of(
     Ok(Exact { best, own })
 }
 
-/// Lets all of them render by turns until each has had its time.
+/// Lets all of them take turns rendering until each has used its time.
 fn run(lanes: &mut [Lane], options: &RaceOptions, steps: &mut Steps<'_, '_>) -> Result<(), StudyError> {
     for lane in lanes.iter_mut() {
         steps.tell(format!("Preparing: {}", lane.technique.label()), 0.0)?;

@@ -132,7 +132,7 @@ fn shapes() -> Vec<(Lobe, Curve, String)> {
     reflecting.flat_map(of_lobe).collect()
 }
 
-/// Measures. `watch` is told how far it has come, and may stop it.
+/// Measures. `watch` receives the progress and may stop it.
 ///
 /// # Errors
 /// A GPU that fails; [`StudyError::Stopped`].

@@ -90,7 +90,7 @@ pub struct ScalingReport {
 }
 
 /// Measures a document with one thing of another size at a time. The model that grows is a bumpy sphere in the
-/// document's material. `watch` is told how far it has come, and may stop it.
+/// document's material. `watch` receives the progress and may stop it.
 ///
 /// # Errors
 /// What can't be rendered; [`StudyError::Stopped`].

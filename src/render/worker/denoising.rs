@@ -23,9 +23,9 @@ struct Request {
     how: Denoise,
     stage: u64,
     samples_per_pixel: u32,
-    /// Its time does not count.
+    /// Its time does not count against the share.
     is_early: bool,
-    /// Becomes true when it is of no interest any more.
+    /// Becomes true once the picture is no longer wanted.
     stops: Arc<AtomicBool>,
 }
 
@@ -51,7 +51,7 @@ struct Desk {
 /// Denoises beside the worker, which asks for pictures and collects them.
 pub(super) struct Denoising {
     desk: Arc<(Mutex<Desk>, Condvar)>,
-    /// Counts what has been begun: what was asked for before is of no interest any more.
+    /// Counts the pictures begun: requests for earlier ones are no longer wanted.
     stage: u64,
     /// Samples of the picture that was asked for last, of those that are not back yet.
     pending_samples: Option<u32>,

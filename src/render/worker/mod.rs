@@ -45,13 +45,13 @@ pub struct Worker {
     thread: Option<JoinHandle<()>>,
 }
 
-/// How a document is meant.
+/// Whether more edits are about to follow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pace {
     /// More changes follow at once, as while something is dragged: rendered at a resolution that keeps up, and at the
     /// full one once nothing has come for 150 ms.
     Moving,
-    /// This is it for now.
+    /// No further change is expected for now.
     Still,
 }
 
@@ -112,7 +112,7 @@ pub struct Picture {
     pub samples_per_pixel: u32,
     /// What `rgba` is a map of, with its colours' meaning where they stand for numbers; `None` for the picture itself.
     pub map: Option<(Shown, Option<Scale>)>,
-    /// What is known of each pixel, where somebody looks closer.
+    /// Per-pixel quantities, while the inspector is open.
     pub facts: Option<Arc<Facts>>,
     /// What it shows, with the size at the full resolution.
     pub document: Arc<Document>,
@@ -202,12 +202,12 @@ pub enum Event {
     LayersMade(PathBuf, Box<Layers>),
 }
 
-/// What befalls the GPU's device.
+/// Faults of the GPU's device that tests inject.
 #[derive(Clone, Copy, Debug)]
 enum Mishap {
-    /// It is lost at a moment, and so many times in all.
+    /// It is lost at this moment, this many times in all.
     Lost(Moment, u32),
-    /// Buffers above so many bytes are refused.
+    /// Buffers larger than this many bytes are refused.
     Limited(u64),
 }
 
@@ -278,7 +278,7 @@ struct OrderBook {
 }
 
 impl Shared {
-    /// Has the thread look at what there is to do. It holds the lock while it decides to wait, so that no call is lost.
+    /// Wakes the thread. It holds the lock while it decides to wait, so that no wake-up is lost.
     fn wake(&self) {
         let _orders = lock(&self.orders);
         self.ordered.notify_one();
@@ -327,7 +327,7 @@ impl Worker {
         })
     }
 
-    /// Hands in a document to render instead of the last one; returns its revision, which pictures of it bear.
+    /// Submits a document to render instead of the last one; returns its revision, which its pictures carry.
     pub fn submit(&self, document: &Document, pace: Pace) -> u64 {
         let mut book = lock(&self.shared.orders);
         book.last_revision += 1;
@@ -373,7 +373,7 @@ impl Worker {
         self.order(|orders| orders.reloads += 1);
     }
 
-    /// Renders the picture anew.
+    /// Renders the picture from the start.
     pub fn restart(&self) {
         self.order(|orders| orders.restart = true);
     }
@@ -433,7 +433,7 @@ impl Worker {
         events
     }
 
-    /// Whether a model or an environment that was asked for is still to come, or the news that it could not be opened.
+    /// Whether a requested model or environment is still pending.
     pub fn is_opening(&self) -> bool {
         self.opening.load(Relaxed) > 0
     }

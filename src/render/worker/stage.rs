@@ -19,7 +19,7 @@ const FIRST_GUESS: f64 = 5e5;
 /// The share of its speed that an engine is taken to keep in a kernel that it has not been measured with. Compiling it
 /// takes its part of the processor, and light may have more ways to go.
 const UNKNOWN_KERNEL: f64 = 0.3;
-/// Pictures smaller than this are not reduced further: nothing could be told from them.
+/// Pictures smaller than this are not reduced further: nothing could be recognised.
 const SIDE_MIN_PX: u32 = 96;
 
 /// A submission in the course of being shown: first small and soon, then full.
@@ -30,7 +30,7 @@ pub(super) struct Stage {
     pub(super) reduction: u32,
     /// Whether a picture of it has been published.
     pub(super) is_shown: bool,
-    /// The full resolution can't be had.
+    /// The full resolution failed.
     pub(super) is_final: bool,
 }
 
@@ -129,7 +129,7 @@ mod tests {
         assert_eq!(reductions(1e8), [1, 1]);
         assert_eq!(reductions(1e7), [1, 2]);
         assert_eq!(reductions(2.5e6), [2, 3]);
-        // Not smaller than that something can be told from it.
+        // Not so small that nothing can be recognised.
         assert_eq!(reductions(1e5), [4, 4]);
     }
 }

@@ -1,6 +1,6 @@
 //! The exact parameters of a material inside a file of another program's.
 //!
-//! They are the text of a material's own file, in one line, in a place that the format leaves to whoever wants it: a custom
+//! They are the text of a material's own file, in one line, in a place that the format leaves to applications: a custom
 //! property, or a comment after [`MARK`].
 
 use std::path::Path;

@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 
 use self::report::{Entry, MaterialReport, Report};
 use self::surface::{Surface, Takes};
-use super::file::{self, FileError, Loaded, Opened};
+use super::file::{self, FileError, Loaded, Opened, ending};
 use super::preset;
 use super::replace::save_atomically;
 use crate::document::{Document, ImportLobe, MaterialSettings};
@@ -296,8 +296,7 @@ pub fn by_name(name: &str) -> Option<&'static Registered> {
 /// # Errors
 /// If no format has it.
 pub fn by_ending(path: &Path) -> Result<&'static Registered, ExchangeError> {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let ending = ending.to_ascii_lowercase();
+    let ending = ending(path);
     let found = FORMATS
         .iter()
         .find(|format| format.extensions.contains(&ending.as_str()));

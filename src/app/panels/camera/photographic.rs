@@ -27,7 +27,7 @@ const ASPECTS: [([u32; 2], &str); 7] = [
     ([9, 16], "9 : 16"),
 ];
 
-/// The sensor that focal lengths are told for.
+/// The sensor that focal lengths refer to.
 pub(super) struct Photographic {
     sensor_height_mm: f64,
 }
@@ -97,8 +97,8 @@ impl Photographic {
         };
         let mut number = exchanged(desk.document.camera.aperture);
         let style = NumberStyle {
-            // No end: a number beyond it would be brought back at once, an edit that nobody made and that stands in the way of
-            // undo.
+            // Without limits: a number beyond one would be clamped at once, an edit that the user did not make and that
+            // would get in the way of undo.
             range: 0.0..=f64::MAX,
             bar: None,
             unit: "",
@@ -116,7 +116,7 @@ impl Photographic {
     }
 }
 
-/// The focal length of a lens that shows so much of the height on a sensor.
+/// The focal length of a lens with this vertical field of view on a sensor.
 fn focal_length_mm(fov_deg: f64, sensor_height_mm: f64) -> f64 {
     0.5 * sensor_height_mm / (0.5 * fov_deg).to_radians().tan()
 }

@@ -91,7 +91,7 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
         });
 }
 
-/// Runs case after case, publishing after each, until nobody waits for them any more.
+/// Runs case after case, publishing after each, until the results are no longer wanted.
 fn run(options: &HardOptions, publish: &dyn Fn(Standing), ends: &dyn Fn() -> bool) {
     let mut standing = Standing::default();
     let mut stage = match Stage::open(options.engine, options.thorough) {

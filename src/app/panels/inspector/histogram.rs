@@ -9,7 +9,7 @@ use crate::render::worker::Picture;
 
 /// Columns of the histogram.
 const BINS: usize = 64;
-/// About as many pixels are counted.
+/// Roughly how many pixels of a large picture are counted.
 const PIXELS_MAX: usize = 1 << 18;
 /// Height of the chart, points.
 const HEIGHT: f32 = 90.0;
@@ -26,7 +26,7 @@ pub(super) struct Brightness {
 struct Counts {
     /// Red, green and blue in each column, 1 for the fullest of all.
     columns: [[f32; BINS]; 3],
-    /// Pixels that are as bright as can be in a channel, and those that are black.
+    /// Pixels that are clipped to white in a channel, and those that are black.
     clipped: [f64; 2],
 }
 
@@ -40,7 +40,7 @@ impl Default for Counts {
 }
 
 impl Counts {
-    /// Of displayed bytes, of which one pixel in so many is counted where there are many.
+    /// The histogram of displayed bytes; of large pictures only every n-th pixel is counted.
     fn of(rgba: &[u8]) -> Self {
         let stride = (rgba.len() / 4).div_ceil(PIXELS_MAX).max(1);
         let mut counts = [[0_u32; BINS]; 3];

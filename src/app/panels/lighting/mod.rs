@@ -60,13 +60,7 @@ fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
             sources.push(source);
         }
     }
-    let scene = desk.snapshot.scene.clone();
-    let loaded = scene
-        .as_ref()
-        .map(|scene| (&scene.document.lighting.environment, &scene.job.environment));
-    desk.shared
-        .environments
-        .make_pictures(ui.ctx(), ("light", &sources), loaded);
+    desk.make_environment_pictures(ui.ctx(), "light", &sources);
     ui.add_space(2.0);
     widgets::comes_and_goes(ui, |ui| rows(ui, desk, &sources));
     ui.add_space(2.0);

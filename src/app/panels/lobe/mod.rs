@@ -25,7 +25,7 @@ use crate::render::background::Background;
 /// Pictures are drawn this much larger than they are shown on a screen of one pixel a point.
 const ZOOM: f64 = 1.5;
 
-/// How much is seen of what is being computed anew.
+/// Opacity of a figure while its successor is being computed.
 const OLD_OPACITY: f32 = 0.5;
 
 /// What the lobe is compared with.

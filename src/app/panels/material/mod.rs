@@ -60,7 +60,7 @@ impl Panel for MaterialPanel {
 
 /// The model's slots, where there is a choice.
 fn slots(ui: &mut Ui, desk: &mut Desk<'_>) {
-    // While a model is loaded nobody knows how many it has.
+    // Their number is not known while the model is being loaded.
     let Some(count) = desk.scene().map(|scene| scene.model.slots.len()) else {
         return;
     };

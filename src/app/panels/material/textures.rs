@@ -21,7 +21,7 @@ const SMALL_SIDE: u32 = 64;
 enum Picture {
     /// One of the model's.
     OfModel(Arc<Model>, usize),
-    /// One of the user's own; none until it is there, or why it can't be had.
+    /// One of the user's own: `None` until it is loaded, or why it can't be.
     Own(String, Option<Result<Arc<Texture>, String>>),
 }
 

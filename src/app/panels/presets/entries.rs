@@ -252,13 +252,7 @@ pub(super) fn groups(ctx: &egui::Context, desk: &mut Desk<'_>) -> Vec<Group> {
             _ => None,
         })
         .collect();
-    let scene = desk.snapshot.scene.clone();
-    let loaded = scene
-        .as_ref()
-        .map(|scene| (&scene.document.lighting.environment, &scene.job.environment));
-    desk.shared
-        .environments
-        .make_pictures(ctx, ("browser", &sources), loaded);
+    desk.make_environment_pictures(ctx, "browser", &sources);
     let favourites = &desk.shared.shelves.kept.favourites;
     let mut first = Vec::new();
     for group in &mut groups {

@@ -1,4 +1,4 @@
-//! Files that the window asks for: how loading went is told, and what is being rendered goes on.
+//! Loading files for the window: the outcome is reported, and rendering goes on meanwhile.
 
 use std::path::PathBuf;
 
@@ -58,13 +58,13 @@ impl State<'_> {
         }
     }
 
-    /// Tells that something is being loaded; a wish to cancel from before is over.
+    /// Reports that something is being loaded; an earlier request to cancel no longer applies.
     pub(super) fn begin_loading(&mut self, what: String) {
         self.assets.loading().begin();
         self.tell(Activity::Loading(what));
     }
 
-    /// Tells how loading went; what is being rendered is not touched by a failure.
+    /// Reports the outcome of loading; a failure does not affect the render in progress.
     fn loaded(&mut self, path: PathBuf, work: impl FnOnce(&mut Self) -> Result<Event, SessionError>) {
         let event = match caught(|| work(self)) {
             Ok(Ok(event)) => event,

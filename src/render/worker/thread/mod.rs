@@ -25,7 +25,7 @@ use crate::render::shown::Shown;
 use crate::scene::environment::EnvironmentSource;
 
 /// Shortest and longest time between two pictures of the same render, and between two words about its progress: without
-/// a GPU the window, which is drawn anew for either, takes its time from the renderer.
+/// a GPU the window, which is redrawn for either, takes its time from the renderer.
 const PUBLISH_INTERVAL: [Duration; 2] = [Duration::from_millis(100), Duration::from_millis(500)];
 /// The interval grows with this share of the render's age.
 const PUBLISH_SHARE: f64 = 0.1;
@@ -167,7 +167,7 @@ impl State<'_> {
         let is_news = self.snapshot.activity != activity;
         let is_unseen = self.stage.as_ref().is_some_and(|stage| !stage.is_shown);
         if activity == Activity::Done && is_unseen && !self.denoising.is_pending() {
-            // Its time was over before its first sample.
+            // Its time limit passed before its first sample.
             self.guarded(Self::publish_picture);
         }
         if is_news {
@@ -261,7 +261,7 @@ impl State<'_> {
         self.say(Level::Error, format!("the renderer failed: {why}"));
         self.session = None;
         if was_cpu {
-            // A mistake of ours: the same document would bring it about again.
+            // A bug: the same document would trigger it again.
             self.stage = None;
             return false;
         }
@@ -378,7 +378,7 @@ impl State<'_> {
         if !self.begin(stage)
             && let Some(small) = &mut self.stage
         {
-            // It would fail again: the small picture stays until something is changed.
+            // It would only fail again: the small picture stays until the document changes.
             small.is_final = true;
         }
     }

@@ -8,7 +8,7 @@ use crate::render::session::Session;
 use crate::render::worker::stage::Stage;
 use crate::render::worker::{Activity, OrderBook, Orders, lock};
 
-/// How long the thread sleeps where there is nothing to do and nobody wakes it.
+/// How long the thread sleeps when there is nothing to do and it is not woken.
 const IDLE: Duration = Duration::from_secs(3600);
 
 impl State<'_> {

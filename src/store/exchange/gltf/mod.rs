@@ -181,7 +181,7 @@ fn losses_of(model: &Model) -> Vec<Entry> {
     model.report.entries.iter().filter_map(entry).collect()
 }
 
-/// The JSON of a file; null where it cannot be had.
+/// The JSON of a file; null if it can't be read.
 fn document_json(path: &Path) -> Json {
     let Ok(bytes) = std::fs::read(path) else {
         return Json::Null;

@@ -15,7 +15,7 @@ const COLORSPACE: &str = "colorspace";
 /// The text of a document, with that of those which it includes in their places. Their paths are seen from the file at `path`.
 ///
 /// # Errors
-/// Which of them cannot be had, and why.
+/// Which of them can't be read, and why.
 pub(super) fn whole_text(path: &Path, text: String) -> Result<String, String> {
     let mut files = vec![path.to_owned()];
     expanded(path, text, &mut files)
