@@ -118,7 +118,7 @@ fn polynomial<T: Real, const N: usize>(x: T, coefficients: [f32; N]) -> T {
 }
 
 /// π/2 in three parts, of which multiples by small whole numbers are exact.
-const FRAC_PI_2_PARTS: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_789_9e-8];
+const FRAC_PI_2_PARTS: [f32; 3] = [1.570_312_5, 4.837_513e-4, 7.549_79e-8];
 
 /// Sine and cosine of an angle in radians, of some turns at most: within two units in the last place.
 #[inline(always)]
@@ -255,7 +255,7 @@ fn power(base: f64, exponent: f64) -> f64 {
     // 2 artanh s: the next term is below 1e-12.
     let series = 1.0 + z * (1.0 / 3.0 + z * (0.2 + z * (1.0 / 7.0 + z * (1.0 / 9.0 + z * (1.0 / 11.0 + z / 13.0)))));
     let logarithm = 2.0 * s * series + f64::from(doublings) * LN_2;
-    let power = (exponent * logarithm).max(-200.0).min(200.0);
+    let power = (exponent * logarithm).clamp(-200.0, 200.0);
     let whole = power * std::f64::consts::LOG2_E + WHOLE;
     let rest = power - (whole - WHOLE) * LN_2;
     let mut grown = 1.0 + rest / 10.0;
