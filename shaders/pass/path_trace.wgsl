@@ -221,8 +221,8 @@ fn may_sample_light() -> bool {
     return PLAN_LIGHT_SAMPLING == 1u || PLAN_EMITTER_SAMPLING == 1u;
 }
 
-// What the camera sees where it meets nothing; a blur is drawn with the pair of this dimension.
-fn camera_background(direction: vec3f, state: RandomState, dimension: u32, rays: u32) -> PathResult {
+// What the camera sees where it meets nothing, and its alpha; a blur is drawn with the pair of this dimension.
+fn camera_background(direction: vec3f, state: RandomState, dimension: u32) -> vec4f {
     var sky = vec3f(0.0);
     if looks_afar(0u, true) {
         var along = direction;
@@ -231,23 +231,15 @@ fn camera_background(direction: vec3f, state: RandomState, dimension: u32, rays:
         }
         sky = far_radiance(along);
     }
-    let background = plain_background(sky);
-    return PathResult(background.rgb, background.a, rays, 0.0, GuideSums());
-}
-
-// The end of a camera ray that met nothing: the numbers of the first bounce, which there is none of.
-fn background_alone(direction: vec3f, state: RandomState, rays: u32) -> PathResult {
-    let found = camera_background(direction, state, FIRST_DIMENSION, rays);
-    var clamped = 0.0;
-    let radiance = limited(found.radiance, 0u, &clamped);
-    return PathResult(radiance, found.alpha, rays, clamped, found.seen);
+    return plain_background(sky);
 }
 
 // How a path begins anew at the shadow catcher.
 struct Caught {
     kind: u32,
     throughput: vec3f,
-    // Of the background where it is mirrored; else what has no shadow, since no light of that colour would reach the place.
+    // Of the background where it is mirrored or the catcher is not there; else what has no shadow, since no light of that
+    // colour would reach the place.
     radiance: vec3f,
     alpha: f32,
 }
@@ -255,15 +247,15 @@ struct Caught {
 // A camera ray met the shadow catcher; it is not there seen from below, and without light.
 fn catch_shadow(position: vec3f, direction: vec3f, state: RandomState) -> Caught {
     let light = catcher_light(globals.catcher_table, position);
-    if direction.y >= 0.0 || max(max(light.x, light.y), light.z) <= 0.0 {
-        return Caught(CAUGHT_NOT, vec3f(0.0), vec3f(0.0), 0.0);
+    let is_there = direction.y < 0.0 && max(max(light.x, light.y), light.z) > 0.0;
+    // Where it is not, the numbers are those of a ray that met nothing.
+    let background = camera_background(direction, state, select(FIRST_DIMENSION, CATCHER_DIMENSION + 1u, is_there));
+    let is_mirrored = random_pair(state, CATCHER_DIMENSION).x < catcher_reflectance(globals.catcher_table, -direction.y);
+    if !is_there || is_mirrored {
+        return Caught(select(CAUGHT_NOT, CAUGHT_MIRRORED, is_there), vec3f(1.0), background.rgb, background.a);
     }
-    let background = camera_background(direction, state, CATCHER_DIMENSION + 1u, 0u);
-    if random_pair(state, CATCHER_DIMENSION).x < catcher_reflectance(globals.catcher_table, -direction.y) {
-        return Caught(CAUGHT_MIRRORED, vec3f(1.0), background.radiance, background.alpha);
-    }
-    let is_transparent = background.alpha <= 0.0;
-    let shown = select(background.radiance, vec3f(1.0), is_transparent);
+    let is_transparent = background.a <= 0.0;
+    let shown = select(background.rgb, vec3f(1.0), is_transparent);
     let albedo = materials[globals.catcher_slot].base_color;
     let is_lit = select(vec3f(0.0), vec3f(1.0), light > vec3f(0.0));
     let reflected = light * albedo + (vec3f(1.0) - is_lit);
@@ -358,21 +350,24 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             break;
         }
         var slot = slot_at(hit.triangle);
+        // Here, so that it is the same as that of the surface below, and drivers make one of both.
+        let place = hit_place(hit, ray.direction);
         if PLAN_SHADOW_CATCHER == 1u {
             if caught == CAUGHT_MIRRORED {
                 caught = CAUGHT_NOT;
             }
             if bounce == 0u && slot == globals.catcher_slot {
-                below = catch_shadow(hit_place(hit, ray.direction).position, ray.direction, state);
+                below = catch_shadow(place.position, ray.direction, state);
                 caught = below.kind;
-                if caught == CAUGHT_NOT {
-                    return background_alone(ray.direction, state, rays);
-                }
                 throughput = below.throughput;
                 if caught == CAUGHT_MIRRORED {
                     slot = globals.catcher_reflection_slot;
                 } else {
                     radiance = limited(below.radiance, 0u, &clamped);
+                }
+                if caught == CAUGHT_NOT {
+                    alpha = below.alpha;
+                    break;
                 }
             }
         }

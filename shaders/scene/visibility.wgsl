@@ -34,6 +34,8 @@ fn meet(ray: Ray, length: f32, is_to_light: bool, opacity_number: f32, rays: ptr
         if hit.triangle == NO_HIT {
             return met;
         }
+        // Before the opacity, which looks at the same triangle: drivers load it once.
+        let passed = passed_origin(hit, ray.direction);
         let opacity = hit_opacity(hit);
         distance += hit.t;
         if is_to_light {
@@ -48,7 +50,7 @@ fn meet(ray: Ray, length: f32, is_to_light: bool, opacity_number: f32, rays: ptr
         }
         // Uniform again, given that the surface did not stop the ray.
         xi = (xi - opacity) / max(1.0 - opacity, 1e-20);
-        origin = passed_origin(hit, ray.direction);
+        origin = passed;
     }
     met.share = 0.0;
     return met;
