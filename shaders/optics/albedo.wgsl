@@ -12,9 +12,14 @@ fn albedo_lookup(albedo_table: u32, place: f32) -> vec3f {
     let position = clamp(place, 0.0, 1.0) * last;
     let low = min(floor(position), last - 1.0);
     let first = albedo_table + 3u * u32(low);
-    let left = vec3f(tables[first], tables[first + 1u], tables[first + 2u]);
-    let right = vec3f(tables[first + 3u], tables[first + 4u], tables[first + 5u]);
-    return mix(left, right, position - low);
+    let behind = position - low;
+    // Loops over the nodes that have weight, so that the code that loads one is there once.
+    var sum = vec3f(0.0);
+    for (var node = 0u; node < select(1u, 2u, behind > 0.0); node++) {
+        let at = first + 3u * node;
+        sum += vec3f(tables[at], tables[at + 1u], tables[at + 2u]) * select(1.0 - behind, behind, node == 1u);
+    }
+    return sum;
 }
 
 fn albedo_place(cosine: f32, eta: f32) -> f32 {
@@ -46,13 +51,15 @@ fn rough_albedo_lookup(albedo_table: u32, place: f32, roughness: f32) -> vec4f {
     let low = min(floor(position), last - 1.0);
     let first = albedo_table + 4u * (u32(step) * ALBEDO_NODES + u32(low));
     let row = 4u * ALBEDO_NODES;
-    let smooth_mix = mix(rough_node(first), rough_node(first + 4u), position - low);
-    let rough_mix = mix(rough_node(first + row), rough_node(first + row + 4u), position - low);
-    return mix(smooth_mix, rough_mix, rough_position - step);
-}
-
-fn rough_node(first: u32) -> vec4f {
-    return vec4f(tables[first], tables[first + 1u], tables[first + 2u], tables[first + 3u]);
+    let across = position - low;
+    let down = rough_position - step;
+    var sum = vec4f(0.0);
+    for (var node = 0u; node < select(2u, 4u, down > 0.0); node++) {
+        let at = first + 4u * (node & 1u) + row * (node >> 1u);
+        let share = select(1.0 - across, across, (node & 1u) != 0u) * select(1.0 - down, down, node > 1u);
+        sum += vec4f(tables[at], tables[at + 1u], tables[at + 2u], tables[at + 3u]) * share;
+    }
+    return sum;
 }
 
 fn rough_albedo(terms: FresnelTerms, integrals: vec4f) -> vec3f {

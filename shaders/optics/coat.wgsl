@@ -34,13 +34,3 @@ fn coat_probability(share: f32, below: f32) -> f32 {
 fn coat_fresnel(material: Material, wo: vec3f, wi: vec3f) -> f32 {
     return material.coat_weight * fresnel_dielectric(half_vector_cosine(wo, wi), material.coat_ior);
 }
-
-// (evaluate, density); both 0 where the coat is weighed as a mirror.
-fn coat_evaluate(material: Material, surface: Surface, wi: vec3f) -> vec2f {
-    let shape = coat_shape(material);
-    if is_mirror(shape) {
-        return vec2f(0.0);
-    }
-    let lobe = lobe_evaluate(shape, frame_from_normal(surface.coat_normal), surface.normal, surface.wo, wi);
-    return vec2f(lobe.x * coat_fresnel(material, surface.wo, wi), lobe.y);
-}

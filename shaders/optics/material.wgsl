@@ -37,6 +37,8 @@ struct Layers {
     transmission_probability: f32,
     coat_probability: f32,
     below_coat: vec3f,
+    // Albedo of the specular lobe, where anything lies under it.
+    specular: vec3f,
 }
 
 fn material_shape(material: Material) -> LobeShape {
@@ -92,7 +94,7 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
     let below_coat = coat_transmittance(material, surface, coat);
     if !material_has_base(material) && !transmits {
         let below = select(0.0, 1.0, material_has_specular(material));
-        return Layers(vec3f(0.0), vec3f(0.0), 1.0, 0.0, coat_probability(coat, below), below_coat);
+        return Layers(vec3f(0.0), vec3f(0.0), 1.0, 0.0, coat_probability(coat, below), below_coat, vec3f(0.0));
     }
     var albedos = SpecularAlbedos(vec3f(0.0), vec3f(0.0));
     if material_has_specular(material) {
@@ -115,7 +117,7 @@ fn material_layers(material: Material, surface: Surface) -> Layers {
     share = select(share, min(specular, 1.0), passes_on(material));
     return Layers(
         base, transmission, share, (1.0 - share) * (through / max(rest, 1e-9)),
-        coat_probability(coat, specular + rest), below_coat,
+        coat_probability(coat, specular + rest), below_coat, albedos.taken,
     );
 }
 
@@ -135,17 +137,12 @@ fn specular_albedos(material: Material, surface: Surface) -> SpecularAlbedos {
     return SpecularAlbedos(taken, taken);
 }
 
-fn material_albedo(material: Material, surface: Surface) -> vec3f {
-    var specular = vec3f(0.0);
-    if material_has_specular(material) {
-        if material_has_base(material) || material_transmits(material) {
-            specular = specular_albedos(material, surface).taken;
-        } else {
-            let cosine = dot(surface.frame.normal, surface.wo);
-            specular = fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
-        }
+fn material_albedo(material: Material, surface: Surface, layers: Layers) -> vec3f {
+    var specular = layers.specular;
+    if material_has_specular(material) && !material_has_base(material) && !material_transmits(material) {
+        let cosine = dot(surface.frame.normal, surface.wo);
+        specular = fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
     }
-    let layers = material_layers(material, surface);
     return specular + layers.base + layers.transmission;
 }
 
@@ -168,6 +165,27 @@ struct MaterialNumbers {
     below: vec3f,
 }
 
+// Light from a direction that was drawn with some density. competing: 1 where the material's own density takes its share.
+struct MaterialLight {
+    wi: vec3f,
+    density: f32,
+    competing: f32,
+}
+
+// A direction drawn, and what the material reflects of the light.
+struct MaterialScatter {
+    drawn: MaterialSample,
+    reflected: vec3f,
+}
+
+// What is done at a surface point, in order: light is weighed by each lobe, then a direction is drawn, and once more where
+// the specular lobe passed on.
+const STEP_SPECULAR: u32 = 0u;
+const STEP_TRANSMISSION: u32 = 1u;
+const STEP_COAT: u32 = 2u;
+const STEP_DRAW: u32 = 3u;
+const STEP_DRAW_BELOW: u32 = 4u;
+
 fn passes_on(material: Material) -> bool {
     return material_transmits(material) && weighs_one(planned(material.lobe, PLAN_LOBE));
 }
@@ -175,73 +193,121 @@ fn passes_on(material: Material) -> bool {
 fn material_sample(
     material: Material, surface: Surface, numbers: MaterialNumbers, wants_density: bool,
 ) -> MaterialSample {
+    let steps = vec2u(STEP_DRAW, STEP_DRAW_BELOW + PLAN_TRANSMISSION);
     let layers = material_layers(material, surface);
+    return material_scatter(material, surface, layers, steps, numbers, wants_density, MaterialLight()).drawn;
+}
+
+fn material_evaluate(material: Material, surface: Surface, wi: vec3f, light_density: f32, competing: f32) -> vec3f {
+    let light = MaterialLight(wi, light_density, competing);
+    let steps = vec2u(STEP_SPECULAR, STEP_DRAW);
+    let layers = material_layers(material, surface);
+    return material_scatter(material, surface, layers, steps, MaterialNumbers(), false, light).reflected;
+}
+
+// The steps from steps.x to before steps.y. A loop, so that the code of the lobes and of what they reflect is there once:
+// drivers inline every call, and compile in more than proportion to the size.
+fn material_scatter(
+    material: Material, surface: Surface, layers: Layers, steps: vec2u, numbers: MaterialNumbers, wants_density: bool,
+    light: MaterialLight,
+) -> MaterialScatter {
     let base = base_probability(layers);
     let through = layers.transmission_probability;
+    let below = 1.0 - layers.coat_probability;
     let is_passed_on = passes_on(material);
-    var xi = numbers.lobe;
-    var specular = layers.specular_probability;
     let is_coated = material_has_coat(material, surface);
     var choice = numbers.layer;
     if is_coated && choice >= layers.coat_probability {
         choice = rescaled(choice, layers.coat_probability);
     }
-    let below = 1.0 - layers.coat_probability;
-    var layer = below_layer(choice, specular, base, through);
+    var specular = layers.specular_probability;
+    var chosen = below_layer(choice, specular, base, through);
     if is_passed_on || choice < specular {
-        layer = LAYER_SPECULAR;
+        chosen = LAYER_SPECULAR;
     }
-    var frame = surface.frame;
     if is_coated && numbers.layer < layers.coat_probability {
-        layer = LAYER_COAT;
-        frame = frame_from_normal(surface.coat_normal);
+        chosen = LAYER_COAT;
     }
-    var shape: LobeShape;
-    var drawn: LobeSample;
-    var color: vec3f;
-    var probability: f32;
-    // A loop, so that the lobes' code is there once: the second time where the specular lobe passed on.
-    for (var i = 0u; i < 1u + PLAN_TRANSMISSION; i++) {
-        shape = layer_shape(material, layer, surface.is_inside);
-        drawn = lobe_sample(shape, frame, surface.normal, surface.wo, xi);
-        if PLAN_COAT == 1u && layer == LAYER_COAT {
-            color = vec3f(coat_fresnel(material, surface.wo, drawn.wi));
-            probability = layers.coat_probability;
-            break;
+    var xi = numbers.lobe;
+    var drawn = MaterialSample();
+    var reflected = vec3f(0.0);
+    if material_has_base(material) && steps.x < STEP_DRAW {
+        let value = base_evaluate(surface, light.wi);
+        let share = light.density / (light.density + light.competing * below * base * value);
+        reflected = layers.base * layers.below_coat * (value * share);
+    }
+    for (var step = steps.x; step < steps.y; step++) {
+        let draws = step >= STEP_DRAW;
+        var layer = LAYER_SPECULAR;
+        var is_there = material_has_specular(material);
+        if PLAN_TRANSMISSION == 1u && step == STEP_TRANSMISSION {
+            layer = LAYER_TRANSMISSION;
+            is_there = material_transmits(material);
         }
-        if layer == LAYER_SPECULAR {
-            let terms = material_fresnel_terms(material, surface.is_inside);
-            color = fresnel(terms, half_vector_cosine(surface.wo, drawn.wi));
-            if is_passed_on {
-                specular = select(0.0, luminance(color), drawn.weight > 0.0);
-            }
-            probability = specular;
-            if choice < specular {
-                break;
-            }
-            xi = numbers.below;
-            layer = below_layer(choice, specular, base, through);
+        if PLAN_COAT == 1u && step == STEP_COAT {
+            layer = LAYER_COAT;
+            is_there = is_coated;
+        }
+        if draws {
+            layer = chosen;
+            is_there = true;
+        } else if step != STEP_SPECULAR && layer == LAYER_SPECULAR {
+            is_there = false;
+        }
+        let shape = layer_shape(material, layer, surface.is_inside);
+        let mirror = is_mirror(shape);
+        if !is_there || (mirror && !draws) {
             continue;
         }
-        if PLAN_TRANSMISSION == 1u && layer == LAYER_TRANSMISSION {
-            color = transmission_color(material, layers, shape, surface, drawn.wi);
-            probability = through;
-        } else {
-            color = layers.base;
-            probability = base;
+        var frame = surface.frame;
+        if PLAN_COAT == 1u && layer == LAYER_COAT {
+            frame = frame_from_normal(surface.coat_normal);
         }
-        break;
+        var wi = light.wi;
+        var weight = 1.0;
+        if draws {
+            let sample = lobe_sample(shape, frame, surface.normal, surface.wo, xi);
+            wi = sample.wi;
+            weight = sample.weight;
+        }
+        var color = layers.base;
+        var probability = base;
+        if layer == LAYER_SPECULAR {
+            let terms = material_fresnel_terms(material, surface.is_inside);
+            color = fresnel(terms, half_vector_cosine(surface.wo, wi));
+            if is_passed_on {
+                specular = select(0.0, luminance(color), weight > 0.0);
+            }
+            probability = specular;
+            if draws && choice >= specular {
+                // Passed on.
+                xi = numbers.below;
+                chosen = below_layer(choice, specular, base, through);
+                continue;
+            }
+        }
+        if PLAN_TRANSMISSION == 1u && layer == LAYER_TRANSMISSION {
+            color = transmission_color(material, layers, shape, surface, wi);
+            probability = through;
+        }
+        if PLAN_COAT == 1u && layer == LAYER_COAT {
+            color = vec3f(coat_fresnel(material, surface.wo, wi));
+            probability = layers.coat_probability;
+        } else if is_coated {
+            color *= layers.below_coat;
+            probability *= below;
+        }
+        var lobe = vec2f(0.0);
+        if !draws || (wants_density && !mirror) {
+            lobe = lobe_evaluate(shape, frame, surface.normal, surface.wo, wi);
+        }
+        if draws {
+            drawn = MaterialSample(wi, color * (weight / max(probability, 1e-20)), probability * lobe.y, mirror);
+            break;
+        }
+        reflected += color * (lobe.x * (light.density / (light.density + light.competing * probability * lobe.y)));
     }
-    if is_coated && layer != LAYER_COAT {
-        color *= layers.below_coat;
-        probability *= below;
-    }
-    let mirror = is_mirror(shape);
-    var density = 0.0;
-    if wants_density && !mirror {
-        density = probability * lobe_evaluate(shape, frame, surface.normal, surface.wo, drawn.wi).y;
-    }
-    return MaterialSample(drawn.wi, color * (drawn.weight / max(probability, 1e-20)), density, mirror);
+    return MaterialScatter(drawn, reflected);
 }
 
 // A number in [0, 1) that was not below `share`, stretched to [0, 1) again.
@@ -278,44 +344,10 @@ fn transmission_color(material: Material, layers: Layers, shape: LobeShape, surf
     return material.transmission_tint * left * (material.transmission_weight * (1.0 - material.metalness));
 }
 
-fn material_evaluate(material: Material, surface: Surface, wi: vec3f, light_density: f32, competing: f32) -> vec3f {
-    let layers = material_layers(material, surface);
-    let below = 1.0 - layers.coat_probability;
-    var sum = vec3f(0.0);
-    // A loop over the specular and the refracting lobe, so that the lobes' code is there once.
-    for (var i = 0u; i < 1u + PLAN_TRANSMISSION; i++) {
-        let is_through = PLAN_TRANSMISSION == 1u && i == 1u;
-        var shape = material_shape(material);
-        var probability = layers.specular_probability;
-        var is_there = material_has_specular(material);
-        if is_through {
-            shape = material_transmission_shape(material, surface.is_inside);
-            probability = layers.transmission_probability;
-            is_there = material_transmits(material);
-        }
-        if !is_there || is_mirror(shape) {
-            continue;
-        }
-        let lobe = lobe_evaluate(shape, surface.frame, surface.normal, surface.wo, wi);
-        var color = vec3f(0.0);
-        if is_through {
-            color = transmission_color(material, layers, shape, surface, wi);
-        } else {
-            let terms = material_fresnel_terms(material, surface.is_inside);
-            color = fresnel(terms, half_vector_cosine(surface.wo, wi));
-            probability = select(probability, luminance(color), passes_on(material));
-        }
-        let share = light_density / (light_density + competing * below * probability * lobe.y);
-        sum += color * layers.below_coat * (lobe.x * share);
-    }
-    if material_has_base(material) {
-        let lobe = lobe_evaluate(base_shape(), surface.frame, surface.normal, surface.wo, wi);
-        let share = light_density / (light_density + competing * below * base_probability(layers) * lobe.y);
-        sum += layers.base * layers.below_coat * (lobe.x * share);
-    }
-    if material_has_coat(material, surface) {
-        let lobe = coat_evaluate(material, surface, wi);
-        sum += vec3f(lobe.x * (light_density / (light_density + competing * layers.coat_probability * lobe.y)));
-    }
-    return sum;
+// The base's lobe with its cosine, which is its density, too: its own horizon's mirror image folded back.
+fn base_evaluate(surface: Surface, wi: vec3f) -> f32 {
+    let above = dot(surface.normal, wi);
+    let leaning = dot(surface.frame.normal, wi);
+    let folded = leaning - 2.0 * above * dot(surface.frame.normal, surface.normal);
+    return select(0.0, (max(leaning, 0.0) + max(folded, 0.0)) * INV_PI, above > 0.0);
 }

@@ -96,18 +96,14 @@ fn far_radiance(direction: vec3f) -> vec3f {
     return environment_radiance(local) * globals.environment_strength;
 }
 
-// What a path that left the scene sees, weighed against light sampling.
-fn far_light(direction: vec3f, lobe_density: f32, is_mirror: bool) -> vec3f {
-    let radiance = far_radiance(direction);
+// The share of what a path that left the scene sees, weighed against light sampling.
+fn far_share(direction: vec3f, lobe_density: f32, is_mirror: bool) -> f32 {
     if !samples_environment() || is_mirror {
-        return radiance;
-    }
-    if globals.strategy == STRATEGY_LIGHT {
-        return vec3f(0.0);
+        return 1.0;
     }
     let local = environment_local_from_world(direction, globals.environment_rotation);
     let light_density = globals.environment_probability * environment_density(local, globals.environment_cells_size);
-    return radiance * lobe_share(lobe_density, light_density);
+    return lobe_share(lobe_density, light_density);
 }
 
 // What a surface emits that a path met at `distance`, weighed against light sampling.
@@ -166,33 +162,17 @@ fn draw_light(point: SurfacePoint, xi: vec3f) -> LightSample {
     return LightSample(direction, drawn.density * share, vec3f(0.0), 1e30);
 }
 
-// Light that arrives straight from the environment or from what emits, one direction drawn.
-fn direct_light(
-    point: SurfacePoint, material: Material, state: RandomState, dimension: u32, rays: ptr<function, u32>,
-) -> vec3f {
-    let xi = vec3f(random_pair(state, dimension), random_pair(state, dimension + 1u).x);
-    let light = draw_light(point, xi);
-    let wi = light.direction;
-    let transmits = material_transmits(material);
-    if light.density <= 0.0 || (dot(point.surface.normal, wi) <= 0.0 && !transmits) {
-        return vec3f(0.0);
-    }
-    let competing = select(0.0, 1.0, globals.strategy == STRATEGY_MIS);
-    let value = material_evaluate(material, point.surface, wi, light.density, competing);
-    if all(value <= vec3f(0.0)) {
-        return vec3f(0.0);
-    }
-    var share = 1.0;
-    if !meets_nothing(point, wi) {
-        share = transmittance(ray_origin(point, wi, transmits), wi, light.distance, rays);
-    }
-    if share <= 0.0 {
-        return vec3f(0.0);
-    }
-    if is_from_afar(xi.z) {
-        return value * far_radiance(wi) * (share / light.density);
-    }
-    return value * light.radiance * (share / light.density);
+// Light drawn at a surface point, on the way there.
+struct SampledLight {
+    ray: Ray,
+    distance: f32,
+    // What it adds to the picture where nothing is in its way: times the radiance where it comes from afar.
+    value: vec3f,
+    is_from_afar: bool,
+    // Where it is proven that nothing is.
+    is_free: bool,
+    // Where it is to be looked after.
+    waits: bool,
 }
 
 // True where it is proven that nothing lies ahead: outside a convex body.
@@ -214,34 +194,52 @@ fn limited(contribution: vec3f, reflections: u32, taken: ptr<function, f32>) -> 
     return contribution * kept;
 }
 
-// What the camera sees where it meets nothing; a blur is drawn with the pair of this dimension.
-fn camera_background(direction: vec3f, state: RandomState, dimension: u32, rays: u32) -> PathResult {
-    if globals.background_kind == BACKGROUND_BLURRED || globals.background_kind == BACKGROUND_ENVIRONMENT {
-        var seen = direction;
-        if globals.background_kind == BACKGROUND_BLURRED {
-            let disc = globals.background.x * uniform_disc(random_pair(state, dimension));
-            seen = world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
-        }
-        return PathResult(far_radiance(seen), 1.0, rays, 0.0, GuideSums());
+// Whether a path that meets nothing looks the environment up.
+fn looks_afar(bounce: u32, was_mirror: bool) -> bool {
+    if bounce == 0u {
+        return globals.background_kind == BACKGROUND_BLURRED || globals.background_kind == BACKGROUND_ENVIRONMENT;
     }
-    let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
-    let color = select(globals.background, vec3f(0.0), is_transparent);
-    return PathResult(color, select(1.0, 0.0, is_transparent), rays, 0.0, GuideSums());
+    return was_mirror || !samples_environment() || globals.strategy != STRATEGY_LIGHT;
 }
 
-// The end of a camera ray that met nothing: the numbers of the first bounce, which there is none of.
-fn background_alone(direction: vec3f, state: RandomState, rays: u32) -> PathResult {
-    let found = camera_background(direction, state, FIRST_DIMENSION, rays);
-    var clamped = 0.0;
-    let radiance = limited(found.radiance, 0u, &clamped);
-    return PathResult(radiance, found.alpha, rays, clamped, found.seen);
+fn blurred(direction: vec3f, xi: vec2f) -> vec3f {
+    let disc = globals.background.x * uniform_disc(xi);
+    return world_from_local(frame_from_normal(direction), vec3f(disc, safe_sqrt(1.0 - dot(disc, disc))));
+}
+
+// The colour of what the camera sees where it meets nothing, and its alpha; `sky` where it is looked up.
+fn plain_background(sky: vec3f) -> vec4f {
+    if looks_afar(0u, true) {
+        return vec4f(sky, 1.0);
+    }
+    let is_transparent = globals.background_kind == BACKGROUND_TRANSPARENT;
+    return select(vec4f(globals.background, 1.0), vec4f(0.0), is_transparent);
+}
+
+// Whether a kernel has light sampling at all.
+fn may_sample_light() -> bool {
+    return PLAN_LIGHT_SAMPLING == 1u || PLAN_EMITTER_SAMPLING == 1u;
+}
+
+// What the camera sees where it meets nothing, and its alpha; a blur is drawn with the pair of this dimension.
+fn camera_background(direction: vec3f, state: RandomState, dimension: u32) -> vec4f {
+    var sky = vec3f(0.0);
+    if looks_afar(0u, true) {
+        var along = direction;
+        if globals.background_kind == BACKGROUND_BLURRED {
+            along = blurred(direction, random_pair(state, dimension));
+        }
+        sky = far_radiance(along);
+    }
+    return plain_background(sky);
 }
 
 // How a path begins anew at the shadow catcher.
 struct Caught {
     kind: u32,
     throughput: vec3f,
-    // Of the background where it is mirrored; else what has no shadow, since no light of that colour would reach the place.
+    // Of the background where it is mirrored or the catcher is not there; else what has no shadow, since no light of that
+    // colour would reach the place.
     radiance: vec3f,
     alpha: f32,
 }
@@ -249,15 +247,15 @@ struct Caught {
 // A camera ray met the shadow catcher; it is not there seen from below, and without light.
 fn catch_shadow(position: vec3f, direction: vec3f, state: RandomState) -> Caught {
     let light = catcher_light(globals.catcher_table, position);
-    if direction.y >= 0.0 || max(max(light.x, light.y), light.z) <= 0.0 {
-        return Caught(CAUGHT_NOT, vec3f(0.0), vec3f(0.0), 0.0);
+    let is_there = direction.y < 0.0 && max(max(light.x, light.y), light.z) > 0.0;
+    // Where it is not, the numbers are those of a ray that met nothing.
+    let background = camera_background(direction, state, select(FIRST_DIMENSION, CATCHER_DIMENSION + 1u, is_there));
+    let is_mirrored = random_pair(state, CATCHER_DIMENSION).x < catcher_reflectance(globals.catcher_table, -direction.y);
+    if !is_there || is_mirrored {
+        return Caught(select(CAUGHT_NOT, CAUGHT_MIRRORED, is_there), vec3f(1.0), background.rgb, background.a);
     }
-    let background = camera_background(direction, state, CATCHER_DIMENSION + 1u, 0u);
-    if random_pair(state, CATCHER_DIMENSION).x < catcher_reflectance(globals.catcher_table, -direction.y) {
-        return Caught(CAUGHT_MIRRORED, vec3f(1.0), background.radiance, background.alpha);
-    }
-    let is_transparent = background.alpha <= 0.0;
-    let shown = select(background.radiance, vec3f(1.0), is_transparent);
+    let is_transparent = background.a <= 0.0;
+    let shown = select(background.rgb, vec3f(1.0), is_transparent);
     let albedo = materials[globals.catcher_slot].base_color;
     let is_lit = select(vec3f(0.0), vec3f(1.0), light > vec3f(0.0));
     let reflected = light * albedo + (vec3f(1.0) - is_lit);
@@ -272,60 +270,117 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var ray = pixel_ray(camera, pixel, globals.image_size, state);
     var throughput = vec3f(1.0);
     var radiance = vec3f(0.0);
+    var alpha = 1.0;
     var clamped = 0.0;
     var lobe_density = 0.0;
     var was_mirror = true;
     var rays = 0u;
     var leaves = false;
+    var goes_on = true;
+    var light = SampledLight();
     var seen = GuideSums();
     var caught = CAUGHT_NOT;
     var below = Caught();
     // Nothing but mirrors and clear glass so far.
     var looks = PLAN_GUIDES == 1u && sample < GUIDE_SAMPLES;
-    for (var bounce = 0u; ; bounce++) {
+    for (var bounce = 0u; goes_on || light.waits; bounce++) {
         var hit = Hit(0.0, NO_HIT, 0.0, 0.0);
-        if !leaves {
-            hit = stop(ray, state, bounce, &rays);
+        var sky = vec3f(0.0);
+        // The light that was drawn at the last surface, then the path itself: a loop, so that the traversal and the
+        // environment's look-up are there once.
+        for (var turn = select(1u, 0u, may_sample_light()); turn < 2u; turn++) {
+            let is_light = turn == 0u;
+            if !select(goes_on, light.waits, is_light) {
+                continue;
+            }
+            var along = ray;
+            var length = 1e30;
+            var is_free = leaves;
+            if is_light {
+                along = light.ray;
+                length = light.distance;
+                is_free = light.is_free;
+            }
+            var met = Met(hit, 1.0);
+            if !is_free {
+                var xi = 0.0;
+                if PLAN_ALPHA == 1u && !is_light {
+                    xi = random_pair(state, OPACITY_DIMENSION + bounce).x;
+                }
+                met = meet(along, length, is_light, xi, &rays);
+            }
+            if !is_light {
+                hit = met.hit;
+            }
+            var wants_sky = met.share > 0.0 && light.is_from_afar;
+            if !is_light {
+                wants_sky = hit.triangle == NO_HIT && looks_afar(bounce, was_mirror);
+                if bounce == 0u && globals.background_kind == BACKGROUND_BLURRED {
+                    along.direction = blurred(along.direction, random_pair(state, FIRST_DIMENSION));
+                }
+            }
+            if wants_sky {
+                sky = far_radiance(along.direction);
+            }
+            if is_light {
+                let arrives = select(vec3f(1.0), sky, light.is_from_afar) * met.share;
+                radiance += limited(light.value * arrives, bounce, &clamped);
+                light.waits = false;
+            }
+        }
+        if !goes_on {
+            break;
         }
         if hit.triangle == NO_HIT {
-            if bounce == 0u {
-                return background_alone(ray.direction, state, rays);
-            }
             if PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_MIRRORED {
                 radiance += limited(below.radiance, bounce, &clamped);
-                return PathResult(radiance, below.alpha, rays, clamped, seen);
+                alpha = below.alpha;
+                caught = CAUGHT_NOT;
+                break;
             }
-            let found = throughput * far_light(ray.direction, lobe_density, was_mirror);
+            var found = throughput * sky;
+            if bounce == 0u {
+                let background = plain_background(sky);
+                found = background.rgb;
+                alpha = background.a;
+            } else {
+                found *= far_share(ray.direction, lobe_density, was_mirror);
+            }
             radiance += limited(found, bounce, &clamped);
             break;
         }
-        let point = surface_at(hit, ray.direction);
-        var slot = point.slot;
+        var slot = slot_at(hit.triangle);
+        // Here, so that it is the same as that of the surface below, and drivers make one of both.
+        let place = hit_place(hit, ray.direction);
         if PLAN_SHADOW_CATCHER == 1u {
             if caught == CAUGHT_MIRRORED {
                 caught = CAUGHT_NOT;
             }
             if bounce == 0u && slot == globals.catcher_slot {
-                below = catch_shadow(point.position, ray.direction, state);
+                below = catch_shadow(place.position, ray.direction, state);
                 caught = below.kind;
-                if caught == CAUGHT_NOT {
-                    return background_alone(ray.direction, state, rays);
-                }
                 throughput = below.throughput;
                 if caught == CAUGHT_MIRRORED {
                     slot = globals.catcher_reflection_slot;
                 } else {
                     radiance = limited(below.radiance, 0u, &clamped);
                 }
+                if caught == CAUGHT_NOT {
+                    alpha = below.alpha;
+                    break;
+                }
             }
         }
+        let material_there = materials[slot];
+        let point = surface_of(hit, ray.direction, slot, material_there);
         let is_mirrored = PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_MIRRORED;
-        let material = textured_material(materials[slot], point.uvs, point.vertex_color);
+        let material = textured_material(material_there, point.uvs, point.vertex_color);
         if PLAN_ABSORPTION == 1u && point.surface.is_inside && material_transmits(material) {
             throughput *= exp(-material.absorption * hit.t);
         }
+        let layers = material_layers(material, point.surface);
         if looks {
-            let albedo = throughput * material_albedo(material, point.surface);
+            let albedo = throughput * material_albedo(material, point.surface, layers);
             seen.albedo = clamp(albedo, vec3f(0.0), vec3f(1.0));
             seen.normal = point.surface.frame.normal;
             if bounce == 0u {
@@ -341,18 +396,35 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             break;
         }
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
-        if samples_light() && !is_mirrored {
-            let found = throughput * direct_light(point, material, state, dimension + 2u, &rays);
-            radiance += limited(found, bounce + 1u, &clamped);
+        let transmits = material_transmits(material);
+        let wants_density = samples_light() && globals.strategy == STRATEGY_MIS;
+        var steps = vec2u(STEP_DRAW, STEP_DRAW_BELOW + PLAN_TRANSMISSION);
+        var lit = LightSample(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
+        if may_sample_light() && samples_light() && !is_mirrored {
+            let xi = vec3f(random_pair(state, dimension + 2u), random_pair(state, dimension + 3u).x);
+            lit = draw_light(point, xi);
+            if lit.density > 0.0 && (dot(point.surface.normal, lit.direction) > 0.0 || transmits) {
+                steps.x = STEP_SPECULAR;
+            }
+            light.is_from_afar = is_from_afar(xi.z);
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
-        let wants_density = samples_light() && globals.strategy == STRATEGY_MIS;
         var numbers = MaterialNumbers(xi.xyz, xi.w, xi.xyz);
-        if material_transmits(material) {
+        if transmits {
             let pair = BELOW_DIMENSION + 2u * bounce;
             numbers.below = vec3f(random_pair(state, pair), random_pair(state, pair + 1u).x);
         }
-        var drawn = material_sample(material, point.surface, numbers, wants_density);
+        let asked = MaterialLight(lit.direction, lit.density, select(0.0, 1.0, globals.strategy == STRATEGY_MIS));
+        let scattered = material_scatter(material, point.surface, layers, steps, numbers, wants_density, asked);
+        if may_sample_light() && any(scattered.reflected > vec3f(0.0)) {
+            light.ray = Ray(ray_origin(point, lit.direction, transmits), lit.direction);
+            light.distance = lit.distance;
+            light.value = throughput * scattered.reflected / lit.density;
+            light.value *= select(lit.radiance, vec3f(1.0), light.is_from_afar);
+            light.is_free = meets_nothing(point, lit.direction);
+            light.waits = true;
+        }
+        var drawn = scattered.drawn;
         leaves = meets_nothing(point, drawn.wi);
         looks = looks && drawn.is_mirror;
         if is_mirrored {
@@ -363,25 +435,21 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         throughput *= drawn.throughput;
         let strength = max(max(throughput.x, throughput.y), throughput.z);
-        if !(strength > 0.0) {
-            break;
-        }
+        goes_on = strength > 0.0;
         if bounce >= ROULETTE_START && strength < 1.0 {
-            if random_pair(state, dimension + 3u).y >= strength {
-                break;
-            }
-            throughput /= strength;
+            goes_on = goes_on && random_pair(state, dimension + 3u).y < strength;
+            throughput /= max(strength, 1e-37);
         }
         lobe_density = drawn.density;
         was_mirror = drawn.is_mirror;
-        ray = Ray(ray_origin(point, drawn.wi, material_transmits(material)), drawn.wi);
+        ray = Ray(ray_origin(point, drawn.wi, transmits), drawn.wi);
     }
     if PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_ALPHA {
         // A part of the light alone casts no shadow.
-        let alpha = select(1.0 - luminance(radiance), 0.0, globals.least_reflections > 0u);
-        return PathResult(vec3f(0.0), alpha, rays, clamped, seen);
+        let covered = select(1.0 - luminance(radiance), 0.0, globals.least_reflections > 0u);
+        return PathResult(vec3f(0.0), covered, rays, clamped, seen);
     }
-    return PathResult(radiance, 1.0, rays, clamped, seen);
+    return PathResult(radiance, alpha, rays, clamped, seen);
 }
 
 // Finite and not negative: what may be added to the picture.

@@ -27,15 +27,16 @@ fn catcher_light(table: u32, position: vec3f) -> vec3f {
     let side = u32(tables[table]);
     let across = catcher_node(position.x, side);
     let down = catcher_node(position.z, side);
-    let upper = mix(
-        catcher_radiance(table, side, down.number, across.number),
-        catcher_radiance(table, side, down.number, across.number + 1u), across.behind,
-    );
-    let lower = mix(
-        catcher_radiance(table, side, down.number + 1u, across.number),
-        catcher_radiance(table, side, down.number + 1u, across.number + 1u), across.behind,
-    );
-    return mix(upper, lower, down.behind);
+    // A loop over the nodes around that have weight, so that the code that loads one is there once.
+    var sum = vec3f(0.0);
+    for (var node = 0u; node < select(2u, 4u, down.behind > 0.0); node++) {
+        let is_right = (node & 1u) != 0u;
+        let is_lower = node > 1u;
+        let share = select(1.0 - across.behind, across.behind, is_right) * select(1.0 - down.behind, down.behind, is_lower);
+        let row = down.number + select(0u, 1u, is_lower);
+        sum += catcher_radiance(table, side, row, across.number + select(0u, 1u, is_right)) * share;
+    }
+    return sum;
 }
 
 // The share of what is seen of the plane under this cosine that is mirrored in it (Schlick 1994, eq. 15).

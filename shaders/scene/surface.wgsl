@@ -66,6 +66,12 @@ fn passed_origin(hit: Hit, direction: vec3f) -> vec3f {
 }
 
 fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
+    let slot = slot_at(hit.triangle);
+    return surface_of(hit, direction, slot, materials[slot]);
+}
+
+// The same of a material that is known.
+fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> SurfacePoint {
     let triangle = triangle_at(hit.triangle);
     let w = 1.0 - hit.u - hit.v;
     let place = hit_place(hit, direction);
@@ -82,10 +88,9 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     let smoothed = normalize_or(interpolated, normal);
     let side = select(1.0, -1.0, dot(smoothed, normal) < 0.0);
     let coat_normal = bent_normal(side * smoothed, wo);
-    let slot = slot_at(hit.triangle);
     var uvs = Uvs(vec4f(0.0), vec2f(0.0));
     if looks_up_textures() {
-        uvs = hit_uvs(hit, materials[slot]);
+        uvs = hit_uvs(hit, material);
     }
     let tangent = vec4f(
         a.tangent[0] * w + b.tangent[0] * hit.u + c.tangent[0] * hit.v,
@@ -94,18 +99,18 @@ fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
         a.tangent[3] * w + b.tangent[3] * hit.u + c.tangent[3] * hit.v,
     );
     var shading = coat_normal;
-    if PLAN_NORMAL_MAPS == 1u && materials[slot].textures.z != NO_TEXTURE {
+    if PLAN_NORMAL_MAPS == 1u && material.textures.z != NO_TEXTURE {
         let outward = normalize_or(interpolated, select(normal, -normal, place.is_back));
-        shading = bent_normal(side * mapped_normal(materials[slot], uvs, smoothed, tangent, outward), wo);
+        shading = bent_normal(side * mapped_normal(material, uvs, smoothed, tangent, outward), wo);
         shading = lifted_normal(shading, normal, wo);
     }
     var frame = frame_from_normal(shading);
-    if PLAN_ANISOTROPY == 1u && materials[slot].anisotropy != 0.0 {
-        frame = frame_from_tangent(shading, tangent.xyz, materials[slot].rotation_rad);
+    if PLAN_ANISOTROPY == 1u && material.anisotropy != 0.0 {
+        frame = frame_from_tangent(shading, tangent.xyz, material.rotation_rad);
     }
     let surface = Surface(frame, normal, wo, coat_normal, place.is_back);
     var color = vec3f(1.0);
-    if PLAN_COLOR_TEXTURES == 1u && materials[slot].has_vertex_colors == 1u {
+    if PLAN_COLOR_TEXTURES == 1u && material.has_vertex_colors == 1u {
         color = vertex_color(a) * w + vertex_color(b) * hit.u + vertex_color(c) * hit.v;
     }
     return SurfacePoint(surface, place.position, place.error, slot, uvs, color);

@@ -73,17 +73,30 @@ fn filtered(record: TextureRecord, uvs: Uvs) -> vec4f {
     let v = record.v_from_uv.x * uv.x + record.v_from_uv.y * uv.y + record.v_from_uv.z;
     let x = wrapped(u, wrap.x) * f32(record.width);
     let y = wrapped(v, wrap.y) * f32(record.height);
-    if (record.flags & IS_NEAREST) != 0u {
-        return texel(record, min(u32(x), record.width - 1u), min(u32(y), record.height - 1u));
+    // The nearest texel, or the four around the place: a loop, so that the code of a texel is there once.
+    var columns = vec2u(min(u32(x), record.width - 1u));
+    var rows = vec2u(min(u32(y), record.height - 1u));
+    var share = vec2f(0.0);
+    var count = 1u;
+    if (record.flags & IS_NEAREST) == 0u {
+        let left = floor(x - 0.5);
+        let top = floor(y - 0.5);
+        columns = neighbours(left, record.width, wrap.x);
+        rows = neighbours(top, record.height, wrap.y);
+        share = vec2f(x - 0.5 - left, y - 0.5 - top);
+        count = 4u;
     }
-    let left = floor(x - 0.5);
-    let top = floor(y - 0.5);
-    let columns = neighbours(left, record.width, wrap.x);
-    let rows = neighbours(top, record.height, wrap.y);
-    let fx = x - 0.5 - left;
-    let above = mix_texels(texel(record, columns.x, rows.x), texel(record, columns.y, rows.x), fx);
-    let below = mix_texels(texel(record, columns.x, rows.y), texel(record, columns.y, rows.y), fx);
-    return mix_texels(above, below, y - 0.5 - top);
+    var above = vec4f(0.0);
+    var line = vec4f(0.0);
+    for (var i = 0u; i < count; i++) {
+        let is_right = (i & 1u) != 0u;
+        let found = texel(record, select(columns.x, columns.y, is_right), select(rows.x, rows.y, i > 1u));
+        if i == 2u {
+            above = line;
+        }
+        line = select(found, mix_texels(line, found, share.x), is_right);
+    }
+    return select(line, mix_texels(above, line, share.y), count > 1u);
 }
 
 fn mix_texels(a: vec4f, b: vec4f, t: f32) -> vec4f {
@@ -114,21 +127,21 @@ fn neighbours(low: f32, size: u32, wrap: u32) -> vec2u {
 
 fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
     let place = row * record.width + column;
-    if (record.flags & IS_FINE) != 0u {
-        let first = record.first_texel + 2u * place;
-        let rg = texture_word(first);
-        let ba = texture_word(first + 1u);
-        return vec4f(vec4u(rg & 0xffffu, rg >> 16u, ba & 0xffffu, ba >> 16u)) / 65535.0;
+    let is_fine = (record.flags & IS_FINE) != 0u;
+    let first = record.first_texel + select(place, 2u * place, is_fine);
+    let word = texture_word(first);
+    if is_fine {
+        let next = texture_word(first + 1u);
+        return vec4f(vec4u(word & 0xffffu, word >> 16u, next & 0xffffu, next >> 16u)) / 65535.0;
     }
-    let word = texture_word(record.first_texel + place);
     let codes = vec4u(word & 0xffu, (word >> 8u) & 0xffu, (word >> 16u) & 0xffu, word >> 24u);
-    if (record.flags & IS_SRGB) == 0u {
-        return vec4f(codes) / 255.0;
+    var color = vec4f(codes) / 255.0;
+    let curved = select(0u, 3u, (record.flags & IS_SRGB) != 0u);
+    for (var channel = 0u; channel < curved; channel++) {
+        let linear = bitcast<f32>(texture_word((word >> (8u * channel)) & 0xffu));
+        color = select(color, vec4f(linear), vec4<bool>(channel == 0u, channel == 1u, channel == 2u, false));
     }
-    return vec4f(
-        bitcast<f32>(texture_word(codes.x)), bitcast<f32>(texture_word(codes.y)),
-        bitcast<f32>(texture_word(codes.z)), f32(codes.w) / 255.0,
-    );
+    return color;
 }
 
 fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Material {
@@ -143,12 +156,18 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
         material.textures.x, material.textures.y, material.textures.w,
         select(material.metalness_texture, NO_TEXTURE, has_both), material.coat_texture,
     );
-    let kinds = select(3u, 5u, PLAN_ROUGHNESS_TEXTURES + PLAN_COAT_TEXTURES > 0u);
-    for (var kind = 0u; kind < kinds; kind++) {
-        let index = indices[kind];
-        if index != NO_TEXTURE {
-            found[kind] = texture_lookup(index, uvs);
-        }
+    // Bit by bit of those that there are: a loop whose length is known beforehand would be unrolled.
+    var wanted = 0u;
+    for (var kind = 0u; kind < 5u; kind++) {
+        wanted |= select(0u, 1u << kind, indices[kind] != NO_TEXTURE);
+    }
+    if PLAN_ROUGHNESS_TEXTURES + PLAN_COAT_TEXTURES == 0u {
+        wanted &= 7u;
+    }
+    while wanted != 0u {
+        let kind = firstTrailingBit(wanted);
+        wanted &= wanted - 1u;
+        found[kind] = texture_lookup(indices[kind], uvs);
     }
     var at_point = material;
     if PLAN_COLOR_TEXTURES == 1u {
@@ -178,14 +197,24 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
 
 // What a surface point emits, its holes left out.
 fn emission_at(material: Material, uvs: Uvs) -> vec3f {
-    var share = 1.0;
-    if material_has_holes(material) {
-        share = opacity_at(material, uvs);
+    // The picture of what is emitted, and that of the holes: a loop, so that the look-up's code is there once.
+    var emission = material.emission;
+    var opacity = material.opacity;
+    let has_emission = PLAN_EMISSION_TEXTURES == 1u && material.textures.w != NO_TEXTURE;
+    let has_holes = material_has_holes(material);
+    let has_opacity = has_holes && material.opacity_texture != NO_TEXTURE;
+    var wanted = select(0u, 1u, has_emission) + select(0u, 2u, has_opacity);
+    while wanted != 0u {
+        let is_emission = (wanted & 1u) != 0u;
+        wanted &= wanted - 1u;
+        let found = texture_lookup(select(material.opacity_texture, material.textures.w, is_emission), uvs);
+        if is_emission {
+            emission *= found.xyz;
+        } else {
+            opacity *= found.w;
+        }
     }
-    if PLAN_EMISSION_TEXTURES == 0u || material.textures.w == NO_TEXTURE {
-        return material.emission * share;
-    }
-    return material.emission * texture_lookup(material.textures.w, uvs).xyz * share;
+    return emission * select(1.0, stopped_share(material, opacity), has_holes);
 }
 
 // The share of light that a surface point stops.
@@ -194,6 +223,11 @@ fn opacity_at(material: Material, uvs: Uvs) -> f32 {
     if material.opacity_texture != NO_TEXTURE {
         opacity *= texture_lookup(material.opacity_texture, uvs).w;
     }
+    return stopped_share(material, opacity);
+}
+
+// The same where the opacity is known.
+fn stopped_share(material: Material, opacity: f32) -> f32 {
     let masked = select(1.0, 0.0, opacity < material.alpha_cutoff);
     return select(masked, opacity, material.alpha_cutoff < 0.0);
 }
@@ -218,35 +252,29 @@ fn mapped_normal(material: Material, uvs: Uvs, normal: vec3f, tangent: vec4f, ou
     return normalize_or(along.tangent * slope.x + bitangent * slope.y + normal * max(decoded.z, 0.0), normal);
 }
 
-// Both sets of texture coordinates at a place of a triangle.
-fn uv_sets_at(corners: vec3u, weights: vec3f) -> vec4f {
-    return corner_uvs(corners.x) * weights.x + corner_uvs(corners.y) * weights.y + corner_uvs(corners.z) * weights.z;
-}
-
-fn corner_uvs(vertex: u32) -> vec4f {
-    let at = vertex_at(vertex);
-    return vec4f(at.uv[0], at.uv[1], at.second_uv[0], at.second_uv[1]);
-}
-
 // The texture coordinates at a place of a triangle; those of the box where `has_box` says that they are needed.
 fn uvs_at(triangle: Triangle, weights: vec3f, has_box: bool) -> Uvs {
-    let corners = vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w);
+    var corners = vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w);
+    var weight = weights;
+    var sets = vec4f(0.0);
+    var smooth_normal = vec3f(0.0);
+    // Corners that have weight, in turn, so that the code that loads one is there once.
+    while any(weight != vec3f(0.0)) {
+        let at = vertex_at(corners.x);
+        sets += vec4f(at.uv[0], at.uv[1], at.second_uv[0], at.second_uv[1]) * weight.x;
+        smooth_normal += vec3f(at.normal[0], at.normal[1], at.normal[2]) * weight.x;
+        corners = corners.yzx;
+        weight = vec3f(weight.yz, 0.0);
+    }
     var on_box = vec2f(0.0);
     if PLAN_BOX_PROJECTION == 1u && has_box {
         let p0 = bitcast<vec3f>(triangle.corners[0].xyz);
         let p1 = bitcast<vec3f>(triangle.corners[1].xyz);
         let p2 = bitcast<vec3f>(triangle.corners[2].xyz);
-        let smooth_normal = corner_normal(corners.x) * weights.x + corner_normal(corners.y) * weights.y +
-            corner_normal(corners.z) * weights.z;
         let place = p0 * weights.x + p1 * weights.y + p2 * weights.z;
         on_box = box_uv(place, normalize_or(smooth_normal, triangle_normal(p0, p1, p2)));
     }
-    return Uvs(uv_sets_at(corners, weights), on_box);
-}
-
-fn corner_normal(vertex: u32) -> vec3f {
-    let at = vertex_at(vertex);
-    return vec3f(at.normal[0], at.normal[1], at.normal[2]);
+    return Uvs(sets, on_box);
 }
 
 // The axis along which a picture lies to the right on the side of a box that a surface with this normal faces.

@@ -1,5 +1,5 @@
 // What stops a ray, and what lets it pass. Twin of Integrator::stop and Integrator::transmittance in
-// src/cpu/integrator/rays.rs.
+// src/cpu/integrator/rays.rs: one function, so that the traversal stands once in a kernel.
 #import "optics/random"
 #import "scene/camera"
 #import "scene/plan"
@@ -10,55 +10,48 @@ const OPACITY_DIMENSION: u32 = 8192u;
 // Surfaces that a ray may go straight on through.
 const PASSES_MAX: u32 = 256u;
 
-// The share of light that reaches the origin of a ray from so far.
-fn transmittance(start: vec3f, direction: vec3f, distance: f32, rays: ptr<function, u32>) -> f32 {
-    if PLAN_ALPHA == 0u {
-        *rays += 1u;
-        return select(0.0, 1.0, trace(start, direction, distance, true).triangle == NO_HIT);
-    }
-    var origin = start;
-    var share = 1.0;
-    var left = distance;
-    for (var i = 0u; i < PASSES_MAX; i++) {
-        *rays += 1u;
-        let hit = trace(origin, direction, left, false);
-        if hit.triangle == NO_HIT {
-            return share;
-        }
-        share *= 1.0 - hit_opacity(hit);
-        if share <= 0.0 {
-            break;
-        }
-        left -= hit.t;
-        origin = passed_origin(hit, direction);
-    }
-    return 0.0;
+// What a ray met: its t the distance from the ray's origin, and the share of the light from its end that got through.
+struct Met {
+    hit: Hit,
+    share: f32,
 }
 
-// The hit that stops a ray, its t the distance from the ray's origin.
-fn stop(ray: Ray, state: RandomState, bounce: u32, rays: ptr<function, u32>) -> Hit {
+// What stops a ray; or, of the way to a light, what share of it gets through.
+fn meet(ray: Ray, length: f32, is_to_light: bool, opacity_number: f32, rays: ptr<function, u32>) -> Met {
     if PLAN_ALPHA == 0u {
         *rays += 1u;
-        return trace(ray.origin, ray.direction, 1e30, false);
+        let hit = trace(ray.origin, ray.direction, length, is_to_light);
+        return Met(hit, select(0.0, 1.0, hit.triangle == NO_HIT));
     }
     var origin = ray.origin;
-    var xi = random_pair(state, OPACITY_DIMENSION + bounce).x;
+    var xi = opacity_number;
     var distance = 0.0;
+    var left = length;
+    var met = Met(Hit(0.0, NO_HIT, 0.0, 0.0), 1.0);
     for (var i = 0u; i < PASSES_MAX; i++) {
         *rays += 1u;
-        var hit = trace(origin, ray.direction, 1e30, false);
+        let hit = trace(origin, ray.direction, left, false);
         if hit.triangle == NO_HIT {
-            return hit;
+            return met;
         }
-        distance += hit.t;
-        hit.t = distance;
+        // Before the opacity, which looks at the same triangle: drivers load it once.
+        let passed = passed_origin(hit, ray.direction);
         let opacity = hit_opacity(hit);
-        if xi < opacity {
-            return hit;
+        distance += hit.t;
+        if is_to_light {
+            met.share *= 1.0 - opacity;
+            left -= hit.t;
+            if met.share <= 0.0 {
+                return met;
+            }
+        } else if xi < opacity {
+            met.hit = Hit(distance, hit.triangle, hit.u, hit.v);
+            return met;
         }
         // Uniform again, given that the surface did not stop the ray.
         xi = (xi - opacity) / max(1.0 - opacity, 1e-20);
-        origin = passed_origin(hit, ray.direction);
+        origin = passed;
     }
-    return Hit(0.0, NO_HIT, 0.0, 0.0);
+    met.share = 0.0;
+    return met;
 }
