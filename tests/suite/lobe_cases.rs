@@ -1,9 +1,11 @@
 //! The grid of lobes, roughnesses and view angles that the statistical tests loop over.
 
-use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
+use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, Integral, custom_table};
 use glossmith::optics::frame::{Frame, frame_from_normal};
 use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_middle};
 use glossmith::optics::vector::{Vec3, vec3};
+
+use crate::support::is_thorough;
 
 /// Mirror-like, glossy, rough, nearly Lambertian, Lambertian.
 pub const ROUGHNESS: [f64; 7] = [0.02, 0.1, 0.3, 0.6, 0.9, 0.999, 1.0];
@@ -134,6 +136,15 @@ pub fn lobes_and_curves() -> Vec<(Lobe, Curve)> {
         .iter()
         .flat_map(|&lobe| lobe.curves().iter().map(move |&curve| (lobe, curve)))
         .collect()
+}
+
+/// The same without the curves whose density is integrated node by node or interval by interval, which takes ten times as long:
+/// for what is done to a lobe whatever its curve. With them in `make test-thorough`.
+pub fn lobes_and_quick_curves() -> Vec<(Lobe, Curve)> {
+    let is_quick = |curve: Curve| !matches!(curve.traits().integral, Integral::Quadrature | Integral::Table);
+    let mut all = lobes_and_curves();
+    all.retain(|&(_, curve)| is_quick(curve) || is_thorough());
+    all
 }
 
 /// A custom curve with a crowded middle, a gap and a ring: nothing that one rule of quadrature would meet by chance.
