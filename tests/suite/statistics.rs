@@ -11,7 +11,6 @@ use glossmith::optics::vector::{Vec3, vec3};
 use rayon::prelude::*;
 
 use crate::lobe_cases::{ANGLES_DEG, Case, ROUGHNESS, lobes_and_curves, lobes_and_quick_curves};
-use crate::support::is_thorough;
 
 /// Probability that chance alone fails a right sampler, over all cases of a test.
 const LEVEL: f64 = 1e-3;
@@ -169,13 +168,7 @@ fn refracted_samples_follow_their_densities() {
 fn samples_refracted_at_facets_follow_their_densities() {
     let mut cases = Vec::new();
     for &lobe in Lobe::ALL.iter().filter(|lobe| lobe.facets() != Facets::None) {
-        // What is denser than glass is no other case, but a longer one.
-        let indices: &[f64] = if is_thorough() {
-            &[1.5, 1.0 / 1.5, 2.4]
-        } else {
-            &[1.5, 1.0 / 1.5]
-        };
-        for &eta in indices {
+        for eta in [1.5, 1.0 / 1.5, 2.4] {
             let stretched: &[f64] = if lobe.is_anisotropic() { &[0.0, 0.7] } else { &[0.0] };
             let grid = Case::grid(lobe, Curve::Sqrt, Horizon::Mirror, stretched, &ROUGHNESS, &ANGLES_DEG);
             // Beyond the critical angle narrow lobes refract next to nothing.
