@@ -16,6 +16,29 @@ use super::refraction::{facet_density_factor, facet_refracted, facet_weight, ref
 use super::vector::Vec3;
 use crate::named::named;
 
+/// Hands the list of the lobes to a macro: module, type, number in the shaders, name, label, help.
+macro_rules! list {
+    ($make:ident) => {
+        $make! {
+            geometric Geometric = 0, "geometric", "Geometric",
+                "Samples are the mirror direction plus a random vector: no basis, no rotation (the paper, eqs. 8 to 10).";
+            ggx Ggx = 1, "ggx", "GGX",
+                "Microfacets with visible normals sampled by spherical caps (Dupuy and Benyoub 2023).";
+            ggx_2018 Ggx2018 = 2, "ggx-2018", "GGX (2018)",
+                "The same model, visible normals sampled as by Heitz (2018).";
+            ggx_ndf GgxNdf = 3, "ggx-ndf", "GGX (2007)",
+                "The same model, all normals sampled as by Walter et al. (2007): noisier at grazing angles.";
+            blinn_phong BlinnPhong = 4, "blinn-phong", "Blinn-Phong",
+                "Microfacets with a cosine-power distribution of normals (Blinn 1977, Walter et al. 2007).";
+            phong Phong = 5, "phong", "Phong",
+                "A cosine power around the mirror direction (Lafortune and Willems 1994).";
+            lambert Lambert = 6, "lambert", "Lambert",
+                "Perfectly diffuse: equally bright from everywhere, whatever the roughness.";
+        }
+    };
+}
+pub(crate) use list;
+
 macro_rules! lobes {
     ($($module:ident $variant:ident = $index:literal, $name:literal, $label:literal, $help:literal;)*) => {
         $(pub mod $module;)*
@@ -68,22 +91,7 @@ macro_rules! lobes {
     };
 }
 
-lobes! {
-    geometric Geometric = 0, "geometric", "Geometric",
-        "Samples are the mirror direction plus a random vector: no basis, no rotation (the paper, eqs. 8 to 10).";
-    ggx Ggx = 1, "ggx", "GGX",
-        "Microfacets with visible normals sampled by spherical caps (Dupuy and Benyoub 2023).";
-    ggx_2018 Ggx2018 = 2, "ggx-2018", "GGX (2018)",
-        "The same model, visible normals sampled as by Heitz (2018).";
-    ggx_ndf GgxNdf = 3, "ggx-ndf", "GGX (2007)",
-        "The same model, all normals sampled as by Walter et al. (2007): noisier at grazing angles.";
-    blinn_phong BlinnPhong = 4, "blinn-phong", "Blinn-Phong",
-        "Microfacets with a cosine-power distribution of normals (Blinn 1977, Walter et al. 2007).";
-    phong Phong = 5, "phong", "Phong",
-        "A cosine power around the mirror direction (Lafortune and Willems 1994).";
-    lambert Lambert = 6, "lambert", "Lambert",
-        "Perfectly diffuse: equally bright from everywhere, whatever the roughness.";
-}
+list!(lobes);
 
 impl Lobe {
     /// See [`LobeTraits::is_hemispherical`].

@@ -22,7 +22,7 @@ const DOCUMENTS: [usize; 2] = [250, 10];
 const LIGHT_DENSITIES: [f32; 3] = [0.08, 10.0, 1e6];
 
 macro_rules! cases {
-    ($($lobe:ident $name:literal,)*) => {
+    ($($module:ident $lobe:ident = $index:literal, $name:literal, $label:literal, $help:literal;)*) => {
         pub(super) const CASES: &[HardCase] = &[$(HardCase {
             name: concat!("f32-against-f64-", $name),
             group: "lobe",
@@ -39,15 +39,7 @@ macro_rules! cases {
     };
 }
 
-cases! {
-    Geometric "geometric",
-    Ggx "ggx",
-    Ggx2018 "ggx-2018",
-    GgxNdf "ggx-ndf",
-    BlinnPhong "blinn-phong",
-    Phong "phong",
-    Lambert "lambert",
-}
+crate::optics::lobe::list!(cases);
 
 /// Numbers that depend on their place only.
 struct Numbers(u32);
