@@ -69,7 +69,7 @@ pub trait Real:
     /// The number in one lane.
     type Scalar: Scalar;
     /// Something for each lane.
-    type Each<E: Copy + Default>: Copy + AsRef<[E]> + AsMut<[E]>;
+    type Each<E: Copy + Default>: Copy + AsRef<[E]>;
 
     /// How many numbers go side by side.
     const LANES: usize;
@@ -143,11 +143,6 @@ pub trait Real:
     fn is_nan(self) -> Self::Mask {
         let below = self.less(Self::one());
         !(below | Self::zero().less(self))
-    }
-    /// The same number in each lane.
-    #[inline(always)]
-    fn splat(number: Self::Scalar) -> Self {
-        Self::from_f64(number.to_f64())
     }
     /// The number of one lane.
     #[inline(always)]

@@ -321,7 +321,7 @@ impl<T: Real> Integrator<'_, T> {
                 path.record(|| light.told(whole, light.visible, radiance));
             });
         }
-        // Both sources together: each light adds to its own path.
+        // Each path has one light; accounts tell which kind it was.
         let (near, far) = (group.mask() & !is_far, group.mask() & is_far);
         self.add(group, near, Source::Surface, found, bounce + 1, paths);
         self.add(group, far, Source::Environment, found, bounce + 1, paths);

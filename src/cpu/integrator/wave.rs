@@ -106,7 +106,7 @@ impl<T: Real> Integrator<'_, T> {
             // All pixels of all samples are there.
             for sample in lists.under_way.chunks(pixels) {
                 for members in sample.chunks(PACKET) {
-                    self.trace_packet(members, lists.met.as_mut(), lists.left.as_mut(), paths);
+                    self.trace_packet(members, &mut lists.met, &mut lists.left, paths);
                 }
             }
         } else {
