@@ -22,6 +22,7 @@ use crate::store::replace::save_atomically;
 
 /// Arguments that describe what is rendered, and how. Options stand over what files say.
 #[derive(Debug, Default, Args)]
+#[command(next_line_help = true)]
 pub struct SceneArguments {
     /// What to begin with: projects (.json), pictures saved here (.png, with the document inside), models (several are
     /// shown together), environments, materials. Options stand over what they say.

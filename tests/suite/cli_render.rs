@@ -527,3 +527,30 @@ fn help_and_version_are_no_errors() {
         assert!(place.done(arguments).stdout.contains("Usage: glossmith"), "{arguments}");
     }
 }
+
+/// One long name of an option once pressed all help into a column a word wide.
+#[test]
+fn help_is_not_pressed_into_a_narrow_column() {
+    let place = Workplace::new();
+    let verbs = [
+        "render",
+        "plan",
+        "explain",
+        "turntable",
+        "batch",
+        "convert",
+        "scatter",
+        "lobe",
+        "study accuracy",
+        "study ledger",
+    ];
+    for verb in verbs {
+        let help = place.done(&format!("{verb} --help")).stdout;
+        let words = help.split_whitespace().count();
+        assert!(
+            words > 3 * help.lines().count(),
+            "{verb}: {words} words in {} lines",
+            help.lines().count()
+        );
+    }
+}
