@@ -138,10 +138,13 @@ pub fn lobes_and_curves() -> Vec<(Lobe, Curve)> {
         .collect()
 }
 
-/// The same without the curves whose density is integrated node by node or interval by interval, which takes ten times as long:
-/// for what is done to a lobe whatever its curve. With them in `make test-thorough`.
+/// False for curves whose density is integrated node by node or interval by interval, which takes ten times as long.
+pub fn is_quick(curve: Curve) -> bool {
+    !matches!(curve.traits().integral, Integral::Quadrature | Integral::Table)
+}
+
+/// The same with quick curves alone: for what is done to a lobe whatever its curve. With all in `make test-thorough`.
 pub fn lobes_and_quick_curves() -> Vec<(Lobe, Curve)> {
-    let is_quick = |curve: Curve| !matches!(curve.traits().integral, Integral::Quadrature | Integral::Table);
     let mut all = lobes_and_curves();
     all.retain(|&(_, curve)| is_quick(curve) || is_thorough());
     all
