@@ -112,8 +112,10 @@ impl Stage for OfEnvironment<'_> {
     }
     #[inline(always)]
     fn run<T: Real>(&self, [x, y, z]: [T; 3]) -> T {
-        let (direction, density) = environment_sample(self.0, vec3(x, y, z));
-        environment_radiance(self.0, direction).luminance() + environment_density(self.0, direction) + density
+        let (direction, density) = environment_sample(self.0.distribution(false), vec3(x, y, z));
+        environment_radiance(self.0, direction).luminance()
+            + environment_density(self.0.distribution(false), direction)
+            + density
     }
 }
 

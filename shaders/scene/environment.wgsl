@@ -3,19 +3,24 @@
 // cells come from src/scene/environment/distribution.rs.
 #import "optics/numeric"
 #import "scene/alias"
+#import "scene/inversion"
 #import "scene/layout"
 
-// One cell of the distribution: an entry of the alias table with the cell's density per steradian.
-struct AliasCell {
-    threshold: f32,
-    alias_index: u32,
+// A cell of a row of the distribution, or a row.
+struct EnvironmentCell {
+    // The first of the numbers that draw it, and the number after the last.
+    bounds: vec2u,
+    // Of the slot of its index, the first entry that its numbers may draw, and the last.
+    guide: vec2u,
+    // Per steradian.
     density: f32,
 }
 
-fn environment_cell(index: u32) -> AliasCell {
+// The cells lie row by row, the rows after them.
+fn environment_cell(index: u32) -> EnvironmentCell {
     let place = texel_place(index);
     let words = textureLoad(environment_cells, place.xy, place.z, 0);
-    return AliasCell(bitcast<f32>(words.x), words.y, bitcast<f32>(words.z));
+    return EnvironmentCell(words.xy, vec2u(words.z & 0xffffu, words.z >> 16u), bitcast<f32>(words.w));
 }
 
 struct EnvironmentSample {
@@ -80,17 +85,57 @@ fn environment_radiance(direction_local: vec3f) -> vec3f {
     return mix(upper, lower, share.y);
 }
 
-// A direction drawn with the density that is returned with it. xi.xy choose the cell and the place in it, xi.z whether
-// the cell or its alias is taken: see the twin for why one number would not do. cells_size: columns and rows of cells.
+// A direction drawn with the density that is returned with it. xi.y draws the row of a cell, xi.x the column, xi.z is
+// what they have too few bits for. cells_size: columns and rows of cells.
 fn environment_sample(xi: vec3f, cells_size: vec2u) -> EnvironmentSample {
-    let drawn = grid_place(xi.xy, cells_size);
-    let cell = environment_cell(drawn.index);
-    let chosen = select(cell.alias_index, drawn.index, xi.z < cell.threshold);
-    let chosen_cell = vec2u(chosen % cells_size.x, chosen / cells_size.x);
-    return EnvironmentSample(
-        environment_direction_in_cell(chosen_cell, drawn.place, cells_size),
-        environment_cell(chosen).density,
-    );
+    let jitters = xi.z * 4096.0;
+    var chosen = vec2u(0u);
+    var place = vec2f(0.0);
+    var density = 0.0;
+    // A row, then one of its cells.
+    for (var step = 0u; step < 2u; step++) {
+        let is_row = step == 0u;
+        let first = select(chosen.y, cells_size.y, is_row) * cells_size.x;
+        let number = draw_number(select(xi.x, xi.y, is_row));
+        let count = select(cells_size.x, cells_size.y, is_row);
+        let drawn = environment_draw(first, count, number);
+        if is_row {
+            chosen.y = drawn.index;
+            place.y = place_in(drawn.bounds, number, fract(jitters));
+        } else {
+            chosen.x = drawn.index;
+            place.x = place_in(drawn.bounds, number, floor(jitters) / 4096.0);
+            density = drawn.density;
+        }
+    }
+    return EnvironmentSample(environment_direction_in_cell(chosen, place, cells_size), density);
+}
+
+struct DrawnCell {
+    index: u32,
+    bounds: vec2u,
+    density: f32,
+}
+
+// The entry that a number draws of `count`, which begin with cell `first`.
+fn environment_draw(first: u32, count: u32, number: u32) -> DrawnCell {
+    let guide = environment_cell(first + (number >> slot_shift(count))).guide;
+    var low = guide.x;
+    var high = guide.y;
+    var middle = (low + high) / 2u;
+    var cell = environment_cell(first + middle);
+    loop {
+        let is_later = number >= cell.bounds.y && middle < high;
+        let is_before = number < cell.bounds.x && middle > low;
+        if !(is_later || is_before) {
+            break;
+        }
+        low = select(low, middle + 1u, is_later);
+        high = select(high, middle - 1u, is_before);
+        middle = (low + high) / 2u;
+        cell = environment_cell(first + middle);
+    }
+    return DrawnCell(middle, cell.bounds, cell.density);
 }
 
 // The direction at a place (in [0, 1]^2, from the top left) of a cell, uniform in solid angle.

@@ -45,7 +45,7 @@ impl Resources {
             None => Sums::new(gpu, &pipelines.sums_layout, &job)?,
         };
         let scene = scene(gpu, &job, old)?;
-        let cells = [job.environment.cells_width, job.environment.cells_height];
+        let cells = [job.distribution().width, job.distribution().height];
         let globals = gpu.uniforms(&Globals::new(&job.settings, &job.geometry, cells));
         Ok(Self {
             scene_group: scene.bind(gpu, &pipelines.scene_layout, &globals),
@@ -78,9 +78,9 @@ fn scene(gpu: &GpuDevice, job: &Job, old: Option<&Resources>) -> Result<SceneGro
             Some(old) => old.tables.clone(),
             None => scene_group::tables(gpu, &job.tables)?,
         },
-        environment: match kept(|a, b| Arc::ptr_eq(&a.environment, &b.environment)) {
+        environment: match kept(Job::has_distribution_of) {
             Some(old) => old.environment.clone(),
-            None => scene_group::environment(gpu, &job.environment)?,
+            None => scene_group::environment(gpu, &job.environment, job.distribution())?,
         },
         light_cells: match kept(|a, b| Arc::ptr_eq(&a.lights, &b.lights) && Arc::ptr_eq(&a.geometry, &b.geometry)) {
             Some(old) => old.light_cells.clone(),

@@ -8,7 +8,8 @@ use super::device::{GpuDevice, GpuError};
 use super::geometry_arrays::GeometryArrays;
 use crate::optics::material::Material;
 use crate::scene::Geometry;
-use crate::scene::environment::Environment;
+use crate::scene::environment::{Distribution, Environment};
+use crate::scene::inversion::Share;
 use crate::scene::light::Lights;
 use crate::scene::texture::Textures;
 
@@ -115,11 +116,15 @@ pub fn tables(gpu: &GpuDevice, tables: &[f32]) -> Result<wgpu::Buffer, GpuError>
     array::buffer(gpu, "the materials' tables", &Values::of(tables))
 }
 
-/// The map of an environment and the cells of its distribution.
+/// The map of an environment and the cells of what directions are drawn with.
 ///
 /// # Errors
 /// [`GpuError::Unfit`] where the map is wider than the adapter's textures.
-pub fn environment(gpu: &GpuDevice, environment: &Environment) -> Result<[wgpu::TextureView; 2], GpuError> {
+pub fn environment(
+    gpu: &GpuDevice,
+    environment: &Environment,
+    distribution: &Distribution,
+) -> Result<[wgpu::TextureView; 2], GpuError> {
     let size = [environment.width, environment.height];
     let limit = gpu.device.limits().max_texture_dimension_2d;
     if size[0].max(size[1]) > limit {
@@ -128,12 +133,42 @@ pub fn environment(gpu: &GpuDevice, environment: &Environment) -> Result<[wgpu::
             reason: format!("the environment {} is wider than {limit} pixels", environment.name),
         });
     }
-    let cells = Values::of(&environment.cells)
-        .map(|cell| [cell.threshold.to_bits(), cell.alias_index, cell.density.to_bits(), 0]);
+    let cells = environment_cells(distribution);
     Ok([
         environment_map(gpu, size, &environment.texels),
         array::texture(gpu, "the environment's cells", &cells)?,
     ])
+}
+
+/// The cells of an environment, row by row, and after them the rows themselves: the first of the numbers that draw each,
+/// the number after the last, its slot's guide and that of the slot after it, in halves of a word, and the density.
+fn environment_cells(distribution: &Distribution) -> Values<'_, [u32; 4]> {
+    let (width, height) = (distribution.width as usize, distribution.height as usize);
+    let cell = move |index: usize| {
+        let (row, column) = (index / width, index % width);
+        if row < height {
+            let cells = &distribution.cells[row * width..][..width];
+            entry(width, column, |column| cells[column].share, cells[column].density)
+        } else {
+            let row = index - width * height;
+            entry(height, row, |row| distribution.rows[row], 0.0)
+        }
+    };
+    Values::made(width * height + height, cell)
+}
+
+/// An entry of `count` that are drawn from.
+fn entry(count: usize, index: usize, share: impl Fn(usize) -> Share, density: f32) -> [u32; 4] {
+    let lower = index.checked_sub(1).map_or(0, |before| share(before).upper);
+    let last = count as u32 - 1;
+    let next = index + 1;
+    let next_guide = if next < 1 << count.ilog2() {
+        share(next).guide
+    } else {
+        last
+    };
+    let guides = share(index).guide | next_guide << 16;
+    [lower, share(index).upper, guides, density.to_bits()]
 }
 
 fn environment_map(gpu: &GpuDevice, [width, height]: [u32; 2], texels: &[[f32; 4]]) -> wgpu::TextureView {

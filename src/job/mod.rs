@@ -17,7 +17,7 @@ use crate::optics::material::Material;
 use crate::optics::random::Sequence;
 use crate::scene::Geometry;
 use crate::scene::camera::Camera;
-use crate::scene::environment::Environment;
+use crate::scene::environment::{Distribution, Environment};
 use crate::scene::light::{LightChoice, Lights};
 use crate::scene::texture::Textures;
 
@@ -43,6 +43,18 @@ pub struct Job {
     pub settings: Settings,
     /// Which effects are simulated.
     pub plan: Plan,
+}
+
+impl Job {
+    /// What directions to the environment's light are drawn with.
+    pub fn distribution(&self) -> &Distribution {
+        self.environment.distribution(self.settings.strategy == Strategy::Light)
+    }
+
+    /// Whether another job draws directions to the environment's light with the same.
+    pub fn has_distribution_of(&self, other: &Self) -> bool {
+        std::ptr::eq(self.distribution(), other.distribution())
+    }
 }
 
 /// The numbers of a job that are cheap to change.

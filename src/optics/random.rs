@@ -18,7 +18,7 @@ named! {
 }
 
 /// The counters from which a path draws its numbers.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct RandomState {
     /// Hash of pixel and seed.
     pub key: u32,
@@ -172,6 +172,18 @@ pub fn random_pairs_bits<T: Real>(
             T::each(|lane| random_bits(keys[lane], samples[lane], 2 * dimension + 1)),
         ],
     }
+}
+
+/// The pairs of numbers in [0, 1) number `dimension` of some paths at once.
+#[inline(always)]
+pub fn random_pairs<T: Real>(
+    keys: &T::Each<u32>,
+    samples: &T::Each<u32>,
+    sequence: Sequence,
+    dimension: u32,
+) -> [T; 2] {
+    let bits = random_pairs_bits::<T>(keys, samples, sequence, dimension);
+    bits.map(|bits| T::from_lanes(|lane| unit_from_bits(bits.as_ref()[lane])))
 }
 
 /// The pair of numbers in [0, 1) number `dimension` of this path.

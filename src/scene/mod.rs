@@ -15,6 +15,7 @@ pub mod ground;
 mod hierarchy;
 mod import;
 mod intersect;
+pub mod inversion;
 pub mod light;
 mod loading;
 mod memory;

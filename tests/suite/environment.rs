@@ -310,7 +310,7 @@ fn white_radiance(environment: &Environment, normal: Vec3<f64>) -> f64 {
     let count = 100_000;
     let sum: f64 = (0..count)
         .map(|_| {
-            let (direction, density) = environment_sample::<f64>(environment, triple(&mut random));
+            let (direction, density) = environment_sample::<f64>(environment.distribution(true), triple(&mut random));
             environment_radiance(environment, direction).luminance() * direction.dot(normal).max(0.0) / density
         })
         .sum();
@@ -371,19 +371,4 @@ fn the_shader_is_valid() {
     validator
         .validate(&module)
         .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&source)));
-    let cell = module
-        .types
-        .iter()
-        .find(|(_, t)| t.name.as_deref() == Some("AliasCell"))
-        .unwrap()
-        .1;
-    let naga::TypeInner::Struct { members, span } = &cell.inner else {
-        panic!("AliasCell is no struct")
-    };
-    assert_eq!(*span as usize, size_of::<glossmith::scene::environment::AliasCell>());
-    let names: Vec<_> = members
-        .iter()
-        .map(|member| (member.name.as_deref().unwrap(), member.offset))
-        .collect();
-    assert_eq!(names, [("threshold", 0), ("alias_index", 4), ("density", 8)]);
 }

@@ -13,6 +13,7 @@ use glossmith::optics::lobe::{ALPHA_MIN, Facets, Lobe, MIRROR_WIDTH};
 use glossmith::optics::material::{MATCHED_NODES, NO_TEXTURE};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::camera::{self, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA};
+use glossmith::scene::inversion::DRAW_BITS;
 use glossmith::scene::{light, surface, texture};
 use naga::back::{hlsl, msl, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -267,6 +268,7 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("PIXEL_DIMENSION", f64::from(camera::PIXEL_DIMENSION)),
         ("LENS_DIMENSION", f64::from(camera::LENS_DIMENSION)),
         ("FIRST_DIMENSION", f64::from(integrator::FIRST_DIMENSION)),
+        ("DRAW_BITS", f64::from(DRAW_BITS)),
         ("BOUNCE_DIMENSIONS", f64::from(integrator::BOUNCE_DIMENSIONS)),
         ("BELOW_DIMENSION", f64::from(integrator::BELOW_DIMENSION)),
         ("CATCHER_DIMENSION", f64::from(integrator::CATCHER_DIMENSION)),

@@ -2,7 +2,7 @@
 
 use super::path::Path;
 use crate::cpu::recorder::{Event, Purpose, Recorder, single};
-use crate::optics::random::{random_pairs_bits, unit_from_bits};
+use crate::optics::random::random_pairs;
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 
@@ -99,11 +99,7 @@ impl<T: Real> Group<T> {
         let keys = T::each(|lane| self.of(paths, lane).state.key);
         let samples = T::each(|lane| self.of(paths, lane).state.sample);
         let sequence = self.of(paths, 0).state.sequence;
-        let bits = random_pairs_bits::<T>(&keys, &samples, sequence, dimension);
-        let pair = [
-            T::from_lanes(|lane| unit_from_bits(bits[0].as_ref()[lane])),
-            T::from_lanes(|lane| unit_from_bits(bits[1].as_ref()[lane])),
-        ];
+        let pair = random_pairs::<T>(&keys, &samples, sequence, dimension);
         for (half, purpose) in (0..).zip(purposes) {
             if purpose != Purpose::Unused {
                 self.record(paths, self.mask(), |lane| Event::Number {

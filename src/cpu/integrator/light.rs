@@ -12,7 +12,7 @@ use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_disc;
 use crate::scene::environment::{
     environment_density_at, environment_local_from_world, environment_radiance_at, environment_sample, environment_uv,
-    environment_world_from_local, fetch_cell, fetch_chosen, fetch_place,
+    environment_world_from_local, fetch_cell, fetch_chosen, fetch_guide, fetch_place,
 };
 use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_sample, spot_share};
 use crate::scene::surface::SurfacePoint;
@@ -41,7 +41,7 @@ impl<T: Real> Integrator<'_, T> {
         let radiance = self.far_radiance(place);
         let mut density = T::zero();
         if self.samples_environment {
-            density = self.environment_probability * environment_density_at(self.environment, place);
+            density = self.environment_probability * environment_density_at(self.distribution, place);
         }
         self.weighed(Source::Environment, radiance, density, ray, paths)
     }
@@ -60,7 +60,10 @@ impl<T: Real> Integrator<'_, T> {
     #[inline(always)]
     pub(super) fn locate_left<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut [Path<T::Scalar, R>]) {
         let place = self.left_places(group.vectors(paths, |path| path.ray.direction), bounce);
-        fetch_place(self.environment, place, bounce > 0 && self.samples_environment);
+        fetch_place(self.environment, place);
+        if bounce > 0 && self.samples_environment {
+            fetch_cell(self.distribution, place);
+        }
         set_places(group, place, paths);
     }
 
@@ -68,7 +71,7 @@ impl<T: Real> Integrator<'_, T> {
     #[inline(always)]
     pub(super) fn locate_lights<R: Recorder>(&self, group: &Group<T>, paths: &mut [Path<T::Scalar, R>]) {
         let place = self.far_places(group.vectors(paths, |path| path.light().drawn.direction));
-        fetch_place(self.environment, place, false);
+        fetch_place(self.environment, place);
         set_places(group, place, paths);
     }
 
@@ -83,7 +86,7 @@ impl<T: Real> Integrator<'_, T> {
             path.light_numbers = numbers.as_ref()[lane]
         });
         if self.samples_environment {
-            fetch_cell(self.environment, [a, b]);
+            fetch_guide(self.distribution, [a, b]);
         }
     }
 
@@ -91,9 +94,7 @@ impl<T: Real> Integrator<'_, T> {
     #[inline(always)]
     pub(super) fn fetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &[Path<T::Scalar, R>]) {
         let numbers = group.vectors(paths, |path| path.light_numbers);
-        // Where there are emitters, too, the last number chooses between them and the environment first.
-        let numbers = vec3(numbers.x, numbers.y, numbers.z / self.environment_probability);
-        fetch_chosen(self.environment, numbers);
+        fetch_chosen(self.distribution, [numbers.x, numbers.y]);
     }
 
     /// What surfaces emit that paths met, weighed against light sampling.
@@ -182,7 +183,7 @@ impl<T: Real> Integrator<'_, T> {
             radiance: Vec3::zero(),
         };
         if is_far.any() {
-            let (local, density) = environment_sample(self.environment, vec3(xi.x, xi.y, xi.z / share));
+            let (local, density) = environment_sample(self.distribution, vec3(xi.x, xi.y, xi.z / share));
             drawn.direction = environment_world_from_local(local, self.rotation);
             drawn.density = density * share;
         }
@@ -337,16 +338,22 @@ impl<T: Real> Integrator<'_, T> {
         dimension: u32,
         paths: &mut [Path<T::Scalar, R>],
     ) -> (Vec3<T>, T) {
+        let BackgroundKind::Blurred(sine) = self.settings.background else {
+            return self.plain_background(place);
+        };
+        let [x, y] = uniform_disc(group.pairs(paths, dimension, [Purpose::Blur; 2]));
+        let (x, y) = (x * T::from_f64(sine), y * T::from_f64(sine));
+        let height = (T::one() - x * x - y * y).safe_sqrt();
+        let around = frame_from_normal(direction);
+        let blurred = world_from_local(&around, vec3(x, y, height));
+        (self.far_radiance(self.far_places(blurred)), T::one())
+    }
+
+    /// What the camera sees where it meets nothing and nothing is blurred, and its alpha.
+    #[inline(always)]
+    pub(super) fn plain_background(&self, place: [T; 2]) -> (Vec3<T>, T) {
         match self.settings.background {
-            BackgroundKind::Environment => (self.far_radiance(place), T::one()),
-            BackgroundKind::Blurred(sine) => {
-                let [x, y] = uniform_disc(group.pairs(paths, dimension, [Purpose::Blur; 2]));
-                let (x, y) = (x * T::from_f64(sine), y * T::from_f64(sine));
-                let height = (T::one() - x * x - y * y).safe_sqrt();
-                let around = frame_from_normal(direction);
-                let blurred = world_from_local(&around, vec3(x, y, height));
-                (self.far_radiance(self.far_places(blurred)), T::one())
-            }
+            BackgroundKind::Environment | BackgroundKind::Blurred(_) => (self.far_radiance(place), T::one()),
             BackgroundKind::Transparent => (Vec3::zero(), T::zero()),
             BackgroundKind::Color(color) => (Vec3::from_f32(color), T::one()),
         }

@@ -1,6 +1,7 @@
 //! The path tracer in Rust: twin of `shaders/pass/path_trace.wgsl`, generic over the numbers that it shades with, of which
 //! there may be many in lanes.
 
+mod camera;
 mod catcher;
 mod group;
 mod light;
@@ -21,7 +22,7 @@ use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
 use crate::scene::Geometry;
 use crate::scene::camera::Camera;
-use crate::scene::environment::Environment;
+use crate::scene::environment::{Distribution, Environment};
 use crate::scene::light::Lights;
 use crate::scene::surface::{Hits, SurfacePoint, surfaces_at};
 use crate::scene::texture::{Textures, textured_materials};
@@ -66,6 +67,8 @@ pub struct PathResult<T> {
 pub struct Integrator<'a, T: Real> {
     geometry: &'a Geometry,
     environment: &'a Environment,
+    /// What directions to the environment's light are drawn with.
+    distribution: &'a Distribution,
     tables: &'a [f32],
     textures: &'a Textures,
     has_holes: bool,
@@ -114,6 +117,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         Self {
             geometry: &job.geometry,
             environment: &job.environment,
+            distribution: job.distribution(),
             tables: &job.tables,
             textures: &job.textures,
             has_holes: job.plan.has(EffectId::Alpha),

@@ -63,6 +63,20 @@ pub(super) struct Ray<S> {
     pub leaves: bool,
 }
 
+impl<S: Scalar> Ray<S> {
+    /// A camera's ray.
+    #[inline(always)]
+    pub fn of_camera(origin: Vec3<S>, direction: Vec3<S>) -> Self {
+        Self {
+            origin,
+            direction,
+            lobe_density: S::zero(),
+            is_mirror: true,
+            leaves: false,
+        }
+    }
+}
+
 impl<S: Scalar, R: Recorder> Path<S, R> {
     pub fn new(state: RandomState, pixel: [u32; 2], is_looking: bool, recorder: R) -> Self {
         Self {
@@ -85,6 +99,17 @@ impl<S: Scalar, R: Recorder> Path<S, R> {
             alpha: S::one(),
             recorder,
         }
+    }
+
+    /// Takes what its ray was found to meet; false where that is nothing.
+    #[inline(always)]
+    pub fn take(&mut self, hit: Option<Hit>) -> bool {
+        self.rays += 1;
+        if let Some(hit) = hit {
+            self.hit = hit;
+            self.distance = S::from_f64(f64::from(hit.t));
+        }
+        hit.is_some()
     }
 
     /// Tells of an event.

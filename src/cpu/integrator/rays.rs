@@ -29,13 +29,7 @@ impl<T: Real> Integrator<'_, T> {
         let [origin, direction] = pixel_ray(&self.camera, pixel, self.settings.image_size, [for_pixel, for_lens]);
         let (origins, directions) = (origin.to_each(), direction.to_each());
         group.for_each(paths, group.mask(), |path, lane| {
-            path.ray = Ray {
-                origin: origins.as_ref()[lane],
-                direction: directions.as_ref()[lane],
-                lobe_density: T::Scalar::zero(),
-                is_mirror: true,
-                leaves: false,
-            };
+            path.ray = Ray::of_camera(origins.as_ref()[lane], directions.as_ref()[lane]);
         });
         group.record(paths, group.mask(), |lane| Event::Camera {
             origin: origins.as_ref()[lane].to_f32(),

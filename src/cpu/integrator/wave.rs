@@ -6,14 +6,14 @@
 //! of one sample of one tile. So no picture depends on how the work is shared out.
 
 use super::group::Group;
-use super::path::{Path, Ray};
+use super::path::Path;
 use super::{Arrival, Integrator, PathResult, places};
 use crate::cpu::recorder::Unrecorded;
 use crate::instructions;
 use crate::job::tiles::TILE_SIDE;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
-use crate::scene::{PACKET, Packet, WAYS, ray_way};
+use crate::scene::{Hit, PACKET, Packet, WAYS, ray_way};
 
 /// Pixels of a tile at most.
 const PIXELS: usize = (TILE_SIDE * TILE_SIDE) as usize;
@@ -27,13 +27,13 @@ const RAYS_MIN: usize = 4;
 
 /// A tile of a picture.
 pub struct Tile {
-    origin: [u32; 2],
+    pub(super) origin: [u32; 2],
     size: [u32; 2],
     /// Its pixels, square by square.
-    places: Vec<[u32; 2]>,
+    pub(super) places: Vec<[u32; 2]>,
 }
 
-type WavePath<T> = Path<<T as Real>::Scalar, Unrecorded>;
+pub(super) type WavePath<T> = Path<<T as Real>::Scalar, Unrecorded>;
 
 /// The paths of a wave by their places, in lists that are made anew at each bounce.
 #[derive(Default)]
@@ -46,6 +46,8 @@ struct Lists {
     met: Vec<(u32, u16)>,
     /// One list of those, without the slots.
     members: Vec<u16>,
+    /// What the camera rays of all of them met.
+    hits: Vec<Option<Hit>>,
 }
 
 impl<T: Real> Integrator<'_, T> {
@@ -58,19 +60,22 @@ impl<T: Real> Integrator<'_, T> {
         mut tell: impl FnMut(usize, u32, &PathResult<T::Scalar>),
     ) {
         let pixels = tile.places.len();
-        let mut paths: Vec<WavePath<T>> = Vec::with_capacity(pixels * count as usize);
-        for sample in first..first + count {
-            for [x, y] in &tile.places {
-                paths.push(self.begin([tile.origin[0] + x, tile.origin[1] + y], sample, Unrecorded));
+        let rays = self.camera_rays(tile, first..first + count);
+        let mut lists = Lists::default();
+        if !self.has_holes {
+            self.trace_camera_rays(tile, &rays, &mut lists.hits);
+            if self.has_plain_background() && lists.hits.iter().all(Option::is_none) {
+                self.see_background(&rays, |ray, found| {
+                    let [x, y] = tile.places[ray % pixels];
+                    tell((y * tile.size[0] + x) as usize, first + (ray / pixels) as u32, found);
+                });
+                return;
             }
         }
-        let mut lists = Lists {
-            under_way: (0..paths.len() as u16).collect(),
-            ..Lists::default()
-        };
-        self.start(&lists.under_way, &mut paths);
+        let mut paths = self.paths(tile, first, &rays);
+        lists.under_way = (0..paths.len() as u16).collect();
         for bounce in 0.. {
-            self.trace(bounce, pixels, &mut lists, &mut paths);
+            self.trace(bounce, &mut lists, &mut paths);
             self.shade(bounce, &mut lists, &mut paths);
             self.look_for_lights(pixels, &lists.under_way, &mut paths);
             self.light(bounce, &mut lists, &mut paths);
@@ -86,37 +91,23 @@ impl<T: Real> Integrator<'_, T> {
         }
     }
 
-    /// Gives all paths their first rays.
-    fn start(&self, all: &[u16], paths: &mut [WavePath<T>]) {
-        T::vectorize(
-            #[inline(always)]
-            || {
-                for members in all.chunks(T::LANES) {
-                    self.first_rays(&Group::new(members), paths);
-                }
-            },
-        );
-    }
-
     /// Traces the rays of all paths under way and has the processor fetch what shading will look up.
-    fn trace(&self, bounce: u32, pixels: usize, lists: &mut Lists, paths: &mut [WavePath<T>]) {
+    fn trace(&self, bounce: u32, lists: &mut Lists, paths: &mut [WavePath<T>]) {
         lists.left.clear();
         lists.met.clear();
-        if bounce == 0 && !self.has_holes {
-            // All pixels of all samples are there.
-            for sample in lists.under_way.chunks(pixels) {
-                for members in sample.chunks(PACKET) {
-                    self.trace_packet(members, &mut lists.met, &mut lists.left, paths);
-                }
-            }
-        } else {
-            for &member in &lists.under_way {
-                let path = &mut paths[usize::from(member)];
-                if self.stop(bounce, path) {
-                    lists.met.push((self.meets(path), member));
-                } else {
-                    lists.left.push(member);
-                }
+        // What camera rays meet is known where no surface has holes.
+        let is_known = bounce == 0 && !self.has_holes;
+        for &member in &lists.under_way {
+            let path = &mut paths[usize::from(member)];
+            let is_stopped = if is_known {
+                path.take(lists.hits[usize::from(member)])
+            } else {
+                self.stop(bounce, path)
+            };
+            if is_stopped {
+                lists.met.push((self.meets(path), member));
+            } else {
+                lists.left.push(member);
             }
         }
         // Paths that met the same material side by side, in their order.
@@ -128,28 +119,6 @@ impl<T: Real> Integrator<'_, T> {
     fn meets(&self, path: &WavePath<T>) -> u32 {
         self.geometry.fetch(path.hit.triangle);
         self.geometry.slot(path.hit.triangle as usize)
-    }
-
-    /// What the camera rays of a square of pixels meet.
-    fn trace_packet(&self, members: &[u16], met: &mut Vec<(u32, u16)>, left: &mut Vec<u16>, paths: &mut [WavePath<T>]) {
-        let mut packet = Packet::default();
-        for (lane, &member) in members.iter().enumerate() {
-            let Ray { origin, direction, .. } = &paths[usize::from(member)].ray;
-            packet.set(lane, origin.to_f32(), direction.to_f32(), f32::MAX);
-        }
-        packet.fill(members.len());
-        let hits = self.geometry.intersect_packet(instructions::level(), &packet);
-        for (&member, hit) in members.iter().zip(hits) {
-            let path = &mut paths[usize::from(member)];
-            path.rays += 1;
-            if let Some(hit) = hit {
-                path.hit = hit;
-                path.distance = T::Scalar::from_f64(f64::from(hit.t));
-                met.push((self.meets(path), member));
-            } else {
-                left.push(member);
-            }
-        }
     }
 
     /// What all paths find where they are, and where they go on.

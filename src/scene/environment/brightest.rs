@@ -2,23 +2,23 @@
 
 use std::f32::consts::PI;
 
-use super::distribution::AliasCell;
+use super::distribution::Luminances;
 use super::{environment_direction, environment_uv};
 use crate::optics::vector::Vec3;
 
 /// What belongs to the brightest place: cells that touch it, of at least this share of its brightness.
-const SHARE: f32 = 0.5;
+const SHARE: f64 = 0.5;
 
 /// The middle, in the map's (u, v), of the cells around the brightest one that are at least half as bright; `None` where
 /// nothing shines.
-pub(super) fn brightest(cells: &[AliasCell], columns: u32, rows: u32) -> Option<[f32; 2]> {
-    let density = |index: usize| cells[index].density;
-    let first = (0..cells.len()).max_by(|a, b| density(*a).total_cmp(&density(*b)))?;
-    let least = SHARE * density(first);
+pub(super) fn brightest(luminances: &Luminances) -> Option<[f32; 2]> {
+    let cells = &luminances.cells;
+    let first = (0..cells.len()).max_by(|a, b| cells[*a].total_cmp(&cells[*b]))?;
+    let least = SHARE * cells[first];
     if least <= 0.0 {
         return None;
     }
-    let (columns, rows) = (columns as usize, rows as usize);
+    let (columns, rows) = (luminances.width as usize, luminances.height as usize);
     let mut is_taken = vec![false; cells.len()];
     let mut open = vec![first];
     is_taken[first] = true;
@@ -26,7 +26,7 @@ pub(super) fn brightest(cells: &[AliasCell], columns: u32, rows: u32) -> Option<
     while let Some(index) = open.pop() {
         let (column, row) = (index % columns, index / columns);
         let uv = [(column as f32 + 0.5) / columns as f32, (row as f32 + 0.5) / rows as f32];
-        sum += environment_direction(uv) * (density(index) * (PI * uv[1]).sin());
+        sum += environment_direction(uv) * (cells[index] as f32 * (PI * uv[1]).sin());
         let beside = [
             Some(row * columns + (column + 1) % columns),
             Some(row * columns + (column + columns - 1) % columns),
@@ -34,7 +34,7 @@ pub(super) fn brightest(cells: &[AliasCell], columns: u32, rows: u32) -> Option<
             Some(index + columns).filter(|below| *below < cells.len()),
         ];
         for next in beside.into_iter().flatten() {
-            if !is_taken[next] && density(next) >= least {
+            if !is_taken[next] && cells[next] >= least {
                 is_taken[next] = true;
                 open.push(next);
             }
@@ -54,23 +54,21 @@ pub(super) fn brightest(cells: &[AliasCell], columns: u32, rows: u32) -> Option<
 mod tests {
     use super::*;
 
-    fn cells(bright: &[(usize, f32)]) -> Vec<AliasCell> {
-        let mut cells = vec![
-            AliasCell {
-                density: 0.1,
-                ..AliasCell::default()
-            };
-            16 * 8
-        ];
-        for (index, density) in bright {
-            cells[*index].density = *density;
+    fn luminances(bright: &[(usize, f64)]) -> Luminances {
+        let mut cells = vec![0.1; 16 * 8];
+        for (index, luminance) in bright {
+            cells[*index] = *luminance;
         }
-        cells
+        Luminances {
+            cells,
+            width: 16,
+            height: 8,
+        }
     }
 
     #[test]
     fn the_brightest_place_is_the_middle_of_what_touches_it() {
-        let place = |bright: &[(usize, f32)]| brightest(&cells(bright), 16, 8).expect("something shines");
+        let place = |bright: &[(usize, f64)]| brightest(&luminances(bright)).expect("something shines");
         // Column 5, row 3.
         let [u, v] = place(&[(3 * 16 + 5, 4.0)]);
         assert!((u - 5.5 / 16.0).abs() < 1e-4 && (v - 3.5 / 8.0).abs() < 1e-4, "{u} {v}");
@@ -80,6 +78,10 @@ mod tests {
         // What is less than half as bright does not count.
         let [u, _] = place(&[(3 * 16 + 5, 4.0), (3 * 16 + 6, 1.9)]);
         assert!((u - 5.5 / 16.0).abs() < 1e-4, "{u}");
-        assert_eq!(brightest(&vec![AliasCell::default(); 16 * 8], 16, 8), None);
+        let dark = Luminances {
+            cells: vec![0.0; 16 * 8],
+            ..luminances(&[])
+        };
+        assert_eq!(brightest(&dark), None);
     }
 }

@@ -1,22 +1,24 @@
-//! The density that an environment is sampled with: piecewise constant over cells, drawn through an alias table.
+//! The density that an environment is sampled with: piecewise constant over cells, drawn row by row.
 
 use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 
-use crate::scene::alias::alias_table;
+use crate::scene::inversion::{DRAW_BITS, Drawn, Share, draw, shares};
+use crate::scene::memory::in_large_pages;
 
 /// More cells than this are merged: 24 MiB of table, and finer cells gain nothing a sample could show.
 const MAX_CELLS: u64 = 2048 * 1024;
 
-/// One cell of the distribution: an entry of the alias table with the cell's density.
+/// The least share of the light that is above its mean for that to be drawn alone.
+const EXCESS_MIN: f64 = 0.05;
+
+/// One cell of the distribution.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Zeroable, bytemuck::Pod)]
-pub struct AliasCell {
-    /// The probability, in [0, 1], that a draw of this cell is kept.
-    pub threshold: f32,
-    /// The cell to take instead when it is not kept.
-    pub alias_index: u32,
+pub struct Cell {
+    /// Its share of its row.
+    pub share: Share,
     /// The density inside the cell, per steradian, in the map's own frame.
     pub density: f32,
 }
@@ -111,7 +113,7 @@ pub(super) fn summarise(map: &Map) -> Summary {
 }
 
 /// The size of the grid of cells: the map's own, halved while it has more than [`MAX_CELLS`].
-pub(super) fn cells_size(width: u32, height: u32) -> (u32, u32) {
+fn cells_size(width: u32, height: u32) -> (u32, u32) {
     let mut size = (width, height);
     while u64::from(size.0) * u64::from(size.1) > MAX_CELLS {
         size = (size.0.div_ceil(2), size.1.div_ceil(2));
@@ -119,40 +121,129 @@ pub(super) fn cells_size(width: u32, height: u32) -> (u32, u32) {
     size
 }
 
-/// The cells of a map. Each weighs its share of the luminance of the bilinear picture times solid angle; all densities
-/// are 0 if that is nothing.
-pub(super) fn build(map: &Map, cells_width: u32, cells_height: u32) -> Vec<AliasCell> {
-    let weights: Vec<f64> = (0..cells_height)
-        .into_par_iter()
-        .flat_map_iter(|row| cell_row_weights(map, row, cells_width, cells_height))
-        .collect();
-    let total: f64 = weights.iter().sum();
-    let entries = alias_table(&weights).into_iter();
-    let mut cells: Vec<AliasCell> = entries
-        .map(|entry| AliasCell {
-            threshold: entry.threshold,
-            alias_index: entry.alias_index,
-            density: 0.0,
-        })
-        .collect();
-    if total > 0.0 {
-        cells
-            .par_chunks_mut(cells_width as usize)
-            .enumerate()
-            .for_each(|(row, cells)| {
-                let band = band_solid_angle(row as f64, (row + 1) as f64, f64::from(cells_height));
-                let solid_angle = band / f64::from(cells_width);
-                let weights = &weights[row * cells_width as usize..];
-                for (cell, weight) in cells.iter_mut().zip(weights) {
-                    cell.density = (weight / total / solid_angle) as f32;
-                }
-            });
-    }
-    cells
+/// What directions are drawn with: the density is constant over cells of the map.
+#[derive(Clone, Debug)]
+pub struct Distribution {
+    /// `width` × `height` cells, in the order of the texels.
+    pub cells: Vec<Cell>,
+    /// The shares of the rows.
+    pub rows: Vec<Share>,
+    /// Columns of cells.
+    pub width: u32,
+    /// Rows of cells.
+    pub height: u32,
 }
 
-/// The weights of one row of cells. A cell that covers a texel's cell in part takes that part of its weight.
-fn cell_row_weights(map: &Map, cell_row: u32, cells_width: u32, cells_height: u32) -> Vec<f64> {
+impl Distribution {
+    /// In proportion to what the luminances of cells are above `floor`, to the nearest of the numbers that draw a cell of
+    /// its row; all densities are 0 where none is above it.
+    pub(super) fn new(luminances: &Luminances, floor: f64) -> Self {
+        let Luminances { width, height, .. } = *luminances;
+        let of_rows = luminances
+            .cells
+            .par_chunks(width as usize)
+            .enumerate()
+            .map(|(row, luminances)| {
+                let above: Vec<f64> = luminances
+                    .iter()
+                    .map(|luminance| (luminance - floor).max(0.0))
+                    .collect();
+                let weight = above.iter().sum::<f64>() * cell_solid_angle(row, width, height);
+                (shares(&above), weight)
+            });
+        let (of_cells, weights): (Vec<Vec<Share>>, Vec<f64>) = of_rows.unzip();
+        let rows = shares(&weights);
+        let of_rows = probabilities(&rows);
+        let cells = of_cells.par_iter().enumerate().flat_map_iter(|(row, shares)| {
+            let density = of_rows[row] / cell_solid_angle(row, width, height);
+            let cell = move |(share, probability): (&Share, f64)| Cell {
+                share: *share,
+                density: (density * probability) as f32,
+            };
+            shares.iter().zip(probabilities(shares)).map(cell)
+        });
+        Self {
+            cells: in_large_pages(cells.collect()),
+            rows,
+            width,
+            height,
+        }
+    }
+
+    /// In proportion to what is above the mean; to all where that is next to nothing, as the environment is even.
+    pub(super) fn of_excess(luminances: &Luminances) -> Self {
+        let mean = luminances.mean_of(|luminance| luminance);
+        let excess = luminances.mean_of(|luminance| (luminance - mean).max(0.0));
+        Self::new(luminances, if excess < EXCESS_MIN * mean { 0.0 } else { mean })
+    }
+
+    /// Bytes in memory.
+    pub(super) fn bytes(&self) -> usize {
+        size_of_val(&self.cells[..]) + size_of_val(&self.rows[..])
+    }
+
+    /// The row that a number draws.
+    #[inline(always)]
+    pub(super) fn row(&self, number: u32) -> Drawn {
+        draw(self.height, number, |row| self.rows[row as usize])
+    }
+
+    /// The column that a number draws in a row.
+    #[inline(always)]
+    pub(super) fn column(&self, row: u32, number: u32) -> Drawn {
+        let first = row * self.width;
+        draw(self.width, number, |column| self.cells[(first + column) as usize].share)
+    }
+}
+
+/// The solid angle of each cell of a row.
+fn cell_solid_angle(row: usize, width: u32, height: u32) -> f64 {
+    band_solid_angle(row as f64, (row + 1) as f64, f64::from(height)) / f64::from(width)
+}
+
+/// The mean luminance of the bilinear picture in each cell.
+pub(super) struct Luminances {
+    /// In the order of the texels.
+    pub cells: Vec<f64>,
+    /// Columns of cells: the map's, or halved until there are at most [`MAX_CELLS`].
+    pub width: u32,
+    /// Rows of cells.
+    pub height: u32,
+}
+
+impl Luminances {
+    pub(super) fn of(map: &Map) -> Self {
+        let (width, height) = cells_size(map.width, map.height);
+        let row = |row| cell_row_luminances(map, row, width, height);
+        Self {
+            cells: (0..height).into_par_iter().flat_map_iter(row).collect(),
+            width,
+            height,
+        }
+    }
+
+    /// The mean over the sphere of what a function makes of the luminance.
+    fn mean_of(&self, f: impl Fn(f64) -> f64) -> f64 {
+        let rows = self.cells.chunks(self.width as usize).enumerate();
+        let sum = |(row, cells): (usize, &[f64])| {
+            cells.iter().map(|luminance| f(*luminance)).sum::<f64>() * cell_solid_angle(row, self.width, self.height)
+        };
+        rows.map(sum).sum::<f64>() / (2.0 * TAU)
+    }
+}
+
+/// The probability of each entry.
+fn probabilities(shares: &[Share]) -> Vec<f64> {
+    let mut before = 0;
+    let probability = |share: &Share| {
+        let numbers = share.upper - std::mem::replace(&mut before, share.upper);
+        f64::from(numbers) / f64::from(1 << DRAW_BITS)
+    };
+    shares.iter().map(probability).collect()
+}
+
+/// The mean luminances of one row of cells. Of a texel's cell that a cell covers in part it takes that part.
+fn cell_row_luminances(map: &Map, cell_row: u32, cells_width: u32, cells_height: u32) -> Vec<f64> {
     let mut weights = vec![0.0; cells_width as usize];
     for (row, row_share) in overlaps(cell_row, cells_height, map.height) {
         let band = band_solid_angle(f64::from(row), f64::from(row + 1), f64::from(map.height));
@@ -164,7 +255,8 @@ fn cell_row_weights(map: &Map, cell_row: u32, cells_width: u32, cells_height: u3
             }
         }
     }
-    weights
+    let solid_angle = cell_solid_angle(cell_row as usize, cells_width, cells_height);
+    weights.into_iter().map(|weight| weight / solid_angle).collect()
 }
 
 /// Which of `fine` equal intervals of [0, 1] overlap interval `index` of `coarse` ones, each with the share of it that

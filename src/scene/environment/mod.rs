@@ -25,17 +25,20 @@ mod thumbnail;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
 use crate::optics::real::{Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
 use crate::scene::alias::grid_places;
+use crate::scene::inversion::{draw_number, place_in, slot};
 use crate::scene::loading::Loading;
 use crate::scene::memory::{fetch, in_large_pages};
 
 pub use cube::are_faces;
-pub use distribution::AliasCell;
+pub use distribution::{Cell, Distribution};
+use distribution::{Luminances, Map};
 pub use error::EnvironmentError;
 pub use file::{ENDINGS, MAX_HEIGHT, MAX_WIDTH};
 pub use procedural::{SkyParams, furnace, sky, studio, sun_direction, sun_irradiance};
@@ -102,12 +105,9 @@ pub struct Environment {
     pub height: u32,
     /// `width` × `height` linear Rec. 709 radiances, rows from +Y down, finite and not negative; the fourth number is 1.
     pub texels: Vec<[f32; 4]>,
-    /// `cells_width` × `cells_height` cells of the sampling density, in the order of the texels.
-    pub cells: Vec<AliasCell>,
-    /// Columns of cells: `width`, or halved until the table has at most 2048 × 1024 cells.
-    pub cells_width: u32,
-    /// Rows of cells.
-    pub cells_height: u32,
+    /// See [`Environment::distribution`].
+    excess: Distribution,
+    whole: OnceLock<Distribution>,
     /// What to call it: `studio`, …, or the file's name without folders.
     pub name: String,
     /// What was odd about the file but could be mended, one sentence each.
@@ -127,7 +127,7 @@ pub struct Environment {
 impl Environment {
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        size_of_val(&self.texels[..]) + size_of_val(&self.cells[..])
+        size_of_val(&self.texels[..]) + self.excess.bytes() + self.whole.get().map_or(0, Distribution::bytes)
     }
 
     /// Builds the sampling tables over `texels` (`width` × `height`, finite and not negative).
@@ -144,16 +144,16 @@ impl Environment {
         if texels.is_empty() || texels.len() as u64 != u64::from(width) * u64::from(height) {
             return Err(EnvironmentError::Empty { name });
         }
-        let map = distribution::Map {
+        let map = Map {
             width,
             height,
             texels: &texels,
         };
         let summary = distribution::summarise(&map);
-        let (cells_width, cells_height) = distribution::cells_size(width, height);
-        let cells = distribution::build(&map, cells_width, cells_height);
+        let luminances = Luminances::of(&map);
+        let excess = Distribution::of_excess(&luminances);
         let is_constant = texels.iter().all(|texel| *texel == texels[0]);
-        let brightest = brightest::brightest(&cells, cells_width, cells_height).filter(|_| !is_constant);
+        let brightest = brightest::brightest(&luminances).filter(|_| !is_constant);
         Ok(Self {
             is_constant,
             brightest,
@@ -163,11 +163,29 @@ impl Environment {
             width,
             height,
             texels: in_large_pages(texels),
-            cells: in_large_pages(cells),
-            cells_width,
-            cells_height,
+            excess,
+            whole: OnceLock::new(),
             name,
             warnings: Vec::new(),
+        })
+    }
+}
+
+impl Environment {
+    /// What directions are drawn with: in proportion to the luminance where nothing else finds the light; to what is above
+    /// the mean where directions drawn from lobes find it, too. Those find what is spread widely, and each sample spent on
+    /// that would miss the sun (Karlík et al., "MIS Compensation", ACM TOG 38(6), 2019).
+    pub fn distribution(&self, is_alone: bool) -> &Distribution {
+        if !is_alone {
+            return &self.excess;
+        }
+        self.whole.get_or_init(|| {
+            let map = Map {
+                width: self.width,
+                height: self.height,
+                texels: &self.texels,
+            };
+            Distribution::new(&Luminances::of(&map), 0.0)
         })
     }
 }
@@ -326,75 +344,100 @@ fn bilinear<T: Real>(environment: &Environment, uv: [T; 2]) -> Bilinear<T> {
 
 /// Has the processor fetch what is looked up at a place in the map, so that it is there when it is needed.
 #[inline(always)]
-pub fn fetch_place<T: Real>(environment: &Environment, uv: [T; 2], with_density: bool) {
+pub fn fetch_place<T: Real>(environment: &Environment, uv: [T; 2]) {
     for texels in bilinear(environment, uv).texels.as_ref() {
         for &texel in texels {
             fetch(&environment.texels, texel);
         }
     }
-    if with_density {
-        fetch_cell(environment, uv);
-    }
 }
 
-/// The same for the cell at a place: what [`environment_sample`] looks up first for `xi.x` and `xi.y`.
+/// The same for the cell at a place.
 #[inline(always)]
-pub fn fetch_cell<T: Real>(environment: &Environment, place: [T; 2]) {
-    let (cells, _) = grid_places(place, [environment.cells_width, environment.cells_height]);
+pub fn fetch_cell<T: Real>(distribution: &Distribution, uv: [T; 2]) {
+    let (cells, _) = grid_places(uv, [distribution.width, distribution.height]);
     for &cell in cells.as_ref() {
-        fetch(&environment.cells, cell as usize);
+        fetch(&distribution.cells, cell as usize);
     }
 }
 
 /// A direction in the map's frame drawn with the density that is returned with it, per steradian, from three uniform
 /// numbers in [0, 1). The density is 0, the direction arbitrary, if the map is black.
 ///
-/// `xi.x` and `xi.y` choose the column and the row of a cell and, with what is left of them, the place inside the cell
-/// that is kept or taken instead; `xi.z` alone decides which. One number for the cell would not do: of 24 bits, a table
-/// of 2 million cells leaves three, and a table whose size is no power of two would be off by several per cent.
+/// `xi.y` draws the row of a cell, `xi.x` the column, and with what is left of them the place inside the cell: numbers that
+/// are spread evenly over the square are so over the map. `xi.z` is what they have too few bits for.
 #[inline(always)]
-pub fn environment_sample<T: Real>(environment: &Environment, xi: Vec3<T>) -> (Vec3<T>, T) {
-    let (width, height) = (environment.cells_width, environment.cells_height);
-    let (chosen, place) = choose_cells(environment, xi);
-    let rows = T::each(|lane| chosen.as_ref()[lane] / width);
-    let number = |number: u32| T::Scalar::from_f64(f64::from(number));
-    let row = T::from_lanes(|lane| number(rows.as_ref()[lane]));
-    let column = T::from_lanes(|lane| number(chosen.as_ref()[lane] - rows.as_ref()[lane] * width));
+pub fn environment_sample<T: Real>(distribution: &Distribution, xi: Vec3<T>) -> (Vec3<T>, T) {
+    let (width, height) = (distribution.width, distribution.height);
+    let numbers = xi.to_each();
+    let drawn = T::each(|lane| {
+        let xi = numbers.as_ref()[lane];
+        let [row_number, number] = [draw_number(xi.y), draw_number(xi.x)];
+        let row = distribution.row(row_number);
+        let column = distribution.column(row.index, number);
+        let [x, y] = jitter(xi.z);
+        let density = distribution.cells[(row.index * width + column.index) as usize].density;
+        let whole = |index: u32| T::Scalar::from_f64(f64::from(index));
+        let place = [place_in(column, number, x), place_in(row, row_number, y)];
+        (
+            [whole(column.index), whole(row.index)],
+            place,
+            T::Scalar::from_f64(f64::from(density)),
+        )
+    });
+    let drawn = drawn.as_ref();
+    let cell = [0, 1].map(|axis| T::from_lanes(|lane| drawn[lane].0[axis]));
+    let place = [0, 1].map(|axis| T::from_lanes(|lane| drawn[lane].1[axis]));
     (
-        environment_direction_in_cell([column, row], place, width, height),
-        densities(environment, &chosen),
+        environment_direction_in_cell(cell, place, width, height),
+        T::from_lanes(|lane| drawn[lane].2),
     )
+}
+
+/// Two numbers in [0, 1) of twelve bits out of one of 24.
+#[inline(always)]
+fn jitter<T: Scalar>(xi: T) -> [T; 2] {
+    let steps = T::from_f64(4096.0);
+    let scaled = xi * steps;
+    let whole = scaled.floor();
+    [whole / steps, scaled - whole]
 }
 
 /// The densities of cells.
 #[inline(always)]
-fn densities<T: Real>(environment: &Environment, cells: &T::Each<u32>) -> T {
+fn densities<T: Real>(distribution: &Distribution, cells: &T::Each<u32>) -> T {
     T::from_lanes(|lane| {
-        let cell = environment.cells[cells.as_ref()[lane] as usize];
+        let cell = distribution.cells[cells.as_ref()[lane] as usize];
         T::Scalar::from_f64(f64::from(cell.density))
     })
 }
 
-/// The cells that are drawn, and the places in them.
+/// Has the processor fetch what [`environment_sample`] looks up first, the guide to a row's cells.
 #[inline(always)]
-fn choose_cells<T: Real>(environment: &Environment, xi: Vec3<T>) -> (T::Each<u32>, [T; 2]) {
-    let size = [environment.cells_width, environment.cells_height];
-    let (drawn, place) = grid_places([xi.x, xi.y], size);
-    let numbers = xi.z.to_each();
-    let chosen = T::each(|lane| {
-        let drawn = drawn.as_ref()[lane];
-        let cell = environment.cells[drawn as usize];
-        let is_kept = numbers.as_ref()[lane] < T::Scalar::from_f64(f64::from(cell.threshold));
-        if is_kept { drawn } else { cell.alias_index }
+pub fn fetch_guide<T: Real>(distribution: &Distribution, xi: [T; 2]) {
+    let width = distribution.width;
+    let (numbers, row_numbers) = (xi[0].to_each(), xi[1].to_each());
+    let guides = T::each(|lane| {
+        let row = distribution.row(draw_number(row_numbers.as_ref()[lane])).index;
+        row * width + slot(width, draw_number(numbers.as_ref()[lane]))
     });
-    (chosen, place)
+    for &guide in guides.as_ref() {
+        fetch(&distribution.cells, guide as usize);
+    }
 }
 
-/// Has the processor fetch the cell that [`environment_sample`] draws, once that which it looks up first is there.
+/// Has the processor fetch the cell that [`environment_sample`] draws, once the guide is there.
 #[inline(always)]
-pub fn fetch_chosen<T: Real>(environment: &Environment, xi: Vec3<T>) {
-    for &cell in choose_cells(environment, xi).0.as_ref() {
-        fetch(&environment.cells, cell as usize);
+pub fn fetch_chosen<T: Real>(distribution: &Distribution, xi: [T; 2]) {
+    let width = distribution.width;
+    let (numbers, row_numbers) = (xi[0].to_each(), xi[1].to_each());
+    let firsts = T::each(|lane| {
+        let first = distribution.row(draw_number(row_numbers.as_ref()[lane])).index * width;
+        let guide = first + slot(width, draw_number(numbers.as_ref()[lane]));
+        first + distribution.cells[guide as usize].share.guide
+    });
+    for &cell in firsts.as_ref() {
+        fetch(&distribution.cells, cell as usize);
     }
 }
 
@@ -429,14 +472,14 @@ fn environment_direction_in_cell<T: Real>(
 
 /// The density, per steradian, with which [`environment_sample`] draws a unit direction in the map's frame.
 #[inline(always)]
-pub fn environment_density<T: Real>(environment: &Environment, direction_local: Vec3<T>) -> T {
-    environment_density_at(environment, environment_uv(direction_local))
+pub fn environment_density<T: Real>(distribution: &Distribution, direction_local: Vec3<T>) -> T {
+    environment_density_at(distribution, environment_uv(direction_local))
 }
 
 /// The same at a place in the map ([`environment_uv`]).
 #[inline(always)]
-pub fn environment_density_at<T: Real>(environment: &Environment, uv: [T; 2]) -> T {
-    let size = [environment.cells_width, environment.cells_height];
+pub fn environment_density_at<T: Real>(distribution: &Distribution, uv: [T; 2]) -> T {
+    let size = [distribution.width, distribution.height];
     let (cells, _) = grid_places(uv, size);
-    densities(environment, &cells)
+    densities(distribution, &cells)
 }

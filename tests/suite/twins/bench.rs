@@ -434,13 +434,14 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
         textures,
         ..
     } = &*SCENE;
-    let cells_size = [environment.cells_width, environment.cells_height];
+    let distribution = environment.distribution(false);
+    let cells_size = [distribution.width, distribution.height];
     let globals = Globals::new(&settings(), geometry, cells_size);
     let group = SceneGroup {
         geometry: GeometryArrays::new(gpu, geometry)?,
         materials: scene_group::materials(gpu, materials)?,
         tables: scene_group::tables(gpu, tables)?,
-        environment: scene_group::environment(gpu, environment)?,
+        environment: scene_group::environment(gpu, environment, distribution)?,
         light_cells: scene_group::light_cells(gpu, geometry, lights)?,
         textures: scene_group::textures(gpu, textures, None)?,
     };

@@ -86,7 +86,7 @@ fn environments_agree() {
                 "let drawn = environment_sample(vec3f(a, b, c), globals.environment_cells_size);",
                 twin!(|row| {
                     let [a, b, c] = row.numbers();
-                    let (direction, density) = environment_sample(&SCENE.environment, vec3(a, b, c));
+                    let (direction, density) = environment_sample(SCENE.environment.distribution(false), vec3(a, b, c));
                     row.put_vector(direction);
                     row.put(density);
                 }),
@@ -100,7 +100,7 @@ fn environments_agree() {
                 "",
                 twin!(|row| {
                     let d: Vec3<T> = row.vector();
-                    row.put(environment_density(&SCENE.environment, d));
+                    row.put(environment_density(SCENE.environment.distribution(false), d));
                 }),
             )
             .output(

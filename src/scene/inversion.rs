@@ -1,0 +1,167 @@
+//! Draws from weights by inverting their cumulative sum, which keeps their order: numbers that are spread evenly draw
+//! places that are spread evenly, where the alias tables of [`alias`](super::alias) would scatter them. A guide (Chen and
+//! Asau 1974) tells where to begin, so that a draw takes one or two looks.
+//!
+//! Twin: `shaders/scene/inversion.wgsl`.
+
+use crate::optics::real::Scalar;
+
+/// Random numbers have so many bits ([`unit_from_bits`](crate::optics::random::unit_from_bits)), and so many values.
+pub const DRAW_BITS: u32 = 24;
+const DRAWS: u32 = 1 << DRAW_BITS;
+
+/// An entry's part of the numbers.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Zeroable, bytemuck::Pod)]
+pub struct Share {
+    /// How many of the 2²⁴ numbers draw this entry or one before it.
+    pub upper: u32,
+    /// The first entry that the numbers of a slot may draw; the slot is this entry's index. There are as many slots, of
+    /// equally many numbers, as the largest power of two that is not above the number of entries.
+    pub guide: u32,
+}
+
+/// An entry that was drawn.
+#[derive(Clone, Copy, Debug)]
+pub struct Drawn {
+    /// Which.
+    pub index: u32,
+    /// The first of the numbers that draw it.
+    pub lower: u32,
+    /// The number after the last of them.
+    pub upper: u32,
+}
+
+/// The shares of weights, at least one and at most 2²⁴ of them. Each weight above 0 has one number at least, one of 0 has
+/// none; where all are 0 none has any.
+pub(super) fn shares(weights: &[f64]) -> Vec<Share> {
+    let total: f64 = weights.iter().sum();
+    let mut after = weights.iter().filter(|weight| **weight > 0.0).count() as u32;
+    let (mut sum, mut before) = (0.0, 0);
+    let upper = |weight: &f64| {
+        if *weight > 0.0 {
+            sum += weight;
+            after -= 1;
+            let share = (sum / total * f64::from(DRAWS)).round() as u32;
+            before = share.clamp(before + 1, DRAWS - after);
+        }
+        before
+    };
+    let uppers: Vec<u32> = weights.iter().map(upper).collect();
+    let shift = slot_shift(weights.len() as u32);
+    let last = weights.len() - 1;
+    let guide = |slot: usize| {
+        let first = (slot as u32).checked_shl(shift).filter(|first| *first < DRAWS);
+        first.map_or(0, |first| {
+            uppers.partition_point(|upper| *upper <= first).min(last) as u32
+        })
+    };
+    let share = |(index, upper): (usize, &u32)| Share {
+        upper: *upper,
+        guide: guide(index),
+    };
+    uppers.iter().enumerate().map(share).collect()
+}
+
+/// A number's slot is the number without so many of its last bits.
+#[inline(always)]
+fn slot_shift(count: u32) -> u32 {
+    DRAW_BITS - count.ilog2()
+}
+
+/// The slot of a number among `count` entries.
+#[inline(always)]
+pub fn slot(count: u32, number: u32) -> u32 {
+    number >> slot_shift(count)
+}
+
+/// A random number in [0, 1) as one of the 2²⁴.
+#[inline(always)]
+pub fn draw_number<T: Scalar>(xi: T) -> u32 {
+    (xi.to_f64() * f64::from(DRAWS)) as u32
+}
+
+/// The entry that a number draws, of `count`.
+#[inline(always)]
+pub fn draw(count: u32, number: u32, share: impl Fn(u32) -> Share) -> Drawn {
+    let slot = slot(count, number);
+    let mut low = share(slot).guide;
+    let mut high = count - 1;
+    if slot + 1 < 1 << count.ilog2() {
+        high = share(slot + 1).guide;
+    }
+    while low < high {
+        let middle = (low + high) / 2;
+        if number < share(middle).upper {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    Drawn {
+        index: low,
+        lower: if low == 0 { 0 } else { share(low - 1).upper },
+        upper: share(low).upper,
+    }
+}
+
+/// How far into what draws an entry a number is, in [0, 1]. `jitter`, in [0, 1), is added to the number, so that it need
+/// not stay one of the few that draw an entry of little weight.
+#[inline(always)]
+pub fn place_in<T: Scalar>(drawn: Drawn, number: u32, jitter: T) -> T {
+    let whole = |count: u32| T::from_f64(f64::from(count));
+    let numbers = whole((drawn.upper - drawn.lower).max(1));
+    ((whole(number - drawn.lower) + jitter) / numbers).min(T::one())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn check(weights: &[f64]) {
+        let shares = shares(weights);
+        let count = weights.len() as u32;
+        let mut numbers = vec![0_u64; weights.len()];
+        let mut before = 0;
+        for share in &shares {
+            assert!(share.upper >= before);
+            before = share.upper;
+        }
+        assert_eq!(before, DRAWS);
+        for number in (0..DRAWS).step_by(97).chain(DRAWS - 40..DRAWS) {
+            let drawn = draw(count, number, |index| shares[index as usize]);
+            assert!((drawn.lower..drawn.upper).contains(&number), "{number}: {drawn:?}");
+            numbers[drawn.index as usize] += 1;
+            let place = place_in(drawn, number, 0.5_f64);
+            assert!((0.0..=1.0).contains(&place));
+        }
+        let total: f64 = weights.iter().sum();
+        for (index, weight) in weights.iter().enumerate() {
+            let lower = index.checked_sub(1).map_or(0, |before| shares[before].upper);
+            let own = f64::from(shares[index].upper - lower);
+            assert_eq!(own > 0.0, *weight > 0.0);
+            let expected = weight / total * f64::from(DRAWS);
+            assert!((own - expected).abs() <= 1.0 + f64::from(u8::from(weights.len() == 2048)) * 1e-4 * expected);
+        }
+    }
+
+    #[test]
+    fn numbers_are_shared_out_in_proportion_and_each_draws_its_entry() {
+        check(&[1.0]);
+        check(&[0.0, 3.0, 0.0, 0.0, 1.0, 0.0]);
+        check(&[1.0; 1000]);
+        let weights: Vec<f64> = (0..1501).map(|i| f64::from(i * 7919 % 83) * 0.3).collect();
+        check(&weights);
+        // A sun: all others share a slot.
+        let sun: Vec<f64> = (0..2048).map(|i| if i == 700 { 1e9 } else { 1e-3 }).collect();
+        check(&sun);
+    }
+
+    #[test]
+    fn nothing_is_drawn_where_there_is_nothing() {
+        let shares = shares(&[0.0; 5]);
+        let drawn = draw(5, 77, |index| shares[index as usize]);
+        assert_eq!((drawn.lower, drawn.upper), (0, 0));
+        assert_eq!(place_in(drawn, 77, 0.5_f32), 1.0);
+    }
+}
