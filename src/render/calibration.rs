@@ -20,12 +20,12 @@ use crate::job::Job;
 
 /// Side of the picture that is measured on, in pixels.
 const SIZE: u32 = 96;
-/// How often the candidates are measured in turns, and how long each time: with three of them, and kernels that the driver
-/// has in its cache, less than two seconds in all.
+/// How often the candidates are measured in turns, and how long each time: three of them take less than a second of turns and
+/// rests; warming kernels that the driver has in its cache takes about another.
 const TURNS: usize = 5;
-const DURATION: Duration = Duration::from_millis(50);
+const DURATION: Duration = Duration::from_millis(40);
 /// How long it must have been quiet before a turn, and how often is looked.
-const REST: Duration = Duration::from_millis(100);
+const REST: Duration = Duration::from_millis(50);
 const GLANCE: Duration = Duration::from_millis(20);
 /// By how much software Vulkan must be slower than the processor on the same picture for another measurement.
 const DOUBT: f64 = 1.1;
