@@ -32,6 +32,7 @@ fn message(error: &anyhow::Error) -> String {
 
 fn run(arguments: Arguments) -> anyhow::Result<()> {
     arguments.instructions.force()?;
+    arguments.ray_queries.choose();
     match arguments.command {
         Some(command) => command.run(),
         None => open_window(arguments),

@@ -143,6 +143,8 @@ mod plan_kernels;
 mod precision;
 #[path = "suite/random_documents.rs"]
 mod random_documents;
+#[path = "suite/ray_queries.rs"]
+mod ray_queries;
 #[path = "suite/refused.rs"]
 mod refused;
 #[path = "suite/renders.rs"]

@@ -2,7 +2,7 @@
 // pictures are made with. Twin of src/cpu/probe.rs; questions and answers are told in src/analysis/probe.rs.
 #import "optics/material"
 #import "optics/random"
-#import "scene/bvh"
+#import "scene/traversal"
 
 // Words of a question of each kind.
 const LOBE_WORDS: u32 = 22u;

@@ -1,86 +1,10 @@
 // Rays against the geometry: the compressed wide hierarchy of obvhs (Ylitie, Karras, Laine 2017).
-// intersect_triangle is the twin of the function in src/scene/intersect.rs.
+#import "scene/intersect"
 #import "scene/layout"
 
 // Hierarchies are built no deeper than 32 levels (DEPTH_MAX in src/scene/hierarchy/mod.rs), each of which adds one entry at
 // most; one more waits for what is around the model.
 const STACK_SIZE: u32 = 33u;
-const NO_HIT: u32 = 0xffffffffu;
-
-struct Hit {
-    t: f32,
-    triangle: u32,
-    // Weights of the second and third corner.
-    u: f32,
-    v: f32,
-}
-
-// A ray and the plane that triangles are projected to along it (Woop, Benthin and Wald 2013).
-struct RayFrame {
-    origin: vec3f,
-    direction: vec3f,
-    axis_x: vec3f,
-    axis_y: vec3f,
-}
-
-fn ray_frame(origin: vec3f, direction: vec3f) -> RayFrame {
-    let d = direction;
-    let size = abs(d);
-    if size.z >= size.x && size.z >= size.y {
-        return RayFrame(origin, d, vec3f(1.0, 0.0, -d.x / d.z), vec3f(0.0, 1.0, -d.y / d.z));
-    }
-    if size.y >= size.x {
-        return RayFrame(origin, d, vec3f(1.0, -d.x / d.y, 0.0), vec3f(0.0, -d.z / d.y, 1.0));
-    }
-    return RayFrame(origin, d, vec3f(-d.y / d.x, 1.0, 0.0), vec3f(-d.z / d.x, 0.0, 1.0));
-}
-
-// A vector along a triangle's normal, by the right hand: the product of its two shorter edges over the square of the
-// longest. The product of two long edges of a needle would be rounding noise, and that of two tiny ones underflow where it
-// is squared.
-fn triangle_normal(p0: vec3f, p1: vec3f, p2: vec3f) -> vec3f {
-    let a = p1 - p0;
-    let b = p2 - p1;
-    let c = p0 - p2;
-    let aa = dot(a, a);
-    let bb = dot(b, b);
-    let cc = dot(c, c);
-    let a_is_longest = aa >= bb && aa >= cc;
-    let b_is_longest = !a_is_longest && bb >= cc;
-    let left = select(select(a, c, b_is_longest), b, a_is_longest);
-    let right = select(select(b, a, b_is_longest), c, a_is_longest);
-    return cross(left, right) / max(max(max(aa, bb), cc), 1e-37);
-}
-
-// (t, u, v) where the ray meets the triangle with 0 < t < t_max, from either side; t = -1 where it does not.
-fn intersect_triangle(ray: RayFrame, v0: vec3f, v1: vec3f, v2: vec3f, t_max: f32) -> vec3f {
-    let a = v0 - ray.origin;
-    // The projected corners, one a lane: all three by the same instructions.
-    let x = vec3f(v0.x, v1.x, v2.x) - ray.origin.x;
-    let y = vec3f(v0.y, v1.y, v2.y) - ray.origin.y;
-    let z = vec3f(v0.z, v1.z, v2.z) - ray.origin.z;
-    let px = x * ray.axis_x.x + y * ray.axis_x.y + z * ray.axis_x.z;
-    let py = x * ray.axis_y.x + y * ray.axis_y.y + z * ray.axis_y.z;
-    // An edge's area from its corners in an order of their own: the same number for both triangles that share it,
-    // whether or not a driver fuses the products.
-    let is_turned = (px.zxy > px.yzx) | ((px.zxy == px.yzx) & (py.zxy > py.yzx));
-    let low_x = select(px.zxy, px.yzx, is_turned);
-    let low_y = select(py.zxy, py.yzx, is_turned);
-    let high_x = select(px.yzx, px.zxy, is_turned);
-    let high_y = select(py.yzx, py.zxy, is_turned);
-    let ordered = low_x * high_y - low_y * high_x;
-    let areas = select(ordered, -ordered, is_turned);
-    let area = areas.x + areas.y + areas.z;
-    if (any(areas < vec3f(0.0)) && any(areas > vec3f(0.0))) || area == 0.0 {
-        return vec3f(-1.0);
-    }
-    let normal = triangle_normal(v0, v1, v2);
-    let t = dot(normal, a) / dot(normal, ray.direction);
-    if t > 0.0 && t < t_max {
-        return vec3f(t, areas.y / area, areas.z / area);
-    }
-    return vec3f(-1.0);
-}
 
 // Makes up for the rounding of a box's far side (1 + 2 gamma_3 of Ize, "Robust BVH Ray Traversal", JCGT 2013).
 const FAR_MARGIN: f32 = 1.0000005;

@@ -46,9 +46,10 @@ struct Globals {
     least_reflections: u32,
     // Where the hierarchy of what is around the model begins; 0 where there is no second one.
     around_root: u32,
+    // Where the triangles of what is around the model begin.
+    around_triangle: u32,
     // To a multiple of 16 bytes.
-    unused_2: u32,
-    unused_3: u32,
+    unused: u32,
 }
 
 struct Material {

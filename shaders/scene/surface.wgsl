@@ -1,6 +1,6 @@
 // A ray's hit made into a surface to shade. Twin of src/scene/surface.rs.
 #import "optics/material"
-#import "scene/bvh"
+#import "scene/intersect"
 #import "scene/texture"
 
 struct SurfacePoint {

@@ -1,7 +1,7 @@
 // The pictures of a model: filtered by hand, so that both engines find the same numbers. Twin of src/scene/texture/mod.rs.
 #import "optics/frame"
 #import "optics/material"
-#import "scene/bvh"
+#import "scene/intersect"
 #import "scene/layout"
 
 const WRAP_REPEAT: u32 = 0u;

@@ -4,6 +4,7 @@
 #import "scene/camera"
 #import "scene/plan"
 #import "scene/surface"
+#import "scene/traversal"
 
 // The first of the pairs of numbers that choose whether a surface stops a ray, one a bounce.
 const OPACITY_DIMENSION: u32 = 8192u;

@@ -10,8 +10,8 @@ use crate::app::services::library::Change;
 use crate::app::services::snapshots::PinChange;
 use crate::document::ImportLobe;
 use crate::document::MaterialSettings;
-use crate::render::EngineChoice;
 use crate::render::shown::Shown;
+use crate::render::{EngineChoice, RayQueries};
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::TextureTarget;
 use crate::scene::{ModelOptions, ModelSource};
@@ -62,6 +62,8 @@ pub enum Action {
     LookFrom(f64, f64),
     /// Changes the engine.
     UseEngine(EngineChoice),
+    /// Changes whether the GPU's engine uses ray queries.
+    UseRayQueries(RayQueries),
     /// Shows the picture or a map of its error or samples.
     Show(Shown),
     /// Opens an example, by number.

@@ -19,11 +19,11 @@ use crate::app::services::selection::Selection;
 use crate::app::services::shelves::Shelves;
 use crate::app::services::snapshots::Snapshots;
 use crate::document::{Document, ImportLobe, MaterialSettings, PARAMETERS, Parameter, SETTINGS, setting};
-use crate::render::EngineChoice;
 use crate::render::queue::Queue;
 use crate::render::shown::Shown;
 use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Scene, Snapshot};
+use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::texture::TextureTarget;
@@ -56,6 +56,8 @@ pub(super) struct Shared {
     /// The engine that was asked for, and the one that is remembered: the command line's is not.
     pub(super) engine: EngineChoice,
     pub(super) kept_engine: EngineChoice,
+    /// Whether the GPU's engine uses ray queries, as it is remembered.
+    pub(super) kept_ray_queries: RayQueries,
     /// How large the picture is.
     pub(super) resolution: Resolution,
     /// What of the render the viewport shows.

@@ -48,11 +48,11 @@ use sheets::unsaved::Unsaved;
 use viewport::Viewport;
 
 use crate::document::{Change, Denoise, Document, MaterialSettings};
-use crate::render::EngineChoice;
 use crate::render::queue::Queue;
 use crate::render::shown::Shown;
 use crate::render::study::references::ReferenceCache;
 use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
+use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::store::examples::EXAMPLES;
@@ -175,6 +175,9 @@ impl App {
             EngineChoice::Auto => kept.engine,
             given => given,
         };
+        if RayQueries::chosen() == RayQueries::Auto {
+            kept.ray_queries.choose();
+        }
         let worker = Worker::spawn(engine, move || ctx.request_repaint())?;
         let ctx = creation.egui_ctx.clone();
         let queue = Queue::new(worker.assets().clone(), move || ctx.request_repaint())?;
@@ -208,6 +211,7 @@ impl App {
                 import_lobe: kept.import_lobe,
                 engine,
                 kept_engine: kept.engine,
+                kept_ray_queries: kept.ray_queries,
                 resolution: options.resolution.unwrap_or(kept.resolution),
                 shown: Shown::default(),
                 look: services::look::Look::default(),
@@ -571,6 +575,7 @@ impl eframe::App for App {
             resolution: self.shared.resolution,
             import_lobe: self.shared.import_lobe,
             engine: self.shared.kept_engine,
+            ray_queries: self.shared.kept_ray_queries,
             denoise: self.document.view.denoise,
             recent: self.shared.recent.paths().to_vec(),
             hints_seen: self.shared.hints_seen,

@@ -11,8 +11,8 @@ use crate::app::desk::Resolution;
 use crate::app::layout::{self, Pane};
 use crate::app::services::shelves::KeptShelves;
 use crate::document::{Denoise, ImportLobe};
-use crate::render::EngineChoice;
 use crate::render::denoise::Library;
+use crate::render::{EngineChoice, RayQueries};
 
 /// Under which the window's state is stored.
 const KEY: &str = "editor";
@@ -124,6 +124,8 @@ pub(super) struct Kept {
     pub(super) import_lobe: ImportLobe,
     /// The engine as it was chosen by hand.
     pub(super) engine: EngineChoice,
+    /// Whether the GPU's engine uses ray queries, as it was chosen by hand.
+    pub(super) ray_queries: RayQueries,
     /// How noise was taken out last: new documents begin with that.
     #[serde(default = "first_denoise")]
     pub(super) denoise: Denoise,
@@ -146,6 +148,7 @@ impl Default for Kept {
             resolution: Resolution::default(),
             import_lobe: ImportLobe::default(),
             engine: EngineChoice::Auto,
+            ray_queries: RayQueries::Auto,
             denoise: Denoise::Off,
             recent: Vec::new(),
             hints_seen: usize::MAX,
@@ -226,11 +229,16 @@ mod tests {
         let mut storage = Memory::default();
         let kept = Kept {
             engine: EngineChoice::Gpu,
+            ray_queries: RayQueries::Off,
             ..Kept::default()
         };
         kept.save(&mut storage);
         let mut creation = eframe::CreationContext::_new_kittest(egui::Context::default());
         creation.storage = Some(&storage);
-        assert_eq!(Kept::load(&creation).engine, EngineChoice::Gpu);
+        let loaded = Kept::load(&creation);
+        assert_eq!(
+            (loaded.engine, loaded.ray_queries),
+            (EngineChoice::Gpu, RayQueries::Off)
+        );
     }
 }

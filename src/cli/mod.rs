@@ -31,7 +31,7 @@ use std::path::PathBuf;
 use clap::{Parser, Subcommand};
 
 use crate::instructions::Instructions;
-use crate::render::EngineChoice;
+use crate::render::{EngineChoice, RayQueries};
 
 /// Glossmith: a material editor around the geometric lobe.
 ///
@@ -51,6 +51,9 @@ pub struct Arguments {
     /// The instructions that the processor's engine computes with. They change how fast it is, and nothing else.
     #[arg(long, global = true, default_value = "auto", value_name = "auto|avx512|avx2|neon|portable", value_parser = parse::instructions)]
     pub instructions: Instructions,
+    /// Whether the GPU engine asks the adapter what rays meet: where that was measured to be faster; wherever it can; never.
+    #[arg(long, global = true, default_value = "auto", value_name = "auto|on|off")]
+    pub ray_queries: RayQueries,
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, rendered or written; 2 wrong \

@@ -285,6 +285,7 @@ fn json_report(
         "engine": engine.kind.name(),
         "adapter": engine.adapter,
         "driver": engine.driver,
+        "traversal": engine.traversal.name(),
         "width": film.width,
         "height": film.height,
         "samples_per_pixel": progress.samples_per_pixel,

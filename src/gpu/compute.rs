@@ -3,6 +3,7 @@
 use super::device::{GpuDevice, GpuError, Moment};
 use super::shader;
 use super::timer::Timer;
+use super::traversal::Traversal;
 
 pub(super) const UNIFORMS: wgpu::BufferBindingType = wgpu::BufferBindingType::Uniform;
 pub(super) const READ: wgpu::BufferBindingType = wgpu::BufferBindingType::Storage { read_only: true };
@@ -13,12 +14,12 @@ pub(super) fn validated<T>(gpu: &GpuDevice, make: impl FnOnce(&wgpu::Device) -> 
     gpu.checked(GpuError::Shader, make)
 }
 
-/// The module of `shaders/pass/NAME.wgsl`, every access checked.
+/// The module of `shaders/pass/NAME.wgsl` for rays that go this way, every access checked.
 ///
 /// # Errors
 /// [`GpuError::Shader`] with the module and line.
-pub(super) fn module(gpu: &GpuDevice, name: &str) -> Result<wgpu::ShaderModule, GpuError> {
-    let linked = shader::link(&format!("pass/{name}")).map_err(GpuError::Shader)?;
+pub(super) fn module(gpu: &GpuDevice, name: &str, traversal: Traversal) -> Result<wgpu::ShaderModule, GpuError> {
+    let linked = shader::link_for(&format!("pass/{name}"), traversal).map_err(GpuError::Shader)?;
     validated(gpu, |device| {
         device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(name),
@@ -129,8 +130,16 @@ pub(super) fn bind_group(
     let textures = textures
         .iter()
         .map(|(binding, view)| (*binding, wgpu::BindingResource::TextureView(view)));
-    let entries: Vec<_> = buffers
-        .chain(textures)
+    bind(gpu, layout, buffers.chain(textures))
+}
+
+/// Resources bound to their places.
+pub(super) fn bind<'a>(
+    gpu: &GpuDevice,
+    layout: &wgpu::BindGroupLayout,
+    resources: impl Iterator<Item = (u32, wgpu::BindingResource<'a>)>,
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = resources
         .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
         .collect();
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {

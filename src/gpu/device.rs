@@ -1,4 +1,4 @@
-//! The GPU: which adapter, and what it says when it fails.
+//! An open GPU: its memory, and what it says when it fails.
 
 use std::ops::Range;
 use std::sync::atomic::{AtomicU8, AtomicU64, Ordering::Relaxed};
@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use pollster::block_on;
 
-use super::array::TEXEL_ROW;
+use super::traversal::Traversal;
 
 /// What can go wrong with a GPU.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -58,17 +58,6 @@ impl GpuError {
     }
 }
 
-/// Which adapters are considered.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AdapterKind {
-    /// The fastest: hardware before software.
-    Any,
-    /// Only real GPUs.
-    Hardware,
-    /// Only Vulkan on the processor.
-    Software,
-}
-
 /// An open device.
 #[derive(Clone, Debug)]
 pub struct GpuDevice {
@@ -78,6 +67,8 @@ pub struct GpuDevice {
     pub queue: wgpu::Queue,
     /// Name, driver, kind.
     pub info: wgpu::AdapterInfo,
+    /// How its kernels find what rays meet, wherever they can.
+    pub traversal: Traversal,
     failures: Arc<Mutex<Failures>>,
     /// Bytes that a buffer may have, where that is less than the adapter's limit.
     buffer_limit: Arc<AtomicU64>,
@@ -108,97 +99,13 @@ struct Failures {
     refused: Option<String>,
 }
 
-/// What every pass needs of an adapter, each number within what WebGPU grants everywhere: the path tracer's eight storage
-/// buffers, two uniforms and ten textures, arrays in textures of 4096 texels a row, workgroups of 64.
-fn limits_needed() -> wgpu::Limits {
-    wgpu::Limits {
-        max_texture_dimension_2d: TEXEL_ROW as u32,
-        max_sampled_textures_per_shader_stage: 10,
-        max_storage_buffers_per_shader_stage: 8,
-        max_uniform_buffers_per_shader_stage: 2,
-        max_storage_buffer_binding_size: 128 << 20,
-        max_buffer_size: 128 << 20,
-        max_compute_invocations_per_workgroup: 64,
-        max_compute_workgroup_size_x: 64,
-        max_compute_workgroup_size_y: 8,
-        max_compute_workgroup_size_z: 1,
-        max_compute_workgroups_per_dimension: 65_535,
-        // Of the rest nothing is used: the least that there is.
-        ..wgpu::Limits::downlevel_webgl2_defaults()
-    }
-}
-
-/// The limits of an adapter that are below what is needed, by their names; `None` where none is.
-fn lacking(adapter: &wgpu::Limits) -> Option<String> {
-    let mut lacking = Vec::new();
-    limits_needed().check_limits_with_fail_fn(adapter, false, |name, needed, allowed| {
-        lacking.push(format!("its {name} is {allowed}, {needed} is needed"));
-    });
-    (!lacking.is_empty()).then(|| lacking.join("; "))
-}
-
-/// What is asked of an adapter: what is needed, and where models and pictures call for more, as much as it has.
-fn limits_asked(adapter: &wgpu::Limits) -> wgpu::Limits {
-    wgpu::Limits {
-        max_texture_dimension_2d: adapter.max_texture_dimension_2d,
-        max_texture_array_layers: adapter.max_texture_array_layers,
-        max_buffer_size: adapter.max_buffer_size,
-        max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
-        ..limits_needed()
-    }
-}
-
 impl GpuDevice {
-    /// Opens the best adapter of a kind.
-    ///
-    /// # Errors
-    /// Says what to install where there is none, or what the adapter lacks.
-    pub fn open(kind: AdapterKind) -> Result<Self, GpuError> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-        let wanted = |backends| {
-            let mut adapters = block_on(instance.enumerate_adapters(backends));
-            adapters.retain(|adapter| {
-                let is_software = adapter.get_info().device_type == wgpu::DeviceType::Cpu;
-                match kind {
-                    AdapterKind::Any => true,
-                    AdapterKind::Hardware => !is_software,
-                    AdapterKind::Software => is_software,
-                }
-            });
-            adapters
-        };
-        // OpenGL only where there is nothing else: looking for it takes time and prints errors where it is missing.
-        let mut adapters = wanted(wgpu::Backends::PRIMARY);
-        if adapters.is_empty() && kind != AdapterKind::Software {
-            adapters = wanted(wgpu::Backends::GL);
-        }
-        adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
-        let adapter = adapters.into_iter().next().ok_or(GpuError::NoAdapter(match kind {
-            AdapterKind::Any => "",
-            AdapterKind::Hardware => "hardware ",
-            AdapterKind::Software => "software ",
-        }))?;
-        Self::from_adapter(&adapter)
-    }
-
-    fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, GpuError> {
-        let info = adapter.get_info();
-        let limits = adapter.limits();
-        let unfit = |reason: String| GpuError::Unfit {
-            adapter: info.name.clone(),
-            reason,
-        };
-        if let Some(lacking) = lacking(&limits) {
-            return Err(unfit(lacking));
-        }
-        let descriptor = wgpu::DeviceDescriptor {
-            label: Some("glossmith"),
-            required_features: adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PIPELINE_CACHE),
-            required_limits: limits_asked(&limits),
-            ..Default::default()
-        };
-        let (device, queue) =
-            block_on(adapter.request_device(&descriptor)).map_err(|error| unfit(error.to_string()))?;
+    /// Around what an adapter has opened.
+    pub(super) fn new(
+        (device, queue): (wgpu::Device, wgpu::Queue),
+        info: wgpu::AdapterInfo,
+        traversal: Traversal,
+    ) -> Self {
         let failures = Arc::<Mutex<Failures>>::default();
         let of_commands = failures.clone();
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
@@ -213,14 +120,15 @@ impl GpuDevice {
             }
             lock(&of_device).lost.get_or_insert(message);
         });
-        Ok(Self {
+        Self {
             device,
             queue,
             info,
+            traversal,
             failures,
             buffer_limit: Arc::new(AtomicU64::new(u64::MAX)),
             losing_moment: Arc::default(),
-        })
+        }
     }
 
     /// Refuses buffers above a size, as a smaller adapter does: for tests of what follows.
@@ -242,14 +150,12 @@ impl GpuDevice {
 
     /// True where the adapter is the processor in disguise.
     pub fn is_software(&self) -> bool {
-        self.info.device_type == wgpu::DeviceType::Cpu
+        is_software(&self.info)
     }
 
     /// Driver with its version.
     pub fn driver(&self) -> String {
-        format!("{} {}", self.info.driver, self.info.driver_info)
-            .trim()
-            .to_owned()
+        driver(&self.info)
     }
 
     /// What `make` makes; else [`GpuError::Lost`], or what the device has against it as a `refusal`.
@@ -313,6 +219,19 @@ impl GpuDevice {
     /// # Errors
     /// [`GpuError::TooLarge`] beyond the adapter's limit.
     pub fn empty_storage(&self, what: &'static str, size: u64) -> Result<wgpu::Buffer, GpuError> {
+        self.buffer_of(what, size, wgpu::BufferUsages::empty())
+    }
+
+    /// The same with something else that it is used for.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] beyond the adapter's limit.
+    pub(super) fn buffer_of(
+        &self,
+        what: &'static str,
+        size: u64,
+        other_usage: wgpu::BufferUsages,
+    ) -> Result<wgpu::Buffer, GpuError> {
         let allowed = self.binding_bytes();
         if size > allowed {
             return Err(GpuError::TooLarge {
@@ -326,7 +245,10 @@ impl GpuDevice {
             label: Some(what),
             // Nothing of length zero can be bound.
             size: size.max(64),
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            usage: wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::COPY_DST
+                | wgpu::BufferUsages::COPY_SRC
+                | other_usage,
             mapped_at_creation: false,
         }))
     }
@@ -387,44 +309,12 @@ fn lock(failures: &Mutex<Failures>) -> MutexGuard<'_, Failures> {
     failures.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Sorts adapters: real GPUs first.
-fn rank(info: &wgpu::AdapterInfo) -> u8 {
-    match info.device_type {
-        wgpu::DeviceType::DiscreteGpu => 0,
-        wgpu::DeviceType::IntegratedGpu => 1,
-        wgpu::DeviceType::VirtualGpu => 2,
-        wgpu::DeviceType::Other => 3,
-        wgpu::DeviceType::Cpu => 4,
-    }
+/// Whether an adapter is the processor in disguise.
+pub(super) fn is_software(info: &wgpu::AdapterInfo) -> bool {
+    info.device_type == wgpu::DeviceType::Cpu
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_webgpu_grants_everywhere_is_enough() {
-        assert_eq!(lacking(&wgpu::Limits::default()), None);
-        let asked = limits_asked(&wgpu::Limits::default());
-        assert_eq!(asked.max_storage_buffers_per_shader_stage, 8);
-        assert_eq!(asked.max_storage_buffer_binding_size, 128 << 20);
-    }
-
-    #[test]
-    fn what_an_adapter_lacks_is_told_by_name() {
-        let poor = wgpu::Limits {
-            max_storage_buffers_per_shader_stage: 4,
-            max_texture_dimension_2d: 2048,
-            ..wgpu::Limits::default()
-        };
-        let told = lacking(&poor).expect("it lacks two");
-        assert!(
-            told.contains("max_storage_buffers_per_shader_stage is 4, 8 is needed"),
-            "{told}"
-        );
-        assert!(
-            told.contains("max_texture_dimension_2d is 2048, 4096 is needed"),
-            "{told}"
-        );
-    }
+/// A driver with its version.
+pub(super) fn driver(info: &wgpu::AdapterInfo) -> String {
+    format!("{} {}", info.driver, info.driver_info).trim().to_owned()
 }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use super::budget::Budget;
 use super::compute;
 use super::device::{GpuDevice, GpuError};
-use super::geometry_arrays::GeometryArrays;
+use super::geometry_arrays::Form;
 use super::layout::{PixelColors, PixelStatistics, Tile};
 use super::pipeline::Pipelines;
 use super::resources::Resources;
@@ -74,11 +74,14 @@ impl GpuEngine {
     /// Begins a job. After an error the old one goes on.
     ///
     /// # Errors
-    /// [`GpuError::TooLarge`], [`GpuError::Unfit`] and [`GpuError::Refused`] where the adapter can't hold a part of it.
+    /// [`GpuError::TooLarge`], [`GpuError::Unfit`] and [`GpuError::Refused`] where the adapter can't hold a part of it;
+    /// [`GpuError::Shader`].
     pub fn submit(&mut self, job: Arc<Job>) -> Result<(), GpuError> {
         let [width, height] = job.settings.image_size;
         let first_sample = job.settings.first_sample;
         let old = self.resources.as_ref();
+        let form = Form::of(&self.gpu, &job.geometry);
+        self.pipelines.link(&self.gpu, form.traversal())?;
         let resources = Resources::new(&self.gpu, &self.pipelines, job.clone(), old)?;
         self.budget = match old {
             Some(old) if old.job().plan.specialisation() == job.plan.specialisation() => self.budget.of_another_scene(),
@@ -97,8 +100,8 @@ impl GpuEngine {
 
     /// Whether the kernel is ready that a job needs.
     pub fn has_kernel(&self, job: &Job) -> bool {
-        let is_in_textures = GeometryArrays::wants_textures(&self.gpu, &job.geometry);
-        self.pipelines.has(&(job.plan.specialisation(), is_in_textures))
+        let form = Form::of(&self.gpu, &job.geometry);
+        self.pipelines.has(&(job.plan.specialisation(), form))
     }
 
     /// Compiles the kernel of a job's plan: some drivers do that at the first dispatch, so one is made that renders
@@ -191,9 +194,7 @@ impl GpuEngine {
         let Some(resources) = &self.resources else {
             return Ok(());
         };
-        let pipeline = self
-            .pipelines
-            .get(&self.gpu, &resources.job().plan, resources.is_in_textures())?;
+        let pipeline = self.pipelines.get(&self.gpu, &resources.job().plan, resources.form())?;
         self.is_flushed = false;
         for (number, band) in (0..).zip(resources.sums.bands()) {
             let of_band: Vec<Tile> = tiles

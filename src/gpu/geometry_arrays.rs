@@ -1,22 +1,67 @@
-//! What rays meet, on the GPU: the model's hierarchy, triangles and vertices, and after them those of what is around it.
+//! What rays meet, on the GPU: the model's hierarchy, triangles and vertices, and after them those of what is around it; where
+//! rays are queries, the adapter's own hierarchies besides.
 
 use super::array::{self, Values};
 use super::device::{GpuDevice, GpuError};
 use super::layout::{self, Triangle};
+use super::structures::Structures;
+use super::traversal::Traversal;
 use crate::scene::{Geometry, Part, Vertex};
 
 /// Triangles around a model for which there is always room, so that lights move and come without the model being brought to
 /// the GPU again.
 const ROOM: usize = 1024;
 
-/// Hierarchy, triangles and vertices in buffers or, where one of them is larger than a binding may be, all in textures,
-/// which may be larger.
+/// How shaders find a geometry: kernels are made for one of these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Form {
+    /// All in buffers.
+    Buffers,
+    /// In textures, which may be larger than a binding: not for ray queries, which build over a buffer.
+    Textures,
+    /// In buffers, with the adapter's own hierarchies.
+    Structures,
+}
+
+impl Form {
+    /// The form of a geometry on a device. Nodes, which may not be built yet, take less than the triangles.
+    pub fn of(gpu: &GpuDevice, geometry: &Geometry) -> Self {
+        let counts = Counts::with_room(0, &geometry.model, room(&geometry.around));
+        if counts.bytes().into_iter().any(|bytes| bytes > gpu.binding_bytes()) {
+            return Self::Textures;
+        }
+        let is_empty = geometry.parts().iter().all(|(part, _)| part.is_empty());
+        let has_structures =
+            gpu.traversal == Traversal::RayQueries && !is_empty && Structures::have_room_for(gpu, geometry);
+        if has_structures {
+            Self::Structures
+        } else {
+            Self::Buffers
+        }
+    }
+
+    /// How rays find it.
+    pub fn traversal(self) -> Traversal {
+        match self {
+            Self::Buffers | Self::Textures => Traversal::Own,
+            Self::Structures => Traversal::RayQueries,
+        }
+    }
+
+    /// The override constant that tells a pipeline where it is.
+    pub fn constant(self) -> (&'static str, f64) {
+        ("GEOMETRY_IN_TEXTURES", f64::from(u8::from(self == Self::Textures)))
+    }
+}
+
+/// Hierarchy, triangles and vertices in buffers or, where one of them is larger than a binding may be, all in textures.
 #[derive(Clone, Debug)]
 pub struct GeometryArrays {
     buffers: [wgpu::Buffer; 3],
     textures: [wgpu::TextureView; 3],
     slots: wgpu::TextureView,
-    is_in_textures: bool,
+    form: Form,
+    structures: Option<Structures>,
     /// Triangles around the model that there is room for.
     room: usize,
 }
@@ -33,7 +78,8 @@ impl GeometryArrays {
             buffers: [buffer()?, buffer()?, buffer()?],
             textures: [texture(), texture(), texture()],
             slots: texture(),
-            is_in_textures: false,
+            form: Form::Buffers,
+            structures: None,
             room: 0,
         })
     }
@@ -47,7 +93,7 @@ impl GeometryArrays {
         let counts = Counts::with_room(geometry.model.compressed().nodes.len(), &geometry.model, room);
         let mut arrays = Self {
             slots: array::empty_texture::<u32>(gpu, "the model's material slots", counts.triangles),
-            is_in_textures: Self::wants_textures(gpu, geometry),
+            form: Form::of(gpu, geometry),
             room,
             ..Self::empty(gpu)?
         };
@@ -56,7 +102,7 @@ impl GeometryArrays {
             "the model's triangles",
             "the model's vertices",
         ];
-        if arrays.is_in_textures {
+        if arrays.form == Form::Textures {
             arrays.textures = [
                 array::empty_texture::<NodeWords>(gpu, names[0], counts.nodes),
                 array::empty_texture::<Triangle>(gpu, names[1], counts.triangles),
@@ -64,20 +110,40 @@ impl GeometryArrays {
             ];
         } else {
             let bytes = counts.bytes();
+            let built_over = match arrays.form {
+                Form::Structures => wgpu::BufferUsages::BLAS_INPUT,
+                _ => wgpu::BufferUsages::empty(),
+            };
             arrays.buffers = [
                 gpu.empty_storage(names[0], bytes[0])?,
-                gpu.empty_storage(names[1], bytes[1])?,
+                gpu.buffer_of(names[1], bytes[1], built_over)?,
                 gpu.empty_storage(names[2], bytes[2])?,
             ];
         }
         arrays.write(gpu, &geometry.model, Counts::default())?;
         arrays.write_around(gpu, geometry)?;
+        if arrays.form == Form::Structures {
+            arrays.structures = Some(Structures::new(gpu, geometry, &arrays.buffers[1]));
+        }
         Ok(arrays)
     }
 
+    /// The same model with something else around it, in the place of what was there. There must be room for it.
+    ///
+    /// # Errors
+    /// If the device fails.
+    pub fn with_around(&self, gpu: &GpuDevice, geometry: &Geometry) -> Result<Self, GpuError> {
+        self.write_around(gpu, geometry)?;
+        let structures = self.structures.as_ref();
+        Ok(Self {
+            structures: structures.map(|old| old.with_around(gpu, geometry, &self.buffers[1])),
+            ..self.clone()
+        })
+    }
+
     /// Whether what is around the same model can take the place of what is there.
-    pub fn has_room_for(&self, geometry: &Geometry) -> bool {
-        self.room == room(&geometry.around)
+    pub fn has_room_for(&self, gpu: &GpuDevice, geometry: &Geometry) -> bool {
+        self.room == room(&geometry.around) && self.form == Form::of(gpu, geometry)
     }
 
     /// Brings what is around the model to the GPU, in the place of what was there. There must be room for it.
@@ -98,7 +164,7 @@ impl GeometryArrays {
         let vertices = Values::of(&part.vertices);
         let slots = Values::made(count, |place| part.slots[compressed.triangles[place] as usize]);
         array::write_texture(gpu, &self.slots, before.triangles, &slots)?;
-        if self.is_in_textures {
+        if self.form == Form::Textures {
             array::write_texture(gpu, &self.textures[0], before.nodes, &nodes)?;
             array::write_texture(gpu, &self.textures[1], before.triangles, &triangles)?;
             array::write_texture(gpu, &self.textures[2], before.vertices, &vertices.map(vertex_words))
@@ -120,16 +186,14 @@ impl GeometryArrays {
         [nodes, triangles, vertices, &self.slots]
     }
 
-    /// Whether shaders find it in the textures.
-    pub fn is_in_textures(&self) -> bool {
-        self.is_in_textures
+    /// The adapter's own hierarchies, where there are any.
+    pub fn structure(&self) -> Option<&wgpu::Tlas> {
+        self.structures.as_ref().map(Structures::whole)
     }
 
-    /// Whether a model is too large for the bindings of this adapter: kernels are made for one or the other. Nodes, which
-    /// may not be built yet, take less than the triangles.
-    pub fn wants_textures(gpu: &GpuDevice, geometry: &Geometry) -> bool {
-        let counts = Counts::with_room(0, &geometry.model, room(&geometry.around));
-        counts.bytes().into_iter().any(|bytes| bytes > gpu.binding_bytes())
+    /// How shaders find it.
+    pub fn form(&self) -> Form {
+        self.form
     }
 }
 

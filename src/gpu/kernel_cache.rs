@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::device::GpuDevice;
+use super::traversal::Traversal;
 
 /// The driver's cache of a device, and the file that it is kept in.
 #[derive(Debug)]
@@ -21,7 +22,12 @@ impl KernelCache {
         }
         let folders = directories::ProjectDirs::from("", "", "glossmith")?;
         let key = wgpu::util::pipeline_cache_key(&gpu.info)?;
-        Self::at(gpu, folders.cache_dir().join(format!("{key}.kernels")))
+        // Of a file each, so that a device for the one does not write over what that for the other has left.
+        let ending = match gpu.traversal {
+            Traversal::Own => "kernels",
+            Traversal::RayQueries => "ray-query.kernels",
+        };
+        Self::at(gpu, folders.cache_dir().join(format!("{key}.{ending}")))
     }
 
     /// Reads what an earlier start left in a file; `None` where the driver keeps nothing.

@@ -66,10 +66,10 @@ pub struct Globals {
     pub least_reflections: u32,
     /// Where the hierarchy of what is around the model begins, in a node of its own; 0 where there is no second one.
     pub around_root: u32,
+    /// Where the triangles of what is around the model begin.
+    pub around_triangle: u32,
     /// To a multiple of 16 bytes.
-    pub unused_2: u32,
-    /// The same.
-    pub unused_3: u32,
+    pub unused: u32,
 }
 
 /// What a dispatch renders of one tile.
@@ -114,10 +114,11 @@ pub struct PixelStatistics {
     pub clamped: f32,
 }
 
-/// [`Globals::node_count`] and [`Globals::around_root`].
-pub fn hierarchies(geometry: &Geometry) -> [u32; 2] {
+/// [`Globals::node_count`], [`Globals::around_root`] and [`Globals::around_triangle`].
+pub fn hierarchies(geometry: &Geometry) -> [u32; 3] {
     let [model, around] = geometry.parts().map(|(part, _)| part.compressed().nodes.len() as u32);
-    [model + around, if around == 0 { 0 } else { model }]
+    let root = if around == 0 { 0 } else { model };
+    [model + around, root, geometry.model.triangles.len() as u32]
 }
 
 impl Globals {
@@ -129,7 +130,7 @@ impl Globals {
             BackgroundKind::Color(color) => (BACKGROUND_COLOR, color),
             BackgroundKind::Blurred(sine) => (BACKGROUND_BLURRED, [sine as f32, 0.0, 0.0]),
         };
-        let [node_count, around_root] = hierarchies(geometry);
+        let [node_count, around_root, around_triangle] = hierarchies(geometry);
         let [catcher_slot, catcher_reflection_slot, catcher_table] =
             settings.catcher.map_or([u32::MAX, u32::MAX, 0], |catcher| {
                 [catcher.slot, catcher.reflection_slot, catcher.table]
@@ -156,8 +157,8 @@ impl Globals {
             catcher_table,
             least_reflections: settings.least_reflections,
             around_root,
-            unused_2: 0,
-            unused_3: 0,
+            around_triangle,
+            unused: 0,
         }
     }
 }

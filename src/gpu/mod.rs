@@ -1,5 +1,6 @@
 //! The engine on the GPU: the only code that talks to wgpu's compute.
 
+mod adapter;
 mod array;
 mod budget;
 mod compute;
@@ -15,9 +16,14 @@ mod resources;
 pub mod sampling;
 pub mod scatter;
 pub mod scene_group;
+mod scene_pass;
 pub mod shader;
+mod structures;
 mod sums;
 mod timer;
+mod traversal;
 
-pub use device::{AdapterKind, GpuDevice, GpuError, Moment};
+pub use adapter::{AdapterKind, GpuAdapter};
+pub use device::{GpuDevice, GpuError, Moment};
 pub use engine::GpuEngine;
+pub use traversal::Traversal;

@@ -4,21 +4,20 @@ use std::collections::HashMap;
 
 use super::compute;
 use super::device::{GpuDevice, GpuError};
+use super::geometry_arrays::Form;
 use super::kernel_cache::KernelCache;
-use super::scene_group::{self, geometry_constant};
+use super::scene_pass::ScenePass;
+use super::traversal::Traversal;
 use super::{shader, sums};
 use crate::job::plan::{Plan, Specialisation};
 
-/// What a pipeline is made for: a plan's constants, and whether the geometry is in textures.
-pub type Kernel = (Specialisation, bool);
+/// What a pipeline is made for: a plan's constants, and how the geometry is found.
+pub type Kernel = (Specialisation, Form);
 
-/// The path tracer: its shader, its binding layouts, and a pipeline for each kind of scene met.
+/// The path tracer: its shader for each way that rays go, its binding layouts, and a pipeline for each kind of scene met.
 #[derive(Debug)]
 pub struct Pipelines {
-    module: wgpu::ShaderModule,
-    layout: wgpu::PipelineLayout,
-    /// Of group 0.
-    pub scene_layout: wgpu::BindGroupLayout,
+    passes: HashMap<Traversal, ScenePass>,
     /// Of group 1.
     pub sums_layout: wgpu::BindGroupLayout,
     made: HashMap<Kernel, wgpu::ComputePipeline>,
@@ -34,26 +33,44 @@ impl Pipelines {
     /// # Errors
     /// [`GpuError::Shader`] with the module and line.
     pub fn new(gpu: &GpuDevice) -> Result<Self, GpuError> {
-        let linked = shader::link(&format!("pass/{PASS}")).map_err(GpuError::Shader)?;
+        let mut pipelines = Self {
+            passes: HashMap::new(),
+            sums_layout: sums::layout(gpu),
+            made: HashMap::new(),
+            cache: KernelCache::open(gpu),
+        };
+        pipelines.link(gpu, gpu.traversal)?;
+        Ok(pipelines)
+    }
+
+    /// Links and compiles the path tracer for rays that go this way, unless that was done.
+    ///
+    /// # Errors
+    /// [`GpuError::Shader`] with the module and line.
+    pub fn link(&mut self, gpu: &GpuDevice, traversal: Traversal) -> Result<(), GpuError> {
+        if self.passes.contains_key(&traversal) {
+            return Ok(());
+        }
+        let linked = shader::link_for(&format!("pass/{PASS}"), traversal).map_err(GpuError::Shader)?;
         let descriptor = wgpu::ShaderModuleDescriptor {
             label: Some(PASS),
             source: wgpu::ShaderSource::Wgsl(linked.source.as_str().into()),
         };
         // SAFETY: every index is made by our own code from sizes that it uploads itself: hierarchy and triangles from
         // the same geometry, slots below the number of materials, pixels inside the picture. The loops end: paths are
-        // bounded by their bounces and the traversal by its stack.
+        // bounded by their bounces and the traversal by its stack. Ray queries begin with finite numbers, go on until
+        // they are done, and are then asked what they found.
         let module = compute::validated(gpu, |device| unsafe {
             device.create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
         })?;
-        let (scene_layout, sums_layout) = (scene_group::layout(gpu), sums::layout(gpu));
-        Ok(Self {
-            module,
-            layout: compute::pipeline_layout(gpu, PASS, &[Some(&scene_layout), Some(&sums_layout)]),
-            scene_layout,
-            sums_layout,
-            made: HashMap::new(),
-            cache: KernelCache::open(gpu),
-        })
+        let pass = ScenePass::new(gpu, PASS, (module, traversal), &self.sums_layout);
+        self.passes.insert(traversal, pass);
+        Ok(())
+    }
+
+    /// The layout of group 0 for a geometry of this form, for which the path tracer must have been linked.
+    pub fn scene_layout(&self, form: Form) -> &wgpu::BindGroupLayout {
+        &self.passes[&form.traversal()].scene_layout
     }
 
     /// Whether a pipeline of this kind has been compiled.
@@ -65,18 +82,13 @@ impl Pipelines {
     ///
     /// # Errors
     /// [`GpuError::Shader`] where the driver refuses it.
-    pub fn get(
-        &mut self,
-        gpu: &GpuDevice,
-        plan: &Plan,
-        is_in_textures: bool,
-    ) -> Result<&wgpu::ComputePipeline, GpuError> {
-        let kernel = (plan.specialisation(), is_in_textures);
+    pub fn get(&mut self, gpu: &GpuDevice, plan: &Plan, form: Form) -> Result<&wgpu::ComputePipeline, GpuError> {
+        let kernel = (plan.specialisation(), form);
         if !self.made.contains_key(&kernel) {
             let mut constants = plan.constants();
-            constants.push(geometry_constant(is_in_textures));
+            constants.push(form.constant());
             let cache = self.cache.as_ref().map(KernelCache::cache);
-            let pipeline = compute::pipeline(gpu, &self.module, &self.layout, PASS, &constants, cache)?;
+            let pipeline = self.passes[&form.traversal()].pipeline(gpu, PASS, &constants, cache)?;
             self.made.insert(kernel.clone(), pipeline);
             if let Some(cache) = &self.cache {
                 cache.save();

@@ -7,9 +7,11 @@ use bytemuck::{Pod, Zeroable};
 
 use super::compute::{self, READ, WRITE};
 use super::device::{GpuDevice, GpuError};
-use super::geometry_arrays::GeometryArrays;
+use super::geometry_arrays::{Form, GeometryArrays};
 use super::layout::{self, Globals};
-use super::scene_group::{self, SceneGroup, geometry_constant};
+use super::scene_group::{self, SceneGroup};
+use super::scene_pass::ScenePass;
+use super::traversal::Traversal;
 use crate::job::probe::ProbeScene;
 
 /// Questions a dispatch: within the limit of 65 535 workgroups of 64.
@@ -19,10 +21,10 @@ const BATCH: usize = 1 << 20;
 #[derive(Debug)]
 pub struct Probe {
     gpu: GpuDevice,
-    module: wgpu::ShaderModule,
-    groups: [wgpu::BindGroupLayout; 2],
-    layout: wgpu::PipelineLayout,
-    pipelines: Mutex<HashMap<(&'static str, bool), wgpu::ComputePipeline>>,
+    /// For rays that go as the device has them, and for scenes where they can't.
+    passes: HashMap<Traversal, ScenePass>,
+    own_layout: wgpu::BindGroupLayout,
+    pipelines: Mutex<HashMap<(&'static str, Form), wgpu::ComputePipeline>>,
 }
 
 impl Probe {
@@ -31,17 +33,21 @@ impl Probe {
     /// # Errors
     /// [`GpuError::Shader`] where the driver refuses it.
     pub fn new(gpu: GpuDevice) -> Result<Self, GpuError> {
-        let module = compute::module(&gpu, "probe")?;
-        let groups = [
-            scene_group::layout(&gpu),
-            compute::group_layout(&gpu, "probe", &[(0, READ), (1, WRITE)]),
-        ];
-        let layout = compute::pipeline_layout(&gpu, "probe", &groups.each_ref().map(Some));
+        let own_layout = compute::group_layout(&gpu, "probe", &[(0, READ), (1, WRITE)]);
+        let mut passes = HashMap::new();
+        for &traversal in Traversal::ALL {
+            if traversal == Traversal::Own || traversal == gpu.traversal {
+                let module = compute::module(&gpu, "probe", traversal)?;
+                passes.insert(
+                    traversal,
+                    ScenePass::new(&gpu, "probe", (module, traversal), &own_layout),
+                );
+            }
+        }
         Ok(Self {
             gpu,
-            module,
-            groups,
-            layout,
+            passes,
+            own_layout,
             pipelines: Mutex::default(),
         })
     }
@@ -57,14 +63,14 @@ impl Probe {
         questions: &[Q],
     ) -> Result<Vec<A>, GpuError> {
         let gpu = &self.gpu;
-        let (scene, is_in_textures) = self.scene(scene)?;
-        let pipeline = self.pipeline(entry_point, is_in_textures)?;
+        let (scene, form) = self.scene(scene)?;
+        let pipeline = self.pipeline(entry_point, form)?;
         let mut answers = Vec::with_capacity(questions.len());
         for batch in questions.chunks(BATCH) {
             // Nothing past the questions may be taken for one: a buffer of their very size.
             let asked = gpu.filled("questions", wgpu::BufferUsages::STORAGE, bytemuck::cast_slice(batch));
             let answered = gpu.empty_storage("the answers", (batch.len() * size_of::<A>()) as u64)?;
-            let own = compute::bind_group(gpu, &self.groups[1], &[(0, &asked), (1, &answered)], &[]);
+            let own = compute::bind_group(gpu, &self.own_layout, &[(0, &asked), (1, &answered)], &[]);
             let workgroups = [(batch.len() as u32).div_ceil(64), 1];
             compute::dispatch(gpu, &pipeline, &[&scene, &own], workgroups, None);
             answers.extend(gpu.read::<A>(&answered, batch.len())?);
@@ -73,19 +79,19 @@ impl Probe {
     }
 
     /// The pipeline of an entry point, compiled at its first use.
-    fn pipeline(&self, entry_point: &'static str, is_in_textures: bool) -> Result<wgpu::ComputePipeline, GpuError> {
+    fn pipeline(&self, entry_point: &'static str, form: Form) -> Result<wgpu::ComputePipeline, GpuError> {
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(pipeline) = pipelines.get(&(entry_point, is_in_textures)) {
+        if let Some(pipeline) = pipelines.get(&(entry_point, form)) {
             return Ok(pipeline.clone());
         }
-        let constants = [geometry_constant(is_in_textures)];
-        let pipeline = compute::pipeline(&self.gpu, &self.module, &self.layout, entry_point, &constants, None)?;
-        pipelines.insert((entry_point, is_in_textures), pipeline.clone());
+        let pass = &self.passes[&form.traversal()];
+        let pipeline = pass.pipeline(&self.gpu, entry_point, &[form.constant()], None)?;
+        pipelines.insert((entry_point, form), pipeline.clone());
         Ok(pipeline)
     }
 
-    /// The scene bound, and whether its geometry is in textures.
-    fn scene(&self, scene: &ProbeScene<'_>) -> Result<(wgpu::BindGroup, bool), GpuError> {
+    /// The scene bound, and how its geometry is found.
+    fn scene(&self, scene: &ProbeScene<'_>) -> Result<(wgpu::BindGroup, Form), GpuError> {
         let gpu = &self.gpu;
         let mut group = SceneGroup {
             materials: scene_group::materials(gpu, scene.materials)?,
@@ -95,13 +101,15 @@ impl Probe {
         if let Some(geometry) = scene.geometry {
             group.geometry = GeometryArrays::new(gpu, geometry)?;
         }
-        let [node_count, around_root] = scene.geometry.map_or([0; 2], layout::hierarchies);
+        let [node_count, around_root, around_triangle] = scene.geometry.map_or([0; 3], layout::hierarchies);
         let globals = gpu.uniforms(&Globals {
             node_count,
             around_root,
+            around_triangle,
             ..Globals::zeroed()
         });
-        let bound = group.bind(gpu, &self.groups[0], &globals);
-        Ok((bound, group.geometry.is_in_textures()))
+        let form = group.geometry.form();
+        let layout = &self.passes[&form.traversal()].scene_layout;
+        Ok((group.bind(gpu, layout, &globals), form))
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::device::{GpuDevice, GpuError, Moment};
-use super::geometry_arrays::GeometryArrays;
+use super::geometry_arrays::{Form, GeometryArrays};
 use super::layout::Globals;
 use super::pipeline::Pipelines;
 use super::scene_group::{self, SceneGroup};
@@ -48,7 +48,7 @@ impl Resources {
         let cells = [job.distribution().width, job.distribution().height];
         let globals = gpu.uniforms(&Globals::new(&job.settings, &job.geometry, cells));
         Ok(Self {
-            scene_group: scene.bind(gpu, &pipelines.scene_layout, &globals),
+            scene_group: scene.bind(gpu, pipelines.scene_layout(scene.geometry.form()), &globals),
             job,
             scene,
             sums,
@@ -60,9 +60,9 @@ impl Resources {
         &self.job
     }
 
-    /// Whether the geometry is in textures.
-    pub fn is_in_textures(&self) -> bool {
-        self.scene.geometry.is_in_textures()
+    /// How kernels find the geometry.
+    pub fn form(&self) -> Form {
+        self.scene.geometry.form()
     }
 }
 
@@ -109,11 +109,8 @@ fn scene(gpu: &GpuDevice, job: &Job, old: Option<&Resources>) -> Result<SceneGro
 /// A geometry that is not there yet, though its model may be.
 fn geometry(gpu: &GpuDevice, geometry: &Geometry, of_model: Option<&SceneGroup>) -> Result<GeometryArrays, GpuError> {
     let arrays = of_model.map(|old| &old.geometry);
-    match arrays.filter(|arrays| arrays.has_room_for(geometry)) {
-        Some(arrays) => {
-            arrays.write_around(gpu, geometry)?;
-            Ok(arrays.clone())
-        }
+    match arrays.filter(|arrays| arrays.has_room_for(gpu, geometry)) {
+        Some(arrays) => arrays.with_around(gpu, geometry),
         None => GeometryArrays::new(gpu, geometry),
     }
 }

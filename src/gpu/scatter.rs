@@ -6,6 +6,7 @@ use super::compute::{self, READ, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
 use super::scene_group::TABLES_BINDING;
 use super::timer::Timer;
+use super::traversal::Traversal;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::vector::Vec3;
 
@@ -114,7 +115,7 @@ impl LobePass {
         entry_point: &str,
         constants: &[(&str, f64)],
     ) -> Result<Self, GpuError> {
-        let module = compute::module(gpu, name)?;
+        let module = compute::module(gpu, name, Traversal::Own)?;
         let groups = [
             compute::group_layout(gpu, name, &[(TABLES_BINDING, READ)]),
             compute::group_layout(gpu, name, &[(0, UNIFORMS), (1, WRITE)]),

@@ -6,6 +6,7 @@ use super::array::{self, Values};
 use super::compute::{self, READ, UNIFORMS, buffer_entry, texture_entry};
 use super::device::{GpuDevice, GpuError};
 use super::geometry_arrays::GeometryArrays;
+use super::traversal::Traversal;
 use crate::optics::material::Material;
 use crate::scene::Geometry;
 use crate::scene::environment::{Distribution, Environment};
@@ -16,10 +17,13 @@ use crate::scene::texture::Textures;
 /// The binding of the materials' tables, for passes that read nothing else.
 pub const TABLES_BINDING: u32 = 5;
 
+/// The binding of the adapter's own hierarchies, the last of the group, where there are any.
+const STRUCTURES_BINDING: u32 = 15;
+
 const MAP: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
 
-/// The layout of the group.
-pub fn layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
+/// The layout of the group, for rays that go this way.
+pub fn layout(gpu: &GpuDevice, traversal: Traversal) -> wgpu::BindGroupLayout {
     use wgpu::TextureViewDimension::{D2, D2Array};
     let entry = |binding: u32| match binding {
         0 => buffer_entry(binding, UNIFORMS),
@@ -27,7 +31,12 @@ pub fn layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
         6 => texture_entry(binding, MAP, D2),
         _ => texture_entry(binding, wgpu::TextureSampleType::Uint, D2Array),
     };
-    let entries: Vec<_> = (0..=14).map(entry).collect();
+    let structures = wgpu::BindGroupLayoutEntry {
+        ty: wgpu::BindingType::AccelerationStructure { vertex_return: false },
+        ..buffer_entry(STRUCTURES_BINDING, READ)
+    };
+    let structures = (traversal == Traversal::RayQueries).then_some(structures);
+    let entries: Vec<_> = (0..STRUCTURES_BINDING).map(entry).chain(structures).collect();
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some("scene"),
         entries: &entries,
@@ -68,7 +77,7 @@ impl SceneGroup {
         })
     }
 
-    /// The group with its uniforms, a [`layout::Globals`].
+    /// The group with its uniforms, a [`layout::Globals`]; the layout is that for the geometry's form.
     pub fn bind(&self, gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, globals: &wgpu::Buffer) -> wgpu::BindGroup {
         let [nodes, triangles, vertices] = self.geometry.buffers();
         let buffers = [globals, nodes, triangles, vertices, &self.materials, &self.tables];
@@ -86,15 +95,11 @@ impl SceneGroup {
             triangle_texels,
             vertex_texels,
         ];
-        let buffers: Vec<_> = (0..).zip(buffers).collect();
-        let textures: Vec<_> = (buffers.len() as u32..).zip(textures).collect();
-        compute::bind_group(gpu, layout, &buffers, &textures)
+        let buffers = buffers.map(wgpu::Buffer::as_entire_binding).into_iter();
+        let textures = textures.map(wgpu::BindingResource::TextureView).into_iter();
+        let structures = self.geometry.structure().map(wgpu::Tlas::as_binding);
+        compute::bind(gpu, layout, (0..).zip(buffers.chain(textures).chain(structures)))
     }
-}
-
-/// The override constant that tells a pipeline where the geometry is.
-pub fn geometry_constant(is_in_textures: bool) -> (&'static str, f64) {
-    ("GEOMETRY_IN_TEXTURES", f64::from(u8::from(is_in_textures)))
 }
 
 /// The materials of a scene.

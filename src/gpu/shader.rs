@@ -8,11 +8,17 @@ use std::path::Path;
 use include_dir::{Dir, include_dir};
 
 pub use super::generated_shader::GENERATED;
+use super::traversal::Traversal;
 
 static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 
 /// The environment variable that names a folder of shaders to read in place of those in the program.
 pub const FOLDER_VARIABLE: &str = "GLOSSMITH_SHADERS";
+
+/// The name under which modules import the traversal; which module it is, is chosen when they are linked.
+const TRAVERSAL: &str = "scene/traversal";
+/// What [`Linked::locate`] calls the extensions of WGSL that modules enable, all of them before anything else.
+pub const EXTENSIONS: &str = "extensions";
 
 /// A shader with everything that it imports.
 #[derive(Clone, Debug, Default)]
@@ -21,6 +27,9 @@ pub struct Linked {
     pub source: String,
     /// The modules in their order, each with the line (from 1) of `source` at which it begins.
     pub modules: Vec<(String, usize)>,
+    traversal: Traversal,
+    /// Lines that enable extensions.
+    extensions: Vec<String>,
 }
 
 impl Linked {
@@ -34,14 +43,18 @@ impl Linked {
     fn append(&mut self, module: &str, text: &str) {
         self.modules.push((module.to_owned(), self.source.lines().count() + 1));
         for line in text.lines() {
-            // An import leaves an empty line behind: line numbers stay those of the file.
-            self.source
-                .push_str(if line.starts_with("#import") { "" } else { line });
+            // What stands elsewhere leaves an empty line behind: line numbers stay those of the file.
+            let is_elsewhere = line.starts_with("#import") || line.starts_with(ENABLE);
+            self.source.push_str(if is_elsewhere { "" } else { line });
             self.source.push('\n');
         }
     }
 
     fn add(&mut self, module: &str) -> Result<(), String> {
+        let module = match module {
+            TRAVERSAL => self.traversal.module(),
+            module => module,
+        };
         if self.modules.iter().any(|(name, _)| name == module) {
             return Ok(());
         }
@@ -54,16 +67,47 @@ impl Linked {
         }
         self.modules.remove(place);
         self.append(module, &text);
+        let enabled = text.lines().filter(|line| line.starts_with(ENABLE));
+        self.extensions.extend(enabled.map(|line| format!("{line}\n")));
         Ok(())
+    }
+
+    /// Puts the extensions before everything else, where WGSL wants them.
+    fn finished(mut self) -> Self {
+        let extensions = std::mem::take(&mut self.extensions);
+        if !extensions.is_empty() {
+            self.modules
+                .iter_mut()
+                .for_each(|(_, first)| *first += extensions.len());
+            self.modules.insert(0, (EXTENSIONS.to_owned(), 1));
+            self.source.insert_str(0, &extensions.concat());
+        }
+        self
     }
 }
 
-/// A module of `shaders/` with everything that it imports.
+/// How a line begins that enables an extension of WGSL.
+const ENABLE: &str = "enable ";
+
+/// A module of `shaders/` with everything that it imports, for rays through our own hierarchy.
 ///
 /// # Errors
 /// Names the module that does not exist.
 pub fn link(module: &str) -> Result<Linked, String> {
-    link_with(&[module], "")
+    link_for(module, Traversal::Own)
+}
+
+/// The same for rays that go another way.
+///
+/// # Errors
+/// Names the module that does not exist.
+pub fn link_for(module: &str, traversal: Traversal) -> Result<Linked, String> {
+    let mut linked = Linked {
+        traversal,
+        ..Linked::default()
+    };
+    linked.add(module)?;
+    Ok(linked.finished())
 }
 
 /// What [`Linked::locate`] calls the source that came on top of the modules.
@@ -80,7 +124,7 @@ pub fn link_with(modules: &[&str], extra_source: &str) -> Result<Linked, String>
         linked.add(module)?;
     }
     linked.append(EXTRA, extra_source);
-    Ok(linked)
+    Ok(linked.finished())
 }
 
 /// The names of all modules in `shaders/`.

@@ -1,9 +1,10 @@
-//! Without a hardware GPU: is software Vulkan or our own processor engine faster on this machine?
+//! Which of the engines, and which way for rays, is the fastest on this machine?
 //!
-//! Measured on a small picture of the default document while nothing else is at work, the engines by turns, and
-//! remembered for this driver and version. Where pictures render at rates that say otherwise, it is measured again.
+//! Measured on a small picture of the default document while nothing else is at work, by turns, and remembered for this
+//! adapter, driver and version: without a hardware GPU the processor's engine and software Vulkan, and on any adapter that
+//! has ray queries those and our own traversal. Where pictures render at rates that say otherwise, it is measured again.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -12,60 +13,132 @@ use super::assets::Assets;
 use super::compile::Compiler;
 use super::engine::{Engine, EngineInfo, Precision, cpu, gpu};
 use super::quiet::{self, Quiet};
+use super::ray_queries::RayQueries;
 use crate::document::Document;
-use crate::gpu::{AdapterKind, GpuDevice};
+use crate::gpu::{AdapterKind, GpuAdapter, Traversal};
 use crate::job::Job;
 
 /// Side of the picture that is measured on, in pixels.
 const SIZE: u32 = 96;
-/// How often the engines are measured in turns, and how long each time.
-const TURNS: usize = 7;
-const DURATION: Duration = Duration::from_millis(60);
+/// How often the candidates are measured in turns, and how long each time: three of them take less than a second of turns and
+/// rests; warming kernels that the driver has in its cache takes about another.
+const TURNS: usize = 5;
+const DURATION: Duration = Duration::from_millis(40);
 /// How long it must have been quiet before a turn, and how often is looked.
-const REST: Duration = Duration::from_millis(200);
+const REST: Duration = Duration::from_millis(50);
 const GLANCE: Duration = Duration::from_millis(20);
 /// By how much software Vulkan must be slower than the processor on the same picture for another measurement.
 const DOUBT: f64 = 1.1;
+/// Machines that are remembered: an adapter each, with one driver.
+const REMEMBERED: usize = 8;
+
+/// What is measured against each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+enum Candidate {
+    /// The processor's engine.
+    Processor,
+    /// The GPU's, for rays that go this way.
+    Gpu(Traversal),
+}
+
+impl Candidate {
+    const OWN: Self = Self::Gpu(Traversal::Own);
+    const QUERIES: Self = Self::Gpu(Traversal::RayQueries);
+
+    /// All that there are with an adapter.
+    fn with(adapter: &GpuAdapter) -> Vec<Self> {
+        let mut all = vec![Self::OWN];
+        if adapter.is_software() {
+            all.insert(0, Self::Processor);
+        }
+        if adapter.has_ray_queries() {
+            all.push(Self::QUERIES);
+        }
+        all
+    }
+
+    /// Its name beside others, the processor's engine among them or not.
+    fn name(self, is_software: bool) -> &'static str {
+        match (self, is_software) {
+            (Self::Processor, _) => "the processor engine",
+            (Self::OWN, true) => "software Vulkan",
+            (Self::QUERIES, true) => "software Vulkan with ray queries",
+            (Self::OWN, false) => "our own traversal",
+            (Self::QUERIES, false) => "traversal by ray queries",
+        }
+    }
+}
 
 /// Opens whichever engine is faster. Where that is to be measured and the caller must not wait, the processor's is opened:
-/// compiling a kernel to measure takes software Vulkan some ten seconds, and what is found counts the next time.
+/// compiling a kernel to measure takes software Vulkan some seconds, and what is found counts the next time.
 pub(super) fn fastest_without_hardware(may_wait: bool) -> (Engine, EngineInfo) {
-    let device = match GpuDevice::open(AdapterKind::Software) {
-        Ok(device) => device,
-        Err(_) => return cpu("there is no Vulkan driver".to_owned()),
+    let Ok(adapter) = GpuAdapter::find(AdapterKind::Software) else {
+        return cpu("there is no Vulkan driver".to_owned());
     };
-    let machine = machine(&device);
-    let remembered = read_verdict(&machine);
-    if let Some(verdict) = remembered.as_ref().filter(|verdict| verdict.ratio >= 1.0) {
-        return cpu(verdict.reason());
-    }
-    let Ok(mut software) = gpu(device, String::new()) else {
-        return cpu("software Vulkan does not run the renderer".to_owned());
-    };
-    let verdict = match remembered {
+    let failed = || cpu("software Vulkan does not run the renderer".to_owned());
+    let verdict = match remembered(&adapter) {
         Some(verdict) => verdict,
         // Who waits does nothing else.
-        None if may_wait => match measured(&mut software.0, machine, &Quiet::new()) {
+        None if may_wait => match measured_and_remembered(&adapter, &Quiet::new()) {
             Some(verdict) => verdict,
-            None => return cpu("software Vulkan does not run the renderer".to_owned()),
+            None => return failed(),
         },
         None => {
-            measure_when_quiet();
+            measure_when_quiet(AdapterKind::Software);
             let reason = "no hardware GPU; software Vulkan is measured once nothing renders, for the next start";
             return cpu(reason.to_owned());
         }
     };
-    if verdict.ratio >= 1.0 {
-        return cpu(verdict.reason());
+    let verdict = verdict.of(|candidate| match RayQueries::chosen() {
+        RayQueries::Auto => true,
+        RayQueries::On => candidate != Candidate::OWN || !adapter.has_ray_queries(),
+        RayQueries::Off => candidate != Candidate::QUERIES,
+    });
+    let reason = format!("no hardware GPU; {}", verdict.reason());
+    match verdict.fastest() {
+        Candidate::Processor => cpu(reason),
+        Candidate::Gpu(traversal) => {
+            let opened = adapter.open(traversal).and_then(|device| gpu(device, reason));
+            opened.unwrap_or_else(|_| failed())
+        }
     }
-    software.1.reason = verdict.reason();
-    software
+}
+
+/// Which way rays go on an adapter, and what there is to say about it: ray queries where they were chosen or measured to be
+/// faster. Where that is to be measured and the caller must not wait, it is measured for the next time. Software Vulkan is
+/// measured where it stands for election against the processor alone.
+pub(super) fn traversal(adapter: &GpuAdapter, may_wait: bool) -> (Traversal, String) {
+    let said = |traversal, what: &str| (traversal, what.to_owned());
+    match (RayQueries::chosen(), adapter.has_ray_queries()) {
+        (RayQueries::On, true) => return said(Traversal::RayQueries, "with ray queries, chosen by you"),
+        (RayQueries::On, false) => return said(Traversal::Own, "without ray queries, which the adapter does not have"),
+        (RayQueries::Off, true) => return said(Traversal::Own, "without ray queries, chosen by you"),
+        (_, false) => return said(Traversal::Own, ""),
+        (RayQueries::Auto, true) => {}
+    }
+    let verdict = match remembered(adapter) {
+        Some(verdict) => Some(verdict),
+        None if adapter.is_software() => return said(Traversal::Own, "its ray queries have not been measured"),
+        None if may_wait => measured_and_remembered(adapter, &Quiet::new()),
+        None => {
+            measure_when_quiet(AdapterKind::Hardware);
+            let what = "its ray queries are measured once nothing renders, for the next start";
+            return said(Traversal::Own, what);
+        }
+    };
+    let Some(verdict) = verdict.map(|verdict| verdict.of(|candidate| candidate != Candidate::Processor)) else {
+        return said(Traversal::Own, "its ray queries could not be measured");
+    };
+    match verdict.fastest() {
+        Candidate::Gpu(traversal) => (traversal, verdict.reason()),
+        Candidate::Processor => (Traversal::Own, verdict.reason()),
+    }
 }
 
 /// Takes note of how fast software Vulkan renders a picture beside the processor, both in samples a second: where the
 /// processor is faster, what was measured does not hold, and is measured again.
 pub(super) fn compare_rates(software: f64, processor: f64) {
-    if is_doubtful(software, processor) && measure_when_quiet() {
+    if is_doubtful(software, processor) && measure_when_quiet(AdapterKind::Software) {
         log::info!(
             "software Vulkan renders {:.1} × as fast as the processor here: it is measured again",
             software / processor
@@ -78,29 +151,27 @@ fn is_doubtful(software: f64, processor: f64) -> bool {
 }
 
 /// What the measurement holds for.
-fn machine(device: &GpuDevice) -> String {
+fn machine(adapter: &GpuAdapter) -> String {
     format!(
         "{} | {} | {} threads | {} | in a quiet time",
-        device.info.name,
-        device.driver(),
+        adapter.info.name,
+        adapter.driver(),
         rayon::current_num_threads(),
         env!("CARGO_PKG_VERSION")
     )
 }
 
 /// Measures on a thread of its own; false where that is under way, or was done since the start.
-fn measure_when_quiet() -> bool {
+fn measure_when_quiet(kind: AdapterKind) -> bool {
     static IS_MEASURED: AtomicBool = AtomicBool::new(false);
     if IS_MEASURED.swap(true, Ordering::Relaxed) {
         return false;
     }
-    let work = || {
+    let work = move || {
         super::priority::lower_thread_priority();
-        let device = GpuDevice::open(AdapterKind::Software).ok()?;
-        let machine = machine(&device);
-        let mut software = gpu(device, String::new()).ok()?;
-        let verdict = measured(&mut software.0, machine, quiet::common())?;
-        log::info!("{}", verdict.reason());
+        let adapter = GpuAdapter::find(kind).ok()?;
+        let verdict = measured_and_remembered(&adapter, quiet::common())?;
+        log::info!("{}: {}", adapter.info.name, verdict.reason());
         Some(())
     };
     // Without a thread the next start tries again.
@@ -109,65 +180,155 @@ fn measure_when_quiet() -> bool {
 }
 
 /// What was measured.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 struct Verdict {
     /// Adapter, driver, threads, version.
     machine: String,
-    /// Samples a second of the processor engine over those of software Vulkan.
-    ratio: f64,
+    /// Those that worked, each with its samples a second over those of the first.
+    ratios: Vec<(Candidate, f64)>,
 }
 
 impl Verdict {
+    /// The same of some of the candidates.
+    fn of(mut self, is_wanted: impl Fn(Candidate) -> bool) -> Self {
+        self.ratios.retain(|(candidate, _)| is_wanted(*candidate));
+        self
+    }
+
+    /// Whether it can be relied on.
+    fn is_sound(&self) -> bool {
+        let is_positive = |(_, ratio): &(Candidate, f64)| ratio.is_finite() && *ratio > 0.0;
+        !self.ratios.is_empty() && self.ratios.iter().all(is_positive)
+    }
+
+    /// The candidates and their ratios, the fastest first; the earlier one of two that are as fast.
+    fn ranked(&self) -> Vec<(Candidate, f64)> {
+        let mut ranked = self.ratios.clone();
+        ranked.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+        ranked
+    }
+
+    fn fastest(&self) -> Candidate {
+        self.ranked()
+            .first()
+            .map_or(Candidate::OWN, |(candidate, _)| *candidate)
+    }
+
     fn reason(&self) -> String {
-        let (winner, loser, ratio) = if self.ratio >= 1.0 {
-            ("the processor engine", "software Vulkan", self.ratio)
-        } else {
-            ("software Vulkan", "the processor engine", 1.0 / self.ratio)
+        let is_software = self
+            .ratios
+            .iter()
+            .any(|(candidate, _)| *candidate == Candidate::Processor);
+        let ranked = self.ranked();
+        let [(winner, most), others @ ..] = &ranked[..] else {
+            return "nothing was measured".to_owned();
         };
-        format!("no hardware GPU; {winner} was measured {ratio:.1} × as fast here as {loser}")
+        let winner = winner.name(is_software);
+        if others.is_empty() {
+            return format!("{winner}, as nothing else works here");
+        }
+        let beside = |(other, ratio): &(Candidate, f64)| {
+            format!("{:.1} × as fast here as {}", most / ratio, other.name(is_software))
+        };
+        let beside: Vec<_> = others.iter().map(beside).collect();
+        format!("{winner} was measured {}", beside.join(" and "))
     }
 }
 
-/// Measures, and remembers it; `None` where one of the engines fails.
-fn measured(software: &mut Engine, machine: String, quiet: &Quiet) -> Option<Verdict> {
-    let mut document = Document::default();
-    (document.render.width, document.render.height) = (SIZE, SIZE);
-    let job = Arc::new(Compiler::default().compile(&document, &Assets::default()).ok()?);
-    let (mut processor, _) = cpu(String::new());
-    // On threads of its own, as software Vulkan has its own, of the same priority.
-    let threads = rayon::ThreadPoolBuilder::new().build().ok()?;
-    threads.install(|| warm(&mut processor, &job))?;
-    warm(software, &job)?;
-    let own = || threads.install(|| samples_per_second(&mut processor, &job));
-    let ratio = ratio_by_turns(quiet, own, || samples_per_second(software, &job))?;
-    let verdict = Verdict { machine, ratio };
-    write_verdict(&verdict);
+/// An engine that is measured, warm: its kernel has been compiled.
+struct Contestant {
+    candidate: Candidate,
+    engine: Engine,
+    /// Threads of its own for the processor, as software Vulkan has its own, of the same priority.
+    threads: Option<rayon::ThreadPool>,
+}
+
+impl Contestant {
+    /// `None` where it does not work here.
+    fn open(candidate: Candidate, adapter: &GpuAdapter, job: &Arc<Job>) -> Option<Self> {
+        let (engine, threads) = match candidate {
+            Candidate::Processor => {
+                let threads = rayon::ThreadPoolBuilder::new().build().ok()?;
+                (cpu(String::new()).0, Some(threads))
+            }
+            Candidate::Gpu(traversal) => {
+                let device = adapter.open(traversal).ok()?;
+                (gpu(device, String::new()).ok()?.0, None)
+            }
+        };
+        let mut contestant = Self {
+            candidate,
+            engine,
+            threads,
+        };
+        contestant.run(|engine| warm(engine, job))?;
+        Some(contestant)
+    }
+
+    fn run<A: Send>(&mut self, work: impl FnOnce(&mut Engine) -> A + Send) -> A {
+        let engine = &mut self.engine;
+        match &self.threads {
+            Some(threads) => threads.install(|| work(engine)),
+            None => work(engine),
+        }
+    }
+}
+
+/// Measures, and remembers it; `None` where the GPU does not render.
+fn measured_and_remembered(adapter: &GpuAdapter, quiet: &Quiet) -> Option<Verdict> {
+    let verdict = measured(adapter, quiet)?;
+    let written = verdict_path().and_then(|path| write_verdict(&path, &verdict));
+    // A cache: where it can't be written, the next start measures again.
+    if written.is_none() {
+        log::debug!("the engines' measurement could not be cached");
+    }
     Some(verdict)
 }
 
-/// The middle one of the ratios of two rates, which are measured by turns, each of them first in every other turn. Turns
-/// wait until it has been quiet for a while, and those that work fell into do not count.
-fn ratio_by_turns(
-    quiet: &Quiet,
-    mut own: impl FnMut() -> Option<f64>,
-    mut other: impl FnMut() -> Option<f64>,
-) -> Option<f64> {
-    let mut ratios = Vec::new();
-    while ratios.len() < TURNS {
+fn measured(adapter: &GpuAdapter, quiet: &Quiet) -> Option<Verdict> {
+    let mut document = Document::default();
+    (document.render.width, document.render.height) = (SIZE, SIZE);
+    let job = Arc::new(Compiler::default().compile(&document, &Assets::default()).ok()?);
+    let mut contestants: Vec<_> = Candidate::with(adapter)
+        .into_iter()
+        .filter_map(|candidate| Contestant::open(candidate, adapter, &job))
+        .collect();
+    let candidates: Vec<_> = contestants.iter().map(|contestant| contestant.candidate).collect();
+    if !candidates.contains(&Candidate::OWN) {
+        return None;
+    }
+    let rate = |number: usize| contestants[number].run(|engine| samples_per_second(engine, &job));
+    let ratios = ratios_by_turns(quiet, candidates.len(), rate)?;
+    Some(Verdict {
+        machine: machine(adapter),
+        ratios: std::iter::zip(candidates, ratios).collect(),
+    })
+}
+
+/// The rates of so many candidates over that of the first, the middle one of several turns: each turn measures all of them,
+/// every other one backwards. Turns wait until it has been quiet for a while, and those that work fell into do not count.
+fn ratios_by_turns(quiet: &Quiet, count: usize, mut rate: impl FnMut(usize) -> Option<f64>) -> Option<Vec<f64>> {
+    let mut turns: Vec<Vec<f64>> = Vec::new();
+    while turns.len() < TURNS {
         let span = rested(quiet);
-        let ratio = if ratios.len() % 2 == 0 {
-            let own = own()?;
-            own / other()?
-        } else {
-            let other = other()?;
-            own()? / other
-        };
+        let mut order: Vec<usize> = (0..count).collect();
+        if turns.len() % 2 == 1 {
+            order.reverse();
+        }
+        let mut rates = vec![0.0; count];
+        for number in order {
+            rates[number] = rate(number)?;
+        }
         if quiet.span() == Some(span) {
-            ratios.push(ratio);
+            turns.push(rates.iter().map(|rate| rate / rates[0]).collect());
         }
     }
-    ratios.sort_by(f64::total_cmp);
-    Some(ratios[TURNS / 2])
+    let middle = |number: usize| {
+        let mut ratios: Vec<f64> = turns.iter().map(|ratios| ratios[number]).collect();
+        ratios.sort_by(f64::total_cmp);
+        ratios[TURNS / 2]
+    };
+    Some((0..count).map(middle).collect())
 }
 
 /// Waits until it has been quiet for a while; the number of the quiet time.
@@ -212,22 +373,33 @@ fn verdict_path() -> Option<PathBuf> {
     )
 }
 
-fn read_verdict(machine: &str) -> Option<Verdict> {
-    let text = std::fs::read(verdict_path()?).ok()?;
-    let verdict: Verdict = serde_json::from_slice(&text).ok()?;
-    (verdict.machine == machine && verdict.ratio.is_finite() && verdict.ratio > 0.0).then_some(verdict)
+/// What is known of an adapter.
+fn remembered(adapter: &GpuAdapter) -> Option<Verdict> {
+    read_verdict(&verdict_path()?, &machine(adapter))
 }
 
-/// A cache: where it can't be written, the next start measures again.
-fn write_verdict(verdict: &Verdict) {
-    let write = || {
-        let path = verdict_path()?;
-        std::fs::create_dir_all(path.parent()?).ok()?;
-        std::fs::write(path, serde_json::to_vec(verdict).ok()?).ok()
-    };
-    if write().is_none() {
-        log::debug!("the engine's measurement could not be cached");
-    }
+/// The verdicts that a file holds, the oldest first; none where it can't be read.
+fn read_verdicts(path: &Path) -> Vec<Verdict> {
+    let text = std::fs::read(path).ok();
+    text.and_then(|text| serde_json::from_slice(&text).ok())
+        .unwrap_or_default()
+}
+
+fn read_verdict(path: &Path, machine: &str) -> Option<Verdict> {
+    let verdicts = read_verdicts(path).into_iter();
+    verdicts
+        .filter(Verdict::is_sound)
+        .find(|verdict| verdict.machine == machine)
+}
+
+/// Writes a verdict in the place of that of the same machine; `None` where the file can't be written.
+fn write_verdict(path: &Path, verdict: &Verdict) -> Option<()> {
+    let mut verdicts = read_verdicts(path);
+    verdicts.retain(|other| other.machine != verdict.machine);
+    verdicts.push(verdict.clone());
+    let kept = &verdicts[verdicts.len().saturating_sub(REMEMBERED)..];
+    std::fs::create_dir_all(path.parent()?).ok()?;
+    std::fs::write(path, serde_json::to_vec(kept).ok()?).ok()
 }
 
 #[cfg(test)]
@@ -236,30 +408,26 @@ mod tests {
 
     use super::*;
 
-    /// The processor's engine does twice what the other one does, but a quarter while the window renders on its cores.
+    /// The first candidate does twice what the second one does, but a quarter while the window renders on its cores.
     #[test]
     fn what_is_measured_beside_other_work_does_not_count() {
         let quiet = Quiet::new();
         let turn = Cell::new(0);
         let order = std::cell::RefCell::new(String::new());
-        let own = || {
-            order.borrow_mut().push('o');
+        let rate = |number: usize| {
+            order.borrow_mut().push(['a', 'b', 'c'][number]);
+            if number > 0 {
+                return Some(f64::from(number as u32));
+            }
             // Somebody renders during more than half of the turns.
             let is_disturbed = turn.get() < TURNS + 2;
             turn.set(turn.get() + 1);
             let _work = is_disturbed.then(|| quiet.work());
             Some(if is_disturbed { 0.5 } else { 2.0 })
         };
-        let other = || {
-            order.borrow_mut().push('s');
-            Some(1.0)
-        };
-        assert_eq!(ratio_by_turns(&quiet, own, other), Some(2.0));
-        assert!(
-            order.borrow().ends_with("ossoossoossoos"),
-            "by turns: {}",
-            order.borrow()
-        );
+        assert_eq!(ratios_by_turns(&quiet, 3, rate), Some(vec![1.0, 0.5, 1.0]));
+        let by_turns = "abccbaabccbaabc";
+        assert!(order.borrow().ends_with(by_turns), "by turns: {}", order.borrow());
     }
 
     #[test]
@@ -267,5 +435,79 @@ mod tests {
         assert!(is_doubtful(1.0e6, 2.0e6));
         assert!(!is_doubtful(1.0e6, 1.05e6) && !is_doubtful(2.0e6, 1.0e6));
         assert!(!is_doubtful(0.0, 1.0e6), "nothing is known of it");
+    }
+
+    fn verdict(machine: &str, ratios: &[(Candidate, f64)]) -> Verdict {
+        Verdict {
+            machine: machine.to_owned(),
+            ratios: ratios.to_vec(),
+        }
+    }
+
+    #[test]
+    fn the_fastest_is_taken_and_told_beside_the_others() {
+        let software = verdict(
+            "m",
+            &[
+                (Candidate::Processor, 1.0),
+                (Candidate::OWN, 1.2),
+                (Candidate::QUERIES, 0.6),
+            ],
+        );
+        assert_eq!(software.fastest(), Candidate::OWN);
+        assert_eq!(
+            software.reason(),
+            "software Vulkan was measured 1.2 × as fast here as the processor engine and 2.0 × as fast here as software \
+             Vulkan with ray queries"
+        );
+        let hardware = verdict("m", &[(Candidate::OWN, 1.0), (Candidate::QUERIES, 1.5)]);
+        assert_eq!(hardware.fastest(), Candidate::QUERIES);
+        assert_eq!(
+            hardware.reason(),
+            "traversal by ray queries was measured 1.5 × as fast here as our own traversal"
+        );
+        let alone = hardware.of(|candidate| candidate == Candidate::OWN);
+        assert_eq!(alone.fastest(), Candidate::OWN);
+        assert!(alone.reason().contains("nothing else works"), "{}", alone.reason());
+    }
+
+    #[test]
+    fn verdicts_are_remembered_by_machine() {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let path = folder.path().join("cache/engine.json");
+        assert_eq!(read_verdict(&path, "old driver"), None);
+        let old = verdict("old driver", &[(Candidate::OWN, 1.0), (Candidate::QUERIES, 1.5)]);
+        let new = verdict("new driver", &[(Candidate::OWN, 1.0), (Candidate::QUERIES, 0.5)]);
+        for verdict in [&old, &new] {
+            write_verdict(&path, verdict).expect("written");
+        }
+        assert_eq!(read_verdict(&path, "old driver"), Some(old));
+        assert_eq!(read_verdict(&path, "new driver"), Some(new));
+        assert_eq!(read_verdict(&path, "another adapter"), None);
+        // Measured again, it counts in place of what was there; what can't be is not relied on.
+        let again = verdict("new driver", &[(Candidate::OWN, 1.0), (Candidate::QUERIES, 0.0)]);
+        write_verdict(&path, &again).expect("written");
+        assert_eq!(read_verdict(&path, "new driver"), None);
+        assert_eq!(read_verdicts(&path).len(), 2);
+        for number in 0..20 {
+            write_verdict(&path, &verdict(&number.to_string(), &[(Candidate::OWN, 1.0)])).expect("written");
+        }
+        assert_eq!(read_verdicts(&path).len(), REMEMBERED);
+        std::fs::write(&path, "{").expect("written");
+        assert_eq!(read_verdict(&path, "19"), None);
+    }
+
+    /// All that this machine has, on any Mesa.
+    #[test]
+    fn software_vulkan_is_measured_with_all_that_it_has() {
+        let adapter =
+            GpuAdapter::find(AdapterKind::Software).expect("a Vulkan driver: apt install mesa-vulkan-drivers");
+        let begun = Instant::now();
+        let found = measured(&adapter, &Quiet::new()).expect("it renders");
+        println!("{} in {:.1} s", found.reason(), begun.elapsed().as_secs_f64());
+        assert!(found.is_sound(), "{found:?}");
+        let candidates: Vec<_> = found.ratios.iter().map(|(candidate, _)| *candidate).collect();
+        assert_eq!(candidates, Candidate::with(&adapter));
+        assert_eq!(candidates.contains(&Candidate::QUERIES), adapter.has_ray_queries());
     }
 }

@@ -5,9 +5,10 @@ use std::str::FromStr;
 use std::sync::Arc;
 use std::time::Duration;
 
+use super::calibration;
 use crate::cpu::CpuEngine;
 use crate::gpu::scatter::Scatterer;
-use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
+use crate::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuEngine, GpuError, Traversal};
 use crate::job::Job;
 use crate::job::film::Film;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
@@ -60,6 +61,8 @@ pub struct EngineInfo {
     pub driver: String,
     /// Why this engine, in words.
     pub reason: String,
+    /// How it finds what rays meet.
+    pub traversal: Traversal,
     /// True where the work is done by the processor, whatever the engine.
     pub is_software: bool,
 }
@@ -97,7 +100,7 @@ impl Engine {
     pub(super) fn open(choice: EngineChoice, may_wait: bool) -> Result<(Self, EngineInfo), GpuError> {
         match choice {
             EngineChoice::Cpu => Ok(cpu(CHOSEN.to_owned())),
-            EngineChoice::Gpu => gpu(GpuDevice::open(AdapterKind::Any)?, CHOSEN.to_owned()),
+            EngineChoice::Gpu => on_adapter(&GpuAdapter::find(AdapterKind::Any)?, CHOSEN, may_wait),
             EngineChoice::Auto => Ok(auto(may_wait)),
         }
     }
@@ -164,6 +167,7 @@ pub(super) fn cpu(reason: String) -> (Engine, EngineInfo) {
         adapter: format!("{} ({threads} threads)", processor_name()),
         driver: String::new(),
         reason,
+        traversal: Traversal::Own,
         is_software: true,
     };
     (Engine::Cpu(Box::default()), info)
@@ -175,6 +179,7 @@ pub(super) fn gpu(device: GpuDevice, reason: String) -> Result<(Engine, EngineIn
         adapter: device.info.name.clone(),
         driver: device.driver(),
         reason,
+        traversal: device.traversal,
         is_software: device.is_software(),
     };
     Ok((Engine::Gpu(Box::new(GpuEngine::new(device)?)), info))
@@ -192,10 +197,28 @@ fn processor_name() -> String {
     )
 }
 
+/// An adapter's engine, for the reason `why`, with rays going whichever way is to be taken there; by our own traversal where
+/// its ray queries fail.
+fn on_adapter(adapter: &GpuAdapter, why: &str, may_wait: bool) -> Result<(Engine, EngineInfo), GpuError> {
+    let (traversal, about_it) = calibration::traversal(adapter, may_wait);
+    let reason = match about_it.as_str() {
+        "" => why.to_owned(),
+        about_it => format!("{why}; {about_it}"),
+    };
+    match adapter.open(traversal).and_then(|device| gpu(device, reason)) {
+        Err(error) if traversal == Traversal::RayQueries => {
+            let reason = format!("{why}; its ray queries do not work: {error}");
+            gpu(adapter.open(Traversal::Own)?, reason)
+        }
+        opened => opened,
+    }
+}
+
 fn auto(may_wait: bool) -> (Engine, EngineInfo) {
-    match GpuDevice::open(AdapterKind::Hardware).and_then(|device| gpu(device, "a hardware GPU".to_owned())) {
+    let hardware = GpuAdapter::find(AdapterKind::Hardware);
+    match hardware.and_then(|adapter| on_adapter(&adapter, "a hardware GPU", may_wait)) {
         Ok(opened) => opened,
-        Err(_) => super::calibration::fastest_without_hardware(may_wait),
+        Err(_) => calibration::fastest_without_hardware(may_wait),
     }
 }
 
@@ -205,10 +228,14 @@ fn auto(may_wait: bool) -> (Engine, EngineInfo) {
 /// # Errors
 /// Where a GPU was asked for and fails.
 pub(super) fn device_for_functions(choice: EngineChoice) -> Result<Option<GpuDevice>, GpuError> {
+    let open = |kind| {
+        let adapter = GpuAdapter::find(kind)?;
+        adapter.open(calibration::traversal(&adapter, false).0)
+    };
     match choice {
         EngineChoice::Cpu => Ok(None),
-        EngineChoice::Gpu => GpuDevice::open(AdapterKind::Any).map(Some),
-        EngineChoice::Auto => Ok(GpuDevice::open(AdapterKind::Hardware).ok()),
+        EngineChoice::Gpu => open(AdapterKind::Any).map(Some),
+        EngineChoice::Auto => Ok(open(AdapterKind::Hardware).ok()),
     }
 }
 

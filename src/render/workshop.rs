@@ -8,7 +8,7 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::{Duration, Instant};
 
 use super::engine::Engine;
-use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError};
+use crate::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuEngine, GpuError, Traversal};
 use crate::job::Job;
 use crate::job::plan::Specialisation;
 
@@ -25,6 +25,7 @@ struct Preparation {
 /// See the module.
 pub(super) struct Workshop {
     kind: AdapterKind,
+    traversal: Traversal,
     /// An engine that is open and has no kernel yet.
     blank: Option<GpuEngine>,
     /// Those that are ready, the one used last at the end.
@@ -44,6 +45,7 @@ impl Workshop {
             } else {
                 AdapterKind::Hardware
             },
+            traversal: blank.device().traversal,
             blank: Some(blank),
             ready: Vec::new(),
             in_work: None,
@@ -100,14 +102,14 @@ impl Workshop {
             return;
         }
         let (sender, engine) = channel();
-        let (blank, kind) = (self.blank.take(), self.kind);
+        let (blank, kind, traversal) = (self.blank.take(), self.kind, self.traversal);
         let prepared = job.clone();
         let work = move || {
             let _at_work = super::quiet::at_work();
             let prepare = || {
                 let mut engine = match blank {
                     Some(engine) => engine,
-                    None => GpuEngine::new(GpuDevice::open(kind)?)?,
+                    None => GpuEngine::new(GpuAdapter::find(kind)?.open(traversal)?)?,
                 };
                 engine.prepare(prepared)?;
                 Ok(engine)

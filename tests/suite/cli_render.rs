@@ -80,6 +80,7 @@ fn the_report_has_its_keys_and_their_types() {
         "engine",
         "adapter",
         "driver",
+        "traversal",
         "width",
         "height",
         "samples_per_pixel",

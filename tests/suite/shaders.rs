@@ -3,7 +3,10 @@
 
 use glossmith::cpu::integrator;
 use glossmith::document::Document;
-use glossmith::gpu::shader::{EXTRA, FOLDER_VARIABLE, GENERATED, Linked, link, link_with, module_names};
+use glossmith::gpu::Traversal;
+use glossmith::gpu::shader::{
+    EXTENSIONS, EXTRA, FOLDER_VARIABLE, GENERATED, Linked, link, link_for, link_with, module_names,
+};
 use glossmith::job::plan::Plan;
 use glossmith::job::tiles::TILE_SIDE;
 use glossmith::optics::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, TOTAL_NODES};
@@ -32,8 +35,12 @@ pub fn validate(linked: &Linked) -> Result<(naga::Module, ModuleInfo), String> {
     };
     let module = naga::front::wgsl::parse_str(&linked.source)
         .map_err(|error| complaint(error.location(&linked.source), &error))?;
-    // No capability beyond WGSL's core: any adapter can take the shaders.
-    let info = Validator::new(ValidationFlags::all(), Capabilities::empty())
+    // No capability beyond WGSL's core, so that any adapter can take the shaders, but for those that are linked for others.
+    let capabilities = match linked.source.starts_with("enable wgpu_ray_query;") {
+        true => Capabilities::RAY_QUERY,
+        false => Capabilities::empty(),
+    };
+    let info = Validator::new(ValidationFlags::all(), capabilities)
         .validate(&module)
         .map_err(|error| {
             // From the function down to the expression: the shortest says where.
@@ -135,19 +142,24 @@ fn shaders_are_read_from_the_folder_that_is_named() {
 
 #[test]
 fn locate_knows_every_line() {
-    let linked = link("pass/path_trace").unwrap();
+    for &traversal in Traversal::ALL {
+        assert_lines_are_located(&link_for("pass/path_trace", traversal).unwrap());
+    }
+}
+
+fn assert_lines_are_located(linked: &Linked) {
     let mut compared = 0;
     for (number, line) in (1..).zip(linked.source.lines()) {
         let (module, place) = linked.locate(number);
         let path = format!("{}/shaders/{module}.wgsl", env!("CARGO_MANIFEST_DIR"));
         let Ok(file) = std::fs::read_to_string(path) else {
             let is_generated = GENERATED.iter().any(|(name, _)| *name == module);
-            assert!(is_generated, "{module} is no file");
+            assert!(is_generated || module == EXTENSIONS, "{module} is no file");
             continue;
         };
         let original = file.lines().nth(place - 1).unwrap();
         assert!(
-            line == original || original.starts_with("#import"),
+            line == original || original.starts_with("#import") || original.starts_with("enable "),
             "{module}, line {place}: {line:?}"
         );
         compared += 1;
@@ -291,6 +303,7 @@ const WITHOUT_TWIN: &[&str] = &[
     "ANY",
     "NO_HIT",
     "STACK_SIZE",
+    "EXTENT_MAX",
     "LAYER_SPECULAR",
     "LAYER_BASE",
     "LAYER_TRANSMISSION",
@@ -370,8 +383,9 @@ fn narrow_plan() -> Plan {
 #[test]
 fn passes_translate_for_every_graphics_interface() {
     let mut translated = 0;
-    for name in module_names() {
-        let (module, info) = validate(&link(&name).unwrap()).unwrap();
+    let each = |name: String| Traversal::ALL.iter().map(move |&traversal| (name.clone(), traversal));
+    for (name, traversal) in module_names().into_iter().flat_map(each) {
+        let (module, info) = validate(&link_for(&name, traversal).unwrap()).unwrap();
         for entry in &module.entry_points {
             for plan in [Plan::general(), narrow_plan()] {
                 let point = (entry.stage, entry.name.as_str());
@@ -390,7 +404,8 @@ fn passes_translate_for_every_graphics_interface() {
                     &constants.collect(),
                 )
                 .unwrap_or_else(|error| panic!("{name}, {}: {error}", entry.name));
-                translate(&module, &info, point).unwrap_or_else(|message| panic!("{name}, {}: {message}", entry.name));
+                translate(&module, &info, point, traversal)
+                    .unwrap_or_else(|message| panic!("{name}, {}: {message}", entry.name));
                 translated += 1;
             }
         }
@@ -398,8 +413,17 @@ fn passes_translate_for_every_graphics_interface() {
     assert!(translated >= 2);
 }
 
-/// Vulkan, Metal, and Direct3D 12 by either of its compilers.
-fn translate(module: &naga::Module, info: &ModuleInfo, entry: (naga::ShaderStage, &str)) -> Result<(), String> {
+/// Vulkan, Metal, and Direct3D 12 by either of its compilers; in the versions that have ray queries, where rays are those.
+fn translate(
+    module: &naga::Module,
+    info: &ModuleInfo,
+    entry: (naga::ShaderStage, &str),
+    traversal: Traversal,
+) -> Result<(), String> {
+    let (metal, direct3d): (_, &[_]) = match traversal {
+        Traversal::Own => ((2, 0), &[hlsl::ShaderModel::V5_1, hlsl::ShaderModel::V6_0]),
+        Traversal::RayQueries => ((2, 4), &[hlsl::ShaderModel::V6_5]),
+    };
     let (stage, name) = entry;
     let options = spv::PipelineOptions {
         shader_stage: stage,
@@ -407,7 +431,7 @@ fn translate(module: &naga::Module, info: &ModuleInfo, entry: (naga::ShaderStage
     };
     spv::write_vec(module, info, &spv::Options::default(), Some(&options)).map_err(|e| format!("SPIR-V: {e}"))?;
     let options = msl::Options {
-        lang_version: (2, 0),
+        lang_version: metal,
         ..Default::default()
     };
     let pipeline = msl::PipelineOptions {
@@ -421,7 +445,7 @@ fn translate(module: &naga::Module, info: &ModuleInfo, entry: (naga::ShaderStage
     if text.is_empty() {
         return Err("Metal: nothing came out".into());
     }
-    for shader_model in [hlsl::ShaderModel::V5_1, hlsl::ShaderModel::V6_0] {
+    for &shader_model in direct3d {
         let options = hlsl::Options {
             shader_model,
             fake_missing_bindings: true,

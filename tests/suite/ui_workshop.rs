@@ -12,7 +12,7 @@ use glossmith::app::actions::{Action, Command};
 use glossmith::app::layout::Pane;
 use glossmith::app::{App, Options};
 use glossmith::document::Document;
-use glossmith::render::{EngineChoice, EngineKind};
+use glossmith::render::{EngineChoice, EngineKind, RayQueries};
 use glossmith::scene::ModelSource;
 use glossmith::store::examples::EXAMPLES;
 
@@ -56,6 +56,32 @@ fn the_engine_chosen_in_the_menu_is_remembered() {
     harness.run_steps(3);
     let choice = harness.get_by_role_and_label(Role::RadioButton, "Engine: CPU");
     assert_eq!(choice.accesskit_node().toggled(), Some(Toggled::True));
+}
+
+#[test]
+fn ray_queries_switched_off_in_the_menu_stay_off() {
+    let mut harness = editor();
+    settle(&mut harness);
+    let toggled = |harness: &mut Editor| {
+        harness.get_by_role_and_label(Role::Button, "Render").click();
+        harness.run_steps(3);
+        let off = harness.get_by_role_and_label(Role::RadioButton, "Ray queries: Off");
+        off.accesskit_node().toggled()
+    };
+    assert_eq!(toggled(&mut harness), Some(Toggled::False));
+    harness
+        .get_by_role_and_label(Role::RadioButton, "Ray queries: Off")
+        .click();
+    harness.run_steps(3);
+    assert_eq!(RayQueries::chosen(), RayQueries::Off);
+    let mut memory = Memory::default();
+    harness.state_mut().save(&mut memory);
+    drop(harness);
+    // As in a new process, to which nothing is said on the command line.
+    RayQueries::Auto.choose();
+    let mut harness = editor_remembering(memory, options());
+    assert_eq!(toggled(&mut harness), Some(Toggled::True));
+    RayQueries::Auto.choose();
 }
 
 /// Texts as they are painted, with their colours.

@@ -10,6 +10,7 @@ use crate::app::sheets::menu::Sheet;
 use crate::app::sheets::palette;
 use crate::app::{App, example, is_dragging};
 use crate::document::{CameraSettings, Denoise, Document, MaterialSettings, parameter, setting};
+use crate::render::EngineChoice;
 use crate::render::explain::explain;
 use crate::scene::ModelOptions;
 use crate::scene::camera::framing_distance;
@@ -60,6 +61,14 @@ impl App {
             Action::UseEngine(choice) => {
                 (self.shared.engine, self.shared.kept_engine) = (choice, choice);
                 self.worker.use_engine(choice);
+            }
+            Action::UseRayQueries(choice) => {
+                choice.choose();
+                self.shared.kept_ray_queries = choice;
+                // Engines find out when they are opened.
+                if self.shared.engine != EngineChoice::Cpu {
+                    self.worker.use_engine(self.shared.engine);
+                }
             }
             Action::Show(shown) => {
                 self.shared.shown = shown;

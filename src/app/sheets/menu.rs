@@ -12,7 +12,7 @@ use crate::app::services::recent::Recent;
 use crate::app::sheets::import;
 use crate::app::sheets::palette;
 use crate::document::{Document, ImportLobe, MaterialSettings};
-use crate::render::EngineChoice;
+use crate::render::{EngineChoice, RayQueries};
 use crate::scene::Model;
 use crate::store::examples::EXAMPLES;
 
@@ -162,6 +162,14 @@ fn engines(ui: &mut Ui, chosen: EngineChoice, actions: &mut Vec<Action>) {
         let label = format!("Engine: {}", choice.label());
         if ui.radio(choice == chosen, label).on_hover_text(choice.help()).clicked() {
             do_and_close(ui, actions, Action::UseEngine(choice));
+        }
+    }
+    ui.separator();
+    let chosen = RayQueries::chosen();
+    for &choice in RayQueries::ALL {
+        let label = format!("Ray queries: {}", choice.label());
+        if ui.radio(choice == chosen, label).on_hover_text(choice.help()).clicked() {
+            do_and_close(ui, actions, Action::UseRayQueries(choice));
         }
     }
 }

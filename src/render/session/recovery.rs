@@ -1,7 +1,7 @@
 //! What becomes of a picture when the GPU's device is lost.
 
 use super::Session;
-use crate::gpu::{AdapterKind, GpuDevice, GpuEngine, GpuError, Moment};
+use crate::gpu::{AdapterKind, GpuAdapter, GpuEngine, GpuError, Moment};
 use crate::job::film::Film;
 use crate::job::tiles::Schedule;
 use crate::render::engine::{Engine, cpu};
@@ -50,7 +50,8 @@ impl Session {
             AdapterKind::Hardware
         };
         let is_fluid = self.workshop.take().is_some();
-        let opened = may_go_on.then(|| GpuDevice::open(kind).and_then(GpuEngine::new));
+        let traversal = self.info.traversal;
+        let opened = may_go_on.then(|| GpuAdapter::find(kind)?.open(traversal).and_then(GpuEngine::new));
         match opened {
             Some(Ok(engine)) if is_fluid => self.workshop = Some(Workshop::new(engine)),
             Some(Ok(engine)) => self.engine = Engine::Gpu(Box::new(engine)),

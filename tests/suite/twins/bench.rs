@@ -7,7 +7,7 @@ use glam::Vec2;
 use glossmith::gpu::geometry_arrays::GeometryArrays;
 use glossmith::gpu::layout::Globals;
 use glossmith::gpu::scene_group::{self, SceneGroup};
-use glossmith::gpu::{AdapterKind, GpuDevice, GpuError};
+use glossmith::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal};
 use glossmith::job::{BackgroundKind, Settings, Strategy};
 use glossmith::optics::albedo::{albedo_table, rough_albedo_table};
 use glossmith::optics::curve::{CUSTOM_INTERVALS, Curve, custom_table};
@@ -296,22 +296,21 @@ pub struct Bench {
 /// Panics with what to install where there is no adapter: without one nothing here would be tested.
 pub fn bench() -> &'static Bench {
     static BENCH: OnceLock<Result<Bench, GpuError>> = OnceLock::new();
-    BENCH
-        .get_or_init(Bench::open)
-        .as_ref()
-        .unwrap_or_else(|error| panic!("{error}"))
+    let opened = BENCH.get_or_init(|| Bench::open(&GpuAdapter::find(AdapterKind::Any)?, Traversal::Own));
+    opened.as_ref().unwrap_or_else(|error| panic!("{error}"))
 }
 
 impl Bench {
-    fn open() -> Result<Self, GpuError> {
-        let gpu = GpuDevice::open(AdapterKind::Any)?;
+    /// The adapter opened for rays that go this way.
+    pub fn open(adapter: &GpuAdapter, traversal: Traversal) -> Result<Self, GpuError> {
+        let gpu = adapter.open(traversal)?;
         println!("{} ({})", gpu.info.name, gpu.driver());
         let layout_of = |entries: &[wgpu::BindGroupLayoutEntry]| {
             gpu.device
                 .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries })
         };
         let rows_entries = [storage_entry(0, true), storage_entry(1, false)];
-        let layouts = [scene_group::layout(&gpu), layout_of(&rows_entries)];
+        let layouts = [scene_group::layout(&gpu, traversal), layout_of(&rows_entries)];
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: &[Some(&layouts[0]), Some(&layouts[1])],

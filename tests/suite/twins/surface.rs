@@ -164,7 +164,7 @@ fn ray_and_triangle(rng: &mut Rng, overshoot: f32) -> Vec<Value> {
 #[test]
 fn triangles_agree() {
     check(
-        &["scene/bvh"],
+        &["scene/intersect"],
         &[
             Case::new(
                 "intersect_triangle",

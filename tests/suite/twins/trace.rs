@@ -1,11 +1,12 @@
-//! Rays against the teapot on its ground, through the hierarchy: WGSL's traversal of its own hierarchy against the processor's of its.
+//! Rays against the teapot on its ground: WGSL's traversal of its own hierarchy, and ray queries, against the processor's of its.
 
 use glossmith::gpu::shader::link_with;
+use glossmith::gpu::{AdapterKind, GpuAdapter, Traversal};
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::Geometry;
 use rayon::prelude::*;
 
-use super::bench::{SCENE, bench};
+use super::bench::{Bench, SCENE, bench};
 use super::harness::Rng;
 use crate::shaders::validate;
 
@@ -13,6 +14,8 @@ const RAYS: usize = 40_000;
 /// Distances that count as the same, relative to the distance or 1.
 const SAME_DISTANCE: f32 = 1e-5;
 const NO_HIT: u32 = u32::MAX;
+/// The share of rays that may pass an edge on another side by query than by arithmetic.
+const PARTED: f64 = 1e-3;
 
 const SOURCE: &str = "
 @group(1) @binding(0) var<storage, read> rows_in: array<f32>;
@@ -73,6 +76,32 @@ fn random_ray(rng: &mut Rng, geometry: &Geometry) -> Ray {
 
 #[test]
 fn rays_meet_the_same_triangles() {
+    let failures = compared(bench(), "scene/bvh");
+    assert!(failures.is_empty(), "{}", told(&failures));
+}
+
+/// An eighth of the rays are aimed at vertices, where the adapter may round to the other side.
+#[test]
+fn queries_meet_the_same_triangles() {
+    let adapter = GpuAdapter::find(AdapterKind::Any).expect("an adapter: install mesa-vulkan-drivers");
+    let opened = Bench::open(&adapter, Traversal::RayQueries);
+    if !adapter.has_ray_queries() {
+        let refused = opened.err().expect("it has none").to_string();
+        println!("{} has no ray queries, and says so: {refused}", adapter.info.name);
+        return;
+    }
+    let failures = compared(&opened.expect("it has them"), "scene/ray_query");
+    println!("ray queries: {} of {RAYS} rays part", failures.len());
+    assert!(failures.len() as f64 <= PARTED * RAYS as f64, "{}", told(&failures));
+}
+
+fn told(failures: &[String]) -> String {
+    let some = failures[..failures.len().min(10)].join("\n");
+    format!("{} rays differ:\n{some}", failures.len())
+}
+
+/// Where the module's rays meet something else than the processor's.
+fn compared(bench: &Bench, module: &str) -> Vec<String> {
     let geometry = &SCENE.geometry;
     let mut rng = Rng::new(99);
     let rays: Vec<_> = (0..RAYS).map(|_| random_ray(&mut rng, geometry)).collect();
@@ -81,9 +110,8 @@ fn rays_meet_the_same_triangles() {
         let numbers = ray.origin.iter().chain(&ray.direction).chain([&ray.t_max]);
         words.extend(numbers.map(|x| x.to_bits()));
     }
-    let linked = link_with(&["scene/bvh"], SOURCE).unwrap();
+    let linked = link_with(&[module], SOURCE).unwrap();
     validate(&linked).unwrap();
-    let bench = bench();
     let pipeline = bench.pipeline(&bench.module(&linked.source), "trace_rays");
     let out = bench.run(&pipeline, &words, RAYS, 5);
     let outcomes: Vec<_> = rays
@@ -94,15 +122,12 @@ fn rays_meet_the_same_triangles() {
     let count = |which: fn(&Outcome) -> bool| outcomes.iter().filter(|outcome| which(outcome)).count();
     let (hits, other_triangle) = (count(|o| o.is_hit), count(|o| o.is_other_triangle));
     let largest = outcomes.iter().map(|o| o.difference).fold(0.0, f32::max);
-    println!("trace: {hits} of {RAYS} rays hit, {other_triangle} another triangle as far away, t within {largest:.1e}");
-    let failures: Vec<_> = outcomes.iter().filter_map(|o| o.failure.clone()).collect();
-    assert!(
-        failures.is_empty(),
-        "{} rays differ:\n{}",
-        failures.len(),
-        failures[..failures.len().min(10)].join("\n")
+    println!(
+        "{module}: {hits} of {RAYS} rays hit, {other_triangle} another triangle as far away, t within {largest:.1e}"
     );
     assert!(hits > RAYS / 4 && hits < RAYS);
+    assert!(other_triangle < RAYS / 20, "{other_triangle} rays met another triangle");
+    outcomes.into_iter().filter_map(|outcome| outcome.failure).collect()
 }
 
 #[derive(Default)]

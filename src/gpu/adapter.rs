@@ -1,0 +1,201 @@
+//! Which adapter there is, whether it will do, and what is asked of it.
+
+use pollster::block_on;
+
+use super::array::TEXEL_ROW;
+use super::device::{GpuDevice, GpuError, driver, is_software};
+use super::traversal::Traversal;
+
+/// Which adapters are considered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AdapterKind {
+    /// The fastest: hardware before software.
+    Any,
+    /// Only real GPUs.
+    Hardware,
+    /// Only Vulkan on the processor.
+    Software,
+}
+
+/// What every pass needs of an adapter, each number within what WebGPU grants everywhere: the path tracer's eight storage
+/// buffers, two uniforms and ten textures, arrays in textures of 4096 texels a row, workgroups of 64.
+fn limits_needed() -> wgpu::Limits {
+    wgpu::Limits {
+        max_texture_dimension_2d: TEXEL_ROW as u32,
+        max_sampled_textures_per_shader_stage: 10,
+        max_storage_buffers_per_shader_stage: 8,
+        max_uniform_buffers_per_shader_stage: 2,
+        max_storage_buffer_binding_size: 128 << 20,
+        max_buffer_size: 128 << 20,
+        max_compute_invocations_per_workgroup: 64,
+        max_compute_workgroup_size_x: 64,
+        max_compute_workgroup_size_y: 8,
+        max_compute_workgroup_size_z: 1,
+        max_compute_workgroups_per_dimension: 65_535,
+        // Of the rest nothing is used: the least that there is.
+        ..wgpu::Limits::downlevel_webgl2_defaults()
+    }
+}
+
+/// The limits of an adapter that are below what is needed, by their names; `None` where none is.
+fn lacking(adapter: &wgpu::Limits) -> Option<String> {
+    let mut lacking = Vec::new();
+    limits_needed().check_limits_with_fail_fn(adapter, false, |name, needed, allowed| {
+        lacking.push(format!("its {name} is {allowed}, {needed} is needed"));
+    });
+    (!lacking.is_empty()).then(|| lacking.join("; "))
+}
+
+/// What is asked of an adapter: what is needed, and where models and pictures call for more, as much as it has.
+fn limits_asked(adapter: &wgpu::Limits) -> wgpu::Limits {
+    wgpu::Limits {
+        max_texture_dimension_2d: adapter.max_texture_dimension_2d,
+        max_texture_array_layers: adapter.max_texture_array_layers,
+        max_buffer_size: adapter.max_buffer_size,
+        max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
+        ..limits_needed()
+    }
+}
+
+/// An adapter that has not been opened.
+#[derive(Debug)]
+pub struct GpuAdapter {
+    adapter: wgpu::Adapter,
+    /// Name, driver, kind.
+    pub info: wgpu::AdapterInfo,
+}
+
+impl GpuAdapter {
+    /// The best adapter of a kind.
+    ///
+    /// # Errors
+    /// Says what to install where there is none.
+    pub fn find(kind: AdapterKind) -> Result<Self, GpuError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let wanted = |backends| {
+            let mut adapters = block_on(instance.enumerate_adapters(backends));
+            adapters.retain(|adapter| {
+                let is_software = is_software(&adapter.get_info());
+                match kind {
+                    AdapterKind::Any => true,
+                    AdapterKind::Hardware => !is_software,
+                    AdapterKind::Software => is_software,
+                }
+            });
+            adapters
+        };
+        // OpenGL only where there is nothing else: looking for it takes time and prints errors where it is missing.
+        let mut adapters = wanted(wgpu::Backends::PRIMARY);
+        if adapters.is_empty() && kind != AdapterKind::Software {
+            adapters = wanted(wgpu::Backends::GL);
+        }
+        adapters.sort_by_key(|adapter| rank(&adapter.get_info()));
+        let adapter = adapters.into_iter().next().ok_or(GpuError::NoAdapter(match kind {
+            AdapterKind::Any => "",
+            AdapterKind::Hardware => "hardware ",
+            AdapterKind::Software => "software ",
+        }))?;
+        Ok(Self {
+            info: adapter.get_info(),
+            adapter,
+        })
+    }
+
+    /// True where the adapter is the processor in disguise.
+    pub fn is_software(&self) -> bool {
+        is_software(&self.info)
+    }
+
+    /// Driver with its version.
+    pub fn driver(&self) -> String {
+        driver(&self.info)
+    }
+
+    /// Whether it can find by itself what rays meet.
+    pub fn has_ray_queries(&self) -> bool {
+        self.adapter.features().contains(wgpu::Features::EXPERIMENTAL_RAY_QUERY)
+    }
+
+    /// Opens it, for rays that go this way.
+    ///
+    /// # Errors
+    /// What the adapter lacks.
+    pub fn open(&self, traversal: Traversal) -> Result<GpuDevice, GpuError> {
+        let unfit = |reason: String| GpuError::Unfit {
+            adapter: self.info.name.clone(),
+            reason,
+        };
+        let limits = self.adapter.limits();
+        if let Some(lacking) = lacking(&limits) {
+            return Err(unfit(lacking));
+        }
+        let optional = wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PIPELINE_CACHE;
+        let mut descriptor = wgpu::DeviceDescriptor {
+            label: Some("glossmith"),
+            required_features: self.adapter.features() & optional,
+            required_limits: limits_asked(&limits),
+            ..Default::default()
+        };
+        if traversal == Traversal::RayQueries {
+            descriptor.required_features |= wgpu::Features::EXPERIMENTAL_RAY_QUERY;
+            descriptor.required_limits = descriptor.required_limits.using_acceleration_structure_values(limits);
+            // SAFETY: wgpu asks to be aware that its experiments may have bugs. This one can be switched off, and our own
+            // traversal stands in where it does not work.
+            descriptor.experimental_features = unsafe { wgpu::ExperimentalFeatures::enabled() };
+        }
+        let opened = block_on(self.adapter.request_device(&descriptor)).map_err(|error| unfit(error.to_string()))?;
+        Ok(GpuDevice::new(opened, self.info.clone(), traversal))
+    }
+}
+
+impl GpuDevice {
+    /// Opens the best adapter of a kind, with nothing that is an experiment: rays go through our own hierarchy.
+    ///
+    /// # Errors
+    /// Says what to install where there is none, or what the adapter lacks.
+    pub fn open(kind: AdapterKind) -> Result<Self, GpuError> {
+        GpuAdapter::find(kind)?.open(Traversal::Own)
+    }
+}
+
+/// Sorts adapters: real GPUs first.
+fn rank(info: &wgpu::AdapterInfo) -> u8 {
+    match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_webgpu_grants_everywhere_is_enough() {
+        assert_eq!(lacking(&wgpu::Limits::default()), None);
+        let asked = limits_asked(&wgpu::Limits::default());
+        assert_eq!(asked.max_storage_buffers_per_shader_stage, 8);
+        assert_eq!(asked.max_storage_buffer_binding_size, 128 << 20);
+    }
+
+    #[test]
+    fn what_an_adapter_lacks_is_told_by_name() {
+        let poor = wgpu::Limits {
+            max_storage_buffers_per_shader_stage: 4,
+            max_texture_dimension_2d: 2048,
+            ..wgpu::Limits::default()
+        };
+        let told = lacking(&poor).expect("it lacks two");
+        assert!(
+            told.contains("max_storage_buffers_per_shader_stage is 4, 8 is needed"),
+            "{told}"
+        );
+        assert!(
+            told.contains("max_texture_dimension_2d is 2048, 4096 is needed"),
+            "{told}"
+        );
+    }
+}
