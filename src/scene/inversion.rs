@@ -121,7 +121,6 @@ mod tests {
     fn check(weights: &[f64]) {
         let shares = shares(weights);
         let count = weights.len() as u32;
-        let mut numbers = vec![0_u64; weights.len()];
         let mut before = 0;
         for share in &shares {
             assert!(share.upper >= before);
@@ -131,7 +130,6 @@ mod tests {
         for number in (0..DRAWS).step_by(97).chain(DRAWS - 40..DRAWS) {
             let drawn = draw(count, number, |index| shares[index as usize]);
             assert!((drawn.lower..drawn.upper).contains(&number), "{number}: {drawn:?}");
-            numbers[drawn.index as usize] += 1;
             let place = place_in(drawn, number, 0.5_f64);
             assert!((0.0..=1.0).contains(&place));
         }
