@@ -16,7 +16,7 @@ use glossmith::optics::frame::frame_from_normal;
 use glossmith::optics::fresnel::fresnel_conductor;
 use glossmith::optics::lanes::{InLanes, in_lanes};
 use glossmith::optics::lobe::{Horizon, Lobe, LobeShape, lobe_evaluate, lobe_sample};
-use glossmith::optics::random::{Sequence, random_pairs_bits, unit_from_bits};
+use glossmith::optics::random::{Sequence, random_pairs};
 use glossmith::optics::real::{Real, Scalar};
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::scene::environment::{
@@ -49,9 +49,8 @@ impl Stage for Numbers {
         let samples = T::each(|lane| lane as u32);
         let mut sum = T::zero();
         for dimension in 0..2 {
-            let [a, b] = random_pairs_bits::<T>(&keys, &samples, Sequence::Sobol, dimension);
-            sum += T::from_lanes(|lane| unit_from_bits(a.as_ref()[lane]));
-            sum += T::from_lanes(|lane| unit_from_bits(b.as_ref()[lane]));
+            let [a, b] = random_pairs::<T>(&keys, &samples, Sequence::Sobol, dimension);
+            sum += a + b;
         }
         sum
     }

@@ -149,7 +149,7 @@ fn independent_pair_bits(key: u32, sample: u32, dimension: u32) -> [u32; 2] {
 
 /// The same of some paths at once, by their keys and samples. Written so that compilers turn it into lanes.
 #[inline(always)]
-pub fn random_pairs_bits<T: Real>(
+fn random_pairs_bits<T: Real>(
     keys: &T::Each<u32>,
     samples: &T::Each<u32>,
     sequence: Sequence,

@@ -11,8 +11,7 @@ pub const DRAW_BITS: u32 = 24;
 const DRAWS: u32 = 1 << DRAW_BITS;
 
 /// An entry's part of the numbers.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Zeroable, bytemuck::Pod)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Share {
     /// How many of the 2²⁴ numbers draw this entry or one before it.
     pub upper: u32,

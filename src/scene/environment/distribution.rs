@@ -14,8 +14,7 @@ const MAX_CELLS: u64 = 2048 * 1024;
 const EXCESS_MIN: f64 = 0.05;
 
 /// One cell of the distribution.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Zeroable, bytemuck::Pod)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Cell {
     /// Its share of its row.
     pub share: Share,

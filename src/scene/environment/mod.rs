@@ -412,16 +412,21 @@ fn densities<T: Real>(distribution: &Distribution, cells: &T::Each<u32>) -> T {
     })
 }
 
+/// Of each lane the first cell of the row that numbers draw, and the cell that has the guide to its cells.
+#[inline(always)]
+fn guides<T: Real>(distribution: &Distribution, xi: [T; 2]) -> T::Each<[u32; 2]> {
+    let width = distribution.width;
+    let (numbers, row_numbers) = (xi[0].to_each(), xi[1].to_each());
+    T::each(|lane| {
+        let first = distribution.row(draw_number(row_numbers.as_ref()[lane])).index * width;
+        [first, first + slot(width, draw_number(numbers.as_ref()[lane]))]
+    })
+}
+
 /// Has the processor fetch what [`environment_sample`] looks up first, the guide to a row's cells.
 #[inline(always)]
 pub fn fetch_guide<T: Real>(distribution: &Distribution, xi: [T; 2]) {
-    let width = distribution.width;
-    let (numbers, row_numbers) = (xi[0].to_each(), xi[1].to_each());
-    let guides = T::each(|lane| {
-        let row = distribution.row(draw_number(row_numbers.as_ref()[lane])).index;
-        row * width + slot(width, draw_number(numbers.as_ref()[lane]))
-    });
-    for &guide in guides.as_ref() {
+    for &[_, guide] in guides(distribution, xi).as_ref() {
         fetch(&distribution.cells, guide as usize);
     }
 }
@@ -429,14 +434,8 @@ pub fn fetch_guide<T: Real>(distribution: &Distribution, xi: [T; 2]) {
 /// Has the processor fetch the cell that [`environment_sample`] draws, once the guide is there.
 #[inline(always)]
 pub fn fetch_chosen<T: Real>(distribution: &Distribution, xi: [T; 2]) {
-    let width = distribution.width;
-    let (numbers, row_numbers) = (xi[0].to_each(), xi[1].to_each());
-    let firsts = T::each(|lane| {
-        let first = distribution.row(draw_number(row_numbers.as_ref()[lane])).index * width;
-        let guide = first + slot(width, draw_number(numbers.as_ref()[lane]));
-        first + distribution.cells[guide as usize].share.guide
-    });
-    for &cell in firsts.as_ref() {
+    for &[first, guide] in guides(distribution, xi).as_ref() {
+        let cell = first + distribution.cells[guide as usize].share.guide;
         fetch(&distribution.cells, cell as usize);
     }
 }
