@@ -130,9 +130,10 @@ pub fn empty_texture<T: Pod>(gpu: &GpuDevice, what: &'static str, count: usize) 
     };
     let texels = (count * size_of::<T>() / texel_bytes::<T>()).max(1);
     let rows = texels.div_ceil(TEXEL_ROW);
+    let is_opengl = gpu.info.backend == wgpu::Backend::Gl;
     let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
         label: Some(what),
-        size: extent(texels.min(TEXEL_ROW), rows.min(LAYER_ROWS), rows.div_ceil(LAYER_ROWS)),
+        size: extent(texels.min(TEXEL_ROW), rows.min(LAYER_ROWS), layers(rows, is_opengl)),
         mip_level_count: 1,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
@@ -144,6 +145,14 @@ pub fn empty_texture<T: Pod>(gpu: &GpuDevice, what: &'static str, count: usize) 
         dimension: Some(wgpu::TextureViewDimension::D2Array),
         ..Default::default()
     })
+}
+
+/// How many layers hold so many rows. wgpu takes a texture of one layer for one without layers in OpenGL, and one of six
+/// that are square for a cube: shaders would read zeros there, so it has a layer more.
+fn layers(rows: usize, is_opengl: bool) -> usize {
+    let needed = rows.div_ceil(LAYER_ROWS);
+    let is_mistaken = needed == 1 || needed.is_multiple_of(6);
+    needed + usize::from(is_opengl && is_mistaken)
 }
 
 /// Writes values into an array's texture, from a place on.
@@ -196,4 +205,20 @@ fn write_in_row(gpu: &GpuDevice, texture: &wgpu::Texture, texel: usize, line: &[
     };
     gpu.queue
         .write_texture(place, line, layout, extent(line.len() / texel_bytes, 1, 1));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn opengl_sees_layers_wherever_there_are_some() {
+        for needed in 1..=30 {
+            let rows = needed * LAYER_ROWS;
+            assert_eq!(layers(rows, false), needed);
+            let there = layers(rows, true);
+            assert!(there == needed || there == needed + 1);
+            assert!(there > 1 && there % 6 != 0, "{there} layers");
+        }
+    }
 }

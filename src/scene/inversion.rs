@@ -80,9 +80,9 @@ pub fn draw_number<T: Scalar>(xi: T) -> u32 {
     (xi.to_f64() * f64::from(DRAWS)) as u32
 }
 
-/// The entry that a number draws, of `count`.
+/// Which entry a number draws, of `count`.
 #[inline(always)]
-pub fn draw(count: u32, number: u32, share: impl Fn(u32) -> Share) -> Drawn {
+pub fn find(count: u32, number: u32, share: impl Fn(u32) -> Share) -> u32 {
     let slot = slot(count, number);
     let mut low = share(slot).guide;
     let mut high = count - 1;
@@ -97,10 +97,16 @@ pub fn draw(count: u32, number: u32, share: impl Fn(u32) -> Share) -> Drawn {
             low = middle + 1;
         }
     }
+    low
+}
+
+/// An entry with the numbers that draw it.
+#[inline(always)]
+pub fn drawn(index: u32, share: impl Fn(u32) -> Share) -> Drawn {
     Drawn {
-        index: low,
-        lower: if low == 0 { 0 } else { share(low - 1).upper },
-        upper: share(low).upper,
+        index,
+        lower: if index == 0 { 0 } else { share(index - 1).upper },
+        upper: share(index).upper,
     }
 }
 
@@ -127,7 +133,8 @@ mod tests {
         }
         assert_eq!(before, DRAWS);
         for number in (0..DRAWS).step_by(97).chain(DRAWS - 40..DRAWS) {
-            let drawn = draw(count, number, |index| shares[index as usize]);
+            let share = |index: u32| shares[index as usize];
+            let drawn = drawn(find(count, number, share), share);
             assert!((drawn.lower..drawn.upper).contains(&number), "{number}: {drawn:?}");
             let place = place_in(drawn, number, 0.5_f64);
             assert!((0.0..=1.0).contains(&place));
@@ -159,7 +166,8 @@ mod tests {
     #[test]
     fn nothing_is_drawn_where_there_is_nothing() {
         let shares = shares(&[0.0; 5]);
-        let drawn = draw(5, 77, |index| shares[index as usize]);
+        let share = |index: u32| shares[index as usize];
+        let drawn = drawn(find(5, 77, share), share);
         assert_eq!((drawn.lower, drawn.upper), (0, 0));
         assert_eq!(place_in(drawn, 77, 0.5_f32), 1.0);
     }

@@ -1,12 +1,13 @@
 //! A GPU that is lost, at every moment at which it can be: opened anew thrice, then the processor goes on.
 
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 use glossmith::document::Document;
-use glossmith::gpu::Moment;
+use glossmith::gpu::{AdapterKind, GpuAdapter, Moment, Traversal};
 use glossmith::job::film::Image;
 use glossmith::render::worker::{Event, Level, Pace, Worker};
-use glossmith::render::{EngineChoice, EngineKind, Session, SessionError};
+use glossmith::render::{EngineChoice, EngineKind, RayQueries, Session, SessionError};
 
 use super::worker::{finished, small_document, wait};
 
@@ -47,7 +48,13 @@ fn renders_as_ever(worker: &Worker, kind: EngineKind) {
     let [mean, wanted] = [&picture.image, &expected.image].map(|image| mean(image));
     assert!((mean / wanted - 1.0).abs() < 1e-3, "{mean} in place of {wanted}");
     let snapshot = worker.snapshot();
-    assert_eq!(snapshot.engine.as_ref().expect("it renders").kind, kind);
+    let engine = snapshot.engine.as_ref().expect("it renders");
+    assert_eq!(engine.kind, kind);
+    if RayQueries::chosen() == RayQueries::On {
+        let adapter = GpuAdapter::find(AdapterKind::Any).expect("there was one");
+        let is_asked = kind == EngineKind::Gpu && adapter.has_ray_queries();
+        assert_eq!(engine.traversal == Traversal::RayQueries, is_asked);
+    }
 }
 
 fn mean(image: &Image) -> f64 {
@@ -123,4 +130,24 @@ fn what_was_read_back_counts() {
     while !alone.step(Duration::from_secs(1)).expect("always").is_done {}
     let [mean, wanted] = [session, alone].map(|mut session| mean(&session.image().expect("it is done")));
     assert!((mean / wanted - 1.0).abs() < 1e-3, "{mean} in place of {wanted}");
+}
+
+#[test]
+#[ignore = "the child of the test below: the choice holds for the whole process"]
+fn with_ray_queries() {
+    RayQueries::On.choose();
+    a_lost_device_is_opened_anew();
+    what_was_read_back_counts();
+}
+
+/// The adapter's own hierarchies are lost with it, and built again.
+#[test]
+fn a_lost_device_comes_back_with_its_ray_queries() {
+    let child = Command::new(std::env::current_exe().expect("a path"))
+        .args(["--ignored", "--exact", "device_loss::with_ray_queries"])
+        .output()
+        .expect("this very program");
+    let told = String::from_utf8_lossy(&child.stdout);
+    assert!(child.status.success(), "{told}");
+    assert!(told.contains("1 passed"), "{told}");
 }

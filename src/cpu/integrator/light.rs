@@ -11,8 +11,9 @@ use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_disc;
 use crate::scene::environment::{
-    environment_density_at, environment_local_from_world, environment_radiance_at, environment_sample, environment_uv,
-    environment_world_from_local, fetch_cell, fetch_chosen, fetch_guide, fetch_place,
+    environment_density_at, environment_local_from_world, environment_radiance_at, environment_rows,
+    environment_sample_in, environment_uv, environment_world_from_local, fetch_cell, fetch_chosen, fetch_guide,
+    fetch_place,
 };
 use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_sample, spot_share};
 use crate::scene::surface::SurfacePoint;
@@ -82,19 +83,26 @@ impl<T: Real> Integrator<'_, T> {
         let [a, b] = group.pairs(paths, dimension, [Purpose::Light; 2]);
         let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Light, Purpose::Unused]);
         let numbers = vec3(a, b, c).to_each();
-        group.for_each(paths, group.mask(), |path, lane| {
-            path.light_numbers = numbers.as_ref()[lane]
-        });
+        let mut rows = T::each(|_| 0);
         if self.samples_environment {
-            fetch_guide(self.distribution, [a, b]);
+            rows = environment_rows(self.distribution, b);
+            fetch_guide(self.distribution, &rows, a);
         }
+        group.for_each(paths, group.mask(), |path, lane| {
+            path.light_numbers = numbers.as_ref()[lane];
+            path.light_row = rows.as_ref()[lane];
+        });
     }
 
     /// Has the processor fetch what drawing with these numbers looks up next.
     #[inline(always)]
     pub(super) fn fetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &[Path<T::Scalar, R>]) {
-        let numbers = group.vectors(paths, |path| path.light_numbers);
-        fetch_chosen(self.distribution, [numbers.x, numbers.y]);
+        let rows = T::each(|lane| group.of(paths, lane).light_row);
+        fetch_chosen(
+            self.distribution,
+            &rows,
+            group.numbers(paths, |path| path.light_numbers.x),
+        );
     }
 
     /// What surfaces emit that paths met, weighed against light sampling.
@@ -167,7 +175,13 @@ impl<T: Real> Integrator<'_, T> {
     /// Directions drawn from the triangles that emit or from the environment; true for the latter, whose radiance is
     /// looked up once it is known to arrive.
     #[inline(always)]
-    fn draw_lights(&self, point: &SurfacePoint<T>, xi: Vec3<T>) -> (LightSample<T>, T::Mask) {
+    fn draw_lights<R: Recorder>(
+        &self,
+        point: &SurfacePoint<T>,
+        group: &Group<T>,
+        paths: &[Path<T::Scalar, R>],
+    ) -> (LightSample<T>, T::Mask) {
+        let xi = group.vectors(paths, |path| path.light_numbers);
         let share = self.environment_probability;
         let is_far = if !self.samples_emitters {
             T::Mask::splat(true)
@@ -183,7 +197,8 @@ impl<T: Real> Integrator<'_, T> {
             radiance: Vec3::zero(),
         };
         if is_far.any() {
-            let (local, density) = environment_sample(self.distribution, vec3(xi.x, xi.y, xi.z / share));
+            let rows = T::each(|lane| group.of(paths, lane).light_row);
+            let (local, density) = environment_sample_in(self.distribution, &rows, vec3(xi.x, xi.y, xi.z / share));
             drawn.direction = environment_world_from_local(local, self.rotation);
             drawn.density = density * share;
         }
@@ -235,7 +250,7 @@ impl<T: Real> Integrator<'_, T> {
         paths: &mut [Path<T::Scalar, R>],
     ) -> Vec3<T> {
         let (group, zero) = (arrival.group, T::zero());
-        let (drawn, is_far) = self.draw_lights(point, group.vectors(paths, |path| path.light_numbers));
+        let (drawn, is_far) = self.draw_lights(point, &group, paths);
         let wi = drawn.direction;
         let transmits = material.transmits();
         let is_ahead = zero.less(point.surface.normal.dot(wi)) | transmits;

@@ -40,6 +40,8 @@ pub(super) struct Path<S: Scalar, R> {
     pub place: [S; 2],
     /// The numbers that draw its light.
     pub light_numbers: Vec3<S>,
+    /// The row of the environment's cells that they draw.
+    pub light_row: u32,
     /// The light that it is aimed at.
     pub light: Option<LightRay<S>>,
     /// True until it has come to its end.
@@ -94,6 +96,7 @@ impl<S: Scalar, R: Recorder> Path<S, R> {
             distance: S::zero(),
             place: [S::zero(); 2],
             light_numbers: Vec3::zero(),
+            light_row: 0,
             light: None,
             goes_on: true,
             alpha: S::one(),

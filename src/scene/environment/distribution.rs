@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 
-use crate::scene::inversion::{DRAW_BITS, Drawn, Share, draw, shares};
+use crate::scene::inversion::{DRAW_BITS, Drawn, Share, drawn, find, shares};
 use crate::scene::memory::in_large_pages;
 
 /// More cells than this are merged: 24 MiB of table, and finer cells gain nothing a sample could show.
@@ -183,15 +183,22 @@ impl Distribution {
 
     /// The row that a number draws.
     #[inline(always)]
-    pub(super) fn row(&self, number: u32) -> Drawn {
-        draw(self.height, number, |row| self.rows[row as usize])
+    pub(super) fn row(&self, number: u32) -> u32 {
+        find(self.height, number, |row| self.rows[row as usize])
+    }
+
+    /// A row, as it is drawn.
+    #[inline(always)]
+    pub(super) fn row_at(&self, row: u32) -> Drawn {
+        drawn(row, |row| self.rows[row as usize])
     }
 
     /// The column that a number draws in a row.
     #[inline(always)]
     pub(super) fn column(&self, row: u32, number: u32) -> Drawn {
         let first = row * self.width;
-        draw(self.width, number, |column| self.cells[(first + column) as usize].share)
+        let share = |column| self.cells[(first + column) as usize].share;
+        drawn(find(self.width, number, share), share)
     }
 }
 

@@ -368,12 +368,25 @@ pub fn fetch_cell<T: Real>(distribution: &Distribution, uv: [T; 2]) {
 /// are spread evenly over the square are so over the map. `xi.z` is what they have too few bits for.
 #[inline(always)]
 pub fn environment_sample<T: Real>(distribution: &Distribution, xi: Vec3<T>) -> (Vec3<T>, T) {
+    environment_sample_in(distribution, &environment_rows(distribution, xi.y), xi)
+}
+
+/// The rows of cells that [`environment_sample`] draws with `xi.y`.
+#[inline(always)]
+pub fn environment_rows<T: Real>(distribution: &Distribution, xi_y: T) -> T::Each<u32> {
+    let numbers = xi_y.to_each();
+    T::each(|lane| distribution.row(draw_number(numbers.as_ref()[lane])))
+}
+
+/// What [`environment_sample`] draws where the rows are known.
+#[inline(always)]
+pub fn environment_sample_in<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi: Vec3<T>) -> (Vec3<T>, T) {
     let (width, height) = (distribution.width, distribution.height);
     let numbers = xi.to_each();
     let drawn = T::each(|lane| {
         let xi = numbers.as_ref()[lane];
         let [row_number, number] = [draw_number(xi.y), draw_number(xi.x)];
-        let row = distribution.row(row_number);
+        let row = distribution.row_at(rows.as_ref()[lane]);
         let column = distribution.column(row.index, number);
         let [x, y] = jitter(xi.z);
         let density = distribution.cells[(row.index * width + column.index) as usize].density;
@@ -412,29 +425,28 @@ fn densities<T: Real>(distribution: &Distribution, cells: &T::Each<u32>) -> T {
     })
 }
 
-/// Of each lane the first cell of the row that numbers draw, and the cell that has the guide to its cells.
+/// Of each lane the first cell of its row, and the cell that has the guide to those that `xi_x` draws.
 #[inline(always)]
-fn guides<T: Real>(distribution: &Distribution, xi: [T; 2]) -> T::Each<[u32; 2]> {
-    let width = distribution.width;
-    let (numbers, row_numbers) = (xi[0].to_each(), xi[1].to_each());
+fn guides<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) -> T::Each<[u32; 2]> {
+    let (width, numbers) = (distribution.width, xi_x.to_each());
     T::each(|lane| {
-        let first = distribution.row(draw_number(row_numbers.as_ref()[lane])).index * width;
+        let first = rows.as_ref()[lane] * width;
         [first, first + slot(width, draw_number(numbers.as_ref()[lane]))]
     })
 }
 
-/// Has the processor fetch what [`environment_sample`] looks up first, the guide to a row's cells.
+/// Has the processor fetch what [`environment_sample_in`] looks up first, the guide to a row's cells.
 #[inline(always)]
-pub fn fetch_guide<T: Real>(distribution: &Distribution, xi: [T; 2]) {
-    for &[_, guide] in guides(distribution, xi).as_ref() {
+pub fn fetch_guide<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
+    for &[_, guide] in guides(distribution, rows, xi_x).as_ref() {
         fetch(&distribution.cells, guide as usize);
     }
 }
 
-/// Has the processor fetch the cell that [`environment_sample`] draws, once the guide is there.
+/// Has the processor fetch the cell that [`environment_sample_in`] draws, once the guide is there.
 #[inline(always)]
-pub fn fetch_chosen<T: Real>(distribution: &Distribution, xi: [T; 2]) {
-    for &[first, guide] in guides(distribution, xi).as_ref() {
+pub fn fetch_chosen<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
+    for &[first, guide] in guides(distribution, rows, xi_x).as_ref() {
         let cell = first + distribution.cells[guide as usize].share.guide;
         fetch(&distribution.cells, cell as usize);
     }
