@@ -129,7 +129,9 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
         }
     } else {
         line += " – | – |";
-        our_times.map(|time| line += &format!(" {time:.2} | – | – |"));
+        for time in our_times {
+            line += &format!(" {time:.2} | – | – |");
+        }
     }
     println!("{line}");
     Ok(())
