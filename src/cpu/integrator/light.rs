@@ -11,9 +11,8 @@ use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
 use crate::optics::warp::uniform_disc;
 use crate::scene::environment::{
-    environment_density_at, environment_local_from_world, environment_radiance_at, environment_rows,
-    environment_sample_in, environment_uv, environment_world_from_local, fetch_cell, fetch_chosen, fetch_guide,
-    fetch_place,
+    drawn_rows, environment_density_at, environment_local_from_world, environment_radiance_at, environment_uv,
+    environment_world_from_local, fetch_cell, fetch_chosen, fetch_guide, fetch_place, sample_in_rows,
 };
 use crate::scene::light::{Emitters, LightSample, is_spot, light_density, light_sample, spot_share};
 use crate::scene::surface::SurfacePoint;
@@ -85,7 +84,7 @@ impl<T: Real> Integrator<'_, T> {
         let numbers = vec3(a, b, c).to_each();
         let mut rows = T::each(|_| 0);
         if self.samples_environment {
-            rows = environment_rows(self.distribution, b);
+            rows = drawn_rows(self.distribution, b);
             fetch_guide(self.distribution, &rows, a);
         }
         group.for_each(paths, group.mask(), |path, lane| {
@@ -198,7 +197,7 @@ impl<T: Real> Integrator<'_, T> {
         };
         if is_far.any() {
             let rows = T::each(|lane| group.of(paths, lane).light_row);
-            let (local, density) = environment_sample_in(self.distribution, &rows, vec3(xi.x, xi.y, xi.z / share));
+            let (local, density) = sample_in_rows(self.distribution, &rows, vec3(xi.x, xi.y, xi.z / share));
             drawn.direction = environment_world_from_local(local, self.rotation);
             drawn.density = density * share;
         }

@@ -368,19 +368,19 @@ pub fn fetch_cell<T: Real>(distribution: &Distribution, uv: [T; 2]) {
 /// are spread evenly over the square are so over the map. `xi.z` is what they have too few bits for.
 #[inline(always)]
 pub fn environment_sample<T: Real>(distribution: &Distribution, xi: Vec3<T>) -> (Vec3<T>, T) {
-    environment_sample_in(distribution, &environment_rows(distribution, xi.y), xi)
+    sample_in_rows(distribution, &drawn_rows(distribution, xi.y), xi)
 }
 
 /// The rows of cells that [`environment_sample`] draws with `xi.y`.
 #[inline(always)]
-pub fn environment_rows<T: Real>(distribution: &Distribution, xi_y: T) -> T::Each<u32> {
+pub fn drawn_rows<T: Real>(distribution: &Distribution, xi_y: T) -> T::Each<u32> {
     let numbers = xi_y.to_each();
     T::each(|lane| distribution.row(draw_number(numbers.as_ref()[lane])))
 }
 
 /// What [`environment_sample`] draws where the rows are known.
 #[inline(always)]
-pub fn environment_sample_in<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi: Vec3<T>) -> (Vec3<T>, T) {
+pub fn sample_in_rows<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi: Vec3<T>) -> (Vec3<T>, T) {
     let (width, height) = (distribution.width, distribution.height);
     let numbers = xi.to_each();
     let drawn = T::each(|lane| {
@@ -435,7 +435,7 @@ fn guides<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) ->
     })
 }
 
-/// Has the processor fetch what [`environment_sample_in`] looks up first, the guide to a row's cells.
+/// Has the processor fetch what [`sample_in_rows`] looks up first, the guide to a row's cells.
 #[inline(always)]
 pub fn fetch_guide<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
     for &[_, guide] in guides(distribution, rows, xi_x).as_ref() {
@@ -443,7 +443,7 @@ pub fn fetch_guide<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi
     }
 }
 
-/// Has the processor fetch the cell that [`environment_sample_in`] draws, once the guide is there.
+/// Has the processor fetch the cell that [`sample_in_rows`] draws, once the guide is there.
 #[inline(always)]
 pub fn fetch_chosen<T: Real>(distribution: &Distribution, rows: &T::Each<u32>, xi_x: T) {
     for &[first, guide] in guides(distribution, rows, xi_x).as_ref() {
