@@ -2,8 +2,9 @@
 //!
 //! `cargo bench --bench peers [-- --quick]`. Millions of samples a second, and seconds to a relative mean squared error of
 //! 0.003, each against a long render of its own; that of all pixels, and that without the thousandth of them that are off
-//! the most, as a picture of glass has one pixel that holds most of the error or has not. Mitsuba is run by `scripts/peers`, with the Python that `scripts/setup
-//! test` installs; where it is not there, a line says so and only Glossmith is measured.
+//! the most, as a picture of glass has one pixel that holds most of the error or has not. Mitsuba is run by
+//! `scripts/peers`, with the Python that `scripts/setup test` installs; where it is not there, a line says so and only
+//! Glossmith is measured.
 
 mod scene;
 

@@ -151,8 +151,12 @@ fn both_engines_tell_the_same_error() {
 fn a_render_stops_at_the_error_asked_for() {
     const NOISE: f64 = 0.02;
     const RENDERS: u32 = 8;
-    // Of the true errors of renders of so few pixels, over their mean; where the GPU's end depends on its speed.
+    // Of the true errors of renders of so few pixels, over their mean.
     const SPREAD: f64 = 0.075;
+    // How far one render's error and the mean of all may be off. Where the GPU engine ends depends on its speed, so its
+    // renders are others each time: four spreads.
+    let of_gpu = [4.0 * SPREAD, 4.0 * SPREAD / f64::from(RENDERS).sqrt()];
+    let of_processor = [0.15, 0.06];
     // Without strong contrasts: few samples do.
     let matt = ["base.metalness=0", "specular.weight=0"];
     let mut document = document(ModelSource::Teapot, EnvironmentSource::Studio, &matt);
@@ -160,10 +164,10 @@ fn a_render_stops_at_the_error_asked_for() {
     (document.render.width, document.render.height) = (48, 48);
     document.render.samples = u32::MAX;
     document.render.noise = Some(NOISE);
-    for (choice, adaptive) in [
-        (EngineChoice::Cpu, false),
-        (EngineChoice::Cpu, true),
-        (EngineChoice::Gpu, true),
+    for (choice, adaptive, [off, mean_off]) in [
+        (EngineChoice::Cpu, false, of_processor),
+        (EngineChoice::Cpu, true, of_processor),
+        (EngineChoice::Gpu, true, of_gpu),
     ] {
         let mut session = Session::open(choice).unwrap();
         document.render.adaptive = Some(adaptive);
@@ -176,15 +180,11 @@ fn a_render_stops_at_the_error_asked_for() {
             session.progress().mean_samples
         );
         for error in &errors {
-            assert!(
-                (error / NOISE - 1.0).abs() < 4.0 * SPREAD,
-                "{choice:?}, {adaptive}: {errors:?}"
-            );
+            assert!((error / NOISE - 1.0).abs() < off, "{choice:?}, {adaptive}: {errors:?}");
         }
         let mean = errors.iter().sum::<f64>() / f64::from(RENDERS);
-        let spread = SPREAD / f64::from(RENDERS).sqrt();
         assert!(
-            (mean / NOISE - 1.0).abs() < 4.0 * spread,
+            (mean / NOISE - 1.0).abs() < mean_off,
             "{choice:?}, {adaptive}: {errors:?}"
         );
         let counts = counts(&films[0]);

@@ -96,12 +96,8 @@ impl<T: Real> Integrator<'_, T> {
     /// Has the processor fetch what drawing with these numbers looks up next.
     #[inline(always)]
     pub(super) fn fetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &[Path<T::Scalar, R>]) {
-        let rows = T::each(|lane| group.of(paths, lane).light_row);
-        fetch_chosen(
-            self.distribution,
-            &rows,
-            group.numbers(paths, |path| path.light_numbers.x),
-        );
+        let numbers = group.numbers(paths, |path| path.light_numbers.x);
+        fetch_chosen(self.distribution, &light_rows(group, paths), numbers);
     }
 
     /// What surfaces emit that paths met, weighed against light sampling.
@@ -196,7 +192,7 @@ impl<T: Real> Integrator<'_, T> {
             radiance: Vec3::zero(),
         };
         if is_far.any() {
-            let rows = T::each(|lane| group.of(paths, lane).light_row);
+            let rows = light_rows(group, paths);
             let (local, density) = sample_in_rows(self.distribution, &rows, vec3(xi.x, xi.y, xi.z / share));
             drawn.direction = environment_world_from_local(local, self.rotation);
             drawn.density = density * share;
@@ -389,6 +385,12 @@ fn set_places<T: Real, R: Recorder>(group: &Group<T>, place: [T; 2], paths: &mut
     group.for_each(paths, group.mask(), |path, lane| {
         path.place = [u.as_ref()[lane], v.as_ref()[lane]];
     });
+}
+
+/// The rows of the environment's cells that the numbers of paths' lights draw.
+#[inline(always)]
+fn light_rows<T: Real, R: Recorder>(group: &Group<T>, paths: &[Path<T::Scalar, R>]) -> T::Each<u32> {
+    T::each(|lane| group.of(paths, lane).light_row)
 }
 
 /// A ray towards a light.
