@@ -274,17 +274,15 @@ fn random_packet(random: &mut Random, geometry: &Geometry) -> (Packet, usize) {
     (packet, count)
 }
 
-/// Every instruction set finds the same in a packet, to the last bit. Alone a ray finds the same too, unless rounding moves
-/// the place where it meets the edge of a triangle, seen nearly edge-on or from afar, out of the triangle's own box: then it
-/// depends on the company whether that box is opened.
+/// A ray finds the same in a packet as alone, under every instruction set, to the last bit.
 #[test]
 fn rays_meet_the_same_in_packets_as_alone() {
     let mut geometries = geometries();
     geometries.push(("fine teapot", Geometry::build(&model_of(teapot::mesh(25)), true)));
     for (name, geometry) in geometries {
         let mut random = Random::new(17);
-        let (mut met, mut other, mut rays) = (0, 0, 0);
-        for _ in 0..1_000 {
+        let (mut met, mut rays) = (0, 0);
+        for _ in 0..4_000 {
             let (packet, count) = random_packet(&mut random, &geometry);
             let outcomes = sets().into_iter().map(|(_, level)| {
                 let hits = geometry.intersect_packet(level, &packet);
@@ -304,17 +302,14 @@ fn rays_meet_the_same_in_packets_as_alone() {
                 let (origin, direction) = (packet.origin(lane), packet.direction(lane));
                 let alone = geometry.intersect_by(Level::new(), origin, direction, packet.t_max[lane]);
                 assert!(lane < count || hits[lane].is_none(), "{name}: there is no ray {lane}");
+                assert_eq!(bits(hits[lane]), bits(alone), "{name}: other in company: {packet:?}, {lane}");
+                assert_eq!(hidden[lane], alone.is_some(), "{name}: hidden in company: {packet:?}, {lane}");
                 met += usize::from(alone.is_some());
-                other += usize::from(bits(hits[lane]) != bits(alone) || hidden[lane] != alone.is_some());
             }
             rays += count;
         }
-        println!("{name}: {met} of {rays} rays met something, {other} of them something else in a packet");
+        println!("{name}: {met} of {rays} rays met something");
         assert!(met > rays / 100, "{name}: {met} of {rays} rays met something");
-        assert!(
-            other * 1000 <= met,
-            "{name}: {other} of {met} rays met something else in a packet"
-        );
     }
 }
 

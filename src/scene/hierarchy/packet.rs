@@ -1,14 +1,13 @@
 //! Sixteen rays that go much the same way through the processor's hierarchy together: a node's eight boxes are met by the
 //! interval of all rays first, so that rays through empty space end at once.
 //!
-//! Which rays meet a box or a triangle, and where, is computed for each as for single rays, to the last bit, and of triangles
-//! as far away the first counts. So a ray meets the same triangle by itself as in company, unless rounding moves the place
-//! out of the triangle's own box (an edge seen nearly edge-on, or from afar): then it may be seen only where others have the
-//! box opened. Hence the company of a ray must never depend on chance, such as the number of threads.
+//! Which rays meet a block's box or a triangle, and where, is computed for each as for single rays, to the last bit; a ray is
+//! met by triangles of blocks alone whose boxes it meets itself, and of triangles as far away the first counts. So a ray meets
+//! in company what it meets by itself, and it does not matter which rays make a packet.
 
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8, f32x16};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8, f32x16, mask32x16};
 
-use super::traverse::{Entry, FAR_MARGIN, INVERSE_MAX, PLACE_ERROR, Stack};
+use super::traverse::{Entry, INVERSE_MAX, PLACE_ERROR, Stack};
 use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
 
 /// Rays of a packet.
@@ -152,29 +151,41 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, packet: &Packet) -> Opt
     }
     let rays = Rays::new(simd, packet, wide, way);
     let bundle = Bundle::new(simd, &rays, packet, wide);
-    let mut limit = largest(simd, &found.t) * FAR_MARGIN;
+    let mut limit = largest(simd, &found.t);
     let mut stack = Stack::new();
-    // The root.
-    let mut place = 0;
-    loop {
+    bundle.enter(wide, 0, limit, &mut stack);
+    while let Some(next) = stack.pop_before(limit) {
+        let (parent, child) = Place(next.place()).parts();
+        let parent = &wide.nodes[parent];
+        let Some(entered) = rays.enter(parent, child, &found.t) else {
+            continue;
+        };
+        let place = parent.children[child];
         if place & BLOCK == 0 {
-            let node = &wide.nodes[place as usize];
-            bundle.enter(&rays, node, limit, &found.t, &mut stack);
+            bundle.enter(wide, place, limit, &mut stack);
         } else {
             let block = (place & !BLOCK) as usize;
-            let first = wide.firsts[block];
-            if rays.meet::<ANY>(&wide.blocks[block], &wide.normals[block], first, &mut found) {
-                let farthest = largest(simd, &found.t);
-                if ANY && farthest < 0.0 {
-                    return Some(found);
-                }
-                limit = farthest * FAR_MARGIN;
+            if rays.meet::<ANY>(wide, block, &entered, &mut found) {
+                limit = largest(simd, &found.t);
             }
         }
-        match stack.pop_before(limit) {
-            Some(next) => place = next,
-            None => return Some(found),
-        }
+    }
+    Some(found)
+}
+
+/// A child of a node by its number among all that nodes have.
+struct Place(u32);
+
+impl Place {
+    #[inline(always)]
+    fn new(node: u32, child: usize) -> Self {
+        Self(node * WIDTH as u32 + child as u32)
+    }
+
+    /// The node and which of its children.
+    #[inline(always)]
+    fn parts(self) -> (usize, usize) {
+        (self.0 as usize / WIDTH, self.0 as usize % WIDTH)
     }
 }
 
@@ -220,6 +231,14 @@ fn way_of<S: Simd>(simd: S, packet: &Packet) -> Option<usize> {
         _ => along_z.all_false() && y.simd_ge(x).all_false(),
     };
     is_alike.then_some(way)
+}
+
+/// How rays meet a box.
+struct Entered<S: Simd> {
+    /// Which of them do.
+    met: mask32x16<S>,
+    /// How far away, at least 0.
+    distance: f32x16<S>,
 }
 
 /// What the tests of single rays need of each ray.
@@ -274,23 +293,25 @@ impl<S: Simd> Rays<S> {
         self.late[axis] = shift + margin;
     }
 
-    /// Whether any ray meets a child's box.
+    /// Which rays meet a child's box before they end, and where they enter it; `None` where no ray does.
     #[inline(always)]
-    fn enter(&self, node: &Node, child: usize, limits: f32x16<S>) -> bool {
+    fn enter(&self, node: &Node, child: usize, t_max: &[f32; PACKET]) -> Option<Entered<S>> {
+        let limits = load(self.origin[0].token(), t_max);
         let simd = limits.token();
         let (x, y, z) = (
             self.near(node, child, 0),
             self.near(node, child, 1),
             self.near(node, child, 2),
         );
-        let entered = x.max(y).max(z.max(f32x16::splat(simd, 0.0)));
+        let distance = x.max(y).max(z.max(f32x16::splat(simd, 0.0)));
         let (x, y, z) = (
             self.far(node, child, 0),
             self.far(node, child, 1),
             self.far(node, child, 2),
         );
         let left = x.min(y).min(z.min(limits));
-        entered.simd_le(left).any_true()
+        let met = distance.simd_le(left);
+        met.any_true().then_some(Entered { met, distance })
     }
 
     /// How far away a child's near side is.
@@ -309,7 +330,8 @@ impl<S: Simd> Rays<S> {
 
     /// Puts the triangles of a block in that are nearer than what was found; whether there are any.
     #[inline(always)]
-    fn meet<const ANY: bool>(&self, block: &Block, normals: &Normals, first: u32, found: &mut Found) -> bool {
+    fn meet<const ANY: bool>(&self, wide: &Wide, block: usize, entered: &Entered<S>, found: &mut Found) -> bool {
+        let (first, normals, block) = (wide.firsts[block], &wide.normals[block], &wide.blocks[block]);
         let simd = self.origin[0].token();
         let zero = f32x16::splat(simd, 0.0);
         let mut is_new = false;
@@ -322,13 +344,15 @@ impl<S: Simd> Rays<S> {
             let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
             let is_inside = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
                 | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
+            let is_inside = is_inside & entered.met;
             if is_inside.any_true() {
                 let area = u + v + w;
                 let (t, towards) = self.distance(block, normals, triangle);
                 let t = t / towards;
-                let is_met = is_inside & !area.simd_eq(zero) & t.simd_gt(zero) & t.simd_le(load(simd, &found.t));
-                let met = is_met.to_bitmask() as u32;
-                is_new |= found.add::<ANY>(met, &t.to_array(), first + triangle as u32 + 1);
+                let placed = t.max(entered.distance);
+                let is_before = t.simd_gt(zero) & placed.simd_le(load(simd, &found.t));
+                let met = (is_inside & !area.simd_eq(zero) & is_before).to_bitmask() as u32;
+                is_new |= found.add::<ANY>(met, &placed.to_array(), first + triangle as u32 + 1);
             }
             triangle += 1;
         }
@@ -374,6 +398,8 @@ struct Bundle<S: Simd> {
     inverse: [[f32x8<S>; 2]; 3],
     /// The origin that a box's near side is nearest to, and that its far side is farthest from, with a margin for rounding.
     origin: [[f32x8<S>; 2]; 3],
+    /// Which of the two sides of a box is near on each axis.
+    near: [usize; 3],
 }
 
 impl<S: Simd> Bundle<S> {
@@ -383,6 +409,7 @@ impl<S: Simd> Bundle<S> {
         let mut bundle = Self {
             inverse: [zero; 3],
             origin: [zero; 3],
+            near: rays.near,
         };
         bundle.set(rays, packet, wide, 0);
         bundle.set(rays, packet, wide, 1);
@@ -409,9 +436,10 @@ impl<S: Simd> Bundle<S> {
         ];
     }
 
-    /// Puts the children on the stack that some ray meets, the nearest last.
+    /// Puts the children of a node on the stack that some ray may meet, the nearest last.
     #[inline(always)]
-    fn enter(&self, rays: &Rays<S>, node: &Node, limit: f32, t_max: &[f32; PACKET], stack: &mut Stack) {
+    fn enter(&self, wide: &Wide, index: u32, limit: f32, stack: &mut Stack) {
+        let node = &wide.nodes[index as usize];
         let simd = self.origin[0][0].token();
         let mut near = f32x8::splat(simd, 0.0);
         let mut far = f32x8::splat(simd, limit);
@@ -419,25 +447,19 @@ impl<S: Simd> Bundle<S> {
         while axis < 3 {
             let [least, most] = self.inverse[axis];
             let sides = &node.sides[axis];
-            let to_near = f32x8::load_array_ref(simd, &sides[rays.near[axis] & 1]) - self.origin[axis][0];
-            let to_far = f32x8::load_array_ref(simd, &sides[(rays.near[axis] ^ 1) & 1]) - self.origin[axis][1];
+            let to_near = f32x8::load_array_ref(simd, &sides[self.near[axis] & 1]) - self.origin[axis][0];
+            let to_far = f32x8::load_array_ref(simd, &sides[(self.near[axis] ^ 1) & 1]) - self.origin[axis][1];
             near = near.max((to_near * least).min(to_near * most));
             far = far.min((to_far * least).max(to_far * most));
             axis += 1;
         }
         let mut met = near.simd_le(far).to_bitmask() as u32;
-        if met == 0 {
-            return;
-        }
         let distances = near.to_array();
-        let limits = load(simd, t_max) * f32x16::splat(simd, FAR_MARGIN);
         let base = stack.height;
         while met != 0 {
             let child = (met.trailing_zeros() % WIDTH as u32) as usize;
             met &= met - 1;
-            if rays.enter(node, child, limits) {
-                stack.insert(Entry::new(distances[child], node.children[child]), base);
-            }
+            stack.insert(Entry::new(distances[child], Place::new(index, child).0), base);
         }
     }
 }

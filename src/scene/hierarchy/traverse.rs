@@ -1,7 +1,9 @@
 //! Rays through the processor's hierarchy, eight boxes or eight triangles at a time.
 //!
 //! A box is lost only if the ray passes it by, and triangles are met as [`intersect_triangle`] says, bit for bit: nothing
-//! is fused, so every instruction set gives the same hits.
+//! is fused, so every instruction set gives the same hits. A place that rounding puts before the block's own box (an edge
+//! seen nearly edge-on, or from afar) is moved to where the ray enters that: so no box that is left out as too far away holds
+//! a nearer triangle, and what is met does not depend on the order in which boxes are opened.
 //!
 //! [`intersect_triangle`]: crate::scene::intersect_triangle
 
@@ -13,10 +15,6 @@ use glam::Vec3A;
 use super::DEPTH_MAX;
 use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
 use crate::scene::intersect::RayFrame;
-
-/// Boxes are met up to this part farther than a ray goes (1 + 2γ₃ of Ize, "Robust BVH Ray Traversal", JCGT 2013, rounded
-/// up): makes up for the rounding of the distance of the triangle that ended it.
-pub(super) const FAR_MARGIN: f32 = 1.000_000_5;
 
 /// Places relative to the ray's origin are off by at most this part of both: eleven roundings, five of a box's plane and
 /// six of a triangle's projected corner. So a far eye loses nothing.
@@ -51,18 +49,18 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max
     let mut nearest = None;
     let mut t_max = t_max;
     let mut stack = Stack::new();
-    // The root.
-    let mut place = 0;
+    let mut next = Entry::ROOT;
     loop {
-        let limit = t_max * FAR_MARGIN;
+        let place = next.place();
         if place & BLOCK == 0 {
-            if let Some(next) = boxes.enter(&wide.nodes[place as usize], limit, &mut stack) {
-                place = next;
+            if let Some(nearest) = boxes.enter(&wide.nodes[place as usize], t_max, &mut stack) {
+                next = nearest;
                 continue;
             }
         } else {
             let block = (place & !BLOCK) as usize;
-            let (mut met, distances) = triangles.meet(&wide.blocks[block], &wide.normals[block], t_max);
+            let reach = [next.distance(), t_max];
+            let (mut met, distances) = triangles.meet(&wide.blocks[block], &wide.normals[block], reach);
             while met != 0 {
                 let lane = met.trailing_zeros() % WIDTH as u32;
                 met &= met - 1;
@@ -78,8 +76,8 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max
                 return nearest;
             }
         }
-        match stack.pop_before(t_max * FAR_MARGIN) {
-            Some(next) => place = next,
+        match stack.pop_before(t_max) {
+            Some(entry) => next = entry,
             None => return nearest,
         }
     }
@@ -126,7 +124,7 @@ impl<S: Simd> BoxRay<S> {
 
     /// The nearest child that is met before `t_max`; the others that are go on the stack, the nearest last.
     #[inline(always)]
-    fn enter(&self, node: &Node, t_max: f32, stack: &mut Stack) -> Option<u32> {
+    fn enter(&self, node: &Node, t_max: f32, stack: &mut Stack) -> Option<Entry> {
         let simd = self.inverse[0].token();
         let (x, y, z) = (self.near(node, 0), self.near(node, 1), self.near(node, 2));
         let near = x.max(y).max(z.max(f32x8::splat(simd, 0.0)));
@@ -142,7 +140,7 @@ impl<S: Simd> BoxRay<S> {
         };
         let first = met.take(node);
         if met.children == 0 {
-            return Some(first.place());
+            return Some(first);
         }
         let second = met.take(node);
         let (nearest, farther) = if second.0 < first.0 {
@@ -152,7 +150,7 @@ impl<S: Simd> BoxRay<S> {
         };
         if met.children == 0 {
             stack.push(farther);
-            return Some(nearest.place());
+            return Some(nearest);
         }
         let base = stack.height;
         stack.push(farther);
@@ -160,7 +158,7 @@ impl<S: Simd> BoxRay<S> {
         while met.children != 0 {
             stack.insert(met.take(node), base);
         }
-        stack.pop().map(Entry::place)
+        stack.pop()
     }
 
     /// How far away the children's near sides are.
@@ -218,9 +216,9 @@ impl<S: Simd> TriangleRay<S> {
         }
     }
 
-    /// Which triangles of a block are met with 0 < t ≤ `t_max`, as bits, and t.
+    /// Which triangles of a block are met with 0 < t ≤ `t_max`, as bits, and t, which is `entered` at least.
     #[inline(always)]
-    fn meet(&self, block: &Block, normals: &Normals, t_max: f32) -> (u32, [f32; WIDTH]) {
+    fn meet(&self, block: &Block, normals: &Normals, [entered, t_max]: [f32; 2]) -> (u32, [f32; WIDTH]) {
         let simd = self.origin[0].token();
         let zero = f32x8::splat(simd, 0.0);
         let [(ax, ay), (bx, by), (cx, cy)] = [self.project(block, 0), self.project(block, 1), self.project(block, 2)];
@@ -241,9 +239,11 @@ impl<S: Simd> TriangleRay<S> {
             self.place(block, 0, 2),
         ];
         let t = (x * from_origin[0] + y * from_origin[1] + z * from_origin[2]) / (x * dx + y * dy + z * dz);
+        let placed = t.max(f32x8::splat(simd, entered));
         // Not where the triangle is seen from its side; nor where t is NaN.
-        let is_met = is_inside & !(u + v + w).simd_eq(zero) & t.simd_gt(zero) & t.simd_le(f32x8::splat(simd, t_max));
-        (is_met.to_bitmask() as u32, t.to_array())
+        let is_before = t.simd_gt(zero) & placed.simd_le(f32x8::splat(simd, t_max));
+        let is_met = is_inside & !(u + v + w).simd_eq(zero) & is_before;
+        (is_met.to_bitmask() as u32, placed.to_array())
     }
 
     /// A coordinate of a corner, from the ray's origin.
@@ -270,13 +270,16 @@ impl<S: Simd> TriangleRay<S> {
 pub(super) struct Entry(u64);
 
 impl Entry {
+    /// The node around all.
+    const ROOT: Self = Self(0);
+
     #[inline(always)]
     pub fn new(distance: f32, place: u32) -> Self {
         Self(u64::from(distance.to_bits()) << 32 | u64::from(place))
     }
 
     #[inline(always)]
-    fn place(self) -> u32 {
+    pub fn place(self) -> u32 {
         self.0 as u32
     }
 
@@ -315,13 +318,13 @@ impl Stack {
         Some(unsafe { self.entries[self.height].assume_init() })
     }
 
-    /// The next that is nearer than `t_max`.
+    /// The next that is no farther than `t_max`.
     #[inline(always)]
-    pub fn pop_before(&mut self, t_max: f32) -> Option<u32> {
+    pub fn pop_before(&mut self, t_max: f32) -> Option<Entry> {
         loop {
             let entry = self.pop()?;
             if entry.distance() <= t_max {
-                return Some(entry.place());
+                return Some(entry);
             }
         }
     }
