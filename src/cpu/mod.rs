@@ -19,7 +19,7 @@ use crate::job::film::Film;
 use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 use crate::optics::lanes::{InLanes, in_lanes};
 use crate::optics::real::{Real, Scalar};
-use integrator::{Integrator, Tile, WAVE_SAMPLES, is_sound};
+use integrator::{Integrator, Tile, WAVE_SAMPLES, Wave, is_sound};
 
 /// Renders on the processor's cores, which take a tile each at a time.
 #[derive(Default)]
@@ -80,9 +80,14 @@ impl CpuEngine {
         self.schedule.aim(goals);
         let start = Instant::now();
         loop {
+            // The first picture is there as soon as can be; then samples go on together, as that costs less, but a part of the
+            // picture is never more than twice as far as the rest.
+            let pass_samples = match self.samples_per_pixel() {
+                0 => [1, 1],
+                samples => [samples.min(WAVE_SAMPLES), u32::MAX],
+            };
             let limits = SliceLimits {
-                // The first picture is there as soon as can be.
-                pass_samples_max: if self.samples_per_pixel() == 0 { 1 } else { u32::MAX },
+                pass_samples,
                 tiles: [CORE_TILES * rayon::current_num_threads(), usize::MAX],
                 order: Order::Rows,
             };
@@ -109,10 +114,11 @@ impl CpuEngine {
         let grid = self.schedule.grid();
         let film = Mutex::new(&mut self.film);
         let film = || film.lock().unwrap_or_else(PoisonError::into_inner);
-        works.par_iter().for_each(|work| {
+        let wave = || Wave::new(integrator.sequence());
+        works.par_iter().for_each_init(wave, |wave, work| {
             let origin = grid.origin(work.tile);
             let mut sums = film().part(origin, grid.size(work.tile));
-            render_tile(integrator, origin, work, &mut sums);
+            render_tile(integrator, wave, origin, work, &mut sums);
             film().place(origin, &sums);
         });
     }
@@ -144,28 +150,31 @@ impl CpuEngine {
 }
 
 /// Adds a tile's samples to its sums.
-fn render_tile<T: Real>(integrator: &Integrator<'_, T>, origin: [u32; 2], work: &Work, sums: &mut Film) {
+fn render_tile<T: Real>(
+    integrator: &Integrator<'_, T>,
+    wave: &mut Wave<T>,
+    origin: [u32; 2],
+    work: &Work,
+    sums: &mut Film,
+) {
     let mut costs = sums.costs[0];
     let mut halves: Vec<_> = (0..sums.pixel_count()).map(|pixel| sums.halves(pixel)).collect();
     let tile = Tile::new(origin, [sums.width, sums.height]);
-    let end = work.first_sample + work.count;
-    for first in (work.first_sample..end).step_by(WAVE_SAMPLES as usize) {
-        integrator.trace_tile(&tile, [first, WAVE_SAMPLES.min(end - first)], |pixel, sample, path| {
-            costs.rays += f64::from(path.rays);
-            if !is_sound(path.radiance) {
-                costs.dropped += 1;
-                return;
-            }
-            halves[pixel][sample as usize % 2].add(path.radiance.to_f64());
-            sums.add_coverage(pixel, path.alpha.to_f64());
-            costs.clamped += path.clamped.to_f64();
-            if sample < GUIDE_SAMPLES
-                && let Some(guides) = sums.guides.get_mut(pixel)
-            {
-                guides.add(&path.seen);
-            }
-        });
-    }
+    integrator.trace_tile(&tile, wave, [work.first_sample, work.count], |pixel, sample, path| {
+        costs.rays += f64::from(path.rays);
+        if !is_sound(path.radiance) {
+            costs.dropped += 1;
+            return;
+        }
+        halves[pixel][sample as usize % 2].add(path.radiance.to_f64());
+        sums.add_coverage(pixel, path.alpha.to_f64());
+        costs.clamped += path.clamped.to_f64();
+        if sample < GUIDE_SAMPLES
+            && let Some(guides) = sums.guides.get_mut(pixel)
+        {
+            guides.add(&path.seen);
+        }
+    });
     for (pixel, halves) in halves.iter().enumerate() {
         sums.set_halves(pixel, halves);
     }

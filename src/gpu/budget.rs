@@ -81,7 +81,7 @@ mod tests {
         let (mut first, mut longest, mut count) = (Duration::ZERO, Duration::ZERO, 0);
         loop {
             let limits = SliceLimits {
-                pass_samples_max: 1024,
+                pass_samples: [1, 1024],
                 tiles: [1, 65_535],
                 order: Order::Spread,
             };

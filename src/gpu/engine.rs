@@ -151,7 +151,7 @@ impl GpuEngine {
         while self.resources.is_some() {
             let left = budget.saturating_sub(start.elapsed());
             let limits = SliceLimits {
-                pass_samples_max: FLUSH_SAMPLES - self.unflushed,
+                pass_samples: [1, FLUSH_SAMPLES - self.unflushed],
                 tiles: [1, DISPATCH_TILES],
                 // Also for software Vulkan, whose threads take a run of workgroups each: none gets the background alone.
                 order: Order::Spread,

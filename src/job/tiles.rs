@@ -107,8 +107,8 @@ pub struct Work {
 /// What a slice may be.
 #[derive(Clone, Copy, Debug)]
 pub struct SliceLimits {
-    /// The most samples that a tile gets in a pass, at least 1.
-    pub pass_samples_max: u32,
+    /// The least samples that a tile gets in a pass, where it lacks so many, and the most; at least 1.
+    pub pass_samples: [u32; 2],
     /// The least tiles of a slice, where there are so many, and the most.
     pub tiles: [usize; 2],
     /// In which order a pass takes its tiles.
@@ -207,7 +207,8 @@ impl Schedule {
         self.pass = limits.order.arrange(in_rows);
         self.next = 0;
         let pixels: u64 = self.pass.iter().map(|tile| self.grid.pixels(*tile)).sum();
-        self.pass_samples = ((affordable / pixels.max(1) as f64) as u32).clamp(1, limits.pass_samples_max);
+        let [least, most] = limits.pass_samples;
+        self.pass_samples = ((affordable / pixels.max(1) as f64) as u32).clamp(least, most);
     }
 
     /// The most samples that a tile gets in the pass.
@@ -305,7 +306,7 @@ mod tests {
         let mut completed = 0;
         // No more than two tiles at a time, so that passes are cut.
         let two = SliceLimits {
-            pass_samples_max: 2,
+            pass_samples: [1, 2],
             tiles: [1, 2],
             order: Order::Rows,
         };
@@ -329,7 +330,7 @@ mod tests {
         schedule.aim(&[5; 6]);
         assert!(!schedule.is_at_goal());
         let all = SliceLimits {
-            pass_samples_max: 8,
+            pass_samples: [1, 8],
             tiles: [1, 9],
             order: Order::Rows,
         };

@@ -219,6 +219,14 @@ impl<S: Simd> Real for Lanes<S> {
         self.0.to_array()
     }
     #[inline(always)]
+    fn load(numbers: &[f32]) -> Self {
+        Self(f32x16::from_slice(token(), &numbers[..LANES]))
+    }
+    #[inline(always)]
+    fn store(self, numbers: &mut [f32]) {
+        self.0.store_slice(&mut numbers[..LANES]);
+    }
+    #[inline(always)]
     fn vectorize<R>(f: impl FnOnce() -> R) -> R {
         token::<S>().vectorize(f)
     }

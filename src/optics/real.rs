@@ -109,6 +109,10 @@ pub trait Real:
     fn from_each(numbers: &Self::Each<Self::Scalar>) -> Self;
     /// The numbers of the lanes.
     fn to_each(self) -> Self::Each<Self::Scalar>;
+    /// The first numbers of a list, which has as many as there are lanes or more.
+    fn load(numbers: &[Self::Scalar]) -> Self;
+    /// Puts the numbers of the lanes first in a list.
+    fn store(self, numbers: &mut [Self::Scalar]);
     /// Runs `f`, compiled for the instructions that these numbers need. A function that is not inlined must begin with it, as
     /// what it is inlined into is compiled for other instructions; all that it calls must be inlined (`benches/lanes`).
     fn vectorize<R>(f: impl FnOnce() -> R) -> R;
@@ -228,6 +232,14 @@ macro_rules! real {
             #[inline(always)]
             fn to_each(self) -> [Self; 1] {
                 [self]
+            }
+            #[inline(always)]
+            fn load(numbers: &[Self]) -> Self {
+                numbers[0]
+            }
+            #[inline(always)]
+            fn store(self, numbers: &mut [Self]) {
+                numbers[0] = self;
             }
             #[inline(always)]
             fn vectorize<R>(f: impl FnOnce() -> R) -> R {

@@ -242,16 +242,19 @@ impl Geometry {
 
     /// What each ray of a packet meets, as [`Geometry::intersect`] says, the instructions forced by `level`.
     pub fn intersect_packet(&self, level: Level, packet: &Packet) -> [Option<Hit>; PACKET] {
-        let Some(Found { t, marks }) = self.packet_through(packet, |wide, packet| wide.nearest_of(level, packet))
-        else {
+        let Some(found) = self.packet_through(packet, |wide, packet| wide.nearest_of(level, packet)) else {
             let alone =
                 |lane| self.intersect_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]);
             return std::array::from_fn(alone);
         };
+        let [u, v] = found.weights();
         std::array::from_fn(|lane| {
-            let triangle = marks[lane].checked_sub(1)?;
-            let frame = RayFrame::new(packet.origin(lane).into(), packet.direction(lane).into());
-            Some(self.hit(&frame, t[lane], triangle))
+            Some(Hit {
+                t: found.t[lane],
+                triangle: found.marks[lane].checked_sub(1)?,
+                u: u[lane],
+                v: v[lane],
+            })
         })
     }
 

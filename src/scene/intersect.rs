@@ -83,12 +83,13 @@ impl RayFrame {
         Vec3A::select(is_turned, -ordered, ordered)
     }
 
-    /// The weights of a triangle's second and third corner where the ray meets it, see [`Hit`].
+    /// The weights of a triangle's second and third corner where the ray meets it, see [`Hit`]: without the sign of a zero,
+    /// which depends on the order of corners.
     #[inline(always)]
     pub(super) fn weights(&self, corners: [Vec3A; 3]) -> [f32; 2] {
         let areas = self.areas(corners);
         let area = areas.x + areas.y + areas.z;
-        [areas.y / area, areas.z / area]
+        [areas.y / area + 0.0, areas.z / area + 0.0]
     }
 }
 

@@ -302,8 +302,16 @@ fn rays_meet_the_same_in_packets_as_alone() {
                 let (origin, direction) = (packet.origin(lane), packet.direction(lane));
                 let alone = geometry.intersect_by(Level::new(), origin, direction, packet.t_max[lane]);
                 assert!(lane < count || hits[lane].is_none(), "{name}: there is no ray {lane}");
-                assert_eq!(bits(hits[lane]), bits(alone), "{name}: other in company: {packet:?}, {lane}");
-                assert_eq!(hidden[lane], alone.is_some(), "{name}: hidden in company: {packet:?}, {lane}");
+                assert_eq!(
+                    bits(hits[lane]),
+                    bits(alone),
+                    "{name}: other in company: {packet:?}, {lane}"
+                );
+                assert_eq!(
+                    hidden[lane],
+                    alone.is_some(),
+                    "{name}: hidden in company: {packet:?}, {lane}"
+                );
                 met += usize::from(alone.is_some());
             }
             rays += count;

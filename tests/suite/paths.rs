@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::time::Duration;
 
-use glossmith::cpu::integrator::{Integrator, PathResult, Tile, WAVE_SAMPLES};
+use glossmith::cpu::integrator::{Integrator, PathResult, Tile, Wave};
 use glossmith::cpu::recorder::{Event, Purpose};
 use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{AreaLight, Document, Strategy};
@@ -259,7 +259,9 @@ impl InLanes for Together<'_> {
         let pixels = (self.size[0] * self.size[1]) as usize;
         let mut found = vec![PathResult::default(); pixels * self.samples[1] as usize];
         let tile = Tile::new(self.origin, self.size);
-        Integrator::<T>::new(self.job).trace_tile(&tile, self.samples, |pixel, sample, path| {
+        let integrator = Integrator::<T>::new(self.job);
+        let mut wave = Wave::new(integrator.sequence());
+        integrator.trace_tile(&tile, &mut wave, self.samples, |pixel, sample, path| {
             found[(sample - self.samples[0]) as usize * pixels + pixel] = *path;
         });
         found
@@ -290,7 +292,7 @@ fn paths_find_the_same_together_as_alone_to_the_last_bit() {
         let grid = TileGrid { width, height };
         for tile in (0..grid.tiles()).step_by(3) {
             let ([left, top], size) = (grid.origin(tile), grid.size(tile));
-            let [first, count] = [tile as u32 % 3, 1 + tile as u32 / 3 % WAVE_SAMPLES];
+            let [first, count] = [tile as u32 % 3, 1 + tile as u32 / 3 % 9];
             let pixels = grid.pixels(tile) as u32;
             let place = |pixel: u32| [left + pixel % size[0], top + pixel / size[0]];
             let alone = |path: u32| integrator.trace_path(place(path % pixels), first + path / pixels);

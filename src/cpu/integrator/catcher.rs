@@ -5,7 +5,7 @@
 //! place over what would reach it were nothing there. Both are the background itself where nothing stands in the way.
 //! Over a transparent background the shadow's light is taken from 1, which is its alpha.
 
-use super::path::Path;
+use super::paths::Paths;
 use super::{Arrival, Integrator, PathResult};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source};
 use crate::job::Catcher;
@@ -54,7 +54,7 @@ impl<T: Real> Integrator<'_, T> {
         &self,
         point: &SurfacePoint<T>,
         arrival: &mut Arrival<T>,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) -> Passed<T> {
         let nothing = T::Mask::splat(false);
         let mut passed = Passed {
@@ -65,7 +65,7 @@ impl<T: Real> Integrator<'_, T> {
             return passed;
         };
         if arrival.bounce > 0 {
-            arrival.group.for_each(paths, arrival.on, |path, _| {
+            arrival.members.for_each(&mut paths.found, arrival.on, |path, _| {
                 if path.caught.is_mirrored() {
                     path.caught = Caught::Not;
                 }
@@ -83,10 +83,10 @@ impl<T: Real> Integrator<'_, T> {
         catcher: Catcher,
         point: &SurfacePoint<T>,
         arrival: &mut Arrival<T>,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) -> Passed<T> {
         let (zero, one) = (T::zero(), T::one());
-        let group = arrival.group;
+        let (group, members) = (arrival.group, arrival.members);
         let positions = point.position.to_each();
         let light = Vec3::from_lanes(|lane| catcher_light(self.tables, catcher.table, positions.as_ref()[lane]));
         let is_there = arrival.on & arrival.direction.y.less(zero) & zero.less(light.max_component());
@@ -115,7 +115,7 @@ impl<T: Real> Integrator<'_, T> {
         arrival.throughput = Vec3::select(is_mirrored, arrival.throughput, shown * is_lit * kept);
         let (backgrounds, alphas) = (background.to_each(), alpha.to_each());
         let (mirrors, gaps) = (is_mirrored.to_bits(), is_transparent.to_bits());
-        group.for_each(paths, is_there, |path, lane| {
+        members.for_each(&mut paths.found, is_there, |path, lane| {
             path.caught = if mirrors >> lane & 1 == 1 {
                 Caught::Mirrored {
                     background: backgrounds.as_ref()[lane],
@@ -128,7 +128,7 @@ impl<T: Real> Integrator<'_, T> {
             };
         });
         let throughput = arrival.throughput;
-        group.record(paths, is_there, |lane| Event::Caught {
+        members.record(&mut paths.found, is_there, |lane| Event::Caught {
             is_mirrored: mirrors >> lane & 1 == 1,
             background: shown.to_each().as_ref()[lane].to_f32(),
             light: light.to_each().as_ref()[lane].to_f32(),
@@ -137,12 +137,12 @@ impl<T: Real> Integrator<'_, T> {
         // A colour of which no light would reach the place has no shadow.
         let unshadowed = shown * (white - is_lit);
         self.add(
-            &group,
+            &members,
             is_there & !is_mirrored,
             Source::Background,
             unshadowed,
             0,
-            paths,
+            &mut paths.found,
         );
         Passed { is_there, is_mirrored }
     }

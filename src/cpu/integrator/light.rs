@@ -1,7 +1,7 @@
 //! Light on a path: what it meets by itself, and what is drawn towards.
 
 use super::group::Group;
-use super::path::Path;
+use super::paths::{Paths, Vectors, take};
 use super::{Arrival, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator};
 use crate::cpu::recorder::{Event, Purpose, Recorder, Source, single};
 use crate::job::{BackgroundKind, Strategy};
@@ -36,7 +36,7 @@ impl<T: Real> Integrator<'_, T> {
         &self,
         ray: &Arrival<T>,
         place: [T; 2],
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
         let radiance = self.far_radiance(place);
         let mut density = T::zero();
@@ -58,46 +58,42 @@ impl<T: Real> Integrator<'_, T> {
 
     /// Finds where paths that met nothing look at the environment's map, and has the processor fetch what they see there.
     #[inline(always)]
-    pub(super) fn locate_left<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut [Path<T::Scalar, R>]) {
-        let place = self.left_places(group.vectors(paths, |path| path.ray.direction), bounce);
+    pub(super) fn locate_left<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, R>) {
+        let place = self.left_places(group.vector(&paths.state.direction), bounce);
         fetch_place(self.environment, place);
         if bounce > 0 && self.samples_environment {
             fetch_cell(self.distribution, place);
         }
-        set_places(group, place, paths);
+        set_places(group, &mut paths.place, place);
     }
 
-    /// Finds where the environment's lights lie that paths are aimed at, and has the processor fetch what shines there.
+    /// Finds where the environment's lights lie that arrive, and has the processor fetch what shines there.
     #[inline(always)]
-    pub(super) fn locate_lights<R: Recorder>(&self, group: &Group<T>, paths: &mut [Path<T::Scalar, R>]) {
-        let place = self.far_places(group.vectors(paths, |path| path.light().drawn.direction));
+    pub(super) fn locate_lights<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<T::Scalar, R>) {
+        let place = self.far_places(group.vector(&paths.arriving.direction));
         fetch_place(self.environment, place);
-        set_places(group, place, paths);
+        set_places(group, &mut paths.arriving.place, place);
     }
 
     /// Draws the numbers with which directions to lights are drawn, and has the processor fetch what they are looked up in.
     #[inline(always)]
-    pub(super) fn light_numbers<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut [Path<T::Scalar, R>]) {
+    pub(super) fn light_numbers<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, R>) {
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 2;
         let [a, b] = group.pairs(paths, dimension, [Purpose::Light; 2]);
         let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Light, Purpose::Unused]);
-        let numbers = vec3(a, b, c).to_each();
-        let mut rows = T::each(|_| 0);
+        group.set_vector(&mut paths.light_numbers, group.mask(), vec3(a, b, c));
         if self.samples_environment {
-            rows = drawn_rows(self.distribution, b);
+            let rows = drawn_rows(self.distribution, b);
             fetch_guide(self.distribution, &rows, a);
+            group.set_each(&mut paths.light_rows, &rows);
         }
-        group.for_each(paths, group.mask(), |path, lane| {
-            path.light_numbers = numbers.as_ref()[lane];
-            path.light_row = rows.as_ref()[lane];
-        });
     }
 
     /// Has the processor fetch what drawing with these numbers looks up next.
     #[inline(always)]
-    pub(super) fn fetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &[Path<T::Scalar, R>]) {
-        let numbers = group.numbers(paths, |path| path.light_numbers.x);
-        fetch_chosen(self.distribution, &light_rows(group, paths), numbers);
+    pub(super) fn fetch_lights<R: Recorder>(&self, group: &Group<T>, paths: &Paths<T::Scalar, R>) {
+        let numbers = group.own_number(&paths.light_numbers.x);
+        fetch_chosen(self.distribution, &group.each(&paths.light_rows), numbers);
     }
 
     /// What surfaces emit that paths met, weighed against light sampling.
@@ -107,7 +103,7 @@ impl<T: Real> Integrator<'_, T> {
         point: &SurfacePoint<T>,
         material: &Material<T>,
         arrival: &Arrival<T>,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
         let cosine = point.surface.normal.dot(point.surface.wo);
         let mut emission = material.emission;
@@ -133,7 +129,7 @@ impl<T: Real> Integrator<'_, T> {
         radiance: Vec3<T>,
         light_density: T,
         arrival: &Arrival<T>,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
         let is_sampled = match source {
             Source::Surface => self.samples_emitters,
@@ -154,8 +150,8 @@ impl<T: Real> Integrator<'_, T> {
         }
         if R::KEEPS {
             arrival
-                .group
-                .record(paths, arrival.on & radiance.is_any(), |lane| Event::Found {
+                .members
+                .record(&mut paths.found, arrival.on & radiance.is_any(), |lane| Event::Found {
                     source,
                     radiance: radiance.to_each().as_ref()[lane].to_f32(),
                     lobe_density: single(arrival.lobe_density.lane(lane)),
@@ -174,9 +170,15 @@ impl<T: Real> Integrator<'_, T> {
         &self,
         point: &SurfacePoint<T>,
         group: &Group<T>,
-        paths: &[Path<T::Scalar, R>],
+        paths: &Paths<T::Scalar, R>,
     ) -> (LightSample<T>, T::Mask) {
-        let xi = group.vectors(paths, |path| path.light_numbers);
+        // Beyond the paths, too, numbers must be of the rows that they draw.
+        let numbers = &paths.light_numbers;
+        let xi = vec3(
+            group.own_number(&numbers.x),
+            group.own_number(&numbers.y),
+            group.own_number(&numbers.z),
+        );
         let share = self.environment_probability;
         let is_far = if !self.samples_emitters {
             T::Mask::splat(true)
@@ -192,7 +194,7 @@ impl<T: Real> Integrator<'_, T> {
             radiance: Vec3::zero(),
         };
         if is_far.any() {
-            let rows = light_rows(group, paths);
+            let rows = group.each(&paths.light_rows);
             let (local, density) = sample_in_rows(self.distribution, &rows, vec3(xi.x, xi.y, xi.z / share));
             drawn.direction = environment_world_from_local(local, self.rotation);
             drawn.density = density * share;
@@ -242,7 +244,7 @@ impl<T: Real> Integrator<'_, T> {
         point: &SurfacePoint<T>,
         material: &Material<T>,
         arrival: &Arrival<T>,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
         let (group, zero) = (arrival.group, T::zero());
         let (drawn, is_far) = self.draw_lights(point, &group, paths);
@@ -266,30 +268,27 @@ impl<T: Real> Integrator<'_, T> {
         }
         let largest = value.max_component();
         let is_lit = arrival.on & (zero.less(largest) | largest.is_nan());
-        let meets_nothing = self.meets_nothing(point, wi).to_bits();
-        let origins = point.ray_origin(wi, transmits).to_each();
-        let (directions, densities) = (wi.to_each(), drawn.density.to_each());
-        let (distances, radiances) = (drawn.distance.to_each(), drawn.radiance.to_each());
-        let (values, throughputs) = (value.to_each(), arrival.throughput.to_each());
-        let far = is_far.to_bits();
-        let light = |lane: usize| LightRay {
-            drawn: LightSample {
-                direction: directions.as_ref()[lane],
-                density: densities.as_ref()[lane],
-                distance: distances.as_ref()[lane],
-                radiance: radiances.as_ref()[lane],
-            },
-            is_far: far >> lane & 1 == 1,
-            value: values.as_ref()[lane],
-            throughput: throughputs.as_ref()[lane],
-            origin: origins.as_ref()[lane],
-            meets_nothing: meets_nothing >> lane & 1 == 1,
-            visible: T::Scalar::one(),
-        };
-        group.for_each(paths, is_lit, |path, lane| path.light = Some(light(lane)));
-        group.record(paths, arrival.on & !is_lit, |lane| {
-            light(lane).told(whole.to_each().as_ref()[lane], T::Scalar::zero(), Vec3::zero())
-        });
+        let all = group.mask();
+        let lights = &mut paths.lights;
+        group.set_vector(&mut lights.direction, all, wi);
+        group.set_number(&mut lights.density, all, drawn.density);
+        group.set_number(&mut lights.distance, all, drawn.distance);
+        group.set_vector(&mut lights.origin, all, point.ray_origin(wi, transmits));
+        group.set_vector(&mut lights.value, all, value);
+        group.set_vector(&mut lights.throughput, all, arrival.throughput);
+        group.set_number(&mut lights.visible, all, T::one());
+        group.set_truth(&mut lights.meets_nothing, all, self.meets_nothing(point, wi));
+        group.set_truth(&mut lights.is_aimed, all, is_lit);
+        if self.samples_emitters {
+            group.set_vector(&mut lights.radiance, all, drawn.radiance);
+            group.set_truth(&mut lights.is_far, all, is_far);
+        }
+        if R::KEEPS {
+            let light = paths.lights.get(0);
+            arrival.members.record(&mut paths.found, arrival.on & !is_lit, |lane| {
+                light.told(whole.to_each().as_ref()[lane], T::Scalar::zero(), Vec3::zero())
+            });
+        }
         whole
     }
 
@@ -299,43 +298,45 @@ impl<T: Real> Integrator<'_, T> {
         if light.meets_nothing {
             return T::Scalar::one();
         }
-        self.transmittance(light.origin, light.drawn.direction, light.drawn.distance, rays)
+        self.transmittance(light.origin, light.direction, light.distance, rays)
     }
 
-    /// Adds what arrives from the lights that paths are aimed at; `whole` is what [`Integrator::aim`] told.
+    /// Adds the light that arrives; `whole` is what [`Integrator::aim`] told of a path that is recorded.
     #[inline(always)]
     pub(super) fn arrive<R: Recorder>(
         &self,
         group: &Group<T>,
         bounce: u32,
         whole: Vec3<T>,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) {
-        let is_far = group.truths(paths, |path| path.light().is_far);
-        let visible = group.numbers(paths, |path| path.light().visible);
-        let density = group.numbers(paths, |path| path.light().drawn.density);
-        let value = group.vectors(paths, |path| path.light().value);
-        let throughput = group.vectors(paths, |path| path.light().throughput);
+        let lights = &paths.arriving;
+        let members = group.members(&lights.ids);
+        let is_far = if self.samples_emitters {
+            group.truth(&lights.is_far)
+        } else {
+            T::Mask::splat(true)
+        };
         let mut radiance = Vec3::zero();
         if is_far.any() {
-            radiance = self.far_radiance(places(group, paths));
+            radiance = self.far_radiance([group.number(&lights.place[0]), group.number(&lights.place[1])]);
         }
         if !is_far.all() {
-            let near = group.vectors(paths, |path| path.light().drawn.radiance);
-            radiance = Vec3::select(is_far, radiance, near);
+            radiance = Vec3::select(is_far, radiance, group.vector(&lights.radiance));
         }
-        let found = throughput * (value * radiance * (visible / density));
+        let share = group.number(&lights.visible) / group.number(&lights.density);
+        let light = group.vector(&lights.throughput) * (group.vector(&lights.value) * radiance * share);
         if R::KEEPS {
-            group.for_each(paths, group.mask(), |path, lane| {
+            let ray = lights.get(0);
+            members.record(&mut paths.found, group.mask(), |lane| {
                 let (whole, radiance) = (whole.to_each().as_ref()[lane], radiance.to_each().as_ref()[lane]);
-                let light = *path.light();
-                path.record(|| light.told(whole, light.visible, radiance));
+                ray.told(whole, ray.visible, radiance)
             });
         }
         // Each path has one light; accounts tell which kind it was.
         let (near, far) = (group.mask() & !is_far, group.mask() & is_far);
-        self.add(group, near, Source::Surface, found, bounce + 1, paths);
-        self.add(group, far, Source::Environment, found, bounce + 1, paths);
+        self.add(&members, near, Source::Surface, light, bounce + 1, &mut paths.found);
+        self.add(&members, far, Source::Environment, light, bounce + 1, &mut paths.found);
     }
 
     /// What the camera sees where it meets nothing, and its alpha; a blur is drawn with the pair of this dimension.
@@ -346,7 +347,7 @@ impl<T: Real> Integrator<'_, T> {
         direction: Vec3<T>,
         place: [T; 2],
         dimension: u32,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) -> (Vec3<T>, T) {
         let BackgroundKind::Blurred(sine) = self.settings.background else {
             return self.plain_background(place);
@@ -370,46 +371,104 @@ impl<T: Real> Integrator<'_, T> {
     }
 }
 
-/// Where paths look at the environment's map.
+/// Notes where paths look at the environment's map.
 #[inline(always)]
-pub(super) fn places<T: Real, R: Recorder>(group: &Group<T>, paths: &[Path<T::Scalar, R>]) -> [T; 2] {
-    [
-        group.numbers(paths, |path| path.place[0]),
-        group.numbers(paths, |path| path.place[1]),
-    ]
+fn set_places<T: Real>(group: &Group<T>, places: &mut [Vec<T::Scalar>; 2], place: [T; 2]) {
+    group.set_number(&mut places[0], group.mask(), place[0]);
+    group.set_number(&mut places[1], group.mask(), place[1]);
 }
 
-#[inline(always)]
-fn set_places<T: Real, R: Recorder>(group: &Group<T>, place: [T; 2], paths: &mut [Path<T::Scalar, R>]) {
-    let [u, v] = [place[0].to_each(), place[1].to_each()];
-    group.for_each(paths, group.mask(), |path, lane| {
-        path.place = [u.as_ref()[lane], v.as_ref()[lane]];
-    });
+/// Rays towards lights, field by field.
+pub(super) struct LightRays<S> {
+    /// Which paths of the wave they belong to; of those that arrive.
+    ids: Vec<u16>,
+    /// Where they lie in the environment's map; of those that arrive.
+    place: [Vec<S>; 2],
+    /// Whether there is one: elsewhere the other fields hold whatever.
+    pub is_aimed: Vec<bool>,
+    /// See [`LightSample`].
+    pub direction: Vectors<S>,
+    density: Vec<S>,
+    pub distance: Vec<S>,
+    /// Of those that are drawn from what emits.
+    radiance: Vectors<S>,
+    /// True where they are drawn from the environment, whose radiance is looked up once it is known to arrive. Nothing else
+    /// is there where no emitters are sampled.
+    is_far: Vec<bool>,
+    /// What the material reflects or refracts from there, weighed against sampling the lobe.
+    value: Vectors<S>,
+    /// Of the path before the surface.
+    throughput: Vectors<S>,
+    /// Where they start.
+    pub origin: Vectors<S>,
+    /// True where it is proven that nothing lies ahead.
+    pub meets_nothing: Vec<bool>,
+    /// The share of the light that is not stopped on its way.
+    pub visible: Vec<S>,
 }
 
-/// The rows of the environment's cells that the numbers of paths' lights draw.
-#[inline(always)]
-fn light_rows<T: Real, R: Recorder>(group: &Group<T>, paths: &[Path<T::Scalar, R>]) -> T::Each<u32> {
-    T::each(|lane| group.of(paths, lane).light_row)
+impl<S: Scalar> LightRays<S> {
+    /// Room for as many.
+    pub fn new(count: usize) -> Self {
+        let numbers = || vec![S::zero(); count];
+        Self {
+            ids: vec![0; count],
+            place: [numbers(), numbers()],
+            is_aimed: vec![false; count],
+            direction: Vectors::new(count),
+            density: numbers(),
+            distance: numbers(),
+            radiance: Vectors::new(count),
+            is_far: vec![true; count],
+            value: Vectors::new(count),
+            throughput: Vectors::new(count),
+            origin: Vectors::new(count),
+            meets_nothing: vec![false; count],
+            visible: numbers(),
+        }
+    }
+
+    /// One of them.
+    pub fn get(&self, place: usize) -> LightRay<S> {
+        LightRay {
+            origin: self.origin.get(place),
+            direction: self.direction.get(place),
+            distance: self.distance[place],
+            density: self.density[place],
+            value: self.value.get(place),
+            is_far: self.is_far[place],
+            meets_nothing: self.meets_nothing[place],
+            visible: self.visible[place],
+        }
+    }
+}
+
+impl<S: Scalar, R: Recorder> Paths<S, R> {
+    /// Puts what is needed of the rays at these places side by side, as they arrive.
+    pub(super) fn take_arriving(&mut self, places: &[u16]) {
+        let (to, from) = (&mut self.arriving, &self.lights);
+        take(&mut to.ids, &self.state.ids, places);
+        to.direction.take(&from.direction, places);
+        take(&mut to.density, &from.density, places);
+        to.radiance.take(&from.radiance, places);
+        take(&mut to.is_far, &from.is_far, places);
+        to.value.take(&from.value, places);
+        to.throughput.take(&from.throughput, places);
+        take(&mut to.visible, &from.visible, places);
+    }
 }
 
 /// A ray towards a light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LightRay<S> {
-    /// How it was drawn.
-    pub drawn: LightSample<S>,
-    /// True where it was drawn from the environment, whose radiance is looked up once it is known to arrive.
-    pub is_far: bool,
-    /// What the material reflects or refracts from there, weighed against sampling the lobe.
+    origin: Vec3<S>,
+    direction: Vec3<S>,
+    distance: S,
+    density: S,
     value: Vec3<S>,
-    /// Of the path before the surface.
-    throughput: Vec3<S>,
-    /// Where it starts.
-    pub origin: Vec3<S>,
-    /// True where it is proven that nothing lies ahead.
-    pub meets_nothing: bool,
-    /// The share of the light that is not stopped on its way.
-    pub visible: S,
+    is_far: bool,
+    meets_nothing: bool,
+    visible: S,
 }
 
 impl<S: Scalar> LightRay<S> {
@@ -426,8 +485,8 @@ impl<S: Scalar> LightRay<S> {
         let (whole, kept) = (whole.to_f32(), self.value.to_f32());
         Event::Light {
             source: self.source(),
-            direction: self.drawn.direction.to_f32(),
-            density: single(self.drawn.density),
+            direction: self.direction.to_f32(),
+            density: single(self.density),
             value: whole,
             weight: [0, 1, 2].map(|i| if kept[i] > 0.0 { kept[i] / whole[i] } else { 0.0 }),
             visible: single(visible),

@@ -5,7 +5,7 @@ mod camera;
 mod catcher;
 mod group;
 mod light;
-mod path;
+mod paths;
 mod rays;
 mod scatter;
 mod wave;
@@ -17,7 +17,7 @@ use crate::job::effect::EffectId;
 use crate::job::features::{GUIDE_SAMPLES, GuideSums};
 use crate::job::{Job, Settings, Strategy};
 use crate::optics::material::{Material, material_albedo};
-use crate::optics::random::path_state;
+use crate::optics::random::Sequence;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
 use crate::scene::Geometry;
@@ -28,10 +28,9 @@ use crate::scene::surface::{Hits, SurfacePoint, surfaces_at};
 use crate::scene::texture::{Textures, textured_materials};
 pub use catcher::CATCHER_DIMENSION;
 use catcher::Caught;
-use group::Group;
-use light::places;
-use path::Path;
-pub use wave::{Tile, WAVE_SAMPLES};
+use group::{Group, Members};
+use paths::{Found, Paths};
+pub use wave::{Tile, WAVE_SAMPLES, Wave};
 
 /// Pairs of numbers before the first bounce: pixel, lens.
 pub const FIRST_DIMENSION: u32 = 2;
@@ -94,6 +93,7 @@ pub struct Integrator<'a, T: Real> {
 #[derive(Clone, Copy)]
 struct Arrival<T: Real> {
     group: Group<T>,
+    members: Members<T>,
     bounce: u32,
     /// Which of them it is about.
     on: T::Mask,
@@ -148,22 +148,19 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
     }
 
+    /// Which numbers paths draw.
+    pub fn sequence(&self) -> Sequence {
+        self.settings.sequence
+    }
+
     /// Whether directions to lights are drawn at all.
     fn samples_light(&self) -> bool {
         self.samples_environment || self.samples_emitters
     }
 
-    /// A path before its first ray.
-    #[inline(always)]
-    fn begin<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: R) -> Path<T::Scalar, R> {
-        let settings = self.settings;
-        let state = path_state(pixel[0], pixel[1], settings.seed, sample, settings.sequence);
-        Path::new(state, pixel, sample < self.guide_samples, recorder)
-    }
-
     /// What a path found that has come to its end.
-    fn result<R: Recorder>(&self, path: &Path<T::Scalar, R>) -> PathResult<T::Scalar> {
-        path.result(self.settings.least_reflections == 0)
+    fn result<R: Recorder>(&self, found: &Found<T::Scalar, R>) -> PathResult<T::Scalar> {
+        found.result(self.settings.least_reflections == 0)
     }
 
     /// The surfaces that paths met, all of one slot.
@@ -172,12 +169,12 @@ impl<'a, T: Real> Integrator<'a, T> {
         &self,
         arrival: &Arrival<T>,
         slot: u32,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) -> SurfacePoint<T> {
-        let hits: Hits<T> = T::each(|lane| arrival.group.of(paths, lane).hit);
+        let hits: Hits<T> = arrival.group.each(&paths.state.hits);
         let materials = (&self.materials[slot as usize], &self.of_lane[slot as usize]);
         let point = surfaces_at(self.geometry, slot, materials, self.textures, &hits, arrival.direction);
-        arrival.group.record(paths, arrival.on, |lane| Event::Hit {
+        arrival.members.record(&mut paths.found, arrival.on, |lane| Event::Hit {
             bounce: arrival.bounce,
             triangle: hits.as_ref()[lane].triangle,
             slot,
@@ -226,7 +223,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         point: &SurfacePoint<T>,
         material: &Material<T>,
         arrival: &mut Arrival<T>,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) -> bool {
         let is_within = arrival.on & point.surface.is_inside & material.transmits();
         if is_within.any() {
@@ -236,22 +233,21 @@ impl<'a, T: Real> Integrator<'a, T> {
         if material.emission.is_any().any() {
             let found = arrival.throughput * self.emitted_light(point, material, arrival, paths);
             self.add(
-                &arrival.group,
+                &arrival.members,
                 arrival.on,
                 Source::Surface,
                 found,
                 arrival.bounce,
-                paths,
+                &mut paths.found,
             );
         }
         let goes_on = arrival.bounce < self.settings.bounces;
         if !goes_on {
+            let nowhere = T::Mask::splat(false);
+            arrival.group.set_truth(&mut paths.goes_on, arrival.on, nowhere);
             arrival
-                .group
-                .for_each(paths, arrival.on, |path, _| path.goes_on = false);
-            arrival
-                .group
-                .record(paths, arrival.on, |_| Event::Ended { why: End::Bounces });
+                .members
+                .record(&mut paths.found, arrival.on, |_| Event::Ended { why: End::Bounces });
         }
         goes_on
     }
@@ -263,13 +259,13 @@ impl<'a, T: Real> Integrator<'a, T> {
         point: &SurfacePoint<T>,
         material: &Material<T>,
         arrival: &Arrival<T>,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) {
-        let group = arrival.group;
+        let members = arrival.members;
         if self.guide_samples == 0 {
             return;
         }
-        let is_looking = arrival.on & group.truths(paths, |path| path.is_looking);
+        let is_looking = arrival.on & members.truths(&paths.found, |path| path.is_looking);
         if !is_looking.any() {
             return;
         }
@@ -277,7 +273,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         let depth = arrival.distance * arrival.direction.dot(self.camera.forward);
         let (albedos, normals) = (albedo.to_each(), point.surface.frame.normal.to_each());
         let depths = depth.to_each();
-        group.for_each(paths, is_looking, |path, lane| {
+        members.for_each(&mut paths.found, is_looking, |path, lane| {
             path.seen.albedo = albedos.as_ref()[lane].to_f32().map(|share| share.clamp(0.0, 1.0));
             path.seen.normal = normals.as_ref()[lane].to_f32();
             if arrival.bounce == 0 {
@@ -289,21 +285,27 @@ impl<'a, T: Real> Integrator<'a, T> {
 
     /// The end of paths that met nothing, and see these places in the environment's map.
     #[inline(always)]
-    fn leave<R: Recorder>(&self, arrival: &Arrival<T>, place: [T; 2], paths: &mut [Path<T::Scalar, R>]) {
-        let Arrival { group, bounce, on, .. } = *arrival;
+    fn leave<R: Recorder>(&self, arrival: &Arrival<T>, place: [T; 2], paths: &mut Paths<T::Scalar, R>) {
+        let Arrival {
+            group,
+            members,
+            bounce,
+            on,
+            ..
+        } = *arrival;
         if bounce == 0 {
             // The numbers of the first bounce, which there is none of.
             let (radiance, alpha) = self.camera_background(&group, arrival.direction, place, FIRST_DIMENSION, paths);
-            self.add(&group, on, Source::Background, radiance, 0, paths);
+            self.add(&members, on, Source::Background, radiance, 0, &mut paths.found);
             let alphas = alpha.to_each();
-            group.for_each(paths, on, |path, lane| path.alpha = alphas.as_ref()[lane]);
+            members.for_each(&mut paths.found, on, |path, lane| path.alpha = alphas.as_ref()[lane]);
         } else {
             let is_caught = match self.settings.catcher {
-                Some(_) => on & group.truths(paths, |path| path.caught.is_mirrored()),
+                Some(_) => on & members.truths(&paths.found, |path| path.caught.is_mirrored()),
                 None => T::Mask::splat(false),
             };
             if is_caught.any() {
-                self.leave_catcher(&group, is_caught, bounce, paths);
+                self.leave_catcher(&members, is_caught, bounce, &mut paths.found);
             }
             let ray = Arrival {
                 on: on & !is_caught,
@@ -311,22 +313,28 @@ impl<'a, T: Real> Integrator<'a, T> {
             };
             if ray.on.any() {
                 let found = arrival.throughput * self.far_light(&ray, place, paths);
-                self.add(&group, ray.on, Source::Environment, found, bounce, paths);
+                self.add(&members, ray.on, Source::Environment, found, bounce, &mut paths.found);
             }
         }
-        group.for_each(paths, on, |path, _| path.goes_on = false);
-        group.record(paths, on, |_| Event::Ended { why: End::Left });
+        group.set_truth(&mut paths.goes_on, on, T::Mask::splat(false));
+        members.record(&mut paths.found, on, |_| Event::Ended { why: End::Left });
     }
 
     /// The same of paths that a shadow catcher mirrors: they see the background.
     #[inline(always)]
-    fn leave_catcher<R: Recorder>(&self, group: &Group<T>, on: T::Mask, bounce: u32, paths: &mut [Path<T::Scalar, R>]) {
-        let background = group.vectors(paths, |path| match path.caught {
+    fn leave_catcher<R: Recorder>(
+        &self,
+        members: &Members<T>,
+        on: T::Mask,
+        bounce: u32,
+        found: &mut [Found<T::Scalar, R>],
+    ) {
+        let background = Vec3::from_lanes(|lane| match members.of(found, lane).caught {
             Caught::Mirrored { background, .. } => background,
             _ => Vec3::zero(),
         });
-        self.add(group, on, Source::Background, background, bounce, paths);
-        group.for_each(paths, on, |path, _| {
+        self.add(members, on, Source::Background, background, bounce, found);
+        members.for_each(found, on, |path, _| {
             if let Caught::Mirrored { alpha, .. } = path.caught {
                 path.alpha = alpha;
             }
@@ -337,27 +345,26 @@ impl<'a, T: Real> Integrator<'a, T> {
     #[inline(always)]
     fn add<R: Recorder>(
         &self,
-        group: &Group<T>,
+        members: &Members<T>,
         on: T::Mask,
         source: Source,
-        found: Vec3<T>,
+        light: Vec3<T>,
         reflections: u32,
-        paths: &mut [Path<T::Scalar, R>],
+        found: &mut [Found<T::Scalar, R>],
     ) {
-        let [added, taken] = self.limited(found, reflections);
-        let (radiances, taken) = (added.to_each(), taken.luminance().to_each());
-        group.for_each(paths, on, |path, lane| {
-            path.radiance += radiances.as_ref()[lane];
-            path.clamped += taken.as_ref()[lane];
-        });
-        if R::KEEPS {
-            group.record(paths, on & found.is_any(), |lane| Event::Contribution {
-                source,
-                reflections,
-                found: found.to_each().as_ref()[lane].to_f32(),
-                added: added.to_each().as_ref()[lane].to_f32(),
-            });
+        let [added, taken] = self.limited(light, reflections);
+        let radiances = added.to_each();
+        members.for_each(found, on, |path, lane| path.radiance += radiances.as_ref()[lane]);
+        if self.firefly_clamp.is_some() {
+            let taken = taken.luminance().to_each();
+            members.for_each(found, on, |path, lane| path.clamped += taken.as_ref()[lane]);
         }
+        members.record(found, on & light.is_any(), |lane| Event::Contribution {
+            source,
+            reflections,
+            found: light.to_each().as_ref()[lane].to_f32(),
+            added: added.to_each().as_ref()[lane].to_f32(),
+        });
     }
 
     /// What contributions that were reflected so many times add, and what is beyond the limit.
@@ -388,28 +395,31 @@ impl<S: Scalar> Integrator<'_, S> {
 
     /// The same path, its events told to a recorder.
     pub fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<S> {
-        let mut path = self.begin(pixel, sample, recorder);
-        let paths = std::slice::from_mut(&mut path);
-        let group = Group::new(&[0]);
-        self.first_rays(&group, paths);
+        let settings = self.settings;
+        let mut paths = Paths::new(1, S::LANES, settings.sequence);
+        paths.add(pixel, sample);
+        paths.set_counters(settings.seed);
+        paths.start([recorder], self.guide_samples);
+        self.first_rays(&Group::ALONE, &mut paths);
         for bounce in 0.. {
-            if !self.stop(bounce, &mut paths[0]) {
-                let arrival = Arrival::new(group, bounce, paths);
-                self.leave(&arrival, self.left_places(arrival.direction, bounce), paths);
+            let is_stopped = self.stop(bounce, 0, &mut paths);
+            let arrival = Arrival::new(Group::ALONE, bounce, &paths);
+            if !is_stopped {
+                self.leave(&arrival, self.left_places(arrival.direction, bounce), &mut paths);
                 break;
             }
-            self.bounce_alone(Arrival::new(group, bounce, paths), paths);
-            if !paths[0].goes_on {
+            self.bounce_alone(arrival, &mut paths);
+            if !paths.goes_on[0] {
                 break;
             }
         }
-        self.result(&paths[0])
+        self.result(&paths.found[0])
     }
 
     /// What a path does at the surface that stopped it.
-    fn bounce_alone<R: Recorder>(&self, mut arrival: Arrival<S>, paths: &mut [Path<S, R>]) {
+    fn bounce_alone<R: Recorder>(&self, mut arrival: Arrival<S>, paths: &mut Paths<S, R>) {
         let (group, bounce) = (arrival.group, arrival.bounce);
-        let slot = self.geometry.slot(paths[0].hit.triangle as usize);
+        let slot = self.geometry.slot(paths.state.hits[0].triangle as usize);
         let point = self.surfaces(&arrival, slot, paths);
         let passed = self.pass_catcher(&point, &mut arrival, paths);
         if !passed.is_there {
@@ -423,20 +433,27 @@ impl<S: Scalar> Integrator<'_, S> {
         }
         if self.samples_light() && !arrival.is_caught_mirrored {
             self.light_numbers(&group, bounce, paths);
+            paths.lights.is_aimed[0] = false;
             let whole = self.aim(&point, material, &arrival, paths);
-            if let Some(mut light) = paths[0].light {
-                light.visible = self.visible(&light, &mut paths[0].rays);
-                paths[0].light = Some(light);
-                if light.visible > S::zero() {
-                    self.locate_lights(&group, paths);
-                    self.arrive(&group, bounce, whole, paths);
-                } else {
-                    paths[0].record(|| light.told(whole, light.visible, Vec3::zero()));
-                }
-                paths[0].light = None;
+            if paths.lights.is_aimed[0] {
+                self.arrive_alone(whole, bounce, paths);
             }
         }
         self.scatter(&point, material, &arrival, paths);
+    }
+
+    /// Adds the light that a path is aimed at, if it arrives; `whole` is what [`Integrator::aim`] told.
+    fn arrive_alone<R: Recorder>(&self, whole: Vec3<S>, bounce: u32, paths: &mut Paths<S, R>) {
+        let light = paths.lights.get(0);
+        let visible = self.visible(&light, &mut paths.found[0].rays);
+        paths.lights.visible[0] = visible;
+        if visible > S::zero() {
+            paths.take_arriving(&[0]);
+            self.locate_lights(&Group::ALONE, paths);
+            self.arrive(&Group::ALONE, bounce, whole, paths);
+        } else {
+            paths.found[0].record(|| light.told(whole, visible, Vec3::zero()));
+        }
     }
 }
 
@@ -446,7 +463,7 @@ fn absorb<T: Real, R: Recorder>(
     material: &Material<T>,
     on: T::Mask,
     arrival: &mut Arrival<T>,
-    paths: &mut [Path<T::Scalar, R>],
+    paths: &mut Paths<T::Scalar, R>,
 ) {
     let thickness = material.absorption * arrival.distance;
     let kept = Vec3 {
@@ -454,7 +471,7 @@ fn absorb<T: Real, R: Recorder>(
         y: (-thickness.y).exp(),
         z: (-thickness.z).exp(),
     };
-    arrival.group.record(paths, on, |lane| Event::Absorption {
+    arrival.members.record(&mut paths.found, on, |lane| Event::Absorption {
         distance: single(arrival.distance.lane(lane)),
         kept: kept.to_each().as_ref()[lane].to_f32(),
     });

@@ -1,7 +1,7 @@
 //! What the rays of a path meet. Twin of `shaders/scene/visibility.wgsl`.
 
 use super::group::Group;
-use super::path::{Path, Ray};
+use super::paths::Paths;
 use super::{Integrator, OPACITY_DIMENSION, PASSES_MAX};
 use crate::cpu::recorder::{Event, Purpose, Recorder, single};
 use crate::optics::random::random_pair;
@@ -13,7 +13,7 @@ use crate::scene::surface::{hit_opacity, passed_origin};
 impl<T: Real> Integrator<'_, T> {
     /// The paths' first rays.
     #[inline(always)]
-    pub(super) fn first_rays<R: Recorder>(&self, group: &Group<T>, paths: &mut [Path<T::Scalar, R>]) {
+    pub(super) fn first_rays<R: Recorder>(&self, group: &Group<T>, paths: &mut Paths<T::Scalar, R>) {
         let has_lens = T::zero().less(self.camera.lens_radius).any();
         let for_pixel = group.pairs(paths, PIXEL_DIMENSION, [Purpose::Pixel; 2]);
         let for_lens = if has_lens {
@@ -22,18 +22,14 @@ impl<T: Real> Integrator<'_, T> {
             [T::zero(); 2]
         };
         let number = |number: u32| T::Scalar::from_f64(f64::from(number));
-        let pixel = [
-            group.numbers(paths, |path| number(path.pixel[0])),
-            group.numbers(paths, |path| number(path.pixel[1])),
-        ];
+        let pixel = [0, 1].map(|axis| T::from_lanes(|lane| number(paths.pixels[group.place(lane)][axis])));
         let [origin, direction] = pixel_ray(&self.camera, pixel, self.settings.image_size, [for_pixel, for_lens]);
-        let (origins, directions) = (origin.to_each(), direction.to_each());
-        group.for_each(paths, group.mask(), |path, lane| {
-            path.ray = Ray::of_camera(origins.as_ref()[lane], directions.as_ref()[lane]);
-        });
-        group.record(paths, group.mask(), |lane| Event::Camera {
-            origin: origins.as_ref()[lane].to_f32(),
-            direction: directions.as_ref()[lane].to_f32(),
+        group.set_vector(&mut paths.origin, group.mask(), origin);
+        group.set_vector(&mut paths.state.direction, group.mask(), direction);
+        let members = group.members(&paths.state.ids);
+        members.record(&mut paths.found, group.mask(), |lane| Event::Camera {
+            origin: origin.to_each().as_ref()[lane].to_f32(),
+            direction: direction.to_each().as_ref()[lane].to_f32(),
         });
     }
 
@@ -69,42 +65,40 @@ impl<T: Real> Integrator<'_, T> {
         zero
     }
 
-    /// Follows a path's ray to the surface that stops it, through those that do not; false where there is none.
+    /// Follows the ray of the path at a place to the surface that stops it, through those that do not; false where there is
+    /// none.
     #[inline(always)]
-    pub(super) fn stop<R: Recorder>(&self, bounce: u32, path: &mut Path<T::Scalar, R>) -> bool {
-        if path.ray.leaves {
+    pub(super) fn stop<R: Recorder>(&self, bounce: u32, place: usize, paths: &mut Paths<T::Scalar, R>) -> bool {
+        if paths.leaves[place] {
             return false;
         }
-        let Ray {
-            mut origin, direction, ..
-        } = path.ray;
-        let mut xi = T::Scalar::zero();
-        if self.has_holes {
-            let dimension = OPACITY_DIMENSION + bounce;
-            [xi, _] = random_pair(path.state, dimension);
-            path.record(|| Event::Number {
-                dimension,
-                half: 0,
-                value: single(xi),
-                purpose: Purpose::Opacity,
-            });
+        let (mut origin, direction) = (paths.origin.get(place), paths.state.direction.get(place));
+        if !self.has_holes {
+            let hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
+            return paths.note(place, hit);
         }
-        path.distance = T::Scalar::zero();
+        let dimension = OPACITY_DIMENSION + bounce;
+        let [mut xi, _]: [T::Scalar; 2] = random_pair(paths.random_state(place), dimension);
+        paths.found_at(place).record(|| Event::Number {
+            dimension,
+            half: 0,
+            value: single(xi),
+            purpose: Purpose::Opacity,
+        });
+        let mut distance = T::Scalar::zero();
         for _ in 0..PASSES_MAX {
-            path.rays += 1;
-            let Some(hit) = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX) else {
+            let hit = self.geometry.intersect(origin.to_f32(), direction.to_f32(), f32::MAX);
+            if !paths.note(place, hit) {
                 return false;
-            };
-            path.distance += T::Scalar::from_f64(f64::from(hit.t));
-            path.hit = hit;
-            if !self.has_holes {
-                return true;
             }
+            let hit = paths.state.hits[place];
+            distance += T::Scalar::from_f64(f64::from(hit.t));
+            paths.state.distance[place] = distance;
             let opacity = hit_opacity(self.geometry, &self.of_lane, self.textures, &hit);
             if xi < opacity {
                 return true;
             }
-            path.record(|| Event::Passed {
+            paths.found_at(place).record(|| Event::Passed {
                 slot: self.geometry.slot(hit.triangle as usize),
                 distance: hit.t,
                 opacity: single(opacity),

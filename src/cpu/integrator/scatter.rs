@@ -1,7 +1,7 @@
 //! How paths go on from a surface.
 
 use super::group::Group;
-use super::path::{Path, Ray};
+use super::paths::Paths;
 use super::{Arrival, BELOW_DIMENSION, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, ROULETTE_START};
 use crate::cpu::recorder::{End, Event, Purpose, Recorder, single};
 use crate::job::Strategy;
@@ -18,17 +18,19 @@ impl<T: Real> Integrator<'_, T> {
         point: &SurfacePoint<T>,
         material: &Material<T>,
         arrival: &Arrival<T>,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) {
         let group = arrival.group;
         let numbers = material_numbers(material, arrival, paths);
         let wants_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
         let mut drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
         let mut leaves = self.meets_nothing(point, drawn.wi);
-        let mirrors = drawn.is_mirror.to_bits();
-        group.for_each(paths, arrival.on, |path, lane| {
-            path.is_looking &= mirrors >> lane & 1 == 1
-        });
+        if self.guide_samples > 0 {
+            let mirrors = drawn.is_mirror.to_bits();
+            arrival.members.for_each(&mut paths.found, arrival.on, |path, lane| {
+                path.is_looking &= mirrors >> lane & 1 == 1;
+            });
+        }
         if arrival.is_caught_mirrored {
             // All of it goes on, also what the facets would keep, and none of what it meets is left to light sampling.
             leaves = leaves | !T::zero().less(drawn.throughput.max_component());
@@ -39,21 +41,14 @@ impl<T: Real> Integrator<'_, T> {
         self.record_scattered(point, material, arrival, &drawn, throughput, paths);
         let goes_on = survive(arrival, &mut throughput, paths);
         let origin = point.ray_origin(drawn.wi, material.transmits());
-        let (origins, directions) = (origin.to_each(), drawn.wi.to_each());
-        let (throughputs, densities) = (throughput.to_each(), drawn.density.to_each());
-        let (mirrors, leaving) = (drawn.is_mirror.to_bits(), leaves.to_bits());
-        let survivors = goes_on.to_bits();
-        group.for_each(paths, arrival.on, |path, lane| {
-            path.goes_on = survivors >> lane & 1 == 1;
-            path.throughput = throughputs.as_ref()[lane];
-            path.ray = Ray {
-                origin: origins.as_ref()[lane],
-                direction: directions.as_ref()[lane],
-                lobe_density: densities.as_ref()[lane],
-                is_mirror: mirrors >> lane & 1 == 1,
-                leaves: leaving >> lane & 1 == 1,
-            };
-        });
+        let on = arrival.on;
+        group.set_truth(&mut paths.goes_on, on, goes_on);
+        group.set_vector(&mut paths.state.throughput, on, throughput);
+        group.set_vector(&mut paths.origin, on, origin);
+        group.set_vector(&mut paths.state.direction, on, drawn.wi);
+        group.set_number(&mut paths.state.lobe_density, on, drawn.density);
+        group.set_truth(&mut paths.state.is_mirror, on, drawn.is_mirror);
+        group.set_truth(&mut paths.leaves, on, leaves);
     }
 
     #[inline(always)]
@@ -64,7 +59,7 @@ impl<T: Real> Integrator<'_, T> {
         arrival: &Arrival<T>,
         drawn: &MaterialSample<T>,
         throughput: Vec3<T>,
-        paths: &mut [Path<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) {
         if !R::KEEPS {
             return;
@@ -77,15 +72,17 @@ impl<T: Real> Integrator<'_, T> {
             below * layers.base_probability(),
             below * layers.transmission_probability,
         ];
-        arrival.group.record(paths, arrival.on, |lane| Event::Scattered {
-            layer: drawn.layer,
-            probabilities: probabilities.map(|probability| single(probability.lane(lane))),
-            direction: drawn.wi.to_each().as_ref()[lane].to_f32(),
-            factor: drawn.throughput.to_each().as_ref()[lane].to_f32(),
-            density: single(drawn.density.lane(lane)),
-            is_mirror: drawn.is_mirror.to_bits() >> lane & 1 == 1,
-            throughput: throughput.to_each().as_ref()[lane].to_f32(),
-        });
+        arrival
+            .members
+            .record(&mut paths.found, arrival.on, |lane| Event::Scattered {
+                layer: drawn.layer,
+                probabilities: probabilities.map(|probability| single(probability.lane(lane))),
+                direction: drawn.wi.to_each().as_ref()[lane].to_f32(),
+                factor: drawn.throughput.to_each().as_ref()[lane].to_f32(),
+                density: single(drawn.density.lane(lane)),
+                is_mirror: drawn.is_mirror.to_bits() >> lane & 1 == 1,
+                throughput: throughput.to_each().as_ref()[lane].to_f32(),
+            });
     }
 }
 
@@ -94,7 +91,7 @@ impl<T: Real> Integrator<'_, T> {
 fn material_numbers<T: Real, R: Recorder>(
     material: &Material<T>,
     arrival: &Arrival<T>,
-    paths: &mut [Path<T::Scalar, R>],
+    paths: &mut Paths<T::Scalar, R>,
 ) -> MaterialNumbers<T> {
     let Arrival { group, bounce, .. } = *arrival;
     let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
@@ -116,43 +113,51 @@ fn material_numbers<T: Real, R: Recorder>(
 fn survive<T: Real, R: Recorder>(
     arrival: &Arrival<T>,
     throughput: &mut Vec3<T>,
-    paths: &mut [Path<T::Scalar, R>],
+    paths: &mut Paths<T::Scalar, R>,
 ) -> T::Mask {
-    let Arrival { group, bounce, on, .. } = *arrival;
+    let Arrival {
+        group,
+        members,
+        bounce,
+        on,
+        ..
+    } = *arrival;
     let strength = throughput.max_component();
     // Also ends paths that are NaN.
     let is_left = T::zero().less(strength);
-    group.record(paths, on & !is_left, |_| Event::Ended { why: End::Absorbed });
+    members.record(&mut paths.found, on & !is_left, |_| Event::Ended { why: End::Absorbed });
     let plays = on & is_left & strength.less(T::one());
     if bounce < ROULETTE_START || !plays.any() {
         return is_left;
     }
     let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 3;
     let [_, number] = group.pairs(paths, dimension, [Purpose::Unused, Purpose::Roulette]);
-    group.record(paths, plays, |lane| Event::Roulette {
+    members.record(&mut paths.found, plays, |lane| Event::Roulette {
         survival: single(strength.lane(lane)),
         number: single(number.lane(lane)),
     });
     let is_out = plays & !number.less(strength);
-    group.record(paths, is_out, |_| Event::Ended { why: End::Roulette });
+    members.record(&mut paths.found, is_out, |_| Event::Ended { why: End::Roulette });
     let raised = *throughput / strength;
     *throughput = Vec3::select(plays, raised, *throughput);
     is_left & !is_out
 }
 
 impl<T: Real> Arrival<T> {
-    /// Paths of a group that have met surfaces after so many bounces.
+    /// Paths of a group whose rays came to an end after so many bounces.
     #[inline(always)]
-    pub(super) fn new<R: Recorder>(group: Group<T>, bounce: u32, paths: &[Path<T::Scalar, R>]) -> Self {
+    pub(super) fn new<R: Recorder>(group: Group<T>, bounce: u32, paths: &Paths<T::Scalar, R>) -> Self {
+        let state = &paths.state;
         Self {
             group,
+            members: group.members(&state.ids),
             bounce,
             on: group.mask(),
-            throughput: group.vectors(paths, |path| path.throughput),
-            direction: group.vectors(paths, |path| path.ray.direction),
-            lobe_density: group.numbers(paths, |path| path.ray.lobe_density),
-            is_mirror: group.truths(paths, |path| path.ray.is_mirror),
-            distance: group.numbers(paths, |path| path.distance),
+            throughput: group.vector(&state.throughput),
+            direction: group.vector(&state.direction),
+            lobe_density: group.number(&state.lobe_density),
+            is_mirror: group.truth(&state.is_mirror),
+            distance: group.number(&state.distance),
             is_caught_mirrored: false,
         }
     }

@@ -1,16 +1,18 @@
 //! Some samples of every pixel of a tile, the paths going on together: rays that go the same way are traced in packets, paths
 //! that met the same material are shaded side by side in lanes.
 //!
-//! Lanes hold what each path would have by itself, to the last bit, so it does not matter which paths are shaded together.
-//! Rays in packets may differ from rays alone, if rarely (`scene::hierarchy::packet`): their company is always the same, rays
-//! of one sample of one tile. So no picture depends on how the work is shared out.
+//! Lanes hold what each path would have by itself, and rays in packets meet what they would meet alone, to the last bit. So it
+//! does not matter which paths go on together, and no picture depends on how the work is shared out.
 
-use super::group::Group;
-use super::path::Path;
-use super::{Arrival, Integrator, PathResult, places};
+use std::ops::Range;
+
+use super::group::{Group, Groups};
+use super::paths::Paths;
+use super::{Arrival, Integrator, PathResult};
 use crate::cpu::recorder::Unrecorded;
 use crate::instructions;
 use crate::job::tiles::TILE_SIDE;
+use crate::optics::random::Sequence;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
 use crate::scene::{Hit, PACKET, Packet, WAYS, ray_way};
@@ -19,9 +21,10 @@ use crate::scene::{Hit, PACKET, Packet, WAYS, ray_way};
 const PIXELS: usize = (TILE_SIDE * TILE_SIDE) as usize;
 /// Samples of each pixel that go on together.
 pub const WAVE_SAMPLES: u32 = 4;
-/// Side of the square of pixels whose camera rays make a packet.
-const SIDE: u32 = 4;
-const _: () = assert!((SIDE * SIDE) as usize == PACKET);
+/// Paths that go on together at most.
+const PATHS: usize = PIXELS * WAVE_SAMPLES as usize;
+/// Pixels near each other whose samples lie side by side: 2 × 2, of which those of a wave make a packet.
+pub(super) const NEAR: usize = 4;
 /// Fewer rays than this are traced one by one.
 const RAYS_MIN: usize = 4;
 
@@ -29,209 +32,277 @@ const RAYS_MIN: usize = 4;
 pub struct Tile {
     pub(super) origin: [u32; 2],
     size: [u32; 2],
-    /// Its pixels, square by square.
+    /// Its pixels, those near each other one after the other.
     pub(super) places: Vec<[u32; 2]>,
 }
 
-pub(super) type WavePath<T> = Path<<T as Real>::Scalar, Unrecorded>;
-
-/// The paths of a wave by their places, in lists that are made anew at each bounce.
-#[derive(Default)]
-struct Lists {
-    /// Those on their way, sample by sample.
+/// Where the paths of a tile are followed, for one tile after the other.
+pub struct Wave<T: Real> {
+    paths: Paths<T::Scalar, Unrecorded>,
+    /// The places of those on their way.
     under_way: Vec<u16>,
-    /// Those whose rays met nothing.
-    left: Vec<u16>,
     /// Those whose rays met a surface, each with its slot.
     met: Vec<(u32, u16)>,
-    /// One list of those, without the slots.
-    members: Vec<u16>,
+    /// Those whose rays met nothing.
+    left: Vec<u16>,
+    /// The order in which all are shaded: those by their slots, then those whose rays met nothing.
+    order: Vec<u16>,
     /// What the camera rays of all of them met.
     hits: Vec<Option<Hit>>,
+    /// The ways of rays to lights.
+    ways: Ways,
+    /// The places of paths whose light arrives.
+    lit: Vec<u16>,
+    /// What they found, if they have all met nothing.
+    seen: Vec<PathResult<T::Scalar>>,
+}
+
+impl<T: Real> Wave<T> {
+    /// Room for any tile's, whose numbers are drawn from this sequence.
+    pub fn new(sequence: Sequence) -> Self {
+        Self {
+            paths: Paths::new(PATHS, T::LANES, sequence),
+            under_way: Vec::with_capacity(PATHS),
+            met: Vec::with_capacity(PATHS),
+            left: Vec::with_capacity(PATHS),
+            order: Vec::with_capacity(PATHS),
+            hits: Vec::with_capacity(PATHS),
+            ways: Ways::default(),
+            lit: Vec::with_capacity(PATHS),
+            seen: Vec::with_capacity(PATHS),
+        }
+    }
+
+    /// The places of those whose rays met a surface, shaded first.
+    fn met(&self) -> Range<usize> {
+        0..self.met.len()
+    }
+
+    /// The places of those whose rays met nothing.
+    fn left(&self) -> Range<usize> {
+        self.met.len()..self.order.len()
+    }
 }
 
 impl<T: Real> Integrator<'_, T> {
-    /// What samples of each pixel of a tile find, from sample `first` on, at most [`WAVE_SAMPLES`]: `tell` hears of each
-    /// sample, in their order, with the number of its pixel in the tile.
+    /// What samples of each pixel of a tile find, from sample `first` on: `tell` hears of each sample, in their order, with the
+    /// number of its pixel in the tile.
     pub fn trace_tile(
         &self,
         tile: &Tile,
+        wave: &mut Wave<T>,
         [first, count]: [u32; 2],
         mut tell: impl FnMut(usize, u32, &PathResult<T::Scalar>),
     ) {
-        let pixels = tile.places.len();
-        let rays = self.camera_rays(tile, first..first + count);
-        let mut lists = Lists::default();
-        if !self.has_holes {
-            self.trace_camera_rays(tile, &rays, &mut lists.hits);
-            if self.has_plain_background() && lists.hits.iter().all(Option::is_none) {
-                self.see_background(&rays, |ray, found| {
-                    let [x, y] = tile.places[ray % pixels];
-                    tell((y * tile.size[0] + x) as usize, first + (ray / pixels) as u32, found);
-                });
-                return;
+        for from in (first..first + count).step_by(WAVE_SAMPLES as usize) {
+            let samples = [from, WAVE_SAMPLES.min(first + count - from)];
+            let is_background = self.trace_wave(tile, samples, wave);
+            for sample in 0..samples[1] {
+                for (index, [x, y]) in tile.places.iter().enumerate() {
+                    let path = tile.path(index, [sample, samples[1]]);
+                    let pixel = (y * tile.size[0] + x) as usize;
+                    if is_background {
+                        tell(pixel, from + sample, &wave.seen[path]);
+                    } else {
+                        tell(pixel, from + sample, &self.result(&wave.paths.found[path]));
+                    }
+                }
             }
         }
-        let mut paths = self.paths(tile, first, &rays);
-        lists.under_way = (0..paths.len() as u16).collect();
+    }
+
+    /// Follows the paths of some samples to their end; true where none of them met anything, and `seen` tells what is there.
+    fn trace_wave(&self, tile: &Tile, samples: [u32; 2], wave: &mut Wave<T>) -> bool {
+        self.add_paths(tile, samples, &mut wave.paths);
+        if !self.has_holes {
+            self.trace_camera_rays(&wave.paths, &mut wave.hits);
+            if self.has_plain_background() && wave.hits.iter().all(Option::is_none) {
+                self.see_background(&wave.paths, &mut wave.seen);
+                return true;
+            }
+        }
+        wave.paths.start(std::iter::repeat(Unrecorded), self.guide_samples);
+        wave.under_way.clear();
+        wave.under_way.extend(0..wave.paths.count() as u16);
         for bounce in 0.. {
-            self.trace(bounce, &mut lists, &mut paths);
-            self.shade(bounce, &mut lists, &mut paths);
-            self.look_for_lights(pixels, &lists.under_way, &mut paths);
-            self.light(bounce, &mut lists, &mut paths);
-            lists.under_way.retain(|&path| paths[usize::from(path)].goes_on);
-            if lists.under_way.is_empty() {
+            self.trace(bounce, wave);
+            self.shade(bounce, wave);
+            self.look_for_lights(wave);
+            self.light(bounce, wave);
+            let Wave {
+                under_way,
+                paths,
+                order,
+                ..
+            } = wave;
+            under_way.clear();
+            under_way.extend((0..order.len() as u16).filter(|&place| paths.goes_on[usize::from(place)]));
+            if under_way.is_empty() {
                 break;
             }
         }
-        for (sample, paths) in (first..).zip(paths.chunks(pixels)) {
-            for ([x, y], path) in tile.places.iter().zip(paths) {
-                tell((y * tile.size[0] + x) as usize, sample, &self.result(path));
-            }
-        }
+        false
     }
 
-    /// Traces the rays of all paths under way and has the processor fetch what shading will look up.
-    fn trace(&self, bounce: u32, lists: &mut Lists, paths: &mut [WavePath<T>]) {
-        lists.left.clear();
-        lists.met.clear();
+    /// Traces the rays of all paths under way, has the processor fetch what shading will look up, and puts those side by side
+    /// that met the same material.
+    fn trace(&self, bounce: u32, wave: &mut Wave<T>) {
+        let Wave {
+            paths,
+            under_way,
+            met,
+            left,
+            order,
+            hits,
+            ..
+        } = wave;
+        met.clear();
+        left.clear();
         // What camera rays meet is known where no surface has holes.
         let is_known = bounce == 0 && !self.has_holes;
-        for &member in &lists.under_way {
-            let path = &mut paths[usize::from(member)];
+        for &member in &*under_way {
+            let place = usize::from(member);
             let is_stopped = if is_known {
-                path.take(lists.hits[usize::from(member)])
+                paths.note(place, hits[place])
             } else {
-                self.stop(bounce, path)
+                self.stop(bounce, place, paths)
             };
             if is_stopped {
-                lists.met.push((self.meets(path), member));
+                let triangle = paths.state.hits[place].triangle;
+                self.geometry.fetch(triangle);
+                met.push((self.geometry.slot(triangle as usize), member));
             } else {
-                lists.left.push(member);
+                left.push(member);
             }
         }
-        // Paths that met the same material side by side, in their order.
-        lists.met.sort_unstable();
-    }
-
-    /// The slot of the surface that a path met; what shading it takes is fetched.
-    #[inline(always)]
-    fn meets(&self, path: &WavePath<T>) -> u32 {
-        self.geometry.fetch(path.hit.triangle);
-        self.geometry.slot(path.hit.triangle as usize)
+        met.sort_unstable();
+        order.clear();
+        order.extend(met.iter().map(|(_, member)| *member).chain(left.iter().copied()));
+        paths.arrange(order);
     }
 
     /// What all paths find where they are, and where they go on.
-    fn shade(&self, bounce: u32, lists: &mut Lists, paths: &mut [WavePath<T>]) {
+    fn shade(&self, bounce: u32, wave: &mut Wave<T>) {
+        let (met, left) = (wave.met(), wave.left());
+        let paths = &mut wave.paths;
+        paths.lights.is_aimed[met.clone()].fill(false);
+        let draws = self.samples_light() && bounce < self.settings.bounces;
         T::vectorize(
             #[inline(always)]
             || {
-                for members in lists.left.chunks(T::LANES) {
-                    self.locate_left(&Group::new(members), bounce, paths);
+                for group in Groups::new(left.clone()) {
+                    self.locate_left(&group, bounce, paths);
                 }
-                let draws = self.samples_light() && bounce < self.settings.bounces;
-                lists.members.clear();
-                lists.members.extend(lists.met.iter().map(|(_, member)| member));
                 if draws {
-                    for members in lists.members.chunks(T::LANES) {
-                        self.light_numbers(&Group::new(members), bounce, paths);
+                    for group in Groups::new(met.clone()) {
+                        self.light_numbers(&group, bounce, paths);
                     }
                 }
-                for members in lists.left.chunks(T::LANES) {
-                    let group = Group::new(members);
-                    let arrival = Arrival::new(group, bounce, paths);
-                    self.leave(&arrival, places(&group, paths), paths);
+                for group in Groups::<T>::new(left.clone()) {
+                    let place = [group.number(&paths.place[0]), group.number(&paths.place[1])];
+                    self.leave(&Arrival::new(group, bounce, paths), place, paths);
                 }
                 if draws && self.samples_environment {
-                    for members in lists.members.chunks(T::LANES) {
-                        self.fetch_lights(&Group::new(members), paths);
+                    for group in Groups::new(met.clone()) {
+                        self.fetch_lights(&group, paths);
                     }
                 }
             },
         );
-        for same in lists.met.chunk_by(|(a, _), (b, _)| a == b) {
-            lists.members.clear();
-            lists.members.extend(same.iter().map(|(_, member)| member));
-            for members in lists.members.chunks(T::LANES) {
-                self.bounce_together(same[0].0, Arrival::new(Group::new(members), bounce, paths), paths);
-            }
+        let mut first = 0;
+        for same in wave.met.chunk_by(|(a, _), (b, _)| a == b) {
+            let places = first..first + same.len();
+            first = places.end;
+            self.bounce_together(same[0].0, places, bounce, paths);
         }
     }
 
     /// What paths do at surfaces of one slot, but for the light that arrives from elsewhere.
-    fn bounce_together(&self, slot: u32, arrival: Arrival<T>, paths: &mut [WavePath<T>]) {
+    fn bounce_together(&self, slot: u32, places: Range<usize>, bounce: u32, paths: &mut Paths<T::Scalar, Unrecorded>) {
         T::vectorize(
             #[inline(always)]
             || {
-                let mut arrival = arrival;
-                let point = self.surfaces(&arrival, slot, paths);
-                let passed = self.pass_catcher(&point, &mut arrival, paths);
-                let is_passed = arrival.on & !passed.is_there;
-                if is_passed.any() {
-                    let ray = Arrival {
-                        on: is_passed,
-                        ..arrival
-                    };
-                    self.leave(&ray, self.left_places(ray.direction, ray.bounce), paths);
-                }
-                let ways = [
-                    (passed.is_there & !passed.is_mirrored, false),
-                    (passed.is_there & passed.is_mirrored, true),
-                ];
-                for (on, is_caught_mirrored) in ways {
-                    if !on.any() {
-                        continue;
-                    }
-                    let mut arrival = Arrival {
-                        on,
-                        is_caught_mirrored,
-                        ..arrival
-                    };
-                    let material = &*self.material(&point, &arrival);
-                    if self.meet(&point, material, &mut arrival, paths) {
-                        if self.samples_light() && !is_caught_mirrored {
-                            self.aim(&point, material, &arrival, paths);
-                        }
-                        self.scatter(&point, material, &arrival, paths);
-                    }
+                for group in Groups::new(places.clone()) {
+                    self.bounce_group(slot, group, bounce, paths);
                 }
             },
         );
     }
 
-    /// Finds which of the lights that paths are aimed at are visible.
-    fn look_for_lights(&self, pixels: usize, under_way: &[u16], paths: &mut [WavePath<T>]) {
-        // Rays of one sample keep company, whatever others are traced at the same time.
-        for sample in under_way.chunk_by(|&a, &b| usize::from(a) / pixels == usize::from(b) / pixels) {
-            let mut ways = Ways::default();
-            for &member in sample {
-                let path = &mut paths[usize::from(member)];
-                let Some(light) = &mut path.light else { continue };
-                if self.has_holes {
-                    light.visible = self.visible(light, &mut path.rays);
-                } else if !light.meets_nothing {
-                    path.rays += 1;
-                    ways.add(ray_way(light.drawn.direction.to_f32()), member);
-                }
+    #[inline(always)]
+    fn bounce_group(&self, slot: u32, group: Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, Unrecorded>) {
+        let mut arrival = Arrival::new(group, bounce, paths);
+        let point = self.surfaces(&arrival, slot, paths);
+        let passed = self.pass_catcher(&point, &mut arrival, paths);
+        let is_passed = arrival.on & !passed.is_there;
+        if is_passed.any() {
+            let ray = Arrival {
+                on: is_passed,
+                ..arrival
+            };
+            self.leave(&ray, self.left_places(ray.direction, ray.bounce), paths);
+        }
+        let ways = [
+            (passed.is_there & !passed.is_mirrored, false),
+            (passed.is_there & passed.is_mirrored, true),
+        ];
+        for (on, is_caught_mirrored) in ways {
+            if !on.any() {
+                continue;
             }
-            for way in 0..WAYS {
-                for group in ways.of(way).chunks(PACKET) {
-                    self.look_together(group, paths);
+            let mut arrival = Arrival {
+                on,
+                is_caught_mirrored,
+                ..arrival
+            };
+            let material = &*self.material(&point, &arrival);
+            if self.meet(&point, material, &mut arrival, paths) {
+                if self.samples_light() && !is_caught_mirrored {
+                    self.aim(&point, material, &arrival, paths);
                 }
+                self.scatter(&point, material, &arrival, paths);
+            }
+        }
+    }
+
+    /// Finds which of the lights that paths are aimed at are visible.
+    fn look_for_lights(&self, wave: &mut Wave<T>) {
+        let met = wave.met();
+        let Wave { paths, ways, .. } = wave;
+        ways.clear();
+        for place in met {
+            if !paths.lights.is_aimed[place] {
+                continue;
+            }
+            let rays = &mut paths.found[usize::from(paths.state.ids[place])].rays;
+            if self.has_holes {
+                paths.lights.visible[place] = self.visible(&paths.lights.get(place), rays);
+            } else if !paths.lights.meets_nothing[place] {
+                *rays += 1;
+                ways.add(ray_way(paths.lights.direction.get(place).to_f32()), place);
+            }
+        }
+        for way in 0..WAYS {
+            for group in ways.of(way).chunks(PACKET) {
+                self.look_together(group, paths);
             }
         }
     }
 
     /// The same of paths whose rays go the same way.
-    fn look_together(&self, members: &[u16], paths: &mut [WavePath<T>]) {
-        let ray = |&member: &u16| {
-            let light = paths[usize::from(member)].light();
-            let distance = light.drawn.distance.to_f64() as f32;
-            (light.origin.to_f32(), light.drawn.direction.to_f32(), distance)
+    fn look_together(&self, places: &[u16], paths: &mut Paths<T::Scalar, Unrecorded>) {
+        let lights = &mut paths.lights;
+        let ray = |place: usize| {
+            let distance = lights.distance[place].to_f64() as f32;
+            (
+                lights.origin.get(place).to_f32(),
+                lights.direction.get(place).to_f32(),
+                distance,
+            )
         };
-        let rays = members.iter().map(ray);
+        let rays = places.iter().map(|&place| ray(usize::from(place)));
         let mut is_hidden = [false; PACKET];
-        if members.len() < RAYS_MIN {
+        if places.len() < RAYS_MIN {
             for (is_hidden, (origin, direction, distance)) in is_hidden.iter_mut().zip(rays) {
                 *is_hidden = self.geometry.occluded(origin, direction, distance);
             }
@@ -240,87 +311,89 @@ impl<T: Real> Integrator<'_, T> {
             for (lane, (origin, direction, distance)) in rays.enumerate() {
                 packet.set(lane, origin, direction, distance);
             }
-            packet.fill(members.len());
+            packet.fill(places.len());
             is_hidden = self.geometry.occluded_packet(instructions::level(), &packet);
         }
-        for (&member, is_hidden) in members.iter().zip(is_hidden) {
-            if let Some(light) = &mut paths[usize::from(member)].light
-                && is_hidden
-            {
-                light.visible = T::Scalar::zero();
+        for (&place, is_hidden) in places.iter().zip(is_hidden) {
+            if is_hidden {
+                lights.visible[usize::from(place)] = T::Scalar::zero();
             }
         }
     }
 
     /// Adds the light that arrives.
-    fn light(&self, bounce: u32, lists: &mut Lists, paths: &mut [WavePath<T>]) {
-        let members = &mut lists.members;
-        members.clear();
-        for &member in &lists.under_way {
-            let light = &mut paths[usize::from(member)].light;
-            match light {
-                Some(light) if light.visible > T::Scalar::zero() => members.push(member),
-                _ => *light = None,
-            }
-        }
+    fn light(&self, bounce: u32, wave: &mut Wave<T>) {
+        let met = wave.met();
+        let Wave { paths, lit, .. } = wave;
+        let lights = &paths.lights;
+        let is_lit = |place: &u16| {
+            let place = usize::from(*place);
+            lights.is_aimed[place] && lights.visible[place] > T::Scalar::zero()
+        };
+        lit.clear();
+        lit.extend((0..met.len() as u16).filter(is_lit));
+        paths.take_arriving(lit);
         T::vectorize(
             #[inline(always)]
             || {
-                for members in members.chunks(T::LANES) {
-                    self.locate_lights(&Group::new(members), paths);
+                for group in Groups::new(0..lit.len()) {
+                    self.locate_lights(&group, paths);
                 }
-                for members in members.chunks(T::LANES) {
-                    self.arrive(&Group::new(members), bounce, Vec3::zero(), paths);
+                for group in Groups::new(0..lit.len()) {
+                    self.arrive(&group, bounce, Vec3::zero(), paths);
                 }
             },
         );
-        for &member in &*members {
-            paths[usize::from(member)].light = None;
-        }
     }
 }
 
-/// The paths whose rays go each way, in their order.
+/// The places of paths whose rays go each way, in their order.
 struct Ways {
-    members: [[u16; PIXELS]; WAYS],
-    counts: [u8; WAYS],
+    places: [[u16; PATHS]; WAYS],
+    counts: [u16; WAYS],
 }
 
 impl Default for Ways {
     fn default() -> Self {
         Self {
-            members: [[0; PIXELS]; WAYS],
+            places: [[0; PATHS]; WAYS],
             counts: [0; WAYS],
         }
     }
 }
 
 impl Ways {
+    fn clear(&mut self) {
+        self.counts = [0; WAYS];
+    }
+
     #[inline(always)]
-    fn add(&mut self, way: usize, member: u16) {
+    fn add(&mut self, way: usize, place: usize) {
         let count = &mut self.counts[way];
-        self.members[way][usize::from(*count)] = member;
+        self.places[way][usize::from(*count)] = place as u16;
         *count += 1;
     }
 
     #[inline(always)]
     fn of(&self, way: usize) -> &[u16] {
-        &self.members[way][..usize::from(self.counts[way])]
+        &self.places[way][..usize::from(self.counts[way])]
     }
 }
 
 impl Tile {
     /// The tile at a place of the picture, of a size in pixels.
     pub fn new(origin: [u32; 2], size: [u32; 2]) -> Self {
-        let mut places = Vec::with_capacity(PIXELS);
-        let squares = |axis: usize| (0..size[axis]).step_by(SIDE as usize);
-        for top in squares(1) {
-            for left in squares(0) {
-                for y in top..(top + SIDE).min(size[1]) {
-                    places.extend((left..(left + SIDE).min(size[0])).map(|x| [x, y]));
-                }
-            }
-        }
+        // Along Morton's curve: squares of 2 × 2, of which four make a square again.
+        let every_second = |bits: u32| (bits & 1) | (bits >> 1 & 2) | (bits >> 2 & 4);
+        let places = (0..PIXELS as u32).map(|place| [every_second(place), every_second(place >> 1)]);
+        let places = places.filter(|[x, y]| *x < size[0] && *y < size[1]).collect();
         Self { origin, size, places }
+    }
+
+    /// Which path of a wave is a sample, of so many, of the pixel of this index.
+    fn path(&self, index: usize, [sample, count]: [u32; 2]) -> usize {
+        let first = index - index % NEAR;
+        let near = NEAR.min(self.places.len() - first);
+        first * count as usize + sample as usize * near + index % NEAR
     }
 }

@@ -7,11 +7,14 @@
 
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8, f32x16, mask32x16};
 
-use super::traverse::{Entry, INVERSE_MAX, PLACE_ERROR, Stack};
+use super::traverse::{Entry, INVERSE_MAX, PLACE_ERROR, Stack, TriangleRay, TrianglesMet};
 use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
 
 /// Rays of a packet.
 pub const PACKET: usize = 16;
+
+/// So few rays go one after the other through a block's triangles, as eight triangles at a time take less than all rays.
+const FEW: u32 = 4;
 
 /// Rays, axis by axis.
 #[derive(Clone, Copy, Debug)]
@@ -74,25 +77,27 @@ pub(in crate::scene) struct Found {
     pub t: [f32; PACKET],
     /// One more than the triangle's number; 0 where nothing was met.
     pub marks: [u32; PACKET],
+    /// Twice the areas that the ray cuts the projected triangle into, opposite to its corners; left out where any triangle
+    /// would do.
+    areas: [[f32; PACKET]; 3],
 }
 
 impl Found {
-    /// Takes a triangle that some rays meet no farther away than what was found; whether it is nearer for any.
+    /// Takes a triangle that a ray meets no farther away than what was found; whether it is nearer.
     #[inline(always)]
-    fn add<const ANY: bool>(&mut self, mut met: u32, distances: &[f32; PACKET], mark: u32) -> bool {
-        let mut is_new = false;
-        while met != 0 {
-            let lane = (met.trailing_zeros() % PACKET as u32) as usize;
-            met &= met - 1;
-            let t = distances[lane];
-            // Of two as far away the first: so it does not matter in which order they are found.
-            if t < self.t[lane] || mark < self.marks[lane] {
-                self.t[lane] = if ANY { -1.0 } else { t };
-                self.marks[lane] = mark;
-                is_new = true;
+    fn add<const ANY: bool>(&mut self, lane: usize, t: f32, areas: [f32; 3], mark: u32) -> bool {
+        // Of two as far away the first: so it does not matter in which order they are found.
+        let is_nearer = t < self.t[lane] || mark < self.marks[lane];
+        if is_nearer {
+            self.t[lane] = if ANY { -1.0 } else { t };
+            self.marks[lane] = mark;
+            if !ANY {
+                for (all, area) in self.areas.iter_mut().zip(areas) {
+                    all[lane] = area;
+                }
             }
         }
-        is_new
+        is_nearer
     }
 
     /// Takes what the same rays, no farther than they were found to go, met of other triangles, which are numbered from
@@ -103,8 +108,21 @@ impl Found {
             if other.marks[lane] != 0 {
                 self.t[lane] = other.t[lane];
                 self.marks[lane] = other.marks[lane] + first;
+                for (to, from) in self.areas.iter_mut().zip(&other.areas) {
+                    to[lane] = from[lane];
+                }
             }
         }
+    }
+
+    /// The weights of the triangles' second and third corners, see [`Hit`](crate::scene::Hit).
+    #[inline(always)]
+    pub fn weights(&self) -> [[f32; PACKET]; 2] {
+        let [u, v, w] = &self.areas;
+        // Without the sign of a zero, which depends on the order of corners.
+        let weight =
+            |part: &[f32; PACKET]| std::array::from_fn(|lane| part[lane] / (u[lane] + v[lane] + w[lane]) + 0.0);
+        [weight(v), weight(w)]
     }
 }
 
@@ -145,6 +163,7 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, packet: &Packet) -> Opt
     let mut found = Found {
         t: packet.t_max,
         marks: [0; PACKET],
+        areas: [[0.0; PACKET]; 3],
     };
     if wide.nodes.is_empty() {
         return Some(found);
@@ -331,6 +350,72 @@ impl<S: Simd> Rays<S> {
     /// Puts the triangles of a block in that are nearer than what was found; whether there are any.
     #[inline(always)]
     fn meet<const ANY: bool>(&self, wide: &Wide, block: usize, entered: &Entered<S>, found: &mut Found) -> bool {
+        let met = entered.met.to_bitmask() as u32;
+        if met.count_ones() <= FEW {
+            self.meet_few::<ANY>(wide, block, met, entered, found)
+        } else {
+            self.meet_many::<ANY>(wide, block, entered, found)
+        }
+    }
+
+    /// The same, one ray after the other against all triangles.
+    #[inline(always)]
+    fn meet_few<const ANY: bool>(
+        &self,
+        wide: &Wide,
+        block: usize,
+        mut rays: u32,
+        entered: &Entered<S>,
+        found: &mut Found,
+    ) -> bool {
+        let distances = entered.distance.to_array();
+        let mut is_new = false;
+        while rays != 0 {
+            let lane = (rays.trailing_zeros() % PACKET as u32) as usize;
+            rays &= rays - 1;
+            let reach = [distances[lane], found.t[lane]];
+            let of_ray = self.triangle_ray(lane);
+            let TrianglesMet { mut met, t, areas } = of_ray.meet(&wide.blocks[block], &wide.normals[block], reach);
+            if met == 0 {
+                continue;
+            }
+            let (t, areas) = (
+                t.to_array(),
+                [areas[0].to_array(), areas[1].to_array(), areas[2].to_array()],
+            );
+            while met != 0 {
+                let triangle = (met.trailing_zeros() % WIDTH as u32) as usize;
+                met &= met - 1;
+                let areas = [areas[0][triangle], areas[1][triangle], areas[2][triangle]];
+                // What was found may be nearer by now.
+                if t[triangle] <= found.t[lane] {
+                    let mark = wide.firsts[block] + triangle as u32 + 1;
+                    is_new |= found.add::<ANY>(lane, t[triangle], areas, mark);
+                }
+            }
+        }
+        is_new
+    }
+
+    /// What the test against triangles needs of one ray.
+    #[inline(always)]
+    fn triangle_ray(&self, lane: usize) -> TriangleRay<S> {
+        let simd = self.origin[0].token();
+        let splat = |all: f32x16<S>| f32x8::splat(simd, all.as_slice()[lane]);
+        let [x, y, z] = self.origin;
+        let [dx, dy, dz] = self.direction;
+        let [shear_x, shear_y] = self.shear;
+        TriangleRay {
+            origin: [splat(x), splat(y), splat(z)],
+            direction: [splat(dx), splat(dy), splat(dz)],
+            axes: self.axes,
+            shear: [splat(shear_x), splat(shear_y)],
+        }
+    }
+
+    /// The same, one triangle after the other against all rays.
+    #[inline(always)]
+    fn meet_many<const ANY: bool>(&self, wide: &Wide, block: usize, entered: &Entered<S>, found: &mut Found) -> bool {
         let (first, normals, block) = (wide.firsts[block], &wide.normals[block], &wide.blocks[block]);
         let simd = self.origin[0].token();
         let zero = f32x16::splat(simd, 0.0);
@@ -351,8 +436,14 @@ impl<S: Simd> Rays<S> {
                 let t = t / towards;
                 let placed = t.max(entered.distance);
                 let is_before = t.simd_gt(zero) & placed.simd_le(load(simd, &found.t));
-                let met = (is_inside & !area.simd_eq(zero) & is_before).to_bitmask() as u32;
-                is_new |= found.add::<ANY>(met, &placed.to_array(), first + triangle as u32 + 1);
+                let mut met = (is_inside & !area.simd_eq(zero) & is_before).to_bitmask() as u32;
+                let (placed, u, v, w) = (placed.to_array(), u.to_array(), v.to_array(), w.to_array());
+                while met != 0 {
+                    let lane = (met.trailing_zeros() % PACKET as u32) as usize;
+                    met &= met - 1;
+                    let areas = [u[lane], v[lane], w[lane]];
+                    is_new |= found.add::<ANY>(lane, placed[lane], areas, first + triangle as u32 + 1);
+                }
             }
             triangle += 1;
         }

@@ -60,7 +60,8 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max
         } else {
             let block = (place & !BLOCK) as usize;
             let reach = [next.distance(), t_max];
-            let (mut met, distances) = triangles.meet(&wide.blocks[block], &wide.normals[block], reach);
+            let TrianglesMet { mut met, t, .. } = triangles.meet(&wide.blocks[block], &wide.normals[block], reach);
+            let distances = t.to_array();
             while met != 0 {
                 let lane = met.trailing_zeros() % WIDTH as u32;
                 met &= met - 1;
@@ -193,12 +194,22 @@ impl Met {
     }
 }
 
+/// Triangles of a block that a ray meets.
+pub(super) struct TrianglesMet<S: Simd> {
+    /// As bits.
+    pub met: u32,
+    /// How far away.
+    pub t: f32x8<S>,
+    /// Twice the areas that the ray cuts each projected triangle into, opposite to its corners.
+    pub areas: [f32x8<S>; 3],
+}
+
 /// What the test against triangles needs of a ray.
-struct TriangleRay<S: Simd> {
-    origin: [f32x8<S>; 3],
-    direction: [f32x8<S>; 3],
-    axes: [usize; 3],
-    shear: [f32x8<S>; 2],
+pub(super) struct TriangleRay<S: Simd> {
+    pub origin: [f32x8<S>; 3],
+    pub direction: [f32x8<S>; 3],
+    pub axes: [usize; 3],
+    pub shear: [f32x8<S>; 2],
 }
 
 impl<S: Simd> TriangleRay<S> {
@@ -216,18 +227,19 @@ impl<S: Simd> TriangleRay<S> {
         }
     }
 
-    /// Which triangles of a block are met with 0 < t ≤ `t_max`, as bits, and t, which is `entered` at least.
+    /// Which triangles of a block are met with 0 < t ≤ `t_max`, where t is `entered` at least.
     #[inline(always)]
-    fn meet(&self, block: &Block, normals: &Normals, [entered, t_max]: [f32; 2]) -> (u32, [f32; WIDTH]) {
+    pub fn meet(&self, block: &Block, normals: &Normals, [entered, t_max]: [f32; 2]) -> TrianglesMet<S> {
         let simd = self.origin[0].token();
         let zero = f32x8::splat(simd, 0.0);
         let [(ax, ay), (bx, by), (cx, cy)] = [self.project(block, 0), self.project(block, 1), self.project(block, 2)];
         // Neighbours share an edge's area but for its sign, as no product is fused.
         let (u, v, w) = (cx * by - cy * bx, ax * cy - ay * cx, bx * ay - by * ax);
+        let areas = [u, v, w];
         let is_inside = (u.simd_ge(zero) & v.simd_ge(zero) & w.simd_ge(zero))
             | (u.simd_le(zero) & v.simd_le(zero) & w.simd_le(zero));
         if is_inside.all_false() {
-            return (0, [0.0; WIDTH]);
+            return TrianglesMet { met: 0, t: zero, areas };
         }
         let x = f32x8::load_array_ref(simd, &normals.axes[0]);
         let y = f32x8::load_array_ref(simd, &normals.axes[1]);
@@ -243,7 +255,11 @@ impl<S: Simd> TriangleRay<S> {
         // Not where the triangle is seen from its side; nor where t is NaN.
         let is_before = t.simd_gt(zero) & placed.simd_le(f32x8::splat(simd, t_max));
         let is_met = is_inside & !(u + v + w).simd_eq(zero) & is_before;
-        (is_met.to_bitmask() as u32, placed.to_array())
+        TrianglesMet {
+            met: is_met.to_bitmask() as u32,
+            t: placed,
+            areas,
+        }
     }
 
     /// A coordinate of a corner, from the ray's origin.

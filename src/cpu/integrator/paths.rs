@@ -1,0 +1,297 @@
+//! The paths of a wave, field by field: what is done with sixteen of them takes whole vectors out of memory and puts whole
+//! vectors back.
+//!
+//! What a path needs to go on lies in [`State`], in an order that changes from bounce to bounce, so that paths which are
+//! shaded together lie side by side. What it has found lies in [`Found`], by its number in the wave.
+
+use std::mem::swap;
+
+use super::PathResult;
+use super::catcher::Caught;
+use super::light::LightRays;
+use crate::cpu::recorder::{Event, Recorder};
+use crate::job::features::GuideSums;
+use crate::optics::random::{RandomState, Sequence, path_state};
+use crate::optics::real::Scalar;
+use crate::optics::vector::{Vec3, vec3};
+use crate::scene::Hit;
+
+/// Three numbers of each path.
+pub(super) struct Vectors<S> {
+    pub x: Vec<S>,
+    pub y: Vec<S>,
+    pub z: Vec<S>,
+}
+
+impl<S: Scalar> Vectors<S> {
+    /// All zero.
+    pub fn new(count: usize) -> Self {
+        Self {
+            x: vec![S::zero(); count],
+            y: vec![S::zero(); count],
+            z: vec![S::zero(); count],
+        }
+    }
+
+    /// Those of one path.
+    #[inline(always)]
+    pub fn get(&self, place: usize) -> Vec3<S> {
+        vec3(self.x[place], self.y[place], self.z[place])
+    }
+
+    pub fn fill(&mut self, value: S) {
+        self.x.fill(value);
+        self.y.fill(value);
+        self.z.fill(value);
+    }
+
+    /// Takes those of other paths, in this order.
+    #[inline(always)]
+    pub fn take(&mut self, from: &Self, order: &[u16]) {
+        take(&mut self.x, &from.x, order);
+        take(&mut self.y, &from.y, order);
+        take(&mut self.z, &from.z, order);
+    }
+}
+
+/// Takes what other paths have of something, in this order.
+#[inline(always)]
+pub(super) fn take<E: Copy>(field: &mut [E], from: &[E], order: &[u16]) {
+    for (to, &place) in field.iter_mut().zip(order) {
+        *to = from[usize::from(place)];
+    }
+}
+
+/// What paths need to go on.
+pub(super) struct State<S> {
+    /// Which paths of the wave they are.
+    pub ids: Vec<u16>,
+    /// The counters from which they draw their numbers, see [`RandomState`].
+    pub keys: Vec<u32>,
+    pub samples: Vec<u32>,
+    /// What light from the rays' other ends is multiplied by.
+    pub throughput: Vectors<S>,
+    /// Of the rays: unit vectors.
+    pub direction: Vectors<S>,
+    /// The density of the direction, for what competes with light sampling.
+    pub lobe_density: Vec<S>,
+    /// True where light sampling could not have drawn the direction.
+    pub is_mirror: Vec<bool>,
+    /// What the rays met.
+    pub hits: Vec<Hit>,
+    /// How far from the rays' origins: farther than in `hits` where they went through surfaces before.
+    pub distance: Vec<S>,
+}
+
+impl<S: Scalar> State<S> {
+    fn new(count: usize) -> Self {
+        Self {
+            ids: vec![0; count],
+            keys: vec![0; count],
+            samples: vec![0; count],
+            throughput: Vectors::new(count),
+            direction: Vectors::new(count),
+            lobe_density: vec![S::zero(); count],
+            is_mirror: vec![false; count],
+            hits: vec![Hit::default(); count],
+            distance: vec![S::zero(); count],
+        }
+    }
+
+    fn take(&mut self, from: &Self, order: &[u16]) {
+        take(&mut self.ids, &from.ids, order);
+        take(&mut self.keys, &from.keys, order);
+        take(&mut self.samples, &from.samples, order);
+        self.throughput.take(&from.throughput, order);
+        self.direction.take(&from.direction, order);
+        take(&mut self.lobe_density, &from.lobe_density, order);
+        take(&mut self.is_mirror, &from.is_mirror, order);
+        take(&mut self.hits, &from.hits, order);
+        take(&mut self.distance, &from.distance, order);
+    }
+}
+
+/// The paths of a wave.
+pub(super) struct Paths<S, R> {
+    pub sequence: Sequence,
+    pub state: State<S>,
+    /// Where `state` is put in another order.
+    other: State<S>,
+    /// Where rays start.
+    pub origin: Vectors<S>,
+    /// True where it is proven that nothing lies ahead.
+    pub leaves: Vec<bool>,
+    /// True until they have come to their end.
+    pub goes_on: Vec<bool>,
+    /// Where they look at the environment's map.
+    pub place: [Vec<S>; 2],
+    /// The numbers that draw their light.
+    pub light_numbers: Vectors<S>,
+    /// The rows of the environment's cells that those draw.
+    pub light_rows: Vec<u32>,
+    /// The rays to lights, of paths that are aimed at one.
+    pub lights: LightRays<S>,
+    /// Those that arrive, side by side.
+    pub arriving: LightRays<S>,
+    /// Pixels and numbers of the samples in them, by the paths' numbers in the wave.
+    pub pixels: Vec<[u32; 2]>,
+    pub samples: Vec<u32>,
+    /// What they have found, by their numbers in the wave.
+    pub found: Vec<Found<S, R>>,
+}
+
+impl<S: Scalar, R: Recorder> Paths<S, R> {
+    /// Room for paths, of which as many go on side by side as there are lanes.
+    pub fn new(count: usize, lanes: usize, sequence: Sequence) -> Self {
+        // The last group may reach beyond them.
+        let count = count + lanes;
+        Self {
+            sequence,
+            state: State::new(count),
+            other: State::new(count),
+            origin: Vectors::new(count),
+            leaves: vec![false; count],
+            goes_on: vec![false; count],
+            place: [vec![S::zero(); count], vec![S::zero(); count]],
+            light_numbers: Vectors::new(count),
+            light_rows: vec![0; count],
+            lights: LightRays::new(count),
+            arriving: LightRays::new(count),
+            pixels: Vec::with_capacity(count),
+            samples: Vec::with_capacity(count),
+            found: Vec::with_capacity(count),
+        }
+    }
+
+    /// Forgets all paths.
+    pub fn clear(&mut self) {
+        self.pixels.clear();
+        self.samples.clear();
+        self.found.clear();
+    }
+
+    /// How many paths the wave has.
+    pub fn count(&self) -> usize {
+        self.pixels.len()
+    }
+
+    /// Adds a path before its first ray, of which [`Paths::set_counters`] and [`Paths::start`] make the rest.
+    #[inline(always)]
+    pub fn add(&mut self, pixel: [u32; 2], sample: u32) {
+        self.pixels.push(pixel);
+        self.samples.push(sample);
+    }
+
+    /// Sets the counters from which paths draw their numbers. Written so that compilers turn it into lanes.
+    #[inline(always)]
+    pub fn set_counters(&mut self, seed: u32) {
+        let state = &mut self.state;
+        let counters = state.keys.iter_mut().zip(&mut state.samples).zip(&mut state.ids);
+        let all = self.pixels.iter().zip(&self.samples).zip(0..);
+        for (((key, index), id), ((&[x, y], &sample), number)) in counters.zip(all) {
+            let state = path_state(x, y, seed, sample, self.sequence);
+            (*key, *index, *id) = (state.key, state.sample, number);
+        }
+    }
+
+    /// Has the paths that were added start from the camera, having found nothing: one recorder for each, and how many
+    /// samples of a pixel tell what they see.
+    pub fn start(&mut self, recorders: impl IntoIterator<Item = R>, guide_samples: u32) {
+        self.state.throughput.fill(S::one());
+        self.state.lobe_density.fill(S::zero());
+        self.state.is_mirror.fill(true);
+        self.leaves.fill(false);
+        self.goes_on.fill(true);
+        let found = self.samples.iter().zip(recorders);
+        self.found
+            .extend(found.map(|(&sample, recorder)| Found::new(sample < guide_samples, recorder)));
+    }
+
+    /// Puts these paths first, in this order, and forgets the others.
+    pub fn arrange(&mut self, order: &[u16]) {
+        if !order.iter().copied().eq(0..order.len() as u16) {
+            self.other.take(&self.state, order);
+            swap(&mut self.state, &mut self.other);
+        }
+    }
+
+    /// The counters of a path.
+    #[inline(always)]
+    pub fn random_state(&self, place: usize) -> RandomState {
+        RandomState {
+            key: self.state.keys[place],
+            sample: self.state.samples[place],
+            sequence: self.sequence,
+        }
+    }
+
+    /// What the path at a place has found.
+    #[inline(always)]
+    pub fn found_at(&mut self, place: usize) -> &mut Found<S, R> {
+        &mut self.found[usize::from(self.state.ids[place])]
+    }
+
+    /// Notes what a ray was found to meet; false where that is nothing.
+    #[inline(always)]
+    pub fn note(&mut self, place: usize, hit: Option<Hit>) -> bool {
+        self.found_at(place).rays += 1;
+        if let Some(hit) = hit {
+            self.state.hits[place] = hit;
+            self.state.distance[place] = S::from_f64(f64::from(hit.t));
+        }
+        hit.is_some()
+    }
+}
+
+/// What a path has found.
+pub(super) struct Found<S, R> {
+    pub radiance: Vec3<S>,
+    /// Luminance that limiting fireflies took.
+    pub clamped: S,
+    /// 1 where it met something that is not transparent background.
+    pub alpha: S,
+    /// Rays traced.
+    pub rays: u32,
+    /// True while the path is one of those that tell what they see, and has met nothing but mirrors and clear glass.
+    pub is_looking: bool,
+    /// What is seen first.
+    pub seen: GuideSums,
+    /// What a shadow catcher has made of it.
+    pub caught: Caught<S>,
+    recorder: R,
+}
+
+impl<S: Scalar, R: Recorder> Found<S, R> {
+    /// Nothing.
+    #[inline(always)]
+    pub fn new(is_looking: bool, recorder: R) -> Self {
+        Self {
+            radiance: Vec3::zero(),
+            clamped: S::zero(),
+            alpha: S::one(),
+            rays: 0,
+            is_looking,
+            seen: GuideSums::default(),
+            caught: Caught::Not,
+            recorder,
+        }
+    }
+
+    /// Tells of an event.
+    #[inline(always)]
+    pub fn record(&mut self, event: impl FnOnce() -> Event) {
+        self.recorder.record(event);
+    }
+
+    /// What the path found, of all light or of a part.
+    pub fn result(&self, is_all_light: bool) -> PathResult<S> {
+        let found = PathResult {
+            radiance: self.radiance,
+            alpha: self.alpha,
+            rays: self.rays,
+            clamped: self.clamped,
+            seen: self.seen,
+        };
+        self.caught.result(found, is_all_light)
+    }
+}
