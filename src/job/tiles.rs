@@ -343,4 +343,25 @@ mod tests {
         schedule.finish(&works);
         assert_eq!(schedule.pixel_samples(), 20 * 10 * 5);
     }
+    #[test]
+    fn a_pass_has_its_least_samples_however_little_is_affordable() {
+        let mut schedule = Schedule::new(20, 10);
+        schedule.aim(&[6; 6]);
+        let limits = SliceLimits {
+            pass_samples: [4, 8],
+            tiles: [1, 2],
+            order: Order::Rows,
+        };
+        let mut counts = Vec::new();
+        loop {
+            let works = schedule.slice(1.0, limits);
+            if works.is_empty() {
+                break;
+            }
+            counts.extend(works.iter().map(|work| (work.tile, work.count)));
+            schedule.finish(&works);
+        }
+        let of_pass = |count: u32| (0..6).map(move |tile| (tile, count));
+        assert_eq!(counts, of_pass(4).chain(of_pass(2)).collect::<Vec<_>>());
+    }
 }

@@ -109,8 +109,7 @@ impl<T: Real> Group<T> {
     #[inline(always)]
     pub fn truth(&self, field: &[bool]) -> T::Mask {
         let field = &field[self.first..self.first + T::LANES];
-        let bits = (0..T::LANES).fold(0, |bits, lane| bits | (u32::from(field[lane]) << lane));
-        T::Mask::from_bits(bits)
+        mask_of::<T>(|lane| field[lane])
     }
 
     /// Sets a number of each path where the mask holds.
@@ -188,10 +187,7 @@ impl<T: Real> Members<T> {
     /// Where something holds of what a path has found.
     #[inline(always)]
     pub fn truths<F>(&self, found: &[F], is_true: impl Fn(&F) -> bool) -> T::Mask {
-        let bits = (0..T::LANES).fold(0, |bits, lane| {
-            bits | (u32::from(is_true(self.of(found, lane))) << lane)
-        });
-        T::Mask::from_bits(bits)
+        mask_of::<T>(|lane| is_true(self.of(found, lane)))
     }
 
     /// Does something with what each path has found, and its lane, where the mask holds.
@@ -217,4 +213,11 @@ impl<T: Real> Members<T> {
             self.for_each(found, mask, |path, lane| path.record(|| event(lane)));
         }
     }
+}
+
+/// True where something holds of a lane.
+#[inline(always)]
+fn mask_of<T: Real>(is_true: impl Fn(usize) -> bool) -> T::Mask {
+    let bits = (0..T::LANES).fold(0, |bits, lane| bits | (u32::from(is_true(lane)) << lane));
+    T::Mask::from_bits(bits)
 }
