@@ -65,6 +65,8 @@ mod exchange_samplers;
 mod exchange_tools;
 #[path = "suite/explain.rs"]
 mod explain;
+#[path = "suite/facets.rs"]
+mod facets;
 #[path = "suite/farm.rs"]
 mod farm;
 #[path = "suite/files.rs"]

@@ -212,9 +212,10 @@ fn material_scatter(
     light: MaterialLight,
 ) -> MaterialScatter {
     let base = base_probability(layers);
-    let through = layers.transmission_probability;
+    var through = layers.transmission_probability;
     let below = 1.0 - layers.coat_probability;
     let is_passed_on = passes_on(material);
+    let is_shared = shares_facets(material);
     let is_coated = material_has_coat(material, surface);
     var choice = numbers.layer;
     if is_coated && choice >= layers.coat_probability {
@@ -222,7 +223,7 @@ fn material_scatter(
     }
     var specular = layers.specular_probability;
     var chosen = below_layer(choice, specular, base, through);
-    if is_passed_on || choice < specular {
+    if is_passed_on || is_shared || choice < specular {
         chosen = LAYER_SPECULAR;
     }
     if is_coated && numbers.layer < layers.coat_probability {
@@ -275,34 +276,46 @@ fn material_scatter(
         if layer == LAYER_SPECULAR {
             let terms = material_fresnel_terms(material, surface.is_inside);
             color = fresnel(terms, half_vector_cosine(surface.wo, wi));
-            if is_passed_on {
-                specular = select(0.0, luminance(color), weight > 0.0);
+            specular = specular_probability(material, layers, surface, wi, color);
+            if is_passed_on && weight <= 0.0 {
+                specular = 0.0;
             }
             probability = specular;
             if draws && choice >= specular {
-                // Passed on.
-                xi = numbers.below;
+                // What is below is drawn with its own numbers, or at the same facet.
+                if is_passed_on {
+                    xi = numbers.below;
+                }
+                if is_shared {
+                    through = 1.0 - base - specular;
+                }
                 chosen = below_layer(choice, specular, base, through);
                 continue;
             }
         }
+        // With what a layer is drawn differs from what its direction tells where the horizon policy has turned that.
+        var drawn_with = probability;
         if PLAN_TRANSMISSION == 1u && layer == LAYER_TRANSMISSION {
-            color = transmission_color(material, layers, shape, surface, wi);
-            probability = through;
+            let there = transmission(material, layers, shape, surface, wi);
+            color = there.color;
+            probability = there.probability;
+            drawn_with = through;
         }
         if PLAN_COAT == 1u && layer == LAYER_COAT {
             color = vec3f(coat_fresnel(material, surface.wo, wi));
             probability = layers.coat_probability;
+            drawn_with = probability;
         } else if is_coated {
             color *= layers.below_coat;
             probability *= below;
+            drawn_with *= below;
         }
         var lobe = vec2f(0.0);
         if !draws || (wants_density && !mirror) {
             lobe = lobe_evaluate(shape, frame, surface.normal, surface.wo, wi);
         }
         if draws {
-            drawn = MaterialSample(wi, color * (weight / max(probability, 1e-20)), probability * lobe.y, mirror);
+            drawn = MaterialSample(wi, color * (weight / max(drawn_with, 1e-20)), probability * lobe.y, mirror);
             break;
         }
         reflected += color * (lobe.x * (light.density / (light.density + light.competing * probability * lobe.y)));
@@ -335,11 +348,55 @@ fn layer_shape(material: Material, layer: u32, is_inside: bool) -> LobeShape {
     return base_shape();
 }
 
-fn transmission_color(material: Material, layers: Layers, shape: LobeShape, surface: Surface, wi: vec3f) -> vec3f {
+// One facet is drawn that mirrors or refracts, as its Fresnel factor has it.
+fn shares_facets(material: Material) -> bool {
+    return material_transmits(material) && facets(planned(material.lobe, PLAN_LOBE)) != FACETS_NONE
+        && material.transmission_roughness == material.roughness;
+}
+
+// The probability of sampling the specular lobe for a direction that it mirrors to with this Fresnel factor.
+fn specular_probability(material: Material, layers: Layers, surface: Surface, wi: vec3f, color: vec3f) -> f32 {
+    let reflected = luminance(color);
+    if passes_on(material) {
+        return reflected;
+    }
+    if !shares_facets(material) {
+        return layers.specular_probability;
+    }
+    let ior = material_ior_ahead(material, surface.is_inside);
+    let cosine = half_vector_cosine(surface.wo, wi);
+    let square = refracted_square(cosine, ior);
+    let left = left_by_facet(material, surface, vec2f(cosine, sqrt(max(square, 0.0)) / ior));
+    // What is reflected totally is not refracted, whatever the model of the Fresnel factor says.
+    let refracted = select(0.0, luminance(left), square > 0.0);
+    return (1.0 - base_probability(layers)) * mirrored_share(reflected, refracted);
+}
+
+fn mirrored_share(reflected: f32, refracted: f32) -> f32 {
+    return reflected / max(reflected + refracted, 1e-20);
+}
+
+struct Transmission {
+    color: vec3f,
+    probability: f32,
+}
+
+fn transmission(material: Material, layers: Layers, shape: LobeShape, surface: Surface, wi: vec3f) -> Transmission {
+    var through = Transmission(layers.transmission, layers.transmission_probability);
     if !refracts_at_facets(shape) {
-        return layers.transmission;
+        return through;
     }
     let cosines = refracting_cosines(surface.wo, wi, shape.eta);
+    through.color = left_by_facet(material, surface, cosines);
+    if shares_facets(material) {
+        let reflected = luminance(fresnel(material_fresnel_terms(material, surface.is_inside), cosines.x));
+        let share = 1.0 - mirrored_share(reflected, luminance(through.color));
+        through.probability = (1.0 - base_probability(layers)) * share;
+    }
+    return through;
+}
+
+fn left_by_facet(material: Material, surface: Surface, cosines: vec2f) -> vec3f {
     let left = fresnel_left(material_fresnel_terms(material, surface.is_inside), cosines.x, cosines.y);
     return material.transmission_tint * left * (material.transmission_weight * (1.0 - material.metalness));
 }

@@ -410,7 +410,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
         var numbers = MaterialNumbers(xi.xyz, xi.w, xi.xyz);
-        if transmits {
+        if passes_on(material) {
             let pair = BELOW_DIMENSION + 2u * bounce;
             numbers.below = vec3f(random_pair(state, pair), random_pair(state, pair + 1u).x);
         }

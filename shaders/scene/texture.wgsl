@@ -183,7 +183,7 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
         if material.roughness_table != NO_TEXTURE {
             at_point.roughness = table_lookup(material.roughness_table, MATCHED_NODES, at_point.roughness);
         }
-        let rough = material.transmission_roughness + (at_point.roughness - material.roughness);
+        let rough = at_point.roughness + (material.transmission_roughness - material.roughness);
         at_point.transmission_roughness = clamp(rough, 0.0, 1.0);
     }
     if PLAN_EMISSION_TEXTURES == 1u {

@@ -6,6 +6,7 @@ pub mod probe;
 pub mod recorder;
 pub mod sampling;
 pub mod scatter;
+mod tile_sums;
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -14,12 +15,12 @@ use rayon::prelude::*;
 
 use crate::instructions;
 use crate::job::Job;
-use crate::job::features::GUIDE_SAMPLES;
 use crate::job::film::Film;
 use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
 use crate::optics::lanes::{InLanes, in_lanes};
-use crate::optics::real::{Real, Scalar};
-use integrator::{Integrator, Tile, WAVE_SAMPLES, Wave, is_sound};
+use crate::optics::real::Real;
+use integrator::{Integrator, Tile, WAVE_SAMPLES, Wave};
+use tile_sums::TileSums;
 
 /// Renders on the processor's cores, which take a tile each at a time.
 #[derive(Default)]
@@ -157,26 +158,10 @@ fn render_tile<T: Real>(
     work: &Work,
     sums: &mut Film,
 ) {
-    let mut costs = sums.costs[0];
-    let mut halves: Vec<_> = (0..sums.pixel_count()).map(|pixel| sums.halves(pixel)).collect();
     let tile = Tile::new(origin, [sums.width, sums.height]);
-    integrator.trace_tile(&tile, wave, [work.first_sample, work.count], |pixel, sample, path| {
-        costs.rays += f64::from(path.rays);
-        if !is_sound(path.radiance) {
-            costs.dropped += 1;
-            return;
-        }
-        halves[pixel][sample as usize % 2].add(path.radiance.to_f64());
-        sums.add_coverage(pixel, path.alpha.to_f64());
-        costs.clamped += path.clamped.to_f64();
-        if sample < GUIDE_SAMPLES
-            && let Some(guides) = sums.guides.get_mut(pixel)
-        {
-            guides.add(&path.seen);
-        }
+    let mut sums = TileSums::of(sums, &tile);
+    integrator.trace_tile(&tile, wave, [work.first_sample, work.count], |samples, results| {
+        sums.add::<T>(samples, results);
     });
-    for (pixel, halves) in halves.iter().enumerate() {
-        sums.set_halves(pixel, halves);
-    }
-    sums.costs[0] = costs;
+    sums.finish();
 }

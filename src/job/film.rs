@@ -68,6 +68,7 @@ struct KeptHalf {
 const _: () = assert!(size_of::<[KeptHalf; 2]>() == 64);
 
 /// Luminance of linear Rec. 709.
+#[inline(always)]
 pub fn luminance([red, green, blue]: [f64; 3]) -> f64 {
     0.2126 * red + 0.7152 * green + 0.0722 * blue
 }
@@ -79,6 +80,7 @@ impl HalfSums {
     }
 
     /// Adds a sample (Welford 1962).
+    #[inline(always)]
     pub fn add(&mut self, color: [f64; 3]) {
         let y = luminance(color);
         let before = self.luminance() / self.samples.max(1.0);

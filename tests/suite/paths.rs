@@ -261,8 +261,16 @@ impl InLanes for Together<'_> {
         let tile = Tile::new(self.origin, self.size);
         let integrator = Integrator::<T>::new(self.job);
         let mut wave = Wave::new(integrator.sequence());
-        integrator.trace_tile(&tile, &mut wave, self.samples, |pixel, sample, path| {
-            found[(sample - self.samples[0]) as usize * pixels + pixel] = *path;
+        integrator.trace_tile(&tile, &mut wave, self.samples, |[first, count], results| {
+            for sample in 0..count {
+                let row = (first + sample - self.samples[0]) as usize * pixels;
+                for near in tile.near() {
+                    let path = near.path([sample, count]);
+                    for ([x, y], path) in near.places.iter().zip(path..) {
+                        found[row + (y * self.size[0] + x) as usize] = results.get(path);
+                    }
+                }
+            }
         });
         found
     }

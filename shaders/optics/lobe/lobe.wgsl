@@ -84,7 +84,10 @@ fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f,
     }
     let below = dot(view.normal, raw) < 0.0;
     switch shape.horizon {
-        case HORIZON_MIRROR: { return LobeSample(select(raw, reflected_at_plane(raw, view.normal), below), weight); }
+        case HORIZON_MIRROR: {
+            let turned = reflected_at_plane(raw, view.normal);
+            return LobeSample(select(raw, turned, below && weight > 0.0), weight);
+        }
         case HORIZON_ABSORB: { return LobeSample(raw, select(weight, 0.0, below)); }
         default: { return LobeSample(raw, weight); }
     }

@@ -2,12 +2,12 @@
 
 use super::group::Groups;
 use super::paths::Paths;
-use super::wave::{NEAR, Tile};
-use super::{Integrator, PathResult};
+use super::Integrator;
+use super::results::Results;
+use super::wave::Tile;
 use crate::cpu::recorder::Recorder;
 use crate::instructions;
 use crate::job::BackgroundKind;
-use crate::job::features::GuideSums;
 use crate::optics::real::Real;
 use crate::scene::{Hit, PACKET, Packet};
 
@@ -17,9 +17,9 @@ impl<T: Real> Integrator<'_, T> {
     pub(super) fn add_paths<R: Recorder>(&self, tile: &Tile, samples: [u32; 2], paths: &mut Paths<T::Scalar, R>) {
         let [first, count] = samples;
         paths.clear();
-        for near in tile.places.chunks(NEAR) {
+        for near in tile.near() {
             for sample in first..first + count {
-                for [x, y] in near {
+                for [x, y] in near.places {
                     paths.add([tile.origin[0] + x, tile.origin[1] + y], sample);
                 }
             }
@@ -41,12 +41,10 @@ impl<T: Real> Integrator<'_, T> {
         let count = paths.count();
         for first in (0..count).step_by(PACKET) {
             let together = PACKET.min(count - first);
-            let mut packet = Packet::default();
-            for lane in 0..together {
-                let (origin, direction) = (paths.origin.get(first + lane), paths.state.direction.get(first + lane));
-                packet.set(lane, origin.to_f32(), direction.to_f32(), f32::MAX);
-            }
-            packet.fill(together);
+            let packet = Packet::of((first..first + together).map(|place| {
+                let (origin, direction) = (paths.origin.get(place), paths.state.direction.get(place));
+                (origin.to_f32(), direction.to_f32(), f32::MAX)
+            }));
             let met = self.geometry.intersect_packet(instructions::level(), &packet);
             hits.extend_from_slice(&met[..together]);
         }
@@ -57,13 +55,12 @@ impl<T: Real> Integrator<'_, T> {
         !matches!(self.settings.background, BackgroundKind::Blurred(_))
     }
 
-    /// What paths find whose camera rays meet nothing, by their places.
+    /// What paths find whose camera rays meet nothing.
     pub(super) fn see_background<R: Recorder>(
         &self,
         paths: &Paths<T::Scalar, R>,
-        found: &mut Vec<PathResult<T::Scalar>>,
+        results: &mut Results<T::Scalar>,
     ) {
-        found.clear();
         let count = paths.count();
         T::vectorize(
             #[inline(always)]
@@ -72,18 +69,7 @@ impl<T: Real> Integrator<'_, T> {
                     let place = self.left_places(group.vector(&paths.state.direction), 0);
                     let (radiance, alpha) = self.plain_background(place);
                     let [added, taken] = self.limited(radiance, 0);
-                    let (radiances, alphas) = (added.to_each(), alpha.to_each());
-                    let clamped = taken.luminance().to_each();
-                    found.extend((0..T::LANES.min(count - found.len())).map(
-                        #[inline(always)]
-                        |lane| PathResult {
-                            radiance: radiances.as_ref()[lane],
-                            alpha: alphas.as_ref()[lane],
-                            rays: 1,
-                            clamped: clamped.as_ref()[lane],
-                            seen: GuideSums::default(),
-                        },
-                    ));
+                    results.set(&group, added, alpha, taken.luminance());
                 }
             },
         );

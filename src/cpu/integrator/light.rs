@@ -335,7 +335,9 @@ impl<T: Real> Integrator<'_, T> {
         }
         // Each path has one light; accounts tell which kind it was.
         let (near, far) = (group.mask() & !is_far, group.mask() & is_far);
-        self.add(&members, near, Source::Surface, light, bounce + 1, &mut paths.found);
+        if near.any() {
+            self.add(&members, near, Source::Surface, light, bounce + 1, &mut paths.found);
+        }
         self.add(&members, far, Source::Environment, light, bounce + 1, &mut paths.found);
     }
 
@@ -444,14 +446,17 @@ impl<S: Scalar> LightRays<S> {
 }
 
 impl<S: Scalar, R: Recorder> Paths<S, R> {
-    /// Puts what is needed of the rays at these places side by side, as they arrive.
-    pub(super) fn take_arriving(&mut self, places: &[u16]) {
+    /// Puts what is needed of the rays at these places side by side, as they arrive; `may_be_near` where emitters are sampled,
+    /// too.
+    pub(super) fn take_arriving(&mut self, places: &[u16], may_be_near: bool) {
         let (to, from) = (&mut self.arriving, &self.lights);
         take(&mut to.ids, &self.state.ids, places);
         to.direction.take(&from.direction, places);
         take(&mut to.density, &from.density, places);
-        to.radiance.take(&from.radiance, places);
-        take(&mut to.is_far, &from.is_far, places);
+        if may_be_near {
+            to.radiance.take(&from.radiance, places);
+            take(&mut to.is_far, &from.is_far, places);
+        }
         to.value.take(&from.value, places);
         to.throughput.take(&from.throughput, places);
         take(&mut to.visible, &from.visible, places);

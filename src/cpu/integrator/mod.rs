@@ -7,6 +7,7 @@ mod group;
 mod light;
 mod paths;
 mod rays;
+mod results;
 mod scatter;
 mod wave;
 
@@ -30,7 +31,8 @@ pub use catcher::CATCHER_DIMENSION;
 use catcher::Caught;
 use group::{Group, Members};
 use paths::{Found, Paths};
-pub use wave::{Tile, WAVE_SAMPLES, Wave};
+pub use results::Results;
+pub use wave::{NEAR, Near, Tile, WAVE_SAMPLES, Wave};
 
 /// Pairs of numbers before the first bounce: pixel, lens.
 pub const FIRST_DIMENSION: u32 = 2;
@@ -448,7 +450,7 @@ impl<S: Scalar> Integrator<'_, S> {
         let visible = self.visible(&light, &mut paths.found[0].rays);
         paths.lights.visible[0] = visible;
         if visible > S::zero() {
-            paths.take_arriving(&[0]);
+            paths.take_arriving(&[0], true);
             self.locate_lights(&Group::ALONE, paths);
             self.arrive(&Group::ALONE, bounce, whole, paths);
         } else {
@@ -479,6 +481,8 @@ fn absorb<T: Real, R: Recorder>(
 }
 
 /// Finite and not negative: what may be added to the picture.
+#[inline(always)]
 pub fn is_sound<S: Scalar>(color: Vec3<S>) -> bool {
-    color.to_f64().iter().all(|x| (0.0..=RADIANCE_MAX).contains(x))
+    let [x, y, z] = color.to_f64().map(|x| (0.0..=RADIANCE_MAX).contains(&x));
+    x & y & z
 }

@@ -39,6 +39,12 @@ impl<S: Scalar> Vectors<S> {
         vec3(self.x[place], self.y[place], self.z[place])
     }
 
+    /// Sets those of one path.
+    #[inline(always)]
+    pub fn set(&mut self, place: usize, value: Vec3<S>) {
+        (self.x[place], self.y[place], self.z[place]) = (value.x, value.y, value.z);
+    }
+
     pub fn fill(&mut self, value: S) {
         self.x.fill(value);
         self.y.fill(value);

@@ -5,7 +5,9 @@ use super::paths::Paths;
 use super::{Arrival, BELOW_DIMENSION, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, ROULETTE_START};
 use crate::cpu::recorder::{End, Event, Purpose, Recorder, single};
 use crate::job::Strategy;
-use crate::optics::material::{Material, MaterialNumbers, MaterialSample, material_layers, material_sample};
+use crate::optics::material::{
+    Material, MaterialNumbers, MaterialSample, material_layers, material_sample, passes_on,
+};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 use crate::scene::surface::SurfacePoint;
@@ -99,7 +101,7 @@ fn material_numbers<T: Real, R: Recorder>(
     let [c, layer] = group.pairs(paths, dimension + 1, [Purpose::Lobe, Purpose::Layer]);
     let lobe = [a, b, c];
     let mut below = lobe;
-    if material.transmits().any() {
+    if passes_on(material).any() {
         let dimension = BELOW_DIMENSION + 2 * bounce;
         let [a, b] = group.pairs(paths, dimension, [Purpose::Below; 2]);
         let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Below, Purpose::Unused]);

@@ -8,7 +8,8 @@ use std::ops::Range;
 
 use super::group::{Group, Groups};
 use super::paths::Paths;
-use super::{Arrival, Integrator, PathResult};
+use super::results::Results;
+use super::{Arrival, Integrator};
 use crate::cpu::recorder::Unrecorded;
 use crate::instructions;
 use crate::job::tiles::TILE_SIDE;
@@ -20,20 +21,22 @@ use crate::scene::{Hit, PACKET, Packet, WAYS, ray_way};
 /// Pixels of a tile at most.
 const PIXELS: usize = (TILE_SIDE * TILE_SIDE) as usize;
 /// Samples of each pixel that go on together.
-pub const WAVE_SAMPLES: u32 = 4;
+pub const WAVE_SAMPLES: u32 = 8;
 /// Paths that go on together at most.
 const PATHS: usize = PIXELS * WAVE_SAMPLES as usize;
-/// Pixels near each other whose samples lie side by side: 2 × 2, of which those of a wave make a packet.
-pub(super) const NEAR: usize = 4;
-/// Fewer rays than this are traced one by one.
-const RAYS_MIN: usize = 4;
+/// Pixels near each other whose samples lie side by side: 2 × 2, of which four samples make a packet.
+pub const NEAR: usize = 4;
+/// Fewer rays to lights than this are traced one by one.
+const LIGHT_RAYS_MIN: usize = 4;
+/// Fewer of the rays with which paths go on: a packet of them takes more of the hierarchy, as each has to find the nearest
+/// triangle.
+const RAYS_MIN: usize = 8;
 
 /// A tile of a picture.
 pub struct Tile {
     pub(super) origin: [u32; 2],
-    size: [u32; 2],
-    /// Its pixels, those near each other one after the other.
-    pub(super) places: Vec<[u32; 2]>,
+    /// Its pixels from its corner on, those near each other one after the other.
+    pub places: Vec<[u32; 2]>,
 }
 
 /// Where the paths of a tile are followed, for one tile after the other.
@@ -47,14 +50,14 @@ pub struct Wave<T: Real> {
     left: Vec<u16>,
     /// The order in which all are shaded: those by their slots, then those whose rays met nothing.
     order: Vec<u16>,
-    /// What the camera rays of all of them met.
+    /// What the rays of all of them met, where no surface has holes.
     hits: Vec<Option<Hit>>,
-    /// The ways of rays to lights.
+    /// The ways of rays.
     ways: Ways,
     /// The places of paths whose light arrives.
     lit: Vec<u16>,
-    /// What they found, if they have all met nothing.
-    seen: Vec<PathResult<T::Scalar>>,
+    /// What they found.
+    results: Results<T::Scalar>,
 }
 
 impl<T: Real> Wave<T> {
@@ -69,7 +72,7 @@ impl<T: Real> Wave<T> {
             hits: Vec::with_capacity(PATHS),
             ways: Ways::default(),
             lit: Vec::with_capacity(PATHS),
-            seen: Vec::with_capacity(PATHS),
+            results: Results::new(PATHS + T::LANES),
         }
     }
 
@@ -85,39 +88,34 @@ impl<T: Real> Wave<T> {
 }
 
 impl<T: Real> Integrator<'_, T> {
-    /// What samples of each pixel of a tile find, from sample `first` on: `tell` hears of each sample, in their order, with the
-    /// number of its pixel in the tile.
+    /// What samples of each pixel of a tile find, from sample `first` on: `tell` hears of as many samples of each pixel as go
+    /// on together, the first of them and how many there are.
     pub fn trace_tile(
         &self,
         tile: &Tile,
         wave: &mut Wave<T>,
         [first, count]: [u32; 2],
-        mut tell: impl FnMut(usize, u32, &PathResult<T::Scalar>),
+        mut tell: impl FnMut([u32; 2], &Results<T::Scalar>),
     ) {
         for from in (first..first + count).step_by(WAVE_SAMPLES as usize) {
             let samples = [from, WAVE_SAMPLES.min(first + count - from)];
             let is_background = self.trace_wave(tile, samples, wave);
-            for sample in 0..samples[1] {
-                for (index, [x, y]) in tile.places.iter().enumerate() {
-                    let path = tile.path(index, [sample, samples[1]]);
-                    let pixel = (y * tile.size[0] + x) as usize;
-                    if is_background {
-                        tell(pixel, from + sample, &wave.seen[path]);
-                    } else {
-                        tell(pixel, from + sample, &self.result(&wave.paths.found[path]));
-                    }
-                }
+            if !is_background {
+                wave.results.fill(wave.paths.found.iter().map(|found| self.result(found)));
             }
+            tell(samples, &wave.results);
         }
     }
 
-    /// Follows the paths of some samples to their end; true where none of them met anything, and `seen` tells what is there.
+    /// Follows the paths of some samples to their end; true where none of them met anything, and `results` has what is there.
     fn trace_wave(&self, tile: &Tile, samples: [u32; 2], wave: &mut Wave<T>) -> bool {
         self.add_paths(tile, samples, &mut wave.paths);
+        let has_more = self.firefly_clamp.is_some() || samples[0] < self.guide_samples;
+        wave.results.start(wave.paths.count(), has_more);
         if !self.has_holes {
             self.trace_camera_rays(&wave.paths, &mut wave.hits);
             if self.has_plain_background() && wave.hits.iter().all(Option::is_none) {
-                self.see_background(&wave.paths, &mut wave.seen);
+                self.see_background(&wave.paths, &mut wave.results);
                 return true;
             }
         }
@@ -125,6 +123,9 @@ impl<T: Real> Integrator<'_, T> {
         wave.under_way.clear();
         wave.under_way.extend(0..wave.paths.count() as u16);
         for bounce in 0.. {
+            if bounce > 0 && !self.has_holes {
+                self.trace_rays(wave);
+            }
             self.trace(bounce, wave);
             self.shade(bounce, wave);
             self.look_for_lights(wave);
@@ -144,7 +145,45 @@ impl<T: Real> Integrator<'_, T> {
         false
     }
 
-    /// Traces the rays of all paths under way, has the processor fetch what shading will look up, and puts those side by side
+    /// Finds what the rays meet with which paths go on, where no surface has holes: those that go the same way together.
+    fn trace_rays(&self, wave: &mut Wave<T>) {
+        let Wave {
+            paths,
+            under_way,
+            ways,
+            hits,
+            ..
+        } = wave;
+        ways.clear();
+        for &place in &*under_way {
+            let place = usize::from(place);
+            hits[place] = None;
+            if !paths.leaves[place] {
+                ways.add(ray_way(paths.state.direction.get(place).to_f32()), place);
+            }
+        }
+        let ray = |place: &u16| {
+            let place = usize::from(*place);
+            let (origin, direction) = (paths.origin.get(place), paths.state.direction.get(place));
+            (origin.to_f32(), direction.to_f32(), f32::MAX)
+        };
+        for group in ways.groups() {
+            let mut met = [None; PACKET];
+            if group.len() < RAYS_MIN {
+                for (met, (origin, direction, t_max)) in met.iter_mut().zip(group.iter().map(ray)) {
+                    *met = self.geometry.intersect(origin, direction, t_max);
+                }
+            } else {
+                let packet = Packet::of(group.iter().map(ray));
+                met = self.geometry.intersect_packet(instructions::level(), &packet);
+            }
+            for (&place, met) in group.iter().zip(met) {
+                hits[usize::from(place)] = met;
+            }
+        }
+    }
+
+    /// Traces the rays of all paths under way where surfaces have holes, has the processor fetch what shading will look up, and puts those side by side
     /// that met the same material.
     fn trace(&self, bounce: u32, wave: &mut Wave<T>) {
         let Wave {
@@ -158,14 +197,12 @@ impl<T: Real> Integrator<'_, T> {
         } = wave;
         met.clear();
         left.clear();
-        // What camera rays meet is known where no surface has holes.
-        let is_known = bounce == 0 && !self.has_holes;
         for &member in &*under_way {
             let place = usize::from(member);
-            let is_stopped = if is_known {
-                paths.note(place, hits[place])
-            } else {
+            let is_stopped = if self.has_holes {
                 self.stop(bounce, place, paths)
+            } else {
+                !paths.leaves[place] && paths.note(place, hits[place])
             };
             if is_stopped {
                 let triangle = paths.state.hits[place].triangle;
@@ -282,10 +319,8 @@ impl<T: Real> Integrator<'_, T> {
                 ways.add(ray_way(paths.lights.direction.get(place).to_f32()), place);
             }
         }
-        for way in 0..WAYS {
-            for group in ways.of(way).chunks(PACKET) {
-                self.look_together(group, paths);
-            }
+        for group in ways.groups() {
+            self.look_together(group, paths);
         }
     }
 
@@ -302,17 +337,12 @@ impl<T: Real> Integrator<'_, T> {
         };
         let rays = places.iter().map(|&place| ray(usize::from(place)));
         let mut is_hidden = [false; PACKET];
-        if places.len() < RAYS_MIN {
+        if places.len() < LIGHT_RAYS_MIN {
             for (is_hidden, (origin, direction, distance)) in is_hidden.iter_mut().zip(rays) {
                 *is_hidden = self.geometry.occluded(origin, direction, distance);
             }
         } else {
-            let mut packet = Packet::default();
-            for (lane, (origin, direction, distance)) in rays.enumerate() {
-                packet.set(lane, origin, direction, distance);
-            }
-            packet.fill(places.len());
-            is_hidden = self.geometry.occluded_packet(instructions::level(), &packet);
+            is_hidden = self.geometry.occluded_packet(instructions::level(), &Packet::of(rays));
         }
         for (&place, is_hidden) in places.iter().zip(is_hidden) {
             if is_hidden {
@@ -332,7 +362,7 @@ impl<T: Real> Integrator<'_, T> {
         };
         lit.clear();
         lit.extend((0..met.len() as u16).filter(is_lit));
-        paths.take_arriving(lit);
+        paths.take_arriving(lit, self.samples_emitters);
         T::vectorize(
             #[inline(always)]
             || {
@@ -374,9 +404,10 @@ impl Ways {
         *count += 1;
     }
 
-    #[inline(always)]
-    fn of(&self, way: usize) -> &[u16] {
-        &self.places[way][..usize::from(self.counts[way])]
+    /// Those that go the same way, as many as a packet has at most.
+    fn groups(&self) -> impl Iterator<Item = &[u16]> {
+        let of_way = self.places.iter().zip(self.counts);
+        of_way.flat_map(|(places, count)| places[..usize::from(count)].chunks(PACKET))
     }
 }
 
@@ -387,13 +418,29 @@ impl Tile {
         let every_second = |bits: u32| (bits & 1) | (bits >> 1 & 2) | (bits >> 2 & 4);
         let places = (0..PIXELS as u32).map(|place| [every_second(place), every_second(place >> 1)]);
         let places = places.filter(|[x, y]| *x < size[0] && *y < size[1]).collect();
-        Self { origin, size, places }
+        Self { origin, places }
     }
 
-    /// Which path of a wave is a sample, of so many, of the pixel of this index.
-    fn path(&self, index: usize, [sample, count]: [u32; 2]) -> usize {
-        let first = index - index % NEAR;
-        let near = NEAR.min(self.places.len() - first);
-        first * count as usize + sample as usize * near + index % NEAR
+    /// Its pixels, those near each other together.
+    pub fn near(&self) -> impl Iterator<Item = Near<'_>> {
+        let firsts = (0..).step_by(NEAR);
+        let near = self.places.chunks(NEAR).zip(firsts);
+        near.map(|(places, first)| Near { places, first })
+    }
+}
+
+/// Pixels of a tile near each other, the paths of a sample of which lie side by side.
+#[derive(Clone, Copy)]
+pub struct Near<'a> {
+    /// From the tile's corner on.
+    pub places: &'a [[u32; 2]],
+    first: usize,
+}
+
+impl Near<'_> {
+    /// Which path of a wave is a sample, of so many, of the first of the pixels; those of the others follow.
+    #[inline(always)]
+    pub fn path(&self, [sample, count]: [u32; 2]) -> usize {
+        self.first * count as usize + sample as usize * self.places.len()
     }
 }

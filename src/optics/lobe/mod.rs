@@ -226,7 +226,7 @@ impl<T: Real> LobeShape<'_, T> {
 /// A direction drawn from a lobe.
 #[derive(Clone, Copy, Debug)]
 pub struct LobeSample<T> {
-    /// Towards the light, above the geometric horizon (or below, under [`Horizon::None`]).
+    /// Towards the light, above the geometric horizon; below it under [`Horizon::None`], or where the sample was absorbed.
     pub wi: Vec3<T>,
     /// Evaluate over density: 0 where the sample was absorbed.
     pub weight: T,
@@ -368,8 +368,13 @@ pub fn lobe_sample<T: Real>(
             };
             let below = view.normal.dot(raw).less(T::zero());
             match shape.horizon {
+                // What is lost in any case is left where it is: it tells of the facet that it was drawn for.
                 Horizon::Mirror => LobeSample {
-                    wi: Vec3::select(below, raw.reflected_at_plane(view.normal), raw),
+                    wi: Vec3::select(
+                        below & T::zero().less(weight),
+                        raw.reflected_at_plane(view.normal),
+                        raw,
+                    ),
                     weight,
                 },
                 Horizon::Absorb => LobeSample {

@@ -1,6 +1,6 @@
 //! What a material reflects or refracts of light from a direction that was drawn towards it.
 
-use super::layers::{base_shape, passes_on, transmission_color};
+use super::layers::{base_shape, specular_probability, transmission};
 use super::{Layers, Material, Surface, material_layers};
 use crate::optics::coat::coat_evaluate;
 use crate::optics::fresnel::{fresnel, half_vector_cosine};
@@ -56,7 +56,7 @@ impl<T: Real> Evaluation<'_, T> {
         if has_specular.any() {
             let terms = material.fresnel_terms(surface.is_inside);
             let color = fresnel(&terms, half_vector_cosine(surface.wo, wi));
-            let probability = T::select(passes_on(material), color.luminance(), layers.specular_probability);
+            let probability = specular_probability(material, &layers, surface, wi, color);
             let part = self.part(&material.shape(tables), probability, color);
             sum = Vec3::select(has_specular, part, sum);
         }
@@ -68,8 +68,8 @@ impl<T: Real> Evaluation<'_, T> {
         let transmits = material.transmits();
         if transmits.any() {
             let shape = material.transmission_shape(tables, surface.is_inside);
-            let color = transmission_color(material, &layers, &shape, surface, wi);
-            let part = self.part(&shape, layers.transmission_probability, color);
+            let through = transmission(material, &layers, &shape, surface, wi);
+            let part = self.part(&shape, through.probability, through.color);
             sum = Vec3::select(transmits, sum + part, sum);
         }
         let has_coat = material.has_coat(surface);

@@ -4,11 +4,11 @@ use super::{Material, Surface, by_index};
 use crate::optics::albedo::{albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
 use crate::optics::coat::{coat_probability, coat_share, coat_transmittance};
 use crate::optics::curve::Curve;
-use crate::optics::fresnel::{fresnel, fresnel_left};
-use crate::optics::lobe::{Horizon, Lobe, LobeShape, refracts_at_facets};
+use crate::optics::fresnel::{fresnel, fresnel_left, half_vector_cosine};
+use crate::optics::lobe::{Facets, Horizon, Lobe, LobeShape, refracts_at_facets};
 use crate::optics::numeric::sampled_share;
 use crate::optics::real::{Mask, Real};
-use crate::optics::refraction::refracting_cosines;
+use crate::optics::refraction::{refracted_square, refracting_cosines};
 use crate::optics::vector::Vec3;
 
 /// The shares of the layers for one view direction.
@@ -18,9 +18,9 @@ pub struct Layers<T> {
     pub base: Vec3<T>,
     /// What is refracted, on average over the lobe.
     pub transmission: Vec3<T>,
-    /// Probability of sampling the specular lobe, where the coat is not sampled.
+    /// Probability of sampling the specular lobe, where the coat is not sampled; on average, where the facet decides.
     pub specular_probability: T,
-    /// Probability of sampling the refracting lobe, where the coat is not sampled.
+    /// Probability of sampling the refracting lobe, where the coat is not sampled; on average, where the facet decides.
     pub transmission_probability: T,
     /// Probability of sampling the coat.
     pub coat_probability: T,
@@ -158,24 +158,93 @@ pub(super) fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
 /// True where a mirrored direction is drawn first and what it does not reflect is passed on: then all weights are 1
 /// however often light is reflected inside. It takes a lobe whose own weights are 1.
 #[inline(always)]
-pub(super) fn passes_on<T: Real>(material: &Material<T>) -> T::Mask {
+pub fn passes_on<T: Real>(material: &Material<T>) -> T::Mask {
     material.transmits() & T::Mask::splat(by_index(Lobe::ALL, material.lobe).traits().weighs_one)
+}
+
+/// True where one facet is drawn that mirrors or refracts, as its Fresnel factor has it: where the lobe is made of facets
+/// and they are as rough seen either way. So the weights of samples have no part in it how the factor changes over the
+/// facets, which near the critical angle it does from almost none to all (Walter et al. 2007, section 5.3).
+#[inline(always)]
+pub(super) fn shares_facets<T: Real>(material: &Material<T>) -> T::Mask {
+    let has_facets = by_index(Lobe::ALL, material.lobe).facets() != Facets::None;
+    material.transmits() & T::Mask::splat(has_facets) & !material.transmission_roughness.differs(material.roughness)
+}
+
+/// The probability of sampling the specular lobe, where the coat is not sampled, for a direction that it mirrors to with
+/// this Fresnel factor.
+#[inline(always)]
+pub(super) fn specular_probability<T: Real>(
+    material: &Material<T>,
+    layers: &Layers<T>,
+    surface: &Surface<T>,
+    wi: Vec3<T>,
+    color: Vec3<T>,
+) -> T {
+    let reflected = color.luminance();
+    let mut probability = T::select(passes_on(material), reflected, layers.specular_probability);
+    let is_shared = shares_facets(material);
+    if is_shared.any() {
+        let ior = material.ior_ahead(surface.is_inside);
+        let cosine = half_vector_cosine(surface.wo, wi);
+        let square = refracted_square(cosine, ior);
+        let left = left_by_facet(material, surface, [cosine, square.safe_sqrt() / ior]);
+        // What is reflected totally is not refracted, whatever the model of the Fresnel factor says.
+        let refracted = T::select(T::zero().less(square), left.luminance(), T::zero());
+        let of_facets = T::one() - layers.base_probability();
+        let share = mirrored_share(reflected, refracted);
+        probability = T::select(is_shared, of_facets * share, probability);
+    }
+    probability
+}
+
+/// How often a facet mirrors of what it mirrors and refracts.
+#[inline(always)]
+fn mirrored_share<T: Real>(reflected: T, refracted: T) -> T {
+    reflected / (reflected + refracted).max(T::from_f64(1e-20))
+}
+
+/// What is refracted into a direction, and the probability of sampling the refracting lobe for it, where the coat is not
+/// sampled.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Transmission<T> {
+    pub color: Vec3<T>,
+    pub probability: T,
 }
 
 /// What is refracted into a direction: of lobes made of facets what the facet does not reflect, of others what the
 /// specular lobe leaves over on average.
 #[inline(always)]
-pub(super) fn transmission_color<T: Real>(
+pub(super) fn transmission<T: Real>(
     material: &Material<T>,
     layers: &Layers<T>,
     shape: &LobeShape<'_, T>,
     surface: &Surface<T>,
     wi: Vec3<T>,
-) -> Vec3<T> {
+) -> Transmission<T> {
+    let mut through = Transmission {
+        color: layers.transmission,
+        probability: layers.transmission_probability,
+    };
     if !refracts_at_facets(shape) {
-        return layers.transmission;
+        return through;
     }
-    let [cosine, behind] = refracting_cosines(surface.wo, wi, shape.eta);
+    let cosines = refracting_cosines(surface.wo, wi, shape.eta);
+    through.color = left_by_facet(material, surface, cosines);
+    let is_shared = shares_facets(material);
+    if is_shared.any() {
+        let reflected = fresnel(&material.fresnel_terms(surface.is_inside), cosines[0]).luminance();
+        let refracted = through.color.luminance();
+        let of_facets = T::one() - layers.base_probability();
+        let share = T::one() - mirrored_share(reflected, refracted);
+        through.probability = T::select(is_shared, of_facets * share, through.probability);
+    }
+    through
+}
+
+/// What a facet refracts of the light, by the cosines between its normal and the view and the refracted direction.
+#[inline(always)]
+fn left_by_facet<T: Real>(material: &Material<T>, surface: &Surface<T>, [cosine, behind]: [T; 2]) -> Vec3<T> {
     let left = fresnel_left(&material.fresnel_terms(surface.is_inside), cosine, behind);
     material.transmission_tint * left * (material.transmission_weight * (T::one() - material.metalness))
 }

@@ -1,6 +1,6 @@
 //! Directions drawn from a material.
 
-use super::layers::{base_shape, passes_on, transmission_color};
+use super::layers::{base_shape, passes_on, shares_facets, specular_probability, transmission};
 use super::{Layers, Material, Surface, material_layers};
 use crate::optics::coat::coat_sample;
 use crate::optics::fresnel::{fresnel, half_vector_cosine};
@@ -123,7 +123,7 @@ impl<T: Real> Drawing<'_, T> {
             surface,
             ..
         } = self;
-        let (base, through) = (layers.base_probability(), layers.transmission_probability);
+        let (base, mut through) = (layers.base_probability(), layers.transmission_probability);
         let has_coat = material.has_coat(surface);
         let takes_coat = has_coat & numbers.layer.less(layers.coat_probability);
         let mut sample = MaterialSample::nothing();
@@ -146,22 +146,24 @@ impl<T: Real> Drawing<'_, T> {
         let mut left = !takes_coat;
         let mut xi = numbers.lobe;
         let mut specular = layers.specular_probability;
-        let is_passed_on = passes_on(material);
-        if (left & (is_passed_on | layer.less(specular))).any() {
+        let (is_passed_on, is_shared) = (passes_on(material), shares_facets(material));
+        if (left & (is_passed_on | is_shared | layer.less(specular))).any() {
             let shape = material.shape(tables);
             let drawn = self.draw(&shape, xi);
             let terms = material.fresnel_terms(surface.is_inside);
             let color = fresnel(&terms, half_vector_cosine(surface.wo, drawn.wi));
+            specular = specular_probability(material, layers, surface, drawn.wi, color);
+            through = T::select(is_shared, T::one() - base - specular, through);
             if is_passed_on.any() {
-                let reflected = T::select(T::zero().less(drawn.weight), color.luminance(), T::zero());
-                specular = T::select(is_passed_on, reflected, specular);
+                let is_lost = is_passed_on & !T::zero().less(drawn.weight);
+                specular = T::select(is_lost, T::zero(), specular);
                 for (number, below) in xi.iter_mut().zip(numbers.below) {
                     *number = T::select(is_passed_on, below, *number);
                 }
             }
             let takes = left & layer.less(specular);
             if takes.any() {
-                let finished = self.finish(Layer::Specular, &shape, drawn, color, specular);
+                let finished = self.finish(Layer::Specular, &shape, drawn, color, [specular; 2]);
                 sample = sample.replaced(takes, finished);
                 left = left & !takes;
             }
@@ -173,15 +175,16 @@ impl<T: Real> Drawing<'_, T> {
         let takes_base = layer.less(base_end) | !T::zero().less(through);
         if (left & takes_base).any() {
             let shape = base_shape();
-            let finished = self.finish(Layer::Base, &shape, self.draw(&shape, xi), layers.base, base);
+            let finished = self.finish(Layer::Base, &shape, self.draw(&shape, xi), layers.base, [base; 2]);
             sample = sample.replaced(left & takes_base, finished);
             left = left & !takes_base;
         }
         if left.any() {
             let shape = material.transmission_shape(tables, surface.is_inside);
             let drawn = self.draw(&shape, xi);
-            let color = transmission_color(material, layers, &shape, surface, drawn.wi);
-            let finished = self.finish(Layer::Refraction, &shape, drawn, color, through);
+            let there = transmission(material, layers, &shape, surface, drawn.wi);
+            let probabilities = [through, there.probability];
+            let finished = self.finish(Layer::Refraction, &shape, drawn, there.color, probabilities);
             sample = sample.replaced(left, finished);
         }
         sample
@@ -193,7 +196,8 @@ impl<T: Real> Drawing<'_, T> {
         lobe_sample(shape, &surface.frame, surface.normal, surface.wo, xi)
     }
 
-    /// What a direction drawn from a layer below the coat, chosen with this probability, makes of a path.
+    /// What a direction drawn from a layer below the coat makes of a path: the probability with which the layer was chosen,
+    /// and the one that its direction tells, which differs where the horizon policy has turned the direction.
     #[inline(always)]
     fn finish(
         &self,
@@ -201,7 +205,7 @@ impl<T: Real> Drawing<'_, T> {
         shape: &LobeShape<'_, T>,
         drawn: LobeSample<T>,
         color: Vec3<T>,
-        probability: T,
+        [chosen, told]: [T; 2],
     ) -> MaterialSample<T> {
         let Self { layers, surface, .. } = self;
         let below = T::one() - layers.coat_probability;
@@ -209,9 +213,9 @@ impl<T: Real> Drawing<'_, T> {
         let mut density = T::zero();
         if self.wants_density && !is_mirror.all() {
             let [_, of_shape] = lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, drawn.wi);
-            density = T::select(is_mirror, T::zero(), below * probability * of_shape);
+            density = T::select(is_mirror, T::zero(), below * told * of_shape);
         }
-        let scale = drawn.weight / (below * probability).max(T::from_f64(1e-20));
+        let scale = drawn.weight / (below * chosen).max(T::from_f64(1e-20));
         MaterialSample {
             wi: drawn.wi,
             throughput: color * layers.below_coat * scale,

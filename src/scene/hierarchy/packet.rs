@@ -7,13 +7,13 @@
 
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8, f32x16, mask32x16};
 
-use super::traverse::{Entry, INVERSE_MAX, PLACE_ERROR, Stack, TriangleRay, TrianglesMet};
+use super::traverse::{BoxRay, Entry, INVERSE_MAX, Met, PLACE_ERROR, SingleRay, Stack, TriangleRay};
 use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
 
 /// Rays of a packet.
 pub const PACKET: usize = 16;
 
-/// So few rays go one after the other through a block's triangles, as eight triangles at a time take less than all rays.
+/// So few rays go on one after the other, as eight boxes or triangles at a time take less than all rays.
 const FEW: u32 = 4;
 
 /// Rays, axis by axis.
@@ -39,6 +39,19 @@ impl Default for Packet {
 }
 
 impl Packet {
+    /// Of rays, sixteen at most: their origins, directions, and how far they go.
+    #[inline(always)]
+    pub fn of(rays: impl IntoIterator<Item = ([f32; 3], [f32; 3], f32)>) -> Self {
+        let mut packet = Self::default();
+        let mut count = 0;
+        for (origin, direction, t_max) in rays {
+            packet.set(count, origin, direction, t_max);
+            count += 1;
+        }
+        packet.fill(count);
+        packet
+    }
+
     /// Puts a ray in.
     #[inline(always)]
     pub fn set(&mut self, lane: usize, origin: [f32; 3], direction: [f32; 3], t_max: f32) {
@@ -126,6 +139,26 @@ impl Found {
     }
 }
 
+/// Where one of a packet's rays puts what it meets.
+struct OfLane<'f, const ANY: bool> {
+    lane: usize,
+    found: &'f mut Found,
+    /// True once it has met something.
+    is_new: bool,
+}
+
+impl<const ANY: bool> Met for OfLane<'_, ANY> {
+    #[inline(always)]
+    fn t_max(&self) -> f32 {
+        self.found.t[self.lane]
+    }
+
+    #[inline(always)]
+    fn take(&mut self, t: f32, triangle: u32, areas: [f32; 3]) {
+        self.is_new |= self.found.add::<ANY>(self.lane, t, areas, triangle + 1);
+    }
+}
+
 /// Which way a ray goes: the signs of its direction, and its longest axis. Rays of a packet go the same way.
 #[inline(always)]
 pub fn ray_way(direction: [f32; 3]) -> usize {
@@ -180,13 +213,16 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, packet: &Packet) -> Opt
             continue;
         };
         let place = parent.children[child];
-        if place & BLOCK == 0 {
+        let is_new = if entered.met.to_bitmask().count_ones() <= FEW {
+            rays.search_alone::<ANY>(wide, place, &entered, &mut found)
+        } else if place & BLOCK == 0 {
             bundle.enter(wide, place, limit, &mut stack);
+            false
         } else {
-            let block = (place & !BLOCK) as usize;
-            if rays.meet::<ANY>(wide, block, &entered, &mut found) {
-                limit = largest(simd, &found.t);
-            }
+            rays.meet::<ANY>(wide, (place & !BLOCK) as usize, &entered, &mut found)
+        };
+        if is_new {
+            limit = largest(simd, &found.t);
         }
     }
     Some(found)
@@ -347,75 +383,57 @@ impl<S: Simd> Rays<S> {
         f32x16::splat(self.origin[0].token(), side) * self.inverse[axis] + self.late[axis]
     }
 
-    /// Puts the triangles of a block in that are nearer than what was found; whether there are any.
+    /// Has the rays that meet a child's box go on through what is under it one after the other; whether any meets something
+    /// nearer than what was found.
     #[inline(always)]
-    fn meet<const ANY: bool>(&self, wide: &Wide, block: usize, entered: &Entered<S>, found: &mut Found) -> bool {
-        let met = entered.met.to_bitmask() as u32;
-        if met.count_ones() <= FEW {
-            self.meet_few::<ANY>(wide, block, met, entered, found)
-        } else {
-            self.meet_many::<ANY>(wide, block, entered, found)
-        }
-    }
-
-    /// The same, one ray after the other against all triangles.
-    #[inline(always)]
-    fn meet_few<const ANY: bool>(
+    fn search_alone<const ANY: bool>(
         &self,
         wide: &Wide,
-        block: usize,
-        mut rays: u32,
+        child: u32,
         entered: &Entered<S>,
         found: &mut Found,
     ) -> bool {
+        let mut rays = entered.met.to_bitmask();
         let distances = entered.distance.to_array();
         let mut is_new = false;
         while rays != 0 {
-            let lane = (rays.trailing_zeros() % PACKET as u32) as usize;
+            let lane = rays.trailing_zeros() as usize % PACKET;
             rays &= rays - 1;
-            let reach = [distances[lane], found.t[lane]];
-            let of_ray = self.triangle_ray(lane);
-            let TrianglesMet { mut met, t, areas } = of_ray.meet(&wide.blocks[block], &wide.normals[block], reach);
-            if met == 0 {
-                continue;
-            }
-            let (t, areas) = (
-                t.to_array(),
-                [areas[0].to_array(), areas[1].to_array(), areas[2].to_array()],
-            );
-            while met != 0 {
-                let triangle = (met.trailing_zeros() % WIDTH as u32) as usize;
-                met &= met - 1;
-                let areas = [areas[0][triangle], areas[1][triangle], areas[2][triangle]];
-                // What was found may be nearer by now.
-                if t[triangle] <= found.t[lane] {
-                    let mark = wide.firsts[block] + triangle as u32 + 1;
-                    is_new |= found.add::<ANY>(lane, t[triangle], areas, mark);
-                }
-            }
+            let mut lane_met = OfLane::<ANY> { lane, found, is_new: false };
+            let entry = Entry::new(distances[lane], child);
+            self.single(lane).search::<ANY, _>(wide, entry, &mut lane_met);
+            is_new |= lane_met.is_new;
         }
         is_new
     }
 
-    /// What the test against triangles needs of one ray.
+    /// One of the rays by itself.
     #[inline(always)]
-    fn triangle_ray(&self, lane: usize) -> TriangleRay<S> {
+    fn single(&self, lane: usize) -> SingleRay<S> {
         let simd = self.origin[0].token();
         let splat = |all: f32x16<S>| f32x8::splat(simd, all.as_slice()[lane]);
-        let [x, y, z] = self.origin;
-        let [dx, dy, dz] = self.direction;
+        let splats = |[x, y, z]: [f32x16<S>; 3]| [splat(x), splat(y), splat(z)];
         let [shear_x, shear_y] = self.shear;
-        TriangleRay {
-            origin: [splat(x), splat(y), splat(z)],
-            direction: [splat(dx), splat(dy), splat(dz)],
-            axes: self.axes,
-            shear: [splat(shear_x), splat(shear_y)],
+        SingleRay {
+            boxes: BoxRay {
+                inverse: splats(self.inverse),
+                early: splats(self.early),
+                late: splats(self.late),
+                near: self.near,
+            },
+            triangles: TriangleRay {
+                origin: splats(self.origin),
+                direction: splats(self.direction),
+                axes: self.axes,
+                shear: [splat(shear_x), splat(shear_y)],
+            },
         }
     }
 
-    /// The same, one triangle after the other against all rays.
+    /// Puts the triangles of a block in that are nearer than what was found, one after the other against all rays; whether
+    /// there are any.
     #[inline(always)]
-    fn meet_many<const ANY: bool>(&self, wide: &Wide, block: usize, entered: &Entered<S>, found: &mut Found) -> bool {
+    fn meet<const ANY: bool>(&self, wide: &Wide, block: usize, entered: &Entered<S>, found: &mut Found) -> bool {
         let (first, normals, block) = (wide.firsts[block], &wide.normals[block], &wide.blocks[block]);
         let simd = self.origin[0].token();
         let zero = f32x16::splat(simd, 0.0);

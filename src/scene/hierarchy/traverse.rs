@@ -44,43 +44,97 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max
     if wide.nodes.is_empty() {
         return None;
     }
-    let boxes = BoxRay::new(simd, frame, wide);
-    let triangles = TriangleRay::new(simd, frame);
-    let mut nearest = None;
-    let mut t_max = t_max;
-    let mut stack = Stack::new();
-    let mut next = Entry::ROOT;
-    loop {
-        let place = next.place();
-        if place & BLOCK == 0 {
-            if let Some(nearest) = boxes.enter(&wide.nodes[place as usize], t_max, &mut stack) {
-                next = nearest;
-                continue;
-            }
-        } else {
-            let block = (place & !BLOCK) as usize;
-            let reach = [next.distance(), t_max];
-            let TrianglesMet { mut met, t, .. } = triangles.meet(&wide.blocks[block], &wide.normals[block], reach);
-            let distances = t.to_array();
-            while met != 0 {
-                let lane = met.trailing_zeros() % WIDTH as u32;
-                met &= met - 1;
-                let (t, triangle) = (distances[lane as usize], wide.firsts[block] + lane);
-                // Of two as far away the first: so it does not matter in which order they are found.
-                let is_first = || t == t_max && nearest.is_some_and(|(_, other)| triangle < other);
-                if t < t_max || is_first() {
-                    t_max = t;
-                    nearest = Some((t, triangle));
+    let ray = SingleRay {
+        boxes: BoxRay::new(simd, frame, wide),
+        triangles: TriangleRay::new(simd, frame),
+    };
+    let mut nearest = Nearest { t: t_max, triangle: None };
+    ray.search::<ANY, _>(wide, Entry::ROOT, &mut nearest);
+    nearest.triangle.map(|triangle| (nearest.t, triangle))
+}
+
+/// Where a ray puts the triangles that it meets.
+pub(super) trait Met {
+    /// How far away triangles may be that count.
+    fn t_max(&self) -> f32;
+
+    /// Takes a triangle that is no farther away; its areas, see [`TrianglesMet::areas`].
+    fn take(&mut self, t: f32, triangle: u32, areas: [f32; 3]);
+}
+
+/// The nearest triangle, of those as far away the first: so it does not matter in which order they are found.
+struct Nearest {
+    t: f32,
+    triangle: Option<u32>,
+}
+
+impl Met for Nearest {
+    #[inline(always)]
+    fn t_max(&self) -> f32 {
+        self.t
+    }
+
+    #[inline(always)]
+    fn take(&mut self, t: f32, triangle: u32, _areas: [f32; 3]) {
+        let is_first = || self.triangle.is_some_and(|other| triangle < other);
+        if t < self.t || is_first() {
+            self.t = t;
+            self.triangle = Some(triangle);
+        }
+    }
+}
+
+/// A ray by itself.
+pub(super) struct SingleRay<S: Simd> {
+    pub boxes: BoxRay<S>,
+    pub triangles: TriangleRay<S>,
+}
+
+impl<S: Simd> SingleRay<S> {
+    /// Finds the triangles that the ray meets of what is under a child of a node, nearer and nearer ones; if `ANY` no more than
+    /// one that counts.
+    #[inline(always)]
+    pub fn search<const ANY: bool, M: Met>(&self, wide: &Wide, child: Entry, found: &mut M) {
+        let mut stack = Stack::new();
+        let mut next = child;
+        loop {
+            let place = next.place();
+            if place & BLOCK == 0 {
+                if let Some(nearest) = self.boxes.enter(&wide.nodes[place as usize], found.t_max(), &mut stack) {
+                    next = nearest;
+                    continue;
                 }
+            } else if self.meet(wide, (place & !BLOCK) as usize, next.distance(), found) && ANY {
+                return;
             }
-            if ANY && nearest.is_some() {
-                return nearest;
+            match stack.pop_before(found.t_max()) {
+                Some(entry) => next = entry,
+                None => return,
             }
         }
-        match stack.pop_before(t_max) {
-            Some(entry) => next = entry,
-            None => return nearest,
+    }
+
+    /// Finds the triangles that the ray meets of a block, whose box it enters so far away; whether there is one.
+    #[inline(always)]
+    fn meet<M: Met>(&self, wide: &Wide, block: usize, entered: f32, found: &mut M) -> bool {
+        let reach = [entered, found.t_max()];
+        let triangles = self.triangles.meet(&wide.blocks[block], &wide.normals[block], reach);
+        let TrianglesMet { mut met, t, areas } = triangles;
+        if met == 0 {
+            return false;
         }
+        let distances = t.to_array();
+        let areas = [areas[0].to_array(), areas[1].to_array(), areas[2].to_array()];
+        while met != 0 {
+            let lane = (met.trailing_zeros() % WIDTH as u32) as usize;
+            met &= met - 1;
+            // What was found may be nearer by now.
+            if distances[lane] <= found.t_max() {
+                let areas = [areas[0][lane], areas[1][lane], areas[2][lane]];
+                found.take(distances[lane], wide.firsts[block] + lane as u32, areas);
+            }
+        }
+        true
     }
 }
 
@@ -94,14 +148,14 @@ fn splat<S: Simd>(simd: S, v: Vec3A) -> [f32x8<S>; 3] {
 }
 
 /// What the test against boxes needs of a ray.
-struct BoxRay<S: Simd> {
-    inverse: [f32x8<S>; 3],
+pub(super) struct BoxRay<S: Simd> {
+    pub inverse: [f32x8<S>; 3],
     /// Added to a side's coordinate times the inverse direction: the near side's distance, rounded down.
-    early: [f32x8<S>; 3],
+    pub early: [f32x8<S>; 3],
     /// The same for the far side's distance, rounded up.
-    late: [f32x8<S>; 3],
+    pub late: [f32x8<S>; 3],
     /// Which of the two sides on each axis is near.
-    near: [usize; 3],
+    pub near: [usize; 3],
 }
 
 impl<S: Simd> BoxRay<S> {
@@ -135,7 +189,7 @@ impl<S: Simd> BoxRay<S> {
         if met == 0 {
             return None;
         }
-        let mut met = Met {
+        let mut met = Children {
             children: met,
             near: near.to_array(),
         };
@@ -178,14 +232,14 @@ impl<S: Simd> BoxRay<S> {
 }
 
 /// Children that a ray meets.
-struct Met {
+struct Children {
     /// As bits, those that have not been taken.
     children: u32,
     /// How far away each child is.
     near: [f32; WIDTH],
 }
 
-impl Met {
+impl Children {
     #[inline(always)]
     fn take(&mut self, node: &Node) -> Entry {
         let child = (self.children.trailing_zeros() % WIDTH as u32) as usize;
@@ -195,13 +249,13 @@ impl Met {
 }
 
 /// Triangles of a block that a ray meets.
-pub(super) struct TrianglesMet<S: Simd> {
+struct TrianglesMet<S: Simd> {
     /// As bits.
-    pub met: u32,
+    met: u32,
     /// How far away.
-    pub t: f32x8<S>,
+    t: f32x8<S>,
     /// Twice the areas that the ray cuts each projected triangle into, opposite to its corners.
-    pub areas: [f32x8<S>; 3],
+    areas: [f32x8<S>; 3],
 }
 
 /// What the test against triangles needs of a ray.
@@ -229,7 +283,7 @@ impl<S: Simd> TriangleRay<S> {
 
     /// Which triangles of a block are met with 0 < t ≤ `t_max`, where t is `entered` at least.
     #[inline(always)]
-    pub fn meet(&self, block: &Block, normals: &Normals, [entered, t_max]: [f32; 2]) -> TrianglesMet<S> {
+    fn meet(&self, block: &Block, normals: &Normals, [entered, t_max]: [f32; 2]) -> TrianglesMet<S> {
         let simd = self.origin[0].token();
         let zero = f32x8::splat(simd, 0.0);
         let [(ax, ay), (bx, by), (cx, cy)] = [self.project(block, 0), self.project(block, 1), self.project(block, 2)];

@@ -257,7 +257,7 @@ pub fn textured_material<T: Scalar>(
             at_point.roughness = table_lookup(tables, material.roughness_table, MATCHED_NODES, at_point.roughness);
         }
         // What the refraction is rougher by stays.
-        let rough = material.transmission_roughness + (at_point.roughness - material.roughness);
+        let rough = at_point.roughness + (material.transmission_roughness - material.roughness);
         at_point.transmission_roughness = rough.clamp(T::zero(), T::one());
     }
     if material.metalness_texture != NO_TEXTURE {

@@ -1,0 +1,146 @@
+//! The sums of a tile's pixels while samples come in: those of pixels near each other field by field, as their samples are
+//! added side by side.
+
+use std::array::from_fn;
+
+use super::integrator::{NEAR, Near, Results, Tile, is_sound};
+use crate::job::features::GUIDE_SAMPLES;
+use crate::job::film::{Film, HalfSums};
+use crate::optics::real::{Real, Scalar};
+use crate::optics::vector::vec3;
+
+/// A tile's sums, and the part of a film that they are of.
+pub(super) struct TileSums<'a> {
+    tile: &'a Tile,
+    film: &'a mut Film,
+    /// The even samples and the odd ones of pixels near each other.
+    halves: Vec<[NearSums; 2]>,
+}
+
+impl<'a> TileSums<'a> {
+    /// What the film has of the tile, which is all of it.
+    pub fn of(film: &'a mut Film, tile: &'a Tile) -> Self {
+        let mut sums = Self {
+            tile,
+            film,
+            halves: Vec::new(),
+        };
+        for near in tile.near() {
+            let mut halves = [NearSums::default(); 2];
+            for (i, pixel) in sums.pixels(near).enumerate() {
+                let of_pixel = sums.film.halves(pixel);
+                for (half, of_pixel) in halves.iter_mut().zip(&of_pixel) {
+                    half.set(i, of_pixel, true);
+                }
+            }
+            sums.halves.push(halves);
+        }
+        sums
+    }
+
+    /// Which pixels of the film are near each other.
+    fn pixels(&self, near: Near<'_>) -> impl Iterator<Item = usize> + use<> {
+        let width = self.film.width;
+        let places: [[u32; 2]; NEAR] = from_fn(|i| near.places.get(i).copied().unwrap_or_default());
+        let pixels = places.map(|[x, y]| (y * width + x) as usize);
+        pixels.into_iter().take(near.places.len())
+    }
+
+    /// Adds as many samples of each pixel, from sample `first` on.
+    pub fn add<T: Real>(&mut self, [first, count]: [u32; 2], results: &Results<T::Scalar>) {
+        let costs = &mut self.film.costs[0];
+        costs.rays += results.rays() as f64;
+        let (tile, halves) = (self.tile, &mut self.halves);
+        let dropped = &mut costs.dropped;
+        T::vectorize(
+            #[inline(always)]
+            || {
+                for (near, halves) in tile.near().zip(halves) {
+                    for sample in 0..count {
+                        let [red, green, blue] = results.radiances::<NEAR>(near.path([sample, count]));
+                        let is_sound: [bool; NEAR] = from_fn(|i| is_sound(vec3(red[i], green[i], blue[i])));
+                        let colors = [red, green, blue].map(|channel| channel.map(Scalar::to_f64));
+                        halves[(first + sample) as usize % 2].add(&colors, &is_sound);
+                        *dropped += is_sound[..near.places.len()].iter().filter(|is_sound| !**is_sound).count() as u64;
+                    }
+                }
+            },
+        );
+        self.add_more([first, count], results);
+    }
+
+    /// The same for what only some films keep, and what limiting fireflies took.
+    fn add_more<S: Scalar>(&mut self, [first, count]: [u32; 2], results: &Results<S>) {
+        if !self.film.extras().coverage && !results.have_more() {
+            return;
+        }
+        for sample in 0..count {
+            for near in self.tile.near() {
+                let path = near.path([sample, count]);
+                for (pixel, path) in self.pixels(near).zip(path..) {
+                    let found = results.get(path);
+                    if !is_sound(found.radiance) {
+                        continue;
+                    }
+                    self.film.add_coverage(pixel, found.alpha.to_f64());
+                    self.film.costs[0].clamped += found.clamped.to_f64();
+                    if first + sample < GUIDE_SAMPLES
+                        && let Some(guides) = self.film.guides.get_mut(pixel)
+                    {
+                        guides.add(&found.seen);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Puts the sums back.
+    pub fn finish(self) {
+        for (near, halves) in self.tile.near().zip(&self.halves) {
+            for (i, pixel) in self.pixels(near).enumerate() {
+                self.film.set_halves(pixel, &halves.each_ref().map(|half| half.get(i)));
+            }
+        }
+    }
+}
+
+/// The sums of pixels near each other, see [`HalfSums`].
+#[derive(Clone, Copy, Debug, Default)]
+struct NearSums {
+    color: [[f64; NEAR]; 3],
+    squared_deviations: [f64; NEAR],
+    samples: [f64; NEAR],
+}
+
+impl NearSums {
+    #[inline(always)]
+    fn get(&self, i: usize) -> HalfSums {
+        HalfSums {
+            color: self.color.map(|channel| channel[i]),
+            squared_deviations: self.squared_deviations[i],
+            samples: self.samples[i],
+        }
+    }
+
+    /// Sets those of a pixel, if they are to be set. Written so that compilers turn it into lanes.
+    #[inline(always)]
+    fn set(&mut self, i: usize, sums: &HalfSums, is_set: bool) {
+        let [red, green, blue] = sums.color;
+        let put = |to: &mut f64, value: f64| *to = if is_set { value } else { *to };
+        put(&mut self.color[0][i], red);
+        put(&mut self.color[1][i], green);
+        put(&mut self.color[2][i], blue);
+        put(&mut self.squared_deviations[i], sums.squared_deviations);
+        put(&mut self.samples[i], sums.samples);
+    }
+
+    /// Adds a sample of each pixel where it is sound.
+    #[inline(always)]
+    fn add(&mut self, colors: &[[f64; NEAR]; 3], is_sound: &[bool; NEAR]) {
+        for i in 0..NEAR {
+            let mut sums = self.get(i);
+            sums.add(colors.map(|channel| channel[i]));
+            self.set(i, &sums, is_sound[i]);
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Glass made of facets, each of which is drawn once and then mirrors or refracts: samples against the density that light
+//! sampling competes with, and their weights.
+
+use glossmith::analysis::chi_square::{PolarGrid, sidak_level, test_samples};
+use glossmith::document::{MaterialSettings, assign, compile};
+use glossmith::optics::frame::frame_from_normal;
+use glossmith::optics::material::{
+    Material, MaterialNumbers, MaterialSample, Surface, material_evaluate, material_sample,
+};
+use glossmith::optics::random::{Sequence, random_pair, random_state};
+use glossmith::optics::vector::{Vec3, vec3};
+
+/// Samples of a case.
+const SAMPLES: u32 = 40_000;
+
+/// Roughnesses, and indices of refraction, on whose inside the critical angle is met: 41.8 and 25.6 degrees.
+const CASES: [&[&str]; 5] = [
+    &["specular.lobe=ggx", "specular.roughness=0.3", "specular.ior=1.5"],
+    &["specular.lobe=ggx", "specular.roughness=0.6", "specular.ior=2.31"],
+    &[
+        "specular.lobe=ggx",
+        "specular.roughness=0.5",
+        "specular.anisotropy=0.5",
+        "transmission.weight=0.6",
+    ],
+    &["specular.lobe=ggx-ndf", "specular.roughness=0.5", "specular.ior=1.5"],
+    &["specular.lobe=blinn-phong", "specular.roughness=0.4", "specular.ior=1.5"],
+];
+
+/// Angles of view, and whether they are from within.
+const VIEWS: [(f64, bool); 7] = [
+    (0.0, false),
+    (45.0, false),
+    (80.0, false),
+    (0.0, true),
+    (25.0, true),
+    (41.0, true),
+    (70.0, true),
+];
+
+struct Case {
+    material: Material<f64>,
+    tables: Vec<f32>,
+    surface: Surface<f64>,
+}
+
+impl Case {
+    fn new(assignments: &[&str], (angle_deg, is_inside): (f64, bool)) -> Self {
+        let mut settings = MaterialSettings::default();
+        let glass = ["base.metalness=0", "base.color=1,1,1", "transmission.weight=1"];
+        for assignment in glass.iter().chain(assignments) {
+            assign(&mut settings, assignment).unwrap();
+        }
+        let (materials, tables) = compile(&[settings]);
+        let (sin, cos) = f64::to_radians(angle_deg).sin_cos();
+        let normal = vec3(0.0, 0.0, 1.0);
+        Self {
+            material: materials[0].cast(),
+            tables,
+            surface: Surface {
+                frame: frame_from_normal(normal),
+                normal,
+                wo: vec3(sin, 0.0, cos),
+                coat_normal: normal,
+                is_inside,
+            },
+        }
+    }
+
+    fn draw(&self, i: u32) -> MaterialSample<f64> {
+        let state = random_state(23, 0, 0, i, Sequence::Independent);
+        let ([a, b], [c, layer]) = (random_pair(state, 0), random_pair(state, 1));
+        let lobe = [a, b, c];
+        // What facets refract takes no numbers of its own.
+        let below = [0.5; 3];
+        let numbers = MaterialNumbers { lobe, layer, below };
+        material_sample(&self.material, &self.tables, &self.surface, numbers, true)
+    }
+
+    /// The density that light sampling is weighed against: of light drawn with density 1, all counts without competition,
+    /// the share 1/(1 + density) with it.
+    fn density(&self, wi: Vec3<f64>) -> f64 {
+        let value = |competing| {
+            let value = material_evaluate(&self.material, &self.tables, &self.surface, wi, 1.0, competing);
+            value.luminance()
+        };
+        let (alone, weighed) = (value(0.0), value(1.0));
+        if weighed > 0.0 { alone / weighed - 1.0 } else { 0.0 }
+    }
+
+    fn p_value(&self, supposed: &Self) -> f64 {
+        let draw = |i| {
+            let drawn = self.draw(i);
+            (drawn.throughput.max_component() > 0.0).then_some(drawn.wi)
+        };
+        let samples: Vec<_> = (0..SAMPLES).map(draw).collect();
+        let normal = self.surface.normal;
+        let middle = frame_from_normal(self.surface.wo.mirrored_about(normal));
+        let grid = PolarGrid::following(middle, 12, 12, samples.iter().flatten().take(4000).copied());
+        test_samples(&grid, &samples, &[normal], |wi| supposed.density(wi)).p_value
+    }
+}
+
+#[test]
+fn samples_follow_the_density_that_light_sampling_competes_with() {
+    // Where there is a base, too, what a direction tells is the share of the layers that it may have come from.
+    let cases = CASES.iter().filter(|case| !case.contains(&"transmission.weight=0.6"));
+    let level = sidak_level(1e-3, VIEWS.len() * (CASES.len() - 1));
+    for assignments in cases {
+        let mut found = false;
+        for view in VIEWS {
+            let case = Case::new(assignments, view);
+            let p = case.p_value(&case);
+            assert!(p > level, "{assignments:?} seen at {view:?}: p = {p:.1e}");
+            let mut wrong = Case::new(assignments, view);
+            wrong.material.ior *= 1.03;
+            found |= case.p_value(&wrong) < level;
+        }
+        assert!(found, "{assignments:?}: another index of refraction is not seen");
+    }
+}
+
+/// What a direction was drawn with is what it is weighed with when light is drawn towards it.
+#[test]
+fn densities_of_samples_are_those_that_compete() {
+    for assignments in CASES.iter().filter(|case| !case.contains(&"transmission.weight=0.6")) {
+        for view in VIEWS {
+            let case = Case::new(assignments, view);
+            for i in 0..2000 {
+                let drawn = case.draw(i);
+                let told = case.density(drawn.wi);
+                let off = (drawn.density - told).abs() / told.max(1e-3);
+                let is_seen = drawn.throughput.max_component() > 0.0;
+                assert!(!is_seen || off < 1e-6, "{assignments:?} seen at {view:?}: {} told as {told}", drawn.density);
+            }
+        }
+    }
+}
+
+/// Near the critical angle some facets let through nearly all, others nothing: still no path grows.
+#[test]
+fn no_sample_of_visible_facets_weighs_more_than_what_arrives() {
+    for assignments in CASES.iter().filter(|case| case.contains(&"specular.lobe=ggx")) {
+        for view in VIEWS {
+            let case = Case::new(assignments, view);
+            let most = (0..20_000).map(|i| case.draw(i).throughput.max_component()).fold(0.0, f64::max);
+            // Beside a base, the layers' shares are those of their means.
+            let limit = if assignments.contains(&"transmission.weight=0.6") { 1.5 } else { 1.0 + 1e-9 };
+            assert!(most <= limit, "{assignments:?} seen at {view:?}: {most}");
+        }
+    }
+}
