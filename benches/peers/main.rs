@@ -1,9 +1,9 @@
 //! Glossmith's processor engine beside Mitsuba 3 on the same scene, in turns of one run; quoted in docs/PERFORMANCE.md.
 //!
-//! `cargo bench --bench peers [-- --quick]`. Millions of samples a second, and seconds to a relative mean squared error of
-//! 0.003, each against a long render of its own; that of all pixels, and that without the thousandth of them that are off
-//! the most, as a picture of glass has one pixel that holds most of the error or has not. Mitsuba is run by
-//! `scripts/peers`, with the Python that `scripts/setup test` installs; where it is not there, a line says so and only
+//! `cargo bench --bench peers [-- --quick --rates]`. Millions of samples a second, and (not with `--rates`) seconds to a
+//! relative mean squared error of 0.003, each against a long render of its own; that of all pixels, and that without the
+//! thousandth of them that are off the most, as a picture of glass has one pixel that holds most of the error or has not.
+//! With `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is run by `scripts/peers`, with the Python that `scripts/setup test` installs; where it is not there, a line says so and only
 //! Glossmith is measured.
 
 mod scene;
@@ -46,21 +46,21 @@ struct Extent {
     size: u32,
     /// Samples of the renders that are timed, and whose error is told.
     samples: u32,
-    /// Samples of the long renders.
-    reference: u32,
+    /// Samples of the long renders, if errors are measured: their own error adds that part of it.
+    reference: Option<u32>,
     turns: u32,
 }
 
 const FULL: Extent = Extent {
     size: 512,
     samples: 64,
-    reference: 1024,
+    reference: Some(1024),
     turns: 3,
 };
 const QUICK: Extent = Extent {
     size: 256,
     samples: 16,
-    reference: 512,
+    reference: Some(512),
     turns: 1,
 };
 
@@ -72,11 +72,11 @@ struct Case {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let extent = if std::env::args().any(|argument| argument == "--quick") {
-        QUICK
-    } else {
-        FULL
-    };
+    let is_asked = |option: &str| std::env::args().any(|argument| argument == option);
+    let mut extent = if is_asked("--quick") { QUICK } else { FULL };
+    if is_asked("--rates") {
+        extent.reference = None;
+    }
     let folder = tempfile::tempdir()?;
     scene::write_sky(&folder.path().join("sky.exr"))?;
     for (segments, name) in MESHES {
@@ -117,23 +117,29 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
     }
     let pixels = f64::from(extent.size * extent.size * extent.samples);
     let rate = |measured: &Measured| pixels / measured.seconds / 1e6;
-    if std::env::var("GRATE").is_ok() { println!("{} {} {} {:.2} {:.2}", case.material, case.mesh, case.ground, rate(&ours), rate(&theirs)); return Ok(()); }
-    let reference = glossmith(folder, case, extent.size, extent.reference, 1000)?.1;
-    let our_times = ours.times_to_goal(&reference);
     let ground = if case.ground { ", ground" } else { "" };
-    let mut line = format!("| {} | {}{ground} | {:.2} |", case.material, case.mesh, rate(&ours));
+    let (our_rate, their_rate) = (rate(&ours), rate(&theirs));
+    let mut line = format!("| {} | {}{ground} | {our_rate:.2} |", case.material, case.mesh);
     if with_peer {
-        let reference = peer(folder, case, extent.size, extent.reference, 1000)?.1;
-        let their_rate = rate(&theirs);
-        line += &format!(" {their_rate:.2} | {:.2} |", rate(&ours) / their_rate);
-        for (ours, theirs) in our_times.into_iter().zip(theirs.times_to_goal(&reference)) {
-            line += &format!(" {ours:.2} | {theirs:.2} | {:.2} |", ours / theirs);
-        }
+        line += &format!(" {their_rate:.2} | {:.2} |", our_rate / their_rate);
     } else {
         line += " – | – |";
-        for time in our_times {
-            line += &format!(" {time:.2} | – | – |");
+    }
+    if let Some(samples) = extent.reference {
+        let our_times = ours.times_to_goal(&glossmith(folder, case, extent.size, samples, 1000)?.1);
+        let mut their_times = [f64::NAN; 2];
+        if with_peer {
+            their_times = theirs.times_to_goal(&peer(folder, case, extent.size, samples, 1000)?.1);
         }
+        for (ours, theirs) in our_times.into_iter().zip(their_times) {
+            if with_peer {
+                line += &format!(" {ours:.2} | {theirs:.2} | {:.2} |", ours / theirs);
+            } else {
+                line += &format!(" {ours:.2} | – | – |");
+            }
+        }
+    } else {
+        line += &" – |".repeat(6);
     }
     println!("{line}");
     Ok(())

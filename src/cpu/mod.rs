@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use crate::instructions;
 use crate::job::Job;
 use crate::job::film::Film;
-use crate::job::tiles::{Order, Schedule, SliceLimits, Work};
+use crate::job::tiles::{Order, Schedule, SliceLimits, TileGrid, Work};
 use crate::optics::lanes::{InLanes, in_lanes};
 use crate::optics::real::Real;
 use integrator::{Integrator, Tile, WAVE_SAMPLES, Wave};
@@ -81,19 +81,15 @@ impl CpuEngine {
         self.schedule.aim(goals);
         let start = Instant::now();
         loop {
-            // The first picture is there as soon as can be; then samples go on together, as that costs less, but a part of the
-            // picture is never more than twice as far as the rest.
-            let pass_samples = match self.samples_per_pixel() {
-                0 => [1, 1],
-                samples => [samples.min(WAVE_SAMPLES), u32::MAX],
-            };
+            let left = budget.saturating_sub(start.elapsed());
+            let pass_samples = [self.least_pass_samples(left), u32::MAX];
             let limits = SliceLimits {
                 pass_samples,
                 tiles: [CORE_TILES * rayon::current_num_threads(), usize::MAX],
                 order: Order::Rows,
             };
-            let left = budget.saturating_sub(start.elapsed()).min(SLICE).as_secs_f64();
-            let works = self.schedule.slice(self.samples_per_second * left, limits);
+            let slice_seconds = left.min(SLICE).as_secs_f64();
+            let works = self.schedule.slice(self.samples_per_second * slice_seconds, limits);
             if works.is_empty() {
                 break;
             }
@@ -107,6 +103,15 @@ impl CpuEngine {
                 break;
             }
         }
+    }
+
+    /// Samples of a pixel that a pass has at least. Samples that go on together cost less; but the first picture is there as
+    /// soon as can be, and a part of it is never more than twice as far as the rest when a step ends.
+    fn least_pass_samples(&self, left: Duration) -> u32 {
+        let TileGrid { width, height } = self.schedule.grid();
+        let pixels = (f64::from(width) * f64::from(height)).max(1.0);
+        let by_the_end = (self.samples_per_second * left.as_secs_f64() / pixels) as u32;
+        self.samples_per_pixel().max(by_the_end).clamp(1, WAVE_SAMPLES)
     }
 
     /// Renders tiles. Each is copied out of the film and back, which takes a thousandth of the time, so that no two cores

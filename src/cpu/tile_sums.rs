@@ -61,7 +61,10 @@ impl<'a> TileSums<'a> {
                         let is_sound: [bool; NEAR] = from_fn(|i| is_sound(vec3(red[i], green[i], blue[i])));
                         let colors = [red, green, blue].map(|channel| channel.map(Scalar::to_f64));
                         halves[(first + sample) as usize % 2].add(&colors, &is_sound);
-                        *dropped += is_sound[..near.places.len()].iter().filter(|is_sound| !**is_sound).count() as u64;
+                        *dropped += is_sound[..near.places.len()]
+                            .iter()
+                            .filter(|is_sound| !**is_sound)
+                            .count() as u64;
                     }
                 }
             },

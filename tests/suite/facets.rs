@@ -24,7 +24,11 @@ const CASES: [&[&str]; 5] = [
         "transmission.weight=0.6",
     ],
     &["specular.lobe=ggx-ndf", "specular.roughness=0.5", "specular.ior=1.5"],
-    &["specular.lobe=blinn-phong", "specular.roughness=0.4", "specular.ior=1.5"],
+    &[
+        "specular.lobe=blinn-phong",
+        "specular.roughness=0.4",
+        "specular.ior=1.5",
+    ],
 ];
 
 /// Angles of view, and whether they are from within.
@@ -131,7 +135,11 @@ fn densities_of_samples_are_those_that_compete() {
                 let told = case.density(drawn.wi);
                 let off = (drawn.density - told).abs() / told.max(1e-3);
                 let is_seen = drawn.throughput.max_component() > 0.0;
-                assert!(!is_seen || off < 1e-6, "{assignments:?} seen at {view:?}: {} told as {told}", drawn.density);
+                assert!(
+                    !is_seen || off < 1e-6,
+                    "{assignments:?} seen at {view:?}: {} told as {told}",
+                    drawn.density
+                );
             }
         }
     }
@@ -143,9 +151,15 @@ fn no_sample_of_visible_facets_weighs_more_than_what_arrives() {
     for assignments in CASES.iter().filter(|case| case.contains(&"specular.lobe=ggx")) {
         for view in VIEWS {
             let case = Case::new(assignments, view);
-            let most = (0..20_000).map(|i| case.draw(i).throughput.max_component()).fold(0.0, f64::max);
+            let most = (0..20_000)
+                .map(|i| case.draw(i).throughput.max_component())
+                .fold(0.0, f64::max);
             // Beside a base, the layers' shares are those of their means.
-            let limit = if assignments.contains(&"transmission.weight=0.6") { 1.5 } else { 1.0 + 1e-9 };
+            let limit = if assignments.contains(&"transmission.weight=0.6") {
+                1.5
+            } else {
+                1.0 + 1e-9
+            };
             assert!(most <= limit, "{assignments:?} seen at {view:?}: {most}");
         }
     }

@@ -1,11 +1,11 @@
 //! The camera rays of a tile, and tiles in which they meet nothing: most of many a picture, of which no path goes on.
 
-use super::group::Groups;
-use super::paths::Paths;
 use super::Integrator;
+use super::group::Groups;
+use super::paths::{Paths, Vectors};
 use super::results::Results;
 use super::wave::Tile;
-use crate::cpu::recorder::Recorder;
+use crate::cpu::recorder::{Recorder, single};
 use crate::instructions;
 use crate::job::BackgroundKind;
 use crate::optics::real::Real;
@@ -41,10 +41,16 @@ impl<T: Real> Integrator<'_, T> {
         let count = paths.count();
         for first in (0..count).step_by(PACKET) {
             let together = PACKET.min(count - first);
-            let packet = Packet::of((first..first + together).map(|place| {
-                let (origin, direction) = (paths.origin.get(place), paths.state.direction.get(place));
-                (origin.to_f32(), direction.to_f32(), f32::MAX)
-            }));
+            // They lie side by side; behind the last one there is room for as many.
+            let side_by_side = |rays: &Vectors<T::Scalar>| {
+                [&rays.x, &rays.y, &rays.z].map(|axis| std::array::from_fn(|lane| single(axis[first + lane])))
+            };
+            let mut packet = Packet {
+                origins: side_by_side(&paths.origin),
+                directions: side_by_side(&paths.state.direction),
+                t_max: [f32::MAX; PACKET],
+            };
+            packet.fill(together);
             let met = self.geometry.intersect_packet(instructions::level(), &packet);
             hits.extend_from_slice(&met[..together]);
         }
@@ -56,11 +62,7 @@ impl<T: Real> Integrator<'_, T> {
     }
 
     /// What paths find whose camera rays meet nothing.
-    pub(super) fn see_background<R: Recorder>(
-        &self,
-        paths: &Paths<T::Scalar, R>,
-        results: &mut Results<T::Scalar>,
-    ) {
+    pub(super) fn see_background<R: Recorder>(&self, paths: &Paths<T::Scalar, R>, results: &mut Results<T::Scalar>) {
         let count = paths.count();
         T::vectorize(
             #[inline(always)]

@@ -5,9 +5,7 @@ use super::paths::Paths;
 use super::{Arrival, BELOW_DIMENSION, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, ROULETTE_START};
 use crate::cpu::recorder::{End, Event, Purpose, Recorder, single};
 use crate::job::Strategy;
-use crate::optics::material::{
-    Material, MaterialNumbers, MaterialSample, material_layers, material_sample, passes_on,
-};
+use crate::optics::material::{Material, MaterialNumbers, MaterialSample, material_layers, material_sample, passes_on};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 use crate::scene::surface::SurfacePoint;

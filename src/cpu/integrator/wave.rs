@@ -101,7 +101,8 @@ impl<T: Real> Integrator<'_, T> {
             let samples = [from, WAVE_SAMPLES.min(first + count - from)];
             let is_background = self.trace_wave(tile, samples, wave);
             if !is_background {
-                wave.results.fill(wave.paths.found.iter().map(|found| self.result(found)));
+                wave.results
+                    .fill(wave.paths.found.iter().map(|found| self.result(found)));
             }
             tell(samples, &wave.results);
         }
@@ -183,8 +184,8 @@ impl<T: Real> Integrator<'_, T> {
         }
     }
 
-    /// Traces the rays of all paths under way where surfaces have holes, has the processor fetch what shading will look up, and puts those side by side
-    /// that met the same material.
+    /// Traces the rays of all paths under way where surfaces have holes, has the processor fetch what shading will look up,
+    /// and puts those side by side that met the same material.
     fn trace(&self, bounce: u32, wave: &mut Wave<T>) {
         let Wave {
             paths,

@@ -370,11 +370,7 @@ pub fn lobe_sample<T: Real>(
             match shape.horizon {
                 // What is lost in any case is left where it is: it tells of the facet that it was drawn for.
                 Horizon::Mirror => LobeSample {
-                    wi: Vec3::select(
-                        below & T::zero().less(weight),
-                        raw.reflected_at_plane(view.normal),
-                        raw,
-                    ),
+                    wi: Vec3::select(below & T::zero().less(weight), raw.reflected_at_plane(view.normal), raw),
                     weight,
                 },
                 Horizon::Absorb => LobeSample {

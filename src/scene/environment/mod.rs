@@ -287,33 +287,27 @@ pub fn environment_radiance<T: Real>(environment: &Environment, direction_local:
 #[inline(always)]
 pub fn environment_radiance_at<T: Real>(environment: &Environment, uv: [T; 2]) -> Vec3<T> {
     let Bilinear { texels, shares } = bilinear(environment, uv);
-    let shares = [shares[0].to_each(), shares[1].to_each()];
-    // All channels of a lane together: they lie side by side.
-    let radiances = T::each(|lane| {
-        let [x, y] = [0, 1].map(|axis: usize| shares[axis].as_ref()[lane]);
-        let texel = |which: usize| {
-            let texel = &environment.texels[texels[which].as_ref()[lane] as usize];
-            texel.map(|radiance| T::Scalar::from_f64(f64::from(radiance)))
-        };
-        let upper = mixed(texel(0), texel(1), x);
-        let lower = mixed(texel(2), texel(3), x);
-        mixed(upper, lower, y)
-    });
-    let channel = |channel: usize| T::from_lanes(|lane| radiances.as_ref()[lane][channel]);
-    vec3(channel(0), channel(1), channel(2))
+    let upper = texel_radiance(environment, &texels, 0).mix(texel_radiance(environment, &texels, 1), shares[0]);
+    let lower = texel_radiance(environment, &texels, 2).mix(texel_radiance(environment, &texels, 3), shares[0]);
+    upper.mix(lower, shares[1])
 }
 
-/// Two texels mixed, as [`Vec3::mix`] says.
+/// The radiance of one of the texels around each lane's place.
 #[inline(always)]
-fn mixed<S: Scalar>(from: [S; 4], to: [S; 4], share: S) -> [S; 4] {
-    let left = S::one() - share;
-    std::array::from_fn(|i| from[i] * left + to[i] * share)
+fn texel_radiance<T: Real>(environment: &Environment, texels: &T::Each<[usize; 4]>, which: usize) -> Vec3<T> {
+    let texel = |lane: usize| &environment.texels[texels.as_ref()[lane][which]];
+    let number = |radiance: f32| T::Scalar::from_f64(f64::from(radiance));
+    vec3(
+        T::from_lanes(|lane| number(texel(lane)[0])),
+        T::from_lanes(|lane| number(texel(lane)[1])),
+        T::from_lanes(|lane| number(texel(lane)[2])),
+    )
 }
 
 /// The texels around a place in the map.
 struct Bilinear<T: Real> {
     /// Which they are: two above, two below.
-    texels: [T::Each<u32>; 4],
+    texels: T::Each<[usize; 4]>,
     /// The shares of the right ones and of those below.
     shares: [T; 2],
 }
@@ -325,29 +319,25 @@ fn bilinear<T: Real>(environment: &Environment, uv: [T; 2]) -> Bilinear<T> {
     let y = uv[1] * T::from_f64(f64::from(environment.height)) - half;
     let (left, top) = (x.floor(), y.floor());
     let (columns, rows) = (left.to_each(), top.to_each());
-    let (width, height) = (environment.width, environment.height);
-    // Written so that compilers turn it into lanes. u is below 1: one step at most around the map.
-    let column = |lane: usize| columns.as_ref()[lane].to_f64() as i32;
-    let row = |lane: usize| rows.as_ref()[lane].to_f64() as i32;
-    let left_column: T::Each<u32> = T::each(|lane| {
-        let column = column(lane);
-        if column < 0 { width - 1 } else { column as u32 }
+    let (width, height) = (environment.width as i32, environment.height as i32);
+    let texels = T::each(|lane| {
+        let column = columns.as_ref()[lane].to_f64() as i32;
+        let row = rows.as_ref()[lane].to_f64() as i32;
+        // u is below 1: one step at most around the map.
+        let left_column = if column < 0 { width - 1 } else { column };
+        let right_column = if column + 1 >= width { 0 } else { column + 1 };
+        let line = |row: i32| row.clamp(0, height - 1) as usize * width as usize;
+        let (upper, lower) = (line(row), line(row + 1));
+        let (left_column, right_column) = (left_column as usize, right_column as usize);
+        [
+            upper + left_column,
+            upper + right_column,
+            lower + left_column,
+            lower + right_column,
+        ]
     });
-    let right_column: T::Each<u32> = T::each(|lane| {
-        let right = (column(lane) + 1) as u32;
-        if right >= width { 0 } else { right }
-    });
-    let line = |row: i32| row.clamp(0, height as i32 - 1) as u32 * width;
-    let upper: T::Each<u32> = T::each(|lane| line(row(lane)));
-    let lower: T::Each<u32> = T::each(|lane| line(row(lane) + 1));
-    let texel = |line: &T::Each<u32>, column: &T::Each<u32>| T::each(|lane| line.as_ref()[lane] + column.as_ref()[lane]);
     Bilinear {
-        texels: [
-            texel(&upper, &left_column),
-            texel(&upper, &right_column),
-            texel(&lower, &left_column),
-            texel(&lower, &right_column),
-        ],
+        texels,
         shares: [x - left, y - top],
     }
 }
@@ -355,9 +345,9 @@ fn bilinear<T: Real>(environment: &Environment, uv: [T; 2]) -> Bilinear<T> {
 /// Has the processor fetch what is looked up at a place in the map, so that it is there when it is needed.
 #[inline(always)]
 pub fn fetch_place<T: Real>(environment: &Environment, uv: [T; 2]) {
-    for texels in bilinear(environment, uv).texels {
-        for &texel in texels.as_ref() {
-            fetch(&environment.texels, texel as usize);
+    for texels in bilinear(environment, uv).texels.as_ref() {
+        for &texel in texels {
+            fetch(&environment.texels, texel);
         }
     }
 }

@@ -386,20 +386,18 @@ impl<S: Simd> Rays<S> {
     /// Has the rays that meet a child's box go on through what is under it one after the other; whether any meets something
     /// nearer than what was found.
     #[inline(always)]
-    fn search_alone<const ANY: bool>(
-        &self,
-        wide: &Wide,
-        child: u32,
-        entered: &Entered<S>,
-        found: &mut Found,
-    ) -> bool {
+    fn search_alone<const ANY: bool>(&self, wide: &Wide, child: u32, entered: &Entered<S>, found: &mut Found) -> bool {
         let mut rays = entered.met.to_bitmask();
         let distances = entered.distance.to_array();
         let mut is_new = false;
         while rays != 0 {
             let lane = rays.trailing_zeros() as usize % PACKET;
             rays &= rays - 1;
-            let mut lane_met = OfLane::<ANY> { lane, found, is_new: false };
+            let mut lane_met = OfLane::<ANY> {
+                lane,
+                found,
+                is_new: false,
+            };
             let entry = Entry::new(distances[lane], child);
             self.single(lane).search::<ANY, _>(wide, entry, &mut lane_met);
             is_new |= lane_met.is_new;

@@ -48,7 +48,10 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max
         boxes: BoxRay::new(simd, frame, wide),
         triangles: TriangleRay::new(simd, frame),
     };
-    let mut nearest = Nearest { t: t_max, triangle: None };
+    let mut nearest = Nearest {
+        t: t_max,
+        triangle: None,
+    };
     ray.search::<ANY, _>(wide, Entry::ROOT, &mut nearest);
     nearest.triangle.map(|triangle| (nearest.t, triangle))
 }
