@@ -3,7 +3,7 @@
 
 use std::array::from_fn;
 
-use super::integrator::{NEAR, Near, Results, Tile, is_sound};
+use super::integrator::{NEAR, Results, Tile, is_sound};
 use crate::job::features::GUIDE_SAMPLES;
 use crate::job::film::{Film, HalfSums};
 use crate::optics::real::{Real, Scalar};
@@ -27,8 +27,8 @@ impl<'a> TileSums<'a> {
         };
         for near in tile.near() {
             let mut halves = [NearSums::default(); 2];
-            for (i, pixel) in sums.pixels(near).enumerate() {
-                let of_pixel = sums.film.halves(pixel);
+            for (i, place) in near.places.iter().enumerate() {
+                let of_pixel = sums.film.halves(sums.pixel(place));
                 for (half, of_pixel) in halves.iter_mut().zip(&of_pixel) {
                     half.set(i, of_pixel, true);
                 }
@@ -38,20 +38,16 @@ impl<'a> TileSums<'a> {
         sums
     }
 
-    /// Which pixels of the film are near each other.
-    fn pixels(&self, near: Near<'_>) -> impl Iterator<Item = usize> + use<> {
-        let width = self.film.width;
-        let places: [[u32; 2]; NEAR] = from_fn(|i| near.places.get(i).copied().unwrap_or_default());
-        let pixels = places.map(|[x, y]| (y * width + x) as usize);
-        pixels.into_iter().take(near.places.len())
+    /// Which pixel of the film lies at a place in the tile.
+    fn pixel(&self, [x, y]: &[u32; 2]) -> usize {
+        (y * self.film.width + x) as usize
     }
 
     /// Adds as many samples of each pixel, from sample `first` on.
     pub fn add<T: Real>(&mut self, [first, count]: [u32; 2], results: &Results<T::Scalar>) {
+        let (tile, halves) = (self.tile, &mut self.halves);
         let costs = &mut self.film.costs[0];
         costs.rays += results.rays() as f64;
-        let (tile, halves) = (self.tile, &mut self.halves);
-        let dropped = &mut costs.dropped;
         T::vectorize(
             #[inline(always)]
             || {
@@ -61,10 +57,8 @@ impl<'a> TileSums<'a> {
                         let is_sound: [bool; NEAR] = from_fn(|i| is_sound(vec3(red[i], green[i], blue[i])));
                         let colors = [red, green, blue].map(|channel| channel.map(Scalar::to_f64));
                         halves[(first + sample) as usize % 2].add(&colors, &is_sound);
-                        *dropped += is_sound[..near.places.len()]
-                            .iter()
-                            .filter(|is_sound| !**is_sound)
-                            .count() as u64;
+                        let of_pixels = &is_sound[..near.places.len()];
+                        costs.dropped += of_pixels.iter().filter(|is_sound| !**is_sound).count() as u64;
                     }
                 }
             },
@@ -80,8 +74,8 @@ impl<'a> TileSums<'a> {
         for sample in 0..count {
             for near in self.tile.near() {
                 let path = near.path([sample, count]);
-                for (pixel, path) in self.pixels(near).zip(path..) {
-                    let found = results.get(path);
+                for (place, path) in near.places.iter().zip(path..) {
+                    let (pixel, found) = (self.pixel(place), results.get(path));
                     if !is_sound(found.radiance) {
                         continue;
                     }
@@ -100,7 +94,8 @@ impl<'a> TileSums<'a> {
     /// Puts the sums back.
     pub fn finish(self) {
         for (near, halves) in self.tile.near().zip(&self.halves) {
-            for (i, pixel) in self.pixels(near).enumerate() {
+            for (i, place) in near.places.iter().enumerate() {
+                let pixel = self.pixel(place);
                 self.film.set_halves(pixel, &halves.each_ref().map(|half| half.get(i)));
             }
         }

@@ -162,9 +162,9 @@ pub fn passes_on<T: Real>(material: &Material<T>) -> T::Mask {
     material.transmits() & T::Mask::splat(by_index(Lobe::ALL, material.lobe).traits().weighs_one)
 }
 
-/// True where one facet is drawn that mirrors or refracts, as its Fresnel factor has it: where the lobe is made of facets
-/// and they are as rough seen either way. So the weights of samples have no part in it how the factor changes over the
-/// facets, which near the critical angle it does from almost none to all (Walter et al. 2007, section 5.3).
+/// True where one facet is drawn, and its Fresnel factor decides whether it mirrors or refracts: where the lobe is made of
+/// facets that are as rough seen either way. So no sample's weight depends on how the factor changes over the facets, which
+/// near the critical angle it does from almost none to all (Walter et al. 2007, section 5.3).
 #[inline(always)]
 pub(super) fn shares_facets<T: Real>(material: &Material<T>) -> T::Mask {
     let has_facets = by_index(Lobe::ALL, material.lobe).facets() != Facets::None;
