@@ -154,9 +154,9 @@ fn no_sample_of_visible_facets_weighs_more_than_what_arrives() {
             let most = (0..20_000)
                 .map(|i| case.draw(i).throughput.max_component())
                 .fold(0.0, f64::max);
-            // Beside a base, the layers' shares are those of their means.
+            // A base takes 0.4 of the samples, whatever the facet: what mirrors all weighs 1/0.6 then.
             let limit = if assignments.contains(&"transmission.weight=0.6") {
-                1.5
+                1.7
             } else {
                 1.0 + 1e-9
             };
