@@ -106,12 +106,16 @@ impl CpuEngine {
     }
 
     /// Samples of a pixel that a pass has at least. Samples that go on together cost less; but the first picture is there as
-    /// soon as can be, and a part of it is never more than twice as far as the rest when a step ends.
+    /// soon as can be, and then no part of it is more than twice as far as the rest when a step ends.
     fn least_pass_samples(&self, left: Duration) -> u32 {
+        let samples = self.samples_per_pixel();
+        if samples == 0 {
+            return 1;
+        }
         let TileGrid { width, height } = self.schedule.grid();
-        let pixels = (f64::from(width) * f64::from(height)).max(1.0);
+        let pixels = f64::from(width) * f64::from(height);
         let by_the_end = (self.samples_per_second * left.as_secs_f64() / pixels) as u32;
-        self.samples_per_pixel().max(by_the_end).clamp(1, WAVE_SAMPLES)
+        samples.max(by_the_end).min(WAVE_SAMPLES)
     }
 
     /// Renders tiles. Each is copied out of the film and back, which takes a thousandth of the time, so that no two cores
