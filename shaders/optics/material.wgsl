@@ -373,7 +373,7 @@ fn specular_probability(material: Material, layers: Layers, surface: Surface, wi
 }
 
 fn mirrored_share(reflected: f32, refracted: f32) -> f32 {
-    return reflected / max(reflected + refracted, 1e-20);
+    return sampled_share(reflected / max(reflected + refracted, 1e-20));
 }
 
 struct Transmission {

@@ -147,18 +147,19 @@ fn densities_of_samples_are_those_that_compete() {
 
 /// Near the critical angle some facets let through nearly all, others nothing: still no path grows.
 #[test]
-fn no_sample_of_visible_facets_weighs_more_than_what_arrives() {
+fn no_sample_of_visible_facets_outweighs_the_others() {
     for assignments in CASES.iter().filter(|case| case.contains(&"specular.lobe=ggx")) {
         for view in VIEWS {
             let case = Case::new(assignments, view);
             let most = (0..20_000)
                 .map(|i| case.draw(i).throughput.max_component())
                 .fold(0.0, f64::max);
-            // A base takes 0.4 of the samples, whatever the facet: what mirrors all weighs 1/0.6 then.
+            // What is rare is drawn one time in twenty at least. A base takes 0.4 of the samples, whatever the facet: what
+            // mirrors all weighs 1/0.6 then.
             let limit = if assignments.contains(&"transmission.weight=0.6") {
                 1.7
             } else {
-                1.0 + 1e-9
+                1.0 / 0.95 + 1e-9
             };
             assert!(most <= limit, "{assignments:?} seen at {view:?}: {most}");
         }

@@ -198,10 +198,10 @@ pub(super) fn specular_probability<T: Real>(
     probability
 }
 
-/// How often a facet mirrors of what it mirrors and refracts.
+/// How often a facet mirrors, by the luminances of what it mirrors and what it refracts, as [`sampled_share`] says.
 #[inline(always)]
 fn mirrored_share<T: Real>(reflected: T, refracted: T) -> T {
-    reflected / (reflected + refracted).max(T::from_f64(1e-20))
+    sampled_share(reflected / (reflected + refracted).max(T::from_f64(1e-20)))
 }
 
 /// What is refracted into a direction, and the probability of sampling the refracting lobe for it, where the coat is not
