@@ -89,14 +89,7 @@ fn compare(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
 
 /// The same rays sixteen at a time, against one by one.
 fn compare_packets(geometry: &Geometry, sets: &[(&str, Level)], kind: &Kind) {
-    let packet = |rays: &[Ray]| {
-        let mut packet = Packet::default();
-        for (lane, &(origin, direction)) in rays.iter().enumerate() {
-            packet.set(lane, origin, direction, f32::MAX);
-        }
-        packet.fill(rays.len());
-        packet
-    };
+    let packet = |rays: &[Ray]| Packet::of(rays.iter().map(|&(origin, direction)| (origin, direction, f32::MAX)));
     let packets: Vec<Packet> = kind.rays.chunks(PACKET).map(packet).collect();
     let mut cells = Vec::new();
     for (_, level) in sets {

@@ -3,8 +3,8 @@
 //! `cargo bench --bench peers [-- --quick --rates]`. Millions of samples a second, and (not with `--rates`) seconds to a
 //! relative mean squared error of 0.003, each against a long render of its own; that of all pixels, and that without the
 //! thousandth of them that are off the most, as a picture of glass has one pixel that holds most of the error or has not.
-//! With `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is run by `scripts/peers`, with the Python that `scripts/setup test` installs; where it is not there, a line says so and only
-//! Glossmith is measured.
+//! With `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is run by `scripts/peers`,
+//! with the Python that `scripts/setup test` installs; where it is not there, a line says so and only Glossmith is measured.
 
 mod scene;
 
@@ -118,13 +118,15 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
     let pixels = f64::from(extent.size * extent.size * extent.samples);
     let rate = |measured: &Measured| pixels / measured.seconds / 1e6;
     let ground = if case.ground { ", ground" } else { "" };
-    let (our_rate, their_rate) = (rate(&ours), rate(&theirs));
-    let mut line = format!("| {} | {}{ground} | {our_rate:.2} |", case.material, case.mesh);
-    if with_peer {
-        line += &format!(" {their_rate:.2} | {:.2} |", our_rate / their_rate);
-    } else {
-        line += " – | – |";
-    }
+    let beside = |ours: f64, theirs: f64| {
+        if with_peer {
+            format!(" {ours:.2} | {theirs:.2} | {:.2} |", ours / theirs)
+        } else {
+            format!(" {ours:.2} | – | – |")
+        }
+    };
+    let mut line = format!("| {} | {}{ground} |", case.material, case.mesh);
+    line += &beside(rate(&ours), rate(&theirs));
     if let Some(samples) = extent.reference {
         let our_times = ours.times_to_goal(&glossmith(folder, case, extent.size, samples, 1000)?.1);
         let mut their_times = [f64::NAN; 2];
@@ -132,11 +134,7 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
             their_times = theirs.times_to_goal(&peer(folder, case, extent.size, samples, 1000)?.1);
         }
         for (ours, theirs) in our_times.into_iter().zip(their_times) {
-            if with_peer {
-                line += &format!(" {ours:.2} | {theirs:.2} | {:.2} |", ours / theirs);
-            } else {
-                line += &format!(" {ours:.2} | – | – |");
-            }
+            line += &beside(ours, theirs);
         }
     } else {
         line += &" – |".repeat(6);

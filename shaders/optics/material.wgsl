@@ -277,7 +277,7 @@ fn material_scatter(
             let terms = material_fresnel_terms(material, surface.is_inside);
             color = fresnel(terms, half_vector_cosine(surface.wo, wi));
             specular = specular_probability(material, layers, surface, wi, color);
-            if is_passed_on && weight <= 0.0 {
+            if is_passed_on && !(weight > 0.0) {
                 specular = 0.0;
             }
             probability = specular;

@@ -36,7 +36,7 @@ const RAYS_MIN: usize = 8;
 pub struct Tile {
     pub(super) origin: [u32; 2],
     /// Its pixels from its corner on, those near each other one after the other.
-    pub places: Vec<[u32; 2]>,
+    places: Vec<[u32; 2]>,
 }
 
 /// Where the paths of a tile are followed, for one tile after the other.
@@ -158,7 +158,6 @@ impl<T: Real> Integrator<'_, T> {
         ways.clear();
         for &place in &*under_way {
             let place = usize::from(place);
-            hits[place] = None;
             if !paths.leaves[place] {
                 ways.add(ray_way(paths.state.direction.get(place).to_f32()), place);
             }
