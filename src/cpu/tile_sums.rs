@@ -1,8 +1,6 @@
 //! The sums of a tile's pixels while samples come in: those of pixels near each other field by field, as their samples are
 //! added side by side.
 
-use std::array::from_fn;
-
 use super::integrator::{NEAR, Results, Tile, is_sound};
 use crate::job::features::GUIDE_SAMPLES;
 use crate::job::film::{Film, HalfSums};
@@ -30,7 +28,7 @@ impl<'a> TileSums<'a> {
             for (i, place) in near.places.iter().enumerate() {
                 let of_pixel = sums.film.halves(sums.pixel(place));
                 for (half, of_pixel) in halves.iter_mut().zip(&of_pixel) {
-                    half.set(i, of_pixel, true);
+                    half.set(i, of_pixel, of_pixel.mean_luminance(), true);
                 }
             }
             sums.halves.push(halves);
@@ -53,11 +51,13 @@ impl<'a> TileSums<'a> {
             || {
                 for (near, halves) in tile.near().zip(halves) {
                     for sample in 0..count {
-                        let [red, green, blue] = results.radiances::<NEAR>(near.path([sample, count]));
-                        let is_sound: [bool; NEAR] = from_fn(|i| is_sound(vec3(red[i], green[i], blue[i])));
-                        let colors = [red, green, blue].map(|channel| channel.map(Scalar::to_f64));
-                        halves[(first + sample) as usize % 2].add(&colors, &is_sound);
-                        let of_pixels = &is_sound[..near.places.len()];
+                        let colors = results.radiances(near.path([sample, count]));
+                        let mut are_sound = [false; NEAR];
+                        for (i, sound) in are_sound.iter_mut().enumerate() {
+                            *sound = is_sound(vec3(colors[0][i], colors[1][i], colors[2][i]));
+                        }
+                        halves[(first + sample) as usize % 2].add(&colors, &are_sound);
+                        let of_pixels = &are_sound[..near.places.len()];
                         costs.dropped += of_pixels.iter().filter(|is_sound| !**is_sound).count() as u64;
                     }
                 }
@@ -108,6 +108,8 @@ struct NearSums {
     color: [[f64; NEAR]; 3],
     squared_deviations: [f64; NEAR],
     samples: [f64; NEAR],
+    /// Their mean luminance, which is needed for the next sample.
+    mean_luminance: [f64; NEAR],
 }
 
 impl NearSums {
@@ -120,9 +122,9 @@ impl NearSums {
         }
     }
 
-    /// Sets those of a pixel, if they are to be set. Written so that compilers turn it into lanes.
+    /// Sets those of a pixel and their mean luminance, if they are to be set. Written so that compilers turn it into lanes.
     #[inline(always)]
-    fn set(&mut self, i: usize, sums: &HalfSums, is_set: bool) {
+    fn set(&mut self, i: usize, sums: &HalfSums, mean_luminance: f64, is_set: bool) {
         let [red, green, blue] = sums.color;
         let put = |to: &mut f64, value: f64| *to = if is_set { value } else { *to };
         put(&mut self.color[0][i], red);
@@ -130,6 +132,7 @@ impl NearSums {
         put(&mut self.color[2][i], blue);
         put(&mut self.squared_deviations[i], sums.squared_deviations);
         put(&mut self.samples[i], sums.samples);
+        put(&mut self.mean_luminance[i], mean_luminance);
     }
 
     /// Adds a sample of each pixel where it is sound.
@@ -137,8 +140,9 @@ impl NearSums {
     fn add(&mut self, colors: &[[f64; NEAR]; 3], is_sound: &[bool; NEAR]) {
         for i in 0..NEAR {
             let mut sums = self.get(i);
-            sums.add(colors.map(|channel| channel[i]));
-            self.set(i, &sums, is_sound[i]);
+            let color = [colors[0][i], colors[1][i], colors[2][i]];
+            let mean = sums.add_to_mean(self.mean_luminance[i], color);
+            self.set(i, &sums, mean, is_sound[i]);
         }
     }
 }

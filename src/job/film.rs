@@ -75,19 +75,31 @@ pub fn luminance([red, green, blue]: [f64; 3]) -> f64 {
 
 impl HalfSums {
     /// Sum of the luminance.
+    #[inline(always)]
     pub fn luminance(&self) -> f64 {
         luminance(self.color)
     }
 
-    /// Adds a sample (Welford 1962).
+    /// The mean luminance; 0 where there are no samples.
     #[inline(always)]
+    pub fn mean_luminance(&self) -> f64 {
+        self.luminance() / self.samples.max(1.0)
+    }
+
+    /// Adds a sample.
     pub fn add(&mut self, color: [f64; 3]) {
+        self.add_to_mean(self.mean_luminance(), color);
+    }
+
+    /// Adds a sample (Welford 1962), given the mean luminance before; that after it.
+    #[inline(always)]
+    pub fn add_to_mean(&mut self, before: f64, color: [f64; 3]) -> f64 {
         let y = luminance(color);
-        let before = self.luminance() / self.samples.max(1.0);
         self.samples += 1.0;
         self.color = added(self.color, color);
         let after = self.luminance() / self.samples;
         self.squared_deviations += ((y - before) * (y - after)).max(0.0);
+        after
     }
 
     /// Both together (Chan, Golub and LeVeque 1983).

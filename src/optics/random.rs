@@ -70,7 +70,7 @@ pub fn hash_bits(bits: u32) -> u32 {
 /// A number in [0, 1) of 24 bits: never 1, in any precision.
 #[inline(always)]
 pub fn unit_from_bits<T: Real>(bits: u32) -> T {
-    T::from_f64(f64::from(bits >> 8) * (1.0 / 16_777_216.0))
+    T::from_count(bits >> 8) * T::from_f64(1.0 / 16_777_216.0)
 }
 
 /// The independent sequence: for a fixed key and dimension a permutation of the 2³² samples, so no number of a pixel's
@@ -182,8 +182,17 @@ pub fn random_pairs<T: Real>(
     sequence: Sequence,
     dimension: u32,
 ) -> [T; 2] {
-    let bits = random_pairs_bits::<T>(keys, samples, sequence, dimension);
-    bits.map(|bits| T::from_lanes(|lane| unit_from_bits(bits.as_ref()[lane])))
+    let [first, second] = random_pairs_bits::<T>(keys, samples, sequence, dimension);
+    [units_from_bits(&first), units_from_bits(&second)]
+}
+
+#[inline(always)]
+fn units_from_bits<T: Real>(bits: &T::Each<u32>) -> T {
+    let bits = bits.as_ref();
+    T::from_lanes(
+        #[inline(always)]
+        |lane| unit_from_bits(bits[lane]),
+    )
 }
 
 /// The pair of numbers in [0, 1) number `dimension` of this path.

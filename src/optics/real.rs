@@ -117,6 +117,11 @@ pub trait Real:
     /// what it is inlined into is compiled for other instructions; all that it calls must be inlined (`benches/lanes`).
     fn vectorize<R>(f: impl FnOnce() -> R) -> R;
 
+    /// A whole number, exact below 2²⁴.
+    #[inline(always)]
+    fn from_count(value: u32) -> Self {
+        Self::from_f64(f64::from(value))
+    }
     /// 0.
     #[inline(always)]
     fn zero() -> Self {
@@ -191,6 +196,10 @@ macro_rules! real {
             const LANES: usize = 1;
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
+                value as $type
+            }
+            #[inline(always)]
+            fn from_count(value: u32) -> Self {
                 value as $type
             }
             #[inline(always)]

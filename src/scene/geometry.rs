@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::convex::is_convex;
 use super::ground::Ground;
-use super::hierarchy::{Found, PACKET, Packet, Wide};
+use super::hierarchy::{Doors, Found, PACKET, Packet};
 use super::intersect::{Hit, RayFrame};
 use super::light::AreaShape;
 use super::loading::{Cancelled, Loading};
@@ -241,47 +241,70 @@ impl Geometry {
     }
 
     /// What each ray of a packet meets, as [`Geometry::intersect`] says, the instructions forced by `level`.
+    #[inline(always)]
     pub fn intersect_packet(&self, level: Level, packet: &Packet) -> [Option<Hit>; PACKET] {
-        let Some(found) = self.packet_through(packet, |wide, packet| wide.nearest_of(level, packet)) else {
-            let alone =
-                |lane| self.intersect_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]);
-            return std::array::from_fn(alone);
-        };
-        let [u, v] = found.weights();
-        std::array::from_fn(|lane| {
-            Some(Hit {
-                t: found.t[lane],
-                triangle: found.marks[lane].checked_sub(1)?,
-                u: u[lane],
-                v: v[lane],
-            })
-        })
+        self.intersect_behind(level, packet, &[None; 2])
     }
 
-    /// What the rays of a packet meet of both parts by a way of tracing one; `None` where they do not go the same way.
+    /// The same of several packets whose rays go much the same way, as from a camera through a part of its picture. `tell`
+    /// hears of each packet what its rays meet, in order; of none if no ray meets anything.
     #[inline(always)]
-    fn packet_through(&self, packet: &Packet, trace: impl Fn(&Wide, &Packet) -> Option<Found>) -> Option<Found> {
-        let mut found = trace(self.model.wide(), packet)?;
-        if !self.around.is_empty() {
-            // No farther than what was met; where any triangle would do, what has met one goes nowhere: its distance is
-            // negative.
-            let packet = Packet {
-                t_max: found.t,
-                ..*packet
-            };
-            let around = trace(self.around.wide(), &packet)?;
-            found.take(&around, self.model.triangles.len() as u32);
+    pub fn intersect_packets(&self, level: Level, packets: &[Packet], mut tell: impl FnMut([Option<Hit>; PACKET])) {
+        let doors = [&self.model, &self.around].map(|part| part.wide().doors(level, packets));
+        if doors.iter().all(|doors| doors.as_ref().is_some_and(Doors::are_none)) {
+            return;
         }
-        Some(found)
+        for packet in packets {
+            tell(self.intersect_behind(level, packet, &doors));
+        }
+    }
+
+    /// What each ray of a packet meets behind the doors of both parts, where they are known.
+    #[inline(always)]
+    fn intersect_behind(&self, level: Level, packet: &Packet, doors: &[Option<Doors>; 2]) -> [Option<Hit>; PACKET] {
+        let mut hits = [None; PACKET];
+        let found = self.packet_through(packet, |part, found| {
+            let doors = doors[part].as_ref();
+            [&self.model, &self.around][part]
+                .wide()
+                .nearest_of(level, packet, doors, found)
+        });
+        for (lane, hit) in hits.iter_mut().enumerate() {
+            *hit = match &found {
+                Some(found) => found.hit(lane),
+                None => self.intersect_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]),
+            };
+        }
+        hits
+    }
+
+    /// What the rays of a packet meet of both parts, by a way of tracing one, the model and what is around it; `None` where
+    /// they do not go the same way.
+    #[inline(always)]
+    fn packet_through(&self, packet: &Packet, trace: impl Fn(usize, &mut Found) -> bool) -> Option<Found> {
+        let mut found = Found::nothing(packet);
+        let mut is_one_way = trace(0, &mut found);
+        if !self.around.is_empty() {
+            found.first = self.model.triangles.len() as u32;
+            is_one_way &= trace(1, &mut found);
+        }
+        is_one_way.then_some(found)
     }
 
     /// Whether any triangle is met on each ray of a packet, as [`Geometry::occluded`] says.
+    #[inline(always)]
     pub fn occluded_packet(&self, level: Level, packet: &Packet) -> [bool; PACKET] {
-        let Some(Found { marks, .. }) = self.packet_through(packet, |wide, packet| wide.any_of(level, packet)) else {
-            let alone = |lane| self.occluded_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]);
-            return std::array::from_fn(alone);
-        };
-        marks.map(|mark| mark != 0)
+        let mut is_met = [false; PACKET];
+        let found = self.packet_through(packet, |part, found| {
+            [&self.model, &self.around][part].wide().any_of(level, packet, found)
+        });
+        for (lane, is_met) in is_met.iter_mut().enumerate() {
+            *is_met = match &found {
+                Some(found) => found.is_met(lane),
+                None => self.occluded_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]),
+            };
+        }
+        is_met
     }
 
     /// Has the processor fetch what shading a triangle looks up.

@@ -331,6 +331,48 @@ fn rays_meet_the_same_in_packets_as_alone() {
     }
 }
 
+/// Rays of packets that enter the hierarchy together, as a camera's do, find the same as each packet by itself.
+#[test]
+fn packets_meet_the_same_together_as_alone() {
+    for (name, geometry) in geometries() {
+        let mut random = Random::new(23);
+        let (mut met, mut told) = (0, 0);
+        for round in 0..1_000 {
+            let first = random_ray(&mut random, &geometry);
+            // Cones from a needle to a half-space; every fourth time origins differ, too.
+            let spread = 0.5_f32.powi(random.below(12) as i32);
+            let lens = if random.below(4) == 0 { 0.05 } else { 0.0 };
+            let packets = (0..1 + random.below(32)).map(|_| {
+                let mut packet = Packet::default();
+                for lane in 0..PACKET {
+                    let moved = |from: [f32; 3], by: Vec3| (Vec3::from_array(from) + by).to_array();
+                    let origin = moved(first.origin, random.in_ball() * lens);
+                    let direction = moved(first.direction, random.in_ball() * spread);
+                    packet.set(lane, origin, direction, f32::MAX);
+                }
+                packet
+            });
+            let packets: Vec<Packet> = packets.collect();
+            for (set, level) in sets() {
+                let mut together = Vec::new();
+                geometry.intersect_packets(level, &packets, |hits| together.push(hits));
+                told += together.len();
+                if together.is_empty() {
+                    together = vec![[None; PACKET]; packets.len()];
+                }
+                assert_eq!(together.len(), packets.len());
+                for (packet, together) in packets.iter().zip(together) {
+                    let alone = geometry.intersect_packet(level, packet);
+                    assert_eq!(together.map(bits), alone.map(bits), "{name} under {set}, round {round}");
+                    met += alone.iter().flatten().count();
+                }
+            }
+        }
+        println!("{name}: {met} rays of {told} packets met something");
+        assert!(met > 1_000, "{name}: {met} rays met something");
+    }
+}
+
 #[test]
 fn nothing_leaks_under_any_instruction_set() {
     let sphere = Geometry::build(&load(&ModelSource::Sphere).unwrap(), false);

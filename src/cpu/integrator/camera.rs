@@ -8,7 +8,7 @@ use super::wave::Tile;
 use crate::cpu::recorder::{Recorder, single};
 use crate::instructions;
 use crate::job::BackgroundKind;
-use crate::optics::real::Real;
+use crate::optics::real::{Real, Scalar};
 use crate::scene::{Hit, PACKET, Packet};
 
 impl<T: Real> Integrator<'_, T> {
@@ -19,9 +19,7 @@ impl<T: Real> Integrator<'_, T> {
         paths.clear();
         for near in tile.near() {
             for sample in first..first + count {
-                for [x, y] in near.places {
-                    paths.add([tile.origin[0] + x, tile.origin[1] + y], sample);
-                }
+                paths.add(tile.origin, near.places, sample);
             }
         }
         T::vectorize(
@@ -35,25 +33,28 @@ impl<T: Real> Integrator<'_, T> {
         );
     }
 
-    /// What camera rays meet where no surface has holes, those side by side together.
-    pub(super) fn trace_camera_rays<R: Recorder>(&self, paths: &Paths<T::Scalar, R>, hits: &mut Vec<Option<Hit>>) {
-        hits.clear();
+    /// What camera rays meet where no surface has holes, those side by side together; nothing if none of them meets anything.
+    pub(super) fn trace_camera_rays<R: Recorder>(
+        &self,
+        paths: &Paths<T::Scalar, R>,
+        packets: &mut Vec<Packet>,
+        hits: &mut Vec<Option<Hit>>,
+    ) {
         let count = paths.count();
+        packets.clear();
         for first in (0..count).step_by(PACKET) {
-            let together = PACKET.min(count - first);
-            // They lie side by side; behind the last one there is room for as many.
-            let side_by_side = |rays: &Vectors<T::Scalar>| {
-                [&rays.x, &rays.y, &rays.z].map(|axis| std::array::from_fn(|lane| single(axis[first + lane])))
-            };
             let mut packet = Packet {
-                origins: side_by_side(&paths.origin),
-                directions: side_by_side(&paths.state.direction),
+                origins: side_by_side(&paths.origin, first),
+                directions: side_by_side(&paths.state.direction, first),
                 t_max: [f32::MAX; PACKET],
             };
-            packet.fill(together);
-            let met = self.geometry.intersect_packet(instructions::level(), &packet);
-            hits.extend_from_slice(&met[..together]);
+            packet.fill(PACKET.min(count - first));
+            packets.push(packet);
         }
+        hits.clear();
+        self.geometry
+            .intersect_packets(instructions::level(), packets, |met| hits.extend(met));
+        hits.truncate(count);
     }
 
     /// Whether what is seen behind everything takes no more than looking it up.
@@ -76,4 +77,16 @@ impl<T: Real> Integrator<'_, T> {
             },
         );
     }
+}
+
+/// As many vectors as a packet has, from one on: behind the last one there is room for them.
+#[inline(always)]
+fn side_by_side<S: Scalar>(vectors: &Vectors<S>, first: usize) -> [[f32; PACKET]; 3] {
+    let mut axes = [[0.0; PACKET]; 3];
+    for (axis, numbers) in axes.iter_mut().zip([&vectors.x, &vectors.y, &vectors.z]) {
+        for (to, number) in axis.iter_mut().zip(&numbers[first..first + PACKET]) {
+            *to = single(*number);
+        }
+    }
+    axes
 }

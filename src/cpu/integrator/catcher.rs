@@ -65,9 +65,9 @@ impl<T: Real> Integrator<'_, T> {
             return passed;
         };
         if arrival.bounce > 0 {
-            arrival.members.for_each(&mut paths.found, arrival.on, |path, _| {
-                if path.caught.is_mirrored() {
-                    path.caught = Caught::Not;
+            arrival.members.for_each(&mut paths.caught, arrival.on, |caught, _| {
+                if caught.is_mirrored() {
+                    *caught = Caught::Not;
                 }
             });
         } else if catcher.slot == point.slot {
@@ -115,8 +115,8 @@ impl<T: Real> Integrator<'_, T> {
         arrival.throughput = Vec3::select(is_mirrored, arrival.throughput, shown * is_lit * kept);
         let (backgrounds, alphas) = (background.to_each(), alpha.to_each());
         let (mirrors, gaps) = (is_mirrored.to_bits(), is_transparent.to_bits());
-        members.for_each(&mut paths.found, is_there, |path, lane| {
-            path.caught = if mirrors >> lane & 1 == 1 {
+        members.for_each(&mut paths.caught, is_there, |caught, lane| {
+            *caught = if mirrors >> lane & 1 == 1 {
                 Caught::Mirrored {
                     background: backgrounds.as_ref()[lane],
                     alpha: alphas.as_ref()[lane],
@@ -151,7 +151,7 @@ impl<T: Real> Integrator<'_, T> {
 impl<S: Scalar> Caught<S> {
     /// Whether the path's last surface was a shadow catcher that mirrors it.
     #[inline(always)]
-    pub(super) fn is_mirrored(self) -> bool {
+    pub(super) fn is_mirrored(&self) -> bool {
         matches!(self, Self::Mirrored { .. })
     }
 

@@ -57,12 +57,6 @@ impl<T: Real> Group<T> {
         of: PhantomData,
     };
 
-    /// Where the path of a lane lies; that of the first where there is none.
-    #[inline(always)]
-    pub fn place(&self, lane: usize) -> usize {
-        self.first + if lane < self.count { lane } else { 0 }
-    }
-
     /// True where a lane has a path.
     #[inline(always)]
     pub fn mask(&self) -> T::Mask {
@@ -86,6 +80,16 @@ impl<T: Real> Group<T> {
     #[inline(always)]
     pub fn number(&self, field: &[T::Scalar]) -> T {
         T::load(&field[self.first..])
+    }
+
+    /// A whole number of each path.
+    #[inline(always)]
+    pub fn whole_number(&self, field: &[u32]) -> T {
+        let field = &field[self.first..self.first + T::LANES];
+        T::from_lanes(
+            #[inline(always)]
+            |lane| T::Scalar::from_count(field[lane]),
+        )
     }
 
     /// A number of each path; beyond them the first one's.

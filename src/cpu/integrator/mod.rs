@@ -30,7 +30,7 @@ use crate::scene::texture::{Textures, textured_materials};
 pub use catcher::CATCHER_DIMENSION;
 use catcher::Caught;
 use group::{Group, Members};
-use paths::{Found, Paths};
+use paths::{Found, Look, Paths};
 pub use results::Results;
 pub use wave::{NEAR, Near, Tile, WAVE_SAMPLES, Wave};
 
@@ -160,9 +160,9 @@ impl<'a, T: Real> Integrator<'a, T> {
         self.samples_environment || self.samples_emitters
     }
 
-    /// What a path found that has come to its end.
-    fn result<R: Recorder>(&self, found: &Found<T::Scalar, R>) -> PathResult<T::Scalar> {
-        found.result(self.settings.least_reflections == 0)
+    /// What a path of a wave found that has come to its end.
+    fn result<R: Recorder>(&self, paths: &Paths<T::Scalar, R>, number: usize) -> PathResult<T::Scalar> {
+        paths.result(number, self.settings.least_reflections == 0)
     }
 
     /// The surfaces that paths met, all of one slot.
@@ -264,10 +264,10 @@ impl<'a, T: Real> Integrator<'a, T> {
         paths: &mut Paths<T::Scalar, R>,
     ) {
         let members = arrival.members;
-        if self.guide_samples == 0 {
+        if paths.looks.is_empty() {
             return;
         }
-        let is_looking = arrival.on & members.truths(&paths.found, |path| path.is_looking);
+        let is_looking = arrival.on & members.truths(&paths.looks, |look| look.goes_on);
         if !is_looking.any() {
             return;
         }
@@ -275,12 +275,12 @@ impl<'a, T: Real> Integrator<'a, T> {
         let depth = arrival.distance * arrival.direction.dot(self.camera.forward);
         let (albedos, normals) = (albedo.to_each(), point.surface.frame.normal.to_each());
         let depths = depth.to_each();
-        members.for_each(&mut paths.found, is_looking, |path, lane| {
-            path.seen.albedo = albedos.as_ref()[lane].to_f32().map(|share| share.clamp(0.0, 1.0));
-            path.seen.normal = normals.as_ref()[lane].to_f32();
+        members.for_each(&mut paths.looks, is_looking, |Look { seen, .. }, lane| {
+            seen.albedo = albedos.as_ref()[lane].to_f32().map(|share| share.clamp(0.0, 1.0));
+            seen.normal = normals.as_ref()[lane].to_f32();
             if arrival.bounce == 0 {
-                path.seen.hits = 1.0;
-                path.seen.depth = single(depths.as_ref()[lane]);
+                seen.hits = 1.0;
+                seen.depth = single(depths.as_ref()[lane]);
             }
         });
     }
@@ -303,11 +303,11 @@ impl<'a, T: Real> Integrator<'a, T> {
             members.for_each(&mut paths.found, on, |path, lane| path.alpha = alphas.as_ref()[lane]);
         } else {
             let is_caught = match self.settings.catcher {
-                Some(_) => on & members.truths(&paths.found, |path| path.caught.is_mirrored()),
+                Some(_) => on & members.truths(&paths.caught, Caught::is_mirrored),
                 None => T::Mask::splat(false),
             };
             if is_caught.any() {
-                self.leave_catcher(&members, is_caught, bounce, &mut paths.found);
+                self.leave_catcher(&members, is_caught, bounce, paths);
             }
             let ray = Arrival {
                 on: on & !is_caught,
@@ -329,15 +329,16 @@ impl<'a, T: Real> Integrator<'a, T> {
         members: &Members<T>,
         on: T::Mask,
         bounce: u32,
-        found: &mut [Found<T::Scalar, R>],
+        paths: &mut Paths<T::Scalar, R>,
     ) {
-        let background = Vec3::from_lanes(|lane| match members.of(found, lane).caught {
+        let Paths { found, caught, .. } = paths;
+        let background = Vec3::from_lanes(|lane| match *members.of(caught, lane) {
             Caught::Mirrored { background, .. } => background,
             _ => Vec3::zero(),
         });
         self.add(members, on, Source::Background, background, bounce, found);
-        members.for_each(found, on, |path, _| {
-            if let Caught::Mirrored { alpha, .. } = path.caught {
+        members.for_each(found, on, |path, lane| {
+            if let Caught::Mirrored { alpha, .. } = *members.of(caught, lane) {
                 path.alpha = alpha;
             }
         });
@@ -399,9 +400,9 @@ impl<S: Scalar> Integrator<'_, S> {
     pub fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<S> {
         let settings = self.settings;
         let mut paths = Paths::new(1, S::LANES, settings.sequence);
-        paths.add(pixel, sample);
+        paths.add(pixel, &[[0, 0]], sample);
         paths.set_counters(settings.seed);
-        paths.start([recorder], self.guide_samples);
+        paths.start([recorder], self.guide_samples, settings.catcher.is_some());
         self.first_rays(&Group::ALONE, &mut paths);
         for bounce in 0.. {
             let is_stopped = self.stop(bounce, 0, &mut paths);
@@ -415,7 +416,7 @@ impl<S: Scalar> Integrator<'_, S> {
                 break;
             }
         }
-        self.result(&paths.found[0])
+        self.result(&paths, 0)
     }
 
     /// What a path does at the surface that stopped it.
@@ -483,6 +484,6 @@ fn absorb<T: Real, R: Recorder>(
 /// Finite and not negative: what may be added to the picture.
 #[inline(always)]
 pub fn is_sound<S: Scalar>(color: Vec3<S>) -> bool {
-    let [x, y, z] = color.to_f64().map(|x| (0.0..=RADIANCE_MAX).contains(&x));
-    x & y & z
+    let is_within = |x: S| (0.0..=RADIANCE_MAX).contains(&x.to_f64());
+    is_within(color.x) & is_within(color.y) & is_within(color.z)
 }

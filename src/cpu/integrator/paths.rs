@@ -139,11 +139,17 @@ pub(super) struct Paths<S, R> {
     pub lights: LightRays<S>,
     /// Those that arrive, side by side.
     pub arriving: LightRays<S>,
+    /// How many there are.
+    count: usize,
     /// Pixels and numbers of the samples in them, by the paths' numbers in the wave.
-    pub pixels: Vec<[u32; 2]>,
+    pub pixels: [Vec<u32>; 2],
     pub samples: Vec<u32>,
     /// What they have found, by their numbers in the wave.
     pub found: Vec<Found<S, R>>,
+    /// What they see first, by their numbers in the wave; empty where none of them tells.
+    pub looks: Vec<Look>,
+    /// What a shadow catcher has made of them, by their numbers in the wave; empty where there is none.
+    pub caught: Vec<Caught<S>>,
 }
 
 impl<S: Scalar, R: Recorder> Paths<S, R> {
@@ -163,29 +169,40 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
             light_rows: vec![0; count],
             lights: LightRays::new(count),
             arriving: LightRays::new(count),
-            pixels: Vec::with_capacity(count),
-            samples: Vec::with_capacity(count),
+            count: 0,
+            pixels: [vec![0; count], vec![0; count]],
+            samples: vec![0; count],
             found: Vec::with_capacity(count),
+            looks: Vec::new(),
+            caught: Vec::new(),
         }
     }
 
     /// Forgets all paths.
     pub fn clear(&mut self) {
-        self.pixels.clear();
-        self.samples.clear();
+        self.count = 0;
         self.found.clear();
+        self.looks.clear();
+        self.caught.clear();
     }
 
     /// How many paths the wave has.
     pub fn count(&self) -> usize {
-        self.pixels.len()
+        self.count
     }
 
-    /// Adds a path before its first ray, of which [`Paths::set_counters`] and [`Paths::start`] make the rest.
+    /// Adds a sample of each of these pixels, from a corner on: paths before their first rays, of which
+    /// [`Paths::set_counters`] and [`Paths::start`] make the rest.
     #[inline(always)]
-    pub fn add(&mut self, pixel: [u32; 2], sample: u32) {
-        self.pixels.push(pixel);
-        self.samples.push(sample);
+    pub fn add(&mut self, corner: [u32; 2], pixels: &[[u32; 2]], sample: u32) {
+        let added = self.count..self.count + pixels.len();
+        self.count = added.end;
+        let [columns, rows] = &mut self.pixels;
+        let places = columns[added.clone()].iter_mut().zip(&mut rows[added.clone()]);
+        for ((column, row), [x, y]) in places.zip(pixels) {
+            (*column, *row) = (corner[0] + x, corner[1] + y);
+        }
+        self.samples[added].fill(sample);
     }
 
     /// Sets the counters from which paths draw their numbers. Written so that compilers turn it into lanes.
@@ -193,24 +210,32 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
     pub fn set_counters(&mut self, seed: u32) {
         let state = &mut self.state;
         let counters = state.keys.iter_mut().zip(&mut state.samples).zip(&mut state.ids);
-        let all = self.pixels.iter().zip(&self.samples).zip(0..);
-        for (((key, index), id), ((&[x, y], &sample), number)) in counters.zip(all) {
+        let pixels = self.pixels[0].iter().zip(&self.pixels[1]);
+        let all = pixels.zip(&self.samples).zip(0..).take(self.count);
+        for (((key, index), id), (((&x, &y), &sample), number)) in counters.zip(all) {
             let state = path_state(x, y, seed, sample, self.sequence);
             (*key, *index, *id) = (state.key, state.sample, number);
         }
     }
 
-    /// Has the paths that were added start from the camera, having found nothing: one recorder for each, and how many
-    /// samples of a pixel tell what they see.
-    pub fn start(&mut self, recorders: impl IntoIterator<Item = R>, guide_samples: u32) {
+    /// Has the paths that were added start from the camera, having found nothing: one recorder for each, how many samples of
+    /// a pixel tell what they see, and whether there is a shadow catcher.
+    pub fn start(&mut self, recorders: impl IntoIterator<Item = R>, guide_samples: u32, has_catcher: bool) {
         self.state.throughput.fill(S::one());
         self.state.lobe_density.fill(S::zero());
         self.state.is_mirror.fill(true);
         self.leaves.fill(false);
         self.goes_on.fill(true);
-        let found = self.samples.iter().zip(recorders);
         self.found
-            .extend(found.map(|(&sample, recorder)| Found::new(sample < guide_samples, recorder)));
+            .extend(recorders.into_iter().take(self.count).map(Found::new));
+        let samples = &self.samples[..self.count];
+        if samples.iter().any(|sample| *sample < guide_samples) {
+            self.looks
+                .extend(samples.iter().map(|sample| Look::new(*sample < guide_samples)));
+        }
+        if has_catcher {
+            self.caught.resize(self.count, Caught::Not);
+        }
     }
 
     /// Puts these paths first, in this order, and forgets the others.
@@ -229,6 +254,20 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
             sample: self.state.samples[place],
             sequence: self.sequence,
         }
+    }
+
+    /// What a path found, by its number in the wave, of all light or of a part.
+    pub fn result(&self, number: usize, is_all_light: bool) -> PathResult<S> {
+        let found = &self.found[number];
+        let result = PathResult {
+            radiance: found.radiance,
+            alpha: found.alpha,
+            rays: found.rays,
+            clamped: found.clamped,
+            seen: self.looks.get(number).map_or_else(GuideSums::default, |look| look.seen),
+        };
+        let caught = self.caught.get(number).copied().unwrap_or_default();
+        caught.result(result, is_all_light)
     }
 
     /// What the path at a place has found.
@@ -258,27 +297,34 @@ pub(super) struct Found<S, R> {
     pub alpha: S,
     /// Rays traced.
     pub rays: u32,
-    /// True while the path is one of those that tell what they see, and has met nothing but mirrors and clear glass.
-    pub is_looking: bool,
-    /// What is seen first.
-    pub seen: GuideSums,
-    /// What a shadow catcher has made of it.
-    pub caught: Caught<S>,
     recorder: R,
+}
+
+/// What a path sees first.
+pub(super) struct Look {
+    /// True while the path is one of those that tell, and has met nothing but mirrors and clear glass.
+    pub goes_on: bool,
+    pub seen: GuideSums,
+}
+
+impl Look {
+    fn new(goes_on: bool) -> Self {
+        Self {
+            goes_on,
+            seen: GuideSums::default(),
+        }
+    }
 }
 
 impl<S: Scalar, R: Recorder> Found<S, R> {
     /// Nothing.
     #[inline(always)]
-    pub fn new(is_looking: bool, recorder: R) -> Self {
+    pub fn new(recorder: R) -> Self {
         Self {
             radiance: Vec3::zero(),
             clamped: S::zero(),
             alpha: S::one(),
             rays: 0,
-            is_looking,
-            seen: GuideSums::default(),
-            caught: Caught::Not,
             recorder,
         }
     }
@@ -287,17 +333,5 @@ impl<S: Scalar, R: Recorder> Found<S, R> {
     #[inline(always)]
     pub fn record(&mut self, event: impl FnOnce() -> Event) {
         self.recorder.record(event);
-    }
-
-    /// What the path found, of all light or of a part.
-    pub fn result(&self, is_all_light: bool) -> PathResult<S> {
-        let found = PathResult {
-            radiance: self.radiance,
-            alpha: self.alpha,
-            rays: self.rays,
-            clamped: self.clamped,
-            seen: self.seen,
-        };
-        self.caught.result(found, is_all_light)
     }
 }

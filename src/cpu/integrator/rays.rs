@@ -21,8 +21,8 @@ impl<T: Real> Integrator<'_, T> {
         } else {
             [T::zero(); 2]
         };
-        let number = |number: u32| T::Scalar::from_f64(f64::from(number));
-        let pixel = [0, 1].map(|axis| T::from_lanes(|lane| number(paths.pixels[group.place(lane)][axis])));
+        let [x, y] = &paths.pixels;
+        let pixel = [group.whole_number(x), group.whole_number(y)];
         let [origin, direction] = pixel_ray(&self.camera, pixel, self.settings.image_size, [for_pixel, for_lens]);
         group.set_vector(&mut paths.origin, group.mask(), origin);
         group.set_vector(&mut paths.state.direction, group.mask(), direction);

@@ -52,9 +52,15 @@ impl<S: Scalar> Results<S> {
 
     /// The radiances of `N` paths from one on, channel by channel; of less where there are no more, then whatever.
     #[inline(always)]
-    pub fn radiances<const N: usize>(&self, first: usize) -> [[S; N]; 3] {
-        let take = |field: &[S]| std::array::from_fn(|i| field[first + i]);
-        [take(&self.radiance.x), take(&self.radiance.y), take(&self.radiance.z)]
+    pub fn radiances<const N: usize>(&self, first: usize) -> [[f64; N]; 3] {
+        let mut radiances = [[0.0; N]; 3];
+        let Vectors { x, y, z } = &self.radiance;
+        for (channel, numbers) in radiances.iter_mut().zip([x, y, z]) {
+            for (to, number) in channel.iter_mut().zip(&numbers[first..first + N]) {
+                *to = number.to_f64();
+            }
+        }
+        radiances
     }
 
     /// Rays traced by all paths.

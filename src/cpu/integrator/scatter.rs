@@ -25,10 +25,10 @@ impl<T: Real> Integrator<'_, T> {
         let wants_density = self.samples_light() && self.settings.strategy == Strategy::Mis;
         let mut drawn = material_sample(material, self.tables, &point.surface, numbers, wants_density);
         let mut leaves = self.meets_nothing(point, drawn.wi);
-        if self.guide_samples > 0 {
+        if !paths.looks.is_empty() {
             let mirrors = drawn.is_mirror.to_bits();
-            arrival.members.for_each(&mut paths.found, arrival.on, |path, lane| {
-                path.is_looking &= mirrors >> lane & 1 == 1;
+            arrival.members.for_each(&mut paths.looks, arrival.on, |look, lane| {
+                look.goes_on &= mirrors >> lane & 1 == 1;
             });
         }
         if arrival.is_caught_mirrored {

@@ -50,6 +50,8 @@ pub struct Wave<T: Real> {
     left: Vec<u16>,
     /// The order in which all are shaded: those by their slots, then those whose rays met nothing.
     order: Vec<u16>,
+    /// The camera rays of all of them.
+    packets: Vec<Packet>,
     /// What the rays of all of them met, where no surface has holes.
     hits: Vec<Option<Hit>>,
     /// The ways of rays.
@@ -69,6 +71,7 @@ impl<T: Real> Wave<T> {
             met: Vec::with_capacity(PATHS),
             left: Vec::with_capacity(PATHS),
             order: Vec::with_capacity(PATHS),
+            packets: Vec::with_capacity(PATHS / PACKET),
             hits: Vec::with_capacity(PATHS),
             ways: Ways::default(),
             lit: Vec::with_capacity(PATHS),
@@ -101,8 +104,8 @@ impl<T: Real> Integrator<'_, T> {
             let samples = [from, WAVE_SAMPLES.min(first + count - from)];
             let is_background = self.trace_wave(tile, samples, wave);
             if !is_background {
-                wave.results
-                    .fill(wave.paths.found.iter().map(|found| self.result(found)));
+                let results = (0..wave.paths.count()).map(|number| self.result(&wave.paths, number));
+                wave.results.fill(results);
             }
             tell(samples, &wave.results);
         }
@@ -114,13 +117,16 @@ impl<T: Real> Integrator<'_, T> {
         let has_more = self.firefly_clamp.is_some() || samples[0] < self.guide_samples;
         wave.results.start(wave.paths.count(), has_more);
         if !self.has_holes {
-            self.trace_camera_rays(&wave.paths, &mut wave.hits);
+            self.trace_camera_rays(&wave.paths, &mut wave.packets, &mut wave.hits);
             if self.has_plain_background() && wave.hits.iter().all(Option::is_none) {
                 self.see_background(&wave.paths, &mut wave.results);
                 return true;
             }
+            wave.hits.resize(wave.paths.count(), None);
         }
-        wave.paths.start(std::iter::repeat(Unrecorded), self.guide_samples);
+        let has_catcher = self.settings.catcher.is_some();
+        wave.paths
+            .start(std::iter::repeat(Unrecorded), self.guide_samples, has_catcher);
         wave.under_way.clear();
         wave.under_way.extend(0..wave.paths.count() as u16);
         for bounce in 0.. {

@@ -287,15 +287,16 @@ pub fn environment_radiance<T: Real>(environment: &Environment, direction_local:
 #[inline(always)]
 pub fn environment_radiance_at<T: Real>(environment: &Environment, uv: [T; 2]) -> Vec3<T> {
     let Bilinear { texels, shares } = bilinear(environment, uv);
-    let upper = texel_radiance(environment, &texels, 0).mix(texel_radiance(environment, &texels, 1), shares[0]);
-    let lower = texel_radiance(environment, &texels, 2).mix(texel_radiance(environment, &texels, 3), shares[0]);
+    let [upper_left, upper_right, lower_left, lower_right] = &texels;
+    let upper = radiances(environment, upper_left).mix(radiances(environment, upper_right), shares[0]);
+    let lower = radiances(environment, lower_left).mix(radiances(environment, lower_right), shares[0]);
     upper.mix(lower, shares[1])
 }
 
-/// The radiance of one of the texels around each lane's place.
+/// The radiances of texels.
 #[inline(always)]
-fn texel_radiance<T: Real>(environment: &Environment, texels: &T::Each<[usize; 4]>, which: usize) -> Vec3<T> {
-    let texel = |lane: usize| &environment.texels[texels.as_ref()[lane][which]];
+fn radiances<T: Real>(environment: &Environment, texels: &T::Each<u32>) -> Vec3<T> {
+    let texel = |lane: usize| &environment.texels[texels.as_ref()[lane] as usize];
     let number = |radiance: f32| T::Scalar::from_f64(f64::from(radiance));
     vec3(
         T::from_lanes(|lane| number(texel(lane)[0])),
@@ -307,7 +308,7 @@ fn texel_radiance<T: Real>(environment: &Environment, texels: &T::Each<[usize; 4
 /// The texels around a place in the map.
 struct Bilinear<T: Real> {
     /// Which they are: two above, two below.
-    texels: T::Each<[usize; 4]>,
+    texels: [T::Each<u32>; 4],
     /// The shares of the right ones and of those below.
     shares: [T; 2],
 }
@@ -318,36 +319,45 @@ fn bilinear<T: Real>(environment: &Environment, uv: [T; 2]) -> Bilinear<T> {
     let x = uv[0] * T::from_f64(f64::from(environment.width)) - half;
     let y = uv[1] * T::from_f64(f64::from(environment.height)) - half;
     let (left, top) = (x.floor(), y.floor());
-    let (columns, rows) = (left.to_each(), top.to_each());
     let (width, height) = (environment.width as i32, environment.height as i32);
-    let texels = T::each(|lane| {
-        let column = columns.as_ref()[lane].to_f64() as i32;
-        let row = rows.as_ref()[lane].to_f64() as i32;
-        // u is below 1: one step at most around the map.
-        let left_column = if column < 0 { width - 1 } else { column };
-        let right_column = if column + 1 >= width { 0 } else { column + 1 };
-        let line = |row: i32| row.clamp(0, height - 1) as usize * width as usize;
-        let (upper, lower) = (line(row), line(row + 1));
-        let (left_column, right_column) = (left_column as usize, right_column as usize);
-        [
-            upper + left_column,
-            upper + right_column,
-            lower + left_column,
-            lower + right_column,
-        ]
-    });
+    // Written so that compilers turn it into lanes.
+    let (columns, rows) = (whole(left), whole(top));
+    let (columns, rows) = (columns.as_ref(), rows.as_ref());
+    // u is below 1: one step at most around the map.
+    let left_column = |lane: usize| if columns[lane] < 0 { width - 1 } else { columns[lane] };
+    let right_column = |lane: usize| {
+        if columns[lane] + 1 >= width {
+            0
+        } else {
+            columns[lane] + 1
+        }
+    };
+    let line = |row: i32| row.clamp(0, height - 1) * width;
     Bilinear {
-        texels,
+        texels: [
+            T::each(|lane| (line(rows[lane]) + left_column(lane)) as u32),
+            T::each(|lane| (line(rows[lane]) + right_column(lane)) as u32),
+            T::each(|lane| (line(rows[lane] + 1) + left_column(lane)) as u32),
+            T::each(|lane| (line(rows[lane] + 1) + right_column(lane)) as u32),
+        ],
         shares: [x - left, y - top],
     }
+}
+
+/// The whole numbers in lanes, of less than 2²⁴.
+#[inline(always)]
+fn whole<T: Real>(numbers: T) -> T::Each<i32> {
+    let numbers = numbers.to_each();
+    let numbers = numbers.as_ref();
+    T::each(|lane| numbers[lane].to_f64() as f32 as i32)
 }
 
 /// Has the processor fetch what is looked up at a place in the map, so that it is there when it is needed.
 #[inline(always)]
 pub fn fetch_place<T: Real>(environment: &Environment, uv: [T; 2]) {
-    for texels in bilinear(environment, uv).texels.as_ref() {
-        for &texel in texels {
-            fetch(&environment.texels, texel);
+    for texels in &bilinear(environment, uv).texels {
+        for &texel in texels.as_ref() {
+            fetch(&environment.texels, texel as usize);
         }
     }
 }
@@ -399,8 +409,14 @@ pub fn sample_in_rows<T: Real>(distribution: &Distribution, rows: &T::Each<u32>,
         )
     });
     let drawn = drawn.as_ref();
-    let cell = [0, 1].map(|axis| T::from_lanes(|lane| drawn[lane].0[axis]));
-    let place = [0, 1].map(|axis| T::from_lanes(|lane| drawn[lane].1[axis]));
+    let cell = [
+        T::from_lanes(|lane| drawn[lane].0[0]),
+        T::from_lanes(|lane| drawn[lane].0[1]),
+    ];
+    let place = [
+        T::from_lanes(|lane| drawn[lane].1[0]),
+        T::from_lanes(|lane| drawn[lane].1[1]),
+    ];
     (
         environment_direction_in_cell(cell, place, width, height),
         T::from_lanes(|lane| drawn[lane].2),

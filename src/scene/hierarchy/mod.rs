@@ -1,6 +1,7 @@
 //! The hierarchies of boxes by which rays find triangles: one for each engine, built when it is first needed.
 
 mod binary;
+mod bundle;
 mod compressed;
 mod packet;
 #[cfg(test)]
@@ -16,6 +17,7 @@ use obvhs::aabb::Aabb;
 use obvhs::cwbvh::CwBvh;
 use obvhs::cwbvh::node::CwBvhNode;
 
+pub(in crate::scene) use bundle::Doors;
 pub(in crate::scene) use packet::Found;
 pub use packet::{PACKET, Packet, WAYS, ray_way};
 use tree::{BoxedTree, Tree};

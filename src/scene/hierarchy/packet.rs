@@ -7,8 +7,10 @@
 
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, dispatch, f32x8, f32x16, mask32x16};
 
+use super::bundle::{Bundle, Doors, Place};
 use super::traverse::{BoxRay, Entry, INVERSE_MAX, Met, PLACE_ERROR, SingleRay, Stack, TriangleRay};
 use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
+use crate::scene::Hit;
 
 /// Rays of a packet.
 pub const PACKET: usize = 16;
@@ -87,18 +89,32 @@ impl Packet {
 #[repr(C, align(64))]
 pub(in crate::scene) struct Found {
     /// How far away.
-    pub t: [f32; PACKET],
+    t: [f32; PACKET],
     /// One more than the triangle's number; 0 where nothing was met.
-    pub marks: [u32; PACKET],
+    marks: [u32; PACKET],
     /// Twice the areas that the ray cuts the projected triangle into, opposite to its corners; left out where any triangle
     /// would do.
     areas: [[f32; PACKET]; 3],
+    /// Which number the first triangle has of the hierarchy that the rays go through.
+    pub first: u32,
 }
 
 impl Found {
-    /// Takes a triangle that a ray meets no farther away than what was found; whether it is nearer.
+    /// Nothing yet, as far as the rays go.
     #[inline(always)]
-    fn add<const ANY: bool>(&mut self, lane: usize, t: f32, areas: [f32; 3], mark: u32) -> bool {
+    pub fn nothing(packet: &Packet) -> Self {
+        Self {
+            t: packet.t_max,
+            marks: [0; PACKET],
+            areas: [[0.0; PACKET]; 3],
+            first: 0,
+        }
+    }
+
+    /// Takes a triangle of the hierarchy that a ray meets no farther away than what was found; whether it is nearer.
+    #[inline(always)]
+    fn add<const ANY: bool>(&mut self, lane: usize, t: f32, areas: [f32; 3], triangle: u32) -> bool {
+        let mark = self.first + triangle + 1;
         // Of two as far away the first: so it does not matter in which order they are found.
         let is_nearer = t < self.t[lane] || mark < self.marks[lane];
         if is_nearer {
@@ -113,29 +129,24 @@ impl Found {
         is_nearer
     }
 
-    /// Takes what the same rays, no farther than they were found to go, met of other triangles, which are numbered from
-    /// `first` on.
+    /// Whether a ray met something.
     #[inline(always)]
-    pub fn take(&mut self, other: &Self, first: u32) {
-        for lane in 0..PACKET {
-            if other.marks[lane] != 0 {
-                self.t[lane] = other.t[lane];
-                self.marks[lane] = other.marks[lane] + first;
-                for (to, from) in self.areas.iter_mut().zip(&other.areas) {
-                    to[lane] = from[lane];
-                }
-            }
-        }
+    pub fn is_met(&self, lane: usize) -> bool {
+        self.marks[lane] != 0
     }
 
-    /// The weights of the triangles' second and third corners, see [`Hit`](crate::scene::Hit).
+    /// What a ray met.
     #[inline(always)]
-    pub fn weights(&self) -> [[f32; PACKET]; 2] {
-        let [u, v, w] = &self.areas;
-        // Without the sign of a zero, which depends on the order of corners.
-        let weight =
-            |part: &[f32; PACKET]| std::array::from_fn(|lane| part[lane] / (u[lane] + v[lane] + w[lane]) + 0.0);
-        [weight(v), weight(w)]
+    pub fn hit(&self, lane: usize) -> Option<Hit> {
+        let [u, v, w] = [self.areas[0][lane], self.areas[1][lane], self.areas[2][lane]];
+        let area = u + v + w;
+        Some(Hit {
+            t: self.t[lane],
+            triangle: self.marks[lane].checked_sub(1)?,
+            // Without the sign of a zero, which depends on the order of corners.
+            u: v / area + 0.0,
+            v: w / area + 0.0,
+        })
     }
 }
 
@@ -155,7 +166,7 @@ impl<const ANY: bool> Met for OfLane<'_, ANY> {
 
     #[inline(always)]
     fn take(&mut self, t: f32, triangle: u32, areas: [f32; 3]) {
-        self.is_new |= self.found.add::<ANY>(self.lane, t, areas, triangle + 1);
+        self.is_new |= self.found.add::<ANY>(self.lane, t, areas, triangle);
     }
 }
 
@@ -178,34 +189,41 @@ pub fn ray_way(direction: [f32; 3]) -> usize {
 pub const WAYS: usize = 24;
 
 impl Wide {
-    /// The nearest triangle with 0 < t < `t_max` on each ray; `None` where the rays do not go the same way.
-    pub fn nearest_of(&self, level: Level, packet: &Packet) -> Option<Found> {
-        dispatch!(level, simd => trace::<_, false>(simd, self, packet))
+    /// Puts the nearest triangle with 0 < t on each ray in that is nearer than what was found, of what is behind these doors;
+    /// false where the rays do not go the same way, and nothing is done.
+    pub fn nearest_of(&self, level: Level, packet: &Packet, doors: Option<&Doors>, found: &mut Found) -> bool {
+        dispatch!(level, simd => trace::<_, false>(simd, self, packet, doors, found))
     }
 
-    /// Some triangle with 0 < t < `t_max` on each ray; `None` where the rays do not go the same way.
-    pub fn any_of(&self, level: Level, packet: &Packet) -> Option<Found> {
-        dispatch!(level, simd => trace::<_, true>(simd, self, packet))
+    /// The same with some triangle on each ray, unless one was found.
+    pub fn any_of(&self, level: Level, packet: &Packet, found: &mut Found) -> bool {
+        dispatch!(level, simd => trace::<_, true>(simd, self, packet, None, found))
     }
 }
 
-/// The nearest triangles, or the first that are found if `ANY`.
+/// Puts the nearest triangles in, or the first that are found if `ANY`.
 #[inline(always)]
-fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, packet: &Packet) -> Option<Found> {
-    let way = way_of(simd, packet)?;
-    let mut found = Found {
-        t: packet.t_max,
-        marks: [0; PACKET],
-        areas: [[0.0; PACKET]; 3],
+fn trace<S: Simd, const ANY: bool>(
+    simd: S,
+    wide: &Wide,
+    packet: &Packet,
+    doors: Option<&Doors>,
+    found: &mut Found,
+) -> bool {
+    let Some(way) = way_of(simd, packet) else {
+        return false;
     };
     if wide.nodes.is_empty() {
-        return Some(found);
+        return true;
     }
     let rays = Rays::new(simd, packet, wide, way);
-    let bundle = Bundle::new(simd, &rays, packet, wide);
+    let bundle = Bundle::of(simd, &rays, wide);
     let mut limit = largest(simd, &found.t);
     let mut stack = Stack::new();
-    bundle.enter(wide, 0, limit, &mut stack);
+    match doors {
+        Some(doors) => doors.enter(&mut stack),
+        None => bundle.enter(wide, 0, limit, &mut stack),
+    }
     while let Some(next) = stack.pop_before(limit) {
         let (parent, child) = Place(next.place()).parts();
         let parent = &wide.nodes[parent];
@@ -214,38 +232,22 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, packet: &Packet) -> Opt
         };
         let place = parent.children[child];
         let is_new = if entered.met.to_bitmask().count_ones() <= FEW {
-            rays.search_alone::<ANY>(wide, place, &entered, &mut found)
+            rays.search_alone::<ANY>(wide, place, &entered, found)
         } else if place & BLOCK == 0 {
             bundle.enter(wide, place, limit, &mut stack);
             false
         } else {
-            rays.meet::<ANY>(wide, (place & !BLOCK) as usize, &entered, &mut found)
+            rays.meet::<ANY>(wide, (place & !BLOCK) as usize, &entered, found)
         };
         if is_new {
             limit = largest(simd, &found.t);
         }
     }
-    Some(found)
-}
-
-/// A child of a node by its number among all that nodes have.
-struct Place(u32);
-
-impl Place {
-    #[inline(always)]
-    fn new(node: u32, child: usize) -> Self {
-        Self(node * WIDTH as u32 + child as u32)
-    }
-
-    /// The node and which of its children.
-    #[inline(always)]
-    fn parts(self) -> (usize, usize) {
-        (self.0 as usize / WIDTH, self.0 as usize % WIDTH)
-    }
+    true
 }
 
 #[inline(always)]
-fn load<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32x16<S> {
+pub(super) fn load<S: Simd>(simd: S, lanes: &[f32; PACKET]) -> f32x16<S> {
     f32x16::load_array_ref(simd, lanes)
 }
 
@@ -297,14 +299,14 @@ struct Entered<S: Simd> {
 }
 
 /// What the tests of single rays need of each ray.
-struct Rays<S: Simd> {
-    origin: [f32x16<S>; 3],
+pub(super) struct Rays<S: Simd> {
+    pub origin: [f32x16<S>; 3],
     direction: [f32x16<S>; 3],
-    inverse: [f32x16<S>; 3],
+    pub inverse: [f32x16<S>; 3],
     early: [f32x16<S>; 3],
     late: [f32x16<S>; 3],
     /// Which of the two sides of a box is near on each axis.
-    near: [usize; 3],
+    pub near: [usize; 3],
     axes: [usize; 3],
     shear: [f32x16<S>; 2],
 }
@@ -458,7 +460,7 @@ impl<S: Simd> Rays<S> {
                     let lane = (met.trailing_zeros() % PACKET as u32) as usize;
                     met &= met - 1;
                     let areas = [u[lane], v[lane], w[lane]];
-                    is_new |= found.add::<ANY>(lane, placed[lane], areas, first + triangle as u32 + 1);
+                    is_new |= found.add::<ANY>(lane, placed[lane], areas, first + triangle as u32);
                 }
             }
             triangle += 1;
@@ -496,77 +498,5 @@ impl<S: Simd> Rays<S> {
             self.place(block, corner, axis_x, triangle) + depth * self.shear[0],
             self.place(block, corner, axis_y, triangle) + depth * self.shear[1],
         )
-    }
-}
-
-/// The interval of all rays: what it does not meet, none of them meets.
-struct Bundle<S: Simd> {
-    /// The least and the largest inverse direction on each axis.
-    inverse: [[f32x8<S>; 2]; 3],
-    /// The origin that a box's near side is nearest to, and that its far side is farthest from, with a margin for rounding.
-    origin: [[f32x8<S>; 2]; 3],
-    /// Which of the two sides of a box is near on each axis.
-    near: [usize; 3],
-}
-
-impl<S: Simd> Bundle<S> {
-    #[inline(always)]
-    fn new(simd: S, rays: &Rays<S>, packet: &Packet, wide: &Wide) -> Self {
-        let zero = [f32x8::splat(simd, 0.0); 2];
-        let mut bundle = Self {
-            inverse: [zero; 3],
-            origin: [zero; 3],
-            near: rays.near,
-        };
-        bundle.set(rays, packet, wide, 0);
-        bundle.set(rays, packet, wide, 1);
-        bundle.set(rays, packet, wide, 2);
-        bundle
-    }
-
-    #[inline(always)]
-    fn set(&mut self, rays: &Rays<S>, packet: &Packet, wide: &Wide, axis: usize) {
-        let simd = rays.origin[0].token();
-        let inverse = rays.inverse[axis];
-        self.inverse[axis] = [
-            f32x8::splat(simd, simd.reduce_min_f32x16(inverse)),
-            f32x8::splat(simd, simd.reduce_max_f32x16(inverse)),
-        ];
-        let origin = load(simd, &packet.origins[axis]);
-        let (low, high) = (simd.reduce_min_f32x16(origin), simd.reduce_max_f32x16(origin));
-        let margin = 2.0 * PLACE_ERROR * (wide.reach[axis] + low.abs().max(high.abs()));
-        let outer = [low - margin, high + margin];
-        let near = rays.near[axis];
-        self.origin[axis] = [
-            f32x8::splat(simd, outer[(near ^ 1) & 1]),
-            f32x8::splat(simd, outer[near & 1]),
-        ];
-    }
-
-    /// Puts the children of a node on the stack that some ray may meet, the nearest last.
-    #[inline(always)]
-    fn enter(&self, wide: &Wide, index: u32, limit: f32, stack: &mut Stack) {
-        let node = &wide.nodes[index as usize];
-        let simd = self.origin[0][0].token();
-        let mut near = f32x8::splat(simd, 0.0);
-        let mut far = f32x8::splat(simd, limit);
-        let mut axis = 0;
-        while axis < 3 {
-            let [least, most] = self.inverse[axis];
-            let sides = &node.sides[axis];
-            let to_near = f32x8::load_array_ref(simd, &sides[self.near[axis] & 1]) - self.origin[axis][0];
-            let to_far = f32x8::load_array_ref(simd, &sides[(self.near[axis] ^ 1) & 1]) - self.origin[axis][1];
-            near = near.max((to_near * least).min(to_near * most));
-            far = far.min((to_far * least).max(to_far * most));
-            axis += 1;
-        }
-        let mut met = near.simd_le(far).to_bitmask() as u32;
-        let distances = near.to_array();
-        let base = stack.height;
-        while met != 0 {
-            let child = (met.trailing_zeros() % WIDTH as u32) as usize;
-            met &= met - 1;
-            stack.insert(Entry::new(distances[child], Place::new(index, child).0), base);
-        }
     }
 }

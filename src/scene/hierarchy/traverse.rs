@@ -339,12 +339,12 @@ impl<S: Simd> TriangleRay<S> {
 
 /// A child to be visited and how far away its box is, ordered by the distance: that is not negative, so that its bits
 /// are in its order.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Entry(u64);
 
 impl Entry {
     /// The node around all.
-    const ROOT: Self = Self(0);
+    pub const ROOT: Self = Self(0);
 
     #[inline(always)]
     pub fn new(distance: f32, place: u32) -> Self {
@@ -379,13 +379,13 @@ impl Stack {
     }
 
     #[inline(always)]
-    fn push(&mut self, entry: Entry) {
+    pub fn push(&mut self, entry: Entry) {
         self.entries[self.height].write(entry);
         self.height += 1;
     }
 
     #[inline(always)]
-    fn pop(&mut self) -> Option<Entry> {
+    pub fn pop(&mut self) -> Option<Entry> {
         self.height = self.height.checked_sub(1)?;
         // SAFETY: everything below the height that was has been written by `push` or `insert`.
         Some(unsafe { self.entries[self.height].assume_init() })
