@@ -1,10 +1,12 @@
 //! Glossmith's processor engine beside Mitsuba 3 on the same scene, in turns of one run; quoted in docs/PERFORMANCE.md.
 //!
 //! `cargo bench --bench peers [-- --quick --rates]`. Millions of samples a second, and (not with `--rates`) seconds to a
-//! relative mean squared error of 0.003, each against a long render of its own; that of all pixels, and that without the
-//! thousandth of them that are off the most, as a picture of glass has one pixel that holds most of the error or has not.
-//! With `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is run by `scripts/peers`,
-//! with the Python that `scripts/setup test` installs; where it is not there, a line says so and only Glossmith is measured.
+//! relative mean squared error of 0.003: of even samples, from the error of those that were timed, as it falls with their
+//! number; and of adaptive ones, which are rendered until they are there. Errors are told from how far pictures with other
+//! seeds are from each other, so no reference is as long as it would have to be for glass; a longer render of ours tells
+//! what they are relative to. With `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is
+//! run by `scripts/peers`, with the Python that `scripts/setup test` installs; where it is not there, a line says so and
+//! only Glossmith is measured.
 
 mod scene;
 
@@ -37,8 +39,10 @@ const GROUND_HALF_SIDE: f64 = 64.0;
 /// Segments of a path, the camera's ray among them.
 const DEPTH: u32 = 8;
 
+/// Linear RGB of its pixels.
+type Picture = Vec<[f32; 3]>;
 /// Seconds of a render, and its picture.
-type Render = (f64, Vec<[f32; 3]>);
+type Render = (f64, Picture);
 
 /// How much is measured.
 struct Extent {
@@ -46,23 +50,31 @@ struct Extent {
     size: u32,
     /// Samples of the renders that are timed, and whose error is told.
     samples: u32,
-    /// Samples of the long renders, if errors are measured: their own error adds that part of it.
+    /// Samples of the render that errors are relative to, if any are measured.
     reference: Option<u32>,
+    /// Renders of each renderer, at least two for errors.
     turns: u32,
 }
 
 const FULL: Extent = Extent {
     size: 512,
     samples: 64,
-    reference: Some(1024),
+    reference: Some(512),
     turns: 3,
 };
 const QUICK: Extent = Extent {
     size: 256,
     samples: 16,
-    reference: Some(512),
-    turns: 1,
+    reference: Some(256),
+    turns: 2,
 };
+/// Samples that adaptive renders begin with, and seconds after which their error is first looked at and by how much these
+/// grow from look to look.
+const ADAPTIVE_SAMPLES_MIN: u32 = 16;
+const LOOK_S: f64 = 0.1;
+const LOOK_GROWTH: f64 = 1.2;
+/// Seconds after which the rest is told from the error there, as it falls with the number of samples.
+const SECONDS_MAX: f64 = 20.0;
 
 /// A line of the table.
 struct Case {
@@ -89,10 +101,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         Err(reason) => println!("Mitsuba is not measured: {reason}"),
     }
     println!(
-        "| material | triangles | M samples/s | Mitsuba's | ratio | s to relMSE {GOAL} | Mitsuba's | ratio | \
-         but for a thousandth | Mitsuba's | ratio |"
+        "| material | triangles | M samples/s | Mitsuba's | ratio | s to relMSE {GOAL} | Mitsuba's | ratio | adaptive | ratio |"
     );
-    println!("|{}", " --- |".repeat(11));
+    println!("|{}", " --- |".repeat(10));
     let materials = ["metal 0.09", "metal 0.25", "diffuse", "plastic", "glass"];
     let case = |material, mesh, ground| Case { material, mesh, ground };
     let of_materials = materials.into_iter().map(|material| case(material, "60k", false));
@@ -128,16 +139,13 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
     let mut line = format!("| {} | {}{ground} |", case.material, case.mesh);
     line += &beside(rate(&ours), rate(&theirs));
     if let Some(samples) = extent.reference {
-        let our_times = ours.times_to_goal(&glossmith(folder, case, extent.size, samples, 1000)?.1);
-        let mut their_times = [f64::NAN; 2];
-        if with_peer {
-            their_times = theirs.times_to_goal(&peer(folder, case, extent.size, samples, 1000)?.1);
-        }
-        for (ours, theirs) in our_times.into_iter().zip(their_times) {
-            line += &beside(ours, theirs);
-        }
+        let reference = glossmith(folder, case, extent.size, samples, 1000)?.1;
+        let [even, their_time] = [&ours, &theirs].map(|measured| measured.time_to_goal(&reference));
+        let adaptive = adaptive_time_to_goal(folder, case, extent, &reference)?;
+        line += &beside(even, their_time);
+        line += &format!(" {adaptive:.2} | {:.2} |", adaptive / their_time);
     } else {
-        line += &" – |".repeat(6);
+        line += &" – |".repeat(5);
     }
     println!("{line}");
     Ok(())
@@ -146,7 +154,7 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
 /// Renders of one renderer: the quickest one's seconds, and all pictures.
 struct Measured {
     seconds: f64,
-    pictures: Vec<Vec<[f32; 3]>>,
+    pictures: Vec<Picture>,
 }
 
 impl Default for Measured {
@@ -164,32 +172,75 @@ impl Measured {
         self.pictures.push(picture);
     }
 
-    /// Seconds to the goal, if the squared error falls with the number of samples: of all pixels, and but for the
-    /// thousandth that is off the most.
-    fn times_to_goal(&self, reference: &[[f32; 3]]) -> [f64; 2] {
-        let mut times = [0.0; 2];
-        for picture in &self.pictures {
-            let errors = relative_errors(picture, reference);
-            let kept = &errors[..errors.len() - errors.len() / 1000];
-            for (time, errors) in times.iter_mut().zip([&errors[..], kept]) {
-                let mean = errors.iter().sum::<f64>() / errors.len() as f64;
-                *time += self.seconds * mean / GOAL / self.pictures.len() as f64;
-            }
-        }
-        times
+    /// Seconds to the goal, if the squared error falls with the number of samples.
+    fn time_to_goal(&self, reference: &Picture) -> f64 {
+        self.seconds * relative_error(&self.pictures, reference) / GOAL
     }
 }
 
-/// Each pixel's mean of (x − reference)² / (reference² + 0.01), the least first.
-fn relative_errors(picture: &[[f32; 3]], reference: &[[f32; 3]]) -> Vec<f64> {
-    let channel = |(x, right): (&f32, &f32)| {
-        let (x, right) = (f64::from(*x), f64::from(*right));
-        (x - right).powi(2) / (right * right + 0.01)
+/// The mean squared error of a picture over (reference² + 0.01), from how far pictures that differ in nothing but their seed
+/// are from each other. NaN where there are fewer than two.
+fn relative_error(pictures: &[Picture], reference: &Picture) -> f64 {
+    let count = pictures.len() as f64;
+    let of = |pixel: usize, channel: usize| {
+        let values = || pictures.iter().map(|picture| f64::from(picture[pixel][channel]));
+        let mean = values().sum::<f64>() / count;
+        let variance = values().map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0);
+        variance / (f64::from(reference[pixel][channel]).powi(2) + 0.01)
     };
-    let pixel = |(x, right): (&[f32; 3], &[f32; 3])| x.iter().zip(right).map(channel).sum::<f64>() / 3.0;
-    let mut errors: Vec<f64> = picture.iter().zip(reference).map(pixel).collect();
-    errors.sort_by(f64::total_cmp);
-    errors
+    let channels = (0..reference.len()).flat_map(|pixel| (0..3).map(move |channel| (pixel, channel)));
+    channels.map(|(pixel, channel)| of(pixel, channel)).sum::<f64>() / (3 * reference.len()) as f64
+}
+
+/// Seconds that adaptive renders take until their error has come down to the goal: the mean of as many as there are turns,
+/// which go on in turns.
+fn adaptive_time_to_goal(
+    folder: &Path,
+    case: &Case,
+    extent: &Extent,
+    reference: &Picture,
+) -> Result<f64, Box<dyn Error>> {
+    let mut sessions = Vec::new();
+    for turn in 0..extent.turns {
+        let mut document = document(folder, case, extent.size);
+        let render = &mut document.render;
+        (render.samples, render.min_samples) = (u32::MAX, ADAPTIVE_SAMPLES_MIN);
+        (render.adaptive, render.seed) = (Some(true), turn + 1);
+        let mut session = Session::open(EngineChoice::Cpu)?;
+        session.submit(&document)?;
+        sessions.push(session);
+    }
+    let mut seconds = vec![0.0; sessions.len()];
+    let (mut before, mut until) = ((0.0, f64::NAN), LOOK_S);
+    while until < SECONDS_MAX {
+        let mut pictures = Vec::new();
+        for (session, seconds) in sessions.iter_mut().zip(&mut seconds) {
+            let begun = Instant::now();
+            session.step(Duration::from_secs_f64((until - *seconds).max(0.0)))?;
+            *seconds += begun.elapsed().as_secs_f64();
+            pictures.push(picture(session)?);
+        }
+        let mean = seconds.iter().sum::<f64>() / seconds.len() as f64;
+        let error = relative_error(&pictures, reference);
+        if error <= GOAL {
+            // Straight between the logarithms of both; back to where the error would be were there no look before.
+            let (then, error_then) = before;
+            let slope = if error_then > error {
+                (mean / then).ln() / (error_then / error).ln()
+            } else {
+                1.0
+            };
+            return Ok(mean * (error / GOAL).powf(slope));
+        }
+        before = (mean, error);
+        until *= LOOK_GROWTH;
+    }
+    Ok(before.0 * before.1 / GOAL)
+}
+
+fn picture(session: &mut Session) -> Result<Picture, Box<dyn Error>> {
+    let Image { pixels, .. } = session.image()?;
+    Ok(pixels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
 }
 
 fn document(folder: &Path, case: &Case, size: u32) -> Document {
@@ -251,8 +302,7 @@ fn glossmith(folder: &Path, case: &Case, size: u32, samples: u32, seed: u32) -> 
     let begun = Instant::now();
     session.step(Duration::from_secs(3600))?;
     let seconds = begun.elapsed().as_secs_f64();
-    let Image { pixels, .. } = session.image()?;
-    Ok((seconds, pixels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()))
+    Ok((seconds, picture(&mut session)?))
 }
 
 /// The same by Mitsuba.
@@ -268,7 +318,7 @@ fn peer(folder: &Path, case: &Case, size: u32, samples: u32, seed: u32) -> Resul
     let image = exr::prelude::read_first_rgba_layer_from_file(
         &picture,
         |size, _| (vec![[0.0; 3]; size.area()], size.width()),
-        |(pixels, width): &mut (Vec<[f32; 3]>, usize), place, (r, g, b, _): (f32, f32, f32, f32)| {
+        |(pixels, width): &mut (Picture, usize), place, (r, g, b, _): (f32, f32, f32, f32)| {
             pixels[place.y() * *width + place.x()] = [r, g, b];
         },
     )?;
