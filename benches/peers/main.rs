@@ -1,10 +1,10 @@
 //! Glossmith's processor engine beside Mitsuba 3 on the same scene, in turns of one run; quoted in docs/PERFORMANCE.md.
 //!
 //! `cargo bench --bench peers [-- --quick --rates]`. Millions of samples a second, and (not with `--rates`) seconds to a
-//! relative mean squared error of 0.003: of even samples, from the error of those that were timed, as it falls with their
-//! number; and of adaptive ones, which are rendered until they are there. Errors are told from how far pictures with other
-//! seeds are from each other, so no reference is as long as it would have to be for glass; a longer render of ours tells
-//! what they are relative to. With `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is
+//! relative mean squared error of 0.003. Our renders, with even samples and with adaptive ones, go on until they are there;
+//! Mitsuba's time is told from the error of what was timed, as that of independent samples falls with their number (Sobol's
+//! falls faster). Errors are told from how far pictures with other seeds are from each other, so no reference is as long as it
+//! would have to be for glass; a longer render of ours tells what they are relative to. With `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is
 //! run by `scripts/peers`, with the Python that `scripts/setup test` installs; where it is not there, a line says so and
 //! only Glossmith is measured.
 
@@ -68,8 +68,8 @@ const QUICK: Extent = Extent {
     reference: Some(256),
     turns: 2,
 };
-/// Samples that adaptive renders begin with, and seconds after which their error is first looked at and by how much these
-/// grow from look to look.
+/// Samples that adaptive renders begin with; seconds after which the error is first looked at, and by how much these grow
+/// from look to look.
 const ADAPTIVE_SAMPLES_MIN: u32 = 16;
 const LOOK_S: f64 = 0.1;
 const LOOK_GROWTH: f64 = 1.2;
@@ -140,9 +140,9 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
     line += &beside(rate(&ours), rate(&theirs));
     if let Some(samples) = extent.reference {
         let reference = glossmith(folder, case, extent.size, samples, 1000)?.1;
-        let [even, their_time] = [&ours, &theirs].map(|measured| measured.time_to_goal(&reference));
-        let adaptive = adaptive_time_to_goal(folder, case, extent, &reference)?;
-        line += &beside(even, their_time);
+        let their_time = theirs.time_to_goal(&reference);
+        line += &beside(time_to_goal(folder, case, extent, &reference, false)?, their_time);
+        let adaptive = time_to_goal(folder, case, extent, &reference, true)?;
         line += &format!(" {adaptive:.2} | {:.2} |", adaptive / their_time);
     } else {
         line += &" – |".repeat(5);
@@ -172,7 +172,7 @@ impl Measured {
         self.pictures.push(picture);
     }
 
-    /// Seconds to the goal, if the squared error falls with the number of samples.
+    /// Seconds to the goal, as the squared error of independent samples falls with their number.
     fn time_to_goal(&self, reference: &Picture) -> f64 {
         self.seconds * relative_error(&self.pictures, reference) / GOAL
     }
@@ -192,20 +192,21 @@ fn relative_error(pictures: &[Picture], reference: &Picture) -> f64 {
     channels.map(|(pixel, channel)| of(pixel, channel)).sum::<f64>() / (3 * reference.len()) as f64
 }
 
-/// Seconds that adaptive renders take until their error has come down to the goal: the mean of as many as there are turns,
-/// which go on in turns.
-fn adaptive_time_to_goal(
+/// Seconds that our renders take until their error has come down to the goal: the mean of as many as there are turns, which
+/// go on in turns.
+fn time_to_goal(
     folder: &Path,
     case: &Case,
     extent: &Extent,
     reference: &Picture,
+    is_adaptive: bool,
 ) -> Result<f64, Box<dyn Error>> {
     let mut sessions = Vec::new();
     for turn in 0..extent.turns {
         let mut document = document(folder, case, extent.size);
         let render = &mut document.render;
         (render.samples, render.min_samples) = (u32::MAX, ADAPTIVE_SAMPLES_MIN);
-        (render.adaptive, render.seed) = (Some(true), turn + 1);
+        (render.adaptive, render.seed) = (Some(is_adaptive), turn + 1);
         let mut session = Session::open(EngineChoice::Cpu)?;
         session.submit(&document)?;
         sessions.push(session);

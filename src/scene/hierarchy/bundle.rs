@@ -94,7 +94,7 @@ fn extent<'a, S: Simd>(simd: S, mut numbers: impl Iterator<Item = &'a [f32; PACK
         let next = load(simd, next);
         low = low.min(next);
         high = high.max(next);
-        are_numbers = are_numbers & next.simd_eq(next);
+        are_numbers &= next.simd_eq(next);
     }
     let extent = [simd.reduce_min_f32x16(low), simd.reduce_max_f32x16(high)];
     are_numbers.all_true().then_some(extent)
