@@ -4,9 +4,9 @@
 //! relative mean squared error of 0.003. Our renders, with even samples and with adaptive ones, go on until they are there;
 //! Mitsuba's time is told from the error of what was timed, as that of independent samples falls with their number (Sobol's
 //! falls faster). Errors are told from how far pictures with other seeds are from each other, so no reference is as long as it
-//! would have to be for glass; a longer render of ours tells what they are relative to. With `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is
-//! run by `scripts/peers`, with the Python that `scripts/setup test` installs; where it is not there, a line says so and
-//! only Glossmith is measured.
+//! would have to be for glass; a longer render of ours tells what they are relative to. With `--quick` pictures are small, and
+//! what it takes to begin one counts for much. Mitsuba is run by `scripts/peers`, with the Python that `scripts/setup test`
+//! installs; where it is not there, a line says so and only Glossmith is measured.
 
 mod scene;
 
@@ -118,32 +118,33 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Result<(), Box<dyn Error>> {
-    let mut ours = Measured::default();
+    let mut our_seconds = f64::INFINITY;
     let mut theirs = Measured::default();
     for turn in 0..extent.turns {
-        ours.add(glossmith(folder, case, extent.size, extent.samples, turn + 1)?);
+        our_seconds = our_seconds.min(glossmith(folder, case, extent.size, extent.samples, turn + 1)?.0);
         if with_peer {
             theirs.add(peer(folder, case, extent.size, extent.samples, turn + 1)?);
         }
     }
     let pixels = f64::from(extent.size * extent.size * extent.samples);
-    let rate = |measured: &Measured| pixels / measured.seconds / 1e6;
+    let rate = |seconds: f64| pixels / seconds / 1e6;
     let ground = if case.ground { ", ground" } else { "" };
-    let beside = |ours: f64, theirs: f64| {
+    let of_peer = |number: f64| {
         if with_peer {
-            format!(" {ours:.2} | {theirs:.2} | {:.2} |", ours / theirs)
+            format!("{number:.2}")
         } else {
-            format!(" {ours:.2} | – | – |")
+            "–".to_owned()
         }
     };
+    let beside = |ours: f64, theirs: f64| format!(" {ours:.2} | {} | {} |", of_peer(theirs), of_peer(ours / theirs));
     let mut line = format!("| {} | {}{ground} |", case.material, case.mesh);
-    line += &beside(rate(&ours), rate(&theirs));
+    line += &beside(rate(our_seconds), rate(theirs.seconds));
     if let Some(samples) = extent.reference {
         let reference = glossmith(folder, case, extent.size, samples, 1000)?.1;
         let their_time = theirs.time_to_goal(&reference);
         line += &beside(time_to_goal(folder, case, extent, &reference, false)?, their_time);
         let adaptive = time_to_goal(folder, case, extent, &reference, true)?;
-        line += &format!(" {adaptive:.2} | {:.2} |", adaptive / their_time);
+        line += &format!(" {adaptive:.2} | {} |", of_peer(adaptive / their_time));
     } else {
         line += &" – |".repeat(5);
     }
@@ -151,7 +152,7 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
     Ok(())
 }
 
-/// Renders of one renderer: the quickest one's seconds, and all pictures.
+/// Renders of Mitsuba: the quickest one's seconds, and all pictures.
 struct Measured {
     seconds: f64,
     pictures: Vec<Picture>,

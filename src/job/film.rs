@@ -106,7 +106,7 @@ impl HalfSums {
     pub fn with(&self, other: &Self) -> Self {
         let samples = self.samples + other.samples;
         let between = if self.samples > 0.0 && other.samples > 0.0 {
-            let difference = self.luminance() / self.samples - other.luminance() / other.samples;
+            let difference = self.mean_luminance() - other.mean_luminance();
             difference * difference * self.samples * other.samples / samples
         } else {
             0.0

@@ -65,8 +65,8 @@ pub fn compared(materials: &[MaterialSettings; 2]) -> Result<Compared, SessionEr
 
 /// The mean luminance of a pixel, or of a half of its samples.
 fn luminance(film: &Film, pixel: usize, half: Option<usize>) -> f64 {
-    let sums = half.map_or_else(|| film.sums(pixel), |half| film.halves(pixel)[half]);
-    sums.luminance() / sums.samples.max(1.0)
+    half.map_or_else(|| film.sums(pixel), |half| film.halves(pixel)[half])
+        .mean_luminance()
 }
 
 /// A ball of a material in the studio, which stays visible: what glass refracts is seen against something.

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::convex::is_convex;
 use super::ground::Ground;
-use super::hierarchy::{Doors, Found, PACKET, Packet};
+use super::hierarchy::{Doors, Found, PACKET, Packet, Wide};
 use super::intersect::{Hit, RayFrame};
 use super::light::AreaShape;
 use super::loading::{Cancelled, Loading};
@@ -140,6 +140,7 @@ impl Geometry {
     }
 
     /// Both parts, each with the number of its first triangle.
+    #[inline(always)]
     pub fn parts(&self) -> [(&Part, usize); 2] {
         [(&self.model, 0), (&self.around, self.model.triangles.len())]
     }
@@ -250,7 +251,7 @@ impl Geometry {
     /// hears of each packet what its rays meet, in order; of none if no ray meets anything.
     #[inline(always)]
     pub fn intersect_packets(&self, level: Level, packets: &[Packet], mut tell: impl FnMut([Option<Hit>; PACKET])) {
-        let doors = [&self.model, &self.around].map(|part| part.wide().doors(level, packets));
+        let doors = self.parts().map(|(part, _)| part.wide().doors(level, packets));
         if doors.iter().all(|doors| doors.as_ref().is_some_and(Doors::are_none)) {
             return;
         }
@@ -263,11 +264,8 @@ impl Geometry {
     #[inline(always)]
     fn intersect_behind(&self, level: Level, packet: &Packet, doors: &[Option<Doors>; 2]) -> [Option<Hit>; PACKET] {
         let mut hits = [None; PACKET];
-        let found = self.packet_through(packet, |part, found| {
-            let doors = doors[part].as_ref();
-            [&self.model, &self.around][part]
-                .wide()
-                .nearest_of(level, packet, doors, found)
+        let found = self.packet_through(packet, doors, |wide, doors, found| {
+            wide.nearest_of(level, packet, doors, found)
         });
         for (lane, hit) in hits.iter_mut().enumerate() {
             *hit = match &found {
@@ -278,26 +276,30 @@ impl Geometry {
         hits
     }
 
-    /// What the rays of a packet meet of both parts, by a way of tracing one, the model and what is around it; `None` where
-    /// they do not go the same way.
+    /// What the rays of a packet meet of both parts behind their doors, by a way of tracing one; `None` where they do not go
+    /// the same way.
     #[inline(always)]
-    fn packet_through(&self, packet: &Packet, trace: impl Fn(usize, &mut Found) -> bool) -> Option<Found> {
+    fn packet_through(
+        &self,
+        packet: &Packet,
+        doors: &[Option<Doors>; 2],
+        trace: impl Fn(&Wide, Option<&Doors>, &mut Found) -> bool,
+    ) -> Option<Found> {
         let mut found = Found::nothing(packet);
-        let mut is_one_way = trace(0, &mut found);
-        if !self.around.is_empty() {
-            found.first = self.model.triangles.len() as u32;
-            is_one_way &= trace(1, &mut found);
+        for ((part, first), doors) in self.parts().into_iter().zip(doors) {
+            found.first = first as u32;
+            if !part.is_empty() && !trace(part.wide(), doors.as_ref(), &mut found) {
+                return None;
+            }
         }
-        is_one_way.then_some(found)
+        Some(found)
     }
 
     /// Whether any triangle is met on each ray of a packet, as [`Geometry::occluded`] says.
     #[inline(always)]
     pub fn occluded_packet(&self, level: Level, packet: &Packet) -> [bool; PACKET] {
         let mut is_met = [false; PACKET];
-        let found = self.packet_through(packet, |part, found| {
-            [&self.model, &self.around][part].wide().any_of(level, packet, found)
-        });
+        let found = self.packet_through(packet, &[None; 2], |wide, _, found| wide.any_of(level, packet, found));
         for (lane, is_met) in is_met.iter_mut().enumerate() {
             *is_met = match &found {
                 Some(found) => found.is_met(lane),

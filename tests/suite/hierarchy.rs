@@ -343,14 +343,12 @@ fn packets_meet_the_same_together_as_alone() {
             let spread = 0.5_f32.powi(random.below(12) as i32);
             let lens = if random.below(4) == 0 { 0.05 } else { 0.0 };
             let packets = (0..1 + random.below(32)).map(|_| {
-                let mut packet = Packet::default();
-                for lane in 0..PACKET {
-                    let moved = |from: [f32; 3], by: Vec3| (Vec3::from_array(from) + by).to_array();
+                let moved = |from: [f32; 3], by: Vec3| (Vec3::from_array(from) + by).to_array();
+                Packet::of((0..PACKET).map(|_| {
                     let origin = moved(first.origin, random.in_ball() * lens);
                     let direction = moved(first.direction, random.in_ball() * spread);
-                    packet.set(lane, origin, direction, f32::MAX);
-                }
-                packet
+                    (origin, direction, f32::MAX)
+                }))
             });
             let packets: Vec<Packet> = packets.collect();
             for (set, level) in sets() {

@@ -400,10 +400,9 @@ pub fn sample_in_rows<T: Real>(distribution: &Distribution, rows: &T::Each<u32>,
         let column = distribution.column(row.index, number);
         let [x, y] = jitter(xi.z);
         let density = distribution.cells[(row.index * width + column.index) as usize].density;
-        let whole = |index: u32| T::Scalar::from_f64(f64::from(index));
         let place = [place_in(column, number, x), place_in(row, row_number, y)];
         (
-            [whole(column.index), whole(row.index)],
+            [column.index, row.index].map(T::Scalar::from_count),
             place,
             T::Scalar::from_f64(f64::from(density)),
         )
