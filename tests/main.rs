@@ -107,6 +107,8 @@ mod lobe_cases;
 mod lobe_views;
 #[path = "suite/lut.rs"]
 mod lut;
+#[path = "suite/many_materials.rs"]
+mod many_materials;
 #[path = "suite/memory.rs"]
 mod memory;
 #[path = "suite/merge.rs"]

@@ -40,22 +40,18 @@ struct Tile {
 struct PixelColors {
     // With the coverage.
     all: vec4f,
-    // The same of the odd samples alone: one of two independent halves.
-    odd: vec3f,
-    odd_kept: f32,
+    // The same of the odd samples alone, one of two independent halves, with their number.
+    odd: vec4f,
 }
 
-// Other sums over the samples of a pixel since the host last took them; scalars, so that the stride is 24 bytes.
+// Other sums over the samples of a pixel since the host last took them.
 struct PixelStatistics {
-    luminance_squared: f32,
-    // Samples in the sums.
-    kept: f32,
-    odd_luminance_squared: f32,
-    // Samples that were not sound.
-    dropped: f32,
-    rays: f32,
-    // Luminance that limiting fireflies took.
-    clamped: f32,
+    // Of all samples, and of the odd ones.
+    luminance_squared: vec2f,
+    // Samples in the sums, and samples that were not sound.
+    kept_dropped: vec2f,
+    // Rays, and luminance that limiting fireflies took.
+    rays_clamped: vec2f,
 }
 
 // Sums over a pixel's first samples of what they saw first.
@@ -256,7 +252,7 @@ fn catch_shadow(position: vec3f, direction: vec3f, state: RandomState) -> Caught
     }
     let is_transparent = background.a <= 0.0;
     let shown = select(background.rgb, vec3f(1.0), is_transparent);
-    let albedo = materials[globals.catcher_slot].base_color;
+    let albedo = material_at(globals.catcher_slot).base_color;
     let is_lit = select(vec3f(0.0), vec3f(1.0), light > vec3f(0.0));
     let reflected = light * albedo + (vec3f(1.0) - is_lit);
     let kind = select(CAUGHT_SHADOW, CAUGHT_ALPHA, is_transparent);
@@ -371,7 +367,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
                 }
             }
         }
-        let material_there = materials[slot];
+        let material_there = material_at(slot);
         let point = surface_of(hit, ray.direction, slot, material_there);
         let is_mirrored = PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_MIRRORED;
         let material = textured_material(material_there, point.uvs, point.vertex_color);
@@ -473,36 +469,28 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     for (var i = 0u; i < tile.sample_count; i++) {
         let sample = tile.first_sample + i;
         let path = trace_path(pixel, sample);
-        sums.rays += f32(path.rays);
+        sums.rays_clamped += vec2f(f32(path.rays), 0.0);
         if is_sound(path.radiance) {
             let y = luminance(path.radiance);
             let odd = f32(sample % 2u);
             colors.all += vec4f(path.radiance, path.alpha);
-            colors.odd += odd * path.radiance;
-            colors.odd_kept += odd;
-            sums.luminance_squared += y * y;
-            sums.kept += 1.0;
-            sums.clamped += path.clamped;
-            sums.odd_luminance_squared += odd * y * y;
+            colors.odd += odd * vec4f(path.radiance, 1.0);
+            sums.luminance_squared += y * y * vec2f(1.0, odd);
+            sums.kept_dropped.x += 1.0;
+            sums.rays_clamped.y += path.clamped;
             guides.albedo += path.seen.albedo;
             guides.hits += path.seen.hits;
             guides.normal += path.seen.normal;
             guides.depth += path.seen.depth;
         } else {
-            sums.dropped += 1.0;
+            sums.kept_dropped.y += 1.0;
         }
     }
     color_sums[index].all += colors.all;
     color_sums[index].odd += colors.odd;
-    color_sums[index].odd_kept += colors.odd_kept;
     statistics[index].luminance_squared += sums.luminance_squared;
-    statistics[index].kept += sums.kept;
-    statistics[index].odd_luminance_squared += sums.odd_luminance_squared;
-    statistics[index].dropped += sums.dropped;
-    statistics[index].rays += sums.rays;
-    if PLAN_FIREFLY_CLAMP == 1u {
-        statistics[index].clamped += sums.clamped;
-    }
+    statistics[index].kept_dropped += sums.kept_dropped;
+    statistics[index].rays_clamped += sums.rays_clamped;
     if PLAN_GUIDES == 1u && tile.first_sample < GUIDE_SAMPLES {
         guide_sums[index].albedo += guides.albedo;
         guide_sums[index].hits += guides.hits;

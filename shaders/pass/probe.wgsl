@@ -95,7 +95,7 @@ fn probe_material(@builtin(global_invocation_id) id: vec3u) {
     let surface = Surface(
         frame_from_normal(shading), asked_vector(q + 5u), asked_vector(q + 8u), shading, questions[q + 1u] == 1u,
     );
-    let value = material_evaluate(materials[questions[q]], surface, asked_vector(q + 11u), asked(q + 14u), 1.0);
+    let value = material_evaluate(material_at(questions[q]), surface, asked_vector(q + 11u), asked(q + 14u), 1.0);
     answer_vector(id.x * 3u, value);
 }
 

@@ -106,17 +106,20 @@ struct Triangle {
     corners: array<vec4u, 3>,
 }
 
-// What shading needs of a vertex besides its position; scalars, so that the stride is 52 bytes.
+// What shading needs of a vertex besides its position.
 struct Vertex {
-    normal: array<f32, 3>,
-    uv: array<f32, 2>,
-    second_uv: array<f32, 2>,
-    tangent: array<f32, 4>,
-    // Linear red and green, then blue and 1, as 16-bit fractions.
-    color: array<u32, 2>,
+    normal: vec3f,
+    // Linear red and green, as 16-bit fractions.
+    red_green: u32,
+    tangent: vec3f,
+    // Blue, and which side of the tangent the bitangent is on: 0 or 1, for -1 and 1.
+    blue_side: u32,
+    // Both sets of texture coordinates.
+    uvs: vec4f,
 }
 
 // Everything that a pass reads of a scene: five storage buffers, so that WebGPU's eight leave three for what it writes.
+// What is loaded together is a vector: some drivers make a branch of each lane's load, and of each of its words.
 @group(0) @binding(0) var<uniform> globals: Globals;
 // Five vec4u a node (80 bytes, CWBVH).
 @group(0) @binding(1) var<storage, read> nodes: array<vec4u>;
@@ -138,8 +141,20 @@ struct Vertex {
 @group(0) @binding(13) var triangle_texels: texture_2d_array<u32>;
 @group(0) @binding(14) var vertex_texels: texture_2d_array<u32>;
 
+// The materials where there are no more than these: no driver tests every lane's load from here.
+@group(0) @binding(15) var<uniform> few_materials: array<Material, FEW_MATERIALS>;
+
 // 1: the geometry is in the textures.
 override GEOMETRY_IN_TEXTURES: u32 = 0u;
+// 1: the materials are in the storage buffer.
+override HAS_MANY_MATERIALS: u32 = 0u;
+
+fn material_at(slot: u32) -> Material {
+    if HAS_MANY_MATERIALS == 1u {
+        return materials[slot];
+    }
+    return few_materials[slot];
+}
 
 // A vec4u of the nodes.
 fn node_words(index: u32) -> vec4u {
@@ -166,18 +181,14 @@ fn vertex_at(index: u32) -> Vertex {
     if GEOMETRY_IN_TEXTURES == 0u {
         return vertices[index];
     }
-    var words: array<vec4u, 4>;
-    for (var i = 0u; i < 4u; i++) {
-        let place = texel_place(4u * index + i);
+    var words: array<vec4u, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        let place = texel_place(3u * index + i);
         words[i] = textureLoad(vertex_texels, place.xy, place.z, 0);
     }
-    let a = bitcast<vec4f>(words[0]);
-    let b = bitcast<vec4f>(words[1]);
-    let c = bitcast<vec4f>(words[2]);
-    return Vertex(
-        array<f32, 3>(a.x, a.y, a.z), array<f32, 2>(a.w, b.x), array<f32, 2>(b.y, b.z),
-        array<f32, 4>(b.w, c.x, c.y, c.z), array<u32, 2>(words[2].w, words[3].x),
-    );
+    let normal = bitcast<vec3f>(words[0].xyz);
+    let tangent = bitcast<vec3f>(words[1].xyz);
+    return Vertex(normal, words[0].w, tangent, words[1].w, bitcast<vec4f>(words[2]));
 }
 
 // The material slot of a triangle.

@@ -47,7 +47,7 @@ fn light_sample(origin: vec3f, origin_error: f32, xi: vec3f) -> LightSample {
     let distance = length(towards);
     let direction = normalize_or(towards, vec3f(0.0, 1.0, 0.0));
     let normal = normalize_or(triangle_normal(p0, p1, p2), direction);
-    let material = materials[slot_at(index)];
+    let material = material_at(slot_at(index));
     var radiance = material.emission;
     if PLAN_EMISSION_TEXTURES == 1u || PLAN_ALPHA == 1u {
         let uvs = uvs_at(triangle, weights, material.has_box_projection == 1u);

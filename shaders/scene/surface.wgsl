@@ -67,7 +67,7 @@ fn passed_origin(hit: Hit, direction: vec3f) -> vec3f {
 
 fn surface_at(hit: Hit, direction: vec3f) -> SurfacePoint {
     let slot = slot_at(hit.triangle);
-    return surface_of(hit, direction, slot, materials[slot]);
+    return surface_of(hit, direction, slot, material_at(slot));
 }
 
 // The same of a material that is known.
@@ -80,11 +80,7 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     let a = vertex_at(triangle.corners[0].w);
     let b = vertex_at(triangle.corners[1].w);
     let c = vertex_at(triangle.corners[2].w);
-    let interpolated = vec3f(
-        a.normal[0] * w + b.normal[0] * hit.u + c.normal[0] * hit.v,
-        a.normal[1] * w + b.normal[1] * hit.u + c.normal[1] * hit.v,
-        a.normal[2] * w + b.normal[2] * hit.u + c.normal[2] * hit.v,
-    );
+    let interpolated = a.normal * w + b.normal * hit.u + c.normal * hit.v;
     let smoothed = normalize_or(interpolated, normal);
     let side = select(1.0, -1.0, dot(smoothed, normal) < 0.0);
     let coat_normal = bent_normal(side * smoothed, wo);
@@ -93,10 +89,8 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
         uvs = hit_uvs(hit, material);
     }
     let tangent = vec4f(
-        a.tangent[0] * w + b.tangent[0] * hit.u + c.tangent[0] * hit.v,
-        a.tangent[1] * w + b.tangent[1] * hit.u + c.tangent[1] * hit.v,
-        a.tangent[2] * w + b.tangent[2] * hit.u + c.tangent[2] * hit.v,
-        a.tangent[3] * w + b.tangent[3] * hit.u + c.tangent[3] * hit.v,
+        a.tangent * w + b.tangent * hit.u + c.tangent * hit.v,
+        vertex_side(a) * w + vertex_side(b) * hit.u + vertex_side(c) * hit.v,
     );
     var shading = coat_normal;
     if PLAN_NORMAL_MAPS == 1u && material.textures.z != NO_TEXTURE {
@@ -118,7 +112,12 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
 
 // The linear colour of a vertex that multiplies the material's.
 fn vertex_color(vertex: Vertex) -> vec3f {
-    return vec3f(unpack2x16unorm(vertex.color[0]), unpack2x16unorm(vertex.color[1]).x);
+    return vec3f(unpack2x16unorm(vertex.red_green), unpack2x16unorm(vertex.blue_side).x);
+}
+
+// The sign of a vertex's bitangent.
+fn vertex_side(vertex: Vertex) -> f32 {
+    return select(1.0, -1.0, (vertex.blue_side >> 16u) == 0u);
 }
 
 fn looks_up_textures() -> bool {
@@ -134,10 +133,11 @@ fn hit_uvs(hit: Hit, material: Material) -> Uvs {
 // The share of light that is stopped where a ray met the geometry.
 fn hit_opacity(hit: Hit) -> f32 {
     let slot = slot_at(hit.triangle);
-    if !material_has_holes(materials[slot]) {
+    let material = material_at(slot);
+    if !material_has_holes(material) {
         return 1.0;
     }
-    return opacity_at(materials[slot], hit_uvs(hit, materials[slot]));
+    return opacity_at(material, hit_uvs(hit, material));
 }
 
 // How far off its plane, along the normal, the place may be that is interpolated between a triangle's corners.

@@ -261,8 +261,8 @@ fn uvs_at(triangle: Triangle, weights: vec3f, has_box: bool) -> Uvs {
     // Corners that have weight, in turn, so that the code that loads one is there once.
     while any(weight != vec3f(0.0)) {
         let at = vertex_at(corners.x);
-        sets += vec4f(at.uv[0], at.uv[1], at.second_uv[0], at.second_uv[1]) * weight.x;
-        smooth_normal += vec3f(at.normal[0], at.normal[1], at.normal[2]) * weight.x;
+        sets += at.uvs * weight.x;
+        smooth_normal += at.normal * weight.x;
         corners = corners.yzx;
         weight = vec3f(weight.yz, 0.0);
     }

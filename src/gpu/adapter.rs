@@ -18,13 +18,14 @@ pub enum AdapterKind {
 }
 
 /// What every pass needs of an adapter, each number within what WebGPU grants everywhere: the path tracer's eight storage
-/// buffers, two uniforms and ten textures, arrays in textures of 4096 texels a row, workgroups of 64.
+/// buffers, three uniforms and ten textures, arrays in textures of 4096 texels a row, workgroups of 64.
 fn limits_needed() -> wgpu::Limits {
     wgpu::Limits {
         max_texture_dimension_2d: TEXEL_ROW as u32,
         max_sampled_textures_per_shader_stage: 10,
         max_storage_buffers_per_shader_stage: 8,
-        max_uniform_buffers_per_shader_stage: 2,
+        max_uniform_buffers_per_shader_stage: 3,
+        max_uniform_buffer_binding_size: 64 << 10,
         max_storage_buffer_binding_size: 128 << 20,
         max_buffer_size: 128 << 20,
         max_compute_invocations_per_workgroup: 64,

@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 use super::budget::Budget;
 use super::compute;
 use super::device::{GpuDevice, GpuError};
-use super::geometry_arrays::Form;
 use super::layout::{PixelColors, PixelStatistics, Tile};
 use super::pipeline::Pipelines;
 use super::resources::Resources;
+use super::scene_group::SceneForm;
 use super::sums::{Band, DISPATCH_TILES};
 use super::timer::Timer;
 use crate::job::Job;
@@ -80,8 +80,8 @@ impl GpuEngine {
         let [width, height] = job.settings.image_size;
         let first_sample = job.settings.first_sample;
         let old = self.resources.as_ref();
-        let form = Form::of(&self.gpu, &job.geometry);
-        self.pipelines.link(&self.gpu, form.traversal())?;
+        let form = SceneForm::of(&self.gpu, &job);
+        self.pipelines.link(&self.gpu, form.geometry.traversal())?;
         let resources = Resources::new(&self.gpu, &self.pipelines, job.clone(), old)?;
         self.budget = match old {
             Some(old) if old.job().plan.specialisation() == job.plan.specialisation() => self.budget.of_another_scene(),
@@ -100,7 +100,7 @@ impl GpuEngine {
 
     /// Whether the kernel is ready that a job needs.
     pub fn has_kernel(&self, job: &Job) -> bool {
-        let form = Form::of(&self.gpu, &job.geometry);
+        let form = SceneForm::of(&self.gpu, job);
         self.pipelines.has(&(job.plan.specialisation(), form))
     }
 
@@ -281,24 +281,24 @@ fn take_over_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usi
 /// Adds what the GPU summed of a pixel to the film.
 fn take_over(film: &mut Film, pixel: usize, colors: &PixelColors, statistics: &PixelStatistics) {
     let [red, green, blue, coverage] = colors.all.map(f64::from);
-    let odd = half(
-        colors.odd.map(f64::from),
-        statistics.odd_luminance_squared.into(),
-        colors.odd_kept.into(),
-    );
+    let [luminance_squared, odd_luminance_squared] = statistics.luminance_squared.map(f64::from);
+    let [kept, dropped] = statistics.kept_dropped;
+    let [rays, clamped] = statistics.rays_clamped;
+    let [odd_red, odd_green, odd_blue, odd_kept] = colors.odd.map(f64::from);
+    let odd = half([odd_red, odd_green, odd_blue], odd_luminance_squared, odd_kept);
     let even = half(
-        [red - odd.color[0], green - odd.color[1], blue - odd.color[2]],
-        f64::from(statistics.luminance_squared) - f64::from(statistics.odd_luminance_squared),
-        f64::from(statistics.kept) - odd.samples,
+        [red - odd_red, green - odd_green, blue - odd_blue],
+        luminance_squared - odd_luminance_squared,
+        f64::from(kept) - odd_kept,
     );
     let [kept_even, kept_odd] = film.halves(pixel);
     film.set_halves(pixel, &[kept_even.with(&even), kept_odd.with(&odd)]);
     film.add_coverage(pixel, coverage);
     let tile = film.grid().of_pixel(pixel);
     let costs = &mut film.costs[tile];
-    costs.rays += f64::from(statistics.rays);
-    costs.dropped += statistics.dropped as u64;
-    costs.clamped += f64::from(statistics.clamped);
+    costs.rays += f64::from(rays);
+    costs.dropped += dropped as u64;
+    costs.clamped += f64::from(clamped);
 }
 
 /// A half's sums from those of its squares. Rounding may take the deviations below 0; further on it averages out.

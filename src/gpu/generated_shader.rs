@@ -2,6 +2,7 @@
 
 use super::array::TEXEL_ROW_BITS;
 use super::layout::BACKGROUNDS;
+use super::material_array::FEW_MATERIALS;
 use super::sums::TILE_COLUMNS;
 use crate::job::Strategy;
 use crate::job::effect::{ANY, EffectId};
@@ -52,6 +53,7 @@ fn scene_choices() -> String {
     format!(
         "// Generated from src/job, src/scene/camera.rs and src/gpu.\n{}{}{}const GUIDE_SAMPLES: u32 = {GUIDE_SAMPLES}u;\n\
          const TEXEL_ROW_BITS: u32 = {TEXEL_ROW_BITS}u;\nconst TILE_COLUMNS: u32 = {TILE_COLUMNS}u;\n\
+         const FEW_MATERIALS: u32 = {FEW_MATERIALS}u;\n\
          const CATCHER_BEND: f32 = {CATCHER_BEND:?};\nconst CATCHER_HALF_SIDE: f32 = {CATCHER_HALF_SIDE:?};\n\
          const CATCHER_REFLECTANCE: f32 = {CATCHER_REFLECTANCE:?};\n",
         choices::<Strategy>("STRATEGY"),

@@ -106,7 +106,7 @@ impl GeometryArrays {
             arrays.textures = [
                 array::empty_texture::<NodeWords>(gpu, names[0], counts.nodes),
                 array::empty_texture::<Triangle>(gpu, names[1], counts.triangles),
-                array::empty_texture::<VertexWords>(gpu, names[2], counts.vertices),
+                array::empty_texture::<Vertex>(gpu, names[2], counts.vertices),
             ];
         } else {
             let bytes = counts.bytes();
@@ -167,7 +167,7 @@ impl GeometryArrays {
         if self.form == Form::Textures {
             array::write_texture(gpu, &self.textures[0], before.nodes, &nodes)?;
             array::write_texture(gpu, &self.textures[1], before.triangles, &triangles)?;
-            array::write_texture(gpu, &self.textures[2], before.vertices, &vertices.map(vertex_words))
+            array::write_texture(gpu, &self.textures[2], before.vertices, &vertices)
         } else {
             array::write_buffer(gpu, &self.buffers[0], before.nodes, &nodes)?;
             array::write_buffer(gpu, &self.buffers[1], before.triangles, &triangles)?;
@@ -262,13 +262,3 @@ impl Counts {
 
 /// A node of the hierarchy, whole texels of 16 bytes: the second begins with the first of its children and of its triangles.
 type NodeWords = [[u32; 4]; 5];
-
-/// A vertex in whole texels.
-type VertexWords = [u32; 16];
-
-fn vertex_words(vertex: &Vertex) -> VertexWords {
-    let mut words = [0; 16];
-    let own: &[u32] = bytemuck::cast_slice(std::slice::from_ref(vertex));
-    words[..own.len()].copy_from_slice(own);
-    words
-}

@@ -90,28 +90,20 @@ pub struct Tile {
 pub struct PixelColors {
     /// Linear red, green, blue and the coverage.
     pub all: [f32; 4],
-    /// Red, green and blue of the odd samples.
-    pub odd: [f32; 3],
-    /// Odd samples in the sums.
-    pub odd_kept: f32,
+    /// Red, green and blue of the odd samples, and how many of these are in the sums.
+    pub odd: [f32; 4],
 }
 
 /// Other sums over the samples of a pixel since the host last took them.
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 #[repr(C)]
 pub struct PixelStatistics {
-    /// Sum of the squared luminance.
-    pub luminance_squared: f32,
-    /// Samples in the sums.
-    pub kept: f32,
-    /// Sum of the odd samples' squared luminance.
-    pub odd_luminance_squared: f32,
-    /// Samples that were not sound.
-    pub dropped: f32,
-    /// Rays traced.
-    pub rays: f32,
-    /// Luminance that limiting fireflies took.
-    pub clamped: f32,
+    /// Sum of the squared luminance, and of that of the odd samples.
+    pub luminance_squared: [f32; 2],
+    /// Samples in the sums, and samples that were not sound.
+    pub kept_dropped: [f32; 2],
+    /// Rays traced, and luminance that limiting fireflies took.
+    pub rays_clamped: [f32; 2],
 }
 
 /// [`Globals::node_count`], [`Globals::around_root`] and [`Globals::around_triangle`].

@@ -10,6 +10,7 @@ mod generated_shader;
 pub mod geometry_arrays;
 mod kernel_cache;
 pub mod layout;
+pub mod material_array;
 mod pipeline;
 pub mod probe;
 mod resources;

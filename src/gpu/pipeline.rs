@@ -6,13 +6,14 @@ use super::compute;
 use super::device::{GpuDevice, GpuError};
 use super::geometry_arrays::Form;
 use super::kernel_cache::KernelCache;
+use super::scene_group::SceneForm;
 use super::scene_pass::ScenePass;
 use super::traversal::Traversal;
 use super::{shader, sums};
 use crate::job::plan::{Plan, Specialisation};
 
-/// What a pipeline is made for: a plan's constants, and how the geometry is found.
-pub type Kernel = (Specialisation, Form);
+/// What a pipeline is made for: a plan's constants, and how the scene is found.
+pub type Kernel = (Specialisation, SceneForm);
 
 /// The path tracer: its shader for each way that rays go, its binding layouts, and a pipeline for each kind of scene met.
 #[derive(Debug)]
@@ -82,13 +83,13 @@ impl Pipelines {
     ///
     /// # Errors
     /// [`GpuError::Shader`] where the driver refuses it.
-    pub fn get(&mut self, gpu: &GpuDevice, plan: &Plan, form: Form) -> Result<&wgpu::ComputePipeline, GpuError> {
+    pub fn get(&mut self, gpu: &GpuDevice, plan: &Plan, form: SceneForm) -> Result<&wgpu::ComputePipeline, GpuError> {
         let kernel = (plan.specialisation(), form);
         if !self.made.contains_key(&kernel) {
             let mut constants = plan.constants();
-            constants.push(form.constant());
+            constants.extend(form.constants());
             let cache = self.cache.as_ref().map(KernelCache::cache);
-            let pipeline = self.passes[&form.traversal()].pipeline(gpu, PASS, &constants, cache)?;
+            let pipeline = self.passes[&form.geometry.traversal()].pipeline(gpu, PASS, &constants, cache)?;
             self.made.insert(kernel.clone(), pipeline);
             if let Some(cache) = &self.cache {
                 cache.save();

@@ -7,9 +7,10 @@ use bytemuck::{Pod, Zeroable};
 
 use super::compute::{self, READ, WRITE};
 use super::device::{GpuDevice, GpuError};
-use super::geometry_arrays::{Form, GeometryArrays};
+use super::geometry_arrays::GeometryArrays;
 use super::layout::{self, Globals};
-use super::scene_group::{self, SceneGroup};
+use super::material_array::MaterialArray;
+use super::scene_group::{self, SceneForm, SceneGroup};
 use super::scene_pass::ScenePass;
 use super::traversal::Traversal;
 use crate::job::probe::ProbeScene;
@@ -24,7 +25,7 @@ pub struct Probe {
     /// For rays that go as the device has them, and for scenes where they can't.
     passes: HashMap<Traversal, ScenePass>,
     own_layout: wgpu::BindGroupLayout,
-    pipelines: Mutex<HashMap<(&'static str, Form), wgpu::ComputePipeline>>,
+    pipelines: Mutex<HashMap<(&'static str, SceneForm), wgpu::ComputePipeline>>,
 }
 
 impl Probe {
@@ -79,22 +80,22 @@ impl Probe {
     }
 
     /// The pipeline of an entry point, compiled at its first use.
-    fn pipeline(&self, entry_point: &'static str, form: Form) -> Result<wgpu::ComputePipeline, GpuError> {
+    fn pipeline(&self, entry_point: &'static str, form: SceneForm) -> Result<wgpu::ComputePipeline, GpuError> {
         let mut pipelines = self.pipelines.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(pipeline) = pipelines.get(&(entry_point, form)) {
             return Ok(pipeline.clone());
         }
-        let pass = &self.passes[&form.traversal()];
-        let pipeline = pass.pipeline(&self.gpu, entry_point, &[form.constant()], None)?;
+        let pass = &self.passes[&form.geometry.traversal()];
+        let pipeline = pass.pipeline(&self.gpu, entry_point, &form.constants(), None)?;
         pipelines.insert((entry_point, form), pipeline.clone());
         Ok(pipeline)
     }
 
-    /// The scene bound, and how its geometry is found.
-    fn scene(&self, scene: &ProbeScene<'_>) -> Result<(wgpu::BindGroup, Form), GpuError> {
+    /// The scene bound, and how it is found.
+    fn scene(&self, scene: &ProbeScene<'_>) -> Result<(wgpu::BindGroup, SceneForm), GpuError> {
         let gpu = &self.gpu;
         let mut group = SceneGroup {
-            materials: scene_group::materials(gpu, scene.materials)?,
+            materials: MaterialArray::new(gpu, scene.materials)?,
             tables: scene_group::tables(gpu, scene.tables)?,
             ..SceneGroup::empty(gpu)?
         };
@@ -108,8 +109,8 @@ impl Probe {
             around_triangle,
             ..Globals::zeroed()
         });
-        let form = group.geometry.form();
-        let layout = &self.passes[&form.traversal()].scene_layout;
+        let form = group.form();
+        let layout = &self.passes[&form.geometry.traversal()].scene_layout;
         Ok((group.bind(gpu, layout, &globals), form))
     }
 }

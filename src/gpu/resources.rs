@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use super::device::{GpuDevice, GpuError, Moment};
-use super::geometry_arrays::{Form, GeometryArrays};
+use super::geometry_arrays::GeometryArrays;
 use super::layout::Globals;
+use super::material_array::MaterialArray;
 use super::pipeline::Pipelines;
-use super::scene_group::{self, SceneGroup};
+use super::scene_group::{self, SceneForm, SceneGroup};
 use super::sums::Sums;
 use crate::job::Job;
 use crate::scene::Geometry;
@@ -60,9 +61,9 @@ impl Resources {
         &self.job
     }
 
-    /// How kernels find the geometry.
-    pub fn form(&self) -> Form {
-        self.scene.geometry.form()
+    /// How kernels find the scene.
+    pub fn form(&self) -> SceneForm {
+        self.scene.form()
     }
 }
 
@@ -72,7 +73,7 @@ fn scene(gpu: &GpuDevice, job: &Job, old: Option<&Resources>) -> Result<SceneGro
     Ok(SceneGroup {
         materials: match kept(|a, b| Arc::ptr_eq(&a.materials, &b.materials)) {
             Some(old) => old.materials.clone(),
-            None => scene_group::materials(gpu, &job.materials)?,
+            None => MaterialArray::new(gpu, &job.materials)?,
         },
         tables: match kept(|a, b| Arc::ptr_eq(&a.tables, &b.tables)) {
             Some(old) => old.tables.clone(),

@@ -5,9 +5,10 @@ use std::cell::LazyCell;
 use super::array::{self, Values};
 use super::compute::{self, READ, UNIFORMS, buffer_entry, texture_entry};
 use super::device::{GpuDevice, GpuError};
-use super::geometry_arrays::GeometryArrays;
+use super::geometry_arrays::{Form, GeometryArrays};
+use super::material_array::MaterialArray;
 use super::traversal::Traversal;
-use crate::optics::material::Material;
+use crate::job::Job;
 use crate::scene::Geometry;
 use crate::scene::environment::{Distribution, Environment};
 use crate::scene::inversion::Share;
@@ -17,8 +18,10 @@ use crate::scene::texture::Textures;
 /// The binding of the materials' tables, for passes that read nothing else.
 pub const TABLES_BINDING: u32 = 5;
 
+/// The binding of the materials among the uniforms.
+const FEW_MATERIALS_BINDING: u32 = 15;
 /// The binding of the adapter's own hierarchies, the last of the group, where there are any.
-const STRUCTURES_BINDING: u32 = 15;
+const STRUCTURES_BINDING: u32 = 16;
 
 const MAP: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
 
@@ -26,7 +29,7 @@ const MAP: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable
 pub fn layout(gpu: &GpuDevice, traversal: Traversal) -> wgpu::BindGroupLayout {
     use wgpu::TextureViewDimension::{D2, D2Array};
     let entry = |binding: u32| match binding {
-        0 => buffer_entry(binding, UNIFORMS),
+        0 | FEW_MATERIALS_BINDING => buffer_entry(binding, UNIFORMS),
         1..=5 => buffer_entry(binding, READ),
         6 => texture_entry(binding, MAP, D2),
         _ => texture_entry(binding, wgpu::TextureSampleType::Uint, D2Array),
@@ -43,13 +46,40 @@ pub fn layout(gpu: &GpuDevice, traversal: Traversal) -> wgpu::BindGroupLayout {
     })
 }
 
+/// How shaders find a scene: kernels are made for each of these.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SceneForm {
+    /// The geometry.
+    pub geometry: Form,
+    /// Whether the materials are too many for the uniforms.
+    pub has_many_materials: bool,
+}
+
+impl SceneForm {
+    /// The form of a job's scene on a device.
+    pub fn of(gpu: &GpuDevice, job: &Job) -> Self {
+        Self {
+            geometry: Form::of(gpu, &job.geometry),
+            has_many_materials: MaterialArray::are_many(&job.materials),
+        }
+    }
+
+    /// The override constants that tell a pipeline.
+    pub fn constants(self) -> [(&'static str, f64); 2] {
+        [
+            self.geometry.constant(),
+            ("HAS_MANY_MATERIALS", f64::from(u8::from(self.has_many_materials))),
+        ]
+    }
+}
+
 /// What a scene is on the GPU. The parts are shared: a new scene may have some of an old one's.
 #[derive(Clone, Debug)]
 pub struct SceneGroup {
     /// What rays meet.
     pub geometry: GeometryArrays,
-    /// See [`materials`].
-    pub materials: wgpu::Buffer,
+    /// The materials.
+    pub materials: MaterialArray,
     /// See [`tables`].
     pub tables: wgpu::Buffer,
     /// See [`environment`].
@@ -69,7 +99,7 @@ impl SceneGroup {
         let nothing = || array::texture(gpu, "nothing", &Values::<u32>::of(&[]));
         Ok(Self {
             geometry: GeometryArrays::empty(gpu)?,
-            materials: materials(gpu, &[])?,
+            materials: MaterialArray::new(gpu, &[])?,
             tables: tables(gpu, &[])?,
             environment: [environment_map(gpu, [1, 1], &[[0.0; 4]]), nothing()?],
             light_cells: nothing()?,
@@ -80,7 +110,8 @@ impl SceneGroup {
     /// The group with its uniforms, a [`layout::Globals`]; the layout is that for the geometry's form.
     pub fn bind(&self, gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, globals: &wgpu::Buffer) -> wgpu::BindGroup {
         let [nodes, triangles, vertices] = self.geometry.buffers();
-        let buffers = [globals, nodes, triangles, vertices, &self.materials, &self.tables];
+        let [few_materials, many_materials] = self.materials.buffers();
+        let buffers = [globals, nodes, triangles, vertices, many_materials, &self.tables];
         let [map, cells] = &self.environment;
         let [records, words] = &self.textures;
         let [node_texels, triangle_texels, vertex_texels, slots] = self.geometry.textures();
@@ -98,22 +129,20 @@ impl SceneGroup {
         let buffers = buffers.map(wgpu::Buffer::as_entire_binding).into_iter();
         let textures = textures.map(wgpu::BindingResource::TextureView).into_iter();
         let structures = self.geometry.structure().map(wgpu::Tlas::as_binding);
-        compute::bind(gpu, layout, (0..).zip(buffers.chain(textures).chain(structures)))
+        let last = [few_materials.as_entire_binding()].into_iter().chain(structures);
+        compute::bind(gpu, layout, (0..).zip(buffers.chain(textures).chain(last)))
+    }
+
+    /// How shaders find it.
+    pub fn form(&self) -> SceneForm {
+        SceneForm {
+            geometry: self.geometry.form(),
+            has_many_materials: self.materials.has_many(),
+        }
     }
 }
 
-/// The materials of a scene.
-///
-/// # Errors
-/// [`GpuError::TooLarge`].
-pub fn materials(gpu: &GpuDevice, materials: &[Material<f32>]) -> Result<wgpu::Buffer, GpuError> {
-    // A buffer is at least as large as one element of what the shader takes it for.
-    let filler = [bytemuck::Zeroable::zeroed()];
-    let materials = if materials.is_empty() { &filler } else { materials };
-    array::buffer(gpu, "the materials", &Values::of(materials))
-}
-
-/// Their custom curves and albedo tables.
+/// The materials' custom curves and albedo tables.
 ///
 /// # Errors
 /// [`GpuError::TooLarge`].

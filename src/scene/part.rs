@@ -10,38 +10,60 @@ use super::loading::{Cancelled, Loading};
 use super::memory::{in_large_pages, room_in_large_pages};
 use super::mesh::{Mesh, any_tangent};
 
-/// What shading needs of a vertex besides its position. 52 bytes, scalars only: the same layout in WGSL.
+/// What shading needs of a vertex besides its position: three times 16 bytes, the same layout in WGSL.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Vertex {
     /// Unit shading normal, or 0 for that of the triangle's plane.
     pub normal: [f32; 3],
-    /// Texture coordinates, v downwards.
-    pub uv: [f32; 2],
-    /// The second set of texture coordinates.
-    pub second_uv: [f32; 2],
-    /// Unit tangent and the sign of the bitangent, see [`Mesh::tangents`].
-    pub tangent: [f32; 4],
-    /// Linear red, green and blue in [0, 1] that multiply the material's, and 1, as 16-bit fractions, two in a word.
-    pub color: [u32; 2],
+    /// Linear red and green in [0, 1] that multiply the material's, as 16-bit fractions.
+    pub red_green: u32,
+    /// Unit tangent, see [`Mesh::tangents`].
+    pub tangent: [f32; 3],
+    /// Blue, and which side of the tangent the bitangent is on: 0 or 1, for −1 and 1.
+    pub blue_side: u32,
+    /// Texture coordinates, v downwards, and the second set of them.
+    pub uvs: [f32; 4],
 }
 
 impl Vertex {
-    /// A vertex's colour, packed.
-    fn packed_color(color: [f32; 4]) -> [u32; 2] {
-        let bits = |value: f32| (value.clamp(0.0, 1.0) * 65535.0).round() as u32;
-        let [r, g, b, _] = color.map(bits);
-        [r | g << 16, b | bits(1.0) << 16]
+    /// Vertex `index` of a mesh.
+    fn of(mesh: &Mesh, index: usize) -> Self {
+        let (normal, tangent) = (mesh.normals[index], mesh.tangents[index]);
+        let tangent = if tangent.is_finite() {
+            tangent
+        } else {
+            any_tangent(normal).extend(1.0)
+        };
+        let [red, green, blue, _] = mesh.colors.get(index).copied().unwrap_or([1.0; 4]);
+        let side = f32::from(u8::from(tangent.w >= 0.0));
+        let fractions = |low: f32, high: f32| {
+            let [low, high] = [low, high].map(|value| (value.clamp(0.0, 1.0) * 65535.0).round() as u32);
+            low | high << 16
+        };
+        let (uv, second_uv) = (mesh.uvs[index], mesh.second_uvs.get(index).copied().unwrap_or_default());
+        Self {
+            normal: normal.to_array(),
+            red_green: fractions(red, green),
+            tangent: tangent.truncate().to_array(),
+            blue_side: fractions(blue, side),
+            uvs: [uv.x, uv.y, second_uv.x, second_uv.y],
+        }
     }
 
     /// The linear colour that multiplies the material's.
     pub fn rgb(&self) -> [f32; 3] {
         let fraction = |bits: u32| f32::from(bits as u16) / 65535.0;
         [
-            fraction(self.color[0]),
-            fraction(self.color[0] >> 16),
-            fraction(self.color[1]),
+            fraction(self.red_green),
+            fraction(self.red_green >> 16),
+            fraction(self.blue_side),
         ]
+    }
+
+    /// The sign of the bitangent: 1 or −1.
+    pub fn side(&self) -> f32 {
+        if self.blue_side >> 16 == 0 { -1.0 } else { 1.0 }
     }
 }
 
@@ -138,19 +160,7 @@ impl Part {
         self.vertices.reserve_exact(mesh.positions.len());
         for (vertex, &position) in mesh.positions.iter().enumerate() {
             self.positions.push(to_units(position));
-            let (normal, tangent) = (mesh.normals[vertex], mesh.tangents[vertex]);
-            let tangent = if tangent.is_finite() {
-                tangent
-            } else {
-                any_tangent(normal).extend(1.0)
-            };
-            self.vertices.push(Vertex {
-                normal: normal.to_array(),
-                uv: mesh.uvs[vertex].to_array(),
-                second_uv: mesh.second_uvs.get(vertex).copied().unwrap_or_default().to_array(),
-                tangent: tangent.to_array(),
-                color: Vertex::packed_color(mesh.colors.get(vertex).copied().unwrap_or([1.0; 4])),
-            });
+            self.vertices.push(Vertex::of(mesh, vertex));
         }
         let mut dropped = 0;
         for index in chosen {

@@ -192,9 +192,10 @@ pub fn surfaces_at<T: Real>(
     let is_stretched = material.anisotropy.differs(T::zero()).any();
     let mut tangent = Vec3::zero();
     if has_map || is_stretched {
-        let axis = |vertex: &Vertex| [vertex.tangent[0], vertex.tangent[1], vertex.tangent[2]];
         tangent = between(
-            &at_corners(hits, |triangle| geometry.vertices(triangle).map(axis)),
+            &at_corners(hits, |triangle| {
+                geometry.vertices(triangle).map(|vertex| vertex.tangent)
+            }),
             &weights,
         );
     }
@@ -206,7 +207,7 @@ pub fn surfaces_at<T: Real>(
         let mapped = Vec3::from_lanes(|lane| {
             let sides = geometry
                 .vertices(triangle(lane))
-                .map(|vertex| T::Scalar::from_f64(f64::from(vertex.tangent[3])));
+                .map(|vertex| T::Scalar::from_f64(f64::from(vertex.side())));
             let part = |i: usize| sides[i] * weights_of_lanes[i].as_ref()[lane];
             let normals = [0, 1, 2].map(|i| normals[i].as_ref()[lane]);
             mapped_normal(

@@ -48,9 +48,9 @@ fn rust_layouts() -> Vec<Layout> {
         }),
         layout!(Tile: Tile { origin, first_sample, sample_count }),
         layout!(PixelStatistics: PixelStatistics {
-            luminance_squared, kept, odd_luminance_squared, dropped, rays, clamped,
+            luminance_squared, kept_dropped, rays_clamped,
         }),
-        layout!(PixelColors: PixelColors { all, odd, odd_kept }),
+        layout!(PixelColors: PixelColors { all, odd }),
         layout!(GuideSums: GuideSums { albedo, hits, normal, depth }),
         layout!(Camera: Camera<f32> {
             origin, lens_radius, forward, focus_distance, right, filter_kind, up, reserved,
@@ -65,7 +65,7 @@ fn rust_layouts() -> Vec<Layout> {
             has_box_projection,
         }),
         layout!(Triangle: Triangle { corners }),
-        layout!(Vertex: Vertex { normal, uv, second_uv, tangent, color }),
+        layout!(Vertex: Vertex { normal, red_green, tangent, blue_side, uvs }),
         layout!(Scatter: Scatter {
             wo, roughness, anisotropy, eta, lobe, curve, horizon, seed, first, count,
         }),

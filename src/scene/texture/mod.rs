@@ -188,8 +188,8 @@ pub fn uvs_at<T: Scalar>(geometry: &Geometry, triangle: usize, weights: [T; 3], 
         part(0) + part(1) + part(2)
     };
     [
-        [0, 1].map(|i| sum(&|vertex| vertex.uv[i])),
-        [0, 1].map(|i| sum(&|vertex| vertex.second_uv[i])),
+        [0, 1].map(|i| sum(&|vertex| vertex.uvs[i])),
+        [2, 3].map(|i| sum(&|vertex| vertex.uvs[i])),
         if has_box {
             let between = |[a, b, c]: [Vec3<T>; 3]| a * weights[0] + b * weights[1] + c * weights[2];
             let places = geometry.corners(triangle).map(Vec3::from_f32);

@@ -6,6 +6,7 @@ use bytemuck::cast_slice;
 use glam::Vec2;
 use glossmith::gpu::geometry_arrays::GeometryArrays;
 use glossmith::gpu::layout::Globals;
+use glossmith::gpu::material_array::MaterialArray;
 use glossmith::gpu::scene_group::{self, SceneGroup};
 use glossmith::gpu::{AdapterKind, GpuAdapter, GpuDevice, GpuError, Traversal};
 use glossmith::job::{BackgroundKind, Settings, Strategy};
@@ -438,7 +439,7 @@ fn upload(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout) -> Result<wgpu::BindG
     let globals = Globals::new(&settings(), geometry, cells_size);
     let group = SceneGroup {
         geometry: GeometryArrays::new(gpu, geometry)?,
-        materials: scene_group::materials(gpu, materials)?,
+        materials: MaterialArray::new(gpu, materials)?,
         tables: scene_group::tables(gpu, tables)?,
         environment: scene_group::environment(gpu, environment, distribution)?,
         light_cells: scene_group::light_cells(gpu, geometry, lights)?,

@@ -70,7 +70,7 @@ fn lights_agree() {
                     row.put(spot_share(&materials()[0], cosine));
                 }),
             )
-            .output("spot_share(materials[0], cosine)", Output::Number(1.0))
+            .output("spot_share(material_at(0u), cosine)", Output::Number(1.0))
             .group("", |rng, _| inputs![rng.range(-1.0, 1.0)]),
             Case::new(
                 "light_density",

@@ -55,7 +55,7 @@ fn materials_agree() {
         "material_layers",
         "material tangent bitangent shading normal wo coat_normal inside",
         "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, coat_normal, inside == 1u); \
-         let l = material_layers(materials[material], surface);",
+         let l = material_layers(material_at(material), surface);",
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
             let layers = material_layers(&material, &SCENE.tables, &surface);
@@ -77,7 +77,7 @@ fn materials_agree() {
         "material_sample",
         "material tangent bitangent shading normal wo coat_normal inside a b c layer d e f wants_density",
         "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, coat_normal, inside == 1u); \
-         let s = material_sample(materials[material], surface, \
+         let s = material_sample(material_at(material), surface, \
          MaterialNumbers(vec3f(a, b, c), layer, vec3f(d, e, f)), wants_density == 1u);",
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
@@ -112,7 +112,7 @@ fn materials_agree() {
     )
     // As of a density.
     .output(
-        "material_evaluate(materials[material], surface, wi, light_density, competing)",
+        "material_evaluate(material_at(material), surface, wi, light_density, competing)",
         Output::Vector(0.08),
     );
     for &lobe in Lobe::ALL {
@@ -163,15 +163,15 @@ fn materials_agree() {
                     row.put_vector(albedo_lookup(&SCENE.tables, material.albedo_table, cosine));
                 }),
             )
-            .output("albedo_lookup(materials[material].albedo_table, cosine)", COLOUR)
+            .output("albedo_lookup(material_at(material).albedo_table, cosine)", COLOUR)
             .group("", |rng, _| {
                 inputs![rng.below(SCENE.materials.len()) as u32, Value::Unit(rng.unit())]
             }),
             Case::new(
                 "rough_albedo",
                 "material cosine roughness",
-                "let integrals = rough_albedo_lookup(materials[material].albedo_table, cosine, roughness); \
-                 let albedo = rough_albedo(material_fresnel_terms(materials[material], false), integrals);",
+                "let integrals = rough_albedo_lookup(material_at(material).albedo_table, cosine, roughness); \
+                 let albedo = rough_albedo(material_fresnel_terms(material_at(material), false), integrals);",
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
                     let [cosine, roughness] = row.numbers();

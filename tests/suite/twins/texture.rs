@@ -75,7 +75,7 @@ fn textured_materials_agree() {
                 "textured_material",
                 "material u v second_u second_v box_u box_v",
                 "let uvs = Uvs(vec4f(u, v, second_u, second_v), vec2f(box_u, box_v)); \
-                 let m = textured_material(materials[material], uvs, vec3f(0.5, 0.75, 0.25));",
+                 let m = textured_material(material_at(material), uvs, vec3f(0.5, 0.75, 0.25));",
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
                     let tint = Vec3::from_f32([0.5, 0.75, 0.25]);
@@ -107,7 +107,7 @@ fn textured_materials_agree() {
                     row.put(opacity_at(&SCENE.textures, &material, uvs));
                 }),
             )
-            .output("opacity_at(materials[material], uvs)", SHARE)
+            .output("opacity_at(material_at(material), uvs)", SHARE)
             .group("", |rng, _| {
                 let material = any_material(rng);
                 with_uvs(rng, material)
@@ -125,7 +125,7 @@ fn textured_materials_agree() {
                 }),
             )
             .output(
-                "mapped_normal(materials[material], uvs, normal, vec4f(tangent, sign), outward)",
+                "mapped_normal(material_at(material), uvs, normal, vec4f(tangent, sign), outward)",
                 Output::Vector(1.0),
             )
             .group("", |rng, _| {
