@@ -11,13 +11,11 @@ fn albedo_lookup(albedo_table: u32, place: f32) -> vec3f {
     let last = f32(ALBEDO_NODES) - 1.0;
     let position = clamp(place, 0.0, 1.0) * last;
     let low = min(floor(position), last - 1.0);
-    let first = albedo_table + 3u * u32(low);
     let behind = position - low;
-    // Loops over the nodes that have weight, so that the code that loads one is there once.
+    // A loop over the nodes that have weight, so that the code that loads one is there once.
     var sum = vec3f(0.0);
     for (var node = 0u; node < select(1u, 2u, behind > 0.0); node++) {
-        let at = first + 3u * node;
-        sum += vec3f(tables[at], tables[at + 1u], tables[at + 2u]) * select(1.0 - behind, behind, node == 1u);
+        sum += table_numbers(albedo_table, u32(low) + node).xyz * select(1.0 - behind, behind, node == 1u);
     }
     return sum;
 }
@@ -38,8 +36,8 @@ fn table_lookup(table: u32, nodes: u32, place: f32) -> f32 {
     let last = f32(nodes) - 1.0;
     let position = clamp(place, 0.0, 1.0) * last;
     let low = min(floor(position), last - 1.0);
-    let first = table + u32(low);
-    return tables[first] + (tables[first + 1u] - tables[first]) * (position - low);
+    let left = table_number(table, u32(low));
+    return left + (table_number(table, u32(low) + 1u) - left) * (position - low);
 }
 
 fn rough_albedo_lookup(albedo_table: u32, place: f32, roughness: f32) -> vec4f {
@@ -49,15 +47,13 @@ fn rough_albedo_lookup(albedo_table: u32, place: f32, roughness: f32) -> vec4f {
     let last = f32(ALBEDO_NODES) - 1.0;
     let position = clamp(place, 0.0, 1.0) * last;
     let low = min(floor(position), last - 1.0);
-    let first = albedo_table + 4u * (u32(step) * ALBEDO_NODES + u32(low));
-    let row = 4u * ALBEDO_NODES;
+    let first = u32(step) * ALBEDO_NODES + u32(low);
     let across = position - low;
     let down = rough_position - step;
     var sum = vec4f(0.0);
     for (var node = 0u; node < select(2u, 4u, down > 0.0); node++) {
-        let at = first + 4u * (node & 1u) + row * (node >> 1u);
         let share = select(1.0 - across, across, (node & 1u) != 0u) * select(1.0 - down, down, node > 1u);
-        sum += vec4f(tables[at], tables[at + 1u], tables[at + 2u], tables[at + 3u]) * share;
+        sum += table_numbers(albedo_table, first + (node & 1u) + ALBEDO_NODES * (node >> 1u)) * share;
     }
     return sum;
 }

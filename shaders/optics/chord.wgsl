@@ -224,9 +224,9 @@ fn chord_table_section(table: u32, chord: Chord, start: vec2f, end: f32, odd: f3
         let beyond = max(next - chord.nearest, 0.0);
         let high = vec2f(next, sqrt(beyond * (beyond + 2.0 * chord.spread)));
         // The density of D here: intercept + slope D.
-        let left = tables[table + CUSTOM_INTERVALS + 2u + interval];
-        let slope = (tables[table + CUSTOM_INTERVALS + 3u + interval] - left) * per_width;
-        let intercept = left - slope * (width * f32(interval));
+        let numbers = table_numbers(table, interval);
+        let slope = (numbers.z - numbers.y) * per_width;
+        let intercept = numbers.y - slope * (width * f32(interval));
         let moments = chord_interval(chord, low, high, interval < begin + 2u);
         let i1 = high.y - low.y + chord.centre * moments.y;
         let ends = high.x * high.y - low.x * low.y;

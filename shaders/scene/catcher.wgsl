@@ -18,13 +18,12 @@ fn catcher_node(along: f32, side: u32) -> CatcherNode {
 }
 
 fn catcher_radiance(table: u32, side: u32, row: u32, column: u32) -> vec3f {
-    let node = table + 2u + 3u * (min(row, side - 1u) * side + min(column, side - 1u));
-    return vec3f(tables[node], tables[node + 1u], tables[node + 2u]);
+    return table_numbers(table, 1u + min(row, side - 1u) * side + min(column, side - 1u)).xyz;
 }
 
 // The radiance that a white matt plane would have at a place, lit by all lights with nothing in their way.
 fn catcher_light(table: u32, position: vec3f) -> vec3f {
-    let side = u32(tables[table]);
+    let side = u32(table_numbers(table, 0u).x);
     let across = catcher_node(position.x, side);
     let down = catcher_node(position.z, side);
     // A loop over the nodes around that have weight, so that the code that loads one is there once.
@@ -43,5 +42,5 @@ fn catcher_light(table: u32, position: vec3f) -> vec3f {
 fn catcher_reflectance(table: u32, cosine: f32) -> f32 {
     let away = clamp(1.0 - cosine, 0.0, 1.0);
     let squared = away * away;
-    return tables[table + 1u] * (CATCHER_REFLECTANCE + (1.0 - CATCHER_REFLECTANCE) * squared * squared * away);
+    return table_numbers(table, 0u).y * (CATCHER_REFLECTANCE + (1.0 - CATCHER_REFLECTANCE) * squared * squared * away);
 }

@@ -118,7 +118,7 @@ struct Vertex {
     uvs: vec4f,
 }
 
-// Everything that a pass reads of a scene: five storage buffers, so that WebGPU's eight leave three for what it writes.
+// Everything that a pass reads of a scene: four storage buffers, which leaves four of WebGPU's eight for what it writes.
 // What is loaded together is a vector: some drivers make a branch of each lane's load, and of each of its words.
 @group(0) @binding(0) var<uniform> globals: Globals;
 // Five vec4u a node (80 bytes, CWBVH).
@@ -126,10 +126,10 @@ struct Vertex {
 @group(0) @binding(2) var<storage, read> triangles: array<Triangle>;
 @group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
 @group(0) @binding(4) var<storage, read> materials: array<Material>;
-// Custom curves and albedo tables.
-@group(0) @binding(5) var<storage, read> tables: array<f32>;
 @group(0) @binding(6) var environment_map: texture_2d<f32>;
 // Arrays whose elements lie at texel_place.
+// The materials' tables, four numbers a texel as bits (src/optics/table.rs).
+@group(0) @binding(5) var table_texels: texture_2d_array<u32>;
 @group(0) @binding(7) var environment_cells: texture_2d_array<u32>;
 @group(0) @binding(8) var light_cells: texture_2d_array<u32>;
 @group(0) @binding(9) var triangle_slots: texture_2d_array<u32>;
@@ -154,6 +154,17 @@ fn material_at(slot: u32) -> Material {
         return materials[slot];
     }
     return few_materials[slot];
+}
+
+// The numbers of a node of a table that begins at this number.
+fn table_numbers(table: u32, node: u32) -> vec4f {
+    let place = texel_place(table / 4u + node);
+    return bitcast<vec4f>(textureLoad(table_texels, place.xy, place.z, 0));
+}
+
+// One number of a table.
+fn table_number(table: u32, index: u32) -> f32 {
+    return table_numbers(table, index / 4u)[index % 4u];
 }
 
 // A vec4u of the nodes.

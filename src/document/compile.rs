@@ -4,11 +4,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::MaterialSettings;
 use super::import::{MATCHED, ggx_from_geometric};
-use crate::optics::albedo::{albedo_table, rough_albedo_table, table_lookup};
+use crate::optics::albedo::{albedo_table, rough_albedo_table};
 use crate::optics::coat::coat_shape;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Width;
 use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
+use crate::optics::table::{append_table, table_lookup};
 use crate::optics::vector::Vec3;
 use crate::scene::texture::{SlotTextures, TextureTarget};
 
@@ -22,8 +23,7 @@ const REMEMBERED: usize = 32;
 /// Samples of each node of a table over the roughness too, of which there are many.
 const ROUGH_ALBEDO_SAMPLES: u32 = 256;
 
-/// The materials in the same order, and the tables they refer to; never without a number, since a GPU's buffer cannot be
-/// empty.
+/// The materials in the same order, and the tables they refer to.
 pub fn compile(materials: &[MaterialSettings]) -> (Vec<Material<f32>>, Vec<f32>) {
     compile_textured(materials, &[])
 }
@@ -38,9 +38,6 @@ pub fn compile_textured(materials: &[MaterialSettings], textures: &[SlotTextures
             compile_one(settings, textures, &mut tables)
         })
         .collect();
-    if tables.is_empty() {
-        tables.push(0.0);
-    }
     (compiled, tables)
 }
 
@@ -151,26 +148,21 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
     let mut curve_table = Vec::new();
     if settings.lobe.has_curves() && settings.curve.has_table() {
         curve_table = settings.custom_curve.table();
-        material.curve_table = tables.len() as u32;
-        tables.extend(&curve_table);
+        material.curve_table = append_table(tables, &curve_table);
     }
     if (anywhere.has_base() || anywhere.transmits()) && anywhere.has_specular() {
-        material.albedo_table = tables.len() as u32;
-        tables.extend(remembered_albedo(&material, &curve_table, false).iter());
+        material.albedo_table = append_table(tables, &remembered_albedo(&material, &curve_table, false));
     }
     if anywhere.transmits() {
-        material.inner_albedo_table = tables.len() as u32;
-        tables.extend(remembered_albedo(&material, &curve_table, true).iter());
+        material.inner_albedo_table = append_table(tables, &remembered_albedo(&material, &curve_table, true));
     }
     if material.textures[1] != NO_TEXTURE && settings.lobe.traits().width == Width::Roughness {
         // A texture's values are meant for GGX.
         material.texture_roughness = ggx_from_geometric(settings.roughness);
-        material.roughness_table = tables.len() as u32;
-        tables.extend(*MATCHED);
+        material.roughness_table = append_table(tables, &*MATCHED);
     }
     if material.coat_weight > 0.0 {
-        material.coat_table = tables.len() as u32;
-        tables.extend(remembered_albedo(&coat_alone(&material), &[], false).iter());
+        material.coat_table = append_table(tables, &remembered_albedo(&coat_alone(&material), &[], false));
     }
     material
 }

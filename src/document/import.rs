@@ -8,10 +8,10 @@ use rayon::prelude::*;
 use super::MaterialSettings;
 use crate::analysis::fit::{Measure, roughness, total_variation};
 use crate::named::named;
-use crate::optics::albedo::table_lookup;
 use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::{LobeModel, NORMAL, roughness_min};
 use crate::optics::material::MATCHED_NODES;
+use crate::optics::table::table_lookup;
 
 named! {
     /// The lobe that a model's materials get.

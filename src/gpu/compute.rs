@@ -70,9 +70,14 @@ pub(super) fn group_layout(
         .iter()
         .map(|(binding, ty)| buffer_entry(*binding, *ty))
         .collect();
+    layout(gpu, name, &entries)
+}
+
+/// A group of these entries.
+pub(super) fn layout(gpu: &GpuDevice, name: &str, entries: &[wgpu::BindGroupLayoutEntry]) -> wgpu::BindGroupLayout {
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
         label: Some(name),
-        entries: &entries,
+        entries,
     })
 }
 

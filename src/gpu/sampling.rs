@@ -7,6 +7,7 @@ use bytemuck::{Pod, Zeroable};
 
 use super::device::{GpuDevice, GpuError};
 use super::scatter::LobePass;
+use super::scene_group;
 use super::timer::Timer;
 use crate::job::sampling::{QUAD_NORMAL, SamplingRequest, SamplingRun};
 use crate::optics::vector::Vec3;
@@ -78,17 +79,11 @@ impl SamplingMeter {
         }
         let pixels = request.width as usize * request.rows as usize;
         let gpu = &self.gpu;
-        let tables = gpu.storage("the curve", bytemuck::bytes_of(&0.0_f32))?;
+        let tables = scene_group::tables(gpu, &[])?;
         let out = gpu.empty_storage("the sums", 4 * pixels as u64)?;
         let workgroups = [request.width, request.rows].map(|side| side.div_ceil(GROUP_SIDE));
         let begun = Instant::now();
-        self.kernels[&kernel].dispatch(
-            gpu,
-            [&tables, &out],
-            &uniforms(request),
-            workgroups,
-            self.timer.as_ref(),
-        );
+        self.kernels[&kernel].dispatch(gpu, &tables, &out, &uniforms(request), workgroups, self.timer.as_ref());
         gpu.wait()?;
         let seconds = begun.elapsed().as_secs_f64();
         let by_timer = self.timer.as_ref().map(Timer::seconds).transpose()?;

@@ -2,9 +2,9 @@
 
 use bytemuck::{Pod, Zeroable};
 
-use super::compute::{self, READ, UNIFORMS, WRITE};
+use super::compute::{self, UNIFORMS, WRITE};
 use super::device::{GpuDevice, GpuError};
-use super::scene_group::TABLES_BINDING;
+use super::scene_group;
 use super::timer::Timer;
 use super::traversal::Traversal;
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
@@ -62,18 +62,14 @@ impl Scatterer {
     /// If the device fails.
     pub fn draw(&self, request: &ScatterRequest) -> Result<ScatterCloud, GpuError> {
         let gpu = &self.gpu;
-        let table: &[f32] = match &request.model.table[..] {
-            [] => &[0.0],
-            table => table,
-        };
-        let tables = gpu.storage("the curve", bytemuck::cast_slice(table))?;
+        let tables = scene_group::tables(gpu, &request.model.table)?;
         let out = gpu.empty_storage("the samples", u64::from(request.count.min(BATCH)) * 16)?;
         let mut samples = Vec::with_capacity(request.count as usize);
         for first in (0..request.count).step_by(BATCH as usize) {
             let count = (request.count - first).min(BATCH);
             let workgroups = [count.div_ceil(64), 1];
             let uniforms = uniforms(request, first, count);
-            self.pass.dispatch(gpu, [&tables, &out], &uniforms, workgroups, None);
+            self.pass.dispatch(gpu, &tables, &out, &uniforms, workgroups, None);
             samples.extend(gpu.read::<[f32; 4]>(&out, count as usize)?);
         }
         Ok(ScatterCloud::from_raw(samples))
@@ -117,7 +113,7 @@ impl LobePass {
     ) -> Result<Self, GpuError> {
         let module = compute::module(gpu, name, Traversal::Own)?;
         let groups = [
-            compute::group_layout(gpu, name, &[(TABLES_BINDING, READ)]),
+            scene_group::tables_layout(gpu),
             compute::group_layout(gpu, name, &[(0, UNIFORMS), (1, WRITE)]),
         ];
         let layout = compute::pipeline_layout(gpu, name, &groups.each_ref().map(Some));
@@ -129,14 +125,15 @@ impl LobePass {
     pub(super) fn dispatch<U: Pod>(
         &self,
         gpu: &GpuDevice,
-        [tables, out]: [&wgpu::Buffer; 2],
+        tables: &wgpu::TextureView,
+        out: &wgpu::Buffer,
         uniforms: &U,
         workgroups: [u32; 2],
         timer: Option<&Timer>,
     ) {
         let uniforms = gpu.uniforms(uniforms);
         let groups = [
-            compute::bind_group(gpu, &self.groups[0], &[(TABLES_BINDING, tables)], &[]),
+            scene_group::bind_tables(gpu, &self.groups[0], tables),
             compute::bind_group(gpu, &self.groups[1], &[(0, &uniforms), (1, out)], &[]),
         ];
         compute::dispatch(gpu, &self.pipeline, &groups.each_ref(), workgroups, timer);

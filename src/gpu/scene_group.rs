@@ -9,14 +9,15 @@ use super::geometry_arrays::{Form, GeometryArrays};
 use super::material_array::MaterialArray;
 use super::traversal::Traversal;
 use crate::job::Job;
+use crate::optics::table::NODE_LENGTH;
 use crate::scene::Geometry;
 use crate::scene::environment::{Distribution, Environment};
 use crate::scene::inversion::Share;
 use crate::scene::light::Lights;
 use crate::scene::texture::Textures;
 
-/// The binding of the materials' tables, for passes that read nothing else.
-pub const TABLES_BINDING: u32 = 5;
+/// The binding of the materials' tables.
+const TABLES_BINDING: u32 = 5;
 
 /// The binding of the materials among the uniforms.
 const FEW_MATERIALS_BINDING: u32 = 15;
@@ -30,7 +31,7 @@ pub fn layout(gpu: &GpuDevice, traversal: Traversal) -> wgpu::BindGroupLayout {
     use wgpu::TextureViewDimension::{D2, D2Array};
     let entry = |binding: u32| match binding {
         0 | FEW_MATERIALS_BINDING => buffer_entry(binding, UNIFORMS),
-        1..=5 => buffer_entry(binding, READ),
+        1..=4 => buffer_entry(binding, READ),
         6 => texture_entry(binding, MAP, D2),
         _ => texture_entry(binding, wgpu::TextureSampleType::Uint, D2Array),
     };
@@ -40,10 +41,7 @@ pub fn layout(gpu: &GpuDevice, traversal: Traversal) -> wgpu::BindGroupLayout {
     };
     let structures = (traversal == Traversal::RayQueries).then_some(structures);
     let entries: Vec<_> = (0..STRUCTURES_BINDING).map(entry).chain(structures).collect();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("scene"),
-        entries: &entries,
-    })
+    compute::layout(gpu, "scene", &entries)
 }
 
 /// How shaders find a scene: kernels are made for each of these.
@@ -81,7 +79,7 @@ pub struct SceneGroup {
     /// The materials.
     pub materials: MaterialArray,
     /// See [`tables`].
-    pub tables: wgpu::Buffer,
+    pub tables: wgpu::TextureView,
     /// See [`environment`].
     pub environment: [wgpu::TextureView; 2],
     /// See [`light_cells`].
@@ -111,11 +109,12 @@ impl SceneGroup {
     pub fn bind(&self, gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, globals: &wgpu::Buffer) -> wgpu::BindGroup {
         let [nodes, triangles, vertices] = self.geometry.buffers();
         let [few_materials, many_materials] = self.materials.buffers();
-        let buffers = [globals, nodes, triangles, vertices, many_materials, &self.tables];
+        let buffers = [globals, nodes, triangles, vertices, many_materials];
         let [map, cells] = &self.environment;
         let [records, words] = &self.textures;
         let [node_texels, triangle_texels, vertex_texels, slots] = self.geometry.textures();
         let textures = [
+            &self.tables,
             map,
             cells,
             &self.light_cells,
@@ -145,9 +144,26 @@ impl SceneGroup {
 /// The materials' custom curves and albedo tables.
 ///
 /// # Errors
-/// [`GpuError::TooLarge`].
-pub fn tables(gpu: &GpuDevice, tables: &[f32]) -> Result<wgpu::Buffer, GpuError> {
-    array::buffer(gpu, "the materials' tables", &Values::of(tables))
+/// [`GpuError::Lost`].
+pub fn tables(gpu: &GpuDevice, tables: &[f32]) -> Result<wgpu::TextureView, GpuError> {
+    let (nodes, rest) = tables.as_chunks::<NODE_LENGTH>();
+    assert!(rest.is_empty(), "tables are made of whole nodes");
+    array::texture(gpu, "the materials' tables", &Values::of(nodes))
+}
+
+/// The layout of a group of the tables alone, for passes that read nothing else of a scene.
+pub fn tables_layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
+    let entry = texture_entry(
+        TABLES_BINDING,
+        wgpu::TextureSampleType::Uint,
+        wgpu::TextureViewDimension::D2Array,
+    );
+    compute::layout(gpu, "tables", &[entry])
+}
+
+/// That group.
+pub fn bind_tables(gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, tables: &wgpu::TextureView) -> wgpu::BindGroup {
+    compute::bind_group(gpu, layout, &[], &[(TABLES_BINDING, tables)])
 }
 
 /// The map of an environment and the cells of what directions are drawn with.

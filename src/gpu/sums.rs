@@ -23,10 +23,7 @@ pub fn layout(gpu: &GpuDevice) -> wgpu::BindGroupLayout {
         buffer_entry(3, WRITE),
         buffer_entry(4, WRITE),
     ];
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some("sums"),
-        entries: &entries,
-    })
+    compute::layout(gpu, "sums", &entries)
 }
 
 /// The sums over samples that the host has not taken yet, and the list of tiles to render.

@@ -37,7 +37,7 @@ pub struct Job {
     pub materials: Arc<Vec<Material<f32>>>,
     /// What the materials look up.
     pub textures: Arc<Textures>,
-    /// Custom curves, albedo tables, the shadow catcher's table; never empty.
+    /// Custom curves, albedo tables, the shadow catcher's table (`optics::table`).
     pub tables: Arc<Vec<f32>>,
     /// Camera, light and sampling.
     pub settings: Settings,

@@ -11,7 +11,7 @@ use crate::scene::Geometry;
 /// What the questions refer to.
 #[derive(Clone, Copy, Debug)]
 pub struct ProbeScene<'a> {
-    /// Custom curves and albedo tables; never empty.
+    /// Custom curves and albedo tables.
     pub tables: &'a [f32],
     /// The materials that questions count.
     pub materials: &'a [Material<f32>],
@@ -23,7 +23,7 @@ pub struct ProbeScene<'a> {
 impl Default for ProbeScene<'_> {
     fn default() -> Self {
         Self {
-            tables: &[0.0],
+            tables: &[],
             materials: &[],
             geometry: None,
         }

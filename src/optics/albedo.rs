@@ -14,18 +14,19 @@ use super::material::Material;
 use super::random::{Sequence, random_pair, random_state};
 use super::real::{Mask, Real};
 use super::refraction::refracted_square;
+use super::table::{NODE_LENGTH, look_up_number};
 use super::vector::{Vec3, vec3};
 
 /// Nodes of an albedo table, equidistant in the cosine of the view.
 pub const ALBEDO_NODES: usize = 64;
 /// Of the nodes of a table for views from within, those below the critical angle: there the reflection is total.
 pub const TOTAL_NODES: usize = 16;
-/// Numbers of an albedo table: red, green and blue a node.
-pub const ALBEDO_LENGTH: usize = 3 * ALBEDO_NODES;
+/// Numbers of an albedo table: red, green, blue and 0 a node.
+pub const ALBEDO_LENGTH: usize = NODE_LENGTH * ALBEDO_NODES;
 /// Nodes of a rough albedo table over the roughness, equidistant in it.
 pub const ROUGHNESS_NODES: usize = 17;
 /// Numbers of a rough albedo table: [`ROUGHNESS_NODES`] times the nodes of an albedo table, each four integrals.
-pub const ROUGH_ALBEDO_LENGTH: usize = 4 * ROUGHNESS_NODES * ALBEDO_NODES;
+pub const ROUGH_ALBEDO_LENGTH: usize = NODE_LENGTH * ROUGHNESS_NODES * ALBEDO_NODES;
 
 /// The specular albedo at a `place` of a table, linear between its nodes: from without the view's cosine, from within
 /// what [`albedo_place`] makes of it.
@@ -34,18 +35,17 @@ pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> Ve
     let last = T::from_f64(ALBEDO_NODES as f64 - 1.0);
     let position = place.clamp(T::zero(), T::one()) * last;
     let low = position.floor().min(last - T::one());
-    let first = T::from_f64(3.0) * low;
     let table = &tables[albedo_table as usize..];
-    albedo_node(table, first).mix(albedo_node(&table[3..], first), position - low)
+    albedo_node(table, low).mix(albedo_node(&table[NODE_LENGTH..], low), position - low)
 }
 
-/// The three numbers from a place of a table on.
+/// The colour at a node of a table.
 #[inline(always)]
-fn albedo_node<T: Real>(table: &[f32], first: T) -> Vec3<T> {
+fn albedo_node<T: Real>(table: &[f32], node: T) -> Vec3<T> {
     vec3(
-        T::look_up(table, first),
-        T::look_up(&table[1..], first),
-        T::look_up(&table[2..], first),
+        look_up_number::<0, T>(table, node),
+        look_up_number::<1, T>(table, node),
+        look_up_number::<2, T>(table, node),
     )
 }
 
@@ -85,9 +85,10 @@ pub fn albedo_table(material: &Material<f64>, tables: &[f32], samples: u32, is_i
     let shape = material.shape(tables);
     let terms = material.fresnel_terms(is_inside);
     let means = |node: usize| {
-        node_means(node, is_inside, material, &shape, samples, |cosine| {
+        let [r, g, b] = node_means(node, is_inside, material, &shape, samples, |cosine| {
             fresnel(&terms, cosine).to_f64()
-        })
+        });
+        [r, g, b, 0.0]
     };
     (0..ALBEDO_NODES).flat_map(means).map(|x| x as f32).collect()
 }
@@ -161,29 +162,18 @@ fn fresnel_basis(terms: &FresnelTerms<f64>, cosine: f64) -> [f64; 4] {
     ]
 }
 
-/// A value between the equidistant nodes of a table, the first for 0, the last for 1; linear.
-#[inline(always)]
-pub fn table_lookup<T: Real>(tables: &[f32], table: u32, nodes: usize, place: T) -> T {
-    let last = T::from_f64(nodes as f64 - 1.0);
-    let position = place.clamp(T::zero(), T::one()) * last;
-    let low = position.floor().min(last - T::one());
-    let table = &tables[table as usize..];
-    let (left, right) = (T::look_up(table, low), T::look_up(&table[1..], low));
-    left + (right - left) * (position - low)
-}
-
 /// The four integrals at a `place` as in [`albedo_lookup`] and a roughness, linear between the nodes.
 #[inline(always)]
 pub fn rough_albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T, roughness: T) -> [T; 4] {
     let [step, between_steps] = node_below(roughness, ROUGHNESS_NODES);
     let [low, between] = node_below(place, ALBEDO_NODES);
-    let first = T::from_f64(4.0) * (step * T::from_f64(ALBEDO_NODES as f64) + low);
+    let first = step * T::from_f64(ALBEDO_NODES as f64) + low;
     let table = &tables[albedo_table as usize..];
     [
-        between_nodes(table, first, [between, between_steps]),
-        between_nodes(&table[1..], first, [between, between_steps]),
-        between_nodes(&table[2..], first, [between, between_steps]),
-        between_nodes(&table[3..], first, [between, between_steps]),
+        between_nodes::<0, T>(table, first, [between, between_steps]),
+        between_nodes::<1, T>(table, first, [between, between_steps]),
+        between_nodes::<2, T>(table, first, [between, between_steps]),
+        between_nodes::<3, T>(table, first, [between, between_steps]),
     ]
 }
 
@@ -198,10 +188,10 @@ fn node_below<T: Real>(value: T, nodes: usize) -> [T; 2] {
 
 /// An integral between four nodes of a rough albedo table.
 #[inline(always)]
-fn between_nodes<T: Real>(table: &[f32], first: T, [between, between_steps]: [T; 2]) -> T {
-    let row = &table[4 * ALBEDO_NODES..];
-    let (a, b) = (T::look_up(table, first), T::look_up(&table[4..], first));
-    let (c, d) = (T::look_up(row, first), T::look_up(&row[4..], first));
+fn between_nodes<const NUMBER: usize, T: Real>(table: &[f32], first: T, [between, between_steps]: [T; 2]) -> T {
+    let row = &table[NODE_LENGTH * ALBEDO_NODES..];
+    let [a, b, c, d] =
+        [table, &table[NODE_LENGTH..], row, &row[NODE_LENGTH..]].map(|nodes| look_up_number::<NUMBER, T>(nodes, first));
     let (smooth, rough) = (a + (b - a) * between, c + (d - c) * between);
     smooth + (rough - smooth) * between_steps
 }

@@ -12,6 +12,7 @@
 use super::curve::{CUSTOM_INTERVALS, Curve, Integral, curve_distance_max, curve_h};
 use super::numeric::log1p;
 use super::real::{Mask, Real, Scalar};
+use super::table::NODE_LENGTH;
 use super::vector::Vec3;
 
 /// Closest to the mirror direction, in radians, that f32 tells apart: within it a density's peak is cut off.
@@ -327,7 +328,6 @@ fn chord_table_integral<T: Scalar>(table: &[f32], chord: Chord<T>) -> T {
 /// `to`, with `odd` times what is odd in W.
 fn chord_table_section<T: Scalar>(table: &[f32], chord: &Chord<T>, from: [T; 2], to: T, odd: T) -> T {
     let c = T::from_f64;
-    let number = |i: usize| c(f64::from(table[i]));
     let width = chord.last[0] * c(1.0 / CUSTOM_INTERVALS as f64);
     let per_width = T::one() / width;
     let begin = ((from[0] * per_width).to_f64() as usize).min(CUSTOM_INTERVALS - 1);
@@ -341,8 +341,9 @@ fn chord_table_section<T: Scalar>(table: &[f32], chord: &Chord<T>, from: [T; 2],
         let beyond = (end - chord.nearest).max(T::zero());
         let high = [end, (beyond * (beyond + c(2.0) * chord.spread)).sqrt()];
         // The density of D here: intercept + slope D.
-        let left = number(CUSTOM_INTERVALS + 2 + interval);
-        let slope = (number(CUSTOM_INTERVALS + 3 + interval) - left) * per_width;
+        let numbers = &table[NODE_LENGTH * interval..];
+        let [left, right] = [numbers[1], numbers[2]].map(|density| c(f64::from(density)));
+        let slope = (right - left) * per_width;
         let intercept = left - slope * (width * c(interval as f64));
         let [inverse, i0] = chord_interval(chord, low, high, interval < begin + 2);
         let i1 = high[1] - low[1] + chord.centre * i0;

@@ -12,6 +12,7 @@ use crate::document::{
 use crate::job::effect::EffectId;
 use crate::job::{BackgroundKind, Catcher, Job, Settings};
 use crate::optics::material::Material;
+use crate::optics::table::append_table;
 use crate::scene::Geometry;
 use crate::scene::camera::{Camera, framing_distance, orbit_direction};
 use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
@@ -53,7 +54,7 @@ impl CatcherKey {
 /// Compiles documents; remembers the last materials and lights, whose tables take milliseconds.
 #[derive(Debug, Default)]
 pub(super) struct Compiler {
-    catcher: Option<(CatcherKey, Arc<Vec<f32>>)>,
+    catcher: Option<(CatcherKey, (u32, Arc<Vec<f32>>))>,
     materials: Option<(MaterialsKey, Compiled)>,
     lights: Option<(LightsKey, Arc<Lights>)>,
 }
@@ -180,9 +181,8 @@ impl Compiler {
             reflection: lighting.ground.reflection,
             tables,
         };
-        let first = key.tables.len() as u32;
         if let Some((_, joined)) = self.catcher.as_ref().filter(|(of, _)| of.is_same(&key)) {
-            return (first, joined.clone());
+            return joined.clone();
         }
         let light = CatcherLight {
             environment,
@@ -191,10 +191,10 @@ impl Compiler {
             area_lights: &key.area_lights,
         };
         let mut joined = key.tables.to_vec();
-        joined.extend(catcher_table(&light, key.height, key.reflection));
-        let joined = Arc::new(joined);
+        let first = append_table(&mut joined, &catcher_table(&light, key.height, key.reflection));
+        let joined = (first, Arc::new(joined));
         self.catcher = Some((key, joined.clone()));
-        (first, joined)
+        joined
     }
 
     fn lights(&mut self, geometry: &Arc<Geometry>, materials: &[Material<f32>]) -> Arc<Lights> {

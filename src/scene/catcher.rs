@@ -15,12 +15,11 @@ use super::environment::{Environment, environment_local_from_world, environment_
 use super::ground::HALF_SIDE;
 use super::light::AreaShape;
 use crate::optics::real::{Real, Scalar};
+use crate::optics::table::NODE_LENGTH;
 use crate::optics::vector::{Vec3, vec3};
 
 /// Nodes along each side where area lights shine; without them the light is the same all over.
 const SIDE: usize = 128;
-/// Numbers in front of the nodes.
-const HEADER: usize = 2;
 /// The share of the half side over which nodes are close together.
 pub const CATCHER_BEND: f32 = 0.15;
 /// Half a side of the table in bounding radii: the ground's.
@@ -72,6 +71,7 @@ impl NearLight {
 }
 
 /// The table of a plane at this height that faces +Y, in the geometry's units; `reflection` is how much varnish lies on it.
+/// Its first node holds the number of nodes along a side and the reflection.
 pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> Vec<f32> {
     let far = far_light(light.environment).map(|radiance| radiance * light.strength);
     let near: Vec<_> = light
@@ -97,9 +97,11 @@ pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> 
         sum.map(|radiance| radiance.max(0.0) as f32)
     };
     let nodes: Vec<[f32; 3]> = (0..side * side).into_par_iter().map(at).collect();
-    let mut table = vec![side as f32, reflection];
-    table.extend(nodes.iter().flatten());
-    table
+    let nodes = nodes.into_iter().map(|[r, g, b]| [r, g, b, 0.0]);
+    std::iter::once([side as f32, reflection, 0.0, 0.0])
+        .chain(nodes)
+        .flatten()
+        .collect()
 }
 
 impl CatcherLight<'_> {
@@ -204,7 +206,7 @@ fn form_factor(place: DVec3, corners: &[DVec3; 3]) -> f64 {
 /// The radiance that a white matt plane would have at a place, lit by all lights with nothing in their way: bilinear
 /// between the table's nodes.
 pub fn catcher_light<T: Scalar>(tables: &[f32], table: u32, position: Vec3<T>) -> Vec3<T> {
-    let first = table as usize + HEADER;
+    let first = table as usize + NODE_LENGTH;
     let side = tables[table as usize] as usize;
     let node = |along: T| {
         let away = (along.abs() / T::from_f64(f64::from(CATCHER_HALF_SIDE))).min(T::one());
@@ -218,7 +220,7 @@ pub fn catcher_light<T: Scalar>(tables: &[f32], table: u32, position: Vec3<T>) -
     };
     let ((column, across), (row, down)) = (node(position.x), node(position.z));
     let at = |row: usize, column: usize| {
-        let node = first + 3 * (row.min(side - 1) * side + column.min(side - 1));
+        let node = first + NODE_LENGTH * (row.min(side - 1) * side + column.min(side - 1));
         Vec3::from_f32([tables[node], tables[node + 1], tables[node + 2]])
     };
     let upper = at(row, column).mix(at(row, column + 1), across);

@@ -125,9 +125,12 @@ fn a_curve_drawn_like_a_named_one_samples_like_it() {
 #[test]
 fn compiled_materials_refer_to_their_tables() {
     let (materials, tables) = compile(&[]);
-    assert!(materials.is_empty() && tables == [0.0]);
+    assert!(materials.is_empty() && tables.is_empty());
     let (_, tables) = compile(&[MaterialSettings::default(), MaterialSettings::diffuse("x", [0.5; 3])]);
-    assert_eq!(tables, [0.0], "neither a metal nor a Lambertian surface needs a table");
+    assert!(
+        tables.is_empty(),
+        "neither a metal nor a Lambertian surface needs a table"
+    );
 
     let custom = MaterialSettings {
         curve: Curve::Custom,

@@ -102,8 +102,8 @@ fn the_functions_in_shaders_languages_are_valid() {
             let mut text = place.read(&format!("m.{language}"));
             if language == "glsl" {
                 text = text
-                    .replace("float[131](", "{")
-                    .replace(");\n", if text.contains("float[131]") { "};\n" } else { ");\n" });
+                    .replace("float[130](", "{")
+                    .replace(");\n", if text.contains("float[130]") { "};\n" } else { ");\n" });
                 text = restored(&text);
             }
             let head = format!(

@@ -2,6 +2,7 @@
 
 use super::{CurveTraits, Integral};
 use crate::optics::real::Real;
+use crate::optics::table::{NODE_LENGTH, look_up_number};
 
 /// What is special about the curve.
 pub const TRAITS: CurveTraits = CurveTraits {
@@ -12,28 +13,29 @@ pub const TRAITS: CurveTraits = CurveTraits {
 
 /// Intervals of a custom curve's table, equal in D.
 pub const CUSTOM_INTERVALS: usize = 64;
-/// Numbers of a custom curve's table: D's maximum, then at each node the cumulative distribution, then the density.
-pub const CUSTOM_LENGTH: usize = 1 + 2 * (CUSTOM_INTERVALS + 1);
+/// Numbers of a custom curve's table. Each interval has four: the cumulative distribution and the density where it begins,
+/// the density where it ends, and D's maximum.
+pub const CUSTOM_LENGTH: usize = NODE_LENGTH * CUSTOM_INTERVALS;
 
 /// The distance at which the cumulative distribution reaches ξ: a quadratic equation in the interval that bisection finds.
 #[inline(always)]
 pub fn distance<T: Real>(table: &[f32], xi: T) -> T {
     let c = T::from_f64;
-    // Six halvings of 64 intervals; `low` counts the nodes that lie below ξ.
+    // Six halvings of 64 intervals; `low` counts those that end below ξ.
     let mut low = T::zero();
     let mut step = CUSTOM_INTERVALS / 2;
     while step > 0 {
         let middle = low + c(step as f64);
-        let node = T::look_up(&table[1..], middle);
-        low = T::select(xi.less(node), low, middle);
+        let begin = look_up_number::<0, T>(table, middle);
+        low = T::select(xi.less(begin), low, middle);
         step /= 2;
     }
     let width = distance_max::<T>(table) * c(1.0 / CUSTOM_INTERVALS as f64);
     let (left, right) = (
-        T::look_up(&table[CUSTOM_INTERVALS + 2..], low),
-        T::look_up(&table[CUSTOM_INTERVALS + 3..], low),
+        look_up_number::<1, T>(table, low),
+        look_up_number::<2, T>(table, low),
     );
-    let missing = (xi - T::look_up(&table[1..], low)).max(T::zero());
+    let missing = (xi - look_up_number::<0, T>(table, low)).max(T::zero());
     let root = (left * left + c(2.0) * (right - left) / width * missing).safe_sqrt();
     let step = c(2.0) * missing / (left + root).max(c(1e-12));
     width * low + step.min(width)
@@ -42,7 +44,7 @@ pub fn distance<T: Real>(table: &[f32], xi: T) -> T {
 /// D's maximum.
 #[inline(always)]
 pub fn distance_max<T: Real>(table: &[f32]) -> T {
-    T::from_f64(f64::from(table[0]))
+    T::from_f64(f64::from(table[3]))
 }
 
 /// h(D).
@@ -58,9 +60,8 @@ fn density<T: Real>(table: &[f32], distance: T) -> T {
     let last = c(CUSTOM_INTERVALS as f64);
     let position = (distance / distance_max(table) * last).clamp(T::zero(), last);
     let low = position.floor().min(last - T::one());
-    let nodes = &table[CUSTOM_INTERVALS + 2..];
     let fraction = position - low;
-    T::look_up(nodes, low) * (T::one() - fraction) + T::look_up(&nodes[1..], low) * fraction
+    look_up_number::<1, T>(table, low) * (T::one() - fraction) + look_up_number::<2, T>(table, low) * fraction
 }
 
 /// A custom curve's table from the density of D at equidistant nodes over [0, `distance_max`] (65 values, not negative,
@@ -75,8 +76,14 @@ pub fn custom_table(distance_max: f64, density: &[f64]) -> Option<Vec<f32>> {
     if !(total.is_finite() && total > 0.0 && distance_max.is_finite() && density.iter().all(|f| *f >= 0.0)) {
         return None;
     }
-    let mut table = vec![distance_max as f32];
-    table.extend(cumulative.iter().map(|c| (c / total) as f32));
-    table.extend(density.iter().map(|f| (f / total) as f32));
-    Some(table)
+    let interval = |i: usize| {
+        [
+            cumulative[i] / total,
+            density[i] / total,
+            density[i + 1] / total,
+            distance_max,
+        ]
+    };
+    let numbers = (0..CUSTOM_INTERVALS).flat_map(interval);
+    Some(numbers.map(|number| number as f32).collect())
 }

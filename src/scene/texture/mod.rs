@@ -16,11 +16,11 @@ use bytemuck::{Pod, Zeroable};
 use super::geometry::Geometry;
 use super::part::Vertex;
 use super::triangle_normal;
-use crate::optics::albedo::table_lookup;
 use crate::optics::frame::frame_from_tangent;
 use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Real, Scalar};
+use crate::optics::table::table_lookup;
 use crate::optics::vector::{Vec3, vec3};
 
 pub use mean::{TextureMean, mean_of_file, texture_mean};

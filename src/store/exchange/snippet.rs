@@ -6,8 +6,9 @@ use std::path::Path;
 use super::report::{Entry, MaterialReport};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried};
 use crate::document::MaterialSettings;
-use crate::optics::curve::{CUSTOM_INTERVALS, CUSTOM_LENGTH, Curve};
+use crate::optics::curve::{CUSTOM_INTERVALS, Curve};
 use crate::optics::lobe::{Horizon, Lobe, stretch_from_anisotropy};
+use crate::optics::table::NODE_LENGTH;
 
 /// A language of renderers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -192,7 +193,7 @@ impl Language {
                 body += &format!("    return -{}({}({complement}, {least}));\n", f("log"), self.maximum());
             }
             Curve::Custom => {
-                let list = self.list("glossmith_curve", &material.custom_curve.table());
+                let list = self.list("glossmith_curve", &curve_numbers(&material.custom_curve.table()));
                 if self == Self::Osl {
                     body += &list
                 } else {
@@ -226,7 +227,7 @@ impl Language {
         let last = CUSTOM_INTERVALS - 1;
         text += &format!("    while (low < {last} && {table}[low + 2] <= xi) {{\n        low = low + 1;\n    }}\n");
         text += &self.named("width", &format!("{table}[0] / {}", n(CUSTOM_INTERVALS as f64)), false);
-        let first = CUSTOM_LENGTH - CUSTOM_INTERVALS - 1;
+        let first = CUSTOM_INTERVALS + 1;
         text += &self.named("left", &format!("{table}[low + {first}]"), false);
         text += &self.named("right", &format!("{table}[low + {}]", first + 1), false);
         text += &self.named("missing", &format!("{max}(xi - {table}[low + 1], {})", n(0.0)), false);
@@ -293,4 +294,19 @@ impl Language {
         );
         text
     }
+}
+
+/// What [`Language::custom_curve`] reads, each number once: D's maximum, the distribution where each interval begins, the
+/// density at each node. From a table of `optics::curve`.
+fn curve_numbers(table: &[f32]) -> Vec<f32> {
+    let (intervals, _) = table.as_chunks::<NODE_LENGTH>();
+    let mut numbers: Vec<_> = intervals
+        .iter()
+        .map(|[.., distance_max]| *distance_max)
+        .take(1)
+        .collect();
+    numbers.extend(intervals.iter().map(|[distribution, ..]| distribution));
+    numbers.extend(intervals.iter().map(|[_, density, ..]| density));
+    numbers.extend(intervals.last().map(|[_, _, density, _]| density));
+    numbers
 }

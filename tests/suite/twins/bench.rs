@@ -17,6 +17,7 @@ use glossmith::optics::lobe::{Horizon, Lobe};
 use glossmith::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
 use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Scalar;
+use glossmith::optics::table::append_table;
 use glossmith::optics::vector::vec3;
 use glossmith::scene::camera::{Camera, PixelFilter};
 use glossmith::scene::environment::{self, Environment};
@@ -59,7 +60,6 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     let mut tables = Vec::new();
     let mut curves = Vec::new();
     for curve in 0..CUSTOM_CURVES {
-        curves.push(tables.len() as u32);
         // Waves, then a density that falls to 0 at the end, then one that is 0 at both ends and in a gap. None whose
         // neighbouring nodes differ by several times: at roughness 1 the distance is rounded to 1e-6, and the density
         // to that times its slope.
@@ -72,7 +72,10 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
             }
         };
         let density: Vec<f64> = (0..=CUSTOM_INTERVALS).map(density).collect();
-        tables.extend(custom_table([1.0, 1.7, 0.6][curve], &density).unwrap());
+        curves.push(append_table(
+            &mut tables,
+            &custom_table([1.0, 1.7, 0.6][curve], &density).unwrap(),
+        ));
     }
     let mut textures = Textures::new(&pictures(&mut rng));
     // And those that are put on otherwise: by one channel, inverted in part, on a box, normals turning with them.
@@ -128,8 +131,8 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
     for (number, material) in materials.iter_mut().enumerate() {
         material.has_rough_tables = u32::from(number % 4 == 3);
         if number % 3 == 1 {
-            material.roughness_table = tables.len() as u32;
-            tables.extend((0..MATCHED_NODES).map(|node| (node as f32 / 16.0).powf(0.7)));
+            let matched: Vec<_> = (0..MATCHED_NODES).map(|node| (node as f32 / 16.0).powf(0.7)).collect();
+            material.roughness_table = append_table(&mut tables, &matched);
         }
         let coat = Material {
             metalness: 0.0,
@@ -137,8 +140,8 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
             roughness: material.coat_roughness,
             ..*material
         };
-        material.coat_table = tables.len() as u32;
-        tables.extend(albedo_table(&coat.cast(), &tables, ALBEDO_SAMPLES, false));
+        let coat_table = albedo_table(&coat.cast(), &tables, ALBEDO_SAMPLES, false);
+        material.coat_table = append_table(&mut tables, &coat_table);
         let albedo_table = if number % 4 == 3 {
             rough_albedo_table
         } else {
@@ -146,8 +149,7 @@ pub static SCENE: LazyLock<Scene> = LazyLock::new(|| {
         };
         let albedo = [false, true].map(|is_inside| {
             let table = albedo_table(&material.cast(), &tables, ALBEDO_SAMPLES, is_inside);
-            tables.extend(&table);
-            (tables.len() - table.len()) as u32
+            append_table(&mut tables, &table)
         });
         [material.albedo_table, material.inner_albedo_table] = albedo;
     }

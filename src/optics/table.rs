@@ -1,0 +1,32 @@
+//! Tables of materials: all of them lie in one array of numbers, each beginning at a multiple of [`NODE_LENGTH`], since the
+//! GPU loads so many at once (`table_numbers` in `shaders/scene/layout.wgsl`).
+
+use super::real::Real;
+
+/// Numbers of a node.
+pub const NODE_LENGTH: usize = 4;
+
+/// Puts a table behind the others, and returns where it begins.
+pub fn append_table(tables: &mut Vec<f32>, table: &[f32]) -> u32 {
+    let first = tables.len();
+    tables.extend(table);
+    tables.resize(tables.len().next_multiple_of(NODE_LENGTH), 0.0);
+    first as u32
+}
+
+/// A number of a table's node.
+#[inline(always)]
+pub fn look_up_number<const NUMBER: usize, T: Real>(table: &[f32], node: T) -> T {
+    T::look_up(&table[NUMBER..], T::from_f64(NODE_LENGTH as f64) * node)
+}
+
+/// A value between the equidistant nodes of a table, the first for 0, the last for 1; linear.
+#[inline(always)]
+pub fn table_lookup<T: Real>(tables: &[f32], table: u32, nodes: usize, place: T) -> T {
+    let last = T::from_f64(nodes as f64 - 1.0);
+    let position = place.clamp(T::zero(), T::one()) * last;
+    let low = position.floor().min(last - T::one());
+    let table = &tables[table as usize..];
+    let (left, right) = (T::look_up(table, low), T::look_up(&table[1..], low));
+    left + (right - left) * (position - low)
+}
