@@ -118,33 +118,33 @@ struct Vertex {
     uvs: vec4f,
 }
 
-// Everything that a pass reads of a scene: four storage buffers, which leaves four of WebGPU's eight for what it writes.
-// What is loaded together is a vector: some drivers make a branch of each lane's load, and of each of its words.
+// Everything that a pass reads of a scene: three storage buffers, which leaves five of WebGPU's eight for what it writes.
+// What is loaded together is a vector: some drivers make a branch of each lane's load from a buffer, and of each of its words.
 @group(0) @binding(0) var<uniform> globals: Globals;
 // Five vec4u a node (80 bytes, CWBVH).
 @group(0) @binding(1) var<storage, read> nodes: array<vec4u>;
 @group(0) @binding(2) var<storage, read> triangles: array<Triangle>;
-@group(0) @binding(3) var<storage, read> vertices: array<Vertex>;
-@group(0) @binding(4) var<storage, read> materials: array<Material>;
-@group(0) @binding(6) var environment_map: texture_2d<f32>;
+@group(0) @binding(3) var<storage, read> materials: array<Material>;
+@group(0) @binding(4) var environment_map: texture_2d<f32>;
 // Arrays whose elements lie at texel_place.
 // The materials' tables, four numbers a texel as bits (src/optics/table.rs).
 @group(0) @binding(5) var table_texels: texture_2d_array<u32>;
-@group(0) @binding(7) var environment_cells: texture_2d_array<u32>;
-@group(0) @binding(8) var light_cells: texture_2d_array<u32>;
-@group(0) @binding(9) var triangle_slots: texture_2d_array<u32>;
-@group(0) @binding(10) var texture_records: texture_2d_array<u32>;
+@group(0) @binding(6) var environment_cells: texture_2d_array<u32>;
+@group(0) @binding(7) var light_cells: texture_2d_array<u32>;
+@group(0) @binding(8) var triangle_slots: texture_2d_array<u32>;
+@group(0) @binding(9) var texture_records: texture_2d_array<u32>;
 // The linear values of the 256 sRGB codes as bits, then texels of 4 x 8 bits, or two words each of 4 x 16.
-@group(0) @binding(11) var texture_words: texture_2d_array<u32>;
+@group(0) @binding(10) var texture_words: texture_2d_array<u32>;
 // What the buffers of the same names hold, where one of them would be larger than a binding may be.
-@group(0) @binding(12) var node_texels: texture_2d_array<u32>;
-@group(0) @binding(13) var triangle_texels: texture_2d_array<u32>;
-@group(0) @binding(14) var vertex_texels: texture_2d_array<u32>;
+@group(0) @binding(11) var node_texels: texture_2d_array<u32>;
+@group(0) @binding(12) var triangle_texels: texture_2d_array<u32>;
+// Three texels a vertex.
+@group(0) @binding(13) var vertex_texels: texture_2d_array<u32>;
 
 // The materials where there are no more than these: no driver tests every lane's load from here.
-@group(0) @binding(15) var<uniform> few_materials: array<Material, FEW_MATERIALS>;
+@group(0) @binding(14) var<uniform> few_materials: array<Material, FEW_MATERIALS>;
 
-// 1: the geometry is in the textures.
+// 1: nodes and triangles are in the textures.
 override GEOMETRY_IN_TEXTURES: u32 = 0u;
 // 1: the materials are in the storage buffer.
 override HAS_MANY_MATERIALS: u32 = 0u;
@@ -189,9 +189,6 @@ fn triangle_at(index: u32) -> Triangle {
 }
 
 fn vertex_at(index: u32) -> Vertex {
-    if GEOMETRY_IN_TEXTURES == 0u {
-        return vertices[index];
-    }
     var words: array<vec4u, 3>;
     for (var i = 0u; i < 3u; i++) {
         let place = texel_place(3u * index + i);

@@ -5,7 +5,7 @@ enable wgpu_ray_query;
 #import "scene/layout"
 
 // The model, which instances call 0, and what is around it, 1 (src/gpu/structures.rs).
-@group(0) @binding(16) var structures: acceleration_structure;
+@group(0) @binding(15) var structures: acceleration_structure;
 
 // Queries take finite numbers alone: of a ray whose coordinates add up to more, nothing is met.
 const EXTENT_MAX: f32 = 1e36;

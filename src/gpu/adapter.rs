@@ -17,13 +17,13 @@ pub enum AdapterKind {
     Software,
 }
 
-/// What every pass needs of an adapter, each number within what WebGPU grants everywhere: the path tracer's seven storage
+/// What every pass needs of an adapter, each number within what WebGPU grants everywhere: the path tracer's six storage
 /// buffers, three uniforms and eleven textures, arrays in textures of 4096 texels a row, workgroups of 64.
 fn limits_needed() -> wgpu::Limits {
     wgpu::Limits {
         max_texture_dimension_2d: TEXEL_ROW as u32,
         max_sampled_textures_per_shader_stage: 11,
-        max_storage_buffers_per_shader_stage: 7,
+        max_storage_buffers_per_shader_stage: 6,
         max_uniform_buffers_per_shader_stage: 3,
         max_uniform_buffer_binding_size: 64 << 10,
         max_storage_buffer_binding_size: 128 << 20,
@@ -178,7 +178,7 @@ mod tests {
     fn what_webgpu_grants_everywhere_is_enough() {
         assert_eq!(lacking(&wgpu::Limits::default()), None);
         let asked = limits_asked(&wgpu::Limits::default());
-        assert_eq!(asked.max_storage_buffers_per_shader_stage, 7);
+        assert_eq!(asked.max_storage_buffers_per_shader_stage, 6);
         assert_eq!(asked.max_storage_buffer_binding_size, 128 << 20);
     }
 
@@ -191,7 +191,7 @@ mod tests {
         };
         let told = lacking(&poor).expect("it lacks two");
         assert!(
-            told.contains("max_storage_buffers_per_shader_stage is 4, 7 is needed"),
+            told.contains("max_storage_buffers_per_shader_stage is 4, 6 is needed"),
             "{told}"
         );
         assert!(

@@ -15,9 +15,9 @@ const ROOM: usize = 1024;
 /// How shaders find a geometry: kernels are made for one of these.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Form {
-    /// All in buffers.
+    /// Nodes and triangles in buffers.
     Buffers,
-    /// In textures, which may be larger than a binding: not for ray queries, which build over a buffer.
+    /// In textures, too, which may be larger than a binding: not for ray queries, which build over a buffer.
     Textures,
     /// In buffers, with the adapter's own hierarchies.
     Structures,
@@ -27,7 +27,11 @@ impl Form {
     /// The form of a geometry on a device. Nodes, which may not be built yet, take less than the triangles.
     pub fn of(gpu: &GpuDevice, geometry: &Geometry) -> Self {
         let counts = Counts::with_room(0, &geometry.model, room(&geometry.around));
-        if counts.bytes().into_iter().any(|bytes| bytes > gpu.binding_bytes()) {
+        if counts
+            .buffer_bytes()
+            .into_iter()
+            .any(|bytes| bytes > gpu.binding_bytes())
+        {
             return Self::Textures;
         }
         let is_empty = geometry.parts().iter().all(|(part, _)| part.is_empty());
@@ -54,11 +58,13 @@ impl Form {
     }
 }
 
-/// Hierarchy, triangles and vertices in buffers or, where one of them is larger than a binding may be, all in textures.
+/// Hierarchy and triangles in buffers or, where one of them is larger than a binding may be, in textures; in textures in any
+/// case what is read once a path's step: vertices, material slots.
 #[derive(Clone, Debug)]
 pub struct GeometryArrays {
-    buffers: [wgpu::Buffer; 3],
-    textures: [wgpu::TextureView; 3],
+    buffers: [wgpu::Buffer; 2],
+    textures: [wgpu::TextureView; 2],
+    vertices: wgpu::TextureView,
     slots: wgpu::TextureView,
     form: Form,
     structures: Option<Structures>,
@@ -75,8 +81,9 @@ impl GeometryArrays {
         let buffer = || gpu.empty_storage("nothing", 0);
         let texture = || array::empty_texture::<u32>(gpu, "nothing", 0);
         Ok(Self {
-            buffers: [buffer()?, buffer()?, buffer()?],
-            textures: [texture(), texture(), texture()],
+            buffers: [buffer()?, buffer()?],
+            textures: [texture(), texture()],
+            vertices: texture(),
             slots: texture(),
             form: Form::Buffers,
             structures: None,
@@ -92,24 +99,20 @@ impl GeometryArrays {
         let room = room(&geometry.around);
         let counts = Counts::with_room(geometry.model.compressed().nodes.len(), &geometry.model, room);
         let mut arrays = Self {
+            vertices: array::empty_texture::<Vertex>(gpu, "the model's vertices", counts.vertices),
             slots: array::empty_texture::<u32>(gpu, "the model's material slots", counts.triangles),
             form: Form::of(gpu, geometry),
             room,
             ..Self::empty(gpu)?
         };
-        let names = [
-            "the hierarchy of boxes",
-            "the model's triangles",
-            "the model's vertices",
-        ];
+        let names = ["the hierarchy of boxes", "the model's triangles"];
         if arrays.form == Form::Textures {
             arrays.textures = [
                 array::empty_texture::<NodeWords>(gpu, names[0], counts.nodes),
                 array::empty_texture::<Triangle>(gpu, names[1], counts.triangles),
-                array::empty_texture::<Vertex>(gpu, names[2], counts.vertices),
             ];
         } else {
-            let bytes = counts.bytes();
+            let bytes = counts.buffer_bytes();
             let built_over = match arrays.form {
                 Form::Structures => wgpu::BufferUsages::BLAS_INPUT,
                 _ => wgpu::BufferUsages::empty(),
@@ -117,7 +120,6 @@ impl GeometryArrays {
             arrays.buffers = [
                 gpu.empty_storage(names[0], bytes[0])?,
                 gpu.buffer_of(names[1], bytes[1], built_over)?,
-                gpu.empty_storage(names[2], bytes[2])?,
             ];
         }
         arrays.write(gpu, &geometry.model, Counts::default())?;
@@ -163,27 +165,26 @@ impl GeometryArrays {
         let triangles = Values::made(count, |place| before.triangle(layout::triangle(part, place)));
         let vertices = Values::of(&part.vertices);
         let slots = Values::made(count, |place| part.slots[compressed.triangles[place] as usize]);
+        array::write_texture(gpu, &self.vertices, before.vertices, &vertices)?;
         array::write_texture(gpu, &self.slots, before.triangles, &slots)?;
         if self.form == Form::Textures {
             array::write_texture(gpu, &self.textures[0], before.nodes, &nodes)?;
-            array::write_texture(gpu, &self.textures[1], before.triangles, &triangles)?;
-            array::write_texture(gpu, &self.textures[2], before.vertices, &vertices)
+            array::write_texture(gpu, &self.textures[1], before.triangles, &triangles)
         } else {
             array::write_buffer(gpu, &self.buffers[0], before.nodes, &nodes)?;
-            array::write_buffer(gpu, &self.buffers[1], before.triangles, &triangles)?;
-            array::write_buffer(gpu, &self.buffers[2], before.vertices, &vertices)
+            array::write_buffer(gpu, &self.buffers[1], before.triangles, &triangles)
         }
     }
 
-    /// Nodes, triangles, vertices.
-    pub fn buffers(&self) -> [&wgpu::Buffer; 3] {
+    /// Nodes, triangles.
+    pub fn buffers(&self) -> [&wgpu::Buffer; 2] {
         self.buffers.each_ref()
     }
 
     /// Nodes, triangles, vertices, and the triangles' material slots.
     pub fn textures(&self) -> [&wgpu::TextureView; 4] {
-        let [nodes, triangles, vertices] = &self.textures;
-        [nodes, triangles, vertices, &self.slots]
+        let [nodes, triangles] = &self.textures;
+        [nodes, triangles, &self.vertices, &self.slots]
     }
 
     /// The adapter's own hierarchies, where there are any.
@@ -229,19 +230,13 @@ impl Counts {
         }
     }
 
-    /// Bytes of nodes, triangles and vertices in buffers.
-    fn bytes(self) -> [u64; 3] {
-        let Self {
-            nodes,
-            triangles,
-            vertices,
-        } = self;
-        [
-            nodes * size_of::<NodeWords>(),
-            triangles * size_of::<Triangle>(),
-            vertices * size_of::<Vertex>(),
-        ]
-        .map(|bytes| bytes as u64)
+    /// Bytes of nodes and triangles in buffers.
+    fn buffer_bytes(self) -> [u64; 2] {
+        let bytes = [
+            self.nodes * size_of::<NodeWords>(),
+            self.triangles * size_of::<Triangle>(),
+        ];
+        bytes.map(|bytes| bytes as u64)
     }
 
     /// A node whose children and triangles come after so many others.

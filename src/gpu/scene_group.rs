@@ -20,9 +20,9 @@ use crate::scene::texture::Textures;
 const TABLES_BINDING: u32 = 5;
 
 /// The binding of the materials among the uniforms.
-const FEW_MATERIALS_BINDING: u32 = 15;
+const FEW_MATERIALS_BINDING: u32 = 14;
 /// The binding of the adapter's own hierarchies, the last of the group, where there are any.
-const STRUCTURES_BINDING: u32 = 16;
+const STRUCTURES_BINDING: u32 = 15;
 
 const MAP: wgpu::TextureSampleType = wgpu::TextureSampleType::Float { filterable: false };
 
@@ -31,8 +31,8 @@ pub fn layout(gpu: &GpuDevice, traversal: Traversal) -> wgpu::BindGroupLayout {
     use wgpu::TextureViewDimension::{D2, D2Array};
     let entry = |binding: u32| match binding {
         0 | FEW_MATERIALS_BINDING => buffer_entry(binding, UNIFORMS),
-        1..=4 => buffer_entry(binding, READ),
-        6 => texture_entry(binding, MAP, D2),
+        1..=3 => buffer_entry(binding, READ),
+        4 => texture_entry(binding, MAP, D2),
         _ => texture_entry(binding, wgpu::TextureSampleType::Uint, D2Array),
     };
     let structures = wgpu::BindGroupLayoutEntry {
@@ -107,15 +107,15 @@ impl SceneGroup {
 
     /// The group with its uniforms, a [`layout::Globals`]; the layout is that for the geometry's form.
     pub fn bind(&self, gpu: &GpuDevice, layout: &wgpu::BindGroupLayout, globals: &wgpu::Buffer) -> wgpu::BindGroup {
-        let [nodes, triangles, vertices] = self.geometry.buffers();
+        let [nodes, triangles] = self.geometry.buffers();
         let [few_materials, many_materials] = self.materials.buffers();
-        let buffers = [globals, nodes, triangles, vertices, many_materials];
+        let buffers = [globals, nodes, triangles, many_materials];
         let [map, cells] = &self.environment;
         let [records, words] = &self.textures;
         let [node_texels, triangle_texels, vertex_texels, slots] = self.geometry.textures();
         let textures = [
-            &self.tables,
             map,
+            &self.tables,
             cells,
             &self.light_cells,
             slots,
