@@ -29,6 +29,9 @@ type MaterialsKey = (Vec<MaterialSettings>, Arc<Textures>, Vec<(usize, Shine)>);
 /// What the table of emitting triangles depends on: geometry, and the emission of each slot.
 type LightsKey = (Arc<Geometry>, Vec<f32>);
 
+/// Where a shadow catcher's table begins, and the tables with it at their end.
+type WithCatcher = (u32, Arc<Vec<f32>>);
+
 /// What a shadow catcher's table depends on, and the tables in front of it.
 #[derive(Debug)]
 struct CatcherKey {
@@ -54,7 +57,7 @@ impl CatcherKey {
 /// Compiles documents; remembers the last materials and lights, whose tables take milliseconds.
 #[derive(Debug, Default)]
 pub(super) struct Compiler {
-    catcher: Option<(CatcherKey, (u32, Arc<Vec<f32>>))>,
+    catcher: Option<(CatcherKey, WithCatcher)>,
     materials: Option<(MaterialsKey, Compiled)>,
     lights: Option<(LightsKey, Arc<Lights>)>,
 }
@@ -163,14 +166,14 @@ impl Compiler {
         compiled
     }
 
-    /// The tables with a shadow catcher's at their end, and where it begins.
+    /// The tables with a shadow catcher's.
     fn with_catcher(
         &mut self,
         document: &Document,
         geometry: &Geometry,
         environment: &Arc<Environment>,
         tables: Arc<Vec<f32>>,
-    ) -> (u32, Arc<Vec<f32>>) {
+    ) -> WithCatcher {
         let lighting = &document.lighting;
         let key = CatcherKey {
             environment: environment.clone(),
