@@ -126,8 +126,8 @@ struct Vertex {
 @group(0) @binding(2) var<storage, read> triangles: array<Triangle>;
 @group(0) @binding(3) var<storage, read> materials: array<Material>;
 @group(0) @binding(4) var environment_map: texture_2d<f32>;
-// Arrays whose elements lie at texel_place.
-// The materials' tables, four numbers a texel as bits (src/optics/table.rs).
+// From here on arrays whose elements lie at texel_place: first the materials' tables, four numbers a texel as bits
+// (src/optics/table.rs).
 @group(0) @binding(5) var table_texels: texture_2d_array<u32>;
 @group(0) @binding(6) var environment_cells: texture_2d_array<u32>;
 @group(0) @binding(7) var light_cells: texture_2d_array<u32>;

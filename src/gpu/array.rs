@@ -1,5 +1,5 @@
 //! Arrays on the GPU, brought there a part at a time: in a storage buffer, or in a texture where WebGPU's eight storage
-//! buffers a stage or its 128 MiB a binding do not suffice.
+//! buffers a stage or its 128 MiB a binding do not suffice, or where kernels compile sooner with texels.
 
 use std::borrow::Cow;
 use std::ops::Range;
