@@ -7,15 +7,21 @@ const ALBEDO_NODES: u32 = 64u;
 const TOTAL_NODES: u32 = 16u;
 const ROUGHNESS_NODES: u32 = 17u;
 
-fn albedo_lookup(albedo_table: u32, place: f32) -> vec3f {
-    let last = f32(ALBEDO_NODES) - 1.0;
-    let position = clamp(place, 0.0, 1.0) * last;
+// The node, and how far the value is beyond it.
+fn node_below(value: f32, nodes: u32) -> vec2f {
+    let last = f32(nodes) - 1.0;
+    let position = clamp(value, 0.0, 1.0) * last;
     let low = min(floor(position), last - 1.0);
-    let behind = position - low;
+    return vec2f(low, position - low);
+}
+
+fn albedo_lookup(albedo_table: u32, place: f32) -> vec3f {
+    let below = node_below(place, ALBEDO_NODES);
+    let beyond = below.y;
     // A loop over the nodes that have weight, so that the code that loads one is there once.
     var sum = vec3f(0.0);
-    for (var node = 0u; node < select(1u, 2u, behind > 0.0); node++) {
-        sum += table_numbers(albedo_table, u32(low) + node).xyz * select(1.0 - behind, behind, node == 1u);
+    for (var node = 0u; node < select(1u, 2u, beyond > 0.0); node++) {
+        sum += table_numbers(albedo_table, u32(below.x) + node).xyz * select(1.0 - beyond, beyond, node == 1u);
     }
     return sum;
 }
@@ -33,23 +39,18 @@ fn albedo_place(cosine: f32, eta: f32) -> f32 {
 }
 
 fn table_lookup(table: u32, nodes: u32, place: f32) -> f32 {
-    let last = f32(nodes) - 1.0;
-    let position = clamp(place, 0.0, 1.0) * last;
-    let low = min(floor(position), last - 1.0);
-    let left = table_number(table, u32(low));
-    return left + (table_number(table, u32(low) + 1u) - left) * (position - low);
+    let below = node_below(place, nodes);
+    let low = u32(below.x);
+    let left = table_number(table, low);
+    return left + (table_number(table, low + 1u) - left) * below.y;
 }
 
 fn rough_albedo_lookup(albedo_table: u32, place: f32, roughness: f32) -> vec4f {
-    let last_step = f32(ROUGHNESS_NODES) - 1.0;
-    let rough_position = clamp(roughness, 0.0, 1.0) * last_step;
-    let step = min(floor(rough_position), last_step - 1.0);
-    let last = f32(ALBEDO_NODES) - 1.0;
-    let position = clamp(place, 0.0, 1.0) * last;
-    let low = min(floor(position), last - 1.0);
-    let first = u32(step) * ALBEDO_NODES + u32(low);
-    let across = position - low;
-    let down = rough_position - step;
+    let step = node_below(roughness, ROUGHNESS_NODES);
+    let below = node_below(place, ALBEDO_NODES);
+    let first = u32(step.x) * ALBEDO_NODES + u32(below.x);
+    let across = below.y;
+    let down = step.y;
     var sum = vec4f(0.0);
     for (var node = 0u; node < select(2u, 4u, down > 0.0); node++) {
         let share = select(1.0 - across, across, (node & 1u) != 0u) * select(1.0 - down, down, node > 1u);

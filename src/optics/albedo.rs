@@ -14,7 +14,7 @@ use super::material::Material;
 use super::random::{Sequence, random_pair, random_state};
 use super::real::{Mask, Real};
 use super::refraction::refracted_square;
-use super::table::{NODE_LENGTH, look_up_number};
+use super::table::{NODE_LENGTH, look_up_number, node_below};
 use super::vector::{Vec3, vec3};
 
 /// Nodes of an albedo table, equidistant in the cosine of the view.
@@ -32,11 +32,9 @@ pub const ROUGH_ALBEDO_LENGTH: usize = NODE_LENGTH * ROUGHNESS_NODES * ALBEDO_NO
 /// what [`albedo_place`] makes of it.
 #[inline(always)]
 pub fn albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T) -> Vec3<T> {
-    let last = T::from_f64(ALBEDO_NODES as f64 - 1.0);
-    let position = place.clamp(T::zero(), T::one()) * last;
-    let low = position.floor().min(last - T::one());
+    let [low, beyond] = node_below(place, ALBEDO_NODES);
     let table = &tables[albedo_table as usize..];
-    albedo_node(table, low).mix(albedo_node(&table[NODE_LENGTH..], low), position - low)
+    albedo_node(table, low).mix(albedo_node(&table[NODE_LENGTH..], low), beyond)
 }
 
 /// The colour at a node of a table.
@@ -165,35 +163,26 @@ fn fresnel_basis(terms: &FresnelTerms<f64>, cosine: f64) -> [f64; 4] {
 /// The four integrals at a `place` as in [`albedo_lookup`] and a roughness, linear between the nodes.
 #[inline(always)]
 pub fn rough_albedo_lookup<T: Real>(tables: &[f32], albedo_table: u32, place: T, roughness: T) -> [T; 4] {
-    let [step, between_steps] = node_below(roughness, ROUGHNESS_NODES);
-    let [low, between] = node_below(place, ALBEDO_NODES);
+    let [step, beyond_step] = node_below(roughness, ROUGHNESS_NODES);
+    let [low, beyond] = node_below(place, ALBEDO_NODES);
     let first = step * T::from_f64(ALBEDO_NODES as f64) + low;
     let table = &tables[albedo_table as usize..];
     [
-        between_nodes::<0, T>(table, first, [between, between_steps]),
-        between_nodes::<1, T>(table, first, [between, between_steps]),
-        between_nodes::<2, T>(table, first, [between, between_steps]),
-        between_nodes::<3, T>(table, first, [between, between_steps]),
+        between_nodes::<0, T>(table, first, [beyond, beyond_step]),
+        between_nodes::<1, T>(table, first, [beyond, beyond_step]),
+        between_nodes::<2, T>(table, first, [beyond, beyond_step]),
+        between_nodes::<3, T>(table, first, [beyond, beyond_step]),
     ]
-}
-
-/// The last of the equidistant nodes that is not above a value in [0, 1], and how far the value is beyond it.
-#[inline(always)]
-fn node_below<T: Real>(value: T, nodes: usize) -> [T; 2] {
-    let last = T::from_f64(nodes as f64 - 1.0);
-    let position = value.clamp(T::zero(), T::one()) * last;
-    let low = position.floor().min(last - T::one());
-    [low, position - low]
 }
 
 /// An integral between four nodes of a rough albedo table.
 #[inline(always)]
-fn between_nodes<const NUMBER: usize, T: Real>(table: &[f32], first: T, [between, between_steps]: [T; 2]) -> T {
+fn between_nodes<const NUMBER: usize, T: Real>(table: &[f32], first: T, [beyond, beyond_step]: [T; 2]) -> T {
     let row = &table[NODE_LENGTH * ALBEDO_NODES..];
     let [a, b, c, d] =
         [table, &table[NODE_LENGTH..], row, &row[NODE_LENGTH..]].map(|nodes| look_up_number::<NUMBER, T>(nodes, first));
-    let (smooth, rough) = (a + (b - a) * between, c + (d - c) * between);
-    smooth + (rough - smooth) * between_steps
+    let (smooth, rough) = (a + (b - a) * beyond, c + (d - c) * beyond);
+    smooth + (rough - smooth) * beyond_step
 }
 
 /// The albedo under a Fresnel factor, from its integrals.

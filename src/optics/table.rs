@@ -20,13 +20,21 @@ pub fn look_up_number<const NUMBER: usize, T: Real>(table: &[f32], node: T) -> T
     T::look_up(&table[NUMBER..], T::from_f64(NODE_LENGTH as f64) * node)
 }
 
-/// A value between the equidistant nodes of a table, the first for 0, the last for 1; linear.
+/// The last of the equidistant nodes that is not above a value in [0, 1], at most the last but one, and how far the value is
+/// beyond it.
+#[inline(always)]
+pub fn node_below<T: Real>(value: T, nodes: usize) -> [T; 2] {
+    let last = T::from_f64(nodes as f64 - 1.0);
+    let position = value.clamp(T::zero(), T::one()) * last;
+    let low = position.floor().min(last - T::one());
+    [low, position - low]
+}
+
+/// A value between the equidistant nodes of a table of single numbers, the first for 0, the last for 1; linear.
 #[inline(always)]
 pub fn table_lookup<T: Real>(tables: &[f32], table: u32, nodes: usize, place: T) -> T {
-    let last = T::from_f64(nodes as f64 - 1.0);
-    let position = place.clamp(T::zero(), T::one()) * last;
-    let low = position.floor().min(last - T::one());
+    let [low, beyond] = node_below(place, nodes);
     let table = &tables[table as usize..];
     let (left, right) = (T::look_up(table, low), T::look_up(&table[1..], low));
-    left + (right - left) * (position - low)
+    left + (right - left) * beyond
 }
