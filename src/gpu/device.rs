@@ -204,16 +204,6 @@ impl GpuDevice {
         of_adapter.min(self.buffer_limit.load(Relaxed))
     }
 
-    /// A storage buffer with these bytes.
-    ///
-    /// # Errors
-    /// [`GpuError::TooLarge`] beyond the adapter's limit.
-    pub fn storage(&self, what: &'static str, bytes: &[u8]) -> Result<wgpu::Buffer, GpuError> {
-        let buffer = self.empty_storage(what, bytes.len() as u64)?;
-        self.queue.write_buffer(&buffer, 0, bytes);
-        Ok(buffer)
-    }
-
     /// A storage buffer of zeros.
     ///
     /// # Errors

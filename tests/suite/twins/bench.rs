@@ -24,6 +24,7 @@ use glossmith::scene::environment::{self, Environment};
 use glossmith::scene::light::{LightChoice, Lights, Sampled};
 use glossmith::scene::texture::{CHANNEL_SHIFT, IS_BOX, TURNS_NORMALS, TextureRecord, Textures};
 use glossmith::scene::{self, Filter, Geometry, Model, ModelSource, Slot, Texture, TextureRef, Wrap};
+use wgpu::util::{BufferInitDescriptor, DeviceExt};
 
 use super::harness::Rng;
 
@@ -357,7 +358,11 @@ impl Bench {
 
     /// Runs an entry point over rows of inputs, 64 a workgroup: `width` words a row come out.
     pub fn run(&self, pipeline: &wgpu::ComputePipeline, rows: &[u32], count: usize, width: usize) -> Vec<u32> {
-        let input = self.gpu.storage("rows of inputs", cast_slice(rows)).unwrap();
+        let input = self.gpu.device.create_buffer_init(&BufferInitDescriptor {
+            label: Some("rows of inputs"),
+            contents: cast_slice(rows),
+            usage: wgpu::BufferUsages::STORAGE,
+        });
         let output = self
             .gpu
             .empty_storage("rows of outputs", (count * width * 4) as u64)
