@@ -8,7 +8,7 @@ pub mod sampling;
 pub mod scatter;
 mod tile_sums;
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -78,6 +78,9 @@ impl CpuEngine {
     pub fn step_towards_in<T: Real>(&mut self, budget: Duration, goals: &[u32]) {
         let Some(job) = self.job.clone() else { return };
         let integrator = Integrator::<T>::new(&job);
+        let waves: Vec<_> = (0..rayon::current_num_threads())
+            .map(|_| Mutex::new(Wave::new(integrator.sequence())))
+            .collect();
         self.schedule.aim(goals);
         let start = Instant::now();
         loop {
@@ -94,7 +97,7 @@ impl CpuEngine {
                 break;
             }
             let slice_start = Instant::now();
-            self.render(&integrator, &works);
+            self.render(&integrator, &waves, &works);
             let grid = self.schedule.grid();
             let seconds = slice_start.elapsed().as_secs_f64().max(1e-9);
             self.samples_per_second = grid.pixel_samples(&works) as f64 / seconds;
@@ -118,18 +121,17 @@ impl CpuEngine {
         samples.max(by_the_end).min(WAVE_SAMPLES)
     }
 
-    /// Renders tiles. Each is copied out of the film and back, which takes a thousandth of the time, so that no two cores
-    /// write to the same memory.
-    fn render<T: Real>(&mut self, integrator: &Integrator<'_, T>, works: &[Work]) {
+    /// Renders tiles, each thread in a wave of its own. Each tile is copied out of the film and back, which takes a thousandth
+    /// of the time, so that no two cores write to the same memory.
+    fn render<T: Real>(&mut self, integrator: &Integrator<'_, T>, waves: &[Mutex<Wave<T>>], works: &[Work]) {
         let grid = self.schedule.grid();
         let film = Mutex::new(&mut self.film);
-        let film = || film.lock().unwrap_or_else(PoisonError::into_inner);
-        let wave = || Wave::new(integrator.sequence());
-        works.par_iter().for_each_init(wave, |wave, work| {
+        works.par_iter().for_each(|work| {
+            let mut wave = locked(&waves[rayon::current_thread_index().unwrap_or(0)]);
             let origin = grid.origin(work.tile);
-            let mut sums = film().part(origin, grid.size(work.tile));
-            render_tile(integrator, wave, origin, work, &mut sums);
-            film().place(origin, &sums);
+            let mut sums = locked(&film).part(origin, grid.size(work.tile));
+            render_tile(integrator, &mut wave, origin, work, &mut sums);
+            locked(&film).place(origin, &sums);
         });
     }
 
@@ -157,6 +159,11 @@ impl CpuEngine {
     pub fn samples_per_pixel(&self) -> u32 {
         self.schedule.samples_per_pixel()
     }
+}
+
+/// What is behind a lock, also after a thread that held it panicked.
+fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
+    lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Adds a tile's samples to its sums.

@@ -1,5 +1,5 @@
-//! The paths of a wave, field by field: what is done with sixteen of them takes whole vectors out of memory and puts whole
-//! vectors back.
+//! The paths of a wave, field by field: what is done with as many of them as there are lanes takes whole vectors out of
+//! memory and puts whole vectors back.
 //!
 //! What a path needs to go on lies in [`State`], in an order that changes from bounce to bounce, so that paths which are
 //! shaded together lie side by side. What it has found lies in [`Found`], by its number in the wave.
