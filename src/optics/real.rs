@@ -1,5 +1,5 @@
-//! The number type that the optics are written over: f32 to render with, f64 as the tests' oracle, and sixteen f32 side by
-//! side ([`lanes`](super::lanes)), which is how the processor renders.
+//! The number type that the optics are written over: f32 to render with, f64 as the tests' oracle, and eight or sixteen f32
+//! side by side ([`lanes`](super::lanes)), which is how the processor renders.
 //!
 //! Comparisons give a [`Mask`] and choices go through [`Real::select`]. What is generic over [`Real`] serves all three: where
 //! it branches, it asks whether a mask holds in *any* lane, and keeps what each lane needs by `select`. What can only be done
