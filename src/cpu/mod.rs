@@ -78,9 +78,7 @@ impl CpuEngine {
     pub fn step_towards_in<T: Real>(&mut self, budget: Duration, goals: &[u32]) {
         let Some(job) = self.job.clone() else { return };
         let integrator = Integrator::<T>::new(&job);
-        let waves: Vec<_> = (0..rayon::current_num_threads())
-            .map(|_| Mutex::new(Wave::new(integrator.sequence())))
-            .collect();
+        let waves: Vec<_> = (0..rayon::current_num_threads()).map(|_| Mutex::new(None)).collect();
         self.schedule.aim(goals);
         let start = Instant::now();
         loop {
@@ -121,16 +119,17 @@ impl CpuEngine {
         samples.max(by_the_end).min(WAVE_SAMPLES)
     }
 
-    /// Renders tiles, each thread in a wave of its own. Each tile is copied out of the film and back, which takes a thousandth
-    /// of the time, so that no two cores write to the same memory.
-    fn render<T: Real>(&mut self, integrator: &Integrator<'_, T>, waves: &[Mutex<Wave<T>>], works: &[Work]) {
+    /// Renders tiles, each thread in a wave of its own, made when it is first needed. Each tile is copied out of the film and
+    /// back, which takes a thousandth of the time, so that no two cores write to the same memory.
+    fn render<T: Real>(&mut self, integrator: &Integrator<'_, T>, waves: &[Mutex<Option<Wave<T>>>], works: &[Work]) {
         let grid = self.schedule.grid();
         let film = Mutex::new(&mut self.film);
         works.par_iter().for_each(|work| {
             let mut wave = locked(&waves[rayon::current_thread_index().unwrap_or(0)]);
+            let wave = wave.get_or_insert_with(|| Wave::new(integrator.sequence()));
             let origin = grid.origin(work.tile);
             let mut sums = locked(&film).part(origin, grid.size(work.tile));
-            render_tile(integrator, &mut wave, origin, work, &mut sums);
+            render_tile(integrator, wave, origin, work, &mut sums);
             locked(&film).place(origin, &sums);
         });
     }
