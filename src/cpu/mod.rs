@@ -8,7 +8,7 @@ pub mod sampling;
 pub mod scatter;
 mod tile_sums;
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use rayon::prelude::*;
@@ -124,13 +124,15 @@ impl CpuEngine {
     fn render<T: Real>(&mut self, integrator: &Integrator<'_, T>, waves: &[Mutex<Option<Wave<T>>>], works: &[Work]) {
         let grid = self.schedule.grid();
         let film = Mutex::new(&mut self.film);
+        let film = || film.lock().unwrap_or_else(PoisonError::into_inner);
         works.par_iter().for_each(|work| {
-            let mut wave = locked(&waves[rayon::current_thread_index().unwrap_or(0)]);
+            let wave = &waves[rayon::current_thread_index().unwrap_or(0)];
+            let mut wave = wave.lock().unwrap_or_else(PoisonError::into_inner);
             let wave = wave.get_or_insert_with(|| Wave::new(integrator.sequence()));
             let origin = grid.origin(work.tile);
-            let mut sums = locked(&film).part(origin, grid.size(work.tile));
+            let mut sums = film().part(origin, grid.size(work.tile));
             render_tile(integrator, wave, origin, work, &mut sums);
-            locked(&film).place(origin, &sums);
+            film().place(origin, &sums);
         });
     }
 
@@ -158,11 +160,6 @@ impl CpuEngine {
     pub fn samples_per_pixel(&self) -> u32 {
         self.schedule.samples_per_pixel()
     }
-}
-
-/// What is behind a lock, also after a thread that held it panicked.
-fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
-    lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Adds a tile's samples to its sums.

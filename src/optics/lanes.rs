@@ -28,8 +28,8 @@ pub fn in_lanes<I: InLanes>(level: Level, what: I) -> I::Output {
     match level {
         #[cfg(target_arch = "x86_64")]
         Level::Avx512(_) => what.run::<sixteen::Lanes<fearless_simd::Avx512>>(),
-        #[cfg(target_arch = "x86_64")]
         // Of sixteen numbers each takes two of AVX2's sixteen registers, too few for what shading keeps.
+        #[cfg(target_arch = "x86_64")]
         Level::Avx2(_) => what.run::<eight::Lanes<fearless_simd::Avx2>>(),
         #[cfg(target_arch = "aarch64")]
         Level::Neon(_) => what.run::<sixteen::Lanes<fearless_simd::Neon>>(),
