@@ -205,6 +205,8 @@ fn the_ledger_tells_what_is_known_of_a_scene() {
     let options = LedgerOptions {
         turns: 5,
         slice: Duration::from_millis(20),
+        // However slow the machine: of four samples on one side and forty on the other the noise alone is a tenth.
+        samples_min: 64.0,
         ..LedgerOptions::new(EngineChoice::Cpu)
     };
     let found = ledger(&document, &options, &mut |_| true).unwrap();

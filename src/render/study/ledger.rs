@@ -21,9 +21,9 @@ use crate::optics::random::Sequence;
 use crate::render::denoise::Attendant;
 use crate::render::{EngineChoice, Session};
 
-/// Samples a pixel that either side has at least: two in either half.
+/// Samples a pixel that each picture has at least, where no more are asked for: two in either half.
 const SAMPLES_MIN: f64 = 4.0;
-/// Turns are added up to this many times as many until there are so many samples.
+/// Turns are added up to this many times as many until there are as many samples as asked for.
 const TURNS_FACTOR: usize = 50;
 /// Changes of the noise below this share are not told in words: the estimate itself is no more exact.
 const NOISE_WORTH_TELLING: f64 = 0.05;
@@ -42,6 +42,8 @@ pub struct LedgerOptions {
     pub turns: usize,
     /// How long a turn of either side lasts.
     pub slice: Duration,
+    /// Samples a pixel that each picture has at least: what is told of noise and picture is as sure as they make it.
+    pub samples_min: f64,
 }
 
 impl LedgerOptions {
@@ -51,6 +53,7 @@ impl LedgerOptions {
             engine,
             turns: 9,
             slice: Duration::from_millis(110),
+            samples_min: SAMPLES_MIN,
         }
     }
 }
@@ -305,7 +308,7 @@ fn entry(
     let mut times = [const { Vec::new() }; 2];
     for turn in 0..options.turns * TURNS_FACTOR {
         let samples = [&*with, &*without].map(|session| session.progress().mean_samples);
-        if turn >= options.turns && samples.iter().all(|samples| *samples >= SAMPLES_MIN) {
+        if turn >= options.turns && samples.iter().all(|samples| *samples >= options.samples_min) {
             break;
         }
         // Each side is first every other time.
@@ -358,7 +361,7 @@ fn denoising(
     let mut times = Vec::new();
     let (mut last, mut noise) = (None, 0.0);
     for _ in 0..options.turns {
-        while session.progress().mean_samples < SAMPLES_MIN {
+        while session.progress().mean_samples < options.samples_min {
             session.step(options.slice)?;
         }
         last = attendant.finish(session)?;
