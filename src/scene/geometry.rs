@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use fearless_simd::Level;
-use glam::{DVec3, Vec3A};
+use glam::DVec3;
 use rayon::prelude::*;
 
 use super::convex::is_convex;
@@ -214,18 +214,12 @@ impl Geometry {
     pub fn intersect_by(&self, level: Level, origin: [f32; 3], direction: [f32; 3], t_max: f32) -> Option<Hit> {
         let frame = RayFrame::new(origin.into(), direction.into());
         let mut nearest = self.model.nearest(level, &frame, t_max);
-        let reach = nearest.map_or(t_max, |(t, _)| t);
-        if let Some((t, triangle)) = self.around.nearest(level, &frame, reach) {
-            nearest = Some((t, triangle + self.model.triangles.len() as u32));
+        let reach = nearest.map_or(t_max, |hit| hit.t);
+        if let Some(hit) = self.around.nearest(level, &frame, reach) {
+            let triangle = hit.triangle + self.model.triangles.len() as u32;
+            nearest = Some(Hit { triangle, ..hit });
         }
-        nearest.map(|(t, triangle)| self.hit(&frame, t, triangle))
-    }
-
-    /// A place of a triangle where a ray was found to meet it.
-    #[inline(always)]
-    fn hit(&self, frame: &RayFrame, t: f32, triangle: u32) -> Hit {
-        let [u, v] = frame.weights(self.corners(triangle as usize).map(Vec3A::from_array));
-        Hit { t, triangle, u, v }
+        nearest
     }
 
     /// Whether any triangle is met with 0 < t < `t_max`.
@@ -264,46 +258,49 @@ impl Geometry {
     #[inline(always)]
     fn intersect_behind(&self, level: Level, packet: &Packet, doors: &[Option<Doors>; 2]) -> [Option<Hit>; PACKET] {
         let mut hits = [None; PACKET];
-        let found = self.packet_through(packet, doors, |wide, doors, found| {
+        let mut found = Found::nothing(packet);
+        let is_traced = self.packet_through(doors, &mut found, |wide, doors, found| {
             wide.nearest_of(level, packet, doors, found)
         });
         for (lane, hit) in hits.iter_mut().enumerate() {
-            *hit = match &found {
-                Some(found) => found.hit(lane),
-                None => self.intersect_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]),
+            *hit = match is_traced {
+                true => found.hit(lane),
+                false => self.intersect_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]),
             };
         }
         hits
     }
 
-    /// What the rays of a packet meet of both parts behind their doors, by a way of tracing one; `None` where they do not go
-    /// the same way.
+    /// Puts what the rays of a packet meet of both parts behind their doors in, by a way of tracing one; false where they do
+    /// not go the same way.
     #[inline(always)]
     fn packet_through(
         &self,
-        packet: &Packet,
         doors: &[Option<Doors>; 2],
+        found: &mut Found,
         trace: impl Fn(&Wide, Option<&Doors>, &mut Found) -> bool,
-    ) -> Option<Found> {
-        let mut found = Found::nothing(packet);
+    ) -> bool {
         for ((part, first), doors) in self.parts().into_iter().zip(doors) {
             found.first = first as u32;
-            if !part.is_empty() && !trace(part.wide(), doors.as_ref(), &mut found) {
-                return None;
+            if !part.is_empty() && !trace(part.wide(), doors.as_ref(), found) {
+                return false;
             }
         }
-        Some(found)
+        true
     }
 
     /// Whether any triangle is met on each ray of a packet, as [`Geometry::occluded`] says.
     #[inline(always)]
     pub fn occluded_packet(&self, level: Level, packet: &Packet) -> [bool; PACKET] {
         let mut is_met = [false; PACKET];
-        let found = self.packet_through(packet, &[None; 2], |wide, _, found| wide.any_of(level, packet, found));
+        let mut found = Found::nothing(packet);
+        let is_traced = self.packet_through(&[None; 2], &mut found, |wide, _, found| {
+            wide.any_of(level, packet, found)
+        });
         for (lane, is_met) in is_met.iter_mut().enumerate() {
-            *is_met = match &found {
-                Some(found) => found.is_met(lane),
-                None => self.occluded_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]),
+            *is_met = match is_traced {
+                true => found.is_met(lane),
+                false => self.occluded_by(level, packet.origin(lane), packet.direction(lane), packet.t_max[lane]),
             };
         }
         is_met

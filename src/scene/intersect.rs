@@ -18,6 +18,21 @@ pub struct Hit {
     pub v: f32,
 }
 
+impl Hit {
+    /// A triangle that a ray meets so far away, by the areas that the ray cuts it into, opposite to its corners.
+    #[inline(always)]
+    pub(super) fn of(t: f32, triangle: u32, [u, v, w]: [f32; 3]) -> Self {
+        let area = u + v + w;
+        Self {
+            t,
+            triangle,
+            // Without the sign of a zero, which depends on the order of corners.
+            u: v / area + 0.0,
+            v: w / area + 0.0,
+        }
+    }
+}
+
 /// A ray and the plane that triangles are projected to along it: x and y of a place p are `axis_x · (p − origin)` and
 /// `axis_y · (p − origin)`, both 0 on the ray. The axes are the shear of Woop, Benthin and Wald ("Watertight
 /// Ray/Triangle Intersection", JCGT 2013): of each axis one component is 1 and one 0.
@@ -81,15 +96,6 @@ impl RayFrame {
         );
         let ordered = low_x * high_y - low_y * high_x;
         Vec3A::select(is_turned, -ordered, ordered)
-    }
-
-    /// The weights of a triangle's second and third corner where the ray meets it, see [`Hit`]: without the sign of a zero,
-    /// which depends on the order of corners.
-    #[inline(always)]
-    pub(super) fn weights(&self, corners: [Vec3A; 3]) -> [f32; 2] {
-        let areas = self.areas(corners);
-        let area = areas.x + areas.y + areas.z;
-        [areas.y / area + 0.0, areas.z / area + 0.0]
     }
 }
 

@@ -5,7 +5,7 @@ use fearless_simd::Level;
 use glam::DVec3;
 
 use super::hierarchy::{Compressed, Hierarchy, Wide};
-use super::intersect::RayFrame;
+use super::intersect::{Hit, RayFrame};
 use super::loading::{Cancelled, Loading};
 use super::memory::{in_large_pages, room_in_large_pages};
 use super::mesh::{Mesh, any_tangent};
@@ -132,9 +132,9 @@ impl Part {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 
-    /// The nearest triangle with 0 < t < `t_max` along a ray, and t.
+    /// Where a ray meets the nearest triangle with 0 < t < `t_max`.
     #[inline(always)]
-    pub(super) fn nearest(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<(f32, u32)> {
+    pub(super) fn nearest(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
         match self.is_empty() {
             true => None,
             false => self.wide().nearest(level, frame, t_max),

@@ -138,15 +138,8 @@ impl Found {
     /// What a ray met.
     #[inline(always)]
     pub fn hit(&self, lane: usize) -> Option<Hit> {
-        let [u, v, w] = [self.areas[0][lane], self.areas[1][lane], self.areas[2][lane]];
-        let area = u + v + w;
-        Some(Hit {
-            t: self.t[lane],
-            triangle: self.marks[lane].checked_sub(1)?,
-            // Without the sign of a zero, which depends on the order of corners.
-            u: v / area + 0.0,
-            v: w / area + 0.0,
-        })
+        let areas = [self.areas[0][lane], self.areas[1][lane], self.areas[2][lane]];
+        Some(Hit::of(self.t[lane], self.marks[lane].checked_sub(1)?, areas))
     }
 }
 

@@ -47,8 +47,8 @@ fn parts_hold_every_triangle_once_and_rays_find_the_same_as_without() {
         let direction = [-origin[0], 0.1 - origin[1], 0.05 - origin[2]];
         let frame = RayFrame::new(origin.into(), direction.into());
         let nearest = |wide: &Wide, order: &[u32]| {
-            let (t, triangle) = wide.nearest(level, &frame, f32::MAX)?;
-            Some((t, found[order[triangle as usize] as usize]))
+            let hit = wide.nearest(level, &frame, f32::MAX)?;
+            Some((hit.t, found[order[hit.triangle as usize] as usize]))
         };
         let (expected, of_parts) = (nearest(&wide, &order), nearest(&of_parts, &order_of_parts));
         assert_eq!(expected, of_parts, "ray {i}");

@@ -14,7 +14,7 @@ use glam::Vec3A;
 
 use super::DEPTH_MAX;
 use super::wide::{BLOCK, Block, Node, Normals, WIDTH, Wide};
-use crate::scene::intersect::RayFrame;
+use crate::scene::intersect::{Hit, RayFrame};
 
 /// Places relative to the ray's origin are off by at most this part of both: eleven roundings, five of a box's plane and
 /// six of a triangle's projected corner. So a far eye loses nothing.
@@ -27,20 +27,20 @@ pub(super) const INVERSE_MAX: f32 = 1e18;
 const STACK_SIZE: usize = DEPTH_MAX * WIDTH;
 
 impl Wide {
-    /// The nearest triangle with 0 < t < `t_max`, and t.
-    pub fn nearest(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<(f32, u32)> {
+    /// Where a ray meets the nearest triangle with 0 < t < `t_max`.
+    pub fn nearest(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
         dispatch!(level, simd => trace::<_, false>(simd, self, frame, t_max))
     }
 
-    /// Some triangle with 0 < t < `t_max`, and t.
-    pub fn any(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<(f32, u32)> {
+    /// Where it meets some triangle with 0 < t < `t_max`.
+    pub fn any(&self, level: Level, frame: &RayFrame, t_max: f32) -> Option<Hit> {
         dispatch!(level, simd => trace::<_, true>(simd, self, frame, t_max))
     }
 }
 
 /// The nearest triangle, or the first that is found if `ANY`.
 #[inline(always)]
-fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max: f32) -> Option<(f32, u32)> {
+fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max: f32) -> Option<Hit> {
     if wide.nodes.is_empty() {
         return None;
     }
@@ -51,9 +51,10 @@ fn trace<S: Simd, const ANY: bool>(simd: S, wide: &Wide, frame: &RayFrame, t_max
     let mut nearest = Nearest {
         t: t_max,
         triangle: None,
+        areas: [0.0; 3],
     };
     ray.search::<ANY, _>(wide, Entry::ROOT, &mut nearest);
-    nearest.triangle.map(|triangle| (nearest.t, triangle))
+    Some(Hit::of(nearest.t, nearest.triangle?, nearest.areas))
 }
 
 /// Where a ray puts the triangles that it meets.
@@ -69,6 +70,8 @@ pub(super) trait Met {
 struct Nearest {
     t: f32,
     triangle: Option<u32>,
+    /// See [`TrianglesMet::areas`].
+    areas: [f32; 3],
 }
 
 impl Met for Nearest {
@@ -78,11 +81,10 @@ impl Met for Nearest {
     }
 
     #[inline(always)]
-    fn take(&mut self, t: f32, triangle: u32, _areas: [f32; 3]) {
+    fn take(&mut self, t: f32, triangle: u32, areas: [f32; 3]) {
         let is_first = || self.triangle.is_some_and(|other| triangle < other);
         if t < self.t || is_first() {
-            self.t = t;
-            self.triangle = Some(triangle);
+            (self.t, self.triangle, self.areas) = (t, Some(triangle), areas);
         }
     }
 }
