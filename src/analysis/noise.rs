@@ -164,20 +164,19 @@ struct Sums {
 
 impl Sums {
     fn of(band: &Band<'_>) -> Self {
-        let finite = |values: &mut dyn Iterator<Item = f64>| values.filter(|value| value.is_finite()).sum::<f64>();
         let places = || 0..band.pixels.len();
         Self {
             measured: band.halves.iter().filter(|variance| !variance.is_nan()).count() as f64,
-            luminance: finite(&mut band.pixels.clone().map(|pixel| band.film.luminance_of(pixel))),
-            variance: finite(&mut band.halves.iter().copied()),
-            spread: finite(&mut band.spread.iter().copied()),
+            luminance: finite_sum(band.pixels.clone().map(|pixel| band.film.luminance_of(pixel))),
+            variance: finite_sum(band.halves.iter().copied()),
+            spread: finite_sum(band.spread.iter().copied()),
             of_pixels: places().map(|place| band.squared_variance(place)).sum(),
             of_neighbours: band
                 .around
                 .iter()
                 .map(|[sum, count]| (sum / count.max(1.0)).powi(2))
                 .sum(),
-            of_differences: finite(&mut band.halves.iter().map(|variance| variance * variance / KURTOSIS)),
+            of_differences: finite_sum(band.halves.iter().map(|variance| variance * variance / KURTOSIS)),
         }
     }
 
@@ -205,21 +204,35 @@ impl Sums {
 
 /// For each pixel sum and number of the numbers in the square around it; NaN counts as missing.
 pub(super) fn box_sums(values: &[f64], width: usize, radius: usize) -> Vec<[f64; 2]> {
-    let height = values.len() / width.max(1);
-    let entry = |value: f64| if value.is_nan() { [0.0; 2] } else { [value, 1.0] };
-    let add = |[a, b]: [f64; 2], [c, d]: [f64; 2]| [a + c, b + d];
-    let windows = |row: &[f64]| -> Vec<[f64; 2]> {
-        let window = |x: usize| &row[x.saturating_sub(radius)..(x + radius + 1).min(width)];
-        let sum = |x: usize| window(x).iter().map(|value| entry(*value)).fold([0.0; 2], add);
-        (0..width).map(sum).collect()
-    };
-    let across: Vec<_> = values.par_chunks_exact(width.max(1)).map(windows).collect();
-    let down = |y: usize| {
-        let rows = &across[y.saturating_sub(radius)..(y + radius + 1).min(height)];
-        let sum = |x: usize| rows.iter().map(|row| row[x]).fold([0.0; 2], add);
-        (0..width).map(sum).collect::<Vec<_>>()
-    };
-    (0..height).into_par_iter().flat_map_iter(down).collect()
+    let width = width.max(1);
+    let entry = |value: &f64| if value.is_nan() { [0.0; 2] } else { [*value, 1.0] };
+    let mut across = vec![[0.0; 2]; values.len()];
+    let rows = across.par_chunks_exact_mut(width).zip(values.par_chunks_exact(width));
+    rows.for_each(|(sums, row)| {
+        let row: Vec<[f64; 2]> = row.iter().map(entry).collect();
+        for left in (1..=radius.min(width)).rev() {
+            add_each(&mut sums[left..], &row);
+        }
+        for right in 0..=radius.min(width) {
+            add_each(sums, &row[right..]);
+        }
+    });
+    let mut around = vec![[0.0; 2]; values.len()];
+    let height = values.len() / width;
+    around.par_chunks_exact_mut(width).enumerate().for_each(|(y, sums)| {
+        let rows = y.saturating_sub(radius) * width..(y + radius + 1).min(height) * width;
+        for row in across[rows].chunks_exact(width) {
+            add_each(sums, row);
+        }
+    });
+    around
+}
+
+/// Adds to each sum what stands at its place, as far as there is something.
+fn add_each(sums: &mut [[f64; 2]], entries: &[[f64; 2]]) {
+    for (sum, entry) in sums.iter_mut().zip(entries) {
+        *sum = [sum[0] + entry[0], sum[1] + entry[1]];
+    }
 }
 
 /// Standard error of each pixel's luminance over the picture's mean luminance: their root mean square is about the
@@ -238,6 +251,10 @@ pub fn relative_errors(film: &Film) -> Vec<f32> {
         band.spread.into_iter().zip(band.gains).map(error)
     };
     bands(film.grid()).into_par_iter().flat_map_iter(of_band).collect()
+}
+
+fn finite_sum(values: impl Iterator<Item = f64>) -> f64 {
+    values.filter(|value| value.is_finite()).sum()
 }
 
 fn finite_or_nan(value: f64) -> f64 {
@@ -350,6 +367,21 @@ mod tests {
                 0.0
             }
         })
+    }
+
+    #[test]
+    fn squares_are_cut_at_the_edges_and_what_is_missing_does_not_count() {
+        // Rows of five.
+        let mut values: Vec<f64> = (0..20).map(|i| f64::from(1 << i)).collect();
+        values[7] = f64::NAN;
+        let bits = |places: &[u32]| f64::from(places.iter().map(|place| 1_u32 << place).sum::<u32>());
+        let sums = box_sums(&values, 5, 1);
+        assert_eq!(sums[0], [bits(&[0, 1, 5, 6]), 4.0]);
+        assert_eq!(sums[12], [bits(&[6, 8, 11, 12, 13, 16, 17, 18]), 8.0]);
+        assert_eq!(sums[19], [bits(&[13, 14, 18, 19]), 4.0]);
+        let all: Vec<u32> = (0..20).filter(|place| *place != 7).collect();
+        assert_eq!(box_sums(&values, 5, 9), vec![[bits(&all), 19.0]; 20]);
+        assert_eq!(box_sums(&values, 5, 0)[7], [0.0; 2]);
     }
 
     #[test]
