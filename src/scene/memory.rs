@@ -41,14 +41,21 @@ fn advise(place: *const u8, bytes: usize, advices: &[libc::c_int]) {
     }
 }
 
+/// What a processor fetches at once.
+#[cfg(target_arch = "x86_64")]
+const LINE: usize = 64;
+
 /// Has the processor fetch an element, where it knows how to; what is computed does not depend on it.
 #[inline(always)]
 pub(super) fn fetch<E>(elements: &[E], index: usize) {
     #[cfg(target_arch = "x86_64")]
     if let Some(element) = elements.get(index) {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // SAFETY: the place is that of an element; nothing is read that the program could tell.
-        unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(element).cast()) };
+        let start: *const i8 = std::ptr::from_ref(element).cast();
+        for line in (0..size_of::<E>()).step_by(LINE) {
+            // SAFETY: the place is in the element; nothing is read that the program could tell.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(start.add(line)) };
+        }
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = (elements, index);

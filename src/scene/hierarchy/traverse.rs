@@ -105,7 +105,7 @@ impl<S: Simd> SingleRay<S> {
         loop {
             let place = next.place();
             if place & BLOCK == 0 {
-                if let Some(nearest) = self.boxes.enter(&wide.nodes[place as usize], found.t_max(), &mut stack) {
+                if let Some(nearest) = self.boxes.enter(wide, place, found.t_max(), &mut stack) {
                     next = nearest;
                     continue;
                 }
@@ -182,9 +182,10 @@ impl<S: Simd> BoxRay<S> {
         }
     }
 
-    /// The nearest child that is met before `t_max`; the others that are go on the stack, the nearest last.
+    /// The nearest child of a node that is met before `t_max`; the others that are go on the stack, the nearest last.
     #[inline(always)]
-    fn enter(&self, node: &Node, t_max: f32, stack: &mut Stack) -> Option<Entry> {
+    fn enter(&self, wide: &Wide, index: u32, t_max: f32, stack: &mut Stack) -> Option<Entry> {
+        let node = &wide.nodes[index as usize];
         let simd = self.inverse[0].token();
         let (x, y, z) = (self.near(node, 0), self.near(node, 1), self.near(node, 2));
         let near = x.max(y).max(z.max(f32x8::splat(simd, 0.0)));
@@ -198,11 +199,11 @@ impl<S: Simd> BoxRay<S> {
             children: met,
             near: near.to_array(),
         };
-        let first = met.take(node);
+        let first = met.take(wide, node);
         if met.children == 0 {
             return Some(first);
         }
-        let second = met.take(node);
+        let second = met.take(wide, node);
         let (nearest, farther) = if second.0 < first.0 {
             (second, first)
         } else {
@@ -216,7 +217,7 @@ impl<S: Simd> BoxRay<S> {
         stack.push(farther);
         stack.push(nearest);
         while met.children != 0 {
-            stack.insert(met.take(node), base);
+            stack.insert(met.take(wide, node), base);
         }
         stack.pop()
     }
@@ -245,10 +246,12 @@ struct Children {
 }
 
 impl Children {
+    /// The next, which the processor is to fetch meanwhile: rays wait for memory more than for anything else.
     #[inline(always)]
-    fn take(&mut self, node: &Node) -> Entry {
+    fn take(&mut self, wide: &Wide, node: &Node) -> Entry {
         let child = (self.children.trailing_zeros() % WIDTH as u32) as usize;
         self.children &= self.children - 1;
+        wide.fetch(node.children[child]);
         Entry::new(self.near[child], node.children[child])
     }
 }
