@@ -371,8 +371,26 @@ fn accuracy_writes_the_race() {
 #[test]
 fn sampling_compares_all_lobes_with_the_paper() {
     let workplace = Workplace::new();
-    let run = workplace.done("study sampling --quick --engine cpu --output found");
-    let report = json(&workplace, "found/sampling.json");
+    // Differences of times: where other tests take their part of the processor even their signs are chance, and they are
+    // measured again.
+    let mut measured = (0..5).map(|attempt| {
+        let folder = format!("found{attempt}");
+        let run = workplace.done(&format!("study sampling --quick --engine cpu --output {folder}"));
+        (run, json(&workplace, &format!("{folder}/sampling.json")), folder)
+    });
+    let is_of_hundred = |row: &&Value| row["samples"] == 100;
+    let is_told = |row: &Value| number(row, "sampling_ms") > 0.0 && number(row, "against_geometric") > 0.0;
+    let are_told = |report: &Value| {
+        report["rows"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter(is_of_hundred)
+            .all(is_told)
+    };
+    let (run, report, folder) = measured
+        .find(|(_, report, _)| are_told(report))
+        .expect("not all of them are disturbed");
     assert_eq!((number(&report, "width"), number(&report, "height")), (48.0, 32.0));
     let rows = report["rows"].as_array().unwrap();
     for samples in [1, 100] {
@@ -393,18 +411,15 @@ fn sampling_compares_all_lobes_with_the_paper() {
             assert!(number(row, "frame_ms") > 0.0);
         }
     }
-    // Differences of times: where other tests take their part of the processor even their signs are chance.
-    for row in rows.iter().filter(|row| row["samples"] == 100) {
-        let [_, _, against] = ["sampling_ms", "with_rays_ms", "against_geometric"].map(|key| number(row, key));
-        if row["name"] == "geometric/smooth" {
-            assert_eq!(against, 1.0);
-        }
+    let is_unit = |row: &&Value| row["name"] == "geometric/smooth";
+    for row in rows.iter().filter(is_of_hundred).filter(is_unit) {
+        assert_eq!(number(row, "against_geometric"), 1.0);
     }
     assert!(report["numbers_ms"][1].as_f64().unwrap() > 0.0);
     assert_eq!(report["paper"].as_array().unwrap().len(), 4);
     assert!(report["verdict"].as_array().unwrap().len() >= 5);
     assert!(run.stdout.contains("(the paper: 4.84 ×)"), "{}", run.stdout);
-    has_plots(&workplace, "found", &["sampling"]);
+    has_plots(&workplace, &folder, &["sampling"]);
 }
 
 #[test]
