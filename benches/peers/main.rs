@@ -75,6 +75,8 @@ const LOOK_S: f64 = 0.1;
 const LOOK_GROWTH: f64 = 1.2;
 /// Seconds after which the rest is told from the error there, as it falls with the number of samples.
 const SECONDS_MAX: f64 = 20.0;
+/// The share of the goal below which one render's error is when all of them have surely come down to it.
+const SURE: f64 = 0.7;
 
 /// A line of the table.
 struct Case {
@@ -175,13 +177,14 @@ impl Measured {
 
     /// Seconds to the goal, as the squared error of independent samples falls with their number.
     fn time_to_goal(&self, reference: &Picture) -> f64 {
-        self.seconds * relative_error(&self.pictures, reference) / GOAL
+        self.seconds * relative_error(self.pictures.iter(), reference) / GOAL
     }
 }
 
 /// The mean squared error of a picture over (reference² + 0.01), from how far pictures that differ in nothing but their seed
 /// are from each other. NaN where there are fewer than two.
-fn relative_error(pictures: &[Picture], reference: &Picture) -> f64 {
+fn relative_error<'a>(pictures: impl Iterator<Item = &'a Picture>, reference: &Picture) -> f64 {
+    let pictures: Vec<&Picture> = pictures.collect();
     let count = pictures.len() as f64;
     let of = |pixel: usize, channel: usize| {
         let values = || pictures.iter().map(|picture| f64::from(picture[pixel][channel]));
@@ -193,8 +196,8 @@ fn relative_error(pictures: &[Picture], reference: &Picture) -> f64 {
     channels.map(|(pixel, channel)| of(pixel, channel)).sum::<f64>() / (3 * reference.len()) as f64
 }
 
-/// Seconds that our renders take until their error has come down to the goal: the mean of as many as there are turns, which
-/// go on in turns.
+/// Seconds that our renders take until their error has come down to the goal: the mean of as many as there are turns. Each
+/// goes on by itself and is only looked at; what it is worth is told afterwards, as that would take the caches from it.
 fn time_to_goal(
     folder: &Path,
     case: &Case,
@@ -202,7 +205,7 @@ fn time_to_goal(
     reference: &Picture,
     is_adaptive: bool,
 ) -> Result<f64, Box<dyn Error>> {
-    let mut sessions = Vec::new();
+    let mut renders: Vec<Vec<Render>> = Vec::new();
     for turn in 0..extent.turns {
         let mut document = document(folder, case, extent.size);
         let render = &mut document.render;
@@ -210,34 +213,58 @@ fn time_to_goal(
         (render.adaptive, render.seed) = (Some(is_adaptive), turn + 1);
         let mut session = Session::open(EngineChoice::Cpu)?;
         session.submit(&document)?;
-        sessions.push(session);
+        let looks = renders.first().map(Vec::len);
+        renders.push(looked_at(&mut session, looks, reference)?);
     }
-    let mut seconds = vec![0.0; sessions.len()];
-    let (mut before, mut until) = ((0.0, f64::NAN), LOOK_S);
-    while until < SECONDS_MAX {
-        let mut pictures = Vec::new();
-        for (session, seconds) in sessions.iter_mut().zip(&mut seconds) {
-            let begun = Instant::now();
-            session.step(Duration::from_secs_f64((until - *seconds).max(0.0)))?;
-            *seconds += begun.elapsed().as_secs_f64();
-            pictures.push(picture(session)?);
-        }
-        let mean = seconds.iter().sum::<f64>() / seconds.len() as f64;
-        let error = relative_error(&pictures, reference);
+    let looks = (0..renders[0].len()).map(|look| {
+        let seconds = renders.iter().map(|render| render[look].0).sum::<f64>();
+        let pictures = renders.iter().map(|render| &render[look].1);
+        (seconds / renders.len() as f64, relative_error(pictures, reference))
+    });
+    let mut before = (0.0, f64::NAN);
+    for (seconds, error) in looks {
         if error <= GOAL {
             // Straight between the logarithms of both; back to where the error would be were there no look before.
             let (then, error_then) = before;
             let slope = if error_then > error {
-                (mean / then).ln() / (error_then / error).ln()
+                (seconds / then).ln() / (error_then / error).ln()
             } else {
                 1.0
             };
-            return Ok(mean * (error / GOAL).powf(slope));
+            return Ok(seconds * (error / GOAL).powf(slope));
         }
-        before = (mean, error);
-        until *= LOOK_GROWTH;
+        before = (seconds, error);
     }
     Ok(before.0 * before.1 / GOAL)
+}
+
+/// A render's pictures after more and more seconds of its own: so many, or until it is surely better than the goal.
+fn looked_at(session: &mut Session, looks: Option<usize>, reference: &Picture) -> Result<Vec<Render>, Box<dyn Error>> {
+    let (mut renders, mut seconds, mut until) = (Vec::new(), 0.0, LOOK_S);
+    while until < SECONDS_MAX && looks.is_none_or(|looks| renders.len() < looks) {
+        let begun = Instant::now();
+        session.step(Duration::from_secs_f64((until - seconds).max(0.0)))?;
+        seconds += begun.elapsed().as_secs_f64();
+        let picture = picture(session)?;
+        // The reference has an error of its own: so this is rather too much.
+        let is_sure = looks.is_none() && squared_distance(&picture, reference) < SURE * GOAL;
+        renders.push((seconds, picture));
+        if is_sure {
+            break;
+        }
+        until *= LOOK_GROWTH;
+    }
+    Ok(renders)
+}
+
+/// The mean squared distance of a picture from a reference over (reference² + 0.01).
+fn squared_distance(picture: &Picture, reference: &Picture) -> f64 {
+    let channels = picture.as_flattened().iter().zip(reference.as_flattened());
+    let of_channel = |(x, reference): (&f32, &f32)| {
+        let reference = f64::from(*reference);
+        (f64::from(*x) - reference).powi(2) / (reference.powi(2) + 0.01)
+    };
+    channels.map(of_channel).sum::<f64>() / (3 * reference.len()) as f64
 }
 
 fn picture(session: &mut Session) -> Result<Picture, Box<dyn Error>> {

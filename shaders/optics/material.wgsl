@@ -161,7 +161,7 @@ const LAYER_COAT: u32 = 3u;
 
 struct MaterialNumbers {
     lobe: vec3f,
-    layer: f32,
+    facet: f32,
     below: vec3f,
 }
 
@@ -217,19 +217,25 @@ fn material_scatter(
     let is_passed_on = passes_on(material);
     let is_shared = shares_facets(material);
     let is_coated = material_has_coat(material, surface);
-    var choice = numbers.layer;
-    if is_coated && choice >= layers.coat_probability {
-        choice = rescaled(choice, layers.coat_probability);
-    }
-    var specular = layers.specular_probability;
-    var chosen = below_layer(choice, specular, base, through);
-    if is_passed_on || is_shared || choice < specular {
-        chosen = LAYER_SPECULAR;
-    }
-    if is_coated && numbers.layer < layers.coat_probability {
-        chosen = LAYER_COAT;
-    }
+    let is_by_facet = is_passed_on || is_shared;
     var xi = numbers.lobe;
+    var chosen = LAYER_SPECULAR;
+    if is_coated {
+        let part = split(xi.x, layers.coat_probability);
+        xi.x = part.stretched;
+        chosen = select(LAYER_SPECULAR, LAYER_COAT, part.is_below);
+    }
+    let choice = select(xi.x, numbers.facet, is_by_facet);
+    var specular = layers.specular_probability;
+    if !is_by_facet && chosen == LAYER_SPECULAR {
+        let part = split(choice, specular);
+        xi.x = part.stretched;
+        if !part.is_below {
+            let rest = split(part.stretched, share_of_base(base, through));
+            xi.x = rest.stretched;
+            chosen = below_layer(rest, through);
+        }
+    }
     var drawn = MaterialSample();
     var reflected = vec3f(0.0);
     if material_has_base(material) && steps.x < STEP_DRAW {
@@ -289,7 +295,8 @@ fn material_scatter(
                 if is_shared {
                     through = 1.0 - base - specular;
                 }
-                chosen = below_layer(choice, specular, base, through);
+                let rest = split(choice, specular).stretched;
+                chosen = below_layer(split(rest, share_of_base(base, through)), through);
                 continue;
             }
         }
@@ -323,15 +330,26 @@ fn material_scatter(
     return MaterialScatter(drawn, reflected);
 }
 
-// A number in [0, 1) that was not below `share`, stretched to [0, 1) again.
-fn rescaled(number: f32, share: f32) -> f32 {
-    return min((number - share) / max(1.0 - share, 1e-20), 0.99999994);
+// A part of [0, 1) in which a number lies, and where in it, stretched to [0, 1) again.
+struct Part {
+    is_below: bool,
+    stretched: f32,
 }
 
-// The layer below the specular one, whose probability was `specular`.
-fn below_layer(xi_layer: f32, specular: f32, base: f32, through: f32) -> u32 {
-    let base_end = specular + (1.0 - specular) * (base / max(base + through, 1e-20));
-    let is_base = PLAN_TRANSMISSION == 0u || xi_layer < base_end || !(through > 0.0);
+fn split(number: f32, share: f32) -> Part {
+    let is_below = number < share;
+    let start = select(share, 0.0, is_below);
+    let length = max(select(1.0 - share, share, is_below), 1e-20);
+    return Part(is_below, min((number - start) / length, 0.99999994));
+}
+
+fn share_of_base(base: f32, through: f32) -> f32 {
+    return base / max(base + through, 1e-20);
+}
+
+// The layer below the specular one, by the base's part of the two.
+fn below_layer(part: Part, through: f32) -> u32 {
+    let is_base = PLAN_TRANSMISSION == 0u || part.is_below || !(through > 0.0);
     return select(LAYER_TRANSMISSION, LAYER_BASE, is_base);
 }
 

@@ -4,7 +4,7 @@
 //! σ² the variance of one sample, cost its rays. So a tile rests while it has more than its part, not when some error of
 //! its own is reached: that would give dark smooth tiles as few samples as they need, but noisy ones too many.
 
-use super::noise::{TileError, half_difference_variance, tile_errors};
+use super::noise::{TileError, finite_sum, half_difference_variance, tile_errors};
 use crate::job::film::Film;
 use crate::job::tiles::TileGrid;
 
@@ -69,13 +69,7 @@ pub fn next_goals(film: &Film, samples: &[u32], round: Round) -> Vec<u32> {
         let pixels = all(&|_| 1.0);
         let rendered = (0..grid.tiles()).filter(|tile| is_rendered(*tile));
         let rendered: Vec<usize> = rendered.flat_map(|tile| grid.pixels_of(tile)).collect();
-        let sum = |of: &dyn Fn(usize) -> f64| {
-            rendered
-                .iter()
-                .map(|pixel| of(*pixel))
-                .filter(|x| x.is_finite())
-                .sum::<f64>()
-        };
+        let sum = |of: &dyn Fn(usize) -> f64| finite_sum(rendered.iter().map(|pixel| of(*pixel)));
         let luminance = sum(&|pixel| film.luminance_of(pixel)) / pixels;
         // The tiles' variances, averaged as they are, need not add up to what decides about the end.
         let seen = sum(&|pixel| half_difference_variance(&film.halves(pixel)));

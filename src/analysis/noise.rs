@@ -240,8 +240,7 @@ fn add_each(sums: &mut [[f64; 2]], entries: &[[f64; 2]]) {
 /// is known.
 pub fn relative_errors(film: &Film) -> Vec<f32> {
     let pixels = film.pixel_count();
-    let luminances = (0..pixels).map(|pixel| film.luminance_of(pixel));
-    let mean = luminances.filter(|y| y.is_finite()).sum::<f64>() / pixels.max(1) as f64;
+    let mean = finite_sum((0..pixels).map(|pixel| film.luminance_of(pixel))) / pixels.max(1) as f64;
     let error = move |(variance, gain): (f64, f64)| {
         let error = (variance * gain).sqrt() / mean;
         if error.is_finite() { error as f32 } else { 0.0 }
@@ -253,7 +252,8 @@ pub fn relative_errors(film: &Film) -> Vec<f32> {
     bands(film.grid()).into_par_iter().flat_map_iter(of_band).collect()
 }
 
-fn finite_sum(values: impl Iterator<Item = f64>) -> f64 {
+/// The sum of those numbers that are finite.
+pub(super) fn finite_sum(values: impl Iterator<Item = f64>) -> f64 {
     values.filter(|value| value.is_finite()).sum()
 }
 

@@ -89,11 +89,11 @@ fn largest_error(job: &Job, material: &Material<f32>, surface: &Surface<f32>, st
     let (exact, exact_surface) = (material.cast::<f64>(), widened(surface));
     let error = |light: u32| {
         let [a, b] = random_pair(state, DIMENSION + 2 * light);
-        let [c, layer] = random_pair(state, DIMENSION + 2 * light + 1);
+        let [c, facet] = random_pair(state, DIMENSION + 2 * light + 1);
         let lobe = [a, b, c];
         let numbers = MaterialNumbers {
             lobe,
-            layer,
+            facet,
             below: lobe,
         };
         let wi = match light % 2 {

@@ -64,10 +64,10 @@ fn p_value(material: &Material<f64>, tables: &[f32], angle_deg: f64, seed: u32, 
     let surface = surface(angle_deg);
     let draw = |i: u32| {
         let state = random_state(17, 0, seed, i, Sequence::Independent);
-        let ([a, b], [c, layer]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
+        let ([a, b], [c, facet]) = (random_pair(state, 0), random_pair::<f64>(state, 1));
         let numbers = MaterialNumbers {
             lobe: [a, b, c],
-            layer,
+            facet,
             below: [a, b, c],
         };
         let drawn = material_sample(material, tables, &surface, numbers, false);
@@ -86,6 +86,55 @@ fn p_value(material: &Material<f64>, tables: &[f32], angle_deg: f64, seed: u32, 
     supposed.coat_roughness *= factor;
     let cuts = [surface.normal, surface.frame.normal];
     test_samples(&grid, &samples, &cuts, |wi| density(&supposed, tables, &surface, wi)).p_value
+}
+
+/// The variance of what 64 samples of a material tell of a light that is bright on one side, over that of independent
+/// numbers. Of numbers `apart` the first one is of another pair than the second.
+fn variance_left(material: &Material<f64>, tables: &[f32], apart: bool) -> f64 {
+    let surface = surface(45.0);
+    let light = |wi: Vec3<f64>| 1.0 + wi.x + 0.5 * wi.y;
+    let mean_of_stream = |x: u32, sequence| {
+        let sample = |i: u32| {
+            let state = random_state(x, 0, 5, i, sequence);
+            let ([a, b], [c, facet]) = (random_pair(state, 0), random_pair(state, 1));
+            let [other, _] = random_pair(state, 2);
+            let lobe = [if apart { other } else { a }, b, c];
+            let numbers = MaterialNumbers {
+                lobe,
+                facet,
+                below: lobe,
+            };
+            let drawn = material_sample(material, tables, &surface, numbers, false);
+            drawn.throughput.luminance() * light(drawn.wi)
+        };
+        (0..64).map(sample).sum::<f64>() / 64.0
+    };
+    let variance = |sequence| {
+        let means: Vec<f64> = (0..400).map(|x| mean_of_stream(x, sequence)).collect();
+        let mean = means.iter().sum::<f64>() / means.len() as f64;
+        means.iter().map(|x| (x - mean).powi(2)).sum::<f64>()
+    };
+    variance(Sequence::Sobol) / variance(Sequence::Independent)
+}
+
+/// The number that chooses a layer draws from it, too: so each layer's directions are spread as evenly as the points.
+#[test]
+fn layers_draw_evenly() {
+    let cases = [
+        &["base.metalness=0", "specular.lobe=ggx", "specular.roughness=0.3"][..],
+        &["base.metalness=0", "specular.roughness=0.5", "specular.ior=2"],
+        &["base.metalness=0", "specular.roughness=0.3", "coat.weight=1"],
+    ];
+    for case in cases {
+        let (material, tables) = material(case);
+        let even = variance_left(&material, &tables, false);
+        let uneven = variance_left(&material, &tables, true);
+        println!("{case:?}: {even:.3}, of numbers apart {uneven:.3}");
+        assert!(
+            even < 0.1 && uneven > 0.2,
+            "{case:?}: {even}, of numbers apart {uneven}"
+        );
+    }
 }
 
 #[test]

@@ -73,11 +73,11 @@ impl Case {
 
     fn draw(&self, i: u32) -> MaterialSample<f64> {
         let state = random_state(23, 0, 0, i, Sequence::Independent);
-        let ([a, b], [c, layer]) = (random_pair(state, 0), random_pair(state, 1));
+        let ([a, b], [c, facet]) = (random_pair(state, 0), random_pair(state, 1));
         let lobe = [a, b, c];
         // What facets refract takes no numbers of its own.
         let below = [0.5; 3];
-        let numbers = MaterialNumbers { lobe, layer, below };
+        let numbers = MaterialNumbers { lobe, facet, below };
         material_sample(&self.material, &self.tables, &self.surface, numbers, true)
     }
 

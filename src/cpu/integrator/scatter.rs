@@ -5,7 +5,9 @@ use super::paths::Paths;
 use super::{Arrival, BELOW_DIMENSION, BOUNCE_DIMENSIONS, FIRST_DIMENSION, Integrator, ROULETTE_START};
 use crate::cpu::recorder::{End, Event, Purpose, Recorder, single};
 use crate::job::Strategy;
-use crate::optics::material::{Material, MaterialNumbers, MaterialSample, material_layers, material_sample, passes_on};
+use crate::optics::material::{
+    Material, MaterialNumbers, MaterialSample, decides_by_facet, material_layers, material_sample, passes_on,
+};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 use crate::scene::surface::SurfacePoint;
@@ -95,8 +97,14 @@ fn material_numbers<T: Real, R: Recorder>(
 ) -> MaterialNumbers<T> {
     let Arrival { group, bounce, .. } = *arrival;
     let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
+    // Elsewhere the number that draws the direction chooses the layer.
+    let facet = if decides_by_facet(material).any() {
+        Purpose::Layer
+    } else {
+        Purpose::Unused
+    };
     let [a, b] = group.pairs(paths, dimension, [Purpose::Lobe; 2]);
-    let [c, layer] = group.pairs(paths, dimension + 1, [Purpose::Lobe, Purpose::Layer]);
+    let [c, facet] = group.pairs(paths, dimension + 1, [Purpose::Lobe, facet]);
     let lobe = [a, b, c];
     let mut below = lobe;
     if passes_on(material).any() {
@@ -105,7 +113,7 @@ fn material_numbers<T: Real, R: Recorder>(
         let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Below, Purpose::Unused]);
         below = [a, b, c];
     }
-    MaterialNumbers { lobe, layer, below }
+    MaterialNumbers { lobe, facet, below }
 }
 
 /// Where paths go on: Russian roulette, its survivors made up for by their throughput.

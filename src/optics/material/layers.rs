@@ -171,6 +171,13 @@ pub(super) fn shares_facets<T: Real>(material: &Material<T>) -> T::Mask {
     material.transmits() & T::Mask::splat(has_facets) & !material.transmission_roughness.differs(material.roughness)
 }
 
+/// True where the Fresnel factor of a direction that was drawn decides which layer it is of ([`passes_on`],
+/// [`shares_facets`]): elsewhere the layer is chosen first.
+#[inline(always)]
+pub fn decides_by_facet<T: Real>(material: &Material<T>) -> T::Mask {
+    passes_on(material) | shares_facets(material)
+}
+
 /// The probability of sampling the specular lobe, where the coat is not sampled, for a direction that it mirrors to with
 /// this Fresnel factor.
 #[inline(always)]

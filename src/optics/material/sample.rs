@@ -1,6 +1,6 @@
 //! Directions drawn from a material.
 
-use super::layers::{base_shape, passes_on, shares_facets, specular_probability, transmission};
+use super::layers::{base_shape, decides_by_facet, passes_on, shares_facets, specular_probability, transmission};
 use super::{Layers, Material, Surface, material_layers};
 use crate::optics::coat::coat_sample;
 use crate::optics::fresnel::{fresnel, half_vector_cosine};
@@ -67,19 +67,25 @@ impl<T: Real> MaterialSample<T> {
 /// The numbers that a sample of a material takes, each in [0, 1).
 #[derive(Clone, Copy, Debug)]
 pub struct MaterialNumbers<T> {
-    /// Draws the direction.
+    /// Draw the direction. The first one also chooses the layer, and is stretched again ([`split`]), but where a facet's
+    /// Fresnel factor decides.
     pub lobe: [T; 3],
-    /// Chooses the layer.
-    pub layer: T,
+    /// Chooses the layer where the Fresnel factor of the direction decides ([`decides_by_facet`]).
+    pub facet: T,
     /// Draws the direction where the specular lobe passed it on to what is below.
     pub below: [T; 3],
 }
 
-/// A number in [0, 1) that was not below `share`, stretched to [0, 1) again.
+/// Whether `number` in [0, 1) lies below `share`, and where in its part of [0, 1) it lies, stretched to [0, 1) again. So
+/// one number chooses a layer and draws from it: of numbers that are spread evenly, as Sobol's points are, each layer
+/// gets numbers that are. Chosen by another number they would be picked at random.
 #[inline(always)]
-fn rescaled<T: Real>(number: T, share: T) -> T {
-    let stretched = (number - share) / (T::one() - share).max(T::from_f64(1e-20));
-    stretched.min(T::from_f64(1.0 - 1.0 / 16_777_216.0))
+fn split<T: Real>(number: T, share: T) -> (T::Mask, T) {
+    let is_below = number.less(share);
+    let start = T::select(is_below, T::zero(), share);
+    let length = T::select(is_below, share, T::one() - share).max(T::from_f64(1e-20));
+    let largest = T::from_f64(1.0 - 1.0 / 16_777_216.0);
+    (is_below, ((number - start) / length).min(largest))
 }
 
 /// Draws a direction: from the specular lobe, the base or the refracting lobe. `wants_density` is false where no other
@@ -124,30 +130,29 @@ impl<T: Real> Drawing<'_, T> {
             ..
         } = self;
         let (base, mut through) = (layers.base_probability(), layers.transmission_probability);
-        let has_coat = material.has_coat(surface);
-        let takes_coat = has_coat & numbers.layer.less(layers.coat_probability);
+        let mut xi = numbers.lobe;
         let mut sample = MaterialSample::nothing();
-        if takes_coat.any() {
-            sample = coat_sample(
-                material,
-                surface,
-                numbers.lobe,
-                layers.coat_probability,
-                self.wants_density,
-            );
-            if takes_coat.all() {
-                return sample;
+        let mut left = T::Mask::splat(true);
+        let has_coat = material.has_coat(surface);
+        if has_coat.any() {
+            let (takes, stretched) = split(xi[0], layers.coat_probability);
+            let takes = has_coat & takes;
+            xi[0] = T::select(has_coat, stretched, xi[0]);
+            if takes.any() {
+                sample = coat_sample(material, surface, xi, layers.coat_probability, self.wants_density);
+                left = !takes;
             }
         }
-        let mut layer = numbers.layer;
-        if has_coat.any() {
-            layer = T::select(has_coat, rescaled(layer, layers.coat_probability), layer);
+        if !left.any() {
+            return sample;
         }
-        let mut left = !takes_coat;
-        let mut xi = numbers.lobe;
-        let mut specular = layers.specular_probability;
         let (is_passed_on, is_shared) = (passes_on(material), shares_facets(material));
-        if (left & (is_passed_on | is_shared | layer.less(specular))).any() {
+        let is_by_facet = decides_by_facet(material);
+        let choice = T::select(is_by_facet, numbers.facet, xi[0]);
+        let mut specular = layers.specular_probability;
+        let (mut takes, mut rest) = split(choice, specular);
+        xi[0] = T::select(is_by_facet, xi[0], rest);
+        if (left & (is_by_facet | takes)).any() {
             let shape = material.shape(tables);
             let drawn = self.draw(&shape, xi);
             let terms = material.fresnel_terms(surface.is_inside);
@@ -161,7 +166,8 @@ impl<T: Real> Drawing<'_, T> {
                     *number = T::select(is_passed_on, below, *number);
                 }
             }
-            let takes = left & layer.less(specular);
+            (takes, rest) = split(choice, specular);
+            takes = left & takes;
             if takes.any() {
                 let finished = self.finish(Layer::Specular, &shape, drawn, color, [specular; 2]);
                 sample = sample.replaced(takes, finished);
@@ -171,8 +177,9 @@ impl<T: Real> Drawing<'_, T> {
         if !left.any() {
             return sample;
         }
-        let base_end = specular + (T::one() - specular) * (base / (base + through).max(T::from_f64(1e-20)));
-        let takes_base = layer.less(base_end) | !T::zero().less(through);
+        let (is_base, stretched) = split(rest, base / (base + through).max(T::from_f64(1e-20)));
+        xi[0] = T::select(is_by_facet, xi[0], stretched);
+        let takes_base = is_base | !T::zero().less(through);
         if (left & takes_base).any() {
             let shape = base_shape();
             let finished = self.finish(Layer::Base, &shape, self.draw(&shape, xi), layers.base, [base; 2]);

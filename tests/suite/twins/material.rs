@@ -75,15 +75,15 @@ fn materials_agree() {
     .output("l.below_coat", COLOUR);
     let mut sample = Case::new(
         "material_sample",
-        "material tangent bitangent shading normal wo coat_normal inside a b c layer d e f wants_density",
+        "material tangent bitangent shading normal wo coat_normal inside a b c facet d e f wants_density",
         "let surface = Surface(Frame(tangent, bitangent, shading), normal, wo, coat_normal, inside == 1u); \
          let s = material_sample(material_at(material), surface, \
-         MaterialNumbers(vec3f(a, b, c), layer, vec3f(d, e, f)), wants_density == 1u);",
+         MaterialNumbers(vec3f(a, b, c), facet, vec3f(d, e, f)), wants_density == 1u);",
         twin!(|row| {
             let (material, surface) = read_material_and_surface(row);
             let numbers = MaterialNumbers {
                 lobe: row.numbers(),
-                layer: row.number(),
+                facet: row.number(),
                 below: row.numbers(),
             };
             let wants_density = row.bits() == 1;
