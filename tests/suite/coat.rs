@@ -129,11 +129,7 @@ fn layers_draw_evenly() {
         let (material, tables) = material(case);
         let even = variance_left(&material, &tables, false);
         let uneven = variance_left(&material, &tables, true);
-        println!("{case:?}: {even:.3}, of numbers apart {uneven:.3}");
-        assert!(
-            even < 0.1 && uneven > 0.2,
-            "{case:?}: {even}, of numbers apart {uneven}"
-        );
+        assert!(2.0 * even < uneven, "{case:?}: {even}, of numbers apart {uneven}");
     }
 }
 
