@@ -191,7 +191,12 @@ fn misdrawn(events: &[Event]) -> Option<String> {
             Event::Camera { .. } => count(Purpose::Pixel) == 2,
             Event::Light { .. } => count(Purpose::Light) == 3,
             Event::Caught { .. } => count(Purpose::Catcher) == 1,
-            Event::Scattered { .. } => count(Purpose::Lobe) == 3 && count(Purpose::Layer) == 1,
+            // Where a facet decides what goes through: elsewhere the lobe's numbers choose the layer.
+            Event::Scattered { probabilities, .. } => {
+                let [.., through] = *probabilities;
+                let layers = count(Purpose::Layer);
+                count(Purpose::Lobe) == 3 && (layers == 1 || (layers == 0 && through == 0.0))
+            }
             Event::Roulette { number, .. } => fresh == [(Purpose::Roulette, *number)],
             _ => continue,
         };
