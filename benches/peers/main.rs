@@ -15,6 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use glossmith::analysis::error::{RELATIVE_FLOOR, relative_mean_squared_error};
 use glossmith::document::{Document, MaterialSettings};
 use glossmith::job::film::Image;
 use glossmith::optics::fresnel::Fresnel;
@@ -177,20 +178,20 @@ impl Measured {
 
     /// Seconds to the goal, as the squared error of independent samples falls with their number.
     fn time_to_goal(&self, reference: &Picture) -> f64 {
-        self.seconds * relative_error(self.pictures.iter(), reference) / GOAL
+        let pictures: Vec<&Picture> = self.pictures.iter().collect();
+        self.seconds * relative_error(&pictures, reference) / GOAL
     }
 }
 
 /// The mean squared error of a picture over (reference² + 0.01), from how far pictures that differ in nothing but their seed
 /// are from each other. NaN where there are fewer than two.
-fn relative_error<'a>(pictures: impl Iterator<Item = &'a Picture>, reference: &Picture) -> f64 {
-    let pictures: Vec<&Picture> = pictures.collect();
+fn relative_error(pictures: &[&Picture], reference: &Picture) -> f64 {
     let count = pictures.len() as f64;
     let of = |pixel: usize, channel: usize| {
         let values = || pictures.iter().map(|picture| f64::from(picture[pixel][channel]));
         let mean = values().sum::<f64>() / count;
         let variance = values().map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0);
-        variance / (f64::from(reference[pixel][channel]).powi(2) + 0.01)
+        variance / (f64::from(reference[pixel][channel]).powi(2) + RELATIVE_FLOOR)
     };
     let channels = (0..reference.len()).flat_map(|pixel| (0..3).map(move |channel| (pixel, channel)));
     channels.map(|(pixel, channel)| of(pixel, channel)).sum::<f64>() / (3 * reference.len()) as f64
@@ -218,8 +219,8 @@ fn time_to_goal(
     }
     let looks = (0..renders[0].len()).map(|look| {
         let seconds = renders.iter().map(|render| render[look].0).sum::<f64>();
-        let pictures = renders.iter().map(|render| &render[look].1);
-        (seconds / renders.len() as f64, relative_error(pictures, reference))
+        let pictures: Vec<&Picture> = renders.iter().map(|render| &render[look].1).collect();
+        (seconds / renders.len() as f64, relative_error(&pictures, reference))
     });
     let mut before = (0.0, f64::NAN);
     for (seconds, error) in looks {
@@ -247,7 +248,8 @@ fn looked_at(session: &mut Session, looks: Option<usize>, reference: &Picture) -
         seconds += begun.elapsed().as_secs_f64();
         let picture = picture(session)?;
         // The reference has an error of its own: so this is rather too much.
-        let is_sure = looks.is_none() && squared_distance(&picture, reference) < SURE * GOAL;
+        let error = || relative_mean_squared_error(picture.as_flattened(), reference.as_flattened());
+        let is_sure = looks.is_none() && error() < SURE * GOAL;
         renders.push((seconds, picture));
         if is_sure {
             break;
@@ -255,16 +257,6 @@ fn looked_at(session: &mut Session, looks: Option<usize>, reference: &Picture) -
         until *= LOOK_GROWTH;
     }
     Ok(renders)
-}
-
-/// The mean squared distance of a picture from a reference over (reference² + 0.01).
-fn squared_distance(picture: &Picture, reference: &Picture) -> f64 {
-    let channels = picture.as_flattened().iter().zip(reference.as_flattened());
-    let of_channel = |(x, reference): (&f32, &f32)| {
-        let reference = f64::from(*reference);
-        (f64::from(*x) - reference).powi(2) / (reference.powi(2) + 0.01)
-    };
-    channels.map(of_channel).sum::<f64>() / (3 * reference.len()) as f64
 }
 
 fn picture(session: &mut Session) -> Result<Picture, Box<dyn Error>> {

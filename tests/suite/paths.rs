@@ -10,6 +10,7 @@ use glossmith::document::{AreaLight, Document, Strategy};
 use glossmith::job::Job;
 use glossmith::job::tiles::TileGrid;
 use glossmith::optics::lanes::{InLanes, in_lanes};
+use glossmith::optics::material::decides_by_facet;
 use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Real;
 use glossmith::render::explain::explain;
@@ -168,7 +169,9 @@ fn unlimited(events: &[Event]) -> Option<&Event> {
 }
 
 /// What is wrong with the numbers of a path: one that is drawn twice, or an event that was not given its own.
-fn misdrawn(events: &[Event]) -> Option<String> {
+/// `decides_by_facet` tells of which slots the number that chooses a layer is drawn: elsewhere the lobe's numbers choose it.
+fn misdrawn(events: &[Event], decides_by_facet: impl Fn(u32) -> bool) -> Option<String> {
+    let mut slot_here = 0;
     let mut drawn = HashSet::new();
     let mut fresh: Vec<(Purpose, f32)> = Vec::new();
     for event in events {
@@ -191,13 +194,15 @@ fn misdrawn(events: &[Event]) -> Option<String> {
             Event::Camera { .. } => count(Purpose::Pixel) == 2,
             Event::Light { .. } => count(Purpose::Light) == 3,
             Event::Caught { .. } => count(Purpose::Catcher) == 1,
-            // Where a facet decides what goes through: elsewhere the lobe's numbers choose the layer.
-            Event::Scattered { probabilities, .. } => {
-                let [.., through] = *probabilities;
-                let layers = count(Purpose::Layer);
-                count(Purpose::Lobe) == 3 && (layers == 1 || (layers == 0 && through == 0.0))
+            Event::Scattered { .. } => {
+                let layers = usize::from(decides_by_facet(slot_here));
+                count(Purpose::Lobe) == 3 && count(Purpose::Layer) == layers
             }
             Event::Roulette { number, .. } => fresh == [(Purpose::Roulette, *number)],
+            Event::Hit { slot, .. } => {
+                slot_here = *slot;
+                continue;
+            }
             _ => continue,
         };
         if !wanted {
@@ -228,7 +233,7 @@ fn no_number_of_a_path_is_drawn_twice() {
             for index in (0..width * height).step_by(5) {
                 let mut events = Vec::new();
                 integrator.record_path([index % width, index / width], index % 3, &mut events);
-                let fault = misdrawn(&events);
+                let fault = misdrawn(&events, |slot| decides_by_facet(&job.materials[slot as usize]));
                 assert!(fault.is_none(), "{}, {sequence:?}: {fault:?}\n{events:#?}", scene.name);
                 met.extend(events.iter().filter_map(|event| match event {
                     Event::Number { purpose, .. } => Some(*purpose),
@@ -349,11 +354,11 @@ fn numbers_that_are_drawn_twice_are_found() {
         value: 0.5,
         purpose,
     };
-    assert!(misdrawn(&[number(3, Purpose::Lobe), number(4, Purpose::Layer)]).is_none());
-    assert!(misdrawn(&[number(3, Purpose::Lobe), number(3, Purpose::Light)]).is_some());
+    assert!(misdrawn(&[number(3, Purpose::Lobe), number(4, Purpose::Layer)], |_| true).is_none());
+    assert!(misdrawn(&[number(3, Purpose::Lobe), number(3, Purpose::Light)], |_| true).is_some());
     let roulette = Event::Roulette {
         survival: 0.5,
         number: 0.25,
     };
-    assert!(misdrawn(&[number(3, Purpose::Roulette), roulette]).is_some());
+    assert!(misdrawn(&[number(3, Purpose::Roulette), roulette], |_| true).is_some());
 }
