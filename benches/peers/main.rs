@@ -1,12 +1,14 @@
 //! Glossmith's processor engine beside Mitsuba 3 on the same scene, in turns of one run; quoted in docs/PERFORMANCE.md.
 //!
-//! `cargo bench --bench peers [-- --quick --rates]`. Millions of samples a second, and (not with `--rates`) seconds to a
-//! relative mean squared error of 0.003. Our renders, with even samples and with adaptive ones, go on until they are there;
-//! Mitsuba's time is told from the error of what was timed, as that of independent samples falls with their number (Sobol's
-//! falls faster). Errors are told from how far pictures with other seeds are from each other, so no reference is as long as it
-//! would have to be for glass; a longer render of ours tells what they are relative to. With `--quick` pictures are small, and
-//! what it takes to begin one counts for much. Mitsuba is run by `scripts/peers`, with the Python that `scripts/setup test`
-//! installs; where it is not there, a line says so and only Glossmith is measured.
+//! `cargo bench --bench peers [-- --quick --rates --turns N --only WORDS]`: all lines of the table, or those whose material and
+//! mesh hold these words. Millions of samples a second, of the quickest render of each renderer, and (not with `--rates`)
+//! seconds to a relative mean squared error of 0.003, from the mean time and the error of its renders. All of them take turns,
+//! as a machine's pace changes. Our renders, with even samples and with adaptive ones, end about there; Mitsuba's time is told
+//! from what was timed. From where a render ends to the goal its error is taken to fall as that of independent samples does
+//! with their number (Sobol's falls faster). Errors are told from how far pictures with other seeds are from each other, so no
+//! reference is as long as it would have to be for glass; a longer render of ours tells what they are relative to. With
+//! `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is run by `scripts/peers`, with the
+//! Python that `scripts/setup test` installs; where it is not there, a line says so and only Glossmith is measured.
 
 mod scene;
 
@@ -69,15 +71,13 @@ const QUICK: Extent = Extent {
     reference: Some(256),
     turns: 2,
 };
-/// Samples that adaptive renders begin with; seconds after which the error is first looked at, and by how much these grow
-/// from look to look.
+/// Samples that adaptive renders begin with.
 const ADAPTIVE_SAMPLES_MIN: u32 = 16;
-const LOOK_S: f64 = 0.1;
-const LOOK_GROWTH: f64 = 1.2;
-/// Seconds after which the rest is told from the error there, as it falls with the number of samples.
-const SECONDS_MAX: f64 = 20.0;
-/// The share of the goal below which one render's error is when all of them have surely come down to it.
-const SURE: f64 = 0.7;
+/// Seconds that our renders to the goal take at most: what is left then is told from the error there.
+const SECONDS_MAX: f64 = 12.0;
+/// Renders that look for the effort that the goal takes, at most, and how near to it is near enough.
+const SCOUTS: u32 = 5;
+const NEAR: f64 = 0.1;
 
 /// A line of the table.
 struct Case {
@@ -88,10 +88,15 @@ struct Case {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let is_asked = |option: &str| std::env::args().any(|argument| argument == option);
+    let given = |option: &str| std::env::args().skip_while(|argument| argument != option).nth(1);
     let mut extent = if is_asked("--quick") { QUICK } else { FULL };
     if is_asked("--rates") {
         extent.reference = None;
     }
+    if let Some(turns) = given("--turns") {
+        extent.turns = turns.parse()?;
+    }
+    let only = given("--only").unwrap_or_default();
     let folder = tempfile::tempdir()?;
     scene::write_sky(&folder.path().join("sky.exr"))?;
     for (segments, name) in MESHES {
@@ -114,24 +119,45 @@ fn main() -> Result<(), Box<dyn Error>> {
     let on_ground = [materials[0], "diffuse"]
         .into_iter()
         .map(|material| case(material, "60k", true));
-    for case in of_materials.chain(of_meshes).chain(on_ground) {
+    let cases = of_materials.chain(of_meshes).chain(on_ground);
+    for case in cases.filter(|case| case.name().contains(&only)) {
         compare(folder.path(), &case, &extent, peer.is_ok())?;
     }
     Ok(())
 }
 
+impl Case {
+    fn name(&self) -> String {
+        let ground = if self.ground { ", ground" } else { "" };
+        format!("{} | {}{ground}", self.material, self.mesh)
+    }
+}
+
 fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Result<(), Box<dyn Error>> {
-    let mut our_seconds = f64::INFINITY;
-    let mut theirs = Measured::default();
-    for turn in 0..extent.turns {
-        our_seconds = our_seconds.min(glossmith(folder, case, extent.size, extent.samples, turn + 1)?.0);
-        if with_peer {
-            theirs.add(peer(folder, case, extent.size, extent.samples, turn + 1)?);
+    let (size, samples) = (extent.size, extent.samples);
+    let reference = match extent.reference {
+        Some(samples) => Some(glossmith(folder, case, size, samples, 1000)?.1),
+        None => None,
+    };
+    let mut to_goal = Vec::new();
+    for is_adaptive in [false, true] {
+        if let Some(reference) = &reference {
+            to_goal.push(ToGoal::new(folder, case, size, is_adaptive, reference)?);
         }
     }
-    let pixels = f64::from(extent.size * extent.size * extent.samples);
-    let rate = |seconds: f64| pixels / seconds / 1e6;
-    let ground = if case.ground { ", ground" } else { "" };
+    let (mut our_seconds, mut theirs) = (f64::INFINITY, Vec::new());
+    for seed in 1..=extent.turns {
+        our_seconds = our_seconds.min(glossmith(folder, case, size, samples, seed)?.0);
+        if with_peer {
+            theirs.push(peer(folder, case, size, samples, seed)?);
+        }
+        for ours in &mut to_goal {
+            let render = ours.render(seed)?;
+            ours.renders.push(render);
+        }
+    }
+    let their_seconds = theirs.iter().map(|render| render.0).fold(f64::INFINITY, f64::min);
+    let rate = |seconds: f64| f64::from(size * size * samples) / seconds / 1e6;
     let of_peer = |number: f64| {
         if with_peer {
             format!("{number:.2}")
@@ -140,14 +166,12 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
         }
     };
     let beside = |ours: f64, theirs: f64| format!(" {ours:.2} | {} | {} |", of_peer(theirs), of_peer(ours / theirs));
-    let mut line = format!("| {} | {}{ground} |", case.material, case.mesh);
-    line += &beside(rate(our_seconds), rate(theirs.seconds));
-    if let Some(samples) = extent.reference {
-        let reference = glossmith(folder, case, extent.size, samples, 1000)?.1;
-        let their_time = theirs.time_to_goal(&reference);
-        line += &beside(time_to_goal(folder, case, extent, &reference, false)?, their_time);
-        let adaptive = time_to_goal(folder, case, extent, &reference, true)?;
-        line += &format!(" {adaptive:.2} | {} |", of_peer(adaptive / their_time));
+    let mut line = format!("| {} |{}", case.name(), beside(rate(our_seconds), rate(their_seconds)));
+    if let ([even, adaptive], Some(reference)) = (&to_goal[..], &reference) {
+        let their_time = seconds_to_goal(&theirs, reference);
+        line += &beside(seconds_to_goal(&even.renders, reference), their_time);
+        let seconds = seconds_to_goal(&adaptive.renders, reference);
+        line += &format!(" {seconds:.2} | {} |", of_peer(seconds / their_time));
     } else {
         line += &" – |".repeat(5);
     }
@@ -155,32 +179,11 @@ fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Resu
     Ok(())
 }
 
-/// Renders of Mitsuba: the quickest one's seconds, and all pictures.
-struct Measured {
-    seconds: f64,
-    pictures: Vec<Picture>,
-}
-
-impl Default for Measured {
-    fn default() -> Self {
-        Self {
-            seconds: f64::INFINITY,
-            pictures: Vec::new(),
-        }
-    }
-}
-
-impl Measured {
-    fn add(&mut self, (seconds, picture): Render) {
-        self.seconds = self.seconds.min(seconds);
-        self.pictures.push(picture);
-    }
-
-    /// Seconds to the goal, as the squared error of independent samples falls with their number.
-    fn time_to_goal(&self, reference: &Picture) -> f64 {
-        let pictures: Vec<&Picture> = self.pictures.iter().collect();
-        self.seconds * relative_error(&pictures, reference) / GOAL
-    }
+/// Seconds to the goal of renders that end before or after it, as the error of independent samples falls with their number.
+fn seconds_to_goal(renders: &[Render], reference: &Picture) -> f64 {
+    let pictures: Vec<&Picture> = renders.iter().map(|render| &render.1).collect();
+    let seconds = renders.iter().map(|render| render.0).sum::<f64>() / renders.len() as f64;
+    seconds * relative_error(&pictures, reference) / GOAL
 }
 
 /// The mean squared error of a picture over (reference² + 0.01), from how far pictures that differ in nothing but their seed
@@ -197,71 +200,59 @@ fn relative_error(pictures: &[&Picture], reference: &Picture) -> f64 {
     channels.map(|(pixel, channel)| of(pixel, channel)).sum::<f64>() / (3 * reference.len()) as f64
 }
 
-/// Seconds that our renders take until their error has come down to the goal: the mean of as many as there are turns. Each
-/// goes on by itself and is only looked at; what it is worth is told afterwards, as that would take the caches from it.
-fn time_to_goal(
-    folder: &Path,
-    case: &Case,
-    extent: &Extent,
-    reference: &Picture,
+/// Our renders to the goal: with as many samples everywhere as it takes, or adaptive ones to the noise that it takes.
+struct ToGoal<'a> {
+    folder: &'a Path,
+    case: &'a Case,
+    size: u32,
     is_adaptive: bool,
-) -> Result<f64, Box<dyn Error>> {
-    let mut renders: Vec<Vec<Render>> = Vec::new();
-    for turn in 0..extent.turns {
-        let mut document = document(folder, case, extent.size);
+    /// Samples a pixel, or one over the square of the noise: the error is about inverse to it.
+    effort: f64,
+    renders: Vec<Render>,
+}
+
+impl<'a> ToGoal<'a> {
+    /// Finds what effort it takes, by renders that count for nothing else.
+    fn new(
+        folder: &'a Path,
+        case: &'a Case,
+        size: u32,
+        is_adaptive: bool,
+        reference: &Picture,
+    ) -> Result<Self, Box<dyn Error>> {
+        let mut this = Self {
+            folder,
+            case,
+            size,
+            is_adaptive,
+            effort: if is_adaptive { 1.0 / GOAL } else { 16.0 },
+            renders: Vec::new(),
+        };
+        for _ in 0..SCOUTS {
+            let (seconds, picture) = this.render(1000)?;
+            // The reference has an error of its own: so this is rather too much.
+            let error = relative_mean_squared_error(picture.as_flattened(), reference.as_flattened());
+            let growth = (error / GOAL).min(SECONDS_MAX / seconds);
+            this.effort *= growth;
+            if (growth - 1.0).abs() < NEAR {
+                break;
+            }
+        }
+        Ok(this)
+    }
+
+    fn render(&self, seed: u32) -> Result<Render, Box<dyn Error>> {
+        let mut document = document(self.folder, self.case, self.size);
         let render = &mut document.render;
-        (render.samples, render.min_samples) = (u32::MAX, ADAPTIVE_SAMPLES_MIN);
-        (render.adaptive, render.seed) = (Some(is_adaptive), turn + 1);
-        let mut session = Session::open(EngineChoice::Cpu)?;
-        session.submit(&document)?;
-        let looks = renders.first().map(Vec::len);
-        renders.push(looked_at(&mut session, looks, reference)?);
-    }
-    let looks = (0..renders[0].len()).map(|look| {
-        let seconds = renders.iter().map(|render| render[look].0).sum::<f64>();
-        let pictures: Vec<&Picture> = renders.iter().map(|render| &render[look].1).collect();
-        (seconds / renders.len() as f64, relative_error(&pictures, reference))
-    });
-    let mut before = (0.0, f64::NAN);
-    for (seconds, error) in looks {
-        if error <= GOAL {
-            // Straight between the logarithms of both; back to where the error would be were there no look before.
-            let (then, error_then) = before;
-            let slope = if error_then > error {
-                (seconds / then).ln() / (error_then / error).ln()
-            } else {
-                1.0
-            };
-            return Ok(seconds * (error / GOAL).powf(slope));
+        render.seed = seed;
+        if self.is_adaptive {
+            (render.samples, render.min_samples) = (u32::MAX, ADAPTIVE_SAMPLES_MIN);
+            (render.noise, render.time_s) = (Some(self.effort.recip().sqrt()), Some(SECONDS_MAX));
+        } else {
+            render.samples = self.effort.round().max(1.0) as u32;
         }
-        before = (seconds, error);
+        timed(&document)
     }
-    Ok(before.0 * before.1 / GOAL)
-}
-
-/// A render's pictures after more and more seconds of its own: so many, or until it is surely better than the goal.
-fn looked_at(session: &mut Session, looks: Option<usize>, reference: &Picture) -> Result<Vec<Render>, Box<dyn Error>> {
-    let (mut renders, mut seconds, mut until) = (Vec::new(), 0.0, LOOK_S);
-    while until < SECONDS_MAX && looks.is_none_or(|looks| renders.len() < looks) {
-        let begun = Instant::now();
-        session.step(Duration::from_secs_f64((until - seconds).max(0.0)))?;
-        seconds += begun.elapsed().as_secs_f64();
-        let picture = picture(session)?;
-        // The reference has an error of its own: so this is rather too much.
-        let error = || relative_mean_squared_error(picture.as_flattened(), reference.as_flattened());
-        let is_sure = looks.is_none() && error() < SURE * GOAL;
-        renders.push((seconds, picture));
-        if is_sure {
-            break;
-        }
-        until *= LOOK_GROWTH;
-    }
-    Ok(renders)
-}
-
-fn picture(session: &mut Session) -> Result<Picture, Box<dyn Error>> {
-    let Image { pixels, .. } = session.image()?;
-    Ok(pixels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect())
 }
 
 fn document(folder: &Path, case: &Case, size: u32) -> Document {
@@ -313,17 +304,23 @@ fn document(folder: &Path, case: &Case, size: u32) -> Document {
     document
 }
 
-/// Seconds of a render, and its picture.
+/// A render with so many samples a pixel.
 fn glossmith(folder: &Path, case: &Case, size: u32, samples: u32, seed: u32) -> Result<Render, Box<dyn Error>> {
     let mut document = document(folder, case, size);
     document.render.samples = samples;
     document.render.seed = seed;
+    timed(&document)
+}
+
+/// A render of a document.
+fn timed(document: &Document) -> Result<Render, Box<dyn Error>> {
     let mut session = Session::open(EngineChoice::Cpu)?;
-    session.submit(&document)?;
+    session.submit(document)?;
     let begun = Instant::now();
     session.step(Duration::from_secs(3600))?;
     let seconds = begun.elapsed().as_secs_f64();
-    Ok((seconds, picture(&mut session)?))
+    let Image { pixels, .. } = session.image()?;
+    Ok((seconds, pixels.into_iter().map(|[r, g, b, _]| [r, g, b]).collect()))
 }
 
 /// The same by Mitsuba.

@@ -4,6 +4,7 @@
 #import "optics/fresnel"
 #import "optics/lobe/registry"
 #import "optics/numeric"
+#import "optics/warp"
 #import "scene/layout"
 #import "scene/plan"
 
@@ -328,19 +329,6 @@ fn material_scatter(
         reflected += color * (lobe.x * (light.density / (light.density + light.competing * probability * lobe.y)));
     }
     return MaterialScatter(drawn, reflected);
-}
-
-// A part of [0, 1) in which a number lies, and where in it, stretched to [0, 1) again.
-struct Part {
-    is_below: bool,
-    stretched: f32,
-}
-
-fn split(number: f32, share: f32) -> Part {
-    let is_below = number < share;
-    let start = select(share, 0.0, is_below);
-    let length = max(select(1.0 - share, share, is_below), 1e-20);
-    return Part(is_below, min((number - start) / length, 0.99999994));
 }
 
 fn share_of_base(base: f32, through: f32) -> f32 {

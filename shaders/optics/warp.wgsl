@@ -12,3 +12,16 @@ fn uniform_sphere(xi: vec2f) -> vec3f {
 fn uniform_disc(xi: vec2f) -> vec2f {
     return safe_sqrt(xi.x) * unit_circle(xi.y);
 }
+
+// A part of [0, 1) in which a number lies, and where in it, stretched to [0, 1) again.
+struct Part {
+    is_below: bool,
+    stretched: f32,
+}
+
+fn split(number: f32, share: f32) -> Part {
+    let is_below = number < share;
+    let start = select(share, 0.0, is_below);
+    let length = max(select(1.0 - share, share, is_below), 1e-20);
+    return Part(is_below, min((number - start) / length, 0.99999994));
+}

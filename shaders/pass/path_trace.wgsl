@@ -141,21 +141,24 @@ fn samples_light() -> bool {
     return samples_environment() || samples_emitters();
 }
 
-// Whether one light sample is drawn from the environment, not from the triangles that emit.
-fn is_from_afar(xi: f32) -> bool {
-    return !samples_emitters() || (samples_environment() && xi < globals.environment_probability);
+// Whether the first number of a light sample chooses the environment, not the triangles that emit; and that number to
+// draw from them.
+fn choose_afar(xi: f32) -> Part {
+    if !samples_emitters() {
+        return Part(true, xi);
+    }
+    return split(xi, globals.environment_probability);
 }
 
-// A direction drawn from the triangles that emit or from the environment, whose radiance is looked up once it is known
-// to arrive.
-fn draw_light(point: SurfacePoint, xi: vec3f) -> LightSample {
-    let share = globals.environment_probability;
-    if !is_from_afar(xi.z) {
-        return light_sample(point.position, point.error, vec3f(xi.xy, (xi.z - share) / (1.0 - share)));
+// A direction drawn from the environment, whose radiance is looked up once it is known to arrive, or from the triangles
+// that emit.
+fn draw_light(point: SurfacePoint, is_from_afar: bool, xi: vec3f) -> LightSample {
+    if !is_from_afar {
+        return light_sample(point.position, point.error, xi);
     }
-    let drawn = environment_sample(vec3f(xi.xy, xi.z / share), globals.environment_cells_size);
+    let drawn = environment_sample(xi, globals.environment_cells_size);
     let direction = environment_world_from_local(drawn.direction, globals.environment_rotation);
-    return LightSample(direction, drawn.density * share, vec3f(0.0), 1e30);
+    return LightSample(direction, drawn.density * globals.environment_probability, vec3f(0.0), 1e30);
 }
 
 // Light drawn at a surface point, on the way there.
@@ -397,12 +400,14 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         var steps = vec2u(STEP_DRAW, STEP_DRAW_BELOW + PLAN_TRANSMISSION);
         var lit = LightSample(vec3f(0.0), 0.0, vec3f(0.0), 0.0);
         if may_sample_light() && samples_light() && !is_mirrored {
-            let xi = vec3f(random_pair(state, dimension + 2u), random_pair(state, dimension + 3u).x);
-            lit = draw_light(point, xi);
+            var xi = vec3f(random_pair(state, dimension + 2u), random_pair(state, dimension + 3u).x);
+            let part = choose_afar(xi.x);
+            xi.x = part.stretched;
+            light.is_from_afar = part.is_below;
+            lit = draw_light(point, part.is_below, xi);
             if lit.density > 0.0 && (dot(point.surface.normal, lit.direction) > 0.0 || transmits) {
                 steps.x = STEP_SPECULAR;
             }
-            light.is_from_afar = is_from_afar(xi.z);
         }
         let xi = vec4f(random_pair(state, dimension), random_pair(state, dimension + 1u));
         var numbers = MaterialNumbers(xi.xyz, xi.w, xi.xyz);

@@ -8,6 +8,7 @@ pub mod sampling;
 pub mod scatter;
 mod tile_sums;
 
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -28,14 +29,12 @@ pub struct CpuEngine {
     job: Option<Arc<Job>>,
     schedule: Schedule,
     film: Film,
-    /// Pixel samples a second, to cut work to a budget; 0 before the first slice.
+    /// Pixel samples a second, to choose the samples of a pass; 0 before the first one.
     samples_per_second: f64,
 }
 
-/// Longest time between looks at the clock.
-const SLICE: Duration = Duration::from_millis(30);
-/// Tiles of a slice for each core, at least: one waits for the other no longer than for a tile.
-const CORE_TILES: usize = 4;
+/// What a pass of more samples than go on together takes at most.
+const PASS: Duration = Duration::from_millis(30);
 
 impl CpuEngine {
     /// Starts a job over.
@@ -78,28 +77,26 @@ impl CpuEngine {
     pub fn step_towards_in<T: Real>(&mut self, budget: Duration, goals: &[u32]) {
         let Some(job) = self.job.clone() else { return };
         let integrator = Integrator::<T>::new(&job);
-        let waves: Vec<_> = (0..rayon::current_num_threads()).map(|_| Mutex::new(None)).collect();
+        let mut waves: Vec<_> = (0..rayon::current_num_threads()).map(|_| None).collect();
         self.schedule.aim(goals);
         let start = Instant::now();
         loop {
             let left = budget.saturating_sub(start.elapsed());
-            let pass_samples = [self.least_pass_samples(left), u32::MAX];
             let limits = SliceLimits {
-                pass_samples,
-                tiles: [CORE_TILES * rayon::current_num_threads(), usize::MAX],
+                pass_samples: [self.least_pass_samples(left), u32::MAX],
+                tiles: [usize::MAX; 2],
                 order: Order::Rows,
             };
-            let slice_seconds = left.min(SLICE).as_secs_f64();
-            let works = self.schedule.slice(self.samples_per_second * slice_seconds, limits);
+            let pass_seconds = left.min(PASS).as_secs_f64();
+            let works = self.schedule.slice(self.samples_per_second * pass_seconds, limits);
             if works.is_empty() {
                 break;
             }
-            let slice_start = Instant::now();
-            self.render(&integrator, &waves, &works);
-            let grid = self.schedule.grid();
-            let seconds = slice_start.elapsed().as_secs_f64().max(1e-9);
-            self.samples_per_second = grid.pixel_samples(&works) as f64 / seconds;
-            self.schedule.finish(&works);
+            let pass_start = Instant::now();
+            let done = &works[..self.render(&integrator, &mut waves, &works, left)];
+            let seconds = pass_start.elapsed().as_secs_f64().max(1e-9);
+            self.samples_per_second = self.schedule.grid().pixel_samples(done) as f64 / seconds;
+            self.schedule.finish(done);
             if start.elapsed() >= budget {
                 break;
             }
@@ -119,21 +116,34 @@ impl CpuEngine {
         samples.max(by_the_end).min(WAVE_SAMPLES)
     }
 
-    /// Renders tiles, each thread in a wave of its own, made when it is first needed. Each tile is copied out of the film and
-    /// back, which takes a thousandth of the time, so that no two cores write to the same memory.
-    fn render<T: Real>(&mut self, integrator: &Integrator<'_, T>, waves: &[Mutex<Option<Wave<T>>>], works: &[Work]) {
+    /// Renders tiles one after the other, at least one, until the time is up, and tells how many. Each core works in a wave of
+    /// its own, made when it is first needed, and takes the next tile when it is done with one: tiles of background take a
+    /// fifth of the time of others, so how many there is time for shows only as they are rendered. Each tile is copied out of
+    /// the film and back, which takes a thousandth of the time, so that no two cores write to the same memory.
+    fn render<T: Real>(
+        &mut self,
+        integrator: &Integrator<'_, T>,
+        waves: &mut [Option<Wave<T>>],
+        works: &[Work],
+        time: Duration,
+    ) -> usize {
         let grid = self.schedule.grid();
         let film = Mutex::new(&mut self.film);
         let film = || film.lock().unwrap_or_else(PoisonError::into_inner);
-        works.par_iter().for_each(|work| {
-            let wave = &waves[rayon::current_thread_index().unwrap_or(0)];
-            let mut wave = wave.lock().unwrap_or_else(PoisonError::into_inner);
-            let wave = wave.get_or_insert_with(|| Wave::new(integrator.sequence()));
-            let origin = grid.origin(work.tile);
-            let mut sums = film().part(origin, grid.size(work.tile));
-            render_tile(integrator, wave, origin, work, &mut sums);
-            film().place(origin, &sums);
+        let (start, taken) = (Instant::now(), AtomicUsize::new(0));
+        waves.par_iter_mut().for_each(|wave| {
+            while let Some(work) = works.get(taken.fetch_add(1, Ordering::Relaxed)) {
+                let wave = wave.get_or_insert_with(|| Wave::new(integrator.sequence()));
+                let origin = grid.origin(work.tile);
+                let mut sums = film().part(origin, grid.size(work.tile));
+                render_tile(integrator, wave, origin, work, &mut sums);
+                film().place(origin, &sums);
+                if start.elapsed() >= time {
+                    break;
+                }
+            }
         });
+        taken.into_inner().min(works.len())
     }
 
     /// What has been accumulated.

@@ -19,3 +19,15 @@ pub fn uniform_disc<T: Real>(xi: [T; 2]) -> [T; 2] {
     let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[1];
     [radius * phi_rad.cos(), radius * phi_rad.sin()]
 }
+
+/// Whether `number` in [0, 1) lies below `share`, and where in its part of [0, 1) it lies, stretched to [0, 1) again. So
+/// one number chooses (a layer, a kind of light) and draws from what it chose: of numbers that are spread evenly, as
+/// Sobol's points are, each choice gets numbers that are. Chosen by another number they would be picked at random.
+#[inline(always)]
+pub fn split<T: Real>(number: T, share: T) -> (T::Mask, T) {
+    let is_below = number.less(share);
+    let start = T::select(is_below, T::zero(), share);
+    let length = T::select(is_below, share, T::one() - share).max(T::from_f64(1e-20));
+    let largest = T::from_f64(1.0 - 1.0 / 16_777_216.0);
+    (is_below, ((number - start) / length).min(largest))
+}

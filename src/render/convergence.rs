@@ -153,6 +153,11 @@ impl Convergence {
             self.goals = next_goals(film, samples, round);
             return;
         }
+        // Two samples in every pixel are the fewest from which the error can be estimated.
+        if most < 2 {
+            self.goals = vec![settings.samples.min(2); samples.len()];
+            return;
+        }
         let growth = match (settings.noise, self.noise()) {
             // The error falls as 1/√n; rather a little short of the target than beyond it.
             (Some(wanted), Some(noise)) => {
@@ -163,8 +168,6 @@ impl Convergence {
         };
         let growth = growth.max(growth_min);
         let goal = (f64::from(most) * growth).ceil().max(f64::from(most) + 1.0) as u32;
-        // Two samples in every pixel are the fewest from which the error can be estimated.
-        let goal = if most < 2 { goal.min(2) } else { goal };
         self.goals = vec![goal.min(settings.samples); samples.len()];
     }
 }

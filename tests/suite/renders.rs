@@ -4,10 +4,12 @@ use std::sync::{Arc, LazyLock, Mutex, PoisonError};
 use std::time::Duration;
 
 use glossmith::analysis::error::{Estimates, z_test};
+use glossmith::cpu::CpuEngine;
 use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{Background, Document, MaterialSettings, PixelFilter, Strategy, assign};
 use glossmith::job::Job;
 use glossmith::job::film::Film;
+use glossmith::job::tiles::TILE_SIDE;
 use glossmith::optics::random::Sequence;
 use glossmith::render::{Assets, EngineChoice, Session};
 use glossmith::scene::ModelSource;
@@ -234,7 +236,7 @@ fn mirror_sphere_shows_the_environment() {
         environment: Arc::new(map.clone()),
         ..Job::clone(session.job().unwrap())
     };
-    let mut engine = glossmith::cpu::CpuEngine::default();
+    let mut engine = CpuEngine::default();
     let camera = job.settings.camera;
     let rotation = job.settings.environment_rotation;
     engine.submit(Arc::new(job));
@@ -255,6 +257,37 @@ fn mirror_sphere_shows_the_environment() {
             assert!(error < 0.02, "pixel {x},{y}: {pixel:?}, expected {expected:?}");
         }
     }
+}
+
+/// A step ends with its time: where there is none, each core renders a tile at most. However many steps a picture takes, it
+/// is the same.
+#[test]
+fn a_step_on_the_processor_ends_with_its_time() {
+    let mut document = document(ModelSource::Sphere, EnvironmentSource::Studio, &[]);
+    document.render.samples = 3;
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(&document).unwrap();
+    let rendered_in = |time: Duration| {
+        let mut engine = CpuEngine::default();
+        engine.submit(session.job().unwrap().clone());
+        let mut steps = Vec::new();
+        while !engine.schedule().is_at_goal() || steps.is_empty() {
+            let before = engine.schedule().pixel_samples();
+            engine.step(time, document.render.samples);
+            steps.push(engine.schedule().pixel_samples() - before);
+        }
+        let means: Vec<_> = (0..engine.film().pixel_count())
+            .map(|pixel| engine.film().mean(pixel))
+            .collect();
+        (steps, means)
+    };
+    let (at_once, whole) = rendered_in(Duration::MAX);
+    let (steps, cut) = rendered_in(Duration::ZERO);
+    assert_eq!(at_once, [64 * 64 * 3]);
+    // Two samples of a tile at once, as it has one already.
+    let most = 2 * u64::from(TILE_SIDE * TILE_SIDE) * rayon::current_num_threads() as u64;
+    assert!(steps.iter().all(|samples| (1..=most).contains(samples)), "{steps:?}");
+    assert_eq!(whole, cut);
 }
 
 /// Sums do not stall: the mean of a constant picture after many flushes is what it was after one sample.

@@ -9,7 +9,7 @@ use crate::optics::frame::{frame_from_normal, world_from_local};
 use crate::optics::material::{Material, material_evaluate};
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::{Vec3, vec3};
-use crate::optics::warp::uniform_disc;
+use crate::optics::warp::{split, uniform_disc};
 use crate::scene::environment::{
     drawn_rows, environment_density_at, environment_local_from_world, environment_radiance_at, environment_uv,
     environment_world_from_local, fetch_cell, fetch_chosen, fetch_guide, fetch_place, sample_in_rows,
@@ -75,12 +75,18 @@ impl<T: Real> Integrator<'_, T> {
         set_places(group, &mut paths.arriving.place, place);
     }
 
-    /// Draws the numbers with which directions to lights are drawn, and has the processor fetch what they are looked up in.
+    /// Draws the numbers with which directions to lights are drawn, the first of which chooses whether they lead to the
+    /// environment; and has the processor fetch what they are looked up in.
     #[inline(always)]
     pub(super) fn light_numbers<R: Recorder>(&self, group: &Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, R>) {
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 2;
-        let [a, b] = group.pairs(paths, dimension, [Purpose::Light; 2]);
+        let [mut a, b] = group.pairs(paths, dimension, [Purpose::Light; 2]);
         let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Light, Purpose::Unused]);
+        if self.samples_emitters {
+            let (is_far, stretched) = split(a, self.environment_probability);
+            group.set_truth(&mut paths.lights.is_far, group.mask(), is_far);
+            a = stretched;
+        }
         group.set_vector(&mut paths.light_numbers, group.mask(), vec3(a, b, c));
         if self.samples_environment {
             let rows = drawn_rows(self.distribution, b);
@@ -163,15 +169,15 @@ impl<T: Real> Integrator<'_, T> {
         Vec3::select(zero.less(weight), radiance * weight, Vec3::zero())
     }
 
-    /// Directions drawn from the triangles that emit or from the environment; true for the latter, whose radiance is
-    /// looked up once it is known to arrive.
+    /// Directions drawn from the triangles that emit or from the environment, whose radiance is looked up once it is known
+    /// to arrive.
     #[inline(always)]
     fn draw_lights<R: Recorder>(
         &self,
         point: &SurfacePoint<T>,
         group: &Group<T>,
         paths: &Paths<T::Scalar, R>,
-    ) -> (LightSample<T>, T::Mask) {
+    ) -> LightSample<T> {
         // Beyond the paths, too, numbers must be of the rows that they draw.
         let numbers = &paths.light_numbers;
         let xi = vec3(
@@ -179,14 +185,8 @@ impl<T: Real> Integrator<'_, T> {
             group.own_number(&numbers.y),
             group.own_number(&numbers.z),
         );
-        let share = self.environment_probability;
-        let is_far = if !self.samples_emitters {
-            T::Mask::splat(true)
-        } else if self.samples_environment {
-            xi.z.less(share)
-        } else {
-            T::Mask::splat(false)
-        };
+        // No row is known beyond the paths where none of them draws from the environment.
+        let is_far = self.are_far(group, &paths.lights) & group.mask();
         let mut drawn = LightSample {
             direction: Vec3::zero(),
             density: T::zero(),
@@ -195,21 +195,30 @@ impl<T: Real> Integrator<'_, T> {
         };
         if is_far.any() {
             let rows = group.each(&paths.light_rows);
-            let (local, density) = sample_in_rows(self.distribution, &rows, vec3(xi.x, xi.y, xi.z / share));
+            let (local, density) = sample_in_rows(self.distribution, &rows, xi);
             drawn.direction = environment_world_from_local(local, self.rotation);
-            drawn.density = density * share;
+            drawn.density = density * self.environment_probability;
         }
-        if is_far.all() {
-            return (drawn, is_far);
+        if !self.samples_emitters || is_far.all() {
+            return drawn;
         }
-        let near = self.draw_emitters(point, vec3(xi.x, xi.y, (xi.z - share) / (T::one() - share)));
-        let drawn = LightSample {
+        let near = self.draw_emitters(point, xi);
+        LightSample {
             direction: Vec3::select(is_far, drawn.direction, near.direction),
             density: T::select(is_far, drawn.density, near.density),
             distance: T::select(is_far, drawn.distance, near.distance),
             radiance: Vec3::select(is_far, drawn.radiance, near.radiance),
-        };
-        (drawn, is_far)
+        }
+    }
+
+    /// True where lights were drawn from the environment.
+    #[inline(always)]
+    fn are_far(&self, group: &Group<T>, lights: &LightRays<T::Scalar>) -> T::Mask {
+        if self.samples_emitters {
+            group.truth(&lights.is_far)
+        } else {
+            T::Mask::splat(true)
+        }
     }
 
     /// Directions drawn from the triangles that emit, one lane after the other.
@@ -247,7 +256,7 @@ impl<T: Real> Integrator<'_, T> {
         paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
         let (group, zero) = (arrival.group, T::zero());
-        let (drawn, is_far) = self.draw_lights(point, &group, paths);
+        let drawn = self.draw_lights(point, &group, paths);
         let wi = drawn.direction;
         let transmits = material.transmits();
         let is_ahead = zero.less(point.surface.normal.dot(wi)) | transmits;
@@ -281,7 +290,6 @@ impl<T: Real> Integrator<'_, T> {
         group.set_truth(&mut lights.is_aimed, all, is_lit);
         if self.samples_emitters {
             group.set_vector(&mut lights.radiance, all, drawn.radiance);
-            group.set_truth(&mut lights.is_far, all, is_far);
         }
         if R::KEEPS {
             let light = paths.lights.get(0);
@@ -312,11 +320,7 @@ impl<T: Real> Integrator<'_, T> {
     ) {
         let lights = &paths.arriving;
         let members = group.members(&lights.ids);
-        let is_far = if self.samples_emitters {
-            group.truth(&lights.is_far)
-        } else {
-            T::Mask::splat(true)
-        };
+        let is_far = self.are_far(group, lights);
         let mut radiance = Vec3::zero();
         if is_far.any() {
             radiance = self.far_radiance([group.number(&lights.place[0]), group.number(&lights.place[1])]);

@@ -1,12 +1,13 @@
 //! Directions drawn from a material.
 
-use super::layers::{base_shape, decides_by_facet, passes_on, shares_facets, specular_probability, transmission};
+use super::layers::{base_shape, passes_on, shares_facets, specular_probability, transmission};
 use super::{Layers, Material, Surface, material_layers};
 use crate::optics::coat::coat_sample;
 use crate::optics::fresnel::{fresnel, half_vector_cosine};
 use crate::optics::lobe::{LobeSample, LobeShape, is_mirror, lobe_evaluate, lobe_sample};
 use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
+use crate::optics::warp::split;
 
 /// A layer of a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -70,22 +71,10 @@ pub struct MaterialNumbers<T> {
     /// Draw the direction. The first one also chooses the layer, and is stretched again ([`split`]), but where a facet's
     /// Fresnel factor decides.
     pub lobe: [T; 3],
-    /// Chooses the layer where the Fresnel factor of the direction decides ([`decides_by_facet`]).
+    /// Chooses the layer where the Fresnel factor of the direction decides ([`super::decides_by_facet`]).
     pub facet: T,
     /// Draws the direction where the specular lobe passed it on to what is below.
     pub below: [T; 3],
-}
-
-/// Whether `number` in [0, 1) lies below `share`, and where in its part of [0, 1) it lies, stretched to [0, 1) again. So
-/// one number chooses a layer and draws from it: of numbers that are spread evenly, as Sobol's points are, each layer
-/// gets numbers that are. Chosen by another number they would be picked at random.
-#[inline(always)]
-fn split<T: Real>(number: T, share: T) -> (T::Mask, T) {
-    let is_below = number.less(share);
-    let start = T::select(is_below, T::zero(), share);
-    let length = T::select(is_below, share, T::one() - share).max(T::from_f64(1e-20));
-    let largest = T::from_f64(1.0 - 1.0 / 16_777_216.0);
-    (is_below, ((number - start) / length).min(largest))
 }
 
 /// Draws a direction: from the specular lobe, the base or the refracting lobe. `wants_density` is false where no other
@@ -147,7 +136,7 @@ impl<T: Real> Drawing<'_, T> {
             return sample;
         }
         let (is_passed_on, is_shared) = (passes_on(material), shares_facets(material));
-        let is_by_facet = decides_by_facet(material);
+        let is_by_facet = is_passed_on | is_shared;
         let choice = T::select(is_by_facet, numbers.facet, xi[0]);
         let mut specular = layers.specular_probability;
         let (mut takes, mut rest) = split(choice, specular);
@@ -166,7 +155,9 @@ impl<T: Real> Drawing<'_, T> {
                     *number = T::select(is_passed_on, below, *number);
                 }
             }
-            (takes, rest) = split(choice, specular);
+            if is_by_facet.any() {
+                (takes, rest) = split(choice, specular);
+            }
             takes = left & takes;
             if takes.any() {
                 let finished = self.finish(Layer::Specular, &shape, drawn, color, [specular; 2]);
