@@ -1,7 +1,7 @@
 //! Glossmith's processor engine beside Mitsuba 3 on the same scene, in turns of one run; quoted in docs/PERFORMANCE.md.
 //!
-//! `cargo bench --bench peers [-- --quick --rates --turns N --only WORDS]`: all lines of the table, or those whose material and
-//! mesh hold these words. Millions of samples a second, of the quickest render of each renderer, and (not with `--rates`)
+//! `cargo bench --bench peers [-- --quick --rates --turns N --only WORDS]`: all lines of the table, or those that hold
+//! these words, as `diffuse | 60k, ground`. Millions of samples a second, of the quickest render of each renderer, and (not with `--rates`)
 //! seconds to a relative mean squared error of 0.003, from the mean time and the error of its renders. All of them take turns,
 //! as a machine's pace changes. Our renders, with even samples and with adaptive ones, end about there; Mitsuba's time is told
 //! from what was timed. From where a render ends to the goal its error is taken to fall as that of independent samples does
@@ -51,7 +51,7 @@ type Render = (f64, Picture);
 struct Extent {
     /// Side of the picture, pixels.
     size: u32,
-    /// Samples of the renders that are timed, and whose error is told.
+    /// Samples of the renders whose rates are told; Mitsuba's tell its error, too.
     samples: u32,
     /// Samples of the render that errors are relative to, if any are measured.
     reference: Option<u32>,
@@ -73,8 +73,11 @@ const QUICK: Extent = Extent {
 };
 /// Samples that adaptive renders begin with.
 const ADAPTIVE_SAMPLES_MIN: u32 = 16;
-/// Seconds that our renders to the goal take at most: what is left then is told from the error there.
+/// About as many seconds our renders to the goal take at most: what is left then is told from the error there.
 const SECONDS_MAX: f64 = 12.0;
+/// Seeds of what errors are relative to, and of the renders that look for the effort: none is that of a render that counts.
+const REFERENCE_SEED: u32 = 1000;
+const SCOUT_SEED: u32 = 999;
 /// Renders that look for the effort that the goal takes, at most, and how near to it is near enough.
 const SCOUTS: u32 = 5;
 const NEAR: f64 = 0.1;
@@ -136,7 +139,7 @@ impl Case {
 fn compare(folder: &Path, case: &Case, extent: &Extent, with_peer: bool) -> Result<(), Box<dyn Error>> {
     let (size, samples) = (extent.size, extent.samples);
     let reference = match extent.reference {
-        Some(samples) => Some(glossmith(folder, case, size, samples, 1000)?.1),
+        Some(samples) => Some(glossmith(folder, case, size, samples, REFERENCE_SEED)?.1),
         None => None,
     };
     let mut to_goal = Vec::new();
@@ -229,7 +232,7 @@ impl<'a> ToGoal<'a> {
             renders: Vec::new(),
         };
         for _ in 0..SCOUTS {
-            let (seconds, picture) = this.render(1000)?;
+            let (seconds, picture) = this.render(SCOUT_SEED)?;
             // The reference has an error of its own: so this is rather too much.
             let error = relative_mean_squared_error(picture.as_flattened(), reference.as_flattened());
             let growth = (error / GOAL).min(SECONDS_MAX / seconds);
@@ -246,7 +249,8 @@ impl<'a> ToGoal<'a> {
         let render = &mut document.render;
         render.seed = seed;
         if self.is_adaptive {
-            (render.samples, render.min_samples) = (u32::MAX, ADAPTIVE_SAMPLES_MIN);
+            (render.adaptive, render.samples) = (Some(true), u32::MAX);
+            render.min_samples = ADAPTIVE_SAMPLES_MIN;
             (render.noise, render.time_s) = (Some(self.effort.recip().sqrt()), Some(SECONDS_MAX));
         } else {
             render.samples = self.effort.round().max(1.0) as u32;

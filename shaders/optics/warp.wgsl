@@ -1,4 +1,4 @@
-// Uniform numbers turned into directions and points. Twin of src/optics/warp.rs.
+// Uniform numbers turned into directions, points and choices. Twin of src/optics/warp.rs.
 #import "optics/numeric"
 
 // A uniform direction on the unit sphere (paper, eq. 9).
@@ -19,6 +19,7 @@ struct Part {
     stretched: f32,
 }
 
+// One number chooses and draws from what it chose.
 fn split(number: f32, share: f32) -> Part {
     let is_below = number < share;
     let start = select(share, 0.0, is_below);

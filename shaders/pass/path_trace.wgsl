@@ -141,11 +141,14 @@ fn samples_light() -> bool {
     return samples_environment() || samples_emitters();
 }
 
-// Whether the first number of a light sample chooses the environment, not the triangles that emit; and that number to
-// draw from them.
+// Whether the first number of a light sample chooses the environment, not the triangles that emit; and the number that
+// draws from what it chose.
 fn choose_afar(xi: f32) -> Part {
     if !samples_emitters() {
         return Part(true, xi);
+    }
+    if !samples_environment() {
+        return Part(false, xi);
     }
     return split(xi, globals.environment_probability);
 }

@@ -33,8 +33,10 @@ pub struct CpuEngine {
     samples_per_second: f64,
 }
 
-/// What a pass of more samples than go on together takes at most.
+/// A pass has more samples than go on together only where it takes no longer than this.
 const PASS: Duration = Duration::from_millis(30);
+/// Tiles that are listed at once: enough that cores seldom wait for each other, and few beside what a step renders.
+const LISTED_TILES: usize = 4096;
 
 impl CpuEngine {
     /// Starts a job over.
@@ -84,7 +86,7 @@ impl CpuEngine {
             let left = budget.saturating_sub(start.elapsed());
             let limits = SliceLimits {
                 pass_samples: [self.least_pass_samples(left), u32::MAX],
-                tiles: [usize::MAX; 2],
+                tiles: [LISTED_TILES; 2],
                 order: Order::Rows,
             };
             let pass_seconds = left.min(PASS).as_secs_f64();

@@ -109,7 +109,7 @@ pub struct Work {
 pub struct SliceLimits {
     /// The least samples that a tile gets in a pass, where it lacks so many, and the most; at least 1.
     pub pass_samples: [u32; 2],
-    /// The least tiles of a slice, where there are so many, and the most.
+    /// The least tiles of a slice, where there are so many, and the most; between them what is affordable decides.
     pub tiles: [usize; 2],
     /// In which order a pass takes its tiles.
     pub order: Order,

@@ -1,4 +1,4 @@
-//! Uniform numbers turned into directions and points.
+//! Uniform numbers turned into directions, points and choices.
 
 use super::real::Real;
 use super::vector::{Vec3, vec3};

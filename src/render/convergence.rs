@@ -134,6 +134,11 @@ impl Convergence {
             self.goals = samples.iter().map(|samples| least.max(*samples)).collect();
             return;
         }
+        // Two samples in every pixel are the fewest from which the error can be estimated.
+        if most < 2 {
+            self.goals = vec![settings.samples.min(2); samples.len()];
+            return;
+        }
         // So long that the look at its end takes no more than its share.
         let seconds = (self.look_seconds.unwrap_or(0.0) + self.plan_seconds.unwrap_or(0.0)) / COST_SHARE;
         let most_paced = if self.history.len() > 1 {
@@ -143,7 +148,7 @@ impl Convergence {
         };
         let paced = (1.0 + seconds / engine_seconds.max(1e-9)).min(most_paced);
         let growth_min = (0.5 * (1.0 + paced)).clamp(GROWTH_MIN[0], GROWTH_MIN[1]);
-        if let Some(film) = film.filter(|_| settings.is_adaptive() && most > 1) {
+        if let Some(film) = film.filter(|_| settings.is_adaptive()) {
             let round = Round {
                 growth: [growth_min, paced.max(GROWTH_ADAPTIVE)],
                 noise: settings.noise.map(|wanted| wanted * self.doubt()),
@@ -151,11 +156,6 @@ impl Convergence {
                 region: settings.region,
             };
             self.goals = next_goals(film, samples, round);
-            return;
-        }
-        // Two samples in every pixel are the fewest from which the error can be estimated.
-        if most < 2 {
-            self.goals = vec![settings.samples.min(2); samples.len()];
             return;
         }
         let growth = match (settings.noise, self.noise()) {
@@ -181,4 +181,38 @@ pub(super) fn mean_samples(schedule: &Schedule) -> f64 {
     let grid = schedule.grid();
     let pixels = u64::from(grid.width) * u64::from(grid.height);
     schedule.pixel_samples() as f64 / pixels.max(1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::job::tiles::{Order, SliceLimits};
+
+    #[test]
+    fn the_first_round_ends_where_an_error_can_be_told() {
+        let mut convergence = Convergence::default();
+        let mut schedule = Schedule::new(16, 8);
+        for (samples, goal) in [(64, 2), (1, 1)] {
+            let settings = RenderSettings {
+                samples,
+                ..Default::default()
+            };
+            convergence.next_round(None, &schedule, &settings, 0.0);
+            assert_eq!(convergence.goals, [goal; 2]);
+        }
+        schedule.aim(&[2; 2]);
+        let limits = SliceLimits {
+            pass_samples: [2; 2],
+            tiles: [2; 2],
+            order: Order::Rows,
+        };
+        let works = schedule.slice(0.0, limits);
+        schedule.finish(&works);
+        convergence.next_round(None, &schedule, &RenderSettings::default(), 1.0);
+        assert!(
+            convergence.goals.iter().all(|goal| *goal > 2),
+            "{:?}",
+            convergence.goals
+        );
+    }
 }

@@ -264,7 +264,8 @@ fn mirror_sphere_shows_the_environment() {
 #[test]
 fn a_step_on_the_processor_ends_with_its_time() {
     let mut document = document(ModelSource::Sphere, EnvironmentSource::Studio, &[]);
-    document.render.samples = 3;
+    (document.render.width, document.render.height) = (128, 128);
+    document.render.samples = 2;
     let mut session = Session::open(EngineChoice::Cpu).unwrap();
     session.submit(&document).unwrap();
     let rendered_in = |time: Duration| {
@@ -283,9 +284,8 @@ fn a_step_on_the_processor_ends_with_its_time() {
     };
     let (at_once, whole) = rendered_in(Duration::MAX);
     let (steps, cut) = rendered_in(Duration::ZERO);
-    assert_eq!(at_once, [64 * 64 * 3]);
-    // Two samples of a tile at once, as it has one already.
-    let most = 2 * u64::from(TILE_SIDE * TILE_SIDE) * rayon::current_num_threads() as u64;
+    assert_eq!(at_once, [128 * 128 * 2]);
+    let most = u64::from(TILE_SIDE * TILE_SIDE) * rayon::current_num_threads() as u64;
     assert!(steps.iter().all(|samples| (1..=most).contains(samples)), "{steps:?}");
     assert_eq!(whole, cut);
 }

@@ -83,9 +83,11 @@ impl<T: Real> Integrator<'_, T> {
         let [mut a, b] = group.pairs(paths, dimension, [Purpose::Light; 2]);
         let [c, _] = group.pairs(paths, dimension + 1, [Purpose::Light, Purpose::Unused]);
         if self.samples_emitters {
-            let (is_far, stretched) = split(a, self.environment_probability);
+            let mut is_far = T::Mask::splat(false);
+            if self.samples_environment {
+                (is_far, a) = split(a, self.environment_probability);
+            }
             group.set_truth(&mut paths.lights.is_far, group.mask(), is_far);
-            a = stretched;
         }
         group.set_vector(&mut paths.light_numbers, group.mask(), vec3(a, b, c));
         if self.samples_environment {
@@ -185,33 +187,33 @@ impl<T: Real> Integrator<'_, T> {
             group.own_number(&numbers.y),
             group.own_number(&numbers.z),
         );
-        // No row is known beyond the paths where none of them draws from the environment.
-        let is_far = self.are_far(group, &paths.lights) & group.mask();
+        let is_far = self.are_far(group, &paths.lights);
+        let (far, near) = (group.mask() & is_far, group.mask() & !is_far);
         let mut drawn = LightSample {
             direction: Vec3::zero(),
             density: T::zero(),
             distance: T::from_f64(f64::from(f32::MAX)),
             radiance: Vec3::zero(),
         };
-        if is_far.any() {
+        if far.any() {
             let rows = group.each(&paths.light_rows);
             let (local, density) = sample_in_rows(self.distribution, &rows, xi);
             drawn.direction = environment_world_from_local(local, self.rotation);
             drawn.density = density * self.environment_probability;
         }
-        if !self.samples_emitters || is_far.all() {
+        if !near.any() {
             return drawn;
         }
-        let near = self.draw_emitters(point, xi);
+        let emitted = self.draw_emitters(point, xi);
         LightSample {
-            direction: Vec3::select(is_far, drawn.direction, near.direction),
-            density: T::select(is_far, drawn.density, near.density),
-            distance: T::select(is_far, drawn.distance, near.distance),
-            radiance: Vec3::select(is_far, drawn.radiance, near.radiance),
+            direction: Vec3::select(near, emitted.direction, drawn.direction),
+            density: T::select(near, emitted.density, drawn.density),
+            distance: T::select(near, emitted.distance, drawn.distance),
+            radiance: Vec3::select(near, emitted.radiance, drawn.radiance),
         }
     }
 
-    /// True where lights were drawn from the environment.
+    /// True where lights are drawn from the environment; beyond the paths whatever was there.
     #[inline(always)]
     fn are_far(&self, group: &Group<T>, lights: &LightRays<T::Scalar>) -> T::Mask {
         if self.samples_emitters {
@@ -399,7 +401,7 @@ pub(super) struct LightRays<S> {
     /// Of those that are drawn from what emits.
     radiance: Vectors<S>,
     /// True where they are drawn from the environment, whose radiance is looked up once it is known to arrive. Nothing else
-    /// is there where no emitters are sampled.
+    /// is there where no emitters are sampled. Told with the numbers, of all paths that met something.
     is_far: Vec<bool>,
     /// What the material reflects or refracts from there, weighed against sampling the lobe.
     value: Vectors<S>,

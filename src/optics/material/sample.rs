@@ -1,6 +1,6 @@
 //! Directions drawn from a material.
 
-use super::layers::{base_shape, passes_on, shares_facets, specular_probability, transmission};
+use super::layers::{base_shape, decides_by_facet, passes_on, shares_facets, specular_probability, transmission};
 use super::{Layers, Material, Surface, material_layers};
 use crate::optics::coat::coat_sample;
 use crate::optics::fresnel::{fresnel, half_vector_cosine};
@@ -71,7 +71,7 @@ pub struct MaterialNumbers<T> {
     /// Draw the direction. The first one also chooses the layer, and is stretched again ([`split`]), but where a facet's
     /// Fresnel factor decides.
     pub lobe: [T; 3],
-    /// Chooses the layer where the Fresnel factor of the direction decides ([`super::decides_by_facet`]).
+    /// Chooses the layer where the Fresnel factor of the direction decides ([`decides_by_facet`]).
     pub facet: T,
     /// Draws the direction where the specular lobe passed it on to what is below.
     pub below: [T; 3],
@@ -136,7 +136,7 @@ impl<T: Real> Drawing<'_, T> {
             return sample;
         }
         let (is_passed_on, is_shared) = (passes_on(material), shares_facets(material));
-        let is_by_facet = is_passed_on | is_shared;
+        let is_by_facet = decides_by_facet(material);
         let choice = T::select(is_by_facet, numbers.facet, xi[0]);
         let mut specular = layers.specular_probability;
         let (mut takes, mut rest) = split(choice, specular);

@@ -7,7 +7,7 @@ use glossmith::optics::random::{
     scramble_from_low, sobol_second_reversed, unit_from_bits,
 };
 use glossmith::optics::real::Scalar;
-use glossmith::optics::warp::{uniform_disc, uniform_sphere};
+use glossmith::optics::warp::{split, uniform_disc, uniform_sphere};
 
 use super::harness::{Case, Output, Rng, Row, Value, check, inputs, twin};
 
@@ -318,6 +318,24 @@ fn warps_agree() {
             .output("place.x", Output::Number(1.0))
             .output("place.y", Output::Number(1.0))
             .group("", |rng, _| units(rng).into()),
+            Case::new(
+                "split",
+                "a b",
+                "let part = split(a, b);",
+                twin!(|row| {
+                    let [number, share] = row.numbers();
+                    let (is_below, stretched) = split(number, share);
+                    row.put_bits(is_below.into());
+                    row.put_numbers([stretched]);
+                }),
+            )
+            .output("u32(part.is_below)", Output::Exact)
+            .output("part.stretched", Output::Number(1.0))
+            .group("", |rng, _| units(rng).into())
+            .group("ends", |rng, row| {
+                let share = [0.0, 1.0, 1e-6, 0.999_999][row % 4];
+                vec![Value::Unit(rng.unit()), Value::Unit(share)]
+            }),
         ],
     );
 }
