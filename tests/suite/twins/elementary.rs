@@ -334,7 +334,7 @@ fn warps_agree() {
             .group("", |rng, _| units(rng).into())
             .group("ends", |rng, row| {
                 let share = [0.0, 1.0, 1e-6, 0.999_999][row % 4];
-                vec![Value::Unit(rng.unit()), Value::Unit(share)]
+                vec![Value::Unit(rng.unit()), Value::Number(share)]
             }),
         ],
     );
