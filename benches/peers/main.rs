@@ -1,14 +1,15 @@
 //! Glossmith's processor engine beside Mitsuba 3 on the same scene, in turns of one run; quoted in docs/PERFORMANCE.md.
 //!
 //! `cargo bench --bench peers [-- --quick --rates --turns N --only WORDS]`: all lines of the table, or those that hold
-//! these words, as `diffuse | 60k, ground`. Millions of samples a second, of the quickest render of each renderer, and (not with `--rates`)
-//! seconds to a relative mean squared error of 0.003, from the mean time and the error of its renders. All of them take turns,
-//! as a machine's pace changes. Our renders, with even samples and with adaptive ones, end about there; Mitsuba's time is told
-//! from what was timed. From where a render ends to the goal its error is taken to fall as that of independent samples does
-//! with their number (Sobol's falls faster). Errors are told from how far pictures with other seeds are from each other, so no
-//! reference is as long as it would have to be for glass; a longer render of ours tells what they are relative to. With
-//! `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is run by `scripts/peers`, with the
-//! Python that `scripts/setup test` installs; where it is not there, a line says so and only Glossmith is measured.
+//! these words, as `diffuse | 60k, ground`. Millions of samples a second, of the quickest render of each renderer, and (not
+//! with `--rates`) seconds to a relative mean squared error of 0.003, from the mean time and the error of its renders. All
+//! of them take turns, as a machine's pace changes. Our renders, with even samples and with adaptive ones, end about there;
+//! Mitsuba's time is told from what was timed. From where a render ends to the goal its error is taken to fall as that of
+//! independent samples does with their number (Sobol's falls faster). Errors are told from how far pictures with other
+//! seeds are from each other, so no reference is as long as it would have to be for glass; a longer render of ours tells
+//! what they are relative to. With `--quick` pictures are small, and what it takes to begin one counts for much. Mitsuba is
+//! run by `scripts/peers`, with the Python that `scripts/setup test` installs; where it is not there, a line says so and
+//! only Glossmith is measured.
 
 mod scene;
 
