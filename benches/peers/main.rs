@@ -246,16 +246,15 @@ impl<'a> ToGoal<'a> {
     }
 
     fn render(&self, seed: u32) -> Result<Render, Box<dyn Error>> {
+        if !self.is_adaptive {
+            let samples = self.effort.round().max(1.0) as u32;
+            return glossmith(self.folder, self.case, self.size, samples, seed);
+        }
         let mut document = document(self.folder, self.case, self.size);
         let render = &mut document.render;
-        render.seed = seed;
-        if self.is_adaptive {
-            (render.adaptive, render.samples) = (Some(true), u32::MAX);
-            render.min_samples = ADAPTIVE_SAMPLES_MIN;
-            (render.noise, render.time_s) = (Some(self.effort.recip().sqrt()), Some(SECONDS_MAX));
-        } else {
-            render.samples = self.effort.round().max(1.0) as u32;
-        }
+        (render.seed, render.adaptive, render.samples) = (seed, Some(true), u32::MAX);
+        render.min_samples = ADAPTIVE_SAMPLES_MIN;
+        (render.noise, render.time_s) = (Some(self.effort.recip().sqrt()), Some(SECONDS_MAX));
         timed(&document)
     }
 }
