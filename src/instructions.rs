@@ -30,7 +30,7 @@ pub struct Missing(pub Instructions);
 impl Instructions {
     /// The instruction set itself; `None` where the processor does not have it.
     pub fn level(self) -> Option<Level> {
-        let best = Level::new();
+        let best = best();
         match self {
             Self::Auto => Some(best),
             Self::Portable => Some(Level::baseline()),
@@ -59,7 +59,18 @@ impl Instructions {
 /// The instructions to compute with: those asked for, else the best there are.
 #[inline]
 pub fn level() -> Level {
-    *ASKED_FOR.get_or_init(Level::new)
+    *ASKED_FOR.get_or_init(best)
+}
+
+/// The best instruction set of this processor that the build has. Builds for tests leave AVX-512 out unless the feature
+/// `every-level` is on: it takes a compilation of the whole engine more.
+fn best() -> Level {
+    let best = Level::new();
+    #[cfg(all(target_arch = "x86_64", debug_assertions, not(feature = "every-level")))]
+    if let Some(avx2) = best.as_avx2() {
+        return Level::Avx2(avx2);
+    }
+    best
 }
 
 /// The names of the instruction sets that this processor has.

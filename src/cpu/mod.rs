@@ -1,6 +1,7 @@
 //! The engine on the processor: the same path tracer as the GPU's, on all cores.
 
 pub mod integrator;
+pub mod oracle;
 pub mod precision;
 pub mod probe;
 pub mod recorder;
@@ -69,14 +70,19 @@ impl CpuEngine {
         in_lanes(instructions::level(), Step(self, budget, goals));
     }
 
-    /// Renders as [`CpuEngine::step`] does with shading in `T`; rays meet the geometry in f32 in any case.
-    pub fn step_in<T: Real>(&mut self, budget: Duration, samples: u32) {
+    /// Renders as [`CpuEngine::step`] does with shading in f64; rays meet the geometry in f32 in any case.
+    pub fn step_double(&mut self, budget: Duration, samples: u32) {
         let goals = vec![samples; self.schedule.grid().tiles()];
-        self.step_towards_in::<T>(budget, &goals);
+        self.step_double_towards(budget, &goals);
     }
 
-    /// The same up to a number of samples a pixel for each tile.
-    pub fn step_towards_in<T: Real>(&mut self, budget: Duration, goals: &[u32]) {
+    /// Renders as [`CpuEngine::step_towards`] does with shading in f64.
+    pub fn step_double_towards(&mut self, budget: Duration, goals: &[u32]) {
+        self.step_towards_in::<f64>(budget, goals);
+    }
+
+    /// Renders up to a number of samples a pixel for each tile with shading in `T`.
+    fn step_towards_in<T: Real>(&mut self, budget: Duration, goals: &[u32]) {
         let Some(job) = self.job.clone() else { return };
         let integrator = Integrator::<T>::new(&job);
         let mut waves: Vec<_> = (0..rayon::current_num_threads()).map(|_| None).collect();

@@ -3,7 +3,8 @@
 
 use rayon::prelude::*;
 
-use super::integrator::{Integrator, is_sound};
+use super::integrator::is_sound;
+use super::oracle::PathTracer;
 use super::probe::moved_direction;
 use crate::job::Job;
 use crate::job::precision::{ERROR_BOUND, Finding, PrecisionMap, relative_error};
@@ -31,14 +32,14 @@ const ROWS: u32 = 8;
 
 /// The map of a job in `size` pixels; `None` where it is not wanted any more.
 pub fn precision(job: &Job, [width, height]: [u32; 2], is_superseded: impl Fn() -> bool) -> Option<PrecisionMap> {
-    let integrator = Integrator::<f32>::new(job);
+    let tracer = PathTracer::new(job);
     let mut findings = Vec::with_capacity(width as usize * height as usize);
     for first in (0..height).step_by(ROWS as usize) {
         if is_superseded() {
             return None;
         }
         let pixels = first * width..(first + ROWS).min(height) * width;
-        let find = |index: u32| find(job, &integrator, [index % width, index / width], [width, height]);
+        let find = |index: u32| find(job, &tracer, [index % width, index / width], [width, height]);
         findings.par_extend(pixels.into_par_iter().map(find));
     }
     Some(PrecisionMap {
@@ -50,14 +51,14 @@ pub fn precision(job: &Job, [width, height]: [u32; 2], is_superseded: impl Fn() 
 }
 
 /// What there is at the middle of a pixel of the map.
-fn find(job: &Job, integrator: &Integrator<'_, f32>, pixel: [u32; 2], size: [u32; 2]) -> Finding {
+fn find(job: &Job, tracer: &PathTracer<'_>, pixel: [u32; 2], size: [u32; 2]) -> Finding {
     let settings = &job.settings;
     let place = [0, 1].map(|i| {
         let share = (f64::from(pixel[i]) + 0.5) / f64::from(size[i]);
         share * f64::from(settings.image_size[i])
     });
     let of_picture = place.map(|x| x as u32);
-    let is_dropped = |sample: &u32| !is_sound(integrator.trace_path(of_picture, *sample).radiance);
+    let is_dropped = |sample: &u32| !is_sound(tracer.trace(of_picture, *sample).radiance);
     let dropped = (0..PATHS).filter(is_dropped).count() as u32;
     let nothing = Finding {
         dropped,

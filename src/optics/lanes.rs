@@ -7,10 +7,7 @@
 use std::fmt;
 use std::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-use fearless_simd::{
-    Bytes, Level, Select, Simd, SimdBase, SimdFloat, SimdInt, SimdMask, f32x8, f32x16, i32x8, i32x16, mask32x8,
-    mask32x16, u32x8, u32x16,
-};
+use fearless_simd::{Bytes, Level, Select, Simd, SimdBase, SimdFloat, SimdInt, SimdMask};
 
 use super::elementary::{self, Bits, Single};
 use super::real::{Mask, Real, by_arithmetic};
@@ -26,7 +23,7 @@ pub trait InLanes {
 /// Does something with numbers in lanes, computed by the instruction set of `level`.
 pub fn in_lanes<I: InLanes>(level: Level, what: I) -> I::Output {
     match level {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", any(feature = "every-level", not(debug_assertions))))]
         Level::Avx512(_) => what.run::<sixteen::Lanes<fearless_simd::Avx512>>(),
         // Of sixteen numbers each takes two of AVX2's sixteen registers, too few for what shading keeps.
         #[cfg(target_arch = "x86_64")]
@@ -62,6 +59,8 @@ macro_rules! operator {
 macro_rules! lanes {
     ($module:ident: $lanes:literal $numbers:ident $whole:ident $words:ident $truths:ident) => {
         mod $module {
+            use fearless_simd::{$numbers, $truths, $whole, $words};
+
             use super::*;
 
             /// Numbers that go side by side.
@@ -306,4 +305,5 @@ macro_rules! lanes {
 }
 
 lanes!(eight: 8 f32x8 i32x8 u32x8 mask32x8);
+#[cfg(any(target_arch = "aarch64", feature = "every-level", not(debug_assertions)))]
 lanes!(sixteen: 16 f32x16 i32x16 u32x16 mask32x16);

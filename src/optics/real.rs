@@ -117,6 +117,13 @@ pub trait Real:
     /// what it is inlined into is compiled for other instructions; all that it calls must be inlined (`benches/lanes`).
     fn vectorize<R>(f: impl FnOnce() -> R) -> R;
 
+    /// Result of `f`, which is compiled out of line: it stands once in the machine code for each type of number, however
+    /// many callers it has. A compiler's time grows faster than the size of a function (docs/BUILD.md).
+    #[inline(never)]
+    fn out_of_line<R>(f: impl FnOnce() -> R) -> R {
+        Self::vectorize(f)
+    }
+
     /// A whole number, exact below 2²⁴.
     #[inline(always)]
     fn from_count(value: u32) -> Self {

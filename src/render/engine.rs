@@ -121,7 +121,7 @@ impl Engine {
             Engine::Cpu(engine) => {
                 match precision {
                     Precision::Single => engine.step_towards(budget, goals),
-                    Precision::Double => engine.step_towards_in::<f64>(budget, goals),
+                    Precision::Double => engine.step_double_towards(budget, goals),
                 }
                 Ok(())
             }

@@ -5,7 +5,8 @@
 use serde::Serialize;
 
 use super::compile::slot_materials;
-use crate::cpu::integrator::{Integrator, is_sound};
+use crate::cpu::integrator::is_sound;
+use crate::cpu::oracle::PathTracer;
 use crate::cpu::recorder::{Event, Source};
 use crate::document::{Document, Strategy};
 use crate::job::Job;
@@ -50,7 +51,7 @@ pub struct PathAccount {
 /// The account of one sample of a pixel, for a job compiled from a document with this model.
 pub fn explain(document: &Document, model: &Model, job: &Job, pixel: [u32; 2], sample: u32) -> PathAccount {
     let mut events = Vec::new();
-    let path = Integrator::<f32>::new(job).record_path(pixel, sample, &mut events);
+    let path = PathTracer::new(job).record(pixel, sample, &mut events);
     events.iter_mut().for_each(|event| to_model_units(event, &job.geometry));
     let settings = &job.settings;
     PathAccount {

@@ -206,7 +206,7 @@ fn render_in_f64(document: &Document) -> Film {
     session.submit(document).unwrap();
     let mut engine = CpuEngine::default();
     engine.submit(session.job().unwrap().clone());
-    engine.step_in::<f64>(Duration::MAX, document.render.samples);
+    engine.step_double(Duration::MAX, document.render.samples);
     engine.film().clone()
 }
 

@@ -3,16 +3,14 @@
 use std::collections::HashSet;
 use std::time::Duration;
 
-use glossmith::cpu::integrator::{Integrator, PathResult, Tile, Wave};
+use glossmith::cpu::integrator::PathResult;
+use glossmith::cpu::oracle::{PathTracer, TileSamples, trace_tile};
 use glossmith::cpu::recorder::{Event, Purpose};
 use glossmith::document::effect::EffectSwitches;
 use glossmith::document::{AreaLight, Document, Strategy};
-use glossmith::job::Job;
 use glossmith::job::tiles::TileGrid;
-use glossmith::optics::lanes::{InLanes, in_lanes};
 use glossmith::optics::material::decides_by_facet;
 use glossmith::optics::random::Sequence;
-use glossmith::optics::real::Real;
 use glossmith::render::explain::explain;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
@@ -228,11 +226,11 @@ fn no_number_of_a_path_is_drawn_twice() {
             scene.document.render.sequence = *sequence;
             let session = submitted(&scene, &scene.document);
             let job = session.job().unwrap();
-            let integrator = Integrator::<f32>::new(job);
+            let tracer = PathTracer::new(job);
             let [width, height] = job.settings.image_size;
             for index in (0..width * height).step_by(5) {
                 let mut events = Vec::new();
-                integrator.record_path([index % width, index / width], index % 3, &mut events);
+                tracer.record([index % width, index / width], index % 3, &mut events);
                 let fault = misdrawn(&events, |slot| decides_by_facet(&job.materials[slot as usize]));
                 assert!(fault.is_none(), "{}, {sequence:?}: {fault:?}\n{events:#?}", scene.name);
                 met.extend(events.iter().filter_map(|event| match event {
@@ -254,38 +252,6 @@ fn bits(path: &PathResult<f32>) -> Vec<u32> {
     numbers.map(f32::to_bits).chain([path.rays]).collect()
 }
 
-/// What some samples of a tile find together, in lanes.
-struct Together<'a> {
-    job: &'a Job,
-    origin: [u32; 2],
-    size: [u32; 2],
-    /// The first of them and how many there are.
-    samples: [u32; 2],
-}
-
-impl InLanes for Together<'_> {
-    type Output = Vec<PathResult<f32>>;
-    fn run<T: Real<Scalar = f32>>(self) -> Self::Output {
-        let pixels = (self.size[0] * self.size[1]) as usize;
-        let mut found = vec![PathResult::default(); pixels * self.samples[1] as usize];
-        let tile = Tile::new(self.origin, self.size);
-        let integrator = Integrator::<T>::new(self.job);
-        let mut wave = Wave::new(integrator.sequence());
-        integrator.trace_tile(&tile, &mut wave, self.samples, |[first, count], results| {
-            for sample in 0..count {
-                let row = (first + sample - self.samples[0]) as usize * pixels;
-                for near in tile.near() {
-                    let path = near.path([sample, count]);
-                    for ([x, y], path) in near.places.iter().zip(path..) {
-                        found[row + (y * self.size[0] + x) as usize] = results.get(path);
-                    }
-                }
-            }
-        });
-        found
-    }
-}
-
 /// The engine has the paths of a tile go on together, in lanes of any instruction set: each must find what it finds alone,
 /// as it is told of by `explain`.
 #[test]
@@ -305,7 +271,7 @@ fn paths_find_the_same_together_as_alone_to_the_last_bit() {
     for scene in scenes().into_iter().chain(random_scenes).chain(lit) {
         let session = submitted(&scene, &scene.document);
         let job = session.job().unwrap();
-        let integrator = Integrator::<f32>::new(job);
+        let tracer = PathTracer::new(job);
         let [width, height] = job.settings.image_size;
         let grid = TileGrid { width, height };
         for tile in (0..grid.tiles()).step_by(3) {
@@ -313,20 +279,12 @@ fn paths_find_the_same_together_as_alone_to_the_last_bit() {
             let [first, count] = [tile as u32 % 3, 1 + tile as u32 / 3 % 9];
             let pixels = grid.pixels(tile) as u32;
             let place = |pixel: u32| [left + pixel % size[0], top + pixel / size[0]];
-            let alone = |path: u32| integrator.trace_path(place(path % pixels), first + path / pixels);
+            let alone = |path: u32| tracer.trace(place(path % pixels), first + path / pixels);
             let alone: Vec<_> = (0..count * pixels).map(alone).collect();
             for (set, level) in sets() {
                 let samples = [first, count];
                 let origin = [left, top];
-                let together = in_lanes(
-                    level,
-                    Together {
-                        job,
-                        origin,
-                        size,
-                        samples,
-                    },
-                );
+                let together = trace_tile(job, level, TileSamples { origin, size, samples });
                 assert_eq!(together.len(), alone.len());
                 for (i, (path, alone)) in (0..).zip(together.iter().zip(&alone)) {
                     assert_eq!(

@@ -71,7 +71,10 @@ impl<T: Real> Integrator<'_, T> {
                 }
             });
         } else if catcher.slot == point.slot {
-            passed = self.catch(catcher, point, arrival, paths);
+            passed = T::out_of_line(
+                #[inline(always)]
+                || self.catch(catcher, point, arrival, paths),
+            );
         }
         passed
     }

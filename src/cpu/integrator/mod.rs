@@ -13,7 +13,7 @@ mod wave;
 
 use std::borrow::Cow;
 
-use super::recorder::{End, Event, Recorder, Source, Unrecorded, single};
+use super::recorder::{End, Event, Recorder, Source, single};
 use crate::job::effect::EffectId;
 use crate::job::features::{GUIDE_SAMPLES, GuideSums};
 use crate::job::{Job, Settings, Strategy};
@@ -31,8 +31,9 @@ pub use catcher::CATCHER_DIMENSION;
 use catcher::Caught;
 use group::{Group, Members};
 use paths::{Found, Look, Paths};
-pub use results::Results;
-pub use wave::{NEAR, Near, Tile, WAVE_SAMPLES, Wave};
+pub(in crate::cpu) use results::Results;
+pub use wave::WAVE_SAMPLES;
+pub(in crate::cpu) use wave::{NEAR, Tile, Wave};
 
 /// Pairs of numbers before the first bounce: pixel, lens.
 pub const FIRST_DIMENSION: u32 = 2;
@@ -65,7 +66,7 @@ pub struct PathResult<T> {
 }
 
 /// A job with its numbers in the precision of the shading.
-pub struct Integrator<'a, T: Real> {
+pub(in crate::cpu) struct Integrator<'a, T: Real> {
     geometry: &'a Geometry,
     environment: &'a Environment,
     /// What directions to the environment's light are drawn with.
@@ -206,12 +207,9 @@ impl<'a, T: Real> Integrator<'a, T> {
         let materials = (&self.materials[slot as usize], &self.of_lane[slot as usize]);
         if materials.1.is_textured() || materials.1.has_vertex_colors == 1 {
             let (textures, tables) = (self.textures, self.tables);
-            Cow::Owned(textured_materials(
-                textures,
-                tables,
-                materials,
-                &point.uvs,
-                point.vertex_color,
+            Cow::Owned(T::out_of_line(
+                #[inline(always)]
+                || textured_materials(textures, tables, materials, &point.uvs, point.vertex_color),
             ))
         } else {
             Cow::Borrowed(materials.0)
@@ -391,13 +389,8 @@ impl<'a, T: Real> Integrator<'a, T> {
 }
 
 impl<S: Scalar> Integrator<'_, S> {
-    /// One path through a pixel.
-    pub fn trace_path(&self, pixel: [u32; 2], sample: u32) -> PathResult<S> {
-        self.record_path(pixel, sample, &mut Unrecorded)
-    }
-
-    /// The same path, its events told to a recorder.
-    pub fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<S> {
+    /// One path through a pixel, its events told to a recorder.
+    pub(in crate::cpu) fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<S> {
         let settings = self.settings;
         let mut paths = Paths::new(1, S::LANES, settings.sequence);
         paths.add(pixel, &[[0, 0]], sample);

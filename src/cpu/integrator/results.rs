@@ -34,11 +34,6 @@ impl<S: Scalar> Results<S> {
         }
     }
 
-    /// How many paths there are.
-    pub fn count(&self) -> usize {
-        self.count
-    }
-
     /// What one path has found.
     pub fn get(&self, path: usize) -> PathResult<S> {
         PathResult {

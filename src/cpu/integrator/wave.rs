@@ -243,7 +243,10 @@ impl<T: Real> Integrator<'_, T> {
                 }
                 for group in Groups::<T>::new(left.clone()) {
                     let place = [group.number(&paths.place[0]), group.number(&paths.place[1])];
-                    self.leave(&Arrival::new(group, bounce, paths), place, paths);
+                    T::out_of_line(
+                        #[inline(always)]
+                        || self.leave(&Arrival::new(group, bounce, paths), place, paths),
+                    );
                 }
                 if draws && self.samples_environment {
                     for group in Groups::new(met.clone()) {
@@ -275,7 +278,10 @@ impl<T: Real> Integrator<'_, T> {
     #[inline(always)]
     fn bounce_group(&self, slot: u32, group: Group<T>, bounce: u32, paths: &mut Paths<T::Scalar, Unrecorded>) {
         let mut arrival = Arrival::new(group, bounce, paths);
-        let point = self.surfaces(&arrival, slot, paths);
+        let point = T::out_of_line(
+            #[inline(always)]
+            || self.surfaces(&arrival, slot, paths),
+        );
         let passed = self.pass_catcher(&point, &mut arrival, paths);
         let is_passed = arrival.on & !passed.is_there;
         if is_passed.any() {
@@ -283,7 +289,10 @@ impl<T: Real> Integrator<'_, T> {
                 on: is_passed,
                 ..arrival
             };
-            self.leave(&ray, self.left_places(ray.direction, ray.bounce), paths);
+            T::out_of_line(
+                #[inline(always)]
+                || self.leave(&ray, self.left_places(ray.direction, ray.bounce), paths),
+            );
         }
         let ways = [
             (passed.is_there & !passed.is_mirrored, false),
@@ -301,9 +310,15 @@ impl<T: Real> Integrator<'_, T> {
             let material = &*self.material(&point, &arrival);
             if self.meet(&point, material, &mut arrival, paths) {
                 if self.samples_light() && !is_caught_mirrored {
-                    self.aim(&point, material, &arrival, paths);
+                    T::out_of_line(
+                        #[inline(always)]
+                        || self.aim(&point, material, &arrival, paths),
+                    );
                 }
-                self.scatter(&point, material, &arrival, paths);
+                T::out_of_line(
+                    #[inline(always)]
+                    || self.scatter(&point, material, &arrival, paths),
+                );
             }
         }
     }

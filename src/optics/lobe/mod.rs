@@ -348,7 +348,7 @@ pub fn lobe_sample<T: Real>(
     wo: Vec3<T>,
     xi: [T; 3],
 ) -> LobeSample<T> {
-    T::vectorize(
+    T::out_of_line(
         #[inline(always)]
         || {
             let view = lobe_view(shape, frame, surface_normal, wo);
@@ -392,7 +392,7 @@ pub fn lobe_evaluate<T: Real>(
     wo: Vec3<T>,
     wi: Vec3<T>,
 ) -> [T; 2] {
-    T::vectorize(
+    T::out_of_line(
         #[inline(always)]
         || {
             let view = lobe_view(shape, frame, surface_normal, wo);

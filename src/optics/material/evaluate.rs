@@ -20,7 +20,7 @@ pub fn material_evaluate<T: Real>(
     light_density: T,
     competing: T,
 ) -> Vec3<T> {
-    T::vectorize(
+    T::out_of_line(
         #[inline(always)]
         || {
             let evaluation = Evaluation {

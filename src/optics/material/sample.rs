@@ -86,7 +86,7 @@ pub fn material_sample<T: Real>(
     numbers: MaterialNumbers<T>,
     wants_density: bool,
 ) -> MaterialSample<T> {
-    T::vectorize(
+    T::out_of_line(
         #[inline(always)]
         || {
             let drawing = Drawing {

@@ -136,7 +136,7 @@ fn many_samples(stage: &mut Stage) -> Result<f64, HardError> {
     let mut oracle = CpuEngine::default();
     oracle.submit(job);
     while oracle.samples_per_pixel() < samples {
-        oracle.step_in::<f64>(Duration::from_secs(10), samples);
+        oracle.step_double(Duration::from_secs(10), samples);
     }
     let expected = oracle.film();
     let of = |film: &crate::job::film::Film| [film.luminance()[0], film.variance_of_mean()[0]];

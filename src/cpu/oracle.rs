@@ -1,0 +1,76 @@
+//! Paths one by one and tiles by any instruction set, for records and tests. Nothing here is generic, so that the engine
+//! stands once in the machine code: a generic function would be compiled again in each crate that calls it.
+
+use fearless_simd::Level;
+
+use super::integrator::{Integrator, PathResult, Tile, Wave};
+use super::recorder::Event;
+use crate::job::Job;
+use crate::optics::lanes::{InLanes, in_lanes};
+use crate::optics::real::Real;
+
+/// A path tracer that follows one path at a time, in f32.
+pub struct PathTracer<'a>(Integrator<'a, f32>);
+
+impl<'a> PathTracer<'a> {
+    /// A path tracer of a job.
+    pub fn new(job: &'a Job) -> Self {
+        Self(Integrator::new(job))
+    }
+
+    /// The result of one path.
+    pub fn trace(&self, pixel: [u32; 2], sample: u32) -> PathResult<f32> {
+        self.record(pixel, sample, &mut Vec::new())
+    }
+
+    /// The result of one path, whose events are appended to a list.
+    pub fn record(&self, pixel: [u32; 2], sample: u32, events: &mut Vec<Event>) -> PathResult<f32> {
+        self.0.record_path(pixel, sample, events)
+    }
+}
+
+/// Samples of the pixels of a tile.
+#[derive(Clone, Copy, Debug)]
+pub struct TileSamples {
+    /// The tile's corner, in pixels.
+    pub origin: [u32; 2],
+    /// The tile's width and height, in pixels.
+    pub size: [u32; 2],
+    /// The first sample of each pixel and how many there are.
+    pub samples: [u32; 2],
+}
+
+/// Results of a tile's paths as the engine renders it with an instruction set: pixels row by row, for each sample.
+pub fn trace_tile(job: &Job, level: Level, tile: TileSamples) -> Vec<PathResult<f32>> {
+    in_lanes(level, Together { job, tile })
+}
+
+/// A call of [`trace_tile`].
+struct Together<'a> {
+    job: &'a Job,
+    tile: TileSamples,
+}
+
+impl InLanes for Together<'_> {
+    type Output = Vec<PathResult<f32>>;
+    fn run<T: Real<Scalar = f32>>(self) -> Self::Output {
+        let TileSamples { origin, size, samples } = self.tile;
+        let pixels = (size[0] * size[1]) as usize;
+        let mut found = vec![PathResult::default(); pixels * samples[1] as usize];
+        let tile = Tile::new(origin, size);
+        let integrator = Integrator::<T>::new(self.job);
+        let mut wave = Wave::new(integrator.sequence());
+        integrator.trace_tile(&tile, &mut wave, samples, |[first, count], results| {
+            for sample in 0..count {
+                let row = (first + sample - samples[0]) as usize * pixels;
+                for near in tile.near() {
+                    let path = near.path([sample, count]);
+                    for ([x, y], path) in near.places.iter().zip(path..) {
+                        found[row + (y * size[0] + x) as usize] = results.get(path);
+                    }
+                }
+            }
+        });
+        found
+    }
+}
