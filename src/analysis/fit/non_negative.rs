@@ -25,7 +25,12 @@ pub(super) fn non_negative(gram: &[Vec<f64>], right: &[f64]) -> Option<Vec<f64>>
             break;
         };
         free.push(entering);
-        while !step(&mut x, &mut free, &minimum(gram, right, &free)?) {}
+        loop {
+            let wanted = minimum(gram, right, &free)?;
+            if step(&mut x, &mut free, &wanted) {
+                break;
+            }
+        }
         if free.contains(&entering) {
             refused.clear();
         } else {
