@@ -70,7 +70,16 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     }
 }
 
+/// Says what this program lacks.
+#[cfg(not(feature = "window"))]
+fn open_window(_: Arguments) -> anyhow::Result<()> {
+    anyhow::bail!(
+        "this program was built without the editor (the feature `window`); `glossmith --help` lists what it can do"
+    )
+}
+
 /// Opens the editor; without a display renders the default scene to a picture instead, and says how to go on.
+#[cfg(feature = "window")]
 fn open_window(arguments: Arguments) -> anyhow::Result<()> {
     if has_display() {
         return glossmith::app::run(arguments.files, arguments.engine);
@@ -82,6 +91,7 @@ fn open_window(arguments: Arguments) -> anyhow::Result<()> {
 }
 
 /// False on a Unix desktop without X11 and Wayland.
+#[cfg(feature = "window")]
 fn has_display() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     !cfg!(all(unix, not(target_os = "macos"))) || set("DISPLAY") || set("WAYLAND_DISPLAY")
