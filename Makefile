@@ -34,6 +34,7 @@ test: ## Check format and lints, then run every test
 test-thorough: export GLOSSMITH_THOROUGH = 1
 test-thorough: test ## The same, for an hour more: what is random or repeats others at greater length, shaders on a second Vulkan driver and OpenGL
 	@scripts/setup thorough
+	cargo check --no-default-features
 	scripts/second-driver
 	@if cargo deny --version >/dev/null 2>&1; then set -x; cargo deny check; \
 	else echo "note: cargo-deny is not installed, advisories and licences are not checked (cargo install cargo-deny)"; fi

@@ -25,5 +25,6 @@ pub mod store;
 
 pub mod render;
 
+#[cfg(feature = "window")]
 pub mod app;
 pub mod cli;

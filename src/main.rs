@@ -1,6 +1,8 @@
 //! The program: picks a face, prints the error chain, sets the exit code.
 
+use std::io::{self, Write as _};
 use std::process::ExitCode;
+use std::time::{Duration, SystemTime};
 
 use clap::Parser;
 use glossmith::cli::Arguments;
@@ -9,6 +11,7 @@ fn main() -> ExitCode {
     env_logger::Builder::from_env(
         env_logger::Env::default().default_filter_or("warn,wgpu=error,wgpu_hal=off,naga=error"),
     )
+    .format(log_line)
     .init();
     match run(Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
@@ -17,6 +20,34 @@ fn main() -> ExitCode {
             ExitCode::from(glossmith::cli::exit_code(&error))
         }
     }
+}
+
+/// A line of the log: when (UTC), how grave, from where, what; further lines of it are set in.
+fn log_line(out: &mut env_logger::fmt::Formatter, record: &log::Record<'_>) -> io::Result<()> {
+    let time = time_text(SystemTime::UNIX_EPOCH.elapsed().unwrap_or_default());
+    let (level, style) = (record.level(), out.default_level_style(record.level()));
+    let text = record.args().to_string().replace('\n', "\n    ");
+    writeln!(out, "[{time} {style}{level:<5}{style:#} {}] {text}", record.target())
+}
+
+/// The date and the second in UTC as ISO 8601 writes them, so long after 1970 began.
+fn time_text(since_1970: Duration) -> String {
+    let (days, second) = (since_1970.as_secs() / 86_400, since_1970.as_secs() % 86_400);
+    // Years begin in March here: the leap day is then a year's last, and months are 30.6 days long, rounded.
+    let from_march_0 = days + 719_468;
+    let (era, day) = (from_march_0 / 146_097, from_march_0 % 146_097);
+    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
+    let day = day - (365 * year + year / 4 - year / 100);
+    let month = (5 * day + 2) / 153;
+    let day = day - (153 * month + 2) / 5 + 1;
+    let (year, month) = if month < 10 {
+        (year, month + 3)
+    } else {
+        (year + 1, month - 9)
+    };
+    let year = 400 * era + year;
+    let (hour, minute, second) = (second / 3600, second / 60 % 60, second % 60);
+    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
 }
 
 /// An error with its causes, but for those that it quotes already.
@@ -39,7 +70,16 @@ fn run(arguments: Arguments) -> anyhow::Result<()> {
     }
 }
 
+/// Says what this program lacks.
+#[cfg(not(feature = "window"))]
+fn open_window(_: Arguments) -> anyhow::Result<()> {
+    anyhow::bail!(
+        "this program was built without the editor (the feature `window`); `glossmith --help` lists what it can do"
+    )
+}
+
 /// Opens the editor; without a display renders the default scene to a picture instead, and says how to go on.
+#[cfg(feature = "window")]
 fn open_window(arguments: Arguments) -> anyhow::Result<()> {
     if has_display() {
         return glossmith::app::run(arguments.files, arguments.engine);
@@ -51,7 +91,28 @@ fn open_window(arguments: Arguments) -> anyhow::Result<()> {
 }
 
 /// False on a Unix desktop without X11 and Wayland.
+#[cfg(feature = "window")]
 fn has_display() -> bool {
     let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     !cfg!(all(unix, not(target_os = "macos"))) || set("DISPLAY") || set("WAYLAND_DISPLAY")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_are_dates_with_leap_days() {
+        let known = [
+            (0, "1970-01-01T00:00:00Z"),
+            (951_782_399, "2000-02-28T23:59:59Z"),
+            (951_782_400, "2000-02-29T00:00:00Z"),
+            (951_868_800, "2000-03-01T00:00:00Z"),
+            (1_735_689_599, "2024-12-31T23:59:59Z"),
+            (4_107_542_400, "2100-03-01T00:00:00Z"),
+        ];
+        for (seconds, text) in known {
+            assert_eq!(time_text(Duration::from_secs(seconds)), text);
+        }
+    }
 }

@@ -6,8 +6,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use statrs::function::gamma::gamma_ur;
-
+use super::gamma::upper_share;
 use super::quadrature::{Patch, SphereFunction};
 use crate::optics::frame::{Frame, local_from_world};
 use crate::optics::vector::Vec3;
@@ -197,7 +196,7 @@ pub fn upper_tail(statistic: f64, degrees_of_freedom: f64) -> f64 {
     if statistic <= 0.0 {
         1.0
     } else {
-        gamma_ur(0.5 * degrees_of_freedom, 0.5 * statistic)
+        upper_share(0.5 * degrees_of_freedom, 0.5 * statistic)
     }
 }
 

@@ -9,6 +9,7 @@ pub mod denoised;
 pub mod difference;
 pub mod error;
 pub mod fit;
+mod gamma;
 pub mod halves;
 pub mod histogram;
 pub mod noise;

@@ -116,16 +116,11 @@ pub(super) fn picture(figure: &impl Figure, style: Style) -> Result<image::RgbIm
     let (width, height) = figure.size();
     let large_scale = style.scale * f64::from(OVERSAMPLING);
     let large = (size_px(width, large_scale), size_px(height, large_scale));
-    let mut pixels = vec![0; 3 * large.0 as usize * large.1 as usize];
-    {
-        let root = BitMapBackend::with_buffer(&mut pixels, large).into_drawing_area();
-        let large_style = Style {
-            scale: large_scale,
-            ..style
-        };
-        draw_on_paper(&root, figure, large_style)?;
-    }
-    let picture = image::RgbImage::from_raw(large.0, large.1, pixels).ok_or("the picture is too large")?;
+    let large_style = Style {
+        scale: large_scale,
+        ..style
+    };
+    let picture = drawn(large, |root| draw_on_paper(root, figure, large_style))?;
     let (width, height) = (size_px(width, style.scale), size_px(height, style.scale));
     Ok(image::imageops::resize(
         &picture,
@@ -133,6 +128,18 @@ pub(super) fn picture(figure: &impl Figure, style: Style) -> Result<image::RgbIm
         height,
         image::imageops::FilterType::Triangle,
     ))
+}
+
+/// What is drawn on so many columns and rows of black.
+pub(super) fn drawn(
+    size: (u32, u32),
+    draw: impl FnOnce(&DrawingArea<BitMapBackend<'_>, Shift>) -> Outcome,
+) -> Result<image::RgbImage, Box<dyn Error>> {
+    let mut picture = image::RgbImage::new(size.0, size.1);
+    let root = BitMapBackend::with_buffer(&mut picture, size).into_drawing_area();
+    draw(&root)?;
+    drop(root);
+    Ok(picture)
 }
 
 fn draw_on_paper<DB: DrawingBackend>(root: &DrawingArea<DB, Shift>, figure: &impl Figure, style: Style) -> Outcome

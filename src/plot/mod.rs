@@ -15,6 +15,7 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Once;
 
+use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::{FontStyle, register_font};
 
@@ -113,14 +114,19 @@ pub fn write_picture_sheet(file: &mut (impl io::Write + io::Seek), sheet: &Pictu
 /// Where the file can't be written.
 pub fn scatter_png(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> Result<(), PlotError> {
     register_fonts();
-    let drawn = draw_scatter(path, request, cloud);
-    drawn.map_err(|error| PlotError {
+    let picture = figure::drawn((800, 810), |root| draw_scatter(root, request, cloud));
+    let written = picture.and_then(|picture| Ok(picture.save_with_format(path, image::ImageFormat::Png)?));
+    written.map_err(|error| PlotError {
         path: path.to_owned(),
         reason: error.to_string(),
     })
 }
 
-fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> Result<(), Box<dyn std::error::Error>> {
+fn draw_scatter(
+    root: &DrawingArea<BitMapBackend<'_>, Shift>,
+    request: &ScatterRequest,
+    cloud: &ScatterCloud,
+) -> figure::Outcome {
     // The lobe's middle and the axis across it that points away from the normal on its side; the other one is y.
     let [x, _, z] = request.middle().to_f32();
     let across: Vec3<f32> = Vec3::from_f32([z.abs(), 0.0, -x * z.signum()]);
@@ -129,7 +135,6 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
         .iter()
         .map(|&[x, y, z, _]| (across.dot(Vec3::from_f32([x, y, z])), y));
     let reach = points.clone().map(|(x, y)| x.abs().max(y.abs())).fold(0.01, f32::max) * 1.05;
-    let root = BitMapBackend::new(path, (800, 810)).into_drawing_area();
     root.fill(&WHITE)?;
     let model = &request.model;
     let mut lobe = model.lobe.label().to_owned();
@@ -145,7 +150,7 @@ fn draw_scatter(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> 
         "{lobe}, roughness {}, view {}°{refracted}",
         model.roughness, request.view_angle_deg
     );
-    let mut chart = ChartBuilder::on(&root)
+    let mut chart = ChartBuilder::on(root)
         .caption(caption, ("sans-serif", 26))
         .margin(14)
         .x_label_area_size(34)

@@ -4,20 +4,18 @@
 use std::borrow::Cow;
 use std::io::Read;
 
-use basisu::{DecodeFlags, TargetFormat, Transcoder};
 use ddsfile::{Caps2, D3DFormat, Dds, MiscFlag};
 use half::f16;
 use ruzstd::StreamingDecoder;
 
+use super::basis;
 use crate::panics::contained;
 
 /// The first bytes of a KTX2 file.
 const KTX2: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
 /// The first bytes of a DDS file.
 const DDS: [u8; 4] = *b"DDS ";
-/// Texels that a byte of Basis Universal may stand for, and beyond them.
-const BASIS_GROWTH: [u64; 2] = [64, 1 << 20];
-/// The same of Zstandard, in bytes.
+/// Bytes that a byte of Zstandard may stand for, and beyond them.
 const ZSTD_GROWTH: [u64; 2] = [4096, 1 << 20];
 /// The most columns or rows.
 const SIDE_MAX: u32 = 1 << 16;
@@ -251,7 +249,15 @@ impl<'a> Ktx2<'a> {
             return Err(format!("{} × {} texels are no size", self.width, self.height));
         }
         if self.format == 0 {
-            return self.decode_basis(faces, side_max);
+            let level = |[width, height]: [u32; 2], levels| level_within(width, height, levels, side_max);
+            let faces = basis::decode(self.bytes, faces, level)?.into_iter();
+            return Ok(faces
+                .map(|([width, height], codes)| Face {
+                    width,
+                    height,
+                    texels: Texels::Codes(codes),
+                })
+                .collect());
         }
         let Some(layout) = of_vulkan(self.format) else {
             return Err(format!("its format (number {} of Vulkan) is not read", self.format));
@@ -283,29 +289,6 @@ impl<'a> Ktx2<'a> {
             }
             _ => None,
         }
-    }
-
-    fn decode_basis(&self, faces: usize, side_max: u32) -> Result<Vec<Face>, String> {
-        let text = |error: basisu::Error| format!("Basis Universal: {error:?}");
-        let transcoder = Transcoder::new(self.bytes).map_err(text)?;
-        let (width, height) = transcoder.base_dimensions();
-        let [growth, floor] = BASIS_GROWTH;
-        let texels = u64::from(width) * u64::from(height) * faces as u64;
-        if texels > growth * self.bytes.len() as u64 + floor {
-            return Err(format!("{} bytes cannot hold {width} × {height}", self.bytes.len()));
-        }
-        let level = level_within(width, height, transcoder.level_count(), side_max);
-        let [width, height] = [width, height].map(|side| (side >> level).max(1));
-        let face = |face: usize| {
-            let (target, flags) = (TargetFormat::Rgba32, DecodeFlags::NONE);
-            let codes = transcoder.transcode_image(level, 0, face as u32, target, flags);
-            Ok(Face {
-                width,
-                height,
-                texels: Texels::Codes(codes.map_err(text)?),
-            })
-        };
-        (0..faces).map(face).collect()
     }
 }
 

@@ -1,6 +1,7 @@
 //! What is rendered: meshes and where they come from, the hierarchy that rays find them by, the light around them.
 
 mod alias;
+mod basis;
 pub mod camera;
 pub mod catcher;
 mod convex;

@@ -7,6 +7,8 @@ pub mod exchange;
 pub mod file;
 pub mod library;
 pub mod lut;
+#[cfg_attr(not(feature = "video"), path = "mp4_not_built.rs")]
+mod mp4;
 pub mod picture;
 pub mod preset;
 pub mod project;

@@ -11,7 +11,6 @@ use glossmith::scene::environment::{
 use image::codecs::jpeg::JpegEncoder;
 use image::{DynamicImage, ImageBuffer, Luma, Rgb};
 use tempfile::TempDir;
-use ultrahdr_rs::{ColorGamut, GainMapMetadata, encode_ultrahdr};
 
 fn load_file(path: &Path) -> Environment {
     load(&EnvironmentSource::File(path.to_owned())).expect("loads")
@@ -207,34 +206,130 @@ fn jpeg(values: &ImageBuffer<Luma<u8>, Vec<u8>>) -> Vec<u8> {
     bytes
 }
 
+/// A segment of a JPEG.
+fn segment(marker: u8, data: &[u8]) -> Vec<u8> {
+    let length = (data.len() as u16 + 2).to_be_bytes();
+    [&[0xff, marker], &length[..], data].concat()
+}
+
+/// An Ultra HDR JPEG: the map with its properties (attributes and elements of XMP) lies behind what is shown, where a list
+/// of the pictures says so or nothing does.
+fn ultra_hdr(shown: &[u8], map: &[u8], properties: [&str; 2], is_listed: bool) -> Vec<u8> {
+    let [attributes, elements] = properties;
+    let packet = format!(
+        "http://ns.adobe.com/xap/1.0/\0<?xpacket begin=\"\u{feff}\" id=\"W5M0MpCehiHzreSzNTczkc9d\"?>\n\
+         <x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">\
+         <rdf:Description rdf:about=\"\" xmlns:hdrgm=\"http://ns.adobe.com/hdr-gain-map/1.0/\" hdrgm:Version=\"1.0\" \
+         {attributes}>{elements}</rdf:Description></rdf:RDF></x:xmpmeta>\n<?xpacket end=\"w\"?>"
+    );
+    let map = [&map[..2], &segment(0xe1, packet.as_bytes()), &map[2..]].concat();
+    if !is_listed {
+        return [shown, &map].concat();
+    }
+    let list = |shown_size: u32| {
+        let entry = |tag: u16, kind: u16, count: u32, value: [u8; 4]| {
+            [
+                &tag.to_be_bytes()[..],
+                &kind.to_be_bytes(),
+                &count.to_be_bytes(),
+                &value,
+            ]
+            .concat()
+        };
+        let entries = [
+            entry(0xb000, 7, 4, *b"0100"),
+            entry(0xb001, 4, 1, 2_u32.to_be_bytes()),
+            entry(0xb002, 7, 32, 50_u32.to_be_bytes()),
+        ];
+        // Places are counted from the letters MM, ten bytes into the file.
+        let pictures = [
+            0,
+            0x03_0000,
+            shown_size,
+            0,
+            0,
+            0,
+            map.len() as u32,
+            shown_size.saturating_sub(10),
+            0,
+        ];
+        let pictures: Vec<u8> = pictures.iter().flat_map(|number: &u32| number.to_be_bytes()).collect();
+        segment(
+            0xe2,
+            &[b"MPF\0MM\0*\0\0\0\x08\0\x03", &entries.concat()[..], &pictures].concat(),
+        )
+    };
+    let shown_size = (shown.len() + list(0).len()) as u32;
+    [&shown[..2], &list(shown_size), &shown[2..], &map].concat()
+}
+
+/// A panorama that shows 188 everywhere, whose right half is as bright as a map says at most; and the map.
+fn shown_and_map() -> [Vec<u8>; 2] {
+    let shown = ImageBuffer::from_pixel(64, 32, Luma([188]));
+    let map = ImageBuffer::from_fn(16, 8, |x, _| Luma([if x < 8 { 0 } else { 255 }]));
+    [shown, map].map(|picture| jpeg(&picture))
+}
+
 #[test]
 fn a_gain_map_makes_a_panorama_for_screens_as_bright_as_it_was() {
     let folder = TempDir::new().unwrap();
     let path = folder.path().join("ultra.jpg");
-    let shown = jpeg(&ImageBuffer::from_pixel(64, 32, Luma([188])));
-    // The right half is as bright as the map says at most, 2⁴ times; the left half as it is shown.
-    let map = jpeg(&ImageBuffer::from_fn(16, 8, |x, _| Luma([if x < 8 { 0 } else { 255 }])));
-    let mut metadata = GainMapMetadata::default();
-    metadata.gain_map_max = [4.0; 3];
-    metadata.alternate_hdr_headroom = 4.0;
-    let whole = encode_ultrahdr(&shown, &map, &metadata, ColorGamut::Bt709).unwrap();
-    std::fs::write(&path, &whole).unwrap();
-    let environment = load_file(&path);
-    assert!(environment.warnings.is_empty(), "{:?}", environment.warnings);
+    let [shown, map] = shown_and_map();
+    let one = ["hdrgm:GainMapMax=\"4\" hdrgm:HDRCapacityMax=\"4\"", ""];
+    let three = "<hdrgm:GainMapMax><rdf:Seq><rdf:li>4</rdf:li><rdf:li>3.5</rdf:li><rdf:li>2</rdf:li></rdf:Seq></hdrgm:GainMapMax>\
+                 <hdrgm:OffsetHDR>0.25</hdrgm:OffsetHDR>";
     let linear = ((188.0 / 255.0_f64 + 0.055) / 1.055).powf(2.4);
-    let offset = 1.0 / 64.0;
-    for (column, expected) in [(8, linear), (56, 16.0 * (linear + offset) - offset)] {
-        let found = f64::from(environment.texels[16 * 64 + column][1]);
-        assert!((found / expected - 1.0).abs() < 0.02, "{found} instead of {expected}");
+    for (properties, is_listed, powers, offset) in [
+        (one, true, [4.0; 3], 1.0 / 64.0),
+        (one, false, [4.0; 3], 1.0 / 64.0),
+        (["hdrgm:GainMapMin=\"0, 0, 0\"", three], true, [4.0, 3.5, 2.0], 0.25),
+    ] {
+        std::fs::write(&path, ultra_hdr(&shown, &map, properties, is_listed)).unwrap();
+        let environment = load_file(&path);
+        assert!(environment.warnings.is_empty(), "{:?}", environment.warnings);
+        for (channel, power) in powers.into_iter().enumerate() {
+            for (column, gain) in [(8, 1.0), (56, f64::exp2(power))] {
+                let expected = (linear + 1.0 / 64.0) * gain - offset;
+                let found = f64::from(environment.texels[16 * 64 + column][channel]);
+                assert!((found / expected - 1.0).abs() < 0.02, "{found} instead of {expected}");
+            }
+        }
     }
-    // Linear by choice: the values as they stand. Cut short: what screens show, and why.
+}
+
+#[test]
+fn a_gain_map_that_cannot_be_used_leaves_what_screens_show() {
+    let folder = TempDir::new().unwrap();
+    let path = folder.path().join("ultra.jpg");
+    let [shown, map] = shown_and_map();
+    let whole = ultra_hdr(&shown, &map, ["hdrgm:GainMapMax=\"4\"", ""], true);
+    // Linear by choice: the values as they stand.
+    std::fs::write(&path, &whole).unwrap();
     let source = EnvironmentSource::File(path.clone());
     let as_light = load_encoded(&source, EnvironmentEncoding::Linear).unwrap();
     assert!((as_light.texels[16 * 64 + 56][1] - 188.0 / 255.0).abs() < 0.01);
-    std::fs::write(&path, &whole[..whole.len() - map.len() / 2]).unwrap();
-    let cut = load_file(&path);
-    assert!(f64::from(cut.texels[16 * 64 + 56][1]) < 1.0);
-    assert!(cut.warnings.join(" ").contains("screens"), "{:?}", cut.warnings);
+    // Cut short; without what its codes mean; one from light to screens.
+    let nameless = ultra_hdr(&shown, &map, ["", ""], true);
+    let back = ultra_hdr(
+        &shown,
+        &map,
+        ["hdrgm:GainMapMax=\"4\" hdrgm:BaseRenditionIsHDR=\"True\"", ""],
+        true,
+    );
+    for (bytes, why) in [
+        (&whole[..whole.len() - map.len() / 2], "screens"),
+        (&nameless[..], "screens"),
+        (&back[..], "from light to screens"),
+    ] {
+        std::fs::write(&path, bytes).unwrap();
+        let environment = load_file(&path);
+        assert!(f64::from(environment.texels[16 * 64 + 56][1]) < 1.0, "{why}");
+        assert!(
+            environment.warnings.join(" ").contains(why),
+            "{:?}",
+            environment.warnings
+        );
+    }
 }
 
 #[test]

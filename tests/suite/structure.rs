@@ -113,6 +113,25 @@ fn every_folder_has_its_place_in_the_order() {
     }
 }
 
+#[test]
+fn every_dependency_is_used() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let manifest: toml::Table = fs::read_to_string(root.join("Cargo.toml")).unwrap().parse().unwrap();
+    let mut files = Vec::new();
+    sources(&root.join("src"), &mut files);
+    let code: String = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
+    let unused: Vec<&String> = manifest["dependencies"]
+        .as_table()
+        .unwrap()
+        .keys()
+        .filter(|name| {
+            let path = format!("{}::", name.replace('-', "_"));
+            !code.contains(&path)
+        })
+        .collect();
+    assert!(unused.is_empty(), "nothing in src uses {unused:?}");
+}
+
 /// The parts of the window, each after those that it may use.
 const LAYERS_OF_APP: &[&[&str]] = &[
     &["kit"],

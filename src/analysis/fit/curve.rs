@@ -4,15 +4,14 @@
 
 use std::f64::consts::FRAC_1_PI;
 
-use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 
 use super::basis::Hats;
+use super::non_negative::non_negative;
 use crate::analysis::sphere_grid::{Profile, Side, SphereGrid};
 use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::{NORMAL, view_direction};
 use crate::optics::vector::Vec3;
-use crate::panics::contained;
 
 /// Hat functions of h.
 const HATS: usize = 22;
@@ -158,8 +157,8 @@ fn dot(row: &[f64], solution: &[f64]) -> f64 {
     row.iter().zip(solution).map(|(a, x)| a * x).sum()
 }
 
-/// The non-negative x that minimises Σ solid angle × weight × (row·x − value)². The thousands of rows are first reduced
-/// to a triangle with the same normal equations.
+/// The non-negative x that minimises Σ solid angle × weight × (row·x − value)². The thousands of rows are first summed up
+/// in the normal equations.
 fn solve(target: &CurveTarget, rows: &[Vec<f64>], weights: &[f64]) -> Option<Vec<f64>> {
     let count = rows.first()?.len();
     let mut gram = vec![vec![0.0; count]; count];
@@ -180,29 +179,13 @@ fn solve(target: &CurveTarget, rows: &[Vec<f64>], weights: &[f64]) -> Option<Vec
             }
         }
     }
-    let (triangle, reduced) = cholesky(&mut gram, &right)?;
-    // The solver gives up on rounding trouble by a panic.
-    let (solution, _) = contained(|| nnls::nnls(triangle.view(), reduced.view()))?;
-    solution.iter().all(|x| x.is_finite()).then(|| solution.to_vec())
-}
-
-/// L with L Lᵀ = gram, as Lᵀ, and L⁻¹ right. A little is added to the diagonal: hats that the target does not see get
-/// the weight 0 instead of any.
-fn cholesky(gram: &mut [Vec<f64>], right: &[f64]) -> Option<(Array2<f64>, Array1<f64>)> {
-    let count = right.len();
-    let trace: f64 = (0..count).map(|i| gram[i][i]).sum();
-    let mut reduced = right.to_vec();
+    // A little more on the diagonal: hats that the target does not see get the weight 0 instead of any.
+    let ridge = 1e-11 * (0..count).map(|i| gram[i][i]).sum::<f64>();
     for i in 0..count {
-        gram[i][i] += 1e-11 * trace;
-        for j in 0..=i {
-            let known: f64 = (0..j).map(|k| gram[i][k] * gram[j][k]).sum();
-            let rest = gram[i][j] - known;
-            gram[i][j] = if i == j { rest.sqrt() } else { rest / gram[j][j] };
+        gram[i][i] += ridge;
+        for j in 0..i {
+            gram[j][i] = gram[i][j];
         }
-        let known: f64 = (0..i).map(|k| gram[i][k] * reduced[k]).sum();
-        reduced[i] = (reduced[i] - known) / gram[i][i];
     }
-    let triangle = Array2::from_shape_fn((count, count), |(i, j)| if i <= j { gram[j][i] } else { 0.0 });
-    let is_finite = triangle.iter().chain(&reduced).all(|x| x.is_finite());
-    is_finite.then(|| (triangle, Array1::from(reduced)))
+    non_negative(&gram, &right)
 }

@@ -6,6 +6,7 @@
 pub mod basis;
 pub mod curve;
 pub mod merl;
+mod non_negative;
 pub mod roughness;
 
 pub use curve::{CurveFit, CurveTarget, fit_curve};

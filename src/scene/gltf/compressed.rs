@@ -1,22 +1,18 @@
 //! Meshes that are compressed: KHR_draco_mesh_compression, EXT_meshopt_compression and KHR_meshopt_compression.
 
-use draco_gltf::{
-    DecodeLimits, DracoPrimitiveContract, DracoPrimitiveExtension, MeshoptFilter, MeshoptMode, PackedGeometry,
-};
+use draco_gltf::{MeshoptFilter, MeshoptMode, PackedGeometry};
 use gltf::json::accessor::ComponentType;
 use serde::Deserialize;
 use serde_json::Value as Json;
 
 use super::accessor::{decode, unsigned};
 use super::container::Document;
-use crate::panics::contained;
+use super::draco::decompress;
 
 /// The extensions of buffer views and buffers.
 pub(super) const EXTENSIONS: [&str; 2] = ["EXT_meshopt_compression", "KHR_meshopt_compression"];
 /// The most bytes that meshopt may make of one, and beyond them: a block of 256 equal vertices takes a few bits a byte.
 const MESHOPT_GROWTH: [usize; 2] = [2048, 1 << 16];
-/// The same of Draco, whose entropy coder needs next to nothing for what it foresees.
-const DRACO_GROWTH: [u64; 2] = [4096, 1 << 20];
 
 #[derive(Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -97,29 +93,4 @@ fn component_type(of_crate: draco_gltf::ComponentType) -> Option<ComponentType> 
         draco_gltf::ComponentType::F32 => ComponentType::F32,
         _ => return None,
     })
-}
-
-fn decompress(document: &Document, primitive: &Json, extension: &Json) -> Result<PackedGeometry, String> {
-    let text = extension.to_string();
-    let value = draco_gltf::JsonValue::parse(text.as_bytes())?;
-    let extension = DracoPrimitiveExtension::from_json(&value).map_err(|error| error.to_string())?;
-    let payload = document
-        .view(extension.buffer_view())
-        .map_err(|error| error.to_string())?;
-    let most = DRACO_GROWTH[0] * payload.len() as u64 + DRACO_GROWTH[1];
-    let limits = DecodeLimits::default()
-        .with_max_points(most / 4)
-        .with_max_faces(most / 4)
-        .with_max_decoded_bytes(most);
-    let mut contract = DracoPrimitiveContract::new().with_limits(limits);
-    // Only whether integers are fractions: what the accessors say of counts is often wrong, and never needed.
-    for (semantic, _) in extension.attributes() {
-        let accessor = primitive["attributes"][semantic].as_u64();
-        let accessor = accessor.and_then(|index| document.root.accessors.get(usize::try_from(index).ok()?));
-        contract = contract.with_attribute(semantic, 0, accessor.is_some_and(|accessor| accessor.normalized));
-    }
-    // The crate's checks leave gaps where a damaged stream makes it panic.
-    contained(|| extension.decode(&payload, &contract))
-        .ok_or("its stream contradicts itself")?
-        .map_err(|error| error.to_string())
 }

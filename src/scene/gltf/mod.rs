@@ -8,6 +8,7 @@ mod accessor;
 mod anisotropy;
 mod compressed;
 mod container;
+mod draco;
 mod image;
 mod material;
 mod material_extensions;

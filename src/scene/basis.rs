@@ -1,0 +1,42 @@
+//! Basis Universal, the texels of most KTX2 files, decoded by the basisu crate.
+
+/// The level of so many that `level_of` chooses for columns and rows, of each of the faces: its columns and rows, and red,
+/// green, blue and opacity of its texels.
+///
+/// # Errors
+/// Why it cannot be had, in a few words.
+#[cfg(feature = "basis")]
+pub(super) fn decode(
+    bytes: &[u8],
+    faces: usize,
+    level_of: impl Fn([u32; 2], u32) -> u32,
+) -> Result<Vec<([u32; 2], Vec<u8>)>, String> {
+    use basisu::{DecodeFlags, TargetFormat, Transcoder};
+    /// Texels that a byte may stand for, and beyond them.
+    const GROWTH: [u64; 2] = [64, 1 << 20];
+    let text = |error: basisu::Error| format!("Basis Universal: {error:?}");
+    let transcoder = Transcoder::new(bytes).map_err(text)?;
+    let (width, height) = transcoder.base_dimensions();
+    let texels = u64::from(width) * u64::from(height) * faces as u64;
+    if texels > GROWTH[0] * bytes.len() as u64 + GROWTH[1] {
+        return Err(format!("{} bytes cannot hold {width} × {height}", bytes.len()));
+    }
+    let level = level_of([width, height], transcoder.level_count());
+    let size = [width, height].map(|side| (side >> level).max(1));
+    let face = |face: usize| {
+        let (target, flags) = (TargetFormat::Rgba32, DecodeFlags::NONE);
+        let codes = transcoder.transcode_image(level, 0, face as u32, target, flags);
+        Ok((size, codes.map_err(text)?))
+    };
+    (0..faces).map(face).collect()
+}
+
+/// Says that the program was built without.
+#[cfg(not(feature = "basis"))]
+pub(super) fn decode(
+    _bytes: &[u8],
+    _faces: usize,
+    _level_of: impl Fn([u32; 2], u32) -> u32,
+) -> Result<Vec<([u32; 2], Vec<u8>)>, String> {
+    Err("this program was built without Basis Universal (the feature `basis`)".to_owned())
+}
