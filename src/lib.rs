@@ -4,20 +4,8 @@
 //! [`optics`] ← [`scene`] ← [`job`] ← [`cpu`], [`gpu`] ← [`render`] ← [`cli`], [`app`] ← `main`, and between [`job`] and
 //! [`render`] also [`analysis`] ← [`plot`] ← [`document`] ← [`store`].
 
-pub mod named;
-pub mod panics;
+pub use glossmith_engine::{analysis, cpu, gpu, instructions, job, named, optics, panics, scene};
 
-pub mod instructions;
-
-pub mod optics;
-pub mod scene;
-
-pub mod job;
-
-pub mod cpu;
-pub mod gpu;
-
-pub mod analysis;
 pub mod plot;
 
 pub mod document;

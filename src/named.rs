@@ -25,6 +25,7 @@ pub trait Named: Copy + PartialEq + Sized + 'static {
 
 /// Declares an enum of choices, one line each: `Variant = number, "name", "Label", "Help.";`. The number is the one that
 /// the shaders know it by; it may be left out. In files a choice stands by its name.
+#[macro_export]
 macro_rules! named {
     ($(#[$doc:meta])* $type:ident {
         $($(#[$attribute:meta])* $variant:ident $(= $index:literal)?, $name:literal, $label:literal, $help:literal;)*
@@ -78,4 +79,4 @@ macro_rules! named {
     };
 }
 
-pub(crate) use named;
+pub use crate::named;

@@ -10,7 +10,7 @@ use include_dir::{Dir, include_dir};
 pub use super::generated_shader::GENERATED;
 use super::traversal::Traversal;
 
-static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/shaders");
+static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../shaders");
 
 /// The environment variable that names a folder of shaders to read in place of those in the program.
 pub const FOLDER_VARIABLE: &str = "GLOSSMITH_SHADERS";

@@ -24,7 +24,7 @@ pub mod mesh;
 mod model;
 mod obj;
 mod part;
-pub(crate) mod picture;
+pub mod picture;
 mod ply;
 pub mod report;
 pub mod shapes;

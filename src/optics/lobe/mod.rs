@@ -17,7 +17,9 @@ use super::vector::Vec3;
 use crate::named::named;
 
 /// Hands the list of the lobes to a macro: module, type, number in the shaders, name, label, help.
-macro_rules! list {
+#[doc(hidden)]
+#[macro_export]
+macro_rules! lobe_list {
     ($make:ident) => {
         $make! {
             geometric Geometric = 0, "geometric", "Geometric",
@@ -37,7 +39,7 @@ macro_rules! list {
         }
     };
 }
-pub(crate) use list;
+pub use crate::lobe_list as list;
 
 macro_rules! lobes {
     ($($module:ident $variant:ident = $index:literal, $name:literal, $label:literal, $help:literal;)*) => {
