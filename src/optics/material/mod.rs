@@ -6,6 +6,7 @@
 //! or transmits all light: the layering neither loses nor makes energy. A material that transmits has a second table for
 //! views from within. Lobes made of facets refract at each facet what that facet does not reflect.
 
+mod base;
 mod evaluate;
 mod layers;
 mod sample;
