@@ -126,6 +126,14 @@ fn lit_insert() -> Case {
     case.with(materials).by(BY_LIGHT, 1024)
 }
 
+/// A ball, slot 0, with a plate, slot 1, and a zone around it, slot 2.
+pub fn ball_with_inserts() -> Mesh {
+    let mut mesh = sphere(32, 16);
+    add_plate(&mut mesh, -0.3, 0.5, 1);
+    add_zone(&mut mesh, 0.6, [0.4, 1.2], 2);
+    mesh
+}
+
 /// A zone of a sphere between two angles to +Y, of corners so far out that it takes the solid angle of the round one.
 fn add_zone(mesh: &mut Mesh, radius: f64, [from, to]: [f64; 2], slot: u32) {
     const AROUND: u32 = 128;
