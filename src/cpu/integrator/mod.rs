@@ -410,7 +410,12 @@ impl<'a, T: Real> Integrator<'a, T> {
 
 impl<S: Scalar> Integrator<'_, S> {
     /// One path through a pixel, its events told to a recorder.
-    pub(in crate::cpu) fn record_path<R: Recorder>(&self, pixel: [u32; 2], sample: u32, recorder: &mut R) -> PathResult<S> {
+    pub(in crate::cpu) fn record_path<R: Recorder>(
+        &self,
+        pixel: [u32; 2],
+        sample: u32,
+        recorder: &mut R,
+    ) -> PathResult<S> {
         let settings = self.settings;
         let mut paths = Paths::new(1, S::LANES, settings.sequence);
         paths.add(pixel, &[[0, 0]], sample);
