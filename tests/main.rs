@@ -5,6 +5,8 @@
 mod analytic;
 #[path = "suite/analytic_bodies.rs"]
 mod analytic_bodies;
+#[path = "suite/analytic_media.rs"]
+mod analytic_media;
 #[path = "suite/analytic_scenes.rs"]
 mod analytic_scenes;
 #[path = "suite/assets.rs"]

@@ -1,4 +1,4 @@
-// The material as the integrator sees it. Twin of src/optics/material.rs.
+// The material as the integrator sees it. Twin of src/optics/material/mod.rs.
 #import "optics/albedo"
 #import "optics/coat"
 #import "optics/fresnel"
@@ -213,6 +213,7 @@ fn material_scatter(
     light: MaterialLight,
 ) -> MaterialScatter {
     let base = base_probability(layers);
+    let spread = base_spread(material, surface);
     var through = layers.transmission_probability;
     let below = 1.0 - layers.coat_probability;
     let is_passed_on = passes_on(material);
@@ -240,7 +241,7 @@ fn material_scatter(
     var drawn = MaterialSample();
     var reflected = vec3f(0.0);
     if material_has_base(material) && steps.x < STEP_DRAW {
-        let value = base_evaluate(surface, light.wi);
+        let value = base_evaluate(surface, light.wi, spread);
         let share = light.density / (light.density + light.competing * below * base * value);
         reflected = layers.base * layers.below_coat * (value * share);
     }
@@ -277,6 +278,10 @@ fn material_scatter(
             let sample = lobe_sample(shape, frame, surface.normal, surface.wo, xi);
             wi = sample.wi;
             weight = sample.weight;
+            if spread < 1.0 && layer == LAYER_BASE {
+                wi = base_narrowed(surface, xi.xy, spread);
+                weight = 1.0;
+            }
         }
         var color = layers.base;
         var probability = base;
@@ -321,6 +326,9 @@ fn material_scatter(
         var lobe = vec2f(0.0);
         if !draws || (wants_density && !mirror) {
             lobe = lobe_evaluate(shape, frame, surface.normal, surface.wo, wi);
+            if spread < 1.0 && layer == LAYER_BASE {
+                lobe = vec2f(base_evaluate(surface, wi, spread));
+            }
         }
         if draws {
             drawn = MaterialSample(wi, color * (weight / max(drawn_with, 1e-20)), probability * lobe.y, mirror);
@@ -407,10 +415,43 @@ fn left_by_facet(material: Material, surface: Surface, cosines: vec2f) -> vec3f 
     return material.transmission_tint * left * (material.transmission_weight * (1.0 - material.metalness));
 }
 
+// Rounding of a squared sine at the edge of the base's cone.
+const BASE_EDGE: f32 = 1.00001;
+
+// The sine of the widest angle to which the base scatters: 1 but from within. Twin of src/optics/material/base.rs.
+fn base_spread(material: Material, surface: Surface) -> f32 {
+    if PLAN_TRANSMISSION == 0u || PLAN_BASE == 0u {
+        return 1.0;
+    }
+    return select(1.0, material_ior_ahead(material, true), surface.is_inside && material_transmits(material));
+}
+
+// A direction drawn from the base from within: refracted into the solid.
+fn base_narrowed(surface: Surface, xi: vec2f, spread: f32) -> vec3f {
+    let normal = surface.frame.normal;
+    let wide = normalize_or(normal + uniform_sphere(xi), normal);
+    let cosine = dot(normal, wide);
+    let height = safe_sqrt(1.0 - spread * spread * (1.0 - cosine * cosine));
+    let raw = wide * spread + normal * (height - spread * cosine);
+    let depth = dot(surface.normal, raw);
+    return select(raw, raw - surface.normal * (2.0 * depth), depth < 0.0);
+}
+
 // The base's lobe with its cosine, which is its density, too: its own horizon's mirror image folded back.
-fn base_evaluate(surface: Surface, wi: vec3f) -> f32 {
+fn base_evaluate(surface: Surface, wi: vec3f, spread: f32) -> f32 {
     let above = dot(surface.normal, wi);
     let leaning = dot(surface.frame.normal, wi);
     let folded = leaning - 2.0 * above * dot(surface.frame.normal, surface.normal);
+    if spread < 1.0 {
+        let both = narrow_density(leaning, spread) + narrow_density(folded, spread);
+        return select(0.0, both, above > 0.0);
+    }
     return select(0.0, (max(leaning, 0.0) + max(folded, 0.0)) * INV_PI, above > 0.0);
+}
+
+// The density of Lambert's lobe with its sines multiplied by spread.
+fn narrow_density(cosine: f32, spread: f32) -> f32 {
+    let square = spread * spread;
+    let is_in_cone = 1.0 - cosine * cosine < square * BASE_EDGE;
+    return select(0.0, cosine * INV_PI / square, cosine > 0.0 && is_in_cone);
 }

@@ -23,6 +23,8 @@ const CAUGHT_NOT: u32 = 0u;
 const CAUGHT_SHADOW: u32 = 1u;
 const CAUGHT_ALPHA: u32 = 2u;
 const CAUGHT_MIRRORED: u32 = 3u;
+// The slot of no solid.
+const NO_MEDIUM: u32 = 0xffffffffu;
 // Bounces before Russian roulette.
 const ROULETTE_START: u32 = 3u;
 // Beyond it the square would overflow: dropped and counted.
@@ -52,6 +54,9 @@ struct PixelStatistics {
     kept_dropped: vec2f,
     // Rays, and luminance that limiting fireflies took.
     rays_clamped: vec2f,
+    // Luminance of the throughput of paths that ended at their last bounce.
+    cut: f32,
+    unused: f32,
 }
 
 // Sums over a pixel's first samples of what they saw first.
@@ -83,6 +88,8 @@ struct PathResult {
     rays: u32,
     // Luminance that limiting fireflies took.
     clamped: f32,
+    // Luminance of the throughput where it ended at its last bounce.
+    cut: f32,
     // What it saw first, where it is one of those that tell.
     seen: GuideSums,
 }
@@ -196,6 +203,26 @@ fn limited(contribution: vec3f, reflections: u32, taken: ptr<function, f32>) -> 
     return contribution * kept;
 }
 
+// The slot of the solid that a path is in which leaves a surface towards wi.
+fn medium_towards(medium: u32, point: SurfacePoint, slot: u32, wi: vec3f, transmits: bool) -> u32 {
+    if !transmits {
+        return medium;
+    }
+    let is_behind = dot(point.surface.normal, wi) < 0.0;
+    if is_behind != point.surface.is_inside {
+        return slot;
+    }
+    return select(medium, NO_MEDIUM, is_behind);
+}
+
+// What a solid leaves of light over a distance.
+fn kept_over(medium: u32, distance: f32) -> vec3f {
+    if medium == NO_MEDIUM {
+        return vec3f(1.0);
+    }
+    return exp(-material_at(medium).absorption * distance);
+}
+
 // Whether a path that meets nothing looks the environment up.
 fn looks_afar(bounce: u32, was_mirror: bool) -> bool {
     if bounce == 0u {
@@ -274,6 +301,8 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var radiance = vec3f(0.0);
     var alpha = 1.0;
     var clamped = 0.0;
+    var cut = 0.0;
+    var rough_bounces = 0u;
     var lobe_density = 0.0;
     var was_mirror = true;
     var rays = 0u;
@@ -283,6 +312,8 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     var seen = GuideSums();
     var caught = CAUGHT_NOT;
     var below = Caught();
+    // The slot of the solid that the path is in.
+    var medium = globals.camera_medium;
     // Nothing but mirrors and clear glass so far.
     var looks = PLAN_GUIDES == 1u && sample < GUIDE_SAMPLES;
     for (var bounce = 0u; goes_on || light.waits; bounce++) {
@@ -377,8 +408,10 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         let point = surface_of(hit, ray.direction, slot, material_there);
         let is_mirrored = PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_MIRRORED;
         let material = textured_material(material_there, point.uvs, point.vertex_color);
-        if PLAN_ABSORPTION == 1u && point.surface.is_inside && material_transmits(material) {
-            throughput *= exp(-material.absorption * hit.t);
+        if PLAN_ABSORPTION == 1u {
+            // The back of a surface that transmits tells the solid by itself.
+            let is_within = point.surface.is_inside && material_transmits(material);
+            throughput *= kept_over(select(medium, slot, is_within), hit.t);
         }
         let layers = material_layers(material, point.surface);
         if looks {
@@ -395,6 +428,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             radiance += limited(found, bounce, &clamped);
         }
         if bounce >= globals.bounces {
+            if PLAN_TRANSMISSION == 1u {
+                cut = luminance(throughput);
+            }
             break;
         }
         let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS;
@@ -425,10 +461,16 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
             light.distance = lit.distance;
             light.value = throughput * scattered.reflected / lit.density;
             light.value *= select(lit.radiance, vec3f(1.0), light.is_from_afar);
+            if PLAN_ABSORPTION == 1u && PLAN_EMITTER_SAMPLING == 1u && !light.is_from_afar {
+                light.value *= kept_over(medium_towards(medium, point, slot, lit.direction, transmits), lit.distance);
+            }
             light.is_free = meets_nothing(point, lit.direction);
             light.waits = true;
         }
         var drawn = scattered.drawn;
+        if PLAN_ABSORPTION == 1u {
+            medium = medium_towards(medium, point, slot, drawn.wi, transmits);
+        }
         leaves = meets_nothing(point, drawn.wi);
         looks = looks && drawn.is_mirror;
         if is_mirrored {
@@ -440,9 +482,15 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         throughput *= drawn.throughput;
         let strength = max(max(throughput.x, throughput.y), throughput.z);
         goes_on = strength > 0.0;
-        if bounce >= ROULETTE_START && strength < 1.0 {
-            goes_on = goes_on && random_pair(state, dimension + 3u).y < strength;
-            throughput /= max(strength, 1e-37);
+        var limit = 1.0;
+        if PLAN_TRANSMISSION == 1u {
+            limit = select(globals.roulette_floor, 1.0, rough_bounces >= ROULETTE_START);
+            rough_bounces += select(1u, 0u, drawn.is_mirror);
+        }
+        if bounce >= ROULETTE_START && strength < limit {
+            let survival = strength / limit;
+            goes_on = goes_on && random_pair(state, dimension + 3u).y < survival;
+            throughput /= max(survival, 1e-37);
         }
         lobe_density = drawn.density;
         was_mirror = drawn.is_mirror;
@@ -451,9 +499,9 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
     if PLAN_SHADOW_CATCHER == 1u && caught == CAUGHT_ALPHA {
         // A part of the light alone casts no shadow.
         let covered = select(1.0 - luminance(radiance), 0.0, globals.least_reflections > 0u);
-        return PathResult(vec3f(0.0), covered, rays, clamped, seen);
+        return PathResult(vec3f(0.0), covered, rays, clamped, cut, seen);
     }
-    return PathResult(radiance, alpha, rays, clamped, seen);
+    return PathResult(radiance, alpha, rays, clamped, cut, seen);
 }
 
 // Finite and not negative: what may be added to the picture.
@@ -486,6 +534,7 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
             sums.luminance_squared += y * y * vec2f(1.0, odd);
             sums.kept_dropped.x += 1.0;
             sums.rays_clamped.y += path.clamped;
+            sums.cut += path.cut;
             guides.albedo += path.seen.albedo;
             guides.hits += path.seen.hits;
             guides.normal += path.seen.normal;
@@ -499,6 +548,9 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     statistics[index].luminance_squared += sums.luminance_squared;
     statistics[index].kept_dropped += sums.kept_dropped;
     statistics[index].rays_clamped += sums.rays_clamped;
+    if PLAN_TRANSMISSION == 1u {
+        statistics[index].cut += sums.cut;
+    }
     if PLAN_GUIDES == 1u && tile.first_sample < GUIDE_SAMPLES {
         guide_sums[index].albedo += guides.albedo;
         guide_sums[index].hits += guides.hits;

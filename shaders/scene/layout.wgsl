@@ -48,8 +48,12 @@ struct Globals {
     around_root: u32,
     // Where the triangles of what is around the model begin.
     around_triangle: u32,
+    // The slot of the solid around the camera.
+    camera_medium: u32,
     // To a multiple of 16 bytes.
-    unused: u32,
+    unused: vec3u,
+    // Paths of few bounces at what is no mirror or clear glass play roulette below this throughput alone.
+    roulette_floor: f32,
 }
 
 struct Material {

@@ -302,6 +302,7 @@ fn json_report(
         "rays_per_second": rays as f64 / seconds,
         "dropped_samples": film.dropped(),
         "clamped_energy": film.clamped_share(),
+        "cut_energy": film.cut_share(),
         "effects": effects,
         "seed": document.render.seed,
     }))

@@ -46,6 +46,7 @@ impl<'a> TileSums<'a> {
         let (tile, halves) = (self.tile, &mut self.halves);
         let costs = &mut self.film.costs[0];
         costs.rays += results.rays() as f64;
+        costs.cut += results.cut;
         T::vectorize(
             #[inline(always)]
             || {

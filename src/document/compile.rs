@@ -15,8 +15,8 @@ use crate::scene::texture::{SlotTextures, TextureTarget};
 
 /// Samples of each node of an albedo table.
 const ALBEDO_SAMPLES: u32 = 1024;
-/// The least that an interior lets through at its depth: black would absorb infinitely.
-const TRANSMITTANCE_MIN: f32 = 1e-4;
+/// The most that an interior absorbs over a length of 1: black would absorb infinitely.
+const ABSORPTION_MAX: f32 = 1e9;
 /// Albedo tables that are remembered.
 const REMEMBERED: usize = 32;
 
@@ -125,7 +125,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         material.fresnel = Fresnel::Dielectric as u32;
         let color = Vec3::from_f32(settings.transmission_color);
         if settings.transmission_depth > 0.0 {
-            material.absorption = color.map(|c: f32| -c.max(TRANSMITTANCE_MIN).ln() / settings.transmission_depth);
+            material.absorption = color.map(|c: f32| (-c.ln() / settings.transmission_depth).min(ABSORPTION_MAX));
         } else {
             material.transmission_tint = material.transmission_tint * color;
         }

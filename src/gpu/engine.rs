@@ -299,6 +299,7 @@ fn take_over(film: &mut Film, pixel: usize, colors: &PixelColors, statistics: &P
     costs.rays += f64::from(rays);
     costs.dropped += dropped as u64;
     costs.clamped += f64::from(clamped);
+    costs.cut += f64::from(statistics.cut);
 }
 
 /// A half's sums from those of its squares. Rounding may take the deviations below 0; further on it averages out.

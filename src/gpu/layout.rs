@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::job::{BackgroundKind, Settings};
 use crate::scene::camera::Camera;
+use crate::scene::medium::NO_MEDIUM;
 use crate::scene::{Geometry, Part};
 
 const BACKGROUND_ENVIRONMENT: u32 = 0;
@@ -68,8 +69,12 @@ pub struct Globals {
     pub around_root: u32,
     /// Where the triangles of what is around the model begin.
     pub around_triangle: u32,
+    /// The slot of the solid around the camera; [`NO_MEDIUM`] where there is none.
+    pub camera_medium: u32,
     /// To a multiple of 16 bytes.
-    pub unused: u32,
+    pub unused: [u32; 3],
+    /// Early roulette is played below this throughput alone.
+    pub roulette_floor: f32,
 }
 
 /// What a dispatch renders of one tile.
@@ -104,6 +109,10 @@ pub struct PixelStatistics {
     pub kept_dropped: [f32; 2],
     /// Rays traced, and luminance that limiting fireflies took.
     pub rays_clamped: [f32; 2],
+    /// Luminance of the throughput of paths that ended at their last bounce.
+    pub cut: f32,
+    /// To a multiple of 8 bytes.
+    pub unused: f32,
 }
 
 /// [`Globals::node_count`], [`Globals::around_root`] and [`Globals::around_triangle`].
@@ -150,7 +159,9 @@ impl Globals {
             least_reflections: settings.least_reflections,
             around_root,
             around_triangle,
-            unused: 0,
+            camera_medium: settings.camera_medium.unwrap_or(NO_MEDIUM),
+            unused: [0; 3],
+            roulette_floor: settings.roulette_floor as f32,
         }
     }
 }

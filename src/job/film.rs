@@ -8,7 +8,7 @@ use super::tiles::TileGrid;
 use super::{BackgroundKind, Job};
 
 /// Sums over the samples of each pixel. Colors are summed in f64, so that they do not stall after millions of samples.
-/// 64 bytes a pixel and 24 a tile, and what else of [`Extras`] is called for.
+/// 64 bytes a pixel and 32 a tile, and what else of [`Extras`] is called for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Film {
     /// Width in pixels.
@@ -41,6 +41,8 @@ pub struct TileCosts {
     pub rays: f64,
     /// Luminance that limiting fireflies took.
     pub clamped: f64,
+    /// Luminance of the throughput of paths that ended at their last bounce; not counted where nothing is refracted.
+    pub cut: f64,
     /// Samples left out because they were not finite or negative.
     pub dropped: u64,
 }
@@ -356,6 +358,13 @@ impl Film {
         } else {
             0.0
         }
+    }
+
+    /// The part of the picture's energy, in [0, 1], that was cut at the last bounce. It supposes that what lies beyond is as
+    /// bright as what was found.
+    pub fn cut_share(&self) -> f64 {
+        let cut: f64 = self.costs.iter().map(|costs| costs.cut).sum();
+        if cut > 0.0 { cut / self.samples() as f64 } else { 0.0 }
     }
 
     /// Samples in the sums of all pixels together.

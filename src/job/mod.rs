@@ -64,6 +64,8 @@ pub struct Settings {
     pub image_size: [u32; 2],
     /// In the geometry's units.
     pub camera: Camera<f64>,
+    /// The slot of the solid around the camera; `None` where nothing depends on it.
+    pub camera_medium: Option<u32>,
     /// What the camera sees where it meets nothing.
     pub background: BackgroundKind,
     /// The ground, where only shadows and reflections are seen of it.
@@ -76,6 +78,9 @@ pub struct Settings {
     pub light_choice: LightChoice,
     /// Reflections a path may have.
     pub bounces: u32,
+    /// Paths of few bounces at what is no mirror or clear glass play Russian roulette below this throughput alone; 1 where
+    /// nothing is refracted.
+    pub roulette_floor: f64,
     /// Light that was reflected less often does not count.
     pub least_reflections: u32,
     /// The largest radiance that light keeps that was reflected twice or more; infinite where all is kept.

@@ -10,14 +10,16 @@ use crate::document::{
     texture_assignments,
 };
 use crate::job::effect::EffectId;
-use crate::job::{BackgroundKind, Catcher, Job, Settings};
+use crate::job::{BackgroundKind, Catcher, Job, Settings, Strategy};
 use crate::optics::material::Material;
 use crate::optics::table::append_table;
+use crate::optics::vector::Vec3;
 use crate::scene::Geometry;
 use crate::scene::camera::{Camera, framing_distance, orbit_direction};
 use crate::scene::catcher::{CatcherLight, NearLight, catcher_table};
 use crate::scene::environment::Environment;
 use crate::scene::light::{LightChoice, Lights, Sampled};
+use crate::scene::medium::medium_at;
 use crate::scene::texture::Textures;
 
 /// Materials and their tables.
@@ -100,11 +102,14 @@ impl Compiler {
         let sampled = Sampled {
             environment: switches.get(EffectId::LightSampling) != Switch::Off,
             emitters: switches.get(EffectId::EmitterSampling) != Switch::Off,
+            alone: document.render.strategy == Strategy::Light,
         };
         let [least_reflections, bounces] = document.render.light_paths.reflections(document.render.bounces);
+        let camera = camera(&document.camera, &document.render, &geometry);
         let settings = Settings {
             image_size: [document.render.width, document.render.height],
-            camera: camera(&document.camera, &document.render, &geometry),
+            camera_medium: medium_at(&geometry, &materials, Vec3::from_f64(camera.origin.to_f64())),
+            camera,
             background: match document.lighting.background {
                 Background::Environment => match f64::from(document.lighting.background_blur_deg).to_radians().sin() {
                     sine if sine > 0.0 => BackgroundKind::Blurred(sine),
@@ -118,6 +123,7 @@ impl Compiler {
             environment_strength,
             light_choice: LightChoice::new(&environment, environment_strength, &lights, sampled),
             bounces,
+            roulette_floor: roulette_floor(&materials),
             least_reflections,
             firefly_clamp: document.render.firefly_clamp.map_or(f64::INFINITY, f64::from),
             sequence: document.render.sequence,
@@ -232,6 +238,12 @@ pub(super) fn slot_materials(document: &Document, slots: usize) -> Vec<MaterialS
 }
 
 /// The camera in the geometry's units.
+/// See [`Settings::roulette_floor`]: an albedo behind clear glass is not gambled for.
+fn roulette_floor(materials: &[Material<f32>]) -> f64 {
+    let transmits = materials.iter().any(|material| material.least_metallic().transmits());
+    if transmits { 1.0 / 16.0 } else { 1.0 }
+}
+
 fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometry) -> Camera<f64> {
     let aspect = f64::from(render.width) / f64::from(render.height.max(1));
     let units = |place: [f64; 3]| geometry.units_from_world(place.into());

@@ -212,6 +212,8 @@ pub struct Sampled {
     pub environment: bool,
     /// The triangles that emit.
     pub emitters: bool,
+    /// Nothing else finds the light ([`Environment::distribution`]).
+    pub alone: bool,
 }
 
 /// Neither kind of light gets less than this share of the samples: power says nothing about what is near or in shadow.
@@ -219,18 +221,21 @@ const SHARE_MIN: f64 = 0.1;
 
 impl LightChoice {
     /// Shares by power: what the environment sends into the model's bounding sphere, 4π² × mean luminance × strength,
-    /// against what the triangles emit from both sides, 2π × Σ area × luminance. An environment that is equally bright
-    /// everywhere, or black, is not sampled; nor is what is not `wanted`.
+    /// against what the triangles emit from both sides, 2π × Σ area × luminance. Of the environment what is drawn counts:
+    /// beside lobes its excess alone. An environment that is equally bright everywhere, or black, is not sampled; nor is
+    /// what is not `wanted`.
     pub fn new(environment: &Environment, environment_strength: f64, lights: &Lights, wanted: Sampled) -> Self {
         let is_uneven = !environment.is_constant && !environment.is_black && environment_strength > 0.0;
         let is_sampled = wanted.environment && is_uneven;
         let has_emitters = wanted.emitters && !lights.is_empty();
-        let mean: Vec3<f64> = Vec3::from_f32(environment.mean_radiance);
-        let far = 2.0 * PI * mean.luminance() * environment_strength;
         let environment_probability = match (is_sampled, has_emitters) {
             (false, _) => 0.0,
             (true, false) => 1.0,
-            (true, true) => (far / (far + lights.power)).clamp(SHARE_MIN, 1.0 - SHARE_MIN),
+            (true, true) => {
+                let mean = environment.distribution(wanted.alone).mean_luminance;
+                let far = 2.0 * PI * mean * environment_strength;
+                (far / (far + lights.power)).clamp(SHARE_MIN, 1.0 - SHARE_MIN)
+            }
         };
         let density_per_luminance = if has_emitters {
             (1.0 - environment_probability) / lights.power

@@ -19,6 +19,7 @@ mod intersect;
 pub mod inversion;
 pub mod light;
 mod loading;
+pub mod medium;
 mod memory;
 pub mod mesh;
 mod model;

@@ -17,6 +17,7 @@ use glossmith::scene::mesh::Mesh;
 use glossmith::scene::{Model, ModelSource, Slot, Texture, TextureRef, Wrap};
 
 use crate::analytic_bodies::bodies;
+use crate::analytic_media::media;
 use crate::lights::{corners, irradiance};
 use crate::renders::document;
 
@@ -196,6 +197,7 @@ pub fn cases() -> Vec<Case> {
     cases.extend(lens());
     cases.extend(tilts());
     cases.extend(bodies());
+    cases.extend(media());
     cases
 }
 

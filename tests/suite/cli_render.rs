@@ -97,6 +97,7 @@ fn the_report_has_its_keys_and_their_types() {
         "rays_per_second",
         "dropped_samples",
         "clamped_energy",
+        "cut_energy",
         "effects",
         "seed",
         "denoised",

@@ -1,6 +1,7 @@
 //! Surfaces that emit: their sampler against its density, area lights against Lambert's formula, the strategies and
 //! engines against each other.
 
+use std::f64::consts::TAU;
 use std::time::Duration;
 
 use glam::{DVec3, Vec2, Vec4};
@@ -13,8 +14,8 @@ use glossmith::optics::random::Sequence;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::{Vec3, vec3};
 use glossmith::render::{EngineChoice, Session};
-use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::light::{Emitters, Lights, light_density, light_sample};
+use glossmith::scene::environment::{Environment, EnvironmentSource};
+use glossmith::scene::light::{Emitters, LightChoice, Lights, Sampled, light_density, light_sample};
 use glossmith::scene::mesh::Mesh;
 use glossmith::scene::texture::Textures;
 use glossmith::scene::{Geometry, Model, ModelSource, Slot};
@@ -366,6 +367,33 @@ fn lights_are_drawn_evenly() {
         };
         let [even, independent] = [Sequence::Sobol, Sequence::Independent].map(variance);
         assert!(even < 0.2 * independent, "{choice:?}: {even} of {independent}");
+    }
+}
+
+/// Beside lobes only what is above the mean is drawn of an environment, and that alone counts against what emits.
+#[test]
+fn light_samples_are_shared_out_by_what_is_drawn() {
+    let (geometry, materials) = shards();
+    let lights = Lights::new(&geometry, &materials);
+    // A half is brighter than the other one.
+    let texel = |i: usize| if i % 16 < 8 { 1.4 } else { 1.0 };
+    let texels = (0..128).map(|i| [texel(i), texel(i), texel(i), 1.0]).collect();
+    let environment = Environment::from_texels("halves", 16, 8, texels).unwrap();
+    // Eight times as much light as is emitted.
+    let strength = 8.0 * lights.power / (TAU * 1.2);
+    let odds = |alone| {
+        let sampled = Sampled {
+            environment: true,
+            emitters: true,
+            alone,
+        };
+        let share = LightChoice::new(&environment, strength, &lights, sampled).environment_probability;
+        share / (1.0 - share)
+    };
+    // Bilinear: six of sixteen columns are 0.2 above the mean, two 0.15.
+    for (alone, expected) in [(true, 8.0), (false, 8.0 * (6.0 * 0.2 + 2.0 * 0.15) / 16.0 / 1.2)] {
+        let odds = odds(alone);
+        assert!((odds / expected - 1.0).abs() < 1e-3, "{odds}, expected {expected}");
     }
 }
 

@@ -7,7 +7,7 @@ use glossmith::cpu::integrator::PathResult;
 use glossmith::cpu::oracle::{PathTracer, TileSamples, trace_tile};
 use glossmith::cpu::recorder::{Event, Purpose};
 use glossmith::document::effect::EffectSwitches;
-use glossmith::document::{AreaLight, Document, Strategy};
+use glossmith::document::{AreaLight, Document, MaterialSettings, Strategy};
 use glossmith::job::tiles::TileGrid;
 use glossmith::optics::material::decides_by_facet;
 use glossmith::optics::random::Sequence;
@@ -16,6 +16,7 @@ use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{Model, ModelSource, Slot};
 
+use crate::analytic_media::ball_with_inserts;
 use crate::analytic_scenes::room;
 use crate::lanes::sets;
 use crate::lights::lit_scenes;
@@ -102,7 +103,32 @@ pub fn scenes() -> Vec<Scene> {
         slots: vec![Slot::neutral("walls")],
         ..Model::default()
     });
-    vec![glass, coat, holes, closed]
+    vec![glass, coat, holes, closed, amber(&tinted)]
+}
+
+/// A ball that absorbs and refracts, with something matt and something that shines in it.
+fn amber(tinted: &[&str]) -> Scene {
+    let mut amber = scene(
+        "amber",
+        ModelSource::File("amber".into()),
+        EnvironmentSource::Studio,
+        tinted,
+    );
+    let shining = MaterialSettings {
+        emission_strength: 3.0,
+        ..MaterialSettings::diffuse("shining", [0.2; 3])
+    };
+    amber
+        .document
+        .materials
+        .extend([MaterialSettings::diffuse("matt", [0.8; 3]), shining]);
+    amber.model = Some(Model {
+        name: "amber".to_owned(),
+        mesh: ball_with_inserts(),
+        slots: ["ball", "plate", "zone"].map(Slot::neutral).into(),
+        ..Model::default()
+    });
+    amber
 }
 
 /// A session of the processor with this scene submitted.

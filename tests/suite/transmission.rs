@@ -40,8 +40,8 @@ fn what_absorbs_nothing_is_white_in_the_furnace() {
             &["specular.roughness=0.3"],
             &["specular.roughness=0.7", "specular.curve=long-tail"],
             &["specular.roughness=0.4", "specular.anisotropy=0.6"],
-            // Were the reflection smoother and the refraction or the base rough, total reflection would keep some of
-            // the light inside for more bounces than there are.
+            // Were the reflection smoother and the refraction rough, total reflection would keep some of the light inside
+            // for more bounces than there are.
             &["specular.roughness=0.3", "transmission.roughness=-0.15"],
             &["transmission.weight=0.5", "base.color=1,1,1", "specular.roughness=0.6"],
             // The tint and the weight of the reflection leave more to refract.
@@ -79,6 +79,94 @@ fn what_absorbs_nothing_is_white_in_the_furnace() {
             }
         }
     }
+}
+
+/// A white base mixed with refraction keeps all light: what the base scatters from within gets out again.
+#[test]
+fn a_white_base_beside_refraction_is_white_in_the_furnace() {
+    let mut off = Vec::new();
+    for choice in ENGINES {
+        for ior in ["1.1", "1.5", "2.4"] {
+            for (weight, roughness) in [
+                ("0.1", "0"),
+                ("0.1", "0.1"),
+                ("0.1", "0.3"),
+                ("0.5", "0"),
+                ("0.5", "0.1"),
+                ("0.5", "0.3"),
+                ("0.9", "0"),
+                ("0.9", "0.1"),
+                ("0.9", "0.3"),
+            ] {
+                let assignments = [
+                    &format!("specular.ior={ior}")[..],
+                    &format!("transmission.weight={weight}"),
+                    &format!("specular.roughness={roughness}"),
+                    "base.color=1,1,1",
+                ];
+                let mut document = glass(EnvironmentSource::Furnace, &assignments);
+                (document.render.width, document.render.height, document.render.samples) = (24, 24, 32);
+                let film = render(choice, &document);
+                let [value, ..] = mean(&film);
+                let cut = film.cut_share();
+                println!("{choice:?} {assignments:?}: {value:.4}, cut {cut:.5}");
+                if (value - 1.0).abs() > 5e-3 {
+                    off.push(format!("{choice:?} {assignments:?}: {value}"));
+                }
+            }
+        }
+    }
+    assert!(off.is_empty(), "{off:#?}");
+}
+
+/// Light that paths are cut off from at their last bounce is missing from the picture, and told.
+#[test]
+fn light_cut_at_the_last_bounce_is_told() {
+    for choice in ENGINES {
+        let cut = |bounces: u32, weight: &str| {
+            let white = ["base.color=1,1,1", weight];
+            let mut document = glass(EnvironmentSource::Furnace, &white);
+            document.lighting.background = Background::Environment;
+            (document.render.width, document.render.height) = (32, 32);
+            document.render.bounces = bounces;
+            let film = render(choice, &document);
+            let [value, ..] = mean(&film);
+            (1.0 - value, film.cut_share())
+        };
+        let (missing, told) = cut(3, "transmission.weight=0.5");
+        assert!(missing > 0.02, "{choice:?}: {missing}");
+        assert!(
+            (told - missing).abs() < 1e-3,
+            "{choice:?}: {told} told, {missing} missing"
+        );
+        let (missing, told) = cut(64, "transmission.weight=1");
+        assert!(
+            missing.abs() < 1e-3 && told < 1e-3,
+            "{choice:?}: {told} told, {missing} missing"
+        );
+    }
+}
+
+/// Mirrors and clear glass do not count towards the bounces from which on Russian roulette is played: what is behind a clear
+/// pane has no noise in even light.
+#[test]
+fn no_albedo_is_gambled_for_behind_clear_glass() {
+    let mut document = glass(EnvironmentSource::Furnace, &["specular.ior=1"]);
+    document.ground = true;
+    document.lighting.ground_color = [0.3, 0.2, 0.1];
+    (document.render.width, document.render.height, document.render.samples) = (32, 32, 8);
+    for choice in ENGINES {
+        let mut without = document.clone();
+        without.materials[0].transmission_weight = 0.0;
+        without.materials[0].opacity = 0.0;
+        let [seen, expected] = [&document, &without].map(|document| spread(&render(choice, document)));
+        assert!(seen < 1.05 * expected + 1e-6, "{choice:?}: {seen} against {expected}");
+    }
+}
+
+/// The sum of the variances of a picture's pixels.
+fn spread(film: &Film) -> f64 {
+    film.variance_of_mean().iter().sum()
 }
 
 /// Single scattering loses what facets shadow, and makes nothing.

@@ -277,6 +277,10 @@ impl<T: Real> Integrator<'_, T> {
         if R::KEEPS {
             whole = Vec3::select(zero.less(drawn.density), evaluate(zero), whole);
         }
+        let mut radiance = drawn.radiance;
+        if self.samples_emitters {
+            radiance = self.kept_from(point, material, [wi, radiance], drawn.distance, arrival, paths);
+        }
         let largest = value.max_component();
         let is_lit = arrival.on & (zero.less(largest) | largest.is_nan());
         let all = group.mask();
@@ -291,7 +295,7 @@ impl<T: Real> Integrator<'_, T> {
         group.set_truth(&mut lights.meets_nothing, all, self.meets_nothing(point, wi));
         group.set_truth(&mut lights.is_aimed, all, is_lit);
         if self.samples_emitters {
-            group.set_vector(&mut lights.radiance, all, drawn.radiance);
+            group.set_vector(&mut lights.radiance, all, radiance);
         }
         if R::KEEPS {
             let light = paths.lights.get(0);

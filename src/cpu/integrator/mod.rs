@@ -5,6 +5,7 @@ mod camera;
 mod catcher;
 mod group;
 mod light;
+mod medium;
 mod paths;
 mod rays;
 mod results;
@@ -25,12 +26,13 @@ use crate::scene::Geometry;
 use crate::scene::camera::Camera;
 use crate::scene::environment::{Distribution, Environment};
 use crate::scene::light::Lights;
+use crate::scene::medium::NO_MEDIUM;
 use crate::scene::surface::{Hits, SurfacePoint, surfaces_at};
 use crate::scene::texture::{Textures, textured_materials};
 pub use catcher::CATCHER_DIMENSION;
 use catcher::Caught;
 use group::{Group, Members};
-use paths::{Found, Look, Paths};
+use paths::{Beginning, Found, Look, Paths};
 pub(in crate::cpu) use results::Results;
 pub use wave::WAVE_SAMPLES;
 pub(in crate::cpu) use wave::{NEAR, Tile, Wave};
@@ -74,6 +76,8 @@ pub(in crate::cpu) struct Integrator<'a, T: Real> {
     tables: &'a [f32],
     textures: &'a Textures,
     has_holes: bool,
+    has_absorption: bool,
+    has_transmission: bool,
     settings: &'a Settings,
     materials: Vec<Material<T>>,
     /// The materials for one lane.
@@ -124,6 +128,8 @@ impl<'a, T: Real> Integrator<'a, T> {
             tables: &job.tables,
             textures: &job.textures,
             has_holes: job.plan.has(EffectId::Alpha),
+            has_absorption: job.plan.has(EffectId::Absorption),
+            has_transmission: job.plan.has(EffectId::Transmission),
             settings: &job.settings,
             materials: job.materials.iter().map(Material::cast).collect(),
             of_lane: job.materials.iter().map(Material::cast).collect(),
@@ -159,6 +165,18 @@ impl<'a, T: Real> Integrator<'a, T> {
     /// Whether directions to lights are drawn at all.
     fn samples_light(&self) -> bool {
         self.samples_environment || self.samples_emitters
+    }
+
+    /// What is noted of paths besides what they find.
+    fn beginning(&self) -> Beginning {
+        Beginning {
+            guide_samples: self.guide_samples,
+            has_catcher: self.settings.catcher.is_some(),
+            counts_rough: self.settings.roulette_floor < 1.0,
+            medium: self
+                .has_absorption
+                .then(|| self.settings.camera_medium.unwrap_or(NO_MEDIUM)),
+        }
     }
 
     /// What a path of a wave found that has come to its end.
@@ -225,10 +243,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         arrival: &mut Arrival<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) -> bool {
-        let is_within = arrival.on & point.surface.is_inside & material.transmits();
-        if is_within.any() {
-            absorb(material, is_within, arrival, paths);
-        }
+        self.absorb(point, material, arrival, paths);
         self.look(point, material, arrival, paths);
         if material.emission.is_any().any() {
             let found = arrival.throughput * self.emitted_light(point, material, arrival, paths);
@@ -243,6 +258,11 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
         let goes_on = arrival.bounce < self.settings.bounces;
         if !goes_on {
+            if self.has_transmission {
+                let cut = arrival.throughput.luminance().to_each();
+                let lanes = std::iter::zip(0.., cut.as_ref()).filter(|(lane, _)| arrival.on.to_bits() >> lane & 1 == 1);
+                paths.cut += lanes.map(|(_, cut)| cut.to_f64()).sum::<f64>();
+            }
             let nowhere = T::Mask::splat(false);
             arrival.group.set_truth(&mut paths.goes_on, arrival.on, nowhere);
             arrival
@@ -400,7 +420,7 @@ impl<S: Scalar> Integrator<'_, S> {
         let mut paths = Paths::new(1, S::LANES, settings.sequence);
         paths.add(pixel, &[[0, 0]], sample);
         paths.set_counters(settings.seed);
-        paths.start([recorder], self.guide_samples, settings.catcher.is_some());
+        paths.start([recorder], &self.beginning());
         self.first_rays(&Group::ALONE, &mut paths);
         for bounce in 0.. {
             let is_stopped = self.stop(bounce, 0, &mut paths);
@@ -456,27 +476,6 @@ impl<S: Scalar> Integrator<'_, S> {
             paths.found[0].record(|| light.told(whole, visible, Vec3::zero()));
         }
     }
-}
-
-/// What the interior leaves of the light that goes through it.
-#[inline(always)]
-fn absorb<T: Real, R: Recorder>(
-    material: &Material<T>,
-    on: T::Mask,
-    arrival: &mut Arrival<T>,
-    paths: &mut Paths<T::Scalar, R>,
-) {
-    let thickness = material.absorption * arrival.distance;
-    let kept = Vec3 {
-        x: (-thickness.x).exp(),
-        y: (-thickness.y).exp(),
-        z: (-thickness.z).exp(),
-    };
-    arrival.members.record(&mut paths.found, on, |lane| Event::Absorption {
-        distance: single(arrival.distance.lane(lane)),
-        kept: kept.to_each().as_ref()[lane].to_f32(),
-    });
-    arrival.throughput = Vec3::select(on, arrival.throughput * kept, arrival.throughput);
 }
 
 /// Finite and not negative: what may be added to the picture.

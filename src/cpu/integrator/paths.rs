@@ -83,10 +83,14 @@ pub(super) struct State<S> {
     pub lobe_density: Vec<S>,
     /// True where light sampling could not have drawn the direction.
     pub is_mirror: Vec<bool>,
+    /// Bounces that were not a mirror's or clear glass's; empty where nothing is refracted.
+    pub rough_bounces: Vec<u32>,
     /// What the rays met.
     pub hits: Vec<Hit>,
     /// How far from the rays' origins: farther than in `hits` where they went through surfaces before.
     pub distance: Vec<S>,
+    /// The slots of the solids that they are in; empty where none absorbs.
+    pub media: Vec<u32>,
 }
 
 impl<S: Scalar> State<S> {
@@ -99,8 +103,10 @@ impl<S: Scalar> State<S> {
             direction: Vectors::new(count),
             lobe_density: vec![S::zero(); count],
             is_mirror: vec![false; count],
+            rough_bounces: Vec::new(),
             hits: vec![Hit::default(); count],
             distance: vec![S::zero(); count],
+            media: Vec::new(),
         }
     }
 
@@ -112,9 +118,22 @@ impl<S: Scalar> State<S> {
         self.direction.take(&from.direction, order);
         take(&mut self.lobe_density, &from.lobe_density, order);
         take(&mut self.is_mirror, &from.is_mirror, order);
+        take(&mut self.rough_bounces, &from.rough_bounces, order);
         take(&mut self.hits, &from.hits, order);
         take(&mut self.distance, &from.distance, order);
+        take(&mut self.media, &from.media, order);
     }
+}
+
+/// What is noted of paths besides what they find.
+pub(super) struct Beginning {
+    /// How many samples of a pixel tell what they see.
+    pub guide_samples: u32,
+    pub has_catcher: bool,
+    /// Whether bounces are counted that are not a mirror's.
+    pub counts_rough: bool,
+    /// The solid around the camera; `None` where no solid absorbs.
+    pub medium: Option<u32>,
 }
 
 /// The paths of a wave.
@@ -150,6 +169,8 @@ pub(super) struct Paths<S, R> {
     pub looks: Vec<Look>,
     /// What a shadow catcher has made of them, by their numbers in the wave; empty where there is none.
     pub caught: Vec<Caught<S>>,
+    /// Sum of the luminances of the throughputs of paths that ended at their last bounce.
+    pub cut: f64,
 }
 
 impl<S: Scalar, R: Recorder> Paths<S, R> {
@@ -175,6 +196,7 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
             found: Vec::with_capacity(count),
             looks: Vec::new(),
             caught: Vec::new(),
+            cut: 0.0,
         }
     }
 
@@ -184,6 +206,7 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
         self.found.clear();
         self.looks.clear();
         self.caught.clear();
+        self.cut = 0.0;
     }
 
     /// How many paths the wave has.
@@ -218,9 +241,9 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
         }
     }
 
-    /// Has the paths that were added start from the camera, having found nothing: one recorder for each, how many samples of
-    /// a pixel tell what they see, and whether there is a shadow catcher.
-    pub fn start(&mut self, recorders: impl IntoIterator<Item = R>, guide_samples: u32, has_catcher: bool) {
+    /// Has the paths that were added start from the camera, having found nothing: one recorder for each.
+    pub fn start(&mut self, recorders: impl IntoIterator<Item = R>, beginning: &Beginning) {
+        let guide_samples = beginning.guide_samples;
         self.state.throughput.fill(S::one());
         self.state.lobe_density.fill(S::zero());
         self.state.is_mirror.fill(true);
@@ -233,8 +256,20 @@ impl<S: Scalar, R: Recorder> Paths<S, R> {
             self.looks
                 .extend(samples.iter().map(|sample| Look::new(*sample < guide_samples)));
         }
-        if has_catcher {
+        if beginning.has_catcher {
             self.caught.resize(self.count, Caught::Not);
+        }
+        if beginning.counts_rough {
+            for state in [&mut self.state, &mut self.other] {
+                state.rough_bounces.clear();
+                state.rough_bounces.resize(state.ids.len(), 0);
+            }
+        }
+        if let Some(medium) = beginning.medium {
+            for state in [&mut self.state, &mut self.other] {
+                state.media.clear();
+                state.media.resize(state.ids.len(), medium);
+            }
         }
     }
 

@@ -12,6 +12,8 @@ pub struct Results<S> {
     count: usize,
     /// See [`Results::have_more`].
     has_more: bool,
+    /// Sum of the luminances of the throughputs of paths that ended at their last bounce.
+    pub cut: f64,
     radiance: Vectors<S>,
     alpha: Vec<S>,
     clamped: Vec<S>,
@@ -26,6 +28,7 @@ impl<S: Scalar> Results<S> {
         Self {
             count: 0,
             has_more: false,
+            cut: 0.0,
             radiance: Vectors::new(count),
             alpha: vec![S::zero(); count],
             clamped: vec![S::zero(); count],
@@ -70,7 +73,7 @@ impl<S: Scalar> Results<S> {
 
     /// Forgets all, and has as many paths take their place whose first rays have been traced.
     pub(super) fn start(&mut self, count: usize, has_more: bool) {
-        (self.count, self.has_more) = (count, has_more);
+        (self.count, self.has_more, self.cut) = (count, has_more, 0.0);
         self.seen.clear();
         self.rays[..count].fill(1);
     }

@@ -41,8 +41,10 @@ impl<T: Real> Integrator<'_, T> {
         }
         let mut throughput = arrival.throughput * drawn.throughput;
         self.record_scattered(point, material, arrival, &drawn, throughput, paths);
-        let goes_on = survive(arrival, &mut throughput, paths);
+        let goes_on = survive(arrival, &mut throughput, self.settings.roulette_floor, paths);
+        self.count_rough(arrival, &drawn, paths);
         let origin = point.ray_origin(drawn.wi, material.transmits());
+        self.enter(point, material, drawn.wi, arrival, paths);
         let on = arrival.on;
         group.set_truth(&mut paths.goes_on, on, goes_on);
         group.set_vector(&mut paths.state.throughput, on, throughput);
@@ -51,6 +53,25 @@ impl<T: Real> Integrator<'_, T> {
         group.set_number(&mut paths.state.lobe_density, on, drawn.density);
         group.set_truth(&mut paths.state.is_mirror, on, drawn.is_mirror);
         group.set_truth(&mut paths.leaves, on, leaves);
+    }
+
+    /// Counts bounces that are not a mirror's or clear glass's.
+    #[inline(always)]
+    fn count_rough<R: Recorder>(
+        &self,
+        arrival: &Arrival<T>,
+        drawn: &MaterialSample<T>,
+        paths: &mut Paths<T::Scalar, R>,
+    ) {
+        if self.settings.roulette_floor < 1.0 {
+            let counts = arrival.group.each(&paths.state.rough_bounces);
+            let rough = (arrival.on & !drawn.is_mirror).to_bits();
+            let counts = T::each(
+                #[inline(always)]
+                |lane| counts.as_ref()[lane] + (rough >> lane & 1),
+            );
+            arrival.group.set_each(&mut paths.state.rough_bounces, &counts);
+        }
     }
 
     #[inline(always)]
@@ -121,6 +142,7 @@ fn material_numbers<T: Real, R: Recorder>(
 fn survive<T: Real, R: Recorder>(
     arrival: &Arrival<T>,
     throughput: &mut Vec3<T>,
+    floor: f64,
     paths: &mut Paths<T::Scalar, R>,
 ) -> T::Mask {
     let Arrival {
@@ -134,19 +156,34 @@ fn survive<T: Real, R: Recorder>(
     // Also ends paths that are NaN.
     let is_left = T::zero().less(strength);
     members.record(&mut paths.found, on & !is_left, |_| Event::Ended { why: End::Absorbed });
-    let plays = on & is_left & strength.less(T::one());
-    if bounce < ROULETTE_START || !plays.any() {
+    if bounce < ROULETTE_START {
         return is_left;
     }
+    let mut limit = T::one();
+    if floor < 1.0 {
+        let counts = group.each(&paths.state.rough_bounces);
+        limit = T::from_lanes(
+            #[inline(always)]
+            |lane| {
+                let is_early = counts.as_ref()[lane] < ROULETTE_START;
+                T::Scalar::from_f64(if is_early { floor } else { 1.0 })
+            },
+        );
+    }
+    let plays = on & is_left & strength.less(limit);
+    if !plays.any() {
+        return is_left;
+    }
+    let survival = strength / limit;
     let dimension = FIRST_DIMENSION + bounce * BOUNCE_DIMENSIONS + 3;
     let [_, number] = group.pairs(paths, dimension, [Purpose::Unused, Purpose::Roulette]);
     members.record(&mut paths.found, plays, |lane| Event::Roulette {
-        survival: single(strength.lane(lane)),
+        survival: single(survival.lane(lane)),
         number: single(number.lane(lane)),
     });
-    let is_out = plays & !number.less(strength);
+    let is_out = plays & !number.less(survival);
     members.record(&mut paths.found, is_out, |_| Event::Ended { why: End::Roulette });
-    let raised = *throughput / strength;
+    let raised = *throughput / survival;
     *throughput = Vec3::select(plays, raised, *throughput);
     is_left & !is_out
 }

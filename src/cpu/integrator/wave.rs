@@ -106,6 +106,7 @@ impl<T: Real> Integrator<'_, T> {
             if !is_background {
                 let results = (0..wave.paths.count()).map(|number| self.result(&wave.paths, number));
                 wave.results.fill(results);
+                wave.results.cut = wave.paths.cut;
             }
             tell(samples, &wave.results);
         }
@@ -124,9 +125,7 @@ impl<T: Real> Integrator<'_, T> {
             }
             wave.hits.resize(wave.paths.count(), None);
         }
-        let has_catcher = self.settings.catcher.is_some();
-        wave.paths
-            .start(std::iter::repeat(Unrecorded), self.guide_samples, has_catcher);
+        wave.paths.start(std::iter::repeat(Unrecorded), &self.beginning());
         wave.under_way.clear();
         wave.under_way.extend(0..wave.paths.count() as u16);
         for bounce in 0.. {

@@ -1,6 +1,7 @@
 //! What a material reflects or refracts of light from a direction that was drawn towards it.
 
-use super::layers::{base_shape, specular_probability, transmission};
+use super::base::base_evaluate;
+use super::layers::{specular_probability, transmission};
 use super::{Layers, Material, Surface, material_layers};
 use crate::optics::coat::coat_evaluate;
 use crate::optics::fresnel::{fresnel, half_vector_cosine};
@@ -62,7 +63,8 @@ impl<T: Real> Evaluation<'_, T> {
         }
         let has_base = material.has_base();
         if has_base.any() {
-            let part = self.part(&base_shape(), layers.base_probability(), layers.base);
+            let evaluated = base_evaluate(material, surface, wi);
+            let part = self.weighed(evaluated, layers.base_probability(), layers.base);
             sum = Vec3::select(has_base, sum + part, sum);
         }
         let transmits = material.transmits();
@@ -82,18 +84,24 @@ impl<T: Real> Evaluation<'_, T> {
         sum
     }
 
-    /// What a layer below the coat gives.
+    /// What a lobe below the coat gives.
     #[inline(always)]
     fn part(&self, shape: &LobeShape<'_, T>, probability: T, color: Vec3<T>) -> Vec3<T> {
         let is_mirror = is_mirror(shape);
         if is_mirror.all() {
             return Vec3::zero();
         }
-        let Self { layers, surface, .. } = self;
+        let surface = self.surface;
+        let evaluated = lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, self.wi);
+        Vec3::select(is_mirror, Vec3::zero(), self.weighed(evaluated, probability, color))
+    }
+
+    /// The same of a lobe's (evaluate, density).
+    #[inline(always)]
+    fn weighed(&self, [value, density]: [T; 2], probability: T, color: Vec3<T>) -> Vec3<T> {
+        let layers = &self.layers;
         let below = T::one() - layers.coat_probability;
-        let [value, density] = lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, self.wi);
         let share = self.light_density / (self.light_density + self.competing * below * probability * density);
-        let part = color * layers.below_coat * (value * share);
-        Vec3::select(is_mirror, Vec3::zero(), part)
+        color * layers.below_coat * (value * share)
     }
 }

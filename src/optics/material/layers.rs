@@ -3,9 +3,8 @@
 use super::{Material, Surface, by_index};
 use crate::optics::albedo::{albedo_lookup, albedo_place, rough_albedo, rough_albedo_lookup};
 use crate::optics::coat::{coat_probability, coat_share, coat_transmittance};
-use crate::optics::curve::Curve;
 use crate::optics::fresnel::{fresnel, fresnel_left, half_vector_cosine};
-use crate::optics::lobe::{Facets, Horizon, Lobe, LobeShape, refracts_at_facets};
+use crate::optics::lobe::{Facets, Lobe, LobeShape, refracts_at_facets};
 use crate::optics::numeric::sampled_share;
 use crate::optics::real::{Mask, Real};
 use crate::optics::refraction::{refracted_square, refracting_cosines};
@@ -139,20 +138,6 @@ pub fn material_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface:
     let specular = Vec3::select(material.has_specular(), specular, Vec3::zero());
     let layers = material_layers(material, tables, surface);
     specular + layers.base + layers.transmission
-}
-
-/// The base's lobe: Lambert's, its rare samples below the geometric surface mirrored.
-#[inline(always)]
-pub(super) fn base_shape<'a, T: Real>() -> LobeShape<'a, T> {
-    LobeShape {
-        lobe: Lobe::Lambert,
-        curve: Curve::Sqrt,
-        horizon: Horizon::Mirror,
-        roughness: T::one(),
-        anisotropy: T::zero(),
-        eta: T::zero(),
-        table: &[],
-    }
 }
 
 /// True where a mirrored direction is drawn first and what it does not reflect is passed on: then all weights are 1

@@ -4,8 +4,10 @@
 //! The specular lobe reflects the Fresnel share; what it leaves over reaches the base. How much that is on average over
 //! the lobe, its albedo, is tabulated for each material ([`albedo_table`]), so that a white base under any lobe reflects
 //! or transmits all light: the layering neither loses nor makes energy. A material that transmits has a second table for
-//! views from within. Lobes made of facets refract at each facet what that facet does not reflect.
+//! views from within, from where the base's light is refracted into the solid, so that all of it gets out again. Lobes made
+//! of facets refract at each facet what that facet does not reflect.
 
+mod base;
 mod evaluate;
 mod layers;
 mod sample;

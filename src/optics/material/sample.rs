@@ -1,6 +1,7 @@
 //! Directions drawn from a material.
 
-use super::layers::{base_shape, decides_by_facet, passes_on, shares_facets, specular_probability, transmission};
+use super::base::{base_evaluate, base_sample};
+use super::layers::{decides_by_facet, passes_on, shares_facets, specular_probability, transmission};
 use super::{Layers, Material, Surface, material_layers};
 use crate::optics::coat::coat_sample;
 use crate::optics::fresnel::{fresnel, half_vector_cosine};
@@ -172,8 +173,15 @@ impl<T: Real> Drawing<'_, T> {
         xi[0] = T::select(is_by_facet, xi[0], stretched);
         let takes_base = is_base | !T::zero().less(through);
         if (left & takes_base).any() {
-            let shape = base_shape();
-            let finished = self.finish(Layer::Base, &shape, self.draw(&shape, xi), layers.base, [base; 2]);
+            let drawn = base_sample(material, surface, xi);
+            let finished = self.finished(
+                Layer::Base,
+                drawn,
+                #[inline(always)]
+                || base_evaluate(material, surface, drawn.wi)[1],
+                layers.base,
+                [base; 2],
+            );
             sample = sample.replaced(left & takes_base, finished);
             left = left & !takes_base;
         }
@@ -194,8 +202,7 @@ impl<T: Real> Drawing<'_, T> {
         lobe_sample(shape, &surface.frame, surface.normal, surface.wo, xi)
     }
 
-    /// What a direction drawn from a layer below the coat makes of a path: the probability with which the layer was chosen,
-    /// and the one that its direction tells, which differs where the horizon policy has turned the direction.
+    /// What a direction drawn from a lobe below the coat makes of a path, see [`Drawing::finished`].
     #[inline(always)]
     fn finish(
         &self,
@@ -203,22 +210,50 @@ impl<T: Real> Drawing<'_, T> {
         shape: &LobeShape<'_, T>,
         drawn: LobeSample<T>,
         color: Vec3<T>,
+        probabilities: [T; 2],
+    ) -> MaterialSample<T> {
+        let (surface, is_mirror) = (self.surface, is_mirror(shape));
+        let finished = self.finished(
+            layer,
+            drawn,
+            #[inline(always)]
+            || {
+                if is_mirror.all() {
+                    return T::zero();
+                }
+                let [_, density] = lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, drawn.wi);
+                T::select(is_mirror, T::zero(), density)
+            },
+            color,
+            probabilities,
+        );
+        MaterialSample { is_mirror, ..finished }
+    }
+
+    /// The same from a density, no mirror's. The probabilities are that with which the layer was chosen, and the one that
+    /// the direction tells: they differ where the horizon policy has turned the direction.
+    #[inline(always)]
+    fn finished(
+        &self,
+        layer: Layer,
+        drawn: LobeSample<T>,
+        density: impl Fn() -> T,
+        color: Vec3<T>,
         [chosen, told]: [T; 2],
     ) -> MaterialSample<T> {
-        let Self { layers, surface, .. } = self;
+        let layers = &self.layers;
         let below = T::one() - layers.coat_probability;
-        let is_mirror = is_mirror(shape);
-        let mut density = T::zero();
-        if self.wants_density && !is_mirror.all() {
-            let [_, of_shape] = lobe_evaluate(shape, &surface.frame, surface.normal, surface.wo, drawn.wi);
-            density = T::select(is_mirror, T::zero(), below * told * of_shape);
-        }
+        let density = if self.wants_density {
+            below * told * density()
+        } else {
+            T::zero()
+        };
         let scale = drawn.weight / (below * chosen).max(T::from_f64(1e-20));
         MaterialSample {
             wi: drawn.wi,
             throughput: color * layers.below_coat * scale,
             density,
-            is_mirror,
+            is_mirror: T::Mask::splat(false),
             layer,
         }
     }

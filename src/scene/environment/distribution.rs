@@ -131,6 +131,8 @@ pub struct Distribution {
     pub width: u32,
     /// Rows of cells.
     pub height: u32,
+    /// The mean luminance over the sphere of what is drawn.
+    pub mean_luminance: f64,
 }
 
 impl Distribution {
@@ -166,6 +168,7 @@ impl Distribution {
             rows,
             width,
             height,
+            mean_luminance: weights.iter().sum::<f64>() / (2.0 * TAU),
         }
     }
 

@@ -208,6 +208,7 @@ impl Scene {
         let sampled = Sampled {
             environment: true,
             emitters: true,
+            alone: false,
         };
         LightChoice::new(&self.environment, 1.0, &self.lights, sampled)
     }
@@ -420,6 +421,8 @@ fn settings() -> Settings {
         background: BackgroundKind::Environment,
         environment_rotation: [1.0, 0.0],
         environment_strength: 1.0,
+        camera_medium: None,
+        roulette_floor: 1.0,
         light_choice: SCENE.light_choice(),
         bounces: 8,
         least_reflections: 0,
