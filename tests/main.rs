@@ -11,6 +11,8 @@ mod analytic_scenes;
 mod assets;
 #[path = "suite/batch.rs"]
 mod batch;
+#[path = "suite/brushed.rs"]
+mod brushed;
 #[path = "suite/check.rs"]
 mod check;
 #[path = "suite/cli_errors.rs"]

@@ -100,7 +100,9 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     }
     var frame = frame_from_normal(shading);
     if PLAN_ANISOTROPY == 1u && material.anisotropy != 0.0 {
-        frame = frame_from_tangent(shading, tangent.xyz, material.rotation_rad);
+        // The turn is towards the bitangent; `shading` is on the viewer's side, the bitangent is told from outside.
+        let is_mirrored = side * tangent.w < 0.0;
+        frame = frame_from_tangent(shading, tangent.xyz, select(1.0, -1.0, is_mirrored) * material.rotation_rad);
     }
     let surface = Surface(frame, normal, wo, coat_normal, place.is_back);
     var color = vec3f(1.0);

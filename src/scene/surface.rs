@@ -191,6 +191,7 @@ pub fn surfaces_at<T: Real>(
     let has_map = of_lane.textures[2] != NO_TEXTURE;
     let is_stretched = material.anisotropy.differs(T::zero()).any();
     let mut tangent = Vec3::zero();
+    let mut side = T::one();
     if has_map || is_stretched {
         tangent = between(
             &at_corners(hits, |triangle| {
@@ -198,31 +199,31 @@ pub fn surfaces_at<T: Real>(
             }),
             &weights,
         );
+        side = T::from_lanes(|lane| {
+            let vertices = geometry.vertices(triangle(lane));
+            let part =
+                |i: usize| T::Scalar::from_f64(f64::from(vertices[i].side())) * weights_of_lanes[i].as_ref()[lane];
+            part(0) + part(1) + part(2)
+        });
     }
     let coat_normal = bent_normal(Vec3::select(is_turned, -smoothed, smoothed), wo);
     let mut shading = coat_normal;
     if has_map {
         let outward = normalize_or(interpolated, Vec3::select(is_back, -normal, normal));
         let normals = [smoothed.to_each(), tangent.to_each(), outward.to_each()];
+        let sides = side.to_each();
         let mapped = Vec3::from_lanes(|lane| {
-            let sides = geometry
-                .vertices(triangle(lane))
-                .map(|vertex| T::Scalar::from_f64(f64::from(vertex.side())));
-            let part = |i: usize| sides[i] * weights_of_lanes[i].as_ref()[lane];
             let normals = [0, 1, 2].map(|i| normals[i].as_ref()[lane]);
-            mapped_normal(
-                textures,
-                of_lane,
-                uvs.as_ref()[lane],
-                normals,
-                part(0) + part(1) + part(2),
-            )
+            mapped_normal(textures, of_lane, uvs.as_ref()[lane], normals, sides.as_ref()[lane])
         });
         shading = bent_normal(Vec3::select(is_turned, -mapped, mapped), wo);
         shading = lifted_normal(shading, normal, wo);
     }
     let frame = if is_stretched {
-        frame_from_tangent(shading, tangent, material.rotation_rad)
+        // The turn is towards the bitangent; `shading` is on the viewer's side, the bitangent is told from outside.
+        let is_mirrored = T::select(is_turned, -side, side).less(T::zero());
+        let rotation_rad = T::select(is_mirrored, -material.rotation_rad, material.rotation_rad);
+        frame_from_tangent(shading, tangent, rotation_rad)
     } else {
         frame_from_normal(shading)
     };
