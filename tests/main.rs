@@ -107,6 +107,8 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/look_of_ggx.rs"]
+mod look_of_ggx;
 #[path = "suite/lut.rs"]
 mod lut;
 #[path = "suite/many_materials.rs"]
