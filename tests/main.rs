@@ -169,6 +169,8 @@ mod structure;
 mod study;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/terminator.rs"]
+mod terminator;
 #[path = "suite/textures.rs"]
 mod textures;
 #[path = "suite/tone.rs"]

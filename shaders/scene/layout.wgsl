@@ -49,7 +49,8 @@ struct Globals {
     // Where the triangles of what is around the model begin.
     around_triangle: u32,
     // To a multiple of 16 bytes.
-    unused: u32,
+    // 1: coarse triangles are taken as the round surfaces that their normals tell of.
+    rounds_surfaces: u32,
 }
 
 struct Material {

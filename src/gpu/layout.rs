@@ -68,8 +68,8 @@ pub struct Globals {
     pub around_root: u32,
     /// Where the triangles of what is around the model begin.
     pub around_triangle: u32,
-    /// To a multiple of 16 bytes.
-    pub unused: u32,
+    /// 1: coarse triangles are taken as the round surfaces that their normals tell of.
+    pub rounds_surfaces: u32,
 }
 
 /// What a dispatch renders of one tile.
@@ -150,7 +150,7 @@ impl Globals {
             least_reflections: settings.least_reflections,
             around_root,
             around_triangle,
-            unused: 0,
+            rounds_surfaces: u32::from(settings.rounds_surfaces),
         }
     }
 }

@@ -3,6 +3,7 @@
 mod alias;
 pub mod camera;
 pub mod catcher;
+mod coarse;
 mod convex;
 pub mod environment;
 pub mod facing;

@@ -420,6 +420,7 @@ fn settings() -> Settings {
         background: BackgroundKind::Environment,
         environment_rotation: [1.0, 0.0],
         environment_strength: 1.0,
+        rounds_surfaces: false,
         light_choice: SCENE.light_choice(),
         bounces: 8,
         least_reflections: 0,
