@@ -76,9 +76,9 @@ fn the_round_surface_keeps_the_furnace() {
     let model = file(&folder, "ball.glb", &shapes::sphere(12, 6));
     let mut alone = ball(model);
     let mut beside = alone.clone();
-    // A light that does not shine is in the way of none that is seen, but rays are traced.
+    // With a light that hardly shines and is in nothing's way rays are traced.
     beside.lighting.area_lights = vec![AreaLight {
-        strength: 0.0,
+        strength: 1e-6,
         distance: 40.0,
         width: 0.01,
         height: 0.01,
