@@ -13,6 +13,8 @@ mod analytic_scenes;
 mod assets;
 #[path = "suite/batch.rs"]
 mod batch;
+#[path = "suite/brushed.rs"]
+mod brushed;
 #[path = "suite/check.rs"]
 mod check;
 #[path = "suite/cli_errors.rs"]
@@ -107,6 +109,8 @@ mod lights;
 mod lobe_cases;
 #[path = "suite/lobe_views.rs"]
 mod lobe_views;
+#[path = "suite/look_of_ggx.rs"]
+mod look_of_ggx;
 #[path = "suite/lut.rs"]
 mod lut;
 #[path = "suite/many_materials.rs"]
@@ -167,6 +171,8 @@ mod structure;
 mod study;
 #[path = "suite/support.rs"]
 mod support;
+#[path = "suite/terminator.rs"]
+mod terminator;
 #[path = "suite/textures.rs"]
 mod textures;
 #[path = "suite/tone.rs"]

@@ -115,7 +115,7 @@ fn emitted_light(
 ) -> vec3f {
     var emission = material.emission;
     if PLAN_SPOT == 1u {
-        let cosine = dot(point.surface.normal, point.surface.wo);
+        let cosine = dot(point.flat, point.surface.wo);
         emission *= spot_share(material, select(cosine, -cosine, point.surface.is_inside));
     }
     if !samples_emitters() || is_mirror {
@@ -124,7 +124,7 @@ fn emitted_light(
     if globals.strategy == STRATEGY_LIGHT {
         return vec3f(0.0);
     }
-    let cosine = dot(point.surface.normal, point.surface.wo);
+    let cosine = dot(point.flat, point.surface.wo);
     return emission * lobe_share(lobe_density, light_density(material.light_luminance, cosine, distance));
 }
 
@@ -186,7 +186,7 @@ struct SampledLight {
 
 // True where it is proven that nothing lies ahead: outside a convex body.
 fn meets_nothing(point: SurfacePoint, wi: vec3f) -> bool {
-    return PLAN_INTERREFLECTION == 0u && !point.surface.is_inside && dot(point.surface.normal, wi) > 0.0;
+    return PLAN_INTERREFLECTION == 0u && !point.surface.is_inside && dot(point.flat, wi) > 0.0;
 }
 
 // What a contribution that was reflected so many times adds; `taken` grows by the luminance that is beyond the limit.

@@ -51,7 +51,9 @@ struct Globals {
     // The slot of the solid around the camera.
     camera_medium: u32,
     // To a multiple of 16 bytes.
-    unused: vec3u,
+    unused: vec2u,
+    // 1: coarse triangles are taken as the round surfaces that their normals tell of.
+    rounds_surfaces: u32,
     // Paths of few bounces at what is no mirror or clear glass play roulette below this throughput alone.
     roulette_floor: f32,
 }

@@ -12,6 +12,10 @@ struct SurfacePoint {
     uvs: Uvs,
     // The colour between the vertices; white where the material takes none.
     vertex_color: vec3f,
+    // The normal of the triangle itself, on the side of the viewer.
+    flat: vec3f,
+    // From the triangle to the round surface that its normals tell of.
+    rise: vec3f,
 }
 
 // Rounding of the position's three products and sums, with what the box test and the transforms add.
@@ -100,14 +104,34 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     }
     var frame = frame_from_normal(shading);
     if PLAN_ANISOTROPY == 1u && material.anisotropy != 0.0 {
-        frame = frame_from_tangent(shading, tangent.xyz, material.rotation_rad);
+        // The turn is towards the bitangent; `shading` is on the viewer's side, the bitangent is told from outside.
+        let is_mirrored = side * tangent.w < 0.0;
+        frame = frame_from_tangent(shading, tangent.xyz, select(1.0, -1.0, is_mirrored) * material.rotation_rad);
     }
-    let surface = Surface(frame, normal, wo, coat_normal, place.is_back);
+    var horizon = normal;
+    var rise = vec3f(0.0);
+    if PLAN_SHADOW_TERMINATOR == 1u && globals.rounds_surfaces == 1u && material.transmission_weight == 0.0 {
+        let turned = side < 0.0;
+        rise = rise_to_plane(place.position, bitcast<vec3f>(triangle.corners[0].xyz), a.normal, w, turned) +
+            rise_to_plane(place.position, bitcast<vec3f>(triangle.corners[1].xyz), b.normal, hit.u, turned) +
+            rise_to_plane(place.position, bitcast<vec3f>(triangle.corners[2].xyz), c.normal, hit.v, turned);
+        let is_round = dot(rise, normal) > place.error;
+        horizon = select(normal, coat_normal, is_round);
+        rise = select(vec3f(0.0), rise, is_round);
+    }
+    let surface = Surface(frame, horizon, wo, coat_normal, place.is_back);
     var color = vec3f(1.0);
     if PLAN_COLOR_TEXTURES == 1u && material.has_vertex_colors == 1u {
         color = vertex_color(a) * w + vertex_color(b) * hit.u + vertex_color(c) * hit.v;
     }
-    return SurfacePoint(surface, place.position, place.error, slot, uvs, color);
+    return SurfacePoint(surface, place.position, place.error, slot, uvs, color, normal, rise);
+}
+
+// From a position in a triangle to the tangent plane at one of its corners, where the position lies below that; times the
+// corner's weight (Hanika 2021). Where is_turned, the normal points away from the viewer.
+fn rise_to_plane(position: vec3f, corner: vec3f, normal: vec3f, weight: f32, is_turned: bool) -> vec3f {
+    let depth = dot(corner - position, normal);
+    return normal * (select(max(depth, 0.0), min(depth, 0.0), is_turned) * weight);
 }
 
 // The linear colour of a vertex that multiplies the material's.
@@ -147,8 +171,12 @@ fn position_error(p0: vec3f, p1: vec3f, p2: vec3f, weights: vec3f, normal: vec3f
 }
 
 // Where a ray from the surface towards `wi` starts: outside the bound on the position's error. Only a surface that
-// transmits lets it start behind.
+// transmits lets it start behind. A ray between the triangle's horizon and that of the round surface starts there.
 fn ray_origin(point: SurfacePoint, wi: vec3f, transmits: bool) -> vec3f {
-    let is_behind = transmits && dot(point.surface.normal, wi) < 0.0;
-    return point.position + point.surface.normal * select(point.error, -point.error, is_behind);
+    let is_below = dot(point.flat, wi) < 0.0;
+    let origin = point.position + point.flat * select(point.error, -point.error, transmits && is_below);
+    if PLAN_SHADOW_TERMINATOR == 1u && is_below {
+        return origin + point.rise;
+    }
+    return origin;
 }

@@ -475,7 +475,14 @@ impl App {
             .as_ref()
             .filter(|scene| scene.document.model == self.document.model);
         let model = model.map(|scene| scene.model.as_ref());
-        menu::sheet(ui.ctx(), &mut self.sheet, (&self.document, &material), model, actions);
+        let desk = (&self.document, &material);
+        menu::sheet(
+            ui.ctx(),
+            &mut self.sheet,
+            desk,
+            (model, self.shared.import_lobe),
+            actions,
+        );
         if let Some((purpose, path)) = self.dialogs.show(ui) {
             self.chosen(purpose, path);
         }

@@ -10,7 +10,7 @@ use super::settings::SettingOptions;
 use super::textures::{self, TextureArgument};
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
-use crate::document::of_model::materials_of;
+use crate::document::of_model::{import_report, materials_of};
 use crate::document::{Background, Document, ImportLobe, ParameterError, range};
 use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
@@ -196,7 +196,7 @@ impl SceneArguments {
         document.model = source.unwrap_or(document.model.clone());
         let model = session.assets().model(&document.model, &document.import)?;
         if let Some(path) = &self.import_report {
-            write_import_report(path, &model)?;
+            write_import_report(path, &model, self.import_lobe)?;
         }
         let has_materials = matches!(document.model, ModelSource::File(_));
         if takes_materials && has_materials {
@@ -297,10 +297,10 @@ fn warn(warnings: &[String]) {
 }
 
 /// What became of the parts of a model's file, as JSON.
-fn write_import_report(path: &Path, model: &Model) -> anyhow::Result<()> {
+fn write_import_report(path: &Path, model: &Model, lobe: ImportLobe) -> anyhow::Result<()> {
     let json = serde_json::json!({
         "model": model.name,
-        "entries": model.report.entries,
+        "entries": import_report(model, lobe).entries,
         "scenes": model.scenes,
         "variants": model.variants,
         "animation_seconds": model.duration_s,

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::MaterialSettings;
-use super::import::{MATCHED, ggx_from_geometric};
+use super::import::{MATCHED, ggx_under_texture};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
 use crate::optics::coat::coat_shape;
 use crate::optics::fresnel::Fresnel;
@@ -136,7 +136,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
 /// The roughness that a texture's value gives: such values are meant for GGX.
 fn textured_roughness(settings: &MaterialSettings, share: f32) -> f32 {
     if settings.lobe.traits().width == Width::Roughness {
-        let of_ggx = ggx_from_geometric(settings.roughness) * share;
+        let of_ggx = ggx_under_texture(settings.roughness) * share;
         return table_lookup(&*MATCHED, 0, MATCHED_NODES, of_ggx);
     }
     settings.roughness * share
@@ -158,7 +158,7 @@ fn compile_one(settings: &MaterialSettings, textures: SlotTextures, tables: &mut
     }
     if material.textures[1] != NO_TEXTURE && settings.lobe.traits().width == Width::Roughness {
         // A texture's values are meant for GGX.
-        material.texture_roughness = ggx_from_geometric(settings.roughness);
+        material.texture_roughness = ggx_under_texture(settings.roughness);
         material.roughness_table = append_table(tables, &*MATCHED);
     }
     if material.coat_weight > 0.0 {

@@ -3,27 +3,40 @@
 
 use std::sync::LazyLock;
 
-use rayon::prelude::*;
-
 use super::MaterialSettings;
-use crate::analysis::fit::{Measure, roughness, total_variation};
 use crate::named::named;
 use crate::optics::lobe::Lobe;
-use crate::optics::lobe::model::{LobeModel, NORMAL, roughness_min};
 use crate::optics::material::MATCHED_NODES;
 use crate::optics::table::table_lookup;
+use crate::scene::Slot;
 
 named! {
     /// The lobe that a model's materials get.
     #[derive(Default)]
     ImportLobe {
         #[default]
-        Geometric, "geometric", "Geometric", "The geometric lobe, its roughness matched to the look of GGX.";
+        Geometric, "geometric", "Geometric",
+            "The geometric lobe, its roughness matched to the look of GGX; GGX itself where it is rougher than 0.7.";
         Ggx, "ggx", "GGX", "GGX with the roughness of the file.";
     }
 }
 
 impl ImportLobe {
+    /// The lobe of a slot's material: GGX where any of it is rougher than the geometric lobe can be. Of a textured slot the
+    /// texels count, if the factor is 1, which alone is a factor that the geometric lobe has beyond its reach.
+    pub fn of_slot(self, slot: &Slot) -> Self {
+        if slot.specular.max(slot.metalness).max(slot.transmission) == 0.0 {
+            return self;
+        }
+        let is_whole = slot.roughness == 1.0;
+        self.at_roughest(if is_whole { slot.roughest_texel } else { slot.roughness })
+    }
+
+    /// The lobe of a material that is as rough as this at its roughest: beyond [`ROUGHNESS_MAX`] it is GGX.
+    pub fn at_roughest(self, roughest: f32) -> Self {
+        if roughest > ROUGHNESS_MAX { Self::Ggx } else { self }
+    }
+
     /// Gives a material that has the roughness of a file this lobe.
     pub fn apply(self, material: &mut MaterialSettings) {
         match self {
@@ -36,26 +49,24 @@ impl ImportLobe {
     }
 }
 
-/// Steps of the scan for a roughness, and relative accuracy of its search.
-const SCAN: (usize, f64) = (12, 2e-3);
+/// The roughest GGX that the geometric lobe can be as wide as.
+pub const ROUGHNESS_MAX: f32 = 0.7;
 
-/// The geometric lobe's roughness that comes closest to the look of GGX, by total variation at normal incidence, at
-/// [`MATCHED_NODES`] roughnesses of GGX from 0 to 1; for the curve of new materials. It never falls.
+/// The angle in degrees within which half of what GGX of this roughness mirrors lies, under a view along the normal: half
+/// the facets that mirror upwards are tilted by less than half of it.
+fn ggx_median_deg(roughness: f64) -> f64 {
+    let square = roughness.powi(4);
+    2.0 * (square / (1.0 + 2.0 * square)).sqrt().atan().to_degrees()
+}
+
+/// The geometric lobe's roughness at which half of what it mirrors lies within the same angle as of GGX, at
+/// [`MATCHED_NODES`] roughnesses of GGX from 0 to 1, for the curve of new materials (mathematics, section 9).
 pub static MATCHED: LazyLock<[f32; MATCHED_NODES]> = LazyLock::new(|| {
-    let default = MaterialSettings::default();
-    let nearest = |node: usize| {
-        let ggx = LobeModel::new(Lobe::Ggx, node as f64 / (MATCHED_NODES - 1) as f64, default.curve);
-        let geometric = LobeModel::new(Lobe::Geometric, 1.0, default.curve);
-        let target = |wi| ggx.evaluate(NORMAL, wi)[0];
-        let distance = |r: f64| total_variation(&target, &geometric.with_roughness(r), 0.0, Measure::Evaluate);
-        roughness::minimum([roughness_min(Lobe::Geometric), 1.0], SCAN.0, SCAN.1, &distance).roughness
-    };
-    let found: Vec<f64> = (1..MATCHED_NODES).into_par_iter().map(nearest).collect();
-    let mut matched = [0.0_f32; MATCHED_NODES];
-    for (node, roughness) in found.into_iter().enumerate() {
-        matched[node + 1] = matched[node].max(roughness as f32);
-    }
-    matched
+    std::array::from_fn(|node| {
+        let median = ggx_median_deg(node as f64 / (MATCHED_NODES - 1) as f64) / 45.0;
+        // The root of median = R (3 + 4 R)/7.
+        (((9.0 + 112.0 * median).sqrt() - 3.0) / 8.0).min(1.0) as f32
+    })
 });
 
 /// The geometric lobe's roughness that looks like this one of GGX, both in [0, 1].
@@ -72,4 +83,14 @@ pub fn ggx_from_geometric(roughness: f32) -> f32 {
     let Some(before) = node.checked_sub(1) else { return 0.0 };
     let (low, high) = (MATCHED[before], MATCHED[node]);
     (before as f32 + (roughness - low) / (high - low)) / last
+}
+
+/// The roughness of GGX that a texture multiplies where the geometric lobe has this one: all of it at 1, so that no texel is
+/// cut off.
+pub fn ggx_under_texture(roughness: f32) -> f32 {
+    if roughness >= 1.0 {
+        1.0
+    } else {
+        ggx_from_geometric(roughness)
+    }
 }

@@ -162,7 +162,7 @@ impl MaterialSettings {
             extra: slot.kept.clone(),
             ..Self::default()
         };
-        lobe.apply(&mut material);
+        lobe.of_slot(slot).apply(&mut material);
         material.textures = TextureUse {
             color: slot.base_color_texture.is_some() || slot.has_vertex_colors,
             roughness: slot.metallic_roughness_texture.is_some(),

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
+use super::import::ROUGHNESS_MAX;
 use super::{AreaLight, AreaLightShape, Bookmark, CameraSettings, Document, ImportLobe, MaterialSettings, range};
-use crate::scene::{LightKind, Model, ModelCamera, ModelLight};
+use crate::scene::{Fate, ImportReport, LightKind, Model, ModelCamera, ModelLight};
 
 /// Sides of the squares that stand for lights of no size, bounding radii.
 const LIGHT_SIDE: f64 = 0.1;
@@ -16,6 +17,26 @@ const FAR_SIDE: f64 = 4.0;
 pub fn materials_of(model: &Model, lobe: ImportLobe) -> Vec<MaterialSettings> {
     let slots = model.slots.iter();
     slots.map(|slot| MaterialSettings::from_slot(slot, lobe)).collect()
+}
+
+/// What became of the parts of a model's file whose materials got this lobe.
+pub fn import_report(model: &Model, lobe: ImportLobe) -> ImportReport {
+    let mut report = model.report.clone();
+    if lobe == ImportLobe::Ggx {
+        return report;
+    }
+    for slot in &model.slots {
+        let mut tell = |what: &str| report.note(Fate::Approximated, what, &slot.name);
+        if lobe.of_slot(slot) != lobe {
+            tell("a roughness above 0.7, for which the lobe is GGX");
+        } else if slot.transmission > 0.0 && slot.roughness > 0.0 {
+            tell("a rough refraction, as wide as that of GGX but without its tail");
+        }
+        if slot.coat > 0.0 && slot.coat_roughness > ROUGHNESS_MAX {
+            tell("a coat's roughness above 0.7, taken as 0.7");
+        }
+    }
+    report
 }
 
 impl Document {

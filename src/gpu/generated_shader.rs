@@ -128,6 +128,13 @@ fn lobe_registry() -> String {
         Width::Alpha => "roughness * roughness".to_owned(),
     };
     of_lobe("lobe_width(lobe: u32, roughness: f32) -> f32", &width, "1.0");
+    let refracting = |traits: LobeTraits| match traits.width {
+        Width::Fixed => "roughness".to_owned(),
+        Width::Roughness => "refracting_roughness_of(roughness, share)".to_owned(),
+        Width::Alpha => "roughness * sqrt(share)".to_owned(),
+    };
+    let signature = "refracting_roughness_by(lobe: u32, roughness: f32, share: f32) -> f32";
+    of_lobe(signature, &refracting, "roughness");
     text
 }
 

@@ -72,7 +72,9 @@ pub struct Globals {
     /// The slot of the solid around the camera; [`NO_MEDIUM`] where there is none.
     pub camera_medium: u32,
     /// To a multiple of 16 bytes.
-    pub unused: [u32; 3],
+    pub unused: [u32; 2],
+    /// 1: coarse triangles are taken as the round surfaces that their normals tell of.
+    pub rounds_surfaces: u32,
     /// Early roulette is played below this throughput alone.
     pub roulette_floor: f32,
 }
@@ -160,7 +162,8 @@ impl Globals {
             around_root,
             around_triangle,
             camera_medium: settings.camera_medium.unwrap_or(NO_MEDIUM),
-            unused: [0; 3],
+            unused: [0; 2],
+            rounds_surfaces: u32::from(settings.rounds_surfaces),
             roulette_floor: settings.roulette_floor as f32,
         }
     }

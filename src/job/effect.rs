@@ -68,6 +68,7 @@ effects! {
     Ground "ground";
     ShadowCatcher "shadow-catcher" flag "PLAN_SHADOW_CATCHER";
     Interreflection "interreflection" flag "PLAN_INTERREFLECTION";
+    ShadowTerminator "shadow-terminator" flag "PLAN_SHADOW_TERMINATOR";
     Base "base" flag "PLAN_BASE";
     Specular "specular" flag "PLAN_SPECULAR";
     Lobe "lobe" choice "PLAN_LOBE";

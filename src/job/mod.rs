@@ -74,6 +74,8 @@ pub struct Settings {
     pub environment_rotation: [f64; 2],
     /// Factor of the environment's radiance.
     pub environment_strength: f64,
+    /// Coarse triangles are taken as the round surfaces that their normals tell of.
+    pub rounds_surfaces: bool,
     /// How one light sample is shared out.
     pub light_choice: LightChoice,
     /// Reflections a path may have.

@@ -121,6 +121,7 @@ impl Compiler {
             catcher,
             environment_rotation: cosine_and_sine(document.lighting.rotation_deg),
             environment_strength,
+            rounds_surfaces: geometry.is_coarse() && switches.get(EffectId::ShadowTerminator) != Switch::Off,
             light_choice: LightChoice::new(&environment, environment_strength, &lights, sampled),
             bounces,
             roulette_floor: roulette_floor(&materials),

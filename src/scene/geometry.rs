@@ -7,6 +7,7 @@ use fearless_simd::Level;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::coarse::is_coarse;
 use super::convex::is_convex;
 use super::ground::Ground;
 use super::hierarchy::{Doors, Found, PACKET, Packet, Wide};
@@ -42,6 +43,8 @@ pub struct Geometry {
     model_slots: u32,
     /// The model is one convex body.
     model_is_convex: bool,
+    /// See [`Geometry::is_coarse`].
+    model_is_coarse: bool,
     /// The middle of the model's bounding box in the world.
     pub center_world: DVec3,
     /// The model's bounding radius in the world: from that middle to the farthest vertex of a triangle; 1 where there
@@ -95,6 +98,7 @@ impl Geometry {
         part.build(loading)?;
         Ok(Self {
             model_is_convex: is_convex(&part.positions, &part.triangles),
+            model_is_coarse: is_coarse(&part),
             model: Arc::new(part),
             around: Part::default(),
             model_slots: model.slots.len() as u32,
@@ -131,6 +135,11 @@ impl Geometry {
     /// No ray that leaves a face on its outside meets anything: the scene is one convex body.
     pub fn is_convex(&self) -> bool {
         self.model_is_convex && self.around.is_empty()
+    }
+
+    /// Smooth normals lean so far from the model's triangles that shadows show where these end.
+    pub fn is_coarse(&self) -> bool {
+        self.model_is_coarse
     }
 
     /// How many triangles there are.

@@ -122,6 +122,10 @@ fn finish(model: &mut Model) {
     let radius = framing.world_units_per_unit as f32;
     for slot in &mut model.slots {
         slot.attenuation_distance /= radius;
+        let texture = slot
+            .metallic_roughness_texture
+            .and_then(|place| model.textures.get(place.texture));
+        slot.roughest_texel = texture.map_or(1.0, |texture| texture.brightest(1));
     }
     (model.center, model.radius) = (framing.center_world.to_array(), framing.world_units_per_unit);
     let all = model.mesh.triangles.len();

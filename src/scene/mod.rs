@@ -4,6 +4,7 @@ mod alias;
 mod basis;
 pub mod camera;
 pub mod catcher;
+mod coarse;
 mod convex;
 pub mod environment;
 pub mod facing;

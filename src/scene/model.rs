@@ -286,6 +286,8 @@ pub struct Slot {
     pub base_color_texture: Option<TextureRef>,
     /// Roughness in green, metalness in blue (linear values).
     pub metallic_roughness_texture: Option<TextureRef>,
+    /// The largest roughness in its texture, in [0, 1]; 1 where there is none.
+    pub roughest_texel: f32,
     /// Tangent-space normals (linear values, 0…255 for −1…1, green upwards).
     pub normal_texture: Option<TextureRef>,
     /// Scales x and y of the normal texture's vectors.
@@ -330,6 +332,7 @@ impl Default for Slot {
             attenuation_distance: f32::INFINITY,
             base_color_texture: None,
             metallic_roughness_texture: None,
+            roughest_texel: 1.0,
             normal_texture: None,
             normal_scale: 1.0,
             emissive_texture: None,
@@ -450,6 +453,19 @@ impl Texture {
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.rgba8[..]) + size_of_val(&self.rgba16[..])
+    }
+
+    /// The largest value of a channel, in [0, 1]; 0 where there is no texel.
+    pub fn brightest(&self, channel: usize) -> f32 {
+        fn largest<N: Copy + Ord + Into<f32>>(numbers: &[N], channel: usize) -> f32 {
+            let values = numbers.iter().skip(channel).step_by(4);
+            values.max().map_or(0.0, |largest| (*largest).into())
+        }
+        if self.rgba16.is_empty() {
+            largest(&self.rgba8, channel) / 255.0
+        } else {
+            largest(&self.rgba16, channel) / 65535.0
+        }
     }
 
     /// Whether a texel is not opaque.

@@ -32,16 +32,71 @@ pub struct SurfacePoint<T: Real> {
     pub uvs: T::Each<Uvs<T::Scalar>>,
     /// The colour between the vertices, linear RGB; white where the material takes none.
     pub vertex_color: Vec3<T>,
+    /// Where the surface is taken as round; see [`SurfacePoint::round`].
+    pub rounded: Option<Rounded<T>>,
+}
+
+/// A surface point on a coarse triangle whose normals tell of a round surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Rounded<T> {
+    /// The normal of the triangle itself, on the side of the viewer.
+    pub flat: Vec3<T>,
+    /// From the triangle to the round surface.
+    pub rise: Vec3<T>,
 }
 
 impl<T: Real> SurfacePoint<T> {
+    /// The normal of the triangle itself, on the side of the viewer.
+    #[inline(always)]
+    pub fn flat_normal(&self) -> Vec3<T> {
+        self.rounded.map_or(self.surface.normal, |rounded| rounded.flat)
+    }
+
     /// Where a ray from the surface towards `wi` starts: outside the bound on the position's error. Only a surface that
-    /// `transmits` lets it start behind.
+    /// `transmits` lets it start behind. A ray between the triangle's horizon and that of the round surface starts there.
     #[inline(always)]
     pub fn ray_origin(&self, wi: Vec3<T>, transmits: T::Mask) -> Vec3<T> {
-        let is_behind = transmits & self.surface.normal.dot(wi).less(T::zero());
-        self.position + self.surface.normal * T::select(is_behind, -self.error, self.error)
+        let flat = self.flat_normal();
+        let is_below = flat.dot(wi).less(T::zero());
+        let origin = self.position + flat * T::select(transmits & is_below, -self.error, self.error);
+        match self.rounded {
+            None => origin,
+            Some(Rounded { rise, .. }) => Vec3::select(is_below, origin + rise, origin),
+        }
     }
+
+    /// Takes the horizon of the smooth normal for that of the triangle where the triangle lies below the surface that its
+    /// normals tell of. So no light ends at the edges of triangles that shines on the round surface. Source: Hanika,
+    /// "Hacking the Shadow Terminator", Ray Tracing Gems II (2021), chapter 4.
+    #[inline(always)]
+    pub fn round(&mut self, geometry: &Geometry, hits: &Hits<T>) {
+        let weights = hit_weights::<T>(hits);
+        let corners = at_corners(hits, |triangle| geometry.corners(triangle));
+        let normals = at_corners(hits, |triangle| geometry.vertices(triangle).map(|vertex| vertex.normal));
+        let flat = self.surface.normal;
+        let is_turned = between(&normals, &weights).dot(flat).less(T::zero());
+        let part = |i: usize| rise_to_plane(self.position, corners[i], normals[i], weights[i], is_turned);
+        let rise = part(0) + part(1) + part(2);
+        let is_round = self.error.less(rise.dot(flat));
+        self.surface.normal = Vec3::select(is_round, self.surface.coat_normal, flat);
+        let rise = Vec3::select(is_round, rise, Vec3::zero());
+        self.rounded = Some(Rounded { flat, rise });
+    }
+}
+
+/// From a position in a triangle to the tangent plane at one of its corners, where the position lies below that; times the
+/// corner's weight. Where `is_turned`, the normal points away from the viewer.
+#[inline(always)]
+pub fn rise_to_plane<T: Real>(
+    position: Vec3<T>,
+    corner: Vec3<T>,
+    normal: Vec3<T>,
+    weight: T,
+    is_turned: T::Mask,
+) -> Vec3<T> {
+    let depth = (corner - position).dot(normal);
+    let depth = T::select(is_turned, depth.min(T::zero()), depth.max(T::zero()));
+    normal * (depth * weight)
 }
 
 /// The shading normal, bent towards the viewer where interpolation turned it away.
@@ -191,6 +246,7 @@ pub fn surfaces_at<T: Real>(
     let has_map = of_lane.textures[2] != NO_TEXTURE;
     let is_stretched = material.anisotropy.differs(T::zero()).any();
     let mut tangent = Vec3::zero();
+    let mut side = T::one();
     if has_map || is_stretched {
         tangent = between(
             &at_corners(hits, |triangle| {
@@ -198,31 +254,31 @@ pub fn surfaces_at<T: Real>(
             }),
             &weights,
         );
+        side = T::from_lanes(|lane| {
+            let vertices = geometry.vertices(triangle(lane));
+            let part =
+                |i: usize| T::Scalar::from_f64(f64::from(vertices[i].side())) * weights_of_lanes[i].as_ref()[lane];
+            part(0) + part(1) + part(2)
+        });
     }
     let coat_normal = bent_normal(Vec3::select(is_turned, -smoothed, smoothed), wo);
     let mut shading = coat_normal;
     if has_map {
         let outward = normalize_or(interpolated, Vec3::select(is_back, -normal, normal));
         let normals = [smoothed.to_each(), tangent.to_each(), outward.to_each()];
+        let sides = side.to_each();
         let mapped = Vec3::from_lanes(|lane| {
-            let sides = geometry
-                .vertices(triangle(lane))
-                .map(|vertex| T::Scalar::from_f64(f64::from(vertex.side())));
-            let part = |i: usize| sides[i] * weights_of_lanes[i].as_ref()[lane];
             let normals = [0, 1, 2].map(|i| normals[i].as_ref()[lane]);
-            mapped_normal(
-                textures,
-                of_lane,
-                uvs.as_ref()[lane],
-                normals,
-                part(0) + part(1) + part(2),
-            )
+            mapped_normal(textures, of_lane, uvs.as_ref()[lane], normals, sides.as_ref()[lane])
         });
         shading = bent_normal(Vec3::select(is_turned, -mapped, mapped), wo);
         shading = lifted_normal(shading, normal, wo);
     }
     let frame = if is_stretched {
-        frame_from_tangent(shading, tangent, material.rotation_rad)
+        // The turn is towards the bitangent; `shading` is on the viewer's side, the bitangent is told from outside.
+        let is_mirrored = T::select(is_turned, -side, side).less(T::zero());
+        let rotation_rad = T::select(is_mirrored, -material.rotation_rad, material.rotation_rad);
+        frame_from_tangent(shading, tangent, rotation_rad)
     } else {
         frame_from_normal(shading)
     };
@@ -239,6 +295,7 @@ pub fn surfaces_at<T: Real>(
         slot,
         uvs,
         vertex_color,
+        rounded: None,
     }
 }
 

@@ -321,7 +321,7 @@ fn white_radiance(environment: &Environment, normal: Vec3<f64>) -> f64 {
 fn built_in_lights_are_right_for_exposure_0() {
     let sky = sky(&SkyParams::default()).unwrap();
     let table = white_radiance(&sky, vec3(0.0, 1.0, 0.0));
-    assert_near(table, 1.0, 0.05, "a white table under the sky");
+    assert_near(table, 1.0, 0.01, "a white table under the sky");
     let studio = studio().unwrap();
     let towards_key = white_radiance(&studio, vec3(-0.62, 0.6, 0.5).normalize());
     assert!(

@@ -299,6 +299,8 @@ fn calls_for(effect: &str) -> Calls {
             ],
         ),
         "denoising" | "guides" => (metal, &[|d, _| d.view.denoise = Denoise::Fast]),
+        // A file's triangles do: `terminator.rs`.
+        "shadow-terminator" => (metal, &[]),
         // Always there.
         "variance" => (metal, &[]),
         // Only where layers are written, which no document says.

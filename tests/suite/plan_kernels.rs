@@ -32,6 +32,7 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
         "light-sampling" | "emitter-sampling" | "interreflection" | "firefly-clamp" | "guides" => return,
         "depth-of-field" => return settings.camera.lens_radius = 0.0,
         "shadow-catcher" => return settings.catcher = None,
+        "shadow-terminator" => return settings.rounds_surfaces = false,
         "lobe" => |material, lobe| material.lobe = lobe,
         "curve" => |material, curve| material.curve = curve,
         "horizon" => |material, horizon| material.horizon = horizon,

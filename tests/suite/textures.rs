@@ -48,7 +48,7 @@ pub fn textured_square(material: &Value, pictures: &[RgbaImage], sampler: &Value
     (buffer, document)
 }
 
-fn load(material: &Value, pictures: &[RgbaImage], sampler: &Value) -> Model {
+pub(super) fn load(material: &Value, pictures: &[RgbaImage], sampler: &Value) -> Model {
     let (buffer, document) = textured_square(material, pictures, sampler);
     Folder::new().load_glb(&document, &buffer).expect("loads")
 }

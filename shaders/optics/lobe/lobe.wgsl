@@ -37,9 +37,24 @@ fn stretch_from_anisotropy(anisotropy: f32) -> f32 {
     return sqrt((1.0 + s) / (1.0 - s));
 }
 
+// The roughness at which a lobe whose width goes with it is as wide as facets make it that turn the light by this share.
+fn refracting_roughness_of(roughness: f32, share: f32) -> f32 {
+    let square = roughness * roughness;
+    let turn = share * (3.0 * roughness + 3.2 * square + 2.2 * square * square);
+    return 2.0 * turn / (3.0 + sqrt(9.0 + 16.0 * turn));
+}
+
+fn refracting_roughness(lobe: u32, roughness: f32, eta: f32) -> f32 {
+    return min(refracting_roughness_by(lobe, roughness, 0.5 * abs(1.0 - 1.0 / eta)), 1.0);
+}
+
 fn is_mirror(shape: LobeShape) -> bool {
     var width = lobe_width(shape.lobe, shape.roughness);
-    if refracts_at_facets(shape) { width *= abs(1.0 - 1.0 / shape.eta); }
+    if refracts_at_facets(shape) {
+        width *= abs(1.0 - 1.0 / shape.eta);
+    } else if shape.eta != 0.0 {
+        width = lobe_width(shape.lobe, refracting_roughness(shape.lobe, shape.roughness, shape.eta));
+    }
     return width < MIRROR_WIDTH;
 }
 
@@ -51,33 +66,43 @@ struct LobeView {
     frame: Frame,
     normal: vec3f,
     wo: vec3f,
+    // Of the lobe that is seen reflected there.
+    roughness: f32,
 }
 
 fn lobe_view(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f) -> LobeView {
     if shape.eta == 0.0 {
-        return LobeView(frame, surface_normal, wo);
+        return LobeView(frame, surface_normal, wo, shape.roughness);
     }
     if refracts_at_facets(shape) {
-        return LobeView(frame, -surface_normal, wo);
+        return LobeView(frame, -surface_normal, wo, shape.roughness);
     }
     let behind = refracted(wo, frame.normal, shape.eta);
     if behind.is_total {
-        return LobeView(frame, surface_normal, wo);
+        return LobeView(frame, surface_normal, wo, shape.roughness);
     }
     let turned = Frame(frame.tangent, -frame.bitangent, -frame.normal);
-    return LobeView(turned, -surface_normal, mirrored_about(behind.wi, frame.normal));
+    let roughness = refracting_roughness(shape.lobe, shape.roughness, shape.eta);
+    return LobeView(turned, -surface_normal, mirrored_about(behind.wi, frame.normal), roughness);
+}
+
+fn seen_lobe(shape: LobeShape, view: LobeView) -> LobeShape {
+    var seen = shape;
+    seen.roughness = view.roughness;
+    return seen;
 }
 
 fn lobe_sample(shape: LobeShape, frame: Frame, surface_normal: vec3f, wo: vec3f, xi: vec3f) -> LobeSample {
     let view = lobe_view(shape, frame, surface_normal, wo);
-    var raw = raw_sample(shape, view.frame, view.wo, xi);
+    let seen = seen_lobe(shape, view);
+    var raw = raw_sample(seen, view.frame, view.wo, xi);
     var weight = 0.0;
     if refracts_at_facets(shape) {
         let behind = facet_refracted(wo, raw, shape.eta);
         raw = behind.wi;
         weight = select(facet_weight(shape, frame, wo, raw), 0.0, behind.is_total);
     } else {
-        weight = raw_weight(shape, view.frame, view.wo, raw);
+        weight = raw_weight(seen, view.frame, view.wo, raw);
         if is_hemispherical(shape.lobe) {
             weight = select(0.0, weight, dot(view.frame.normal, raw) > 0.0);
         }
@@ -125,9 +150,10 @@ fn raw_evaluate(shape: LobeShape, view: LobeView, wi: vec3f) -> vec2f {
     } else if is_hemispherical(shape.lobe) && dot(view.frame.normal, wi) <= 0.0 {
         return vec2f(0.0);
     }
-    let density = raw_density(shape, view.frame, view.wo, mirrored) * factor;
+    let seen = seen_lobe(shape, view);
+    let density = raw_density(seen, view.frame, view.wo, mirrored) * factor;
     if at_facets {
         return vec2f(density * facet_weight(shape, view.frame, view.wo, wi), density);
     }
-    return vec2f(density * raw_weight(shape, view.frame, view.wo, wi), density);
+    return vec2f(density * raw_weight(seen, view.frame, view.wo, wi), density);
 }

@@ -4,11 +4,17 @@ use egui::{Align, Layout, RichText, Ui};
 
 use crate::app::actions::Action;
 use crate::app::kit::{theme, widgets};
-use crate::document::Document;
-use crate::scene::{Fate, Model, ModelOptions};
+use crate::document::of_model::import_report;
+use crate::document::{Document, ImportLobe};
+use crate::scene::{Fate, ImportReport, Model, ModelOptions};
 
 /// Shows the sheet of a model. What is chosen is asked for as an action; true where the sheet is done with.
-pub(in crate::app) fn show(ui: &mut Ui, document: &Document, model: Option<&Model>, actions: &mut Vec<Action>) -> bool {
+pub(in crate::app) fn show(
+    ui: &mut Ui,
+    document: &Document,
+    (model, lobe): (Option<&Model>, ImportLobe),
+    actions: &mut Vec<Action>,
+) -> bool {
     ui.set_width(560.0);
     let mut is_done = false;
     ui.horizontal(|ui| {
@@ -30,7 +36,7 @@ pub(in crate::app) fn show(ui: &mut Ui, document: &Document, model: Option<&Mode
         actions.push(Action::ImportModel(document.model.clone(), options));
     }
     ui.add_space(theme::GAP);
-    entries(ui, model);
+    entries(ui, &import_report(model, lobe));
     is_done
 }
 
@@ -81,14 +87,14 @@ fn choices(ui: &mut Ui, model: &Model, options: &mut ModelOptions) {
 }
 
 /// What became of the parts of the file, what is amiss first.
-fn entries(ui: &mut Ui, model: &Model) {
-    if model.report.entries.is_empty() {
+fn entries(ui: &mut Ui, report: &ImportReport) {
+    if report.entries.is_empty() {
         widgets::note(ui, "A model that comes with the program: nothing to tell.");
         return;
     }
     egui::ScrollArea::vertical().max_height(420.0).show(ui, |ui| {
         for &fate in Fate::ALL.iter().rev() {
-            let mut entries = model.report.of(fate).peekable();
+            let mut entries = report.of(fate).peekable();
             if entries.peek().is_none() {
                 continue;
             }

@@ -202,7 +202,7 @@ pub(in crate::app) fn sheet(
     ctx: &egui::Context,
     sheet: &mut Sheet,
     desk: (&Document, &MaterialSettings),
-    model: Option<&Model>,
+    (model, lobe): (Option<&Model>, ImportLobe),
     actions: &mut Vec<Action>,
 ) {
     let (document, material) = desk;
@@ -213,7 +213,7 @@ pub(in crate::app) fn sheet(
             is_done = palette::show(ui, search, selected, document, material, actions);
         }),
         Sheet::ModelFile => egui::Modal::new(egui::Id::unique("model file")).show(ctx, |ui| {
-            is_done = import::show(ui, document, model, actions);
+            is_done = import::show(ui, document, (model, lobe), actions);
         }),
         Sheet::Shortcuts => egui::Modal::new(egui::Id::unique("shortcuts")).show(ctx, shortcuts),
         Sheet::About => egui::Modal::new(egui::Id::unique("about")).show(ctx, about),

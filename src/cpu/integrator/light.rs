@@ -113,7 +113,7 @@ impl<T: Real> Integrator<'_, T> {
         arrival: &Arrival<T>,
         paths: &mut Paths<T::Scalar, R>,
     ) -> Vec3<T> {
-        let cosine = point.surface.normal.dot(point.surface.wo);
+        let cosine = point.flat_normal().dot(point.surface.wo);
         let mut emission = material.emission;
         if is_spot(material) {
             let facing = T::select(point.surface.is_inside, -cosine, cosine);

@@ -194,7 +194,12 @@ impl<'a, T: Real> Integrator<'a, T> {
     ) -> SurfacePoint<T> {
         let hits: Hits<T> = arrival.group.each(&paths.state.hits);
         let materials = (&self.materials[slot as usize], &self.of_lane[slot as usize]);
-        let point = surfaces_at(self.geometry, slot, materials, self.textures, &hits, arrival.direction);
+        let mut point = surfaces_at(self.geometry, slot, materials, self.textures, &hits, arrival.direction);
+        // Behind a surface that transmits, light goes on from the triangle itself.
+        let transmits = T::Scalar::zero().less(materials.1.transmission_weight);
+        if self.settings.rounds_surfaces && !transmits.any() {
+            point.round(self.geometry, &hits);
+        }
         arrival.members.record(&mut paths.found, arrival.on, |lane| Event::Hit {
             bounce: arrival.bounce,
             triangle: hits.as_ref()[lane].triangle,
@@ -211,7 +216,7 @@ impl<'a, T: Real> Integrator<'a, T> {
     /// Where it is proven that nothing lies ahead: outside a convex body.
     #[inline(always)]
     fn meets_nothing(&self, point: &SurfacePoint<T>, wi: Vec3<T>) -> T::Mask {
-        let is_outside = !point.surface.is_inside & T::zero().less(point.surface.normal.dot(wi));
+        let is_outside = !point.surface.is_inside & T::zero().less(point.flat_normal().dot(wi));
         T::Mask::splat(!self.is_interreflecting) & is_outside
     }
 

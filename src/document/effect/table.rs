@@ -147,6 +147,19 @@ pub static EFFECTS: &[Effect] = &[
         remove: None,
     },
     Effect {
+        id: EffectId::ShadowTerminator,
+        label: "Shadow terminator",
+        help: "Light that shines on the round surface that smooth normals tell of, though not on its coarse triangles.",
+        decide: |facts| {
+            if facts.settings.rounds_surfaces {
+                Decision::on("smooth normals lean away from coarse triangles")
+            } else {
+                Decision::off("the triangles are as fine as their normals are smooth")
+            }
+        },
+        remove: Some(|document| document.render.effects.set(EffectId::ShadowTerminator, Switch::Off)),
+    },
+    Effect {
         id: EffectId::Base,
         label: "Diffuse base",
         help: "Light that enters the surface and leaves it in all directions (Lambert).",

@@ -174,6 +174,27 @@ pub fn lobe_width<T: Real>(lobe: Lobe, roughness: T) -> T {
     }
 }
 
+/// The roughness at which a lobe is as wide as one of this roughness that is turned about a refracted direction. Facets turn
+/// what they refract by |1 − 1/η| of their tilt, what they mirror by twice the tilt (mathematics, section 7).
+#[inline(always)]
+pub fn refracting_roughness<T: Real>(lobe: Lobe, roughness: T, eta: T) -> T {
+    let number = T::from_f64;
+    let share = (T::one() - T::one() / eta).abs() * number(0.5);
+    match lobe.traits().width {
+        Width::Fixed => roughness,
+        Width::Roughness => {
+            let square = roughness * roughness;
+            let tilt = roughness * number(3.0) + square * number(3.2) + square * square * number(2.2);
+            let turn = share * tilt;
+            // The positive root of 4 x² + 3 x = turn, so written that nothing cancels.
+            let root = (number(9.0) + number(16.0) * turn).sqrt();
+            (turn + turn) / (number(3.0) + root)
+        }
+        Width::Alpha => roughness * share.sqrt(),
+    }
+    .min(T::one())
+}
+
 /// Draws a direction from one lobe.
 pub type RawSampler<T> = for<'a> fn(&LobeShape<'a, T>, &Frame<T>, Vec3<T>, [T; 3]) -> Vec3<T>;
 
@@ -267,6 +288,8 @@ pub fn is_mirror<T: Real>(shape: &LobeShape<'_, T>) -> T::Mask {
     let mut width = lobe_width(shape.lobe, shape.roughness);
     if refracts_at_facets(shape) {
         width = width * (T::one() - T::one() / shape.eta).abs();
+    } else if shape.refracts() {
+        width = lobe_width(shape.lobe, refracting_roughness(shape.lobe, shape.roughness, shape.eta));
     }
     width.less(T::from_f64(MIRROR_WIDTH))
 }
@@ -286,11 +309,25 @@ pub struct LobeView<T> {
     pub normal: Vec3<T>,
     /// Towards the viewer whose mirror direction is the lobe's middle; the real viewer where facets refract.
     pub wo: Vec3<T>,
+    /// The roughness of the lobe that is seen reflected there.
+    pub roughness: T,
+}
+
+impl<T: Real> LobeView<T> {
+    /// The lobe that this viewer sees reflected.
+    #[inline(always)]
+    fn seen<'a>(&self, shape: &LobeShape<'a, T>) -> LobeShape<'a, T> {
+        LobeShape {
+            roughness: self.roughness,
+            ..*shape
+        }
+    }
 }
 
 /// The view in which a refracting lobe is a reflecting one. Facets refract each by itself, so only the side changes. Any
 /// other lobe is turned about the refracted direction: what a viewer behind the surface, whose mirror direction that is,
-/// sees reflected (mathematics, section 7). Under total reflection, and for `eta` 0, the lobe reflects.
+/// sees reflected, by a lobe as narrow as facets would make it ([`refracting_roughness`]; mathematics, section 7). Under
+/// total reflection, and for `eta` 0, the lobe reflects.
 #[inline(always)]
 pub fn lobe_view<T: Real>(
     shape: &LobeShape<'_, T>,
@@ -302,6 +339,7 @@ pub fn lobe_view<T: Real>(
         frame: *frame,
         normal: surface_normal,
         wo,
+        roughness: shape.roughness,
     };
     if !shape.refracts() {
         return seen;
@@ -322,6 +360,11 @@ pub fn lobe_view<T: Real>(
         },
         normal: Vec3::select(is_total, surface_normal, -surface_normal),
         wo: Vec3::select(is_total, wo, behind.wi.mirrored_about(frame.normal)),
+        roughness: T::select(
+            is_total,
+            shape.roughness,
+            refracting_roughness(shape.lobe, shape.roughness, shape.eta),
+        ),
     }
 }
 
@@ -354,13 +397,14 @@ pub fn lobe_sample<T: Real>(
         #[inline(always)]
         || {
             let view = lobe_view(shape, frame, surface_normal, wo);
-            let mut raw = raw_sample(shape, &view.frame, view.wo, xi);
+            let seen = view.seen(shape);
+            let mut raw = raw_sample(&seen, &view.frame, view.wo, xi);
             let weight = if refracts_at_facets(shape) {
                 let facet = facet_refracted(wo, raw, shape.eta);
                 raw = facet.wi;
                 T::select(facet.is_total, T::zero(), facet_weight(shape, frame, wo, raw))
             } else {
-                let weight = raw_weight(shape, &view.frame, view.wo, raw);
+                let weight = raw_weight(&seen, &view.frame, view.wo, raw);
                 let is_lost = !T::zero().less(view.frame.normal.dot(raw));
                 if shape.lobe.is_hemispherical() {
                     T::select(is_lost, T::zero(), weight)
@@ -435,8 +479,9 @@ fn raw_evaluate<T: Real>(shape: &LobeShape<'_, T>, view: &LobeView<T>, wi: Vec3<
     if !is_above.any() {
         return [T::zero(), T::zero()];
     }
-    let density = raw_density(shape, frame, *wo, wi);
-    let value = density * raw_weight(shape, frame, *wo, wi);
+    let seen = view.seen(shape);
+    let density = raw_density(&seen, frame, *wo, wi);
+    let value = density * raw_weight(&seen, frame, *wo, wi);
     [
         T::select(is_above, value, T::zero()),
         T::select(is_above, density, T::zero()),

@@ -2,14 +2,19 @@
 
 use std::f64::consts::{PI, TAU};
 
+use glam::DVec3;
+use serde_json::json;
+
+use super::glb::Glb;
 use super::stage::document;
 use super::{HardCase, HardError, Stage, over_zero};
-use crate::document::{Background, Document, MaterialSettings};
+use crate::document::{AreaLight, Background, Document, MaterialSettings};
+use crate::job::Settings;
 use crate::optics::random::{path_state, random_pair};
 use crate::optics::vector::Vec3;
-use crate::scene::ModelSource;
 use crate::scene::camera::{LENS_DIMENSION, PIXEL_DIMENSION, pixel_ray};
 use crate::scene::environment::{Environment, EnvironmentSource, environment_direction, environment_radiance};
+use crate::scene::{Geometry, ModelSource, shapes};
 
 pub(super) const CASES: &[HardCase] = &[
     HardCase {
@@ -153,7 +158,62 @@ pub(super) const CASES: &[HardCase] = &[
             Ok(film.image().pixels.iter().map(off).fold(0.0, f64::max) + film.dropped() as f64)
         },
     },
+    HardCase {
+        name: "shadow-terminator",
+        group: "light",
+        danger: "the triangles of a coarse smooth ball cut off light that still shines on the ball: black triangles",
+        made: "a ball of 6 × 12 segments with smooth normals under a sun from the side",
+        must: "no place is darker than half of what its normal tells, but for the last tenth: pixels that are",
+        naive: || "below the horizon of the triangle there is no light".to_owned(),
+        measure: "count",
+        limit: 0.0,
+        find: |stage| {
+            let ball = Glb::of(&shapes::sphere(12, 6), json!({})).write(stage, "ball.glb")?;
+            let mut document = document(ball, EnvironmentSource::Furnace, 64, 64);
+            document.lighting.strength = 0.0;
+            document.materials = vec![MaterialSettings::diffuse("ball", [0.8; 3])];
+            let sun = AreaLight {
+                yaw_deg: 60.0,
+                pitch_deg: 20.0,
+                strength: 3.0,
+                ..AreaLight::sun()
+            };
+            document.lighting.area_lights = vec![sun];
+            let film = stage.film(&document)?;
+            let Some(job) = stage.session().job() else {
+                return Ok(f64::INFINITY);
+            };
+            let ((side, front), (up, level)) = (60_f64.to_radians().sin_cos(), 20_f64.to_radians().sin_cos());
+            let to_sun = DVec3::new(side * level, up, front * level);
+            let dark = (0..film.pixel_count()).filter(|pixel| {
+                let cosine = least_cosine(&job.geometry, &job.settings, *pixel as u32, to_sun);
+                cosine.is_some_and(|cosine| film.luminance()[*pixel] < 0.5 * 0.8 * 3.0 / PI * cosine)
+            });
+            Ok(dark.count() as f64 + film.dropped() as f64)
+        },
+    },
 ];
+
+/// The least cosine between a direction and the smooth normals of what a pixel shows, where it is above a tenth and the pixel
+/// shows the model alone.
+fn least_cosine(geometry: &Geometry, settings: &Settings, pixel: u32, direction: DVec3) -> Option<f64> {
+    let camera = settings.camera.cast::<f32>();
+    let [width, height] = settings.image_size;
+    let places = [0.02, 0.5, 0.98];
+    let cosines = places.into_iter().flat_map(|x| places.map(|y| [x, y])).map(|[x, y]| {
+        let across = 2.0 * ((pixel % width) as f32 + x) / width as f32 - 1.0;
+        let down = 2.0 * ((pixel / width) as f32 + y) / height as f32 - 1.0;
+        let ray = camera.forward + camera.right * across - camera.up * down;
+        let hit = geometry.intersect(camera.origin.to_f32(), ray.to_f32(), f32::INFINITY)?;
+        let [a, b, c] = geometry
+            .vertices(hit.triangle as usize)
+            .map(|vertex| DVec3::from_array(vertex.normal.map(f64::from)));
+        let (u, v) = (f64::from(hit.u), f64::from(hit.v));
+        Some((a * (1.0 - u - v) + b * u + c * v).normalize_or_zero().dot(direction))
+    });
+    let least = cosines.reduce(|least, cosine| Some(least?.min(cosine?)))??;
+    (least > 0.1).then_some(least)
+}
 
 /// A white Lambertian plane that fills the picture.
 fn plane_from_above(light: EnvironmentSource, samples: u32) -> Document {

@@ -1,13 +1,13 @@
 //! A material as other programs know it: microfacets with GGX over a diffuse or refracting base, under a coat.
 
 use super::report::{Entry, Residual};
-use crate::document::import::ggx_from_geometric;
+use crate::document::import::{ggx_from_geometric, ggx_under_texture};
 use crate::document::match_look::{lobe_of_material, nearest_ggx};
 use crate::document::{ImportLobe, MaterialSettings, TextureUse};
 use crate::optics::fresnel::{
     Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick,
 };
-use crate::optics::lobe::{Lobe, anisotropy_from_ratio, stretch_from_anisotropy};
+use crate::optics::lobe::{Lobe, Width, anisotropy_from_ratio, stretch_from_anisotropy};
 use crate::optics::vector::Vec3;
 
 /// A material as other programs know it. Colors are linear Rec. 709 in [0, 1].
@@ -246,7 +246,7 @@ impl Surface {
             opacity: unit(self.opacity),
             ..MaterialSettings::default()
         };
-        lobe.apply(&mut material);
+        lobe.at_roughest(material.roughness).apply(&mut material);
         if self.coat_weight > 0.0 {
             material.coat_roughness = crate::document::import::geometric_from_ggx(unit(self.coat_roughness));
         }
@@ -492,7 +492,13 @@ fn highlight(material: &MaterialSettings) -> (f32, Entry) {
         return (0.0, Entry::exact("highlight, a mirror's"));
     }
     let nearest = nearest_ggx(&model);
-    let roughness = rounded(nearest.roughness as f32);
+    let is_matched = material.textures.roughness && material.lobe.traits().width == Width::Roughness;
+    let roughness = match is_matched {
+        // What its texture multiplies here.
+        true => ggx_under_texture(material.roughness),
+        false => nearest.roughness as f32,
+    };
+    let roughness = rounded(roughness);
     let detail = format!(
         "GGX of roughness {roughness} stands for the {} lobe of {}",
         material.lobe.name(),

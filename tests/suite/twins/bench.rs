@@ -423,6 +423,7 @@ fn settings() -> Settings {
         environment_strength: 1.0,
         camera_medium: None,
         roulette_floor: 1.0,
+        rounds_surfaces: false,
         light_choice: SCENE.light_choice(),
         bounces: 8,
         least_reflections: 0,

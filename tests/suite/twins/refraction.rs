@@ -127,12 +127,14 @@ fn refraction_agrees() {
                     for v in [view.frame.bitangent, view.frame.normal, view.normal, view.wo] {
                         row.put_vector(v);
                     }
+                    row.put(view.roughness);
                 }),
             )
             .output("view.frame.bitangent", UNIT)
             .output("view.frame.normal", UNIT)
             .output("view.normal", UNIT)
             .output("view.wo", UNIT)
+            .output("view.roughness", Output::Number(1.0))
             .group_of("", 16_000, |rng, _| {
                 let lobe = [Lobe::Geometric, Lobe::Phong, Lobe::Ggx][rng.below(3)];
                 let shape = random_shape(rng, lobe, Curve::Sqrt, false);

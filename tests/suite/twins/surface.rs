@@ -4,7 +4,7 @@ use glam::Vec3A;
 use glossmith::optics::material::Material;
 use glossmith::optics::real::Scalar;
 use glossmith::optics::vector::Vec3;
-use glossmith::scene::surface::{bent_normal, lifted_normal, surface_at};
+use glossmith::scene::surface::{bent_normal, lifted_normal, rise_to_plane, surface_at};
 use glossmith::scene::texture::uvs_at;
 use glossmith::scene::{Hit, RayFrame, intersect_triangle};
 
@@ -97,6 +97,21 @@ fn surfaces_agree() {
             .group("teapot and ground", |rng, _| {
                 let (triangle, u, v) = place_in_triangle(rng);
                 inputs![triangle, u, v]
+            }),
+            Case::new(
+                "rise_to_plane",
+                "position corner normal weight sign",
+                "",
+                twin!(|row| {
+                    let [position, corner, normal] = [(); 3].map(|()| row.vector());
+                    let [weight, sign]: [T; 2] = row.numbers();
+                    let is_turned = sign.less(T::from_f64(0.5));
+                    row.put_vector(rise_to_plane(position, corner, normal, weight, is_turned));
+                }),
+            )
+            .output("rise_to_plane(position, corner, normal, weight, sign < 0.5)", UNIT)
+            .group("", |rng, _| {
+                inputs![rng.direction(), rng.direction(), rng.direction(), rng.unit(), rng.unit()]
             }),
             Case::new(
                 "bent_normal",

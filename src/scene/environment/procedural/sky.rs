@@ -28,8 +28,8 @@ const WAVELENGTHS_UM: [f64; 3] = [0.612, 0.549, 0.464];
 /// Optical thickness of 0.35 cm of ozone at these wavelengths.
 const OZONE: [f64; 3] = [0.043, 0.030, 0.003];
 /// The model's unit to ours: sun and sky of the default parameters together shine on level ground with irradiance π,
-/// so that a white diffuse table under them has radiance 1.
-const EXPOSURE: f64 = 0.0324;
+/// so that a white diffuse table under them has luminance 1.
+const EXPOSURE: f64 = 0.0315;
 
 /// A clear sky's parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

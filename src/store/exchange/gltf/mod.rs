@@ -11,7 +11,8 @@ use self::material::{ANISOTROPY, SlotTextures, extensions_used, material_json};
 use super::report::Entry;
 use super::surface::{Law, Surface, Takes};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown};
-use crate::document::of_model::materials_of;
+use crate::document::ImportLobe;
+use crate::document::of_model::{import_report, materials_of};
 use crate::document::{Document, MaterialSettings};
 use crate::scene::texture::texture_mean;
 use crate::scene::{Fate, Model, ModelSource, Slot, Wrap, gltf_from_widths, load, load_with};
@@ -112,7 +113,7 @@ impl Format for Gltf {
         let source = ModelSource::File(path.to_owned());
         let model = load(&source)?;
         let mut materials = materials_of(&model, options.lobe);
-        let mut losses: Vec<Vec<Entry>> = materials.iter().map(|_| losses_of(&model)).collect();
+        let mut losses: Vec<Vec<Entry>> = materials.iter().map(|_| losses_of(&model, options.lobe)).collect();
         let raw = document_json(path);
         for ((slot, material), losses) in model.slots.iter().zip(&mut materials).zip(&mut losses) {
             let of_file = slot.file_material.map(|index| &raw["materials"][index]);
@@ -172,13 +173,13 @@ fn radius_of(model: &Model) -> f64 {
 }
 
 /// What reading the model approximated or left out.
-fn losses_of(model: &Model) -> Vec<Entry> {
+fn losses_of(model: &Model, lobe: ImportLobe) -> Vec<Entry> {
     let entry = |entry: &crate::scene::Entry| match entry.fate {
         Fate::Used => None,
         Fate::Approximated => Some(Entry::approximated(entry.what.clone(), "", None)),
         Fate::Ignored | Fate::Missing => Some(Entry::dropped(entry.what.clone(), "")),
     };
-    model.report.entries.iter().filter_map(entry).collect()
+    import_report(model, lobe).entries.iter().filter_map(entry).collect()
 }
 
 /// The JSON of a file; null if it can't be read.

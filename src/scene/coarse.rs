@@ -1,0 +1,31 @@
+//! Triangles that are coarse for the smooth normals at their corners.
+
+use glam::{DVec3, Vec3};
+use rayon::prelude::*;
+
+use super::part::Part;
+
+/// The cosine of how far a normal may lean from its triangle: 5 degrees, beyond which what the triangle's own horizon cuts off
+/// is brighter than a tenth of light from straight above.
+const LEAN_COSINE: f64 = 0.996;
+/// The share of the surface that may lean further: poles and tips where triangles meet in a point.
+const SHARE_MAX: f64 = 1e-2;
+
+/// True where the normals of more than a hundredth of the surface lean far from their triangles.
+pub(super) fn is_coarse(part: &Part) -> bool {
+    let areas = (0..part.triangles.len()).into_par_iter().map(|triangle| {
+        let [a, b, c] = part
+            .corners(triangle)
+            .map(|corner| DVec3::from_array(corner.map(f64::from)));
+        let out = (b - a).cross(c - a);
+        let area = out.length();
+        let leans = part.triangles[triangle].iter().any(|&vertex| {
+            let normal = Vec3::from_array(part.vertices[vertex as usize].normal).as_dvec3();
+            // Normals of 0 stand for that of the triangle.
+            normal != DVec3::ZERO && normal.dot(out).abs() < LEAN_COSINE * area
+        });
+        [area, if leans { area } else { 0.0 }]
+    });
+    let [all, leaning] = areas.reduce(|| [0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+    leaning > SHARE_MAX * all
+}

@@ -1,0 +1,113 @@
+//! Brushed surfaces: the way of an anisotropy's rotation, as a file means it, from either side.
+
+use glossmith::document::of_model::materials_of;
+use glossmith::document::{AreaLight, Document, ImportLobe, compile};
+use glossmith::optics::numeric::normalize_or;
+use glossmith::optics::vector::{Vec3, vec3};
+use glossmith::render::EngineChoice;
+use glossmith::scene::surface::surface_at;
+use glossmith::scene::texture::Textures;
+use glossmith::scene::{Geometry, ModelSource};
+use serde_json::json;
+
+use super::gltf_builder::{Buffer, Folder, SQUARE, glb};
+use super::renders::{document, render};
+
+/// The file of a square in the xy plane of metal brushed at 45 degrees to the tangent, +X, with bitangents on one side of it.
+fn brushed(folder: &Folder, side: f32) -> ModelSource {
+    let mut buffer = Buffer::default();
+    let positions = buffer.floats(&SQUARE);
+    let normals = buffer.floats(&[[0.0, 0.0, 1.0]; 4]);
+    let tangents = buffer.floats(&[[1.0, 0.0, 0.0, side]; 4]);
+    let indices = buffer.indices(&[0, 1, 2, 0, 2, 3]);
+    let attributes = json!({"POSITION": positions, "NORMAL": normals, "TANGENT": tangents});
+    let mut json = buffer.document(json!([{"attributes": attributes, "indices": indices, "material": 0}]));
+    json["materials"] = json!([{
+        "doubleSided": true,
+        "pbrMetallicRoughness": {"metallicFactor": 1, "roughnessFactor": 0.4},
+        "extensions": {"KHR_materials_anisotropy":
+            {"anisotropyStrength": 0.8, "anisotropyRotation": std::f64::consts::FRAC_PI_4}},
+    }]);
+    let path = folder.path(&format!("brushed{side}.glb"));
+    std::fs::write(&path, glb(&json, &buffer.bytes)).unwrap();
+    ModelSource::File(path)
+}
+
+/// The mean radiance of the square, seen along the z axis from in front of it (1) or behind it (−1), under a light 40 degrees
+/// from that axis, above and to the side `x` of it.
+fn shine(engine: EngineChoice, model: &ModelSource, front: f64, x: f64) -> f64 {
+    let opened = glossmith::scene::load(model).unwrap();
+    let mut lit = Document {
+        materials: materials_of(&opened, ImportLobe::Ggx),
+        ..document(model.clone(), Default::default(), &[])
+    };
+    lit.ground = false;
+    lit.lighting.strength = 0.0;
+    let across = f64::to_radians(40.0).sin() * 0.5_f64.sqrt();
+    lit.lighting.area_lights = vec![AreaLight {
+        yaw_deg: (x * across).atan2(front * f64::to_radians(40.0).cos()).to_degrees(),
+        pitch_deg: across.asin().to_degrees(),
+        distance: 10.0,
+        ..AreaLight::default()
+    }];
+    (lit.camera.yaw_deg, lit.camera.pitch_deg) = (if front > 0.0 { 0.0 } else { 180.0 }, 0.0);
+    (lit.camera.distance, lit.camera.fov_deg) = (Some(20.0), 3.0);
+    (lit.render.width, lit.render.height, lit.render.samples) = (16, 16, 64);
+    let film = render(engine, &lit);
+    assert_eq!(film.dropped(), 0);
+    film.luminance().iter().sum::<f64>() / 256.0
+}
+
+/// glTF measures the rotation from the tangent to the bitangent, which the tangent's w puts on one side or the other: the two
+/// are mirror images. And a brushed sheet is brushed the same way on its back.
+#[test]
+fn the_rotation_is_towards_the_bitangent_on_both_faces() {
+    let folder = Folder::new();
+    let [right, left] = [1.0, -1.0].map(|side| brushed(&folder, side));
+    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        let along = shine(engine, &right, 1.0, 1.0);
+        let across = shine(engine, &right, 1.0, -1.0);
+        assert!(
+            across.max(along) > 5.0 * across.min(along),
+            "{engine:?}: {along} {across}"
+        );
+        for (name, model, front, x, expected) in [
+            ("mirrored", &left, 1.0, -1.0, along),
+            ("mirrored", &left, 1.0, 1.0, across),
+            ("back", &right, -1.0, 1.0, along),
+            ("back", &right, -1.0, -1.0, across),
+            ("mirrored back", &left, -1.0, -1.0, along),
+        ] {
+            let found = shine(engine, model, front, x);
+            println!("{engine:?} {name} at {x}: {found}, expected {expected}");
+            assert!(
+                (found / expected - 1.0).abs() < 0.05,
+                "{engine:?} {name} at {x}: {found}, expected {expected}"
+            );
+        }
+    }
+}
+
+/// The way in which a surface is brushed is that of its other side, as of glass that light enters and leaves.
+#[test]
+fn both_sides_are_brushed_along_the_same_line() {
+    let folder = Folder::new();
+    for side in [1.0, -1.0] {
+        let model = glossmith::scene::load(&brushed(&folder, side)).unwrap();
+        let (materials, _) = compile(&materials_of(&model, ImportLobe::Ggx));
+        let materials: Vec<_> = materials.iter().map(|material| material.cast::<f64>()).collect();
+        let (geometry, textures) = (Geometry::build(&model, false), Textures::new(&model));
+        let tangents = [1.0_f32, -1.0].map(|front| {
+            let hit = geometry.intersect([0.1, 0.0, front], [0.0, 0.0, -front], 2.0).unwrap();
+            let direction = vec3(0.0, 0.0, f64::from(-front));
+            surface_at(&geometry, &materials, &textures, &hit, direction)
+                .surface
+                .frame
+                .tangent
+        });
+        let expected = normalize_or(vec3(1.0, f64::from(side), 0.0), Vec3::zero());
+        for tangent in tangents {
+            assert!(tangent.dot(expected).abs() > 0.999_999, "{side}: {tangents:?}");
+        }
+    }
+}

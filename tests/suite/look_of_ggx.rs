@@ -1,0 +1,256 @@
+//! What a file says of GGX as the default lobe shows it: how wide it is, reflected and refracted.
+
+use std::f64::consts::PI;
+
+use glossmith::document::import::geometric_from_ggx;
+use glossmith::document::of_model::{import_report, materials_of};
+use glossmith::document::{Document, ImportLobe, MaterialSettings, compile, compile_textured};
+use glossmith::optics::frame::frame_from_normal;
+use glossmith::optics::lobe::{Lobe, LobeShape, is_mirror, lobe_sample};
+use glossmith::optics::material::Material;
+use glossmith::optics::random::{Sequence, random_pair, random_state};
+use glossmith::optics::vector::vec3;
+use glossmith::render::EngineChoice;
+use glossmith::scene::texture::{Textures, textured_material};
+use glossmith::scene::{Model, ModelSource, Slot};
+use image::{Rgba, RgbaImage};
+use serde_json::json;
+
+use super::gltf_builder::{Buffer, Folder, glb};
+use super::renders::{document, render};
+use super::textures::load as load_textured;
+
+/// The angle to the normal in degrees within which half the samples are under a view along it.
+fn median_deg(shape: &LobeShape<'_, f64>) -> f64 {
+    let normal = vec3(0.0, 0.0, 1.0);
+    let drawn = (0..20_000).filter_map(|i| {
+        let state = random_state(5, 0, 0, i, Sequence::Independent);
+        let ([a, b], [c, _]) = (random_pair(state, 0), random_pair(state, 1));
+        let sample = lobe_sample(shape, &frame_from_normal(normal), normal, normal, [a, b, c]);
+        (sample.weight > 0.0).then(|| sample.wi.z.abs().min(1.0).acos() * 180.0 / PI)
+    });
+    let mut angles: Vec<f64> = drawn.collect();
+    angles.sort_by(f64::total_cmp);
+    angles[angles.len() / 2]
+}
+
+/// A slot of clear glass as a lobe shows it.
+fn glass(roughness: f32, ior: f32, lobe: ImportLobe) -> Material<f64> {
+    let slot = Slot {
+        roughness,
+        ior,
+        transmission: 1.0,
+        metalness: 0.0,
+        ..Slot::default()
+    };
+    compile(&[MaterialSettings::from_slot(&slot, lobe)]).0[0].cast()
+}
+
+const LOBES: [ImportLobe; 2] = [ImportLobe::Geometric, ImportLobe::Ggx];
+
+#[test]
+fn reflections_are_as_wide_as_the_file_says() {
+    for step in 0..=40 {
+        let roughness = step as f32 / 40.0;
+        let [found, expected] = LOBES.map(|lobe| median_deg(&glass(roughness, 1.5, lobe).shape(&[])));
+        println!("{roughness}: {found}, GGX {expected}");
+        assert!((found - expected).abs() < 2.0, "{roughness}: {found}, GGX {expected}");
+    }
+}
+
+#[test]
+fn refractions_are_as_wide_as_the_file_says() {
+    for (ior, is_inside) in [
+        (1.05, false),
+        (1.33, false),
+        (1.5, false),
+        (2.4, false),
+        (1.33, true),
+        (1.5, true),
+    ] {
+        for step in 1..=14 {
+            let roughness = step as f32 / 20.0;
+            let [found, expected] =
+                LOBES.map(|lobe| median_deg(&glass(roughness, ior, lobe).transmission_shape(&[], is_inside)));
+            println!("{ior} {is_inside} {roughness}: {found}, GGX {expected}");
+            // Of the median of so many samples 1 %.
+            let tolerance = 0.15 * expected + 0.02;
+            assert!(
+                (found - expected).abs() < tolerance,
+                "index {ior}, from within {is_inside}, roughness {roughness}: {found}, GGX {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn what_has_the_index_around_it_goes_straight_on_at_every_roughness() {
+    for &lobe in Lobe::ALL.iter().filter(|lobe| **lobe != Lobe::Lambert) {
+        for step in 0..=10 {
+            let settings = MaterialSettings {
+                lobe,
+                roughness: step as f32 / 10.0,
+                metalness: 0.0,
+                ior: 1.0,
+                transmission_weight: 1.0,
+                ..MaterialSettings::default()
+            };
+            let material: Material<f64> = compile(&[settings]).0[0].cast();
+            for is_inside in [false, true] {
+                let shape = material.transmission_shape(&[], is_inside);
+                assert!(is_mirror(&shape), "{lobe:?} {step}");
+                assert!(median_deg(&shape) < 0.02, "{lobe:?} {step}: {}", median_deg(&shape));
+            }
+        }
+    }
+}
+
+/// A slab of rough glass in front of a stripe that shines.
+fn slab_before_stripe(folder: &Folder, ior: f32) -> ModelSource {
+    let mut buffer = Buffer::default();
+    let (mut positions, mut normals) = (Vec::new(), Vec::new());
+    for axis in 0..3 {
+        for side in [-1.0_f32, 1.0] {
+            for (u, v) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
+                let mut place = [0.0; 3];
+                (place[axis], place[(axis + 1) % 3], place[(axis + 2) % 3]) = (side, side * u, v);
+                let mut normal = [0.0; 3];
+                normal[axis] = side;
+                positions.push([place[0], place[1], 0.1 * place[2] + 0.5]);
+                normals.push(normal);
+            }
+        }
+    }
+    let quad = |first: u16| [0, 1, 2, 0, 2, 3].map(|corner| first + corner);
+    let slab = (buffer.floats(&positions), buffer.floats(&normals));
+    let slab_indices = buffer.indices(&(0..6).flat_map(|face| quad(4 * face)).collect::<Vec<_>>());
+    let corners = [[-0.1, -0.9, 0.0], [0.1, -0.9, 0.0], [0.1, 0.9, 0.0], [-0.1, 0.9, 0.0]];
+    let stripe = (buffer.floats(&corners), buffer.floats(&[[0.0, 0.0, 1.0]; 4]));
+    let stripe_indices = buffer.indices(&quad(0));
+    let primitive = |(positions, normals): (usize, usize), indices: usize, material: u32| {
+        let attributes = json!({"POSITION": positions, "NORMAL": normals});
+        json!({"attributes": attributes, "indices": indices, "material": material})
+    };
+    let mut json = buffer.document(json!([
+        primitive(slab, slab_indices, 0),
+        primitive(stripe, stripe_indices, 1)
+    ]));
+    json["materials"] = json!([
+        {"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0.4}, "extensions": {
+            "KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": ior},
+            "KHR_materials_volume": {"thicknessFactor": 0.2}}},
+        {"pbrMetallicRoughness": {"metallicFactor": 0}, "extensions": {"KHR_materials_unlit": {}}},
+    ]);
+    let path = folder.path(&format!("slab{ior}.glb"));
+    std::fs::write(&path, glb(&json, &buffer.bytes)).unwrap();
+    ModelSource::File(path)
+}
+
+/// Radiance in the middle, and the root mean square distance of the light from it in pixels, of 65 columns.
+fn stripe(engine: EngineChoice, model: &ModelSource, lobe: ImportLobe) -> [f64; 2] {
+    const SIDE: usize = 65;
+    let opened = glossmith::scene::load(model).unwrap();
+    let mut seen = Document {
+        materials: materials_of(&opened, lobe),
+        ..document(model.clone(), Default::default(), &[])
+    };
+    seen.ground = false;
+    seen.lighting.strength = 0.0;
+    (seen.camera.yaw_deg, seen.camera.pitch_deg) = (0.0, 0.0);
+    (seen.render.width, seen.render.height, seen.render.samples) = (SIDE as u32, SIDE as u32, 32);
+    let luminance = render(engine, &seen).luminance();
+    let middle = SIDE / 2;
+    let rows = middle - 10..=middle + 10;
+    let column = |x: usize| rows.clone().map(|y| luminance[y * SIDE + x]).sum::<f64>() / 21.0;
+    let all: f64 = (0..SIDE).map(column).sum();
+    let square: f64 = (0..SIDE).map(|x| column(x) * (x as f64 - middle as f64).powi(2)).sum();
+    [column(middle), (square / all).sqrt()]
+}
+
+#[test]
+fn a_stripe_behind_a_rough_slab_is_as_blurred_as_the_file_says() {
+    let folder = Folder::new();
+    let [clear, glass] = [1.0, 1.5].map(|ior| slab_before_stripe(&folder, ior));
+    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        for lobe in LOBES {
+            let [middle, _] = stripe(engine, &clear, lobe);
+            assert!(middle > 0.98, "{engine:?} {lobe:?}: {middle}");
+        }
+        let [[middle, found], [expected_middle, expected]] = LOBES.map(|lobe| stripe(engine, &glass, lobe));
+        println!("{engine:?}: middle {middle}, GGX {expected_middle}; width {found}, GGX {expected}");
+        assert!(
+            (found - expected).abs() < 0.75,
+            "{engine:?}: {found} pixels, GGX {expected}"
+        );
+    }
+}
+
+/// A metal whose roughness is a texture of these values, times a factor.
+fn textured(factor: f32, values: [u8; 2]) -> Model {
+    let texels = RgbaImage::from_fn(2, 1, |x, _| Rgba([0, values[x as usize], 255, 255]));
+    let material =
+        json!({"pbrMetallicRoughness": {"roughnessFactor": factor, "metallicRoughnessTexture": {"index": 0}}});
+    load_textured(&material, &[texels], &json!({"magFilter": 9728}))
+}
+
+#[test]
+fn a_roughness_texture_is_not_cut_off() {
+    let model = textured(1.0, [51, 153]);
+    let materials = materials_of(&model, ImportLobe::Geometric);
+    assert_eq!(materials[0].lobe, Lobe::Geometric);
+    let textures = Textures::new(&model);
+    let (compiled, tables) = compile_textured(&materials, &textures.slots);
+    for (u, roughness) in [(0.25, 0.2), (0.75, 0.6)] {
+        let there = textured_material(
+            &textures,
+            &tables,
+            &compiled[0],
+            [[u, 0.5], [0.0; 2], [0.0; 2]],
+            vec3(1.0, 1.0, 1.0),
+        );
+        let expected = geometric_from_ggx(roughness);
+        assert!(
+            (there.roughness - expected).abs() < 1e-3,
+            "{roughness}: {}, not {expected}",
+            there.roughness
+        );
+    }
+    for (factor, values, lobe) in [
+        (1.0, [51, 240], Lobe::Ggx),
+        (0.9, [51, 51], Lobe::Ggx),
+        (0.6, [51, 240], Lobe::Geometric),
+    ] {
+        let material = &materials_of(&textured(factor, values), ImportLobe::Geometric)[0];
+        assert_eq!(material.lobe, lobe, "{factor} {values:?}");
+    }
+}
+
+#[test]
+fn the_report_says_where_the_lobe_is_another_one() {
+    let report = |slot: Slot, lobe: ImportLobe| {
+        let model = Model {
+            slots: vec![slot],
+            ..Model::default()
+        };
+        import_report(&model, lobe).lines().join("\n")
+    };
+    let rough = Slot {
+        roughness: 0.8,
+        coat: 1.0,
+        coat_roughness: 0.9,
+        ..Slot::default()
+    };
+    let told = report(rough.clone(), ImportLobe::Geometric);
+    assert!(
+        told.contains("approximated: a roughness above 0.7") && told.contains("a coat's roughness"),
+        "{told}"
+    );
+    assert_eq!(report(rough, ImportLobe::Ggx), "");
+    let glass = Slot {
+        roughness: 0.4,
+        metalness: 0.0,
+        transmission: 1.0,
+        ..Slot::default()
+    };
+    assert!(report(glass, ImportLobe::Geometric).contains("approximated: a rough refraction"));
+}

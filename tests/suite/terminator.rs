@@ -1,0 +1,98 @@
+//! Smooth normals on coarse triangles: what calls for the round surface, and that it neither loses nor makes light.
+
+use glossmith::document::effect::Switch;
+use glossmith::document::{AreaLight, Background, Document, MaterialSettings};
+use glossmith::job::effect::EffectId;
+use glossmith::render::EngineChoice;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::mesh::Mesh;
+use glossmith::scene::{ModelSource, shapes};
+use serde_json::json;
+
+use super::gltf_builder::{Buffer, Folder, glb};
+use super::plan::job;
+use super::random_documents::of_material;
+use super::renders::{document, render};
+
+/// The file of a mesh with its normals.
+fn file(folder: &Folder, name: &str, mesh: &Mesh) -> ModelSource {
+    let mut buffer = Buffer::default();
+    let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|place| place.as_vec3().to_array()).collect();
+    let normals: Vec<[f32; 3]> = mesh.normals.iter().map(|normal| normal.to_array()).collect();
+    let attributes = json!({"POSITION": buffer.floats(&positions), "NORMAL": buffer.floats(&normals)});
+    let corners: Vec<u16> = mesh
+        .triangles
+        .as_flattened()
+        .iter()
+        .map(|vertex| *vertex as u16)
+        .collect();
+    let indices = buffer.indices(&corners);
+    let json = buffer.document(json!([{"attributes": attributes, "indices": indices}]));
+    let path = folder.path(name);
+    std::fs::write(&path, glb(&json, &buffer.bytes)).unwrap();
+    ModelSource::File(path)
+}
+
+/// A ball of matt 0.8 in a furnace.
+fn ball(model: ModelSource) -> Document {
+    Document {
+        materials: vec![MaterialSettings::diffuse("ball", [0.8; 3])],
+        ..document(model, EnvironmentSource::Furnace, &[])
+    }
+}
+
+#[test]
+fn only_coarse_smooth_triangles_call_for_the_round_surface() {
+    let folder = Folder::new();
+    let calls = |model: ModelSource| {
+        let document = of_material(model, MaterialSettings::default());
+        job(&document).plan.has(EffectId::ShadowTerminator)
+    };
+    for source in [
+        ModelSource::Teapot,
+        ModelSource::Sphere,
+        ModelSource::Plane,
+        ModelSource::Shaderball,
+    ] {
+        assert!(!calls(source.clone()), "{source}");
+    }
+    let mut flat = shapes::sphere(12, 6);
+    assert!(calls(file(&folder, "smooth.glb", &flat)));
+    flat.normals.iter_mut().for_each(|normal| *normal = Default::default());
+    assert!(!calls(file(&folder, "flat.glb", &flat)));
+    assert!(!calls(file(&folder, "fine.glb", &shapes::sphere(128, 64))));
+    let mut off = of_material(
+        file(&folder, "off.glb", &shapes::sphere(12, 6)),
+        MaterialSettings::default(),
+    );
+    off.render.effects.set(EffectId::ShadowTerminator, Switch::Off);
+    assert!(!job(&off).settings.rounds_surfaces);
+}
+
+/// Of light that comes evenly from everywhere a ball returns its albedo, coarse or not, alone or beside something else.
+#[test]
+fn the_round_surface_keeps_the_furnace() {
+    let folder = Folder::new();
+    let model = file(&folder, "ball.glb", &shapes::sphere(12, 6));
+    let mut alone = ball(model);
+    let mut beside = alone.clone();
+    // With a light that hardly shines and is in nothing's way rays are traced.
+    beside.lighting.area_lights = vec![AreaLight {
+        strength: 1e-6,
+        distance: 40.0,
+        width: 0.01,
+        height: 0.01,
+        ..AreaLight::default()
+    }];
+    for engine in [EngineChoice::Cpu, EngineChoice::Gpu] {
+        for document in [&mut alone, &mut beside] {
+            document.ground = false;
+            document.lighting.background = Background::Transparent;
+            let film = render(engine, document);
+            let pixels = film.colors().filter(|color| color[3] == 1.0).map(|color| color[1]);
+            let worst = pixels.map(|value| (value - 0.8).abs()).fold(0.0, f64::max);
+            assert!(worst < 1e-5, "{engine:?}: {worst}");
+            assert_eq!(film.dropped(), 0);
+        }
+    }
+}
