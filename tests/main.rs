@@ -35,6 +35,8 @@ mod crashed;
 mod denoise;
 #[path = "suite/denoise_cases.rs"]
 mod denoise_cases;
+#[path = "suite/denoise_told.rs"]
+mod denoise_told;
 #[path = "suite/density.rs"]
 mod density;
 #[path = "suite/desktop.rs"]
