@@ -155,6 +155,8 @@ mod ray_queries;
 mod refused;
 #[path = "suite/renders.rs"]
 mod renders;
+#[path = "suite/same_bits.rs"]
+mod same_bits;
 #[path = "suite/same_paths.rs"]
 mod same_paths;
 #[path = "suite/shadow_catcher.rs"]
