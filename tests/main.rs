@@ -161,6 +161,8 @@ mod same_bits;
 mod same_paths;
 #[path = "suite/shadow_catcher.rs"]
 mod shadow_catcher;
+#[path = "suite/signals.rs"]
+mod signals;
 #[path = "suite/statistics.rs"]
 mod statistics;
 #[path = "suite/structure.rs"]
