@@ -9,9 +9,11 @@
 //! - `steps`: seconds of each step on the way to the first denoised picture, and to one of two halves.
 //! - `cost`: what the guides take of the samples, and what denoising while rendering takes after the first second.
 //!
+//! `shared` leads both halves by the guides of both, as it was once done: the told error is then too low where guides are noisy.
 //! `quick` does the same small; the beginning of a scene's name takes that scene alone; `side=`, `renders=`, `reference=`,
 //! `samples=` change the extent. The processor's engine.
 
+use std::path::Path;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -19,9 +21,14 @@ use glossmith::analysis::error::RELATIVE_FLOOR;
 use glossmith::analysis::halves::{Distance, Halves};
 use glossmith::document::{Denoise, Document, assign};
 use glossmith::job::film::{Film, HalfSums, Image};
+use glossmith::optics::random::{Sequence, random_pair, random_state};
 use glossmith::render::denoise::{Denoiser, Noisy};
 use glossmith::render::worker::{Pace, Picture, Worker};
 use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::texture::{OwnTexture, TextureTarget};
+use image::{Luma, Rgb};
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -37,7 +44,7 @@ const FULL: Extent = Extent {
     side: 128,
     renders: 64,
     reference_samples: 16_384,
-    samples: &[1, 4, 16, 64, 256, 1024, 4096],
+    samples: &[1, 2, 4, 16, 64, 128, 256, 1024, 4096],
 };
 const QUICK: Extent = Extent {
     side: 64,
@@ -45,6 +52,9 @@ const QUICK: Extent = Extent {
     reference_samples: 1024,
     samples: &[1, 4, 16],
 };
+
+/// Makes a film's parts into what is denoised.
+type Reader = fn(&Film) -> Noisy;
 
 fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().collect();
@@ -66,12 +76,15 @@ fn main() -> Result<(), Failure> {
     let mut session = Session::open(EngineChoice::Cpu)?;
     let mut denoiser = Denoiser::open()?;
     println!("{}, {}", session.engine(), glossmith::render::denoise::Library::get()?);
-    let mut scenes = scenes()?;
+    let folder = tempfile::tempdir()?;
+    let [mut scenes, mut hard] = [scenes()?, hard_scenes(folder.path())?];
+    let all = || scenes.iter().chain(&hard).map(|(name, _)| *name);
     if let Some(only) = arguments
         .iter()
-        .find(|argument| scenes.iter().any(|(name, _)| name.starts_with(*argument)))
+        .find(|argument| all().any(|name| name.starts_with(argument.as_str())))
     {
         scenes.retain(|(name, _)| name.starts_with(only));
+        hard.retain(|(name, _)| name.starts_with(only));
     }
     let is_wanted = |part: &str| has(part) || !["told", "edit", "steps", "cost"].iter().any(|other| has(other));
     if is_wanted("cost") {
@@ -85,7 +98,13 @@ fn main() -> Result<(), Failure> {
         edits(&mut session, &scenes, has("quick"))?;
     }
     if is_wanted("told") {
-        truth(&mut session, &mut denoiser, &scenes, &extent, most)?;
+        let read: Reader = if has("shared") {
+            led_by_all
+        } else {
+            |film| Noisy::of(film, None)
+        };
+        scenes.extend(hard);
+        truth(&mut session, &mut denoiser, &scenes, &extent, (most, read))?;
     }
     Ok(())
 }
@@ -140,6 +159,71 @@ fn scenes() -> Result<Vec<(&'static str, Document)>, Failure> {
     ])
 }
 
+/// Where guides are as noisy as the light: textures, edges, bumps, blur, clear glass.
+fn hard_scenes(folder: &Path) -> Result<Vec<(&'static str, Document)>, Failure> {
+    let (squares, bumps) = (folder.join("squares.png"), folder.join("bumps.png"));
+    let random = |x: u32, y: u32, seed: u32| {
+        let state = random_state(x, y, seed, 0, Sequence::Independent);
+        random_pair::<f64>(state, 0)
+    };
+    let square = |x: u32, y: u32| Luma([if random(x, y, 1)[0] < 0.5 { 0 } else { 255_u8 }]);
+    image::GrayImage::from_fn(64, 64, square).save(&squares)?;
+    let bump = |x: u32, y: u32| {
+        let [along, across] = random(x, y, 2).map(|xi| (64.0 + 128.0 * xi) as u8);
+        Rgb([along, across, 255])
+    };
+    image::RgbImage::from_fn(64, 64, bump).save(&bumps)?;
+    let of = |model: ModelSource, assignments: &[&str]| -> Result<Document, Failure> {
+        let mut document = Document {
+            model,
+            ..Document::default()
+        };
+        document.view.denoise = Denoise::High;
+        document.camera.pitch_deg = 60.0;
+        for assignment in assignments {
+            assign(&mut document.materials[0], assignment)?;
+        }
+        Ok(document)
+    };
+    let pictured = |document: &mut Document, target: TextureTarget, file: &Path, scale: f32| {
+        let texture = OwnTexture {
+            scale,
+            ..OwnTexture::of(file.to_owned())
+        };
+        document.materials[0].put_texture(target, texture);
+    };
+    const MATT: [&str; 2] = ["specular.weight=0", "base.metalness=0"];
+    let textured = |scale: f32| -> Result<Document, Failure> {
+        let mut document = of(ModelSource::Plane, &MATT)?;
+        pictured(&mut document, TextureTarget::BaseColor, &squares, scale);
+        Ok(document)
+    };
+    let mut even_light = textured(0.7)?;
+    even_light.lighting.environment = EnvironmentSource::Furnace;
+    let mut bumpy = of(ModelSource::Plane, &["specular.roughness=0.3", "base.metalness=0"])?;
+    pictured(&mut bumpy, TextureTarget::Normal, &bumps, 0.3);
+    let mut blurred = textured(0.3)?;
+    (blurred.camera.aperture, blurred.camera.focus_distance) = (0.1, Some(1.5));
+    let mut glassy = of(
+        ModelSource::Sphere,
+        &[
+            "specular.lobe=ggx",
+            "specular.roughness=0",
+            "base.metalness=0",
+            "transmission.weight=1",
+        ],
+    )?;
+    (glassy.ground, glassy.camera.pitch_deg) = (true, 20.0);
+    Ok(vec![
+        ("textured, even light", even_light),
+        ("textured, studio", textured(0.7)?),
+        ("edged", textured(0.12)?),
+        ("bumpy", bumpy),
+        ("blurred", blurred),
+        ("clear glass", glassy),
+    ])
+}
+
 fn finish(session: &mut Session, document: &Document) -> Result<Film, Failure> {
     session.forget();
     session.submit(document)?;
@@ -159,14 +243,32 @@ fn squared_error(image: &Image, reference: &Halves) -> f64 {
     products.sum::<f64>() / n / reference.mean_luminance().powi(2)
 }
 
-/// The film with all samples in one half: denoised at once, as if there were no other.
-fn undivided(film: &Film) -> Film {
+/// All that the first samples saw, in both halves, with how many there are.
+fn with_all_guides(film: &Film) -> (Film, Vec<[f64; 2]>) {
     let mut film = film.clone();
+    let counts = (0..film.pixel_count()).map(|pixel| [film.guide_samples(pixel).iter().sum(); 2]);
+    let counts = counts.collect();
+    for [even, odd] in &mut film.guides {
+        even.add(odd);
+        *odd = *even;
+    }
+    (film, counts)
+}
+
+/// Both halves led by the guides of both.
+fn led_by_all(film: &Film) -> Noisy {
+    let (film, counts) = with_all_guides(film);
+    Noisy::of_samples(&film, |pixel| counts[pixel], None)
+}
+
+/// All samples in one half: denoised at once, as if there were no other.
+fn undivided(film: &Film) -> Noisy {
+    let (mut film, counts) = with_all_guides(film);
     for pixel in 0..film.pixel_count() {
         let all = film.sums(pixel);
         film.set_halves(pixel, &[all, HalfSums::default()]);
     }
-    film
+    Noisy::of_samples(&film, |pixel| counts[pixel], None)
 }
 
 /// Sums over renders.
@@ -203,14 +305,14 @@ fn truth(
     denoiser: &mut Denoiser,
     scenes: &[(&str, Document)],
     extent: &Extent,
-    most: u32,
+    (most, read): (u32, Reader),
 ) -> Result<(), Failure> {
     println!(
         "## Errors told and true, {0} x {0}, {1} renders",
         extent.side, extent.renders
     );
     println!(
-        "| scene | samples | samples' error, % | at once, % | denoised, % | told/true | inside, % | auto, % | told/true | inside, % | auto/samples |"
+        "| scene | samples | samples' error, % | at once, % | denoised, % | told/true | inside, % | auto, % | told/true | inside, % | auto/samples | relMSE |"
     );
     for (name, document) in scenes {
         let mut document = document.clone();
@@ -218,31 +320,37 @@ fn truth(
         document.render.samples = extent.reference_samples;
         document.render.seed = u32::MAX;
         let begun = Instant::now();
-        let reference = Halves::of(&finish(session, &document)?);
+        let reference_film = finish(session, &document)?;
+        let reference = Halves::of(&reference_film);
         eprintln!("reference in {:.1} s", begun.elapsed().as_secs_f64());
         for samples in extent.samples.iter().filter(|samples| **samples <= most) {
             document.render.samples = *samples;
             let (mut noisy, mut whole, mut high, mut auto) = (0.0, 0.0, Told::default(), Told::default());
+            let mut relative = 0.0;
             for seed in 0..extent.renders {
                 document.render.seed = seed;
                 let film = finish(session, &document)?;
-                let halves = Noisy::of(&film, None);
+                let halves = read(&film);
                 noisy += squared_error(&halves.image, &reference);
-                let at_once = denoiser.denoise(&Noisy::of(&undivided(&film), None), Denoise::High)?;
+                let at_once = denoiser.denoise(&undivided(&film), Denoise::High)?;
                 whole += squared_error(&at_once.image, &reference);
                 for (how, sums) in [(Denoise::High, &mut high), (Denoise::Auto, &mut auto)] {
                     let done = denoiser.denoise(&halves, how)?;
                     sums.add(squared_error(&done.image, &reference), done.error);
+                    if how == Denoise::High {
+                        relative += relative_error(&done.image, &reference_film);
+                    }
                 }
             }
             let percent = |sum: f64| 100.0 * (sum / f64::from(extent.renders)).sqrt();
             println!(
-                "| {name} | {samples} | {:.3} | {:.3} | {} | {} | {:.3} |",
+                "| {name} | {samples} | {:.3} | {:.3} | {} | {} | {:.3} | {:.5} |",
                 percent(noisy),
                 percent(whole),
                 high.columns(),
                 auto.columns(),
-                (auto.true_squared / noisy).sqrt()
+                (auto.true_squared / noisy).sqrt(),
+                relative / f64::from(extent.renders)
             );
         }
     }

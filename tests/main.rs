@@ -39,6 +39,8 @@ mod crashed;
 mod denoise;
 #[path = "suite/denoise_cases.rs"]
 mod denoise_cases;
+#[path = "suite/denoise_told.rs"]
+mod denoise_told;
 #[path = "suite/density.rs"]
 mod density;
 #[path = "suite/desktop.rs"]
@@ -159,10 +161,14 @@ mod ray_queries;
 mod refused;
 #[path = "suite/renders.rs"]
 mod renders;
+#[path = "suite/same_bits.rs"]
+mod same_bits;
 #[path = "suite/same_paths.rs"]
 mod same_paths;
 #[path = "suite/shadow_catcher.rs"]
 mod shadow_catcher;
+#[path = "suite/signals.rs"]
+mod signals;
 #[path = "suite/statistics.rs"]
 mod statistics;
 #[path = "suite/structure.rs"]

@@ -144,7 +144,11 @@ fn material_albedo(material: Material, surface: Surface, layers: Layers) -> vec3
         let cosine = dot(surface.frame.normal, surface.wo);
         specular = fresnel(material_fresnel_terms(material, surface.is_inside), cosine);
     }
-    return specular + layers.base + layers.transmission;
+    return coat_share(material, surface) + layers.below_coat * (specular + layers.base + layers.transmission);
+}
+
+fn material_normal(surface: Surface, layers: Layers) -> vec3f {
+    return mix(surface.frame.normal, surface.coat_normal, layers.coat_probability);
 }
 
 fn base_probability(layers: Layers) -> f32 {

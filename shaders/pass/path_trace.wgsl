@@ -59,7 +59,7 @@ struct PixelStatistics {
     unused: f32,
 }
 
-// Sums over a pixel's first samples of what they saw first.
+// Sums over the even or the odd ones of a pixel's first samples of what they saw first.
 struct GuideSums {
     // Each times what mirrors and glass before it leave of the light.
     albedo: vec3f,
@@ -77,6 +77,7 @@ struct GuideSums {
 // Sums over the samples of a pixel since the host last took them.
 @group(1) @binding(2) var<storage, read_write> color_sums: array<PixelColors>;
 @group(1) @binding(3) var<storage, read_write> statistics: array<PixelStatistics>;
+// Two a pixel: of the even samples and of the odd ones.
 @group(1) @binding(4) var<storage, read_write> guide_sums: array<GuideSums>;
 
 // Pixels along the side of a tile, which is a workgroup.
@@ -417,7 +418,7 @@ fn trace_path(pixel: vec2u, sample: u32) -> PathResult {
         if looks {
             let albedo = throughput * material_albedo(material, point.surface, layers);
             seen.albedo = clamp(albedo, vec3f(0.0), vec3f(1.0));
-            seen.normal = point.surface.frame.normal;
+            seen.normal = material_normal(point.surface, layers);
             if bounce == 0u {
                 seen.hits = 1.0;
                 seen.depth = hit.t * dot(ray.direction, camera.forward);
@@ -521,7 +522,6 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     let index = (pixel.y - band.x) * globals.image_size.x + pixel.x;
     var colors = PixelColors();
     var sums = PixelStatistics();
-    var guides = GuideSums();
     for (var i = 0u; i < tile.sample_count; i++) {
         let sample = tile.first_sample + i;
         let path = trace_path(pixel, sample);
@@ -535,10 +535,13 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
             sums.kept_dropped.x += 1.0;
             sums.rays_clamped.y += path.clamped;
             sums.cut += path.cut;
-            guides.albedo += path.seen.albedo;
-            guides.hits += path.seen.hits;
-            guides.normal += path.seen.normal;
-            guides.depth += path.seen.depth;
+            if PLAN_GUIDES == 1u && sample < GUIDE_SAMPLES {
+                let half = 2u * index + sample % 2u;
+                guide_sums[half].albedo += path.seen.albedo;
+                guide_sums[half].hits += path.seen.hits;
+                guide_sums[half].normal += path.seen.normal;
+                guide_sums[half].depth += path.seen.depth;
+            }
         } else {
             sums.kept_dropped.y += 1.0;
         }
@@ -550,11 +553,5 @@ fn path_trace(@builtin(workgroup_id) workgroup: vec3u, @builtin(local_invocation
     statistics[index].rays_clamped += sums.rays_clamped;
     if PLAN_TRANSMISSION == 1u {
         statistics[index].cut += sums.cut;
-    }
-    if PLAN_GUIDES == 1u && tile.first_sample < GUIDE_SAMPLES {
-        guide_sums[index].albedo += guides.albedo;
-        guide_sums[index].hits += guides.hits;
-        guide_sums[index].normal += guides.normal;
-        guide_sums[index].depth += guides.depth;
     }
 }

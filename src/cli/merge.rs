@@ -9,7 +9,7 @@ use super::answer::Answer;
 use super::render::{add_denoised, check_takes, write_pictures};
 use super::{names, parse};
 use crate::document::Denoise;
-use crate::render::denoise::{Denoised, Denoiser, Noisy};
+use crate::render::denoise::{Denoised, Denoiser};
 use crate::render::output::{Layers, Rendered};
 use crate::render::sums::KeptFilm;
 
@@ -99,6 +99,6 @@ pub(super) fn denoised(film: &KeptFilm) -> anyhow::Result<Option<Denoised>> {
     if how == Denoise::Off {
         return Ok(None);
     }
-    let noisy = Noisy::led_by(&film.features()?, &film.film, film.document.render.region);
+    let noisy = film.noisy()?;
     Ok(Some(Denoiser::open()?.denoise(&noisy, how)?))
 }

@@ -1,7 +1,8 @@
 //! The command line: one module a subcommand.
 //!
 //! Exit codes: 0 done; 1 something could not be read, rendered or written (one line on stderr says what and what to
-//! do); 2 the arguments are wrong; 3 of several things some were done and others could not be.
+//! do); 2 the arguments are wrong; 3 of several things some were done and others could not be; 129, 130 and 143 a signal
+//! ended a render, and what there was of it is written.
 
 mod answer;
 mod batch;
@@ -21,6 +22,7 @@ mod scatter;
 mod scene;
 mod settings;
 mod shell;
+mod signals;
 mod study;
 mod textures;
 mod turntable;
@@ -57,7 +59,8 @@ pub struct Arguments {
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, rendered or written; 2 wrong \
-                          arguments; 3 some of several were done.";
+                          arguments; 3 some of several were done; 129, 130, 143 a signal (SIGHUP, SIGINT, SIGTERM) \
+                          ended a render, and what there was is written.";
 
 macro_rules! subcommands {
     ($($(#[$doc:meta])* $name:ident($arguments:ty) => $run:path;)*) => {
@@ -120,7 +123,11 @@ struct PartialFailure(String);
 
 /// The exit code of a subcommand that failed.
 pub fn exit_code(error: &anyhow::Error) -> u8 {
-    if error.is::<PartialFailure>() { 3 } else { 1 }
+    match error.downcast_ref::<signals::EndedBySignal>() {
+        Some(signal) => signal.exit_code(),
+        None if error.is::<PartialFailure>() => 3,
+        None => 1,
+    }
 }
 
 /// Renders the default scene, with these files in the place of its parts, to a picture and says where it is: what the

@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::answer::{Destination, write_json};
 use super::parse;
 use super::scene::SceneArguments;
+use super::signals::Signals;
 use super::waiting::Waiting;
 use crate::document::{Denoise, Document};
 use crate::render::denoise::{Attendant, Denoised};
@@ -142,9 +143,14 @@ fn render(
     let waiting = Waiting::on(session.assets().loading());
     to_end::submit(&mut session, engine, document)?;
     drop(waiting);
+    let signals = Signals::watch()?;
     eprintln!("{} ({})", session.engine(), session.engine().reason);
     let setup_seconds = begun.elapsed().as_secs_f64();
-    let (progress, denoised) = step_to_end(&mut session, engine, document)?;
+    let (progress, denoised) = step_to_end(&mut session, engine, document, &|| signals.received().is_none())?;
+    let ended_by = signals.received().filter(|_| !progress.is_done);
+    if let (Some(signal), true) = (ended_by, progress.mean_samples == 0.0) {
+        return Err(anyhow::Error::new(signal).context("nothing was rendered yet, and nothing is written"));
+    }
     eprintln!("{}", told(&progress));
     let image = session.image()?;
     let layers = targets.has_layers.then(|| session.layers()).transpose()?;
@@ -160,13 +166,16 @@ fn render(
         let mut report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
         add_denoised(&mut report, document, denoised.as_ref());
         report["files"] = serde_json::json!(targets.outputs);
+        if ended_by.is_some() {
+            report["stopped_by"] = "signal".into();
+        }
         write_json(destination, &report)?;
     }
     let dropped = session.film()?.dropped();
     if dropped > 0 {
         eprintln!("{dropped} samples were left out because they were not finite");
     }
-    Ok(())
+    ended_by.map_or(Ok(()), |signal| Err(signal.into()))
 }
 
 /// Writes a picture in all formats that are asked for.
@@ -218,14 +227,16 @@ pub(super) fn render_to_end(
     document: &Document,
 ) -> anyhow::Result<(Progress, Option<Denoised>)> {
     to_end::submit(session, engine, document)?;
-    step_to_end(session, engine, document)
+    step_to_end(session, engine, document, &|| true)
 }
 
-/// Steps until the session is done, with a progress bar on a terminal, and denoises the picture where that is asked for.
+/// Steps until the session is done or `goes_on` says no, with a progress bar on a terminal, and denoises the picture where
+/// that is asked for.
 fn step_to_end(
     session: &mut Session,
     engine: EngineChoice,
     document: &Document,
+    goes_on: &dyn Fn() -> bool,
 ) -> anyhow::Result<(Progress, Option<Denoised>)> {
     const BAR_STEPS: f64 = 1000.0;
     let bar = bar("{bar:40} {msg}, {eta} left", BAR_STEPS as u64)?;
@@ -235,11 +246,17 @@ fn step_to_end(
             format!(", error {:.2} %", 100.0 * noise.relative)
         });
         bar.set_message(format!("{:.0} samples a pixel{error}", progress.mean_samples));
-        true
+        goes_on()
     };
-    let ended = to_end::step_to_end(session, engine, document, &mut Attendant::new(document), &mut tell)?;
+    let mut attendant = Attendant::new(document);
+    let ended = to_end::step_to_end(session, engine, document, &mut attendant, &mut tell)?;
     bar.finish_and_clear();
-    Ok((ended.progress, ended.denoised))
+    if ended.progress.is_done {
+        return Ok((ended.progress, ended.denoised));
+    }
+    // What there is of a picture that was stopped is denoised as well.
+    let denoised = attendant.finish(session)?;
+    Ok((session.progress(), denoised))
 }
 
 /// What came of a render, in a line.
@@ -258,7 +275,8 @@ fn told(progress: &Progress) -> String {
         (_, None, _) => "",
         (true, ..) => ", as exact as was asked for",
         (false, _, Some(StopReason::Time)) => ", less exact than was asked for: the time was over",
-        (false, ..) => ", less exact than was asked for: no more samples are allowed",
+        (false, _, Some(_)) => ", less exact than was asked for: no more samples are allowed",
+        (false, _, None) => ", less exact than was asked for: it was ended early",
     };
     format!("{samples}: error {error:.2} % ({low:.2} to {high:.2} %){denoised}{why}")
 }

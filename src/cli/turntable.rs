@@ -9,6 +9,7 @@ use clap::builder::ArgPredicate;
 use super::answer::{Destination, write_json};
 use super::render::bar;
 use super::scene::SceneArguments;
+use super::signals::Signals;
 use super::{names, parse};
 use crate::document::turntable::Turn;
 use crate::render::Session;
@@ -79,7 +80,9 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         folder: arguments.output.clone(),
         video: arguments.video.clone(),
         fps: arguments.fps,
+        keeps_part: true,
     };
+    let signals = Signals::watch()?;
     eprintln!("{} ({})", session.engine(), session.engine().reason);
     let bar = bar(
         "{bar:40} frame {msg}, {eta} left",
@@ -88,7 +91,7 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
     let outcome = render(&mut session, arguments.scene.engine, &table, &mut |progress| {
         bar.set_position((BAR_STEPS * (f64::from(progress.done) + progress.share)) as u64);
         bar.set_message(format!("{} of {}", progress.done + 1, table.frames));
-        true
+        signals.received().is_none()
     })?;
     bar.finish_and_clear();
     let pictures: Vec<PathBuf> = match &table.folder {
@@ -98,14 +101,17 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
     if let Some(last) = pictures.last() {
         eprintln!("wrote {} frames up to {}", outcome.frames, last.display());
     }
-    if let Some(path) = &table.video {
+    let video = table.video.as_ref().filter(|_| outcome.frames > 0);
+    if let Some(path) = video {
         eprintln!("wrote {}: {} frames", path.display(), outcome.frames);
     }
     if outcome.dropped > 0 {
         eprintln!("{} samples were left out because they were not finite", outcome.dropped);
     }
+    let ended_by = signals.received().filter(|_| outcome.frames < table.frames);
+    let ended = ended_by.map_or(Ok(()), |signal| Err(signal.into()));
     let Some(destination) = &arguments.report else {
-        return Ok(());
+        return ended;
     };
     let render = &table.document.render;
     let engine = session.engine().clone();
@@ -123,9 +129,11 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         "render_seconds": outcome.render_seconds,
         "dropped_samples": outcome.dropped,
         "seed": render.seed,
-        "files": pictures.iter().chain(&table.video).collect::<Vec<_>>(),
-        "video": table.video,
-        "fps": table.video.as_ref().map(|_| table.fps),
+        "files": pictures.iter().chain(video).collect::<Vec<_>>(),
+        "video": video,
+        "fps": video.map(|_| table.fps),
+        "stopped_by": ended_by.map(|_| "signal"),
     });
-    write_json(destination, &report)
+    write_json(destination, &report)?;
+    ended
 }

@@ -85,7 +85,7 @@ impl<'a> TileSums<'a> {
                     if first + sample < GUIDE_SAMPLES
                         && let Some(guides) = self.film.guides.get_mut(pixel)
                     {
-                        guides.add(&found.seen);
+                        guides[(first + sample) as usize % 2].add(&found.seen);
                     }
                 }
             }

@@ -270,8 +270,12 @@ fn take_over_band(gpu: &GpuDevice, film: &mut Film, band: &Band, part: Range<usi
         take_over(film, pixel, colors, statistics);
     }
     if film.extras().guides {
-        let guides: Vec<GuideSums> = gpu.read_part(guides, part)?;
-        for (sums, seen) in film.guides[first..].iter_mut().zip(&guides) {
+        let guides: Vec<[GuideSums; 2]> = gpu.read_part(guides, part)?;
+        for (sums, seen) in film.guides[first..]
+            .as_flattened_mut()
+            .iter_mut()
+            .zip(guides.as_flattened())
+        {
             sums.add(seen);
         }
     }

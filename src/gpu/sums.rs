@@ -63,7 +63,7 @@ impl Sums {
         let [width, height] = job.settings.image_size;
         let has_guides = job.plan.has(EffectId::Guides);
         let widest = if has_guides {
-            size_of::<GuideSums>().max(size_of::<PixelColors>())
+            size_of::<[GuideSums; 2]>().max(size_of::<PixelColors>())
         } else {
             size_of::<PixelColors>()
         };
@@ -155,7 +155,7 @@ impl Band {
         pixels: u64,
         has_guides: bool,
     ) -> Result<Self, GpuError> {
-        let guide_bytes = if has_guides { size_of::<GuideSums>() } else { 0 };
+        let guide_bytes = if has_guides { size_of::<[GuideSums; 2]>() } else { 0 };
         let sizes = [size_of::<PixelColors>(), size_of::<PixelStatistics>(), guide_bytes];
         let buffer = |bytes: usize| gpu.empty_storage("the picture", pixels * bytes as u64);
         let [colors, statistics, guides] = sizes.map(buffer);

@@ -19,11 +19,13 @@ pub struct Features {
     pub depth: Vec<f32>,
 }
 
-/// Samples of a pixel that tell what is seen first: the mean over more would hardly change.
+/// Samples of a pixel that tell what is seen first: the mean over more would hardly change. Even, as both halves of the
+/// samples tell as much.
 pub const GUIDE_SAMPLES: u32 = 32;
 
-/// Sums over a pixel's first samples of what they saw first, as both engines make them. Albedo and normal are those of
-/// the first surface that is not a mirror or clear glass; the depth is that of the first surface of all.
+/// Sums over a pixel's first samples of what they saw first, as both engines make them: of the even ones or the odd ones,
+/// so that what leads a half's denoising is independent of the other half. Albedo and normal are those of the first
+/// surface that is not a mirror or clear glass; the depth is that of the first surface of all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 pub struct GuideSums {
@@ -38,7 +40,7 @@ pub struct GuideSums {
 }
 
 impl GuideSums {
-    /// Adds what a sample saw.
+    /// Adds what a sample saw, or other sums.
     pub fn add(&mut self, seen: &GuideSums) {
         for i in 0..3 {
             self.albedo[i] += seen.albedo[i];
@@ -46,6 +48,12 @@ impl GuideSums {
         }
         self.hits += seen.hits;
         self.depth += seen.depth;
+    }
+
+    /// Mean albedo and normal over as many samples.
+    pub fn means(&self, samples: f64) -> [[f32; 3]; 2] {
+        let per_sample = 1.0 / samples.max(1.0) as f32;
+        [self.albedo, self.normal].map(|sum| sum.map(|x| x * per_sample))
     }
 }
 
@@ -55,24 +63,24 @@ impl Features {
         Self::of_samples(film, |pixel| film.guide_samples(pixel), world_units_per_unit)
     }
 
-    /// The same where it is said how many samples of a pixel are in the sums.
-    pub fn of_samples(film: &Film, samples: impl Fn(usize) -> f64, world_units_per_unit: f64) -> Self {
-        let nothing = GuideSums::default();
-        let sums = || (0..film.pixel_count()).map(|pixel| (pixel, film.guides.get(pixel).unwrap_or(&nothing)));
-        let mean = |pixel: usize, sum: [f32; 3]| {
-            let per_sample = 1.0 / samples(pixel).max(1.0) as f32;
-            sum.map(|x| x * per_sample)
-        };
-        let depth = |sums: &GuideSums| match sums.hits {
-            hits if hits > 0.0 => (f64::from(sums.depth / hits) * world_units_per_unit) as f32,
-            _ => f32::INFINITY,
-        };
-        Self {
+    /// The same where it is said how many samples of a pixel are in the sums of each half.
+    pub fn of_samples(film: &Film, samples: impl Fn(usize) -> [f64; 2], world_units_per_unit: f64) -> Self {
+        let mut features = Self {
             width: film.width,
             height: film.height,
-            albedo: sums().map(|(pixel, sums)| mean(pixel, sums.albedo)).collect(),
-            normal: sums().map(|(pixel, sums)| mean(pixel, sums.normal)).collect(),
-            depth: sums().map(|(_, sums)| depth(sums)).collect(),
+            ..Self::default()
+        };
+        for pixel in 0..film.pixel_count() {
+            let [mut sums, odd] = film.guides.get(pixel).copied().unwrap_or_default();
+            sums.add(&odd);
+            let [albedo, normal] = sums.means(samples(pixel).iter().sum());
+            features.albedo.push(albedo);
+            features.normal.push(normal);
+            features.depth.push(match sums.hits {
+                hits if hits > 0.0 => (f64::from(sums.depth / hits) * world_units_per_unit) as f32,
+                _ => f32::INFINITY,
+            });
         }
+        features
     }
 }

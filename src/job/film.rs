@@ -8,7 +8,7 @@ use super::tiles::TileGrid;
 use super::{BackgroundKind, Job};
 
 /// Sums over the samples of each pixel. Colors are summed in f64, so that they do not stall after millions of samples.
-/// 64 bytes a pixel and 32 a tile, and what else of [`Extras`] is called for.
+/// 72 bytes a pixel and 32 a tile, and what else of [`Extras`] is called for.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Film {
     /// Width in pixels.
@@ -16,11 +16,12 @@ pub struct Film {
     /// Height in pixels.
     pub height: u32,
     /// Sums of each pixel, row by row from the top.
-    pixels: Vec<[KeptHalf; 2]>,
+    pixels: Vec<KeptHalves>,
     /// Sums of the coverage; empty where every pixel is covered.
     coverage: Vec<f64>,
-    /// What the first [`GUIDE_SAMPLES`] samples of each pixel saw first; empty where nobody asks.
-    pub guides: Vec<GuideSums>,
+    /// What the first [`GUIDE_SAMPLES`] samples of each pixel saw first, the even ones and the odd ones; empty where nobody
+    /// asks.
+    pub guides: Vec<[GuideSums; 2]>,
     /// What each tile cost, and what was taken from it.
     pub costs: Vec<TileCosts>,
 }
@@ -30,7 +31,7 @@ pub struct Film {
 pub struct Extras {
     /// Coverage, 8 bytes a pixel: the background is transparent.
     pub coverage: bool,
-    /// What is seen first, 32 bytes a pixel: for layers and the denoiser.
+    /// What is seen first, 64 bytes a pixel: for layers and the denoiser.
     pub guides: bool,
 }
 
@@ -58,16 +59,17 @@ pub struct HalfSums {
     pub samples: f64,
 }
 
-/// The same as a film keeps them. Squared deviations lose nothing by cancellation, as squares less the mean's would, and
-/// tell a spread: for that, f32 is precise enough.
+/// The same of both halves as a film keeps them. Squared deviations lose nothing by cancellation, as squares less the mean's
+/// would. In f32 their spread would be precise enough, but they would be rounded after each pass, whose length the clock
+/// decides: the same render twice would not be the same.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct KeptHalf {
-    color: [f64; 3],
-    squared_deviations: f32,
-    samples: u32,
+struct KeptHalves {
+    color: [[f64; 3]; 2],
+    squared_deviations: [f64; 2],
+    samples: [u32; 2],
 }
 
-const _: () = assert!(size_of::<[KeptHalf; 2]>() == 64);
+const _: () = assert!(size_of::<KeptHalves>() == 72);
 
 /// Luminance of linear Rec. 709.
 #[inline(always)]
@@ -134,20 +136,25 @@ fn added(mut sum: [f64; 3], color: [f64; 3]) -> [f64; 3] {
     sum
 }
 
-impl KeptHalf {
-    fn sums(&self) -> HalfSums {
-        HalfSums {
-            color: self.color,
-            squared_deviations: f64::from(self.squared_deviations),
-            samples: f64::from(self.samples),
-        }
+impl KeptHalves {
+    fn sums(&self) -> [HalfSums; 2] {
+        std::array::from_fn(|half| HalfSums {
+            color: self.color[half],
+            squared_deviations: self.squared_deviations[half],
+            samples: f64::from(self.samples[half]),
+        })
     }
 
-    fn of(sums: &HalfSums) -> Self {
+    fn both(&self) -> HalfSums {
+        let [even, odd] = self.sums();
+        even.with(&odd)
+    }
+
+    fn of(sums: &[HalfSums; 2]) -> Self {
         Self {
-            color: sums.color,
-            squared_deviations: sums.squared_deviations.min(f64::from(f32::MAX)) as f32,
-            samples: sums.samples as u32,
+            color: sums.map(|half| half.color),
+            squared_deviations: sums.map(|half| half.squared_deviations),
+            samples: sums.map(|half| half.samples as u32),
         }
     }
 }
@@ -166,7 +173,7 @@ impl Extras {
         let extra = |is_kept: bool, size: usize| if is_kept { size } else { 0 };
         let tile = size_of::<TileCosts>().div_ceil(64);
         let coverage = extra(self.coverage, size_of::<f64>());
-        (size_of::<[KeptHalf; 2]>() + tile + coverage + extra(self.guides, size_of::<GuideSums>())) as u64
+        (size_of::<KeptHalves>() + tile + coverage + extra(self.guides, size_of::<[GuideSums; 2]>())) as u64
     }
 }
 
@@ -185,7 +192,7 @@ impl Film {
             height,
             pixels: vec![Default::default(); pixels],
             coverage: vec![0.0; kept(extras.coverage)],
-            guides: vec![GuideSums::default(); kept(extras.guides)],
+            guides: vec![Default::default(); kept(extras.guides)],
             costs: vec![TileCosts::default(); TileGrid { width, height }.tiles()],
         }
     }
@@ -235,17 +242,17 @@ impl Film {
 
     /// The two halves of a pixel's samples: the even ones and the odd ones, see [`crate::optics::random::path_state`].
     pub fn halves(&self, pixel: usize) -> [HalfSums; 2] {
-        self.pixels[pixel].each_ref().map(KeptHalf::sums)
+        self.pixels[pixel].sums()
     }
 
     /// Puts other sums in their place.
     pub fn set_halves(&mut self, pixel: usize, halves: &[HalfSums; 2]) {
-        self.pixels[pixel] = halves.each_ref().map(KeptHalf::of);
+        self.pixels[pixel] = KeptHalves::of(halves);
     }
 
     /// Sums over all samples of a pixel.
     pub fn sums(&self, pixel: usize) -> HalfSums {
-        both(&self.pixels[pixel])
+        self.pixels[pixel].both()
     }
 
     /// Sums of linear red, green, blue and of the coverage.
@@ -270,8 +277,7 @@ impl Film {
 
     /// How many samples are in a pixel's sums.
     pub fn samples_of(&self, pixel: usize) -> f64 {
-        let [even, odd] = &self.pixels[pixel];
-        f64::from(even.samples) + f64::from(odd.samples)
+        self.pixels[pixel].samples.map(f64::from).iter().sum()
     }
 
     /// The most samples that a pixel has.
@@ -280,9 +286,11 @@ impl Film {
         samples.max().unwrap_or(0)
     }
 
-    /// How many of a pixel's samples are in the sums of what they saw first, where rendering began with the first.
-    pub fn guide_samples(&self, pixel: usize) -> f64 {
-        self.samples_of(pixel).min(f64::from(GUIDE_SAMPLES))
+    /// How many of the samples of each half of a pixel are in the sums of what they saw first, where rendering began with
+    /// the first.
+    pub fn guide_samples(&self, pixel: usize) -> [f64; 2] {
+        let most = f64::from(GUIDE_SAMPLES / 2);
+        self.halves(pixel).map(|half| half.samples.min(most))
     }
 
     /// A rectangle of it, from `origin`, which is that of a tile.
@@ -353,7 +361,7 @@ impl Film {
     pub fn clamped_share(&self) -> f64 {
         let clamped = self.clamped();
         if clamped > 0.0 {
-            let kept: f64 = self.pixels.iter().map(|pixel| both(pixel).luminance()).sum();
+            let kept: f64 = self.pixels.iter().map(|pixel| pixel.both().luminance()).sum();
             clamped / (clamped + kept)
         } else {
             0.0
@@ -369,8 +377,8 @@ impl Film {
 
     /// Samples in the sums of all pixels together.
     pub fn samples(&self) -> u64 {
-        let of_half = |half: &KeptHalf| u64::from(half.samples);
-        self.pixels.iter().flatten().map(of_half).sum()
+        let of_halves = |pixel: &KeptHalves| pixel.samples.map(u64::from);
+        self.pixels.iter().flat_map(of_halves).sum()
     }
 
     /// The mean picture: linear Rec. 709, alpha premultiplied; black where there is no sample yet.
@@ -419,10 +427,6 @@ impl Film {
         }
         sums.spread() / sums.samples
     }
-}
-
-fn both([even, odd]: &[KeptHalf; 2]) -> HalfSums {
-    even.sums().with(&odd.sums())
 }
 
 /// Copies values where they are kept.
@@ -492,14 +496,33 @@ mod tests {
         assert!((found / variance(1000) - 1.0).abs() < 1e-4, "{found}");
     }
 
+    /// However the samples are cut into passes, which the clock decides.
     #[test]
-    fn a_plain_film_takes_64_bytes_a_pixel_and_keeps_only_what_is_called_for() {
-        assert_eq!(Extras::default().pixel_bytes(), 64 + 1);
+    fn sums_are_the_same_to_the_bit_in_passes_of_any_length() {
+        let film_in_passes = |length: usize| {
+            let mut film = Film::new(1, 1);
+            let all: Vec<_> = values(1000).collect();
+            for (pass, values) in all.chunks(length).enumerate() {
+                let mut halves = film.halves(0);
+                for (i, y) in values.iter().enumerate() {
+                    halves[(pass * length + i) % 2].add([*y; 3]);
+                }
+                film.set_halves(0, &halves);
+            }
+            film
+        };
+        assert_eq!(film_in_passes(1), film_in_passes(1000));
+        assert_eq!(film_in_passes(7), film_in_passes(64));
+    }
+
+    #[test]
+    fn a_plain_film_takes_72_bytes_a_pixel_and_keeps_only_what_is_called_for() {
+        assert_eq!(Extras::default().pixel_bytes(), 72 + 1);
         let all = Extras {
             coverage: true,
             guides: true,
         };
-        assert_eq!(all.pixel_bytes(), 64 + 1 + 8 + 32);
+        assert_eq!(all.pixel_bytes(), 72 + 1 + 8 + 64);
         let mut plain = Film::new(2, 1);
         assert_eq!(plain.extras(), Extras::default());
         plain.add(0, 0, [1.0, 2.0, 3.0, 0.5]);
@@ -523,7 +546,7 @@ mod tests {
         );
         for pixel in 0..film.pixel_count() {
             film.add(pixel, pixel as u32, [pixel as f64, 1.0, 2.0, 0.5]);
-            film.guides[pixel].hits = pixel as f32;
+            film.guides[pixel][1].hits = pixel as f32;
         }
         for (tile, costs) in film.costs.iter_mut().enumerate() {
             costs.rays = tile as f64;

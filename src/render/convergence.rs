@@ -8,6 +8,8 @@ use crate::job::tiles::Schedule;
 
 /// Looking at the error takes at most this share of the time; near its end twice as much, not to go too far.
 const COST_SHARE: f64 = 0.015;
+/// What a look and a plan cost where samples are counted, in samples of the pixels looked at: measured, of a simple scene.
+const LOOK_SAMPLES: f64 = 0.25;
 /// By how much samples grow from one look to the next: while only watched; on the way to a noise; where tiles rest; and
 /// at least, by what looks cost.
 const GROWTH_WATCHED: f64 = 1.1;
@@ -27,6 +29,16 @@ pub struct Measurement {
     pub samples_per_pixel: f64,
     /// What was seen.
     pub noise: Noise,
+}
+
+/// What the length of a round goes by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pacing {
+    /// The engine's own time until now, seconds; `None` where rounds end by the number of samples alone. On the CPU they
+    /// do, so that the same render twice is the same picture: tiles rest, and rendering stops, where a round ends.
+    pub(super) engine_seconds: Option<f64>,
+    /// The picture is denoised at the end of each round, and rendering stops where that is exact enough.
+    pub(super) is_denoised: bool,
 }
 
 /// Rounds of rendering, with a look at the error after each.
@@ -100,6 +112,20 @@ impl Convergence {
         }
     }
 
+    /// By how much samples grow in a round that is so long that the look at its end takes no more than its share.
+    fn paced(&self, schedule: &Schedule, settings: &RenderSettings, pacing: Pacing) -> f64 {
+        let look = match pacing.engine_seconds {
+            Some(seconds) => (self.look_seconds.unwrap_or(0.0) + self.plan_seconds.unwrap_or(0.0)) / seconds.max(1e-9),
+            None => LOOK_SAMPLES / rendered_samples(schedule, settings).max(1.0),
+        };
+        let most = match (pacing.is_denoised && settings.noise.is_some(), self.history.len()) {
+            (true, _) => GROWTH_AIMED,
+            (false, 0 | 1) => GROWTH_COLD,
+            (false, _) => f64::INFINITY,
+        };
+        (1.0 + look / COST_SHARE).min(most)
+    }
+
     /// Sets the goals of the next round: no pixel more than `settings.samples`, and none outside the part that is
     /// rendered. `film` is read where tiles may rest.
     pub(super) fn next_round(
@@ -107,9 +133,9 @@ impl Convergence {
         film: Option<&Film>,
         schedule: &Schedule,
         settings: &RenderSettings,
-        engine_seconds: f64,
+        pacing: Pacing,
     ) {
-        self.next_round_of_all(film, schedule, settings, engine_seconds);
+        self.next_round_of_all(film, schedule, settings, pacing);
         let Some(region) = settings.region else { return };
         let grid = schedule.grid();
         for (tile, (goal, samples)) in self.goals.iter_mut().zip(schedule.samples()).enumerate() {
@@ -124,7 +150,7 @@ impl Convergence {
         film: Option<&Film>,
         schedule: &Schedule,
         settings: &RenderSettings,
-        engine_seconds: f64,
+        pacing: Pacing,
     ) {
         let samples = schedule.samples();
         let most = samples.iter().copied().max().unwrap_or(0);
@@ -139,14 +165,7 @@ impl Convergence {
             self.goals = vec![settings.samples.min(2); samples.len()];
             return;
         }
-        // So long that the look at its end takes no more than its share.
-        let seconds = (self.look_seconds.unwrap_or(0.0) + self.plan_seconds.unwrap_or(0.0)) / COST_SHARE;
-        let most_paced = if self.history.len() > 1 {
-            f64::INFINITY
-        } else {
-            GROWTH_COLD
-        };
-        let paced = (1.0 + seconds / engine_seconds.max(1e-9)).min(most_paced);
+        let paced = self.paced(schedule, settings, pacing);
         let growth_min = (0.5 * (1.0 + paced)).clamp(GROWTH_MIN[0], GROWTH_MIN[1]);
         if let Some(film) = film.filter(|_| settings.is_adaptive()) {
             let round = Round {
@@ -172,6 +191,18 @@ impl Convergence {
     }
 }
 
+/// Samples per pixel, averaged over the part that is rendered.
+fn rendered_samples(schedule: &Schedule, settings: &RenderSettings) -> f64 {
+    let grid = schedule.grid();
+    let tiles = schedule.samples().iter().enumerate();
+    let [mut samples, mut pixels] = [0; 2];
+    for (tile, count) in tiles.filter(|(tile, _)| grid.is_rendered(*tile, settings.region)) {
+        samples += grid.pixels(tile) * u64::from(*count);
+        pixels += grid.pixels(tile);
+    }
+    samples as f64 / pixels.max(1) as f64
+}
+
 fn lesser(least: Option<f64>, seconds: f64) -> Option<f64> {
     Some(least.map_or(seconds, |least| least.min(seconds)))
 }
@@ -188,6 +219,11 @@ mod tests {
     use super::*;
     use crate::job::tiles::{Order, SliceLimits};
 
+    const COUNTED: Pacing = Pacing {
+        engine_seconds: None,
+        is_denoised: false,
+    };
+
     #[test]
     fn the_first_round_ends_where_an_error_can_be_told() {
         let mut convergence = Convergence::default();
@@ -197,7 +233,7 @@ mod tests {
                 samples,
                 ..Default::default()
             };
-            convergence.next_round(None, &schedule, &settings, 0.0);
+            convergence.next_round(None, &schedule, &settings, COUNTED);
             assert_eq!(convergence.goals, [goal; 2]);
         }
         schedule.aim(&[2; 2]);
@@ -208,7 +244,7 @@ mod tests {
         };
         let works = schedule.slice(0.0, limits);
         schedule.finish(&works);
-        convergence.next_round(None, &schedule, &RenderSettings::default(), 1.0);
+        convergence.next_round(None, &schedule, &RenderSettings::default(), COUNTED);
         assert!(
             convergence.goals.iter().all(|goal| *goal > 2),
             "{:?}",

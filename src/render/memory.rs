@@ -11,9 +11,9 @@ pub const LIMIT_VARIABLE: &str = "GLOSSMITH_MEMORY";
 
 /// Bytes a pixel beside the film: the mean picture, what of it is shown, and what is written to a file.
 const PICTURE_BYTES: u64 = 16 + 4 + 12;
-/// And where it is denoised: both halves, guides and results. Measured, as the two below, by the peak of pictures of 512 to
+/// And where it is denoised: both halves with a guide each, and results. Measured, as the two below, by the peak of pictures of 512 to
 /// 3072 pixels a side.
-const DENOISED_BYTES: u64 = 160;
+const DENOISED_BYTES: u64 = 184;
 /// What the library itself takes meanwhile, up to the size from which it works in tiles.
 const DENOISER_BYTES: u64 = 640;
 const DENOISER_BYTES_MOST: u64 = 1_600 << 20;

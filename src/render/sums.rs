@@ -2,7 +2,7 @@
 //!
 //! Beside the picture's own channels a file has, for each half of the samples, `sums.even.R.high` and `.low` and so on: the
 //! upper and lower 32 bits of the f64 sum, as EXR's unsigned integers. Two f32 would hold 48 of its 53 bits. The sums of
-//! what the first samples saw first are f32 (`sums.guides.…`), with their number. The document and the numbers of the samples
+//! what the first samples of each half saw first are f32 (`sums.guides.even.…`), with their number. The document and the numbers of the samples
 //! are attributes.
 
 use std::path::{Path, PathBuf};
@@ -14,8 +14,9 @@ use exr::prelude::{
 
 use crate::document::Document;
 use crate::document::change::Change;
-use crate::job::features::{Features, GUIDE_SAMPLES, GuideSums};
+use crate::job::features::{Features, GUIDE_SAMPLES};
 use crate::job::film::{Extras, Film, HalfSums};
+use crate::render::denoise::Noisy;
 use crate::store::FileError;
 use crate::store::project::{document_text, parse_document};
 
@@ -25,7 +26,7 @@ const SAMPLES: &str = "glossmithSamples";
 const UNITS: &str = "glossmithWorldUnits";
 const HALVES: [&str; 2] = ["even", "odd"];
 const COLORS: [&str; 3] = ["R", "G", "B"];
-/// The channels of what is seen first, in the order of [`GuideSums`].
+/// The channels of what is seen first, in the order of [`crate::job::features::GuideSums`].
 const GUIDES: [&str; 8] = [
     "albedo.R", "albedo.G", "albedo.B", "hits", "normal.X", "normal.Y", "normal.Z", "depth",
 ];
@@ -39,8 +40,8 @@ pub struct KeptFilm {
     pub document: Document,
     /// Which samples: the first and the one after the last, several where films were joined; in order.
     pub samples: Vec<[u32; 2]>,
-    /// How many of each pixel's samples are in the sums of what is seen first.
-    guide_samples: Vec<u32>,
+    /// How many samples of each half of a pixel are in the sums of what is seen first.
+    guide_samples: Vec<[u32; 2]>,
     /// Units of the world in one of the geometry's: depths are summed in these.
     world_units_per_unit: f64,
 }
@@ -108,13 +109,14 @@ impl KeptFilm {
     /// A film of up to `samples` samples a pixel that was just rendered.
     pub fn of(film: Film, document: Document, samples: u32, world_units_per_unit: f64) -> Self {
         let first = document.render.first_sample;
-        let guide_samples = match film.extras().guides {
-            true => (0..film.pixel_count())
-                .map(|pixel| (first.saturating_add(film.samples_of(pixel) as u32)).min(GUIDE_SAMPLES))
-                .map(|last| last.saturating_sub(first))
-                .collect(),
-            false => vec![0; film.pixel_count()],
+        // Of the first samples of either half so many lie before the first of these.
+        let before = [first.div_ceil(2), first / 2];
+        let most = match film.extras().guides {
+            true => before.map(|before| (GUIDE_SAMPLES / 2).saturating_sub(before)),
+            false => [0; 2],
         };
+        let seen = |pixel: usize| std::array::from_fn(|half| most[half].min(film.halves(pixel)[half].samples as u32));
+        let guide_samples = (0..film.pixel_count()).map(seen).collect();
         Self {
             samples: vec![[first, first + samples]],
             film,
@@ -129,12 +131,29 @@ impl KeptFilm {
     /// # Errors
     /// [`SumsError::NotSeen`] where a pixel has samples, and none of the first among them.
     pub fn features(&self) -> Result<Features, SumsError> {
-        let is_seen = |pixel: usize| self.guide_samples[pixel] > 0 || self.film.samples_of(pixel) == 0.0;
-        if !(0..self.film.pixel_count()).all(is_seen) {
-            return Err(SumsError::NotSeen);
-        }
-        let samples = |pixel: usize| f64::from(self.guide_samples[pixel]);
+        self.check_seen(|[even, odd], _| even + odd > 0)?;
+        let samples = |pixel: usize| self.guide_samples[pixel].map(f64::from);
         Ok(Features::of_samples(&self.film, samples, self.world_units_per_unit))
+    }
+
+    /// What the denoiser needs of it.
+    ///
+    /// # Errors
+    /// The same of each half by itself, as each is led by its own.
+    pub fn noisy(&self) -> Result<Noisy, SumsError> {
+        self.check_seen(|seen, samples| (0..2).all(|half| seen[half] > 0 || samples[half] == 0.0))?;
+        let samples = |pixel: usize| self.guide_samples[pixel].map(f64::from);
+        Ok(Noisy::of_samples(&self.film, samples, self.document.render.region))
+    }
+
+    /// Refuses a film with a pixel that has samples, but not enough of the first among them.
+    fn check_seen(&self, is_enough: impl Fn([u32; 2], [f64; 2]) -> bool) -> Result<(), SumsError> {
+        let samples = |pixel: usize| self.film.halves(pixel).map(|half| half.samples);
+        let is_seen = |pixel: usize| is_enough(self.guide_samples[pixel], samples(pixel)) || samples(pixel) == [0.0; 2];
+        match (0..self.film.pixel_count()).all(is_seen) {
+            true => Ok(()),
+            false => Err(SumsError::NotSeen),
+        }
     }
 
     /// What a file at `path` tells beside its channels.
@@ -168,7 +187,9 @@ impl KeptFilm {
                 push(format!("{word}.{color}.low"), low);
             }
             let of = |pixel: usize| film.halves(pixel)[half];
-            let deviations = pixels().map(|pixel| of(pixel).squared_deviations as f32).collect();
+            let deviations = pixels()
+                .map(|pixel| of(pixel).squared_deviations.min(f64::from(f32::MAX)) as f32)
+                .collect();
             push(format!("{word}.deviations"), FlatSamples::F32(deviations));
             let samples = pixels().map(|pixel| of(pixel).samples as u32).collect();
             push(format!("{word}.samples"), FlatSamples::U32(samples));
@@ -179,15 +200,15 @@ impl KeptFilm {
             push("coverage.low".to_owned(), low);
         }
         if film.extras().guides {
-            let guides: &[[f32; GUIDES.len()]] = bytemuck::cast_slice(&film.guides);
-            for (i, name) in GUIDES.into_iter().enumerate() {
-                let values = guides.iter().map(|guides| guides[i]).collect();
-                push(format!("guides.{name}"), FlatSamples::F32(values));
+            let guides: &[[[f32; GUIDES.len()]; 2]] = bytemuck::cast_slice(&film.guides);
+            for (half, word) in HALVES.into_iter().enumerate() {
+                for (i, name) in GUIDES.into_iter().enumerate() {
+                    let values = guides.iter().map(|guides| guides[half][i]).collect();
+                    push(format!("guides.{word}.{name}"), FlatSamples::F32(values));
+                }
+                let samples = self.guide_samples.iter().map(|samples| samples[half]).collect();
+                push(format!("guides.{word}.samples"), FlatSamples::U32(samples));
             }
-            push(
-                "guides.samples".to_owned(),
-                FlatSamples::U32(self.guide_samples.clone()),
-            );
         }
         channels
     }
@@ -204,7 +225,7 @@ impl KeptFilm {
         let world_units_per_unit = units.parse().map_err(|_| file.missing(UNITS))?;
         let extras = Extras {
             coverage: file.find("coverage.high").is_some(),
-            guides: file.find("guides.samples").is_some(),
+            guides: file.find(&format!("{}samples", file.guides_of(HALVES[0]))).is_some(),
         };
         let [width, height] = file.size();
         let mut film = Film::keeping(width, height, extras);
@@ -216,17 +237,24 @@ impl KeptFilm {
             let coverage = file.doubles("coverage")?.into_iter().enumerate();
             coverage.for_each(|(pixel, sum)| film.add_coverage(pixel, sum));
         }
-        let mut guide_samples = vec![0; film.pixel_count()];
+        let mut guide_samples = vec![[0; 2]; film.pixel_count()];
         if extras.guides {
-            let guides: &mut [[f32; GUIDES.len()]] = bytemuck::cast_slice_mut(&mut film.guides);
-            for (i, name) in GUIDES.into_iter().enumerate() {
-                let values = file.numbers(&format!("guides.{name}"))?;
-                guides
+            let guides: &mut [[[f32; GUIDES.len()]; 2]] = bytemuck::cast_slice_mut(&mut film.guides);
+            for (half, word) in HALVES.into_iter().enumerate() {
+                let prefix = file.guides_of(word);
+                for (i, name) in GUIDES.into_iter().enumerate() {
+                    let values = file.numbers(&format!("{prefix}{name}"))?.iter();
+                    guides
+                        .iter_mut()
+                        .zip(values)
+                        .for_each(|(sums, value)| sums[half][i] = *value);
+                }
+                let samples = file.words(&format!("{prefix}samples"))?.iter();
+                guide_samples
                     .iter_mut()
-                    .zip(values)
-                    .for_each(|(guides, value)| guides[i] = *value);
+                    .zip(samples)
+                    .for_each(|(own, samples)| own[half] = *samples);
             }
-            guide_samples = file.words("guides.samples")?.to_vec();
         }
         Ok(Self {
             film,
@@ -283,12 +311,14 @@ impl KeptFilm {
             self.film.add_coverage(pixel, other.film.color(pixel)[3]);
         }
         if other.film.extras().guides {
-            self.film.guides.resize(other.film.guides.len(), GuideSums::default());
-            let own = self.film.guides.iter_mut().zip(&mut self.guide_samples);
-            for ((guides, samples), (more, count)) in own.zip(other.film.guides.iter().zip(&other.guide_samples)) {
-                guides.add(more);
-                *samples += count;
-            }
+            self.film.guides.resize(other.film.guides.len(), Default::default());
+            let (own, more) = (self.film.guides.as_flattened_mut(), other.film.guides.as_flattened());
+            own.iter_mut().zip(more).for_each(|(guides, more)| guides.add(more));
+            let (own, more) = (
+                self.guide_samples.as_flattened_mut(),
+                other.guide_samples.as_flattened(),
+            );
+            own.iter_mut().zip(more).for_each(|(samples, more)| *samples += more);
         }
         self.samples.extend(&other.samples);
         self.samples.sort_unstable();
@@ -345,6 +375,14 @@ impl<'a> Sums<'a> {
         let mut channels = self.layer.channel_data.list.iter();
         let is_meant = |channel: &&AnyChannel<FlatSamples>| channel.name == *name.as_str();
         channels.find(is_meant).map(|channel| &channel.sample_data)
+    }
+
+    /// What the channels of a half's guides begin with: older files have the sums over both halves alone.
+    fn guides_of(&self, half: &str) -> String {
+        match self.find("guides.samples") {
+            Some(_) => "guides.".to_owned(),
+            None => format!("guides.{half}."),
+        }
     }
 
     fn words(&self, name: &str) -> Result<&[u32], SumsError> {

@@ -41,9 +41,8 @@ pub fn step_to_end(
     go_on: &mut dyn FnMut(&Progress) -> bool,
 ) -> Result<Ended, SessionError> {
     loop {
-        let budget = attendant.budget(&session.progress(), STEP);
         // Read back what the GPU has: if that fails, it can still be rendered again.
-        let stepped = session.step(budget).and_then(|progress| {
+        let stepped = session.step(STEP).and_then(|progress| {
             if progress.is_done {
                 session.film()?;
             }

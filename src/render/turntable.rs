@@ -32,6 +32,8 @@ pub struct Turntable {
     pub video: Option<PathBuf>,
     /// Frames a second of the video.
     pub fps: f64,
+    /// A turn that is stopped leaves a video of the frames that there are; else none.
+    pub keeps_part: bool,
 }
 
 /// How far it has come.
@@ -93,7 +95,8 @@ impl Turntable {
 }
 
 /// Renders the frames in order, falling back to another engine as [`submit`] does. `go_on` receives the progress after
-/// every step, and stops the whole by `false`: pictures that were written stay, a video is only written whole.
+/// every step, and stops the whole by `false`: pictures that were written stay, of a video what
+/// [`Turntable::keeps_part`] says.
 ///
 /// # Errors
 /// [`TurntableError`] naming the file; frames before stay.
@@ -119,7 +122,8 @@ pub fn render(
             go_on(TurntableProgress { done: frame, share })
         })?;
         if !ended.progress.is_done {
-            return Ok(outcome);
+            video = video.filter(|_| table.keeps_part && outcome.frames > 0);
+            break;
         }
         outcome.render_seconds += ended.progress.render_seconds;
         outcome.dropped += session.film()?.dropped();

@@ -98,6 +98,7 @@ impl TurntableSheet {
             folder: (!is_video).then(|| path.clone()),
             video: is_video.then(|| path.with_extension(self.form.ending())),
             fps: self.fps,
+            keeps_part: false,
         }
     }
 

@@ -18,7 +18,7 @@ use super::recorder::{End, Event, Recorder, Source, single};
 use crate::job::effect::EffectId;
 use crate::job::features::{GUIDE_SAMPLES, GuideSums};
 use crate::job::{Job, Settings, Strategy};
-use crate::optics::material::{Material, material_albedo};
+use crate::optics::material::{Material, material_albedo, material_normal};
 use crate::optics::random::Sequence;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
@@ -296,7 +296,8 @@ impl<'a, T: Real> Integrator<'a, T> {
         }
         let albedo = arrival.throughput * material_albedo(material, self.tables, &point.surface);
         let depth = arrival.distance * arrival.direction.dot(self.camera.forward);
-        let (albedos, normals) = (albedo.to_each(), point.surface.frame.normal.to_each());
+        let normal = material_normal(material, self.tables, &point.surface);
+        let (albedos, normals) = (albedo.to_each(), normal.to_each());
         let depths = depth.to_each();
         members.for_each(&mut paths.looks, is_looking, |Look { seen, .. }, lane| {
             seen.albedo = albedos.as_ref()[lane].to_f32().map(|share| share.clamp(0.0, 1.0));

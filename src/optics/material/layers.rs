@@ -125,7 +125,7 @@ fn albedos_in<T: Real>(
 }
 
 /// The share of the light from everywhere that reaches the viewer by all layers, in [0, 1] for each colour: where there
-/// is only the specular lobe, its Fresnel term at the view's angle.
+/// is only the specular lobe below the coat, its Fresnel term at the view's angle.
 #[inline(always)]
 pub fn material_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Vec3<T> {
     let has_more = material.has_specular() & (material.has_base() | material.transmits());
@@ -137,7 +137,19 @@ pub fn material_albedo<T: Real>(material: &Material<T>, tables: &[f32], surface:
     }
     let specular = Vec3::select(material.has_specular(), specular, Vec3::zero());
     let layers = material_layers(material, tables, surface);
-    specular + layers.base + layers.transmission
+    let coat = Vec3::splat(coat_share(material, tables, surface));
+    coat + layers.below_coat * (specular + layers.base + layers.transmission)
+}
+
+/// The shading normal that leads a denoiser: the coat's and that of what lies below, by how often each is sampled.
+#[inline(always)]
+pub fn material_normal<T: Real>(material: &Material<T>, tables: &[f32], surface: &Surface<T>) -> Vec3<T> {
+    let below = surface.frame.normal;
+    if !material.has_coat(surface).any() {
+        return below;
+    }
+    let layers = material_layers(material, tables, surface);
+    below.mix(surface.coat_normal, layers.coat_probability)
 }
 
 /// True where a mirrored direction is drawn first and what it does not reflect is passed on: then all weights are 1

@@ -1,16 +1,11 @@
 //! The denoiser beside a session that is stepped to its end: by the command line, in turntables and studies.
 
-use std::time::Duration;
-
 use super::{Denoised, Denoiser};
 use crate::document::{Denoise, Document};
 use crate::render::session::{Progress, Session, SessionError};
 
 /// By how much samples grow from one denoised picture to the next while its error is aimed at.
 const GROWTH: f64 = 1.5;
-
-/// Shortest step on the way there.
-const STEP_MIN: Duration = Duration::from_millis(2);
 
 /// Denoises what a session renders: at its end, and on the way where rendering stops at the error of what is shown.
 pub struct Attendant {
@@ -41,18 +36,8 @@ impl Attendant {
         attendant
     }
 
-    /// How long the next step may be, at most `usual`: where the error of the denoised picture is aimed at it is looked at
-    /// often enough not to go far beyond.
-    pub fn budget(&self, progress: &Progress, usual: Duration) -> Duration {
-        if self.denoiser.is_none() || progress.noise_wanted.is_none() || !progress.aims_at_denoised {
-            return usual;
-        }
-        let seconds = (GROWTH - 1.0) * progress.render_seconds;
-        Duration::from_secs_f64(seconds.max(0.0)).clamp(STEP_MIN.min(usual), usual)
-    }
-
     /// To be called after each step: tells the session how far the denoised picture is from the truth, where that is
-    /// what it aims at.
+    /// what it aims at and a round is over.
     ///
     /// # Errors
     /// If the GPU fails.
@@ -60,6 +45,7 @@ impl Attendant {
         let is_due = progress.noise_wanted.is_some()
             && progress.aims_at_denoised
             && progress.mean_samples >= self.next_samples.max(2.0)
+            && session.is_between_rounds()
             && !progress.is_done;
         if is_due && self.denoiser.is_some() {
             self.next_samples = GROWTH * progress.mean_samples;

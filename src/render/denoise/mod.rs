@@ -1,7 +1,8 @@
 //! Pictures without their noise, by Open Image Denoise where it is installed, with the error that is left.
 //!
-//! Both halves of the samples are denoised by themselves: the picture is their mean, and what they have in common and
-//! what not tells how far it is from the truth ([`crate::analysis::denoised`]).
+//! Both halves of the samples are denoised by themselves, each led by what its own samples saw first: the picture is
+//! their mean, and what they have in common and what not tells how far it is from the truth
+//! ([`crate::analysis::denoised`]).
 
 mod attendant;
 mod filter;
@@ -16,6 +17,7 @@ pub use attendant::Attendant;
 use filter::{Device, Filter};
 pub use filter::{Guides, Quality};
 pub use library::{FOLDER_VARIABLE, Library, LibraryError, data_folder};
+use picture::NoisyHalf;
 pub use picture::{Denoised, Noisy};
 
 use crate::analysis::denoised::{Colors, DenoisedHalves, Errors};
@@ -79,29 +81,35 @@ impl Denoiser {
             Denoise::Fast => Quality::Fast,
             Denoise::High | Denoise::Auto => Quality::High,
         };
-        let present: Vec<&Colors> = noisy.halves.iter().flatten().collect();
+        let present: Vec<&NoisyHalf> = noisy.halves.iter().flatten().collect();
         if present.is_empty() || noisy.size().contains(&0) {
             return Ok(Denoised::untouched(noisy));
         }
-        let scale = picture::input_scale(present[0], noisy.size());
-        let mut clean = |color: &[[f32; 3]], scale: f32| {
+        let size = noisy.size();
+        let mut clean = |color: &[[f32; 3]], guides: Guides<'_>, scale: f32| {
             let mut pass = Pass {
                 denoiser: &mut *self,
-                noisy,
+                size,
+                guides,
                 quality,
                 scale,
                 stops,
             };
             pass.clean(color)
         };
+        // The scale is a half's own, too.
+        let mut clean_half = |half: &NoisyHalf| {
+            let NoisyHalf { color, albedo, normal } = half;
+            clean(color, Guides { albedo, normal }, picture::input_scale(color, size))
+        };
         let mut done = Denoised::untouched(noisy);
         let colors = match present[..] {
             [even, odd] => {
-                let denoised = [clean(even, scale)?, clean(odd, scale)?];
+                let denoised = [clean_half(even)?, clean_half(odd)?];
                 let errors = Errors::of(&DenoisedHalves {
-                    noisy: [even, odd],
+                    noisy: [&even.color, &odd.color],
                     denoised: [&denoised[0], &denoised[1]],
-                    width: noisy.size()[0],
+                    width: size[0],
                 });
                 let shares = (how == Denoise::Auto).then(|| errors.shares());
                 done.error = Some(errors.error(shares.as_deref()));
@@ -109,12 +117,13 @@ impl Denoiser {
                 done.error_map = noisy.spread(&errors.map(shares.as_deref()));
                 noisy.mixed(&denoised, shares.as_deref())
             }
-            _ => clean(present[0], scale)?,
+            _ => clean_half(present[0])?,
         };
         let alpha = noisy.alphas();
         let alpha = if alpha.iter().any(|alpha| *alpha < 1.0) {
             let grey: Colors = alpha.iter().map(|alpha| [*alpha; 3]).collect();
-            let clean = clean(&grey, 1.0)?;
+            let [albedo, normal] = &noisy.guides();
+            let clean = clean(&grey, Guides { albedo, normal }, 1.0)?;
             clean.iter().map(|[alpha, ..]| alpha.clamp(0.0, 1.0)).collect()
         } else {
             alpha
@@ -142,7 +151,8 @@ impl Denoiser {
 /// One filtering of a picture.
 struct Pass<'a> {
     denoiser: &'a mut Denoiser,
-    noisy: &'a Noisy,
+    size: [usize; 2],
+    guides: Guides<'a>,
     quality: Quality,
     scale: f32,
     stops: &'a AtomicBool,
@@ -151,7 +161,7 @@ struct Pass<'a> {
 impl Pass<'_> {
     /// A picture without its noise, in bands where it is large.
     fn clean(&mut self, color: &[[f32; 3]]) -> Result<Colors, LibraryError> {
-        let [width, height] = self.noisy.size();
+        let [width, height] = self.size;
         let pixels_max = self.denoiser.pixels_max;
         if width * height <= pixels_max {
             return self.clean_rows(color, 0..height);
@@ -172,12 +182,12 @@ impl Pass<'_> {
     }
 
     fn clean_rows(&mut self, color: &[[f32; 3]], rows: std::ops::Range<usize>) -> Result<Colors, LibraryError> {
-        let [width, _] = self.noisy.size();
+        let [width, _] = self.size;
         let pixels = rows.start * width..rows.end * width;
         let filter = self.denoiser.filter([width, rows.len()], self.quality)?;
         filter.guide(Guides {
-            albedo: &self.noisy.albedo[pixels.clone()],
-            normal: &self.noisy.normal[pixels.clone()],
+            albedo: &self.guides.albedo[pixels.clone()],
+            normal: &self.guides.normal[pixels.clone()],
         });
         let mut clean = filter.run(&color[pixels], self.scale, self.stops)?;
         // No picture of ours has such numbers; the filter promises nothing.

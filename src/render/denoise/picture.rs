@@ -6,7 +6,6 @@ use rayon::prelude::*;
 
 use crate::analysis::denoised::Colors;
 use crate::analysis::halves::Distance;
-use crate::job::features::Features;
 use crate::job::film::{Film, Image, luminance};
 
 /// What middle grey is brought to before filtering, and the darkest luminance that counts.
@@ -25,8 +24,15 @@ pub struct Noisy {
     pub image: Arc<Image>,
     /// The part of it that was rendered: left, top, width, height in pixels.
     rect: [usize; 4],
-    /// The means of both halves within it; without the second where there is none yet.
-    pub(super) halves: [Option<Colors>; 2],
+    /// Both halves within it; without the second where there is none yet.
+    pub(super) halves: [Option<NoisyHalf>; 2],
+}
+
+/// Means over one half of the samples: nothing of it comes from the other half, as the error that is told rests on both
+/// being independent.
+#[derive(Clone, Debug)]
+pub(super) struct NoisyHalf {
+    pub(super) color: Colors,
     pub(super) albedo: Colors,
     pub(super) normal: Colors,
 }
@@ -34,43 +40,37 @@ pub struct Noisy {
 impl Noisy {
     /// Reads a film; `region` is the part that is rendered: left, top, right, bottom as shares of width and height.
     pub fn of(film: &Film, region: Option<[f64; 4]>) -> Self {
-        Self::led_by(&Features::of(film, 1.0), film, region)
+        Self::of_samples(film, |pixel| film.guide_samples(pixel), region)
     }
 
-    /// The same with what is seen in it.
-    pub fn led_by(features: &Features, film: &Film, region: Option<[f64; 4]>) -> Self {
+    /// The same where it is said how many samples of each half of a pixel are in the sums of what is seen first.
+    pub fn of_samples(film: &Film, guide_samples: impl Fn(usize) -> [f64; 2] + Sync, region: Option<[f64; 4]>) -> Self {
         let rect = rendered_rect(film, region);
         let pixels = pixels_of(rect, film.width as usize);
-        let half = |number: usize| -> Option<Colors> {
-            let missing = pixels.iter().filter(|pixel| film.halves(**pixel)[number].samples < 1.0);
-            if missing.count() as f64 > MISSING_SHARE * pixels.len() as f64 {
-                return None;
-            }
-            let mean = |pixel: &usize| {
-                let halves = film.halves(*pixel);
-                // Where all of a half's samples were dropped, the other half stands in.
-                let half = [halves[number], halves[1 - number]]
-                    .into_iter()
-                    .find(|half| half.samples > 0.0);
-                half.map_or([0.0; 3], |half| {
-                    half.color.map(|sum| (sum / half.samples).max(0.0) as f32)
-                })
-            };
-            Some(pixels.par_iter().map(mean).collect())
-        };
-        let chosen = |values: &[[f32; 3]]| pixels.iter().map(|pixel| values[*pixel]).collect();
+        let half = |number: usize| NoisyHalf::of(film, number, &|pixel| guide_samples(pixel)[number], &pixels);
         Self {
             image: Arc::new(film.image()),
             rect,
             halves: [half(0), half(1)],
-            albedo: chosen(&features.albedo),
-            normal: chosen(&features.normal),
         }
     }
 
     /// Width and height of the part that was rendered.
     pub(super) fn size(&self) -> [usize; 2] {
         [self.rect[2], self.rect[3]]
+    }
+
+    /// The mean guides of the halves that there are, albedo and normal.
+    pub(super) fn guides(&self) -> [Colors; 2] {
+        let halves: Vec<&NoisyHalf> = self.halves.iter().flatten().collect();
+        let mean = |of: &dyn Fn(&NoisyHalf) -> &Colors| -> Colors {
+            let at = |pixel: usize| {
+                let sum = |c: usize| halves.iter().map(|half| of(half)[pixel][c]).sum::<f32>();
+                std::array::from_fn(|c| sum(c) / halves.len().max(1) as f32)
+            };
+            (0..self.rect[2] * self.rect[3]).map(at).collect()
+        };
+        [mean(&|half| &half.albedo), mean(&|half| &half.normal)]
     }
 
     fn pixels(&self) -> Vec<usize> {
@@ -112,6 +112,38 @@ impl Noisy {
             all[pixel] = *value;
         }
         all
+    }
+}
+
+impl NoisyHalf {
+    /// Reads the pixels of one half of a film; `None` where too many lack samples.
+    fn of(film: &Film, number: usize, guide_samples: &(dyn Fn(usize) -> f64 + Sync), pixels: &[usize]) -> Option<Self> {
+        let has_samples = |pixel: usize| film.halves(pixel)[number].samples > 0.0;
+        let present = pixels.iter().filter(|pixel| has_samples(**pixel)).count();
+        let (missing, first) = (pixels.len() - present, pixels.iter().find(|pixel| has_samples(**pixel)));
+        if missing as f64 > MISSING_SHARE * pixels.len() as f64 {
+            return None;
+        }
+        // For a pixel whose samples were all dropped the one before it stands in, of the same half.
+        let mut stand_in = *first?;
+        let sources = pixels.iter().map(|pixel| {
+            if has_samples(*pixel) {
+                stand_in = *pixel;
+            }
+            stand_in
+        });
+        let sources: Vec<usize> = sources.collect();
+        let of_pixel = |pixel: &usize| {
+            let half = film.halves(*pixel)[number];
+            let [albedo, normal] = match film.guides.get(*pixel) {
+                Some(guides) => guides[number].means(guide_samples(*pixel)),
+                None => Default::default(),
+            };
+            let color = half.color.map(|sum| (sum / half.samples).max(0.0) as f32);
+            (color, (albedo, normal))
+        };
+        let (color, (albedo, normal)) = sources.par_iter().map(of_pixel).unzip();
+        Some(Self { color, albedo, normal })
     }
 }
 

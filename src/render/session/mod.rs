@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use super::assets::{Assets, Reloaded};
 use super::calibration;
 use super::compile::Compiler;
-use super::convergence::{Convergence, Measurement, fewest_samples, mean_samples};
+use super::convergence::{Convergence, Measurement, Pacing, fewest_samples, mean_samples};
 use super::engine::{Engine, EngineChoice, EngineInfo, EngineKind, Precision};
 use super::memory;
 use super::workshop::Workshop;
@@ -425,7 +425,7 @@ impl Session {
                 self.measure()?;
             }
             self.render_time = before + begun.elapsed();
-            if begun.elapsed() >= budget {
+            if begun.elapsed() >= budget || self.awaits_denoised() {
                 break;
             }
         }
@@ -441,10 +441,13 @@ impl Session {
             return Ok(());
         }
         let begun = Instant::now();
-        let seconds = self.engine_seconds();
+        let pacing = Pacing {
+            engine_seconds: matches!(self.engine, Engine::Gpu(_)).then(|| self.engine_seconds()),
+            is_denoised: self.shows_nearer(),
+        };
         let schedule = self.engine.schedule().clone();
         let film = document.render.is_adaptive().then(|| self.engine.film()).transpose()?;
-        self.convergence.next_round(film, &schedule, &document.render, seconds);
+        self.convergence.next_round(film, &schedule, &document.render, pacing);
         self.convergence.planned(begun.elapsed().as_secs_f64());
         Ok(())
     }
@@ -494,7 +497,9 @@ impl Session {
             aims_at_denoised: self.shows_nearer(),
             ..Progress::default()
         };
-        let has_all = progress.samples_per_pixel >= progress.samples_wanted;
+        // Where tiles rest, one may have all while others lack samples of the round.
+        let is_even = settings.is_none_or(|render| !render.is_adaptive());
+        let has_all = progress.samples_per_pixel >= progress.samples_wanted && (is_even || self.is_between_rounds());
         let has_least = || settings.is_some_and(|render| fewest_samples(schedule, &render) >= render.least_samples());
         progress.stopped_by = if progress.is_converged() && has_least() {
             Some(StopReason::Noise)
@@ -522,6 +527,20 @@ impl Session {
     /// Takes note of the error of the denoised picture: a noise to reach is that of what is shown.
     pub fn note_denoised(&mut self, error: Distance) {
         self.denoised = Some(error);
+    }
+
+    /// True where every tile has the samples of its round: how many is no matter of time on the CPU.
+    pub fn is_between_rounds(&self) -> bool {
+        self.engine.schedule().is_at_goal()
+    }
+
+    /// True where the error of the denoised picture is to be looked at before rendering goes on.
+    fn awaits_denoised(&self) -> bool {
+        let has_aim = self
+            .document
+            .as_ref()
+            .is_some_and(|document| document.render.noise.is_some());
+        has_aim && self.shows_nearer() && self.is_between_rounds()
     }
 
     /// Whether samples or the denoised picture are shown, whichever is nearer to the truth.

@@ -1,0 +1,120 @@
+//! A render that a signal ends: the picture so far is there, and said to be.
+#![cfg(unix)]
+
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use super::cli_support::{Workplace, read_exr};
+
+/// More samples than there is time for.
+const RENDER: &str =
+    "render --engine cpu --model sphere --size 32x32 --samples 4000000000 --output a.exr --report r.json";
+
+/// Starts the program by way of a shell, which does `before` first, and waits until the engine is told: from then on signals
+/// are watched.
+fn begun(place: &Workplace, before: &str, arguments: &str) -> (Child, BufReader<std::process::ChildStderr>) {
+    let mut child = Command::new("sh")
+        .args([
+            "-c",
+            &format!("{before} exec \"$0\" {arguments}"),
+            env!("CARGO_BIN_EXE_glossmith"),
+        ])
+        .current_dir(place.path("."))
+        .env_remove("RUST_LOG")
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut told = BufReader::new(child.stderr.take().unwrap());
+    let mut line = String::new();
+    told.read_line(&mut line).unwrap();
+    assert!(line.starts_with("CPU on"), "{line}");
+    (child, told)
+}
+
+fn send(child: &Child, signal: &str) {
+    let status = Command::new("kill").args([signal, &child.id().to_string()]).status();
+    assert!(status.unwrap().success());
+}
+
+/// The exit code, and what it told on the way.
+fn ended(mut child: Child, mut told: BufReader<std::process::ChildStderr>) -> (Option<i32>, String) {
+    let mut text = String::new();
+    told.read_to_string(&mut text).unwrap();
+    (child.wait().unwrap().code(), text)
+}
+
+#[test]
+fn a_signal_ends_a_render_with_what_there_is() {
+    for (signal, name, code) in [
+        ("-INT", "SIGINT", 130),
+        ("-TERM", "SIGTERM", 143),
+        ("-HUP", "SIGHUP", 129),
+    ] {
+        let place = Workplace::new();
+        let (child, told) = begun(&place, "", RENDER);
+        send(&child, signal);
+        let (found, text) = ended(child, told);
+        assert_eq!(found, Some(code), "{text}");
+        assert!(
+            text.contains("wrote a.exr") && text.contains(&format!("ended early by {name}")),
+            "{text}"
+        );
+        let picture = read_exr(&place.path("a.exr"));
+        assert!(picture.pixels.iter().any(|pixel| pixel[0] > 0.0), "{signal}: black");
+        let report: serde_json::Value = serde_json::from_str(&place.read("r.json")).unwrap();
+        assert_eq!(report["stopped_by"], "signal");
+        assert!(report["mean_samples_per_pixel"].as_f64().unwrap() > 0.0);
+    }
+}
+
+/// Both arrive while the program is stopped, so before it has come to save anything.
+#[test]
+fn a_second_signal_ends_it_at_once() {
+    let place = Workplace::new();
+    let (child, told) = begun(&place, "", RENDER);
+    for signal in ["-STOP", "-INT", "-TERM", "-CONT"] {
+        send(&child, signal);
+    }
+    let (code, text) = ended(child, told);
+    assert!(matches!(code, Some(130 | 143)), "{code:?}: {text}");
+    assert!(!place.path("a.exr").exists(), "{text}");
+}
+
+/// As under `nohup`.
+#[test]
+fn a_signal_that_is_ignored_stays_ignored() {
+    let place = Workplace::new();
+    let (child, told) = begun(&place, "trap '' HUP;", RENDER);
+    send(&child, "-HUP");
+    send(&child, "-INT");
+    let (code, text) = ended(child, told);
+    assert_eq!(code, Some(130), "{text}");
+    assert!(place.path("a.exr").exists(), "{text}");
+}
+
+#[test]
+fn a_turntable_that_is_ended_keeps_its_frames_and_its_list() {
+    let place = Workplace::new();
+    let arguments = "turntable --engine cpu --model sphere --size 16x16 --samples 2 --frames 9999 --output frames \
+                     --video turn.gif --report r.json";
+    let (child, told) = begun(&place, "", arguments);
+    let started = Instant::now();
+    while !place.path("frames/frame-0003.png").exists() {
+        assert!(started.elapsed() < Duration::from_secs(120), "no frames");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    send(&child, "-TERM");
+    let (code, text) = ended(child, told);
+    assert_eq!(code, Some(143), "{text}");
+    let report: serde_json::Value = serde_json::from_str(&place.read("r.json")).unwrap();
+    let frames = report["frames"].as_u64().unwrap() as usize;
+    assert!(frames >= 3 && report["stopped_by"] == "signal", "{report}");
+    let files = report["files"].as_array().unwrap();
+    assert_eq!(files.len(), frames + 1, "{report}");
+    for file in files {
+        assert!(place.path(file.as_str().unwrap()).is_file(), "{file}");
+    }
+    assert_eq!(std::fs::read_dir(place.path("frames")).unwrap().count(), frames);
+}
