@@ -53,10 +53,10 @@ pub struct SceneArguments {
     /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light [default: display].
     #[arg(long, value_name = "display|linear", value_parser = parse::environment_encoding)]
     environment_encoding: Option<EnvironmentEncoding>,
-    /// A rectangle (triangle, disc) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
+    /// A rectangle (triangle, disc, sphere) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
     /// in bounding radii of the model) and radiance; a colour, or the temperature of one, may follow, and WORD=VALUE as of
-    /// --spot. May be repeated, 8 lights in all.
-    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle|,disc][,#rrggbb|,3200K][,WORD=VALUE]…", value_parser = lights::area_light, allow_hyphen_values = true)]
+    /// --spot. May be repeated, 64 lights in all.
+    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle|,disc|,sphere][,#rrggbb|,3200K][,WORD=VALUE]…", value_parser = lights::area_light, allow_hyphen_values = true)]
     area_lights: Vec<LightArgument>,
     /// A spot, a disc that shines into a cone: yaw, pitch (degrees), distance, target (x,y,z), turn, width, height, cone
     /// (degrees), softness, color, temperature (2700K), strength (radiance) or power (lumens). May be repeated.

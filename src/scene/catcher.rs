@@ -85,7 +85,7 @@ pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> 
         let place = DVec3::new(x, height, z);
         let mut sum = far;
         for (triangles, near) in &near {
-            for corners in triangles {
+            for corners in triangles.iter().filter(|corners| near.shape.shows(corners, place)) {
                 let share = form_factor(place, corners);
                 let behind = light.behind(place, corners);
                 let spot = near.share(place, corners);
