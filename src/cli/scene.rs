@@ -10,7 +10,7 @@ use super::settings::SettingOptions;
 use super::textures::{self, TextureArgument};
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
-use crate::document::of_model::materials_of;
+use crate::document::of_model::{lights_left_out, materials_of};
 use crate::document::{Background, Document, ImportLobe, ParameterError, range};
 use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
@@ -209,7 +209,9 @@ impl SceneArguments {
             .area_lights
             .extend(given.map(|light| light.in_scene(radius_m)));
         if takes_materials {
-            document.add_lights_and_cameras(&model);
+            if let Some(told) = lights_left_out(document.add_lights_and_cameras(&model)) {
+                log::warn!("{told}");
+            }
         }
         Ok(())
     }

@@ -21,20 +21,27 @@ pub fn materials_of(model: &Model, lobe: ImportLobe) -> Vec<MaterialSettings> {
     slots.map(|slot| MaterialSettings::from_slot(slot, lobe)).collect()
 }
 
+/// What is to be told where lights of a file found no room.
+pub fn lights_left_out(count: usize) -> Option<String> {
+    (count > 0).then(|| format!("{count} lights of the file are left out: there may be {LIGHTS_MAX} in all"))
+}
+
 impl Document {
     /// Adds the lights of a model, and its cameras as bookmarks: those that are not there already. Returns how many lights
     /// found no room.
     pub fn add_lights_and_cameras(&mut self, model: &Model) -> usize {
         let mut left_out = 0;
+        let lights = &mut self.lighting.area_lights;
+        // Two of the file may be alike.
+        let there = lights.len();
         for light in model.lights.iter().map(|light| area_light(light, model)) {
-            let lights = &mut self.lighting.area_lights;
             let is_there = |own: &AreaLight| {
                 AreaLight {
                     is_muted: false,
                     ..*own
                 } == light
             };
-            if lights.iter().any(is_there) {
+            if lights[..there].iter().any(is_there) {
                 continue;
             }
             if lights.len() < LIGHTS_MAX {
