@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 
 use glossmith::document::of_model::materials_of;
 use glossmith::document::{AreaLightShape, Document, ImportLobe};
+use glossmith::optics::random::Sequence;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::environment::EnvironmentSource;
 use glossmith::scene::{Fate, LIGHTS_MAX, Model, ModelSource, load};
@@ -50,8 +51,9 @@ fn seen(document: &Document, engine: EngineChoice, [x, y]: [f64; 2]) -> f64 {
     document.camera.position = Some([0.5, -0.8, 0.9]);
     document.camera.target = Some([x, y, 0.0]);
     document.camera.fov_deg = 0.2;
-    (document.render.width, document.render.height, document.render.samples) = (8, 8, 256);
+    (document.render.width, document.render.height, document.render.samples) = (8, 8, 512);
     document.render.bounces = 1;
+    document.render.sequence = Sequence::Sobol;
     let luminance = render(engine, &document).luminance();
     luminance.iter().sum::<f64>() / luminance.len() as f64
 }
