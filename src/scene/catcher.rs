@@ -337,6 +337,35 @@ mod tests {
     }
 
     #[test]
+    fn a_sphere_lights_from_its_near_side() {
+        let environment = environment::load(&EnvironmentSource::Studio).expect("loads");
+        let light = CatcherLight {
+            environment: &environment,
+            rotation: [1.0, 0.0],
+            strength: 0.0,
+            area_lights: &[NearLight {
+                shape: AreaShape {
+                    yaw_deg: 0.0,
+                    pitch_deg: 90.0,
+                    distance: 2.0,
+                    width: 0.2,
+                    height: 0.2,
+                    target: [0.0; 3],
+                    turn_deg: 0.0,
+                    outline: Outline::Sphere,
+                },
+                radiance: [1e3; 3],
+                spot: [0.0, 1.0],
+            }],
+        };
+        let table = catcher_table(&light, -0.5, 0.0);
+        let found: Vec3<f64> = catcher_light(&table, 0, vec3(0.0, -0.5, 0.0));
+        // The squared sine of half its angle.
+        let expected = 1e3 * (0.1_f64 / 2.5).powi(2);
+        assert!((found.x / expected - 1.0).abs() < 0.01, "{found:?}, not {expected}");
+    }
+
+    #[test]
     fn tables_with_lights_are_near_the_true_light() {
         let environment = environment::load(&EnvironmentSource::Studio).expect("loads");
         let shape = AreaShape {

@@ -26,6 +26,7 @@ mod part;
 pub(crate) mod picture;
 mod ply;
 pub mod report;
+mod rle_bmp;
 pub mod shapes;
 mod stage;
 mod stl;

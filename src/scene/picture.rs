@@ -11,6 +11,7 @@ use super::environment::open_exr;
 use super::float_tiff;
 use super::gpu_picture::{self, Texels};
 use super::model::Texture;
+use super::rle_bmp;
 use super::texture::scale::scaled_to;
 use crate::optics::primaries::{Matrix, NoSpace, transformed};
 use crate::optics::tone::srgb_from_linear;
@@ -157,12 +158,13 @@ fn decode(name: &str, bytes: &[u8]) -> Result<(u32, u32, Numbers), String> {
         let texels = places.flat_map(texel).collect();
         return Ok((picture.width, picture.height, Numbers::Light(texels)));
     }
-    let picture = decode_image(name, bytes).map_err(|error| {
-        // The crate takes some of them for damaged.
-        let is_rle4 = bytes.starts_with(b"BM") && bytes.get(30) == Some(&2);
-        let what = "a BMP of run lengths of 4 bits, which is not read: save it as PNG";
-        if is_rle4 { what.to_owned() } else { error.to_string() }
-    })?;
+    let picture = match decode_image(name, bytes) {
+        Ok(picture) => picture,
+        Err(error) => {
+            let (width, height, codes) = rle_bmp::decode(bytes).ok_or_else(|| error.to_string())?;
+            return Ok((width, height, Numbers::Codes8(codes)));
+        }
+    };
     let (width, height) = (picture.width(), picture.height());
     let texels = match picture {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {
