@@ -75,6 +75,10 @@ mod explain;
 mod facets;
 #[path = "suite/farm.rs"]
 mod farm;
+#[path = "suite/file_colors.rs"]
+mod file_colors;
+#[path = "suite/file_scenes.rs"]
+mod file_scenes;
 #[path = "suite/files.rs"]
 mod files;
 #[path = "suite/fit.rs"]

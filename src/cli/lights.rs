@@ -29,7 +29,7 @@ impl LightArgument {
     }
 }
 
-/// A rectangle, triangle or disc: six numbers, then words; white where no colour is given.
+/// A rectangle, triangle, disc or sphere: six numbers, then words; white where no colour is given.
 pub(super) fn area_light(text: &str) -> Result<LightArgument, String> {
     let length = range::AREA_LENGTH;
     let ranges = [
@@ -91,6 +91,7 @@ fn put_word(argument: &mut LightArgument, word: &str) -> Result<(), String> {
         match word {
             "triangle" => light.shape = AreaLightShape::Triangle,
             "disc" => light.shape = AreaLightShape::Disc,
+            "sphere" => light.shape = AreaLightShape::Sphere,
             color if color.starts_with('#') => light.color = parse_color(color).map_err(|error| error.to_string())?,
             color if color.ends_with('K') => light.color = color_of_temperature(color)?,
             other => return Err(format!("{other}: {}", expected(light))),
@@ -125,7 +126,7 @@ fn expected(light: &AreaLight) -> String {
     let words: Vec<_> = words_of(light).map(Parameter::word).collect();
     let shapes = match light.shape {
         AreaLightShape::Spot | AreaLightShape::Sun => "",
-        _ => "triangle, disc, ",
+        _ => "triangle, disc, sphere, ",
     };
     format!(
         "give {shapes}#rrggbb, a temperature such as 3200K, or WORD=VALUE with one of {}, temperature, power",

@@ -10,7 +10,7 @@ use super::settings::SettingOptions;
 use super::textures::{self, TextureArgument};
 use super::{names, parse};
 use crate::document::effect::EffectSwitches;
-use crate::document::of_model::{import_report, materials_of};
+use crate::document::of_model::{import_report, lights_left_out, materials_of};
 use crate::document::{Background, Document, ImportLobe, ParameterError, range};
 use crate::render::{EngineChoice, Session};
 use crate::scene::environment::{ENDINGS, EnvironmentEncoding, EnvironmentSource};
@@ -53,10 +53,10 @@ pub struct SceneArguments {
     /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light [default: display].
     #[arg(long, value_name = "display|linear", value_parser = parse::environment_encoding)]
     environment_encoding: Option<EnvironmentEncoding>,
-    /// A rectangle (triangle, disc) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
+    /// A rectangle (triangle, disc, sphere) that shines, looking at the middle of the model: its direction in degrees, then distance, sides (all
     /// in bounding radii of the model) and radiance; a colour, or the temperature of one, may follow, and WORD=VALUE as of
-    /// --spot. May be repeated, 8 lights in all.
-    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle|,disc][,#rrggbb|,3200K][,WORD=VALUE]…", value_parser = lights::area_light, allow_hyphen_values = true)]
+    /// --spot. May be repeated, 64 lights in all.
+    #[arg(long = "area-light", value_name = "YAW,PITCH,DISTANCE,WIDTH,HEIGHT,STRENGTH[,triangle|,disc|,sphere][,#rrggbb|,3200K][,WORD=VALUE]…", value_parser = lights::area_light, allow_hyphen_values = true)]
     area_lights: Vec<LightArgument>,
     /// A spot, a disc that shines into a cone: yaw, pitch (degrees), distance, target (x,y,z), turn, width, height, cone
     /// (degrees), softness, color, temperature (2700K), strength (radiance) or power (lumens). May be repeated.
@@ -209,7 +209,9 @@ impl SceneArguments {
             .area_lights
             .extend(given.map(|light| light.in_scene(radius_m)));
         if takes_materials {
-            document.add_lights_and_cameras(&model);
+            if let Some(told) = lights_left_out(document.add_lights_and_cameras(&model)) {
+                log::warn!("{told}");
+            }
         }
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Lights of the document's own: rectangles, triangles and discs that shine, spots and suns.
+//! Lights of the document's own: rectangles, triangles, discs and spheres that shine, spots and suns.
 
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
@@ -114,6 +114,7 @@ impl AreaLight {
             AreaLightShape::Quad => Outline::Rectangle,
             AreaLightShape::Triangle => Outline::Triangle,
             AreaLightShape::Disc | AreaLightShape::Spot | AreaLightShape::Sun => Outline::Ellipse,
+            AreaLightShape::Sphere => Outline::Sphere,
         };
         let seen = AreaShape {
             target: self.target,
@@ -121,7 +122,7 @@ impl AreaLight {
             pitch_deg: self.pitch_deg,
             distance: self.distance,
             width: self.width,
-            height: self.height,
+            height: self.seen_height(),
             turn_deg: self.turn_deg,
             outline,
         };
@@ -137,6 +138,16 @@ impl AreaLight {
             turn_deg: 0.0,
             ..seen
         }
+    }
+
+    /// Whether it is a ball, which has a width alone.
+    pub fn is_sphere(&self) -> bool {
+        self.shape == AreaLightShape::Sphere
+    }
+
+    /// Its other side: a sphere is as high as it is wide.
+    fn seen_height(&self) -> f64 {
+        if self.is_sphere() { self.width } else { self.height }
     }
 
     fn half_angle_rad(&self) -> f64 {
@@ -183,8 +194,10 @@ impl AreaLight {
             AreaLightShape::Quad => 1.0,
             AreaLightShape::Triangle => 0.5,
             AreaLightShape::Disc | AreaLightShape::Spot => 0.25 * PI,
+            // Four times its disc, of which one side shines outwards.
+            AreaLightShape::Sphere => 0.5 * PI,
         };
-        let area_m2 = share * self.width * self.height * radius_m * radius_m;
+        let area_m2 = share * self.width * self.seen_height() * radius_m * radius_m;
         // What leaves a place, over its radiance: π to each side, or the integral of share × cosine over the cone.
         let projected_sr = match self.is_spot() {
             true => {
@@ -302,6 +315,7 @@ named! {
         Triangle = 1, "triangle", "Triangle", "Width is its base, height its height; the tip is up.";
         Disc = 2, "disc", "Disc", "A circle or an ellipse: width and height are its axes.";
         Spot = 3, "spot", "Spot", "A disc that sends its light into a cone around its target.";
+        Sphere = 5, "sphere", "Sphere", "A ball that shines in all directions alike: the width is its diameter.";
         Sun = 4, "sun", "Sun", "A disc so far away that its light is parallel.";
     }
 }
@@ -389,6 +403,13 @@ mod tests {
             ..AreaLight::default()
         };
         assert!((square.power(1.0) - 2.0 * PI).abs() < 1e-9);
+        // A ball of radius 1 m sends 4π² of it.
+        let ball = AreaLight {
+            shape: AreaLightShape::Sphere,
+            width: 2.0,
+            ..square
+        };
+        assert!((ball.power(1.0) - 4.0 * PI * PI).abs() < 1e-9);
         let mut black = AreaLight {
             color: [0.0; 3],
             ..square

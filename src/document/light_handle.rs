@@ -114,7 +114,9 @@ pub fn handles(light: &AreaLight, view: &View, margin: f64) -> Vec<(LightHandle,
     };
     put(LightHandle::Width, across, half_width);
     if !light.is_sun() {
-        put(LightHandle::Height, up, half_height);
+        if !light.is_sphere() {
+            put(LightHandle::Height, up, half_height);
+        }
         put(LightHandle::Distance, ahead, ARM);
         put(LightHandle::Turn, -up, half_height.max(APART) + APART);
     }

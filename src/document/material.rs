@@ -176,6 +176,7 @@ impl MaterialSettings {
             material.opacity = unit(slot.opacity);
         }
         material.coat_weight = unit(slot.coat);
+        material.coat_ior = slot.coat_ior;
         if slot.coat > 0.0 {
             material.coat_roughness = geometric_from_ggx(unit(slot.coat_roughness));
         }

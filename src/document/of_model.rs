@@ -1,17 +1,20 @@
 //! What a model's file says beside its shapes, as parts of a document: materials, cameras, lights.
 
+use std::f64::consts::PI;
+
 use glam::DVec3;
 
 use super::import::ROUGHNESS_MAX;
 use super::{AreaLight, AreaLightShape, Bookmark, CameraSettings, Document, ImportLobe, MaterialSettings, range};
-use crate::scene::{Fate, ImportReport, LightKind, Model, ModelCamera, ModelLight};
+use crate::scene::camera::right_and_up;
+use crate::scene::{Fate, ImportReport, LIGHTS_MAX, LightKind, Model, ModelCamera, ModelLens, ModelLight};
 
-/// Sides of the squares that stand for lights of no size, bounding radii.
-const LIGHT_SIDE: f64 = 0.1;
-/// How far away a light is that shines from everywhere far away, bounding radii.
-const FAR: f64 = 20.0;
-/// Sides of its square, bounding radii: as large as the sun would be, twenty times over.
-const FAR_SIDE: f64 = 4.0;
+/// Diameter of the balls and discs that stand for lights of no size, bounding radii.
+const LIGHT_SIDE: f64 = 0.02;
+/// The farthest that a light is put from the model, bounding radii.
+const FARTHEST: f64 = 900.0;
+/// The field of view that stands for parallel lines of sight, degrees.
+const PARALLEL_FOV_DEG: f64 = 1.0;
 
 /// The materials of a model's slots.
 pub fn materials_of(model: &Model, lobe: ImportLobe) -> Vec<MaterialSettings> {
@@ -39,21 +42,33 @@ pub fn import_report(model: &Model, lobe: ImportLobe) -> ImportReport {
     report
 }
 
+/// What is to be told where lights of a file found no room.
+pub fn lights_left_out(count: usize) -> Option<String> {
+    (count > 0).then(|| format!("{count} lights of the file are left out: there may be {LIGHTS_MAX} in all"))
+}
+
 impl Document {
-    /// Adds the lights of a model, as squares that look at its middle, and its cameras as bookmarks: those that are not
-    /// there already.
-    pub fn add_lights_and_cameras(&mut self, model: &Model) {
-        let most = *range::AREA_LIGHTS.end() as usize;
+    /// Adds the lights of a model, and its cameras as bookmarks: those that are not there already. Returns how many lights
+    /// found no room.
+    pub fn add_lights_and_cameras(&mut self, model: &Model) -> usize {
+        let mut left_out = 0;
+        let lights = &mut self.lighting.area_lights;
+        // Two of the file may be alike.
+        let there = lights.len();
         for light in model.lights.iter().map(|light| area_light(light, model)) {
-            let lights = &mut self.lighting.area_lights;
             let is_there = |own: &AreaLight| {
                 AreaLight {
                     is_muted: false,
                     ..*own
                 } == light
             };
-            if lights.len() < most && !lights.iter().any(is_there) {
+            if lights[..there].iter().any(is_there) {
+                continue;
+            }
+            if lights.len() < LIGHTS_MAX {
                 lights.push(light);
+            } else {
+                left_out += 1;
             }
         }
         for bookmark in model.cameras.iter().map(|camera| bookmark(camera, model)) {
@@ -61,57 +76,102 @@ impl Document {
                 self.bookmarks.push(bookmark);
             }
         }
+        left_out
     }
 }
 
-/// A square of the same intensity towards the middle of the model, and from the same direction.
+/// The light with the intensity of the file's: a small ball, a small disc with a cone, or a sun.
 fn area_light(light: &ModelLight, model: &Model) -> AreaLight {
-    let radius = model.radius.max(f64::MIN_POSITIVE);
-    let is_far = light.kind == LightKind::Directional;
-    let from_middle = if is_far {
-        -FAR * DVec3::from_array(light.forward)
-    } else {
-        (DVec3::from_array(light.position) - DVec3::from_array(model.center)) / radius
-    };
-    let (shortest, longest) = (*range::AREA_LENGTH.start(), *range::AREA_LENGTH.end());
-    let distance = from_middle.length().clamp(shortest, longest);
-    let toward = from_middle.normalize_or(DVec3::Y);
-    let side = if is_far { FAR_SIDE } else { LIGHT_SIDE };
-    // Candela are radiance times area; lux are that over the squared distance.
-    let area = if is_far {
-        (side / distance).powi(2)
-    } else {
-        (side * radius).powi(2)
-    };
     let brightest = light.color.into_iter().fold(0.0_f32, f32::max);
-    let strength = f64::from(light.intensity.max(0.0) * brightest) / area;
-    AreaLight {
-        yaw_deg: toward.x.atan2(toward.z).to_degrees(),
-        pitch_deg: toward.y.clamp(-1.0, 1.0).asin().to_degrees(),
-        distance,
-        width: side,
-        height: side,
-        shape: AreaLightShape::Quad,
+    let white = AreaLight {
         color: light
             .color
             .map(|channel| (channel / brightest.max(f32::MIN_POSITIVE)).clamp(0.0, 1.0)),
-        strength: strength.clamp(0.0, *range::STRENGTH.end()) as f32,
         ..AreaLight::default()
+    };
+    let intensity = f64::from(light.intensity.max(0.0) * brightest);
+    let forward = DVec3::from_array(light.forward);
+    let (shape, cone) = match light.kind {
+        LightKind::Directional => {
+            let mut sun = AreaLight {
+                strength: intensity.min(*range::STRENGTH.end()) as f32,
+                color: white.color,
+                ..AreaLight::sun()
+            };
+            sun.look_from(-forward);
+            return sun;
+        }
+        LightKind::Point => (AreaLightShape::Sphere, [0.0; 2]),
+        LightKind::Spot(cone) => (AreaLightShape::Spot, cone),
+    };
+    let radius = model.radius.max(f64::MIN_POSITIVE);
+    let place = (DVec3::from_array(light.position) - DVec3::from_array(model.center)) / radius;
+    // What is farther away is put nearer, as bright at the model as before.
+    let nearer = place.clamp_length_max(FARTHEST);
+    let intensity = intensity / (radius * radius) * (nearer.length() / place.length().max(f64::MIN_POSITIVE)).powi(2);
+    let mut lamp = AreaLight { shape, ..white };
+    aim(&mut lamp, nearer, forward);
+    put_cone(&mut lamp, cone);
+    put_intensity(&mut lamp, intensity);
+    lamp
+}
+
+/// Puts a lamp at a place, looking along `forward` at what is nearest to the middle of the model; a ball looks there.
+fn aim(lamp: &mut AreaLight, place: DVec3, forward: DVec3) {
+    let (least, most) = range::AREA_LENGTH.into_inner();
+    let forward = if lamp.is_sphere() {
+        (-place).normalize_or(forward)
+    } else {
+        forward
+    };
+    let along = -place.dot(forward);
+    lamp.distance = if along > least { along.min(most) } else { 1.0 };
+    lamp.target = (place + lamp.distance * forward).to_array();
+    lamp.look_from(-forward);
+}
+
+fn put_cone(lamp: &mut AreaLight, [inner, outer]: [f64; 2]) {
+    if lamp.is_spot() {
+        let (narrowest, widest) = range::CONE_DEG.into_inner();
+        lamp.cone_deg = (2.0 * outer).to_degrees().clamp(narrowest, widest);
+        lamp.softness = (1.0 - inner / outer.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
     }
+}
+
+/// Gives a lamp the radiance of an intensity straight on, per squared bounding radius; a size at which its strength is one
+/// that it takes.
+fn put_intensity(lamp: &mut AreaLight, intensity: f64) {
+    let brightest = *range::STRENGTH.end();
+    let needed = (intensity / (0.25 * PI * brightest)).sqrt();
+    let side = LIGHT_SIDE.max(needed).min(*range::AREA_LENGTH.end());
+    (lamp.width, lamp.height) = (side, side);
+    lamp.strength = (intensity / (0.25 * PI * side * side)).min(brightest) as f32;
 }
 
 /// The camera, looking at the place on its line of sight that is nearest to the middle of the model.
 fn bookmark(camera: &ModelCamera, model: &Model) -> Bookmark {
-    let (position, forward) = (DVec3::from_array(camera.position), DVec3::from_array(camera.forward));
+    let (mut position, forward) = (DVec3::from_array(camera.position), DVec3::from_array(camera.forward));
     let along = forward.dot(DVec3::from_array(model.center) - position);
     let target = position + forward * if along > 0.0 { along } else { model.radius };
     let (narrowest, widest) = (*range::FOV_DEG.start(), *range::FOV_DEG.end());
+    let fov_deg = match camera.lens {
+        ModelLens::Perspective(fov_deg) => fov_deg.clamp(narrowest, widest),
+        ModelLens::Orthographic(height) => {
+            position = target - forward * (0.5 * height / (0.5 * PARALLEL_FOV_DEG.to_radians()).tan());
+            PARALLEL_FOV_DEG
+        }
+    };
+    // From the upright camera's up to the file's, clockwise.
+    let [right, upright] = right_and_up(forward);
+    let up = DVec3::from_array(camera.up);
+    let roll_deg = up.dot(right).atan2(up.dot(upright)).to_degrees();
     Bookmark {
         name: camera.name.clone(),
         camera: CameraSettings {
             target: Some(target.to_array()),
-            position: Some(camera.position),
-            fov_deg: camera.fov_deg.clamp(narrowest, widest),
+            position: Some(position.to_array()),
+            fov_deg,
+            roll_deg: if roll_deg.abs() < 1e-4 { 0.0 } else { roll_deg },
             ..CameraSettings::default()
         },
     }

@@ -74,7 +74,7 @@ pub mod range {
     /// Time of a model's pose, seconds.
     pub const POSE_TIME_S: RangeInclusive<f64> = 0.0..=1e6;
     /// How many area lights there may be.
-    pub const AREA_LIGHTS: RangeInclusive<f64> = 0.0..=8.0;
+    pub const AREA_LIGHTS: RangeInclusive<f64> = 0.0..=crate::scene::LIGHTS_MAX as f64;
     /// Shares.
     pub const SHARE: RangeInclusive<f64> = 0.0..=1.0;
     /// Linear colours of things that do not emit.
@@ -102,7 +102,7 @@ pub struct Lighting {
     pub ground_color: [f32; 3],
     /// What else the ground is.
     pub ground: GroundSettings,
-    /// Lights beside it, at most 8.
+    /// Lights beside it, at most 64.
     pub area_lights: Vec<AreaLight>,
 }
 
@@ -159,6 +159,8 @@ pub struct CameraSettings {
     pub position: Option<[f64; 3]>,
     /// Vertical field of view, degrees.
     pub fov_deg: f64,
+    /// Turn of the camera about the line to its target, clockwise as its holder sees it, degrees.
+    pub roll_deg: f64,
     /// Radius of the lens, bounding radii of the model; 0: a pinhole, everything is sharp.
     pub aperture: f64,
     /// Distance along the viewing direction of what is sharp, scene units; `None`: that of the target.
@@ -174,6 +176,7 @@ impl Default for CameraSettings {
             distance: None,
             position: None,
             fov_deg: 30.0,
+            roll_deg: 0.0,
             aperture: 0.0,
             focus_distance: None,
         }

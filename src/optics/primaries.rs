@@ -25,43 +25,67 @@ const CONES_FROM_XYZ: Matrix = [
     [0.0389, -0.0685, 1.0296],
 ];
 
+/// Chromaticities whose primaries span no space of colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NoSpace;
+
 impl Chromaticities {
-    /// Linear Rec. 709 from linear colours of this space, its white being white there; `None` where its primaries span no
-    /// space, or where it is Rec. 709 to four digits.
-    pub fn rec709_from(&self) -> Option<Matrix> {
-        let numbers = |space: &Self| {
-            space
-                .primaries
-                .into_iter()
-                .chain([space.white])
-                .flatten()
-                .collect::<Vec<_>>()
-        };
-        let is_same = std::iter::zip(numbers(self), numbers(&REC709)).all(|(a, b)| (a - b).abs() < 1e-4);
-        if is_same {
-            return None;
+    /// Linear Rec. 709 from linear colours of this space; `None` where it is Rec. 709 to four digits. Its white becomes white;
+    /// but XYZ itself is no space with a white of its own, and is taken as it is.
+    ///
+    /// # Errors
+    /// Where its primaries span no space.
+    pub fn rec709_from(&self) -> Result<Option<Matrix>, NoSpace> {
+        if self.is_near(&REC709.primaries) && is_near(self.white, REC709.white) {
+            return Ok(None);
+        }
+        let rec709_from_xyz = inverse(&REC709.xyz_from_rgb()?)?;
+        if self.is_near(&XYZ) {
+            return Ok(Some(rec709_from_xyz));
         }
         let cones_from_xyz = CONES_FROM_XYZ;
-        let [from, to] = [self.white, REC709.white].map(|white| transformed(&cones_from_xyz, xyz(white)));
+        let [from, to] = [self.white, REC709.white].map(|white| transformed(&cones_from_xyz, white_xyz(white)));
         let gain: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { to[i] / from[i] } else { 0.0 }));
         let adapted = product(&inverse(&cones_from_xyz)?, &product(&gain, &cones_from_xyz));
-        let matrix = product(
-            &inverse(&REC709.xyz_from_rgb()?)?,
-            &product(&adapted, &self.xyz_from_rgb()?),
-        );
-        matrix.iter().flatten().all(|x| x.is_finite()).then_some(matrix)
+        let matrix = product(&rec709_from_xyz, &product(&adapted, &self.xyz_from_rgb()?));
+        let is_finite = matrix.iter().flatten().all(|x| x.is_finite());
+        is_finite.then_some(Some(matrix)).ok_or(NoSpace)
     }
 
-    fn xyz_from_rgb(&self) -> Option<Matrix> {
-        let columns = self.primaries.map(xyz);
+    /// The luminance of each primary, where white has 1.
+    ///
+    /// # Errors
+    /// Where its primaries span no space, or green is dark.
+    pub fn luminances(&self) -> Result<[f64; 3], NoSpace> {
+        let [_, luminances, _] = self.xyz_from_rgb()?;
+        (luminances[1] > 1e-3).then_some(luminances).ok_or(NoSpace)
+    }
+
+    /// Whether its primaries are these to four digits.
+    fn is_near(&self, primaries: &[[f64; 2]; 3]) -> bool {
+        std::iter::zip(self.primaries, primaries).all(|(own, other)| is_near(own, *other))
+    }
+
+    fn xyz_from_rgb(&self) -> Result<Matrix, NoSpace> {
+        // Not over y: of the primaries of XYZ two have none.
+        let columns = self.primaries.map(|[x, y]| [x, y, 1.0 - x - y]);
         let unscaled: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
-        let strengths = transformed(&inverse(&unscaled)?, xyz(self.white));
-        Some(unscaled.map(|row| std::array::from_fn(|j| row[j] * strengths[j])))
+        let strengths = transformed(&inverse(&unscaled)?, white_xyz(self.white));
+        let matrix = unscaled.map(|row| std::array::from_fn(|j| row[j] * strengths[j]));
+        let is_finite = matrix.iter().flatten().all(|x| x.is_finite());
+        is_finite.then_some(matrix).ok_or(NoSpace)
     }
 }
 
-/// The colour of luminance 1 at a place of the diagram.
-fn xyz([x, y]: [f64; 2]) -> [f64; 3] {
+/// The primaries of CIE XYZ itself.
+const XYZ: [[f64; 2]; 3] = [[1.0, 0.0], [0.0, 1.0], [0.0, 0.0]];
+
+fn is_near(a: [f64; 2], b: [f64; 2]) -> bool {
+    std::iter::zip(a, b).all(|(a, b)| (a - b).abs() < 1e-4)
+}
+
+/// The white of luminance 1 at a place of the diagram.
+fn white_xyz([x, y]: [f64; 2]) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]
 }
 
@@ -74,11 +98,12 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
     a.map(|row| std::array::from_fn(|j| (0..3).map(|k| row[k] * b[k][j]).sum()))
 }
 
-fn inverse(matrix: &Matrix) -> Option<Matrix> {
+fn inverse(matrix: &Matrix) -> Result<Matrix, NoSpace> {
     let inverse = glam::DMat3::from_cols_array_2d(matrix).inverse();
     let inverse = inverse.is_finite().then(|| inverse.to_cols_array_2d());
     // Columns in, columns out: a transposed matrix has the transposed inverse.
-    inverse.filter(|inverse| inverse.iter().flatten().all(|x| x.abs() < 1e6))
+    let inverse = inverse.filter(|inverse| inverse.iter().flatten().all(|x| x.abs() < 1e6));
+    inverse.ok_or(NoSpace)
 }
 
 #[cfg(test)]
@@ -114,18 +139,45 @@ mod tests {
                 ],
             ),
         ] {
-            let found = space.rec709_from().expect("a matrix");
+            let found = space.rec709_from().expect("a space").expect("a matrix");
             for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
                 assert!((found - expected).abs() < 4e-4, "{found} in place of {expected}");
             }
             let white = transformed(&found, [1.0; 3]);
             assert!(white.iter().all(|x| (x - 1.0).abs() < 1e-9), "{white:?}");
         }
-        assert_eq!(REC709.rec709_from(), None);
+        assert_eq!(REC709.rec709_from(), Ok(None));
         let line = Chromaticities {
             primaries: [[0.3, 0.3], [0.4, 0.4], [0.5, 0.5]],
             ..REC709
         };
-        assert_eq!(line.rec709_from(), None);
+        assert_eq!(line.rec709_from(), Err(NoSpace));
+    }
+
+    #[test]
+    fn xyz_is_read_as_itself() {
+        let xyz = Chromaticities {
+            primaries: XYZ,
+            white: [1.0 / 3.0; 2],
+        };
+        let matrix = xyz.rec709_from().expect("a space").expect("a matrix");
+        let found = transformed(&matrix, [0.4, 0.5, 0.6]);
+        for (found, expected) in found.iter().zip([0.2285, 0.5752, 0.5545]) {
+            assert!((found - expected).abs() < 5e-4, "{found} in place of {expected}");
+        }
+        let luminances = xyz.luminances().expect("a space");
+        assert!(
+            luminances
+                .iter()
+                .zip([0.0, 1.0, 0.0])
+                .all(|(a, b)| (a - b).abs() < 1e-12)
+        );
+        let of_rec709 = REC709.luminances().expect("a space");
+        assert!(
+            of_rec709
+                .iter()
+                .zip([0.2126, 0.7152, 0.0722])
+                .all(|(a, b)| (a - b).abs() < 1e-4)
+        );
     }
 }

@@ -262,7 +262,8 @@ fn camera(settings: &CameraSettings, render: &RenderSettings, geometry: &Geometr
         settings.fov_deg,
         aspect,
         render.filter,
-    );
+    )
+    .rolled(settings.roll_deg);
     let focus_distance = settings
         .focus_distance
         .map(|distance| distance / geometry.world_units_per_unit);

@@ -73,6 +73,20 @@ impl Camera<f64> {
         }
     }
 
+    /// The same camera turned clockwise about its line of sight, as its holder sees it.
+    pub fn rolled(self, roll_deg: f64) -> Self {
+        let (sine, cosine) = roll_deg.to_radians().sin_cos();
+        // Half the picture's sides at distance 1.
+        let [width, height] = [self.right.length(), self.up.length()];
+        let turned = |along: Vec3<f64>, other: Vec3<f64>, length: f64| (along * cosine + other * sine) * length;
+        let [right, up] = [self.right * width.recip(), self.up * height.recip()];
+        Camera {
+            right: turned(right, up * -1.0, width),
+            up: turned(up, right, height),
+            ..self
+        }
+    }
+
     /// The same camera in another precision.
     pub fn cast<T: Real>(&self) -> Camera<T> {
         let vector = |v: Vec3<f64>| Vec3::from_f64(v.to_f64());

@@ -85,7 +85,7 @@ pub fn catcher_table(light: &CatcherLight<'_>, height: f64, reflection: f32) -> 
         let place = DVec3::new(x, height, z);
         let mut sum = far;
         for (triangles, near) in &near {
-            for corners in triangles {
+            for corners in triangles.iter().filter(|corners| near.shape.shows(corners, place)) {
                 let share = form_factor(place, corners);
                 let behind = light.behind(place, corners);
                 let spot = near.share(place, corners);
@@ -334,6 +334,35 @@ mod tests {
         let within = spot(beside(25.0)) / lamp(beside(25.0));
         assert!((0.1..0.5).contains(&within), "{within}");
         assert_eq!(spot(beside(45.0)), 0.0);
+    }
+
+    #[test]
+    fn a_sphere_lights_from_its_near_side() {
+        let environment = environment::load(&EnvironmentSource::Studio).expect("loads");
+        let light = CatcherLight {
+            environment: &environment,
+            rotation: [1.0, 0.0],
+            strength: 0.0,
+            area_lights: &[NearLight {
+                shape: AreaShape {
+                    yaw_deg: 0.0,
+                    pitch_deg: 90.0,
+                    distance: 2.0,
+                    width: 0.2,
+                    height: 0.2,
+                    target: [0.0; 3],
+                    turn_deg: 0.0,
+                    outline: Outline::Sphere,
+                },
+                radiance: [1e3; 3],
+                spot: [0.0, 1.0],
+            }],
+        };
+        let table = catcher_table(&light, -0.5, 0.0);
+        let found: Vec3<f64> = catcher_light(&table, 0, vec3(0.0, -0.5, 0.0));
+        // The squared sine of half its angle.
+        let expected = 1e3 * (0.1_f64 / 2.5).powi(2);
+        assert!((found.x / expected - 1.0).abs() < 0.01, "{found:?}, not {expected}");
     }
 
     #[test]

@@ -6,7 +6,8 @@ use super::files::{Files, Seen};
 use super::geometry::Framing;
 use super::loading::Loading;
 use super::model::{Model, ModelError, ModelOptions, Texture};
-use super::report::Fate;
+use super::report::{Fate, ImportReport};
+use super::stage::{LIGHTS_MAX, LightKind, ModelLight};
 use super::{gltf, obj, ply, stl};
 
 /// Endings of the model files that can be read, without their dots.
@@ -14,6 +15,24 @@ pub const MODEL_ENDINGS: [&str; 6] = ["glb", "gltf", "obj", "ply", "stl", "zip"]
 
 /// Endings of models in the order in which they are looked for in folders and archives.
 const PREFERRED: [&str; 5] = ["gltf", "glb", "obj", "ply", "stl"];
+
+/// What a kind of light becomes.
+type LightFate = (Fate, &'static str, fn(&LightKind) -> bool);
+
+/// The kinds of light, and what becomes of each.
+const LIGHTS: [LightFate; 3] = [
+    (Fate::Approximated, "points of light, as small spheres", |kind| {
+        matches!(kind, LightKind::Point)
+    }),
+    (
+        Fate::Approximated,
+        "spots, as small discs, which are dimmer askew by the cosine",
+        |kind| matches!(kind, LightKind::Spot(_)),
+    ),
+    (Fate::Used, "suns, 0.53° across", |kind| {
+        matches!(kind, LightKind::Directional)
+    }),
+];
 
 /// Loads the model in a file, a folder or an archive, and those that were given with it.
 pub(super) fn load(path: &Path, options: &ModelOptions, loading: &Loading) -> Result<Model, ModelError> {
@@ -130,15 +149,10 @@ fn finish(model: &mut Model) {
     (model.center, model.radius) = (framing.center_world.to_array(), framing.world_units_per_unit);
     let all = model.mesh.triangles.len();
     let no_area = all - framing.dropped_not_finite - framing.usable;
-    let (lights, cameras) = (model.lights.len(), model.cameras.len());
+    let cameras = model.cameras.len();
+    note_lights(&mut model.report, &model.lights);
     let texture_bytes: usize = model.textures.iter().map(Texture::bytes).sum();
     let report = &mut model.report;
-    report.count(
-        Fate::Approximated,
-        "lights, as small squares that look at the model",
-        "",
-        lights,
-    );
     report.count(Fate::Used, "cameras, as bookmarks", "", cameras);
     report.count(Fate::Used, "triangles", "", framing.usable);
     if texture_bytes > 0 {
@@ -155,4 +169,14 @@ fn finish(model: &mut Model) {
         "",
         framing.dropped_not_finite,
     );
+}
+
+/// What the lights of a file become, of which a scene has so many at most.
+fn note_lights(report: &mut ImportReport, lights: &[ModelLight]) {
+    let shown = &lights[..lights.len().min(LIGHTS_MAX)];
+    for (fate, what, is_it) in LIGHTS {
+        let count = shown.iter().filter(|light| is_it(&light.kind)).count();
+        report.count(fate, what, "", count);
+    }
+    report.count(Fate::Ignored, "lights of too many", "", lights.len() - shown.len());
 }

@@ -1,5 +1,5 @@
 //! Surfaces that emit: sampled by power, triangle by triangle, and weighed against the environment. Area lights are
-//! rectangles, triangles and ellipses among them.
+//! rectangles, triangles, ellipses and balls among them.
 //!
 //! A triangle emits the same radiance from both sides, but for a spot's, which sends all of it into a cone. It is picked in
 //! proportion to area × luminance, and a place on it uniformly; so the density per area is luminance / power for every place
@@ -57,6 +57,8 @@ pub enum Outline {
     Triangle,
     /// Width and height are its axes.
     Ellipse,
+    /// A ball as large as the width.
+    Sphere,
 }
 
 /// The middle of an area light, and unit vectors along its sides and away from its target.
@@ -98,6 +100,7 @@ impl AreaShape {
             Outline::Rectangle => shapes::rectangle(middle, half_u, half_v, 1.0, slot),
             Outline::Triangle => shapes::triangle(middle, half_u, half_v, slot),
             Outline::Ellipse => shapes::ellipse(middle, half_u, half_v, slot),
+            Outline::Sphere => shapes::ball(middle, 0.5 * self.width, slot),
         }
     }
 }
@@ -109,6 +112,11 @@ impl AreaShape {
         (0..mesh.triangles.len())
             .map(|triangle| mesh.corners(triangle))
             .collect()
+    }
+
+    /// Whether one of its triangles is seen from a place: of a ball the near ones alone.
+    pub(super) fn shows(&self, [a, b, c]: &[DVec3; 3], place: DVec3) -> bool {
+        self.outline != Outline::Sphere || (b - a).cross(c - a).dot(place - a) > 0.0
     }
 }
 

@@ -29,7 +29,9 @@ mod part;
 pub mod picture;
 mod ply;
 pub mod report;
+mod rle_bmp;
 pub mod shapes;
+mod stage;
 mod stl;
 pub mod surface;
 mod tangents;
@@ -43,8 +45,9 @@ pub use import::{MODEL_ENDINGS, holds_model, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};
 pub use loading::{Cancelled, Loading};
 pub use model::{
-    AlphaMode, Filter, LightKind, Model, ModelCamera, ModelError, ModelLight, ModelObject, ModelOptions, ModelSource,
-    Slot, Texture, TextureRef, Wrap, load, load_watched, load_with,
+    AlphaMode, Filter, Model, ModelError, ModelObject, ModelOptions, ModelSource, Slot, Texture, TextureRef, Wrap,
+    load, load_watched, load_with,
 };
 pub use part::{Part, Vertex};
 pub use report::{Entry, Fate, ImportReport};
+pub use stage::{LIGHTS_MAX, LightKind, ModelCamera, ModelLens, ModelLight};

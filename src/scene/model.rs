@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::loading::{Cancelled, Loading};
 use super::mesh::Mesh;
 use super::report::ImportReport;
+use super::stage::{ModelCamera, ModelLight};
 use super::{import, shapes, teapot};
 
 /// Where a model comes from. On the command line and in files it is `teapot`, `sphere`, `plane`, `shaderball` or a
@@ -206,47 +207,6 @@ impl Default for ModelOptions {
     }
 }
 
-/// A camera of a file, in the units of the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ModelCamera {
-    /// What to call it.
-    pub name: String,
-    /// Where it is.
-    pub position: [f64; 3],
-    /// Where it looks, of length 1.
-    pub forward: [f64; 3],
-    /// Vertical field of view, degrees.
-    pub fov_deg: f64,
-}
-
-/// What kind a light of a file is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LightKind {
-    /// The same in all directions, from a place.
-    Point,
-    /// A cone, from a place.
-    Spot,
-    /// Parallel, from far away.
-    Directional,
-}
-
-/// A light of a file (KHR_lights_punctual), in the units of the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ModelLight {
-    /// What to call it.
-    pub name: String,
-    /// How it shines.
-    pub kind: LightKind,
-    /// Where it is.
-    pub position: [f64; 3],
-    /// Where it shines, of length 1.
-    pub forward: [f64; 3],
-    /// Linear RGB.
-    pub color: [f32; 3],
-    /// Candela, or lux where it is directional; both taken as radiometric numbers.
-    pub intensity: f32,
-}
-
 /// The parameters of one material as the file gives them (glTF's metallic-roughness model).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slot {
@@ -278,6 +238,8 @@ pub struct Slot {
     pub coat: f32,
     /// Roughness of the coat in [0, 1], α = roughness².
     pub coat_roughness: f32,
+    /// Index of refraction of the coat, at least 1.
+    pub coat_ior: f32,
     /// What is left of white light after `attenuation_distance` inside, linear (KHR_materials_volume).
     pub attenuation_color: [f32; 3],
     /// In bounding radii of the model, above 0; infinite where nothing is absorbed.
@@ -328,6 +290,7 @@ impl Default for Slot {
             transmission: 0.0,
             coat: 0.0,
             coat_roughness: 0.0,
+            coat_ior: 1.5,
             attenuation_color: [1.0; 3],
             attenuation_distance: f32::INFINITY,
             base_color_texture: None,

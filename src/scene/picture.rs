@@ -11,8 +11,9 @@ use super::environment::open_exr;
 use super::float_tiff;
 use super::gpu_picture::{self, Texels};
 use super::model::Texture;
+use super::rle_bmp;
 use super::texture::scale::scaled_to;
-use crate::optics::primaries::{Matrix, transformed};
+use crate::optics::primaries::{Matrix, NoSpace, transformed};
 use crate::optics::tone::srgb_from_linear;
 use crate::optics::vector::vec3;
 use crate::panics::contained;
@@ -35,6 +36,8 @@ pub(super) struct Decoded {
     texels: Numbers,
     /// Brings its colours to linear Rec. 709, where they are not of it.
     rec709_from: Option<Matrix>,
+    /// What is to be told of it where it holds colours.
+    pub note: Option<&'static str>,
 }
 
 enum Numbers {
@@ -109,22 +112,28 @@ pub(super) fn decode_bytes(name: String, bytes: &[u8]) -> Result<Decoded, String
     // Some damaged files make decoders panic.
     let decoded = contained(|| decode(&name, bytes)).unwrap_or_else(|| Err("it is damaged".to_owned()));
     let (width, height, texels) = decoded?;
+    let (rec709_from, note) = match rec709_from(bytes) {
+        Ok(matrix) => (matrix, None),
+        Err(NoSpace) => (None, Some("colours of no known space, taken as linear Rec. 709")),
+    };
     Ok(Decoded {
         name,
         width,
         height,
         texels,
-        rec709_from: rec709_from(bytes),
+        rec709_from,
+        note,
     })
 }
 
 /// What brings the colours of an OpenEXR picture to linear Rec. 709, where its file says that they are of another space.
-fn rec709_from(bytes: &[u8]) -> Option<Matrix> {
-    if !bytes.starts_with(&EXR) {
-        return None;
-    }
-    let meta = MetaData::read_from_buffered(Cursor::new(bytes), false).ok()?;
-    open_exr::rec709_from(meta.headers.first()?.shared_attributes.chromaticities?)
+fn rec709_from(bytes: &[u8]) -> Result<Option<Matrix>, NoSpace> {
+    let meta = bytes
+        .starts_with(&EXR)
+        .then(|| MetaData::read_from_buffered(Cursor::new(bytes), false));
+    let Some(Ok(meta)) = meta else { return Ok(None) };
+    let header = meta.headers.first();
+    header.map_or(Ok(None), |header| open_exr::space(header).rec709_from())
 }
 
 fn decode(name: &str, bytes: &[u8]) -> Result<(u32, u32, Numbers), String> {
@@ -149,7 +158,13 @@ fn decode(name: &str, bytes: &[u8]) -> Result<(u32, u32, Numbers), String> {
         let texels = places.flat_map(texel).collect();
         return Ok((picture.width, picture.height, Numbers::Light(texels)));
     }
-    let picture = decode_image(name, bytes).map_err(|error| error.to_string())?;
+    let picture = match decode_image(name, bytes) {
+        Ok(picture) => picture,
+        Err(error) => {
+            let (width, height, codes) = rle_bmp::decode(bytes).ok_or_else(|| error.to_string())?;
+            return Ok((width, height, Numbers::Codes8(codes)));
+        }
+    };
     let (width, height) = (picture.width(), picture.height());
     let texels = match picture {
         DynamicImage::ImageRgb32F(_) | DynamicImage::ImageRgba32F(_) => {

@@ -246,3 +246,50 @@ fn unusual_files_are_read() {
         d["animations"] = json!([{"samplers": [sampler], "channels": [channel]}]);
     });
 }
+
+/// What is as the format says is not called damaged, whatever else there is to tell of it.
+#[test]
+fn what_is_legal_is_not_called_damaged() {
+    let folder = Folder::new();
+    let (buffer, mut document) = square();
+    document["extensionsUsed"] = json!(["ACME_unheard_of"]);
+    document["meshes"][0]["primitives"][0]["mode"] = json!(1);
+    let message = folder.load_glb(&document, &buffer).expect_err("lines").to_string();
+    assert!(
+        message.contains("no triangles") && !message.contains("damaged"),
+        "{message}"
+    );
+
+    let (buffer, mut document) = square();
+    document["textures"] = json!([{"name": "for an extension"}]);
+    document["materials"] = json!([{"emissiveTexture": {"index": 0}}]);
+    let model = folder.load_glb(&document, &buffer).expect("loads");
+    let breach = model.report.entries.iter().find(|entry| entry.what.contains("breach"));
+    assert_eq!(breach, None);
+}
+
+/// A detail that the format asks for and that is not there costs the detail alone.
+#[test]
+fn broken_details_cost_themselves_alone() {
+    let folder = Folder::new();
+    let (buffer, mut document) = square();
+    document["cameras"] = json!([{"perspective": {"yfov": 0.5, "znear": 0.1}}, {"perspective": {"yfov": "wide"}}]);
+    document["animations"] = json!([{"name": "still"}, {"channels": [7], "samplers": []}]);
+    document["extensions"] = json!({"KHR_materials_variants": {"variants": [{}]}});
+    document["nodes"] = json!([{"mesh": 0}, {"camera": 0}, {"camera": 1}]);
+    document["scenes"][0]["nodes"] = json!([0, 1, 2]);
+    let model = folder.load_glb(&document, &buffer).expect("loads");
+    assert_eq!((model.mesh.triangles.len(), model.cameras.len()), (2, 1));
+    assert_eq!(model.variants, ["variant 0"]);
+    for words in [
+        "a camera that cannot be read",
+        "an animation that cannot be read",
+        "a camera without a lens",
+    ] {
+        assert!(
+            model.report.of(Fate::Ignored).any(|entry| entry.what.contains(words)),
+            "{words}: {:?}",
+            model.report
+        );
+    }
+}

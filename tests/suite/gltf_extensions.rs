@@ -1,11 +1,13 @@
 //! What glTF's extensions add: compressed meshes, instances, poses, variants, lights and cameras.
 
+use std::f64::consts::FRAC_PI_4;
+
 use draco_gltf::{
     ComponentType, CompressionOptions, DracoPrimitiveEncoding, PackedAttribute, PackedGeometry, PackedIndices,
     PrimitiveMode,
 };
 use glam::DVec3;
-use glossmith::document::Document;
+use glossmith::document::{AreaLightShape, Document};
 use glossmith::scene::{Fate, LightKind, Model, ModelOptions, ModelSource, load_with};
 use serde_json::{Value, json};
 
@@ -318,7 +320,7 @@ fn scenes_and_variants_can_be_chosen() {
 }
 
 #[test]
-fn cameras_become_bookmarks_and_lights_small_squares() {
+fn cameras_become_bookmarks_and_lights_balls_and_suns() {
     let (buffer, mut document) = square();
     document["cameras"] = json!([{"type": "perspective", "name": "Front", "perspective": {"yfov": 0.5, "znear": 0.1}}]);
     document["extensions"] = json!({"KHR_lights_punctual": {"lights": [
@@ -361,16 +363,13 @@ fn cameras_become_bookmarks_and_lights_small_squares() {
         (bulb.distance - 2.0 / radius).abs() < 1e-5 && bulb.yaw_deg.abs() < 1e-6,
         "{bulb:?}"
     );
-    let intensity = f64::from(bulb.strength) * (bulb.width * radius).powi(2);
+    assert_eq!((bulb.shape, sun.shape), (AreaLightShape::Sphere, AreaLightShape::Sun));
+    let intensity = f64::from(bulb.strength) * FRAC_PI_4 * (bulb.width * radius).powi(2);
     assert!(
         (intensity - 2.0).abs() < 1e-4 && bulb.color == [1.0, 0.5, 0.0],
         "{intensity}, {bulb:?}"
     );
-    let irradiance = f64::from(sun.strength) * (sun.width / sun.distance).powi(2);
-    assert!(
-        (irradiance - 3.0).abs() < 1e-4 && (sun.pitch_deg - 90.0).abs() < 1e-3,
-        "{irradiance}, {sun:?}"
-    );
+    assert!(sun.strength == 3.0 && (sun.pitch_deg - 90.0).abs() < 1e-3, "{sun:?}");
     opened.check().expect("in range");
 }
 

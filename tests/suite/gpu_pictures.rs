@@ -363,3 +363,85 @@ fn textures_above_the_chosen_size_are_scaled_in_all_their_bits() {
     let painted = load_model(&ModelSource::File(model)).expect("loads");
     assert_eq!(painted.textures[0].rgba8[..4], [9, 90, 200, 255]);
 }
+
+/// A DDS file of one texel whose pixel format is told by flags, bits and masks, or by a code.
+fn dds_of_masks(flags: u32, code: [u8; 4], bits: u32, masks: [u32; 4], texels: &[u8]) -> Vec<u8> {
+    let mut bytes = dds(0, [1, 1], false, &[]);
+    bytes.truncate(128);
+    let [red, green, blue, opacity] = masks;
+    let format = [32, flags, u32::from_le_bytes(code), bits, red, green, blue, opacity];
+    for (place, number) in bytes[76..108].chunks_exact_mut(4).zip(format) {
+        place.copy_from_slice(&number.to_le_bytes());
+    }
+    bytes.extend(texels);
+    bytes
+}
+
+/// The layouts of old DDS files; what is not read is not called damaged.
+#[test]
+fn old_layouts_of_dds_are_read() {
+    let folder = Folder::new();
+    let path = folder.path("old.dds");
+    let read = |bytes: Vec<u8>| {
+        std::fs::write(&path, bytes).unwrap();
+        glossmith::scene::texture::mean_of_file(&path).map(|mean| mean.codes.map(|code| (255.0 * code).round() as u8))
+    };
+    let (with_opacity, alone, code, colors, grey) = (1, 2, 4, 0x40, 0x2_0000);
+    let by_masks = |flags, bits, masks, texels: &[u8]| read(dds_of_masks(flags, [0; 4], bits, masks, texels));
+    for (name, found, expected) in [
+        ("a8", by_masks(alone, 8, [0, 0, 0, 0xff], &[51]), [0, 0, 0, 51]),
+        ("l8", by_masks(grey, 8, [0xff, 0, 0, 0], &[51]), [51, 51, 51, 255]),
+        (
+            "l8a8",
+            by_masks(grey | with_opacity, 16, [0xff, 0, 0, 0xff00], &[51, 102]),
+            [51, 51, 51, 102],
+        ),
+        (
+            "bgr8",
+            by_masks(colors, 24, [0xff_0000, 0xff00, 0xff, 0], &[1, 2, 3]),
+            [3, 2, 1, 255],
+        ),
+        (
+            "r5g6b5",
+            by_masks(colors, 16, [0xf800, 0x7e0, 0x1f, 0], &[0x1f, 0xf8]),
+            [255, 0, 255, 255],
+        ),
+        (
+            "rgb332",
+            by_masks(colors, 8, [0xe0, 0x1c, 0x3, 0], &[0xe3]),
+            [255, 0, 255, 255],
+        ),
+        (
+            "rgb5a1",
+            by_masks(colors | with_opacity, 16, [0x7c00, 0x3e0, 0x1f, 0x8000], &[0x00, 0xfc]),
+            [255, 0, 0, 255],
+        ),
+        (
+            "rgb10a2",
+            by_masks(
+                colors | with_opacity,
+                32,
+                [0x3ff, 0xf_fc00, 0x3ff0_0000, 0xc000_0000],
+                &[0xff, 3, 0, 0x80],
+            ),
+            [255, 0, 0, 170],
+        ),
+        // A block of one colour, (0, 255, 0), whose opacity of 51 is its red.
+        (
+            "bc3rxgb",
+            read(dds_of_masks(
+                code,
+                *b"RXGB",
+                0,
+                [0; 4],
+                &[51, 51, 0, 0, 0, 0, 0, 0, 0xe0, 7, 0xe0, 7, 0, 0, 0, 0],
+            )),
+            [51, 255, 0, 255],
+        ),
+    ] {
+        assert_eq!(found, Ok(expected), "{name}");
+    }
+    std::fs::write(&path, dds_of_masks(code, *b"UYVY", 0, [0; 4], &[0; 4])).unwrap();
+    let error = load(&EnvironmentSource::File(path)).expect_err("not read").to_string();
+    assert!(error.contains("not supported") && !error.contains("damaged"), "{error}");
+}

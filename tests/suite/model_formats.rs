@@ -3,9 +3,10 @@
 use std::io::Write;
 
 use glam::{DVec3, Vec2, Vec3};
-use glossmith::scene::{Fate, Model, ModelSource, load};
+use glossmith::scene::{Fate, Model, ModelSource, Wrap, load};
 
 use super::gltf_builder::{Folder, glb, png, square};
+use super::gltf_extensions::says;
 
 const OBJ: &str = "mtllib paint.mtl\no Plate\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
                    usemtl Paint\nf 1/1 2/2 3/3 4/4\nusemtl Bare\nf 1 3 4\n";
@@ -62,6 +63,46 @@ fn obj_files_come_with_their_materials() {
         .expect_err("no such vertices")
         .to_string();
     assert!(error.contains("broken.obj") && error.contains(';'), "{error}");
+}
+
+/// A square, its lines ended in ways that other programs write.
+const ODD: &str = "# C:\\models\\\nmtllib odd.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+                   usemtl\tClear\nf 1/1 2/2 \\\n 3/3 4/4\nusemtl \nf 1 2 3\n";
+const ODD_MTL: &str = "newmtl Clear\nKd 0 0 1\nKs spectral steel.rfl\nTr 0.75\nTf 1 1 1\n\
+                       map_Kd -s 4 2 1 -o 0.25 0 0 -clamp on -imfchan r four columns.png\nnewmtl\nKd 1 0 0\n";
+
+/// Nothing of an OBJ file is refused for a line: it goes on after a `\\`, `usemtl` may be without a name, `vt` without v.
+#[test]
+fn odd_lines_of_obj_files_cost_themselves_alone() {
+    let folder = Folder::new();
+    std::fs::write(folder.path("odd.mtl"), [ODD_MTL.as_bytes(), b"# \xe9t\xe9\n"].concat()).unwrap();
+    std::fs::write(folder.path("four columns.png"), png()).unwrap();
+    let model = folder.load("odd.obj", ODD.as_bytes()).expect("loads");
+    assert_eq!(
+        (model.mesh.triangles.len(), model.slots.len()),
+        (3, 2),
+        "{:?}",
+        model.slots
+    );
+    let [clear, unnamed] = &model.slots[..] else {
+        panic!("{:?}", model.slots)
+    };
+    assert_eq!((clear.name.as_str(), clear.opacity), ("Clear", 0.25));
+    assert_eq!(unnamed.base_color, [1.0, 0.0, 0.0]);
+    let texture = clear.base_color_texture.expect("a name with a space");
+    assert_eq!(texture.texture_from_mesh_uv, [4.0, 0.0, 0.25, 0.0, 2.0, -1.0]);
+    assert_eq!(texture.wrap, [Wrap::ClampToEdge; 2]);
+    for words in ["-imfchan r", "Tf of a .mtl material", "Ks spectral steel.rfl"] {
+        says(&model, Fate::Ignored, words);
+    }
+    // Grey, not white.
+    std::fs::remove_file(folder.path("four columns.png")).unwrap();
+    let mtl = "newmtl Clear\nKd 1 1 0\nKe 1 1 1\nmap_Kd four columns.png\nmap_Ke gone.png\n";
+    std::fs::write(folder.path("odd.mtl"), mtl).unwrap();
+    let grey = folder.load("odd.obj", ODD.as_bytes()).expect("loads");
+    assert_eq!(grey.slots[0].base_color, [0.5, 0.5, 0.0]);
+    assert_eq!(grey.slots[0].emission, [0.0; 3]);
+    says(&grey, Fate::Missing, "a texture, grey instead");
 }
 
 fn ply_header(format: &str) -> String {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::app::App;
 use crate::app::actions::{Action, Command};
 use crate::document::MaterialSettings;
-use crate::document::of_model::materials_of;
+use crate::document::of_model::{lights_left_out, materials_of};
 use crate::render::worker::Level;
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{Model, ModelOptions, ModelSource};
@@ -39,7 +39,10 @@ impl App {
         if !is_shown_anew {
             let camera = &mut self.document.camera;
             (camera.target, camera.distance, camera.position) = (None, None, None);
-            self.document.add_lights_and_cameras(model);
+            let left_out = self.document.add_lights_and_cameras(model);
+            if let Some(told) = lights_left_out(left_out) {
+                self.say(Level::Warning, told);
+            }
         }
         self.edits.note(format!("{MODEL_CHANGED} {}", model.name), "");
     }

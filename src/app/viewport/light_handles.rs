@@ -231,7 +231,7 @@ fn outline(painter: &Painter, view: &View, place: Rect, light: &AreaLight) {
     closed(match shape.outline {
         Outline::Rectangle => vec![at(-1.0, -1.0), at(1.0, -1.0), at(1.0, 1.0), at(-1.0, 1.0)],
         Outline::Triangle => vec![at(-1.0, -1.0), at(1.0, -1.0), at(0.0, 1.0)],
-        Outline::Ellipse => (0..AROUND).map(|step| at(turn(step).cos(), turn(step).sin())).collect(),
+        Outline::Ellipse | Outline::Sphere => (0..AROUND).map(|step| at(turn(step).cos(), turn(step).sin())).collect(),
     });
     let target = DVec3::from_array(shape.target);
     if let (Some(middle), Some(target)) = (seen(frame.middle), seen(target))

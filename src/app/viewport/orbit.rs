@@ -20,6 +20,7 @@ pub(super) struct Orbit {
     /// The model's bounding radius.
     radius: f64,
     fov_deg: f64,
+    roll_deg: f64,
 }
 
 impl Orbit {
@@ -36,6 +37,7 @@ impl Orbit {
             distance,
             radius,
             fov_deg: camera.fov_deg,
+            roll_deg: camera.roll_deg,
         };
         if let Some(position) = camera.position {
             let away = DVec3::from_array(position) - target;
@@ -57,6 +59,8 @@ impl Orbit {
         let (yaw, pitch) = (self.yaw_deg.to_radians(), self.pitch_deg.to_radians());
         let right = DVec3::new(yaw.cos(), 0.0, -yaw.sin());
         let up = DVec3::new(-pitch.sin() * yaw.sin(), pitch.cos(), -pitch.sin() * yaw.cos());
+        let (sine, cosine) = self.roll_deg.to_radians().sin_cos();
+        let (right, up) = (right * cosine - up * sine, up * cosine + right * sine);
         let height = 2.0 * self.distance * (0.5 * self.fov_deg.to_radians()).tan();
         self.target += height * (up * shift[1] - right * shift[0]);
     }

@@ -120,6 +120,8 @@ fn camera() -> Vec<Parameter<Document>> {
             .named("Target").flag("camera-target"),
         of("camera.position", Camera, "Position", "Where the camera is; replaces yaw, pitch and distance unless auto.", auto(place()), optional!(Place camera.position))
             .named("Position").flag("camera-position"),
+        of("camera.roll", Camera, "Roll", "Turns the camera about the line to its target, clockwise: what it sees turns the other way.", real(range::YAW_DEG, "°"), field!(Real camera.roll_deg))
+            .named("Roll").flag("camera-roll").bar(-180.0, 180.0).decimals(1),
         of("camera.aperture", Camera, "Aperture", "Radius of the lens in bounding radii of the model; at 0 it is a pinhole, with which everything is sharp.", real(range::APERTURE, ""), field!(Real camera.aperture))
             .named("Aperture").flag("aperture").bar(0.0, 0.2).decimals(4),
         of("camera.focus_distance", Camera, "Focus", "How far away things are sharp, in scene units; auto: at the target. In the viewport: click with ctrl.", auto(real(range::DISTANCE, "")), optional!(Real camera.focus_distance))

@@ -37,7 +37,7 @@ fn all() -> Vec<Parameter<AreaLight>> {
         },
     );
     vec![
-        of("lighting.area_lights.shape", "Shape", "Rectangle, triangle or disc; a spot with a cone; or a sun, far away.", choices::<AreaLightShape>(), shape, |_| None),
+        of("lighting.area_lights.shape", "Shape", "Rectangle, triangle, disc or sphere; a spot with a cone; or a sun, far away.", choices::<AreaLightShape>(), shape, |_| None),
         of("lighting.area_lights.yaw_deg", "Yaw", "Turns the light around its target.", real(range::YAW_DEG, "°"), field!(Real yaw_deg), |_| None)
             .row([-180.0, 180.0], 1),
         of("lighting.area_lights.pitch_deg", "Pitch", "Height of the light above the horizon of its target.", real(range::PITCH_DEG, "°"), field!(Real pitch_deg), |_| None)
@@ -49,7 +49,7 @@ fn all() -> Vec<Parameter<AreaLight>> {
             .row([-180.0, 180.0], 1),
         of("lighting.area_lights.width", "Width", "In bounding radii of the model. A small light makes sharp shadows.", real(range::AREA_LENGTH, ""), field!(Real width), of_lamps)
             .row([0.0, 4.0], 3),
-        of("lighting.area_lights.height", "Height", "In bounding radii of the model.", real(range::AREA_LENGTH, ""), field!(Real height), of_lamps)
+        of("lighting.area_lights.height", "Height", "In bounding radii of the model.", real(range::AREA_LENGTH, ""), field!(Real height), of_flat)
             .row([0.0, 4.0], 3),
         of("lighting.area_lights.cone_deg", "Cone", "The angle across the cone into which a spot shines.", real(range::CONE_DEG, "°"), field!(Real cone_deg), of_spots)
             .row([1.0, 120.0], 1),
@@ -65,6 +65,11 @@ fn all() -> Vec<Parameter<AreaLight>> {
 
 fn of_lamps(light: &AreaLight) -> Option<&'static str> {
     light.is_sun().then_some("A sun is too far away for this to matter.")
+}
+
+fn of_flat(light: &AreaLight) -> Option<&'static str> {
+    let of_sphere = light.is_sphere().then_some("A sphere is as high as it is wide.");
+    of_sphere.or_else(|| of_lamps(light))
 }
 
 fn of_spots(light: &AreaLight) -> Option<&'static str> {

@@ -4,7 +4,7 @@ use super::EnvironmentError;
 use super::canvas::Canvas;
 use super::display_referred::Codes;
 use super::file::{Picture, Source, io};
-use crate::scene::gpu_picture::{self, Face, Texels};
+use crate::scene::gpu_picture::{self, Face, Refusal, Texels};
 
 /// The longest side of a cube's face that is of use: four of them are as wide as the widest map.
 const FACE_MAX: u32 = super::MAX_WIDTH / 4;
@@ -21,9 +21,16 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     }
     source.loading.step("decoding texels")?;
     let faces = gpu_picture::decode(&bytes, [super::MAX_WIDTH, FACE_MAX]);
-    let faces = faces.map_err(|detail| EnvironmentError::Damaged {
-        path: path.to_owned(),
-        detail,
+    let faces = faces.map_err(|refusal| {
+        let path = path.to_owned();
+        match refusal {
+            Refusal::Damaged(detail) => EnvironmentError::Damaged { path, detail },
+            Refusal::NotRead(feature) => EnvironmentError::Unsupported {
+                path,
+                feature,
+                remedy: "save it with floats, halves, 8 bits a channel or BC6H",
+            },
+        }
     })?;
     let codes = Codes::new(source.encoding);
     if let [picture] = faces.as_slice() {

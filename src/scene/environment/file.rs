@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{Environment, EnvironmentEncoding, EnvironmentError};
 use super::{container, cube, display_referred, open_exr, radiance_hdr};
-use crate::optics::primaries::{Matrix, transformed};
+use crate::optics::primaries::{Chromaticities, Matrix, NoSpace, transformed};
 use crate::scene::loading::Loading;
 
 /// The most columns that are kept of a file's picture; larger ones are made smaller.
@@ -42,9 +42,21 @@ pub(super) struct Picture {
 }
 
 impl Picture {
+    /// Brings its colours to Rec. 709 from another space. Where that is none they stay as they are, which is told.
+    pub(super) fn bring_to_rec709(&mut self, path: &Path, space: &Chromaticities) {
+        match space.rec709_from() {
+            Ok(Some(matrix)) => self.transform(path, &matrix),
+            Ok(None) => {}
+            Err(NoSpace) => self.warnings.push(format!(
+                "{}: its chromaticities are no space of colours; its numbers are shown as linear Rec. 709",
+                path.display()
+            )),
+        }
+    }
+
     /// Brings its colours to Rec. 709. What that space can't hold is nearest without the channel that would be negative; how
     /// much of it there is is told.
-    pub(super) fn transform(&mut self, path: &Path, matrix: &Matrix) {
+    fn transform(&mut self, path: &Path, matrix: &Matrix) {
         let mut outside = 0;
         for texel in &mut self.texels {
             let [r, g, b, _] = texel.map(f64::from);

@@ -19,10 +19,8 @@ use exr::prelude::f16;
 
 use super::EnvironmentError;
 use super::file::{Picture, io};
-use super::open_exr::{exr_error, window};
-
-/// Luminance of red, green and blue of Rec. 709.
-const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
+use super::open_exr::{exr_error, space, window};
+use crate::optics::primaries::REC709;
 
 /// Reads a file whose chroma is stored more coarsely than its luminance.
 pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
@@ -31,14 +29,20 @@ pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
     let header = &meta_data.headers[0];
     let (mut canvas, offset) = window(path, header)?;
     let planes = Planes::read(&mut file, &meta_data).map_err(|error| exr_error(path, error))?;
+    let space = space(header);
+    // Where the file's primaries are no space, its numbers are taken as Rec. 709, and `bring_to_rec709` says so.
+    let luminances = space.luminances().or_else(|_| REC709.luminances());
+    let weights = luminances.unwrap_or([0.0, 1.0, 0.0]).map(|weight| weight as f32);
     let [width, height] = canvas.source_size().map(i64::from);
     for row in (0..height).filter(|row| (0..planes.height as i64).contains(&(row - offset[1]))) {
         for column in (0..width).filter(|column| (0..planes.width as i64).contains(&(column - offset[0]))) {
-            let color = planes.color((column - offset[0]) as usize, (row - offset[1]) as usize);
+            let color = planes.color((column - offset[0]) as usize, (row - offset[1]) as usize, weights);
             canvas.add_color(column as u32, row as u32, color);
         }
     }
-    Ok(canvas.finish())
+    let mut picture = canvas.finish();
+    picture.bring_to_rec709(path, &space);
+    Ok(picture)
 }
 
 /// The header of a file of one part with scan lines, past the table of its chunks.
@@ -139,8 +143,8 @@ impl Planes {
         Ok(())
     }
 
-    /// Red, green and blue of a stored pixel, its chroma bilinear.
-    fn color(&self, column: usize, row: usize) -> [f32; 3] {
+    /// Red, green and blue of a stored pixel, its chroma bilinear, from the luminance of each.
+    fn color(&self, column: usize, row: usize, luminances: [f32; 3]) -> [f32; 3] {
         let y = self.luminance[row * self.width + column];
         let stride = self.width.div_ceil(self.step[0]);
         let rows = self.height.div_ceil(self.step[1]);
@@ -158,7 +162,7 @@ impl Planes {
             )
         });
         let (red, blue) = ((ry + 1.0) * y, (by + 1.0) * y);
-        let green = (y - LUMINANCE[0] * red - LUMINANCE[2] * blue) / LUMINANCE[1];
+        let green = (y - luminances[0] * red - luminances[2] * blue) / luminances[1];
         [red, green, blue].map(|value| value.max(0.0))
     }
 }

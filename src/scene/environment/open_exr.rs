@@ -11,16 +11,16 @@ use exr::block::reader::{ChunksReader, Reader};
 use exr::compression::Compression;
 use exr::error::Error as ExrError;
 use exr::math::Vec2;
-use exr::meta::MetaData;
 use exr::meta::attribute::{AttributeValue, EnvironmentMap, SampleType, Text};
 use exr::meta::header::Header;
+use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::f16;
 use rayon::prelude::*;
 
 use super::canvas::Canvas;
 use super::file::{Picture, Source, io};
 use super::{EnvironmentError, luminance_chroma};
-use crate::optics::primaries::{Chromaticities, Matrix};
+use crate::optics::primaries::{Chromaticities, REC709};
 use crate::panics::contained;
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -62,6 +62,9 @@ fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
         Err(ExrError::NotSupported(what)) if what.contains("subsampling") => return luminance_chroma::read(path),
         result => result.map_err(|error| exr_error(path, error))?,
     };
+    if has_fine_chroma(reader.headers()) {
+        return luminance_chroma::read(path);
+    }
     let layer = choose_layer(path, reader.headers())?;
     let header = reader.headers()[layer.index].clone();
     let (mut canvas, offset) = window(path, &header)?;
@@ -82,22 +85,20 @@ fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     })?;
     let mut picture = canvas.finish();
     picture.warnings.extend(layer.warnings);
-    if let Some(matrix) = header.shared_attributes.chromaticities.and_then(rec709_from) {
-        picture.transform(path, &matrix);
-    }
+    picture.bring_to_rec709(path, &space(&header));
     let layout = header.shared_attributes.other.get(&Text::from("envmap"));
     picture.is_cube = matches!(layout, Some(AttributeValue::EnvironmentMap(EnvironmentMap::Cube)));
     Ok(picture)
 }
 
-/// Linear Rec. 709 from a file's colours, where those are of another space.
-pub(in crate::scene) fn rec709_from(file: exr::meta::attribute::Chromaticities) -> Option<Matrix> {
+/// The space of a file's colours: Rec. 709 where it names none.
+pub(in crate::scene) fn space(header: &Header) -> Chromaticities {
     let place = |Vec2(x, y): Vec2<f32>| [f64::from(x), f64::from(y)];
-    let space = Chromaticities {
+    let named = header.shared_attributes.chromaticities;
+    named.map_or(REC709, |file| Chromaticities {
         primaries: [file.red, file.green, file.blue].map(place),
         white: place(file.white),
-    };
-    space.rec709_from()
+    })
 }
 
 /// Looks at the first eight bytes, which the crate's errors do not tell apart; returns the length of the file.
@@ -128,6 +129,16 @@ fn check_preamble(path: &Path) -> Result<u64, EnvironmentError> {
         });
     }
     Ok(length)
+}
+
+/// Whether a file of one part holds luminance and chroma of the same size, line by line.
+fn has_fine_chroma(headers: &[Header]) -> bool {
+    let [header] = headers else { return false };
+    let has = |name: &str| {
+        let mut channels = header.channels.list.iter();
+        channels.any(|channel| channel.name.to_string() == name)
+    };
+    header.blocks == BlockDescription::ScanLines && ["Y", "RY", "BY"].into_iter().all(has) && !has("R")
 }
 
 /// The first layer with red, green and blue, else the first with luminance. In one layer the channels may have a prefix

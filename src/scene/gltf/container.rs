@@ -15,7 +15,7 @@ use crate::scene::model::ModelError;
 use crate::scene::report::{Fate, ImportReport};
 
 /// Extensions that change nothing here or are understood.
-const UNDERSTOOD: [&str; 29] = [
+const UNDERSTOOD: [&str; 30] = [
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
@@ -38,6 +38,7 @@ const UNDERSTOOD: [&str; 29] = [
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_meshopt_compression",
+    "KHR_node_visibility",
     "KHR_texture_basisu",
     "KHR_texture_transform",
     "KHR_xmp",
@@ -81,7 +82,7 @@ impl Document {
         let mut document = Self {
             path: path.to_owned(),
             files,
-            root: root(&mut raw).map_err(|error| ModelError::Invalid {
+            root: root(&mut raw, report).map_err(|error| ModelError::Invalid {
                 path: path.to_owned(),
                 reason: format!("its JSON: {error}"),
             })?,
@@ -191,7 +192,13 @@ impl Document {
             return;
         }
         if let Err(gltf::Error::Validation(errors)) = gltf::Document::from_json(self.root.clone()) {
-            for (path, error) in errors.iter().filter(|(path, _)| !is_harmless(&path.to_string())) {
+            let is_told = |(path, error): &&(json::Path, json::validation::Error)| {
+                // A texture may leave its picture to an extension.
+                let is_sourceless =
+                    path.to_string().ends_with("].source") && *error == json::validation::Error::Missing;
+                !is_sourceless && !is_harmless(&path.to_string())
+            };
+            for (path, error) in errors.iter().filter(is_told) {
                 report.note(
                     Fate::Ignored,
                     format!("a breach of the format's rules, {error}"),
@@ -285,12 +292,59 @@ impl Document {
     }
 }
 
-/// The JSON as the crate reads it, which asks for whole numbers without a point.
-fn root(raw: &mut Json) -> serde_json::Result<json::Root> {
-    serde_json::from_value(raw.clone()).or_else(|_| {
+/// The JSON as the crate reads it, which asks for whole numbers without a point. Details that cannot be read are told.
+fn root(raw: &mut Json, report: &mut ImportReport) -> serde_json::Result<json::Root> {
+    let read = serde_json::from_value(raw.clone()).or_else(|_| {
         without_points(raw);
         serde_json::from_value(raw.clone())
+    });
+    read.or_else(|_: serde_json::Error| {
+        without_broken_details(raw, report);
+        serde_json::from_value(raw.clone())
     })
+}
+
+/// Whether the crate can read a part of a file; else why not.
+type Check = fn(Json) -> serde_json::Result<()>;
+
+fn check<T: serde::de::DeserializeOwned>(part: Json) -> serde_json::Result<()> {
+    serde_json::from_value::<T>(part).map(|_| ())
+}
+
+/// Lists whose parts a scene can do without: what a part is called, and what stands for one that cannot be read, so that the
+/// others keep their numbers.
+const DETAILS: [(&str, &str, &str, Check); 7] = [
+    (
+        "animations",
+        "an animation",
+        r#"{"channels": [], "samplers": []}"#,
+        check::<json::Animation>,
+    ),
+    (
+        "cameras",
+        "a camera",
+        r#"{"type": "perspective"}"#,
+        check::<json::Camera>,
+    ),
+    ("images", "a picture", "{}", check::<json::Image>),
+    ("materials", "a material", "{}", check::<json::Material>),
+    ("samplers", "a sampler", "{}", check::<json::texture::Sampler>),
+    ("skins", "a skin", r#"{"joints": []}"#, check::<json::Skin>),
+    ("textures", "a texture", "{}", check::<json::Texture>),
+];
+
+fn without_broken_details(raw: &mut Json, report: &mut ImportReport) {
+    for (list, what, substitute, check) in DETAILS {
+        for (index, part) in parts(raw, list).enumerate() {
+            if let Err(error) = check(part.clone()) {
+                let name = part["name"]
+                    .as_str()
+                    .map_or_else(|| format!("{list} {index}"), str::to_owned);
+                report.note(Fate::Ignored, format!("{what} that cannot be read ({error})"), &name);
+                *part = serde_json::from_str(substitute).unwrap_or_default();
+            }
+        }
+    }
 }
 
 /// Adds what the crate asks for and the format leaves to the writer. Meshes that no node holds get one where there are no nodes
@@ -299,7 +353,29 @@ fn complete(raw: &mut Json) {
     for scene in parts(raw, "scenes").filter_map(Json::as_object_mut) {
         scene.entry("nodes").or_insert_with(|| serde_json::json!([]));
     }
+    for camera in parts(raw, "cameras").filter_map(Json::as_object_mut) {
+        let kind = if camera.contains_key("orthographic") {
+            "orthographic"
+        } else {
+            "perspective"
+        };
+        camera.entry("type").or_insert_with(|| serde_json::json!(kind));
+    }
+    let variants = raw.pointer_mut("/extensions/KHR_materials_variants/variants");
+    let variants = variants.and_then(Json::as_array_mut).into_iter().flatten();
+    for (index, variant) in variants.enumerate() {
+        if let Some(variant) = variant.as_object_mut() {
+            variant
+                .entry("name")
+                .or_insert_with(|| format!("variant {index}").into());
+        }
+    }
     for animation in parts(raw, "animations") {
+        if let Some(animation) = animation.as_object_mut() {
+            for list in ["channels", "samplers"] {
+                animation.entry(list).or_insert_with(|| serde_json::json!([]));
+            }
+        }
         if let Some(channels) = animation.get_mut("channels").and_then(Json::as_array_mut) {
             // What an extension moves, or nothing.
             channels.retain(|channel| !channel["target"].is_object() || channel["target"].get("node").is_some());

@@ -49,7 +49,7 @@ pub(super) fn load(path: &Path, files: Files, bytes: Vec<u8>, options: &ModelOpt
     let mut materials = Materials::new(&document, options);
     let (mesh, objects) = assemble(&document, &pose, &contents.meshes, &mut materials, &mut report)?;
     if mesh.triangles.is_empty() {
-        return Err(nothing_to_show(&document, path, &report));
+        return Err(nothing_to_show(&document, path, &contents.meshes, &report));
     }
     let (slots, textures) = materials.finish(&mut report);
     document.files.loading.check()?;
@@ -151,8 +151,8 @@ fn assemble(
     Ok((whole, objects))
 }
 
-/// Why a file shows nothing.
-fn nothing_to_show(document: &Document, path: &Path, report: &ImportReport) -> ModelError {
+/// Why a file shows nothing: it is damaged where it has triangles.
+fn nothing_to_show(document: &Document, path: &Path, nodes: &[MeshNode], report: &ImportReport) -> ModelError {
     if let Some(name) = document.unknown_required.first() {
         return ModelError::Extension {
             path: path.to_owned(),
@@ -163,7 +163,9 @@ fn nothing_to_show(document: &Document, path: &Path, report: &ImportReport) -> M
     let blamed = [Fate::Missing, Fate::Ignored]
         .into_iter()
         .flat_map(|fate| report.of(fate));
+    let has_triangles = nodes.iter().any(|node| primitive::has_triangles(document, node.mesh));
     let blamed: Vec<String> = blamed
+        .filter(|entry| has_triangles || entry.fate == Fate::Missing)
         .filter(|entry| !entry.what.starts_with("points and lines"))
         .take(3)
         .map(|entry| entry.line())

@@ -1,13 +1,15 @@
 //! The nodes of the scene with what hangs on them: meshes, their instances, cameras and lights.
 
+use std::f64::consts::FRAC_PI_4;
+
 use glam::{DMat4, DVec3};
 use gltf::json;
 use serde_json::Value as Json;
 
 use super::container::Document;
 use super::pose::{Pose, root_nodes, unit_rotation};
-use crate::scene::model::{LightKind, ModelCamera, ModelLight};
 use crate::scene::report::{Fate, ImportReport};
+use crate::scene::stage::{LightKind, ModelCamera, ModelLens, ModelLight};
 
 /// The most instances of one node.
 const INSTANCES_MAX: usize = 1 << 20;
@@ -32,12 +34,13 @@ pub(super) fn contents(document: &Document, pose: &Pose, scene: Option<usize>, r
     let root = &document.root;
     let mut contents = Contents::default();
     let mut seen = vec![false; root.nodes.len()];
-    let mut open: Vec<(usize, DMat4)> = scene_roots(root, scene)
+    // The node, where its parent is, and whether that is hidden.
+    let mut open: Vec<(usize, DMat4, bool)> = scene_roots(root, scene)
         .into_iter()
-        .map(|node| (node, DMat4::IDENTITY))
+        .map(|node| (node, DMat4::IDENTITY, false))
         .collect();
     open.reverse();
-    while let Some((index, world_from_parent)) = open.pop() {
+    while let Some((index, world_from_parent, is_parent_hidden)) = open.pop() {
         let Some(node) = root.nodes.get(index) else {
             report.note(Fate::Missing, "a node that is out of bounds", &format!("node {index}"));
             continue;
@@ -48,11 +51,23 @@ pub(super) fn contents(document: &Document, pose: &Pose, scene: Option<usize>, r
             continue;
         }
         let world_from_node = world_from_parent * pose.parent_from_node[index];
-        contents.add(document, index, node, world_from_node, report);
+        let is_hidden = is_parent_hidden || hides(document, index);
+        if is_hidden {
+            report.note(Fate::Used, "hidden nodes, not shown", &node_name(root, index));
+        } else {
+            contents.add_visible(document, index, node, world_from_node, report);
+        }
+        contents.add_camera(root, index, node, world_from_node, report);
         let children = node.children.iter().flatten().rev();
-        open.extend(children.map(|child| (child.value(), world_from_node)));
+        open.extend(children.map(|child| (child.value(), world_from_node, is_hidden)));
     }
     contents
+}
+
+/// Whether the file hides what hangs on a node, but for cameras (KHR_node_visibility).
+fn hides(document: &Document, node: usize) -> bool {
+    let extension = document.extension(&document.raw["nodes"][node], "KHR_node_visibility");
+    extension.is_some_and(|extension| extension["visible"] == false)
 }
 
 /// What to call a node.
@@ -72,7 +87,8 @@ fn scene_roots(root: &json::Root, scene: Option<usize>) -> Vec<usize> {
 }
 
 impl Contents {
-    fn add(
+    /// The mesh and the light of a node.
+    fn add_visible(
         &mut self,
         document: &Document,
         index: usize,
@@ -93,19 +109,38 @@ impl Contents {
                 }));
         }
         let name = node_name(root, index);
-        if let Some(camera) = node.camera.and_then(|camera| root.cameras.get(camera.value())) {
-            match camera_at(camera, &name, world_from_node) {
-                Some(camera) => self.cameras.push(camera),
-                None => report.note(Fate::Ignored, "an orthographic camera", &name),
-            }
-        }
         let extension = document.extension(&document.raw["nodes"][index], "KHR_lights_punctual");
         if let Some(light) = extension.and_then(|extension| extension["light"].as_u64()) {
             let light = &document.raw["extensions"]["KHR_lights_punctual"]["lights"][light as usize];
             match light_at(light, &name, world_from_node) {
                 Some(light) => self.lights.push(light),
-                None => report.note(Fate::Missing, "a light that is out of bounds", &name),
+                None if light.is_null() => report.note(Fate::Missing, "a light that is out of bounds", &name),
+                None => report.note(Fate::Ignored, "a light of an unknown type", &name),
             }
+            if light.get("range").is_some() {
+                report.note(Fate::Ignored, "the range of a light, which shines beyond it", &name);
+            }
+        }
+    }
+
+    fn add_camera(
+        &mut self,
+        root: &json::Root,
+        index: usize,
+        node: &json::Node,
+        world_from_node: DMat4,
+        report: &mut ImportReport,
+    ) {
+        let Some(camera) = node.camera.and_then(|camera| root.cameras.get(camera.value())) else {
+            return;
+        };
+        let name = node_name(root, index);
+        match camera_at(camera, &name, world_from_node) {
+            Some(seen) => {
+                note_camera(camera, &seen, report);
+                self.cameras.push(seen);
+            }
+            None => report.note(Fate::Ignored, "a camera without a lens", &name),
         }
     }
 }
@@ -153,24 +188,52 @@ fn instances(document: &Document, node: usize, report: &mut ImportReport) -> Opt
     Some((0..count.min(INSTANCES_MAX)).map(place).collect())
 }
 
-/// A camera looks along −Z of its node.
+/// A camera looks along −Z of its node, with +Y up.
 fn camera_at(camera: &json::Camera, name: &str, world_from_node: DMat4) -> Option<ModelCamera> {
-    let perspective = camera.perspective.as_ref()?;
+    let lens = match (&camera.perspective, &camera.orthographic) {
+        (Some(perspective), _) => ModelLens::Perspective(f64::from(perspective.yfov).to_degrees()),
+        (None, Some(orthographic)) => ModelLens::Orthographic(2.0 * f64::from(orthographic.ymag.abs())),
+        (None, None) => return None,
+    };
     let forward = world_from_node.transform_vector3(DVec3::NEG_Z).try_normalize()?;
+    let up = world_from_node
+        .transform_vector3(DVec3::Y)
+        .reject_from_normalized(forward);
     Some(ModelCamera {
         name: camera.name.clone().unwrap_or_else(|| name.to_owned()),
         position: world_from_node.transform_point3(DVec3::ZERO).to_array(),
         forward: forward.to_array(),
-        fov_deg: f64::from(perspective.yfov).to_degrees(),
+        up: up.try_normalize()?.to_array(),
+        lens,
     })
+}
+
+/// Tells what of a camera its bookmark does not keep.
+fn note_camera(camera: &json::Camera, seen: &ModelCamera, report: &mut ImportReport) {
+    if let ModelLens::Orthographic(_) = seen.lens {
+        report.note(
+            Fate::Approximated,
+            "an orthographic camera, as a narrow one from far away",
+            &seen.name,
+        );
+    }
+    let perspective = camera.perspective.as_ref();
+    if perspective.is_some_and(|perspective| perspective.aspect_ratio.is_some()) {
+        report.note(
+            Fate::Ignored,
+            "the aspect ratio of a camera: the picture keeps its own",
+            &seen.name,
+        );
+    }
 }
 
 /// A light shines along −Z of its node.
 fn light_at(light: &Json, name: &str, world_from_node: DMat4) -> Option<ModelLight> {
     let kind = match light["type"].as_str()? {
         "directional" => LightKind::Directional,
-        "spot" => LightKind::Spot,
-        _ => LightKind::Point,
+        "spot" => LightKind::Spot(cone(&light["spot"])),
+        "point" => LightKind::Point,
+        _ => return None,
     };
     let channel = |i: usize| light["color"][i].as_f64().map_or(1.0, |value| value as f32);
     let forward = world_from_node.transform_vector3(DVec3::NEG_Z).try_normalize()?;
@@ -182,4 +245,10 @@ fn light_at(light: &Json, name: &str, world_from_node: DMat4) -> Option<ModelLig
         color: [channel(0), channel(1), channel(2)],
         intensity: light["intensity"].as_f64().map_or(1.0, |value| value as f32),
     })
+}
+
+/// Half the inner and half the outer angle of a spot's cone, radians.
+fn cone(spot: &Json) -> [f64; 2] {
+    let outer = spot["outerConeAngle"].as_f64().unwrap_or(FRAC_PI_4);
+    [spot["innerConeAngle"].as_f64().unwrap_or(0.0).min(outer), outer]
 }

@@ -59,6 +59,24 @@ pub(super) fn read_mesh(
     whole
 }
 
+/// Whether a mesh is said to have triangles with places, or is not there at all.
+pub(super) fn has_triangles(document: &Document, mesh: usize) -> bool {
+    let Some(mesh) = document.root.meshes.get(mesh) else {
+        return true;
+    };
+    let has_places = |primitive: &Primitive| primitive.attributes.contains_key(&Checked::Valid(Semantic::Positions));
+    let mut primitives = mesh.primitives.iter();
+    primitives.any(|primitive| triangle_mode(primitive).is_some() && has_places(primitive))
+}
+
+/// How a primitive's triangles are told; none where it has points or lines.
+fn triangle_mode(primitive: &Primitive) -> Option<Mode> {
+    match primitive.mode {
+        Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) => Some(mode),
+        _ => None,
+    }
+}
+
 fn mesh_name(mesh: &json::Mesh, index: usize) -> String {
     match &mesh.name {
         Some(name) => format!("mesh \"{name}\""),
@@ -75,7 +93,7 @@ fn read_primitive(
     materials: &mut Materials,
     report: &mut ImportReport,
 ) -> Result<Mesh, ModelError> {
-    let Checked::Valid(mode @ (Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan)) = primitive.mode else {
+    let Some(mode) = triangle_mode(primitive) else {
         report.note(Fate::Ignored, "points and lines", name);
         return Ok(Mesh::default());
     };

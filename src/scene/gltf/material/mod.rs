@@ -418,15 +418,16 @@ impl<'a> Materials<'a> {
         if read.transmission == 0.0 {
             return;
         }
+        let thickness = extension::<Volume>(raw, "KHR_materials_volume").map_or(0.0, |volume| volume.thickness_factor);
+        if thickness <= 0.0 {
+            make_thin(read);
+            let what = "a thin wall, which mirrors as a coat on the outside and bends nothing";
+            self.report.note(Fate::Approximated, what, &read.name);
+        }
         let [red, green, blue] = read.base_color;
         if read.attenuation_distance.is_finite() && [red, green, blue] != [1.0; 3] {
             let what = "a base colour under a volume, which colours what is seen through instead";
             self.report.note(Fate::Approximated, what, &read.name);
-        }
-        let thickness = extension::<Volume>(raw, "KHR_materials_volume").map_or(0.0, |volume| volume.thickness_factor);
-        if thickness <= 0.0 && read.ior != 1.0 {
-            self.report
-                .note(Fate::Approximated, "a thin wall, which refracts as a solid", &read.name);
         }
         let transmission = extension::<Transmission>(raw, "KHR_materials_transmission").unwrap_or_default();
         let what = "a transmission texture, by its mean";
@@ -458,6 +459,17 @@ fn make_unlit(slot: &mut Slot) {
     (slot.metalness, slot.specular) = (0.0, 0.0);
     (slot.metallic_roughness_texture, slot.normal_texture) = (None, None);
     (slot.coat, slot.transmission) = (0.0, 0.0);
+}
+
+/// A wall without thickness: light goes straight through it, and nothing is absorbed on the way. What it mirrors is left to
+/// a coat, which does not bend light either; a coat of its own takes its place.
+fn make_thin(slot: &mut Slot) {
+    if slot.coat == 0.0 {
+        slot.coat = slot.specular * (1.0 - slot.metalness);
+        (slot.coat_ior, slot.coat_roughness) = (slot.ior, slot.roughness);
+    }
+    slot.ior = 1.0;
+    slot.attenuation_distance = f32::INFINITY;
 }
 
 fn unit(value: f32) -> f32 {

@@ -51,15 +51,21 @@ impl Materials<'_> {
                     .map_err(|cancelled| cancelled.to_string())
                     .and_then(|()| image::decode(self.document, image));
                 let is_color = is_color(image);
-                let scaled = texture.map(|texture| scaled_to(texture.texture(is_color), side_max, is_color));
+                let scaled = texture.map(|texture| {
+                    let note = texture.note.filter(|_| is_color);
+                    (scaled_to(texture.texture(is_color), side_max, is_color), note)
+                });
                 (image, scaled)
             })
             .collect();
         let mut decoded = HashMap::new();
         for (image, result) in results {
             match result {
-                Ok((texture, scaled_from)) => {
+                Ok(((texture, scaled_from), note)) => {
                     self.report.note(Fate::Used, "textures", &texture.name);
+                    if let Some(note) = note {
+                        self.report.note(Fate::Approximated, note, &texture.name);
+                    }
                     if let Some([width, height]) = scaled_from {
                         let what = format!(
                             "a picture of {width} × {height}, used at {} × {}",

@@ -1,6 +1,8 @@
 //! Pictures in the containers of GPUs, KTX2 and DDS: flat ones, and the six faces of cubes. Texels are decoded by the
 //! basisu, bcdec_rs and half crates.
 
+mod masks;
+
 use std::borrow::Cow;
 use std::io::Read;
 
@@ -8,6 +10,7 @@ use ddsfile::{Caps2, D3DFormat, Dds, MiscFlag};
 use half::f16;
 use ruzstd::StreamingDecoder;
 
+use self::masks::Masks;
 use super::basis;
 use crate::panics::contained;
 
@@ -15,6 +18,8 @@ use crate::panics::contained;
 const KTX2: [u8; 12] = *b"\xabKTX 20\xbb\r\n\x1a\n";
 /// The first bytes of a DDS file.
 const DDS: [u8; 4] = *b"DDS ";
+/// What a DDS file is marked by whose blocks are BC3's with red where opacity is.
+const RXGB: u32 = u32::from_le_bytes(*b"RXGB");
 /// Bytes that a byte of Zstandard may stand for, and beyond them.
 const ZSTD_GROWTH: [u64; 2] = [4096, 1 << 20];
 /// The most columns or rows.
@@ -45,6 +50,8 @@ pub(super) enum Texels {
 enum Layout {
     /// Bytes a texel, and where red, green, blue and opacity are among them; 255 where they are not.
     Bytes(usize, [u8; 4]),
+    /// Some bits of a texel's bytes for each channel.
+    Masks(Masks),
     /// So many numbers a texel: 65535 is one.
     Shorts(usize),
     /// So many numbers of 16 bits with a point.
@@ -65,6 +72,8 @@ enum Block {
     Bc1,
     Bc2,
     Bc3,
+    /// With red where opacity is.
+    Rxgb,
     /// Of signed numbers or not.
     Bc4(bool),
     Bc5(bool),
@@ -84,6 +93,10 @@ const BC1: Layout = Layout::Blocks(Block::Bc1, 8);
 const BC2: Layout = Layout::Blocks(Block::Bc2, 16);
 const BC3: Layout = Layout::Blocks(Block::Bc3, 16);
 const BC7: Layout = Layout::Blocks(Block::Bc7, 16);
+
+const fn masks(bytes: usize, channels: [u32; 4]) -> Layout {
+    Layout::Masks(Masks { bytes, channels })
+}
 
 const fn bc4(is_signed: bool) -> Layout {
     Layout::Blocks(Block::Bc4(is_signed), 8)
@@ -131,8 +144,41 @@ fn of_vulkan(format: u32) -> Option<Layout> {
     })
 }
 
+/// Why a picture cannot be had, in a few words.
+#[derive(Debug)]
+pub(super) enum Refusal {
+    /// It is as it should be, and not read.
+    NotRead(String),
+    /// Its bytes contradict each other.
+    Damaged(String),
+}
+
+impl From<&str> for Refusal {
+    fn from(reason: &str) -> Self {
+        Self::Damaged(reason.to_owned())
+    }
+}
+
+impl From<String> for Refusal {
+    fn from(reason: String) -> Self {
+        Self::Damaged(reason)
+    }
+}
+
+impl From<Refusal> for String {
+    fn from(refusal: Refusal) -> Self {
+        match refusal {
+            Refusal::NotRead(what) => format!("{what}, which is not read"),
+            Refusal::Damaged(reason) => reason,
+        }
+    }
+}
+
 /// The layout of a DDS file: by DXGI's number of its format, or by that of Direct3D 9.
 fn of_dds(dds: &Dds) -> Option<Layout> {
+    if dds.header.spf.fourcc.as_ref().is_some_and(|code| code.0 == RXGB) {
+        return Some(Layout::Blocks(Block::Rxgb, 16));
+    }
     if let Some(format) = dds.get_d3d_format() {
         return Some(match format {
             D3DFormat::L8 => GREY,
@@ -161,6 +207,7 @@ fn of_dds(dds: &Dds) -> Option<Layout> {
         6 => Layout::Floats(3),
         10 => Layout::Halves(4),
         11 => Layout::Shorts(4),
+        24 => masks(4, [0x3ff, 0x3ff << 10, 0x3ff << 20, 0x3 << 30]),
         16 => Layout::Floats(2),
         26 => Layout::SmallFloats,
         28 | 29 => RGBA,
@@ -171,6 +218,7 @@ fn of_dds(dds: &Dds) -> Option<Layout> {
         54 => Layout::Halves(1),
         56 => Layout::Shorts(1),
         61 => GREY,
+        65 => masks(1, [0, 0, 0, 0xff]),
         67 => Layout::SharedExponent,
         71 | 72 => BC1,
         74 | 75 => BC2,
@@ -179,11 +227,14 @@ fn of_dds(dds: &Dds) -> Option<Layout> {
         81 => bc4(true),
         83 => bc5(false),
         84 => bc5(true),
+        85 => masks(2, [0xf800, 0x7e0, 0x1f, 0]),
+        86 => masks(2, [0x7c00, 0x3e0, 0x1f, 0x8000]),
         87 | 91 => BGRA,
         88 | 93 => BGRX,
         95 => bc6h(false),
         96 => bc6h(true),
         98 | 99 => BC7,
+        115 => masks(2, [0xf00, 0xf0, 0xf, 0xf000]),
         _ => return None,
     })
 }
@@ -197,8 +248,8 @@ pub(super) fn is_container(bytes: &[u8]) -> bool {
 /// (of a picture, of a face), unless the smallest is.
 ///
 /// # Errors
-/// Why it cannot be had, in a few words.
-pub(super) fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, String> {
+/// Why it cannot be had.
+pub(super) fn decode(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
     // Damaged files may fail assertions inside the crates instead of giving errors.
     let decoded = contained(|| {
         if bytes.starts_with(&DDS) {
@@ -242,11 +293,11 @@ impl<'a> Ktx2<'a> {
         })
     }
 
-    fn decode(&self, side_max: [u32; 2]) -> Result<Vec<Face>, String> {
+    fn decode(&self, side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
         let faces = if self.faces == 6 { 6 } else { 1 };
         let side_max = side_max[usize::from(faces == 6)];
         if self.width == 0 || self.width.max(self.height) > SIDE_MAX {
-            return Err(format!("{} × {} texels are no size", self.width, self.height));
+            return Err(format!("{} × {} texels are no size", self.width, self.height).into());
         }
         if self.format == 0 {
             let level = |[width, height]: [u32; 2], levels| level_within(width, height, levels, side_max);
@@ -260,7 +311,7 @@ impl<'a> Ktx2<'a> {
                 .collect());
         }
         let Some(layout) = of_vulkan(self.format) else {
-            return Err(format!("its format (number {} of Vulkan) is not read", self.format));
+            return Err(Refusal::NotRead(format!("number {} of Vulkan's formats", self.format)));
         };
         let level = level_within(self.width, self.height, self.levels, side_max);
         let [width, height] = [self.width, self.height].map(|side| (side >> level).max(1));
@@ -292,16 +343,21 @@ impl<'a> Ktx2<'a> {
     }
 }
 
-fn decode_dds(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, String> {
+fn decode_dds(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, Refusal> {
     let dds = Dds::read(bytes).map_err(|error| error.to_string())?;
     let (width, height, levels) = (dds.get_width(), dds.get_height(), dds.get_num_mipmap_levels());
     if width == 0 || height == 0 || width.max(height) > SIDE_MAX {
-        return Err(format!("{width} × {height} texels are no size"));
+        return Err(format!("{width} × {height} texels are no size").into());
     }
-    let layout = of_dds(&dds).ok_or_else(|| match dds.get_dxgi_format() {
-        Some(format) => format!("its format ({format:?}) is not read"),
-        None => "its format is not read".to_owned(),
-    })?;
+    let layout = of_dds(&dds)
+        .or_else(|| Masks::of_dds(bytes).map(Layout::Masks))
+        .ok_or_else(|| {
+            let format = dds.get_dxgi_format();
+            let what = format.map_or("this layout of DDS".to_owned(), |format| {
+                format!("DXGI's format {format:?}")
+            });
+            Refusal::NotRead(what)
+        })?;
     let is_new_cube = |header: &ddsfile::Header10| header.misc_flag.contains(MiscFlag::TEXTURECUBE);
     let is_cube = dds.header.caps2.contains(Caps2::CUBEMAP) || dds.header10.as_ref().is_some_and(is_new_cube);
     let level = level_within(width, height, levels, side_max[usize::from(is_cube)]);
@@ -320,14 +376,14 @@ fn decode_dds(bytes: &[u8], side_max: [u32; 2]) -> Result<Vec<Face>, String> {
         Some(layout.face(width, height, bytes))
     };
     let faces: Option<Vec<Face>> = (0..if is_cube { 6 } else { 1 }).map(face).collect();
-    faces.ok_or_else(|| "it is cut short".to_owned())
+    faces.ok_or_else(|| "it is cut short".into())
 }
 
 impl Layout {
     /// Bytes of so many texels.
     fn bytes(self, width: u32, height: u32) -> Option<usize> {
         let (side, size) = match self {
-            Self::Bytes(size, _) => (1, size),
+            Self::Bytes(bytes, _) | Self::Masks(Masks { bytes, .. }) => (1, bytes),
             Self::Shorts(channels) | Self::Halves(channels) => (1, 2 * channels),
             Self::Floats(channels) => (1, 4 * channels),
             Self::SharedExponent | Self::SmallFloats => (1, 4),
@@ -345,6 +401,7 @@ impl Layout {
                 let rgba = |texel: &[u8]| places.map(|place| channel(texel, place));
                 Texels::Codes(bytes.chunks_exact(size).flat_map(rgba).collect())
             }
+            Self::Masks(masks) => Texels::Codes(masks.codes(bytes)),
             Self::Shorts(channels) => {
                 let fraction = |[low, high]: &[u8; 2]| f32::from(u16::from_le_bytes([*low, *high])) / 65535.0;
                 Texels::Light(rgba(bytes.as_chunks().0.iter().map(fraction), channels))
@@ -384,7 +441,7 @@ impl Block {
         blocks.fill(bytes, |block, texels, pitch| match self {
             Self::Bc1 => bcdec_rs::bc1(block, texels, pitch),
             Self::Bc2 => bcdec_rs::bc2(block, texels, pitch),
-            Self::Bc3 => bcdec_rs::bc3(block, texels, pitch),
+            Self::Bc3 | Self::Rxgb => bcdec_rs::bc3(block, texels, pitch),
             Self::Bc4(is_signed) => bcdec_rs::bc4(block, texels, pitch, is_signed),
             Self::Bc5(is_signed) => bcdec_rs::bc5(block, texels, pitch, is_signed),
             Self::Bc6h(_) | Self::Bc7 => bcdec_rs::bc7(block, texels, pitch),
@@ -393,6 +450,7 @@ impl Block {
         let rgba = |texel: &[u8]| match *texel {
             [grey] => [grey, grey, grey, 255],
             [red, green] => [red, green, 255, 255],
+            [_, g, b, red] if self == Self::Rxgb => [red, g, b, 255],
             [r, g, b, a] => [r, g, b, a],
             _ => [0; 4],
         };

@@ -3,20 +3,26 @@
 //! The format is Y up, like ours, with texture coordinates upwards. Its materials are of the 1990s: their exponent becomes
 //! a roughness, and the additions of later exporters (`Pr`, `Pm`, `norm`, …) are taken where they are.
 
+mod lines;
+mod map;
+
 use std::cell::RefCell;
 use std::io::BufReader;
 use std::path::Path;
 
+use self::map::Map;
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use tobj::{LoadError, LoadOptions, Material};
 
-use super::files::Files;
-use super::mesh::Mesh;
-use super::model::{AlphaMode, Filter, Model, ModelError, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap};
-use super::picture::decode_bytes;
-use super::report::{Fate, ImportReport};
-use super::texture::scale::scaled_to;
 use crate::panics::contained;
+use crate::scene::files::Files;
+use crate::scene::mesh::Mesh;
+use crate::scene::model::{
+    AlphaMode, Filter, Model, ModelError, ModelObject, ModelOptions, Slot, Texture, TextureRef, Wrap,
+};
+use crate::scene::picture::decode_bytes;
+use crate::scene::report::{Fate, ImportReport};
+use crate::scene::texture::scale::scaled_to;
 
 /// Loads the contents of an OBJ file.
 pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOptions) -> Result<Model, ModelError> {
@@ -29,9 +35,11 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
     };
     // Some malformed faces make the crate panic.
     let loaded = contained(|| {
-        tobj::load_obj_buf(&mut BufReader::new(bytes), &load_options, |library| {
-            read_library(files, library, &report)
-        })
+        tobj::load_obj_buf(
+            &mut BufReader::new(&*lines::of_model(bytes)),
+            &load_options,
+            |library| read_library(files, library, &report),
+        )
     });
     let invalid = |reason: String| ModelError::Invalid {
         path: path.to_owned(),
@@ -48,8 +56,7 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
     for (place, part) in parts.iter().enumerate() {
         files.loading.step(format!("mesh {} of {}", place + 1, parts.len()))?;
         let slot = slots.slot(part.mesh.material_id, &mut report);
-        let is_exact = slots.slots[slot as usize].normal_texture.is_some();
-        let read = read_part(&part.mesh, slot, is_exact);
+        let read = read_part(&part.mesh, slot, slots.slots[slot as usize].normal_texture);
         if !read.colors.is_empty() {
             slots.slots[slot as usize].has_vertex_colors = true;
             report.note(Fate::Used, "vertex colours", &part.name);
@@ -81,15 +88,10 @@ pub(super) fn load(path: &Path, files: &Files, bytes: &[u8], options: &ModelOpti
 fn read_library(files: &Files, library: &Path, report: &RefCell<ImportReport>) -> tobj::MTLLoadResult {
     let name = library.to_string_lossy();
     match files.read(&name) {
-        Ok(bytes) => tobj::load_mtl_buf(&mut BufReader::new(bytes.as_slice())).or_else(|error| {
-            let mut report = report.borrow_mut();
-            report.note(
-                Fate::Missing,
-                format!("a library of materials, grey instead ({error})"),
-                &name,
-            );
-            Ok(Default::default())
-        }),
+        Ok(bytes) => {
+            let lines = lines::of_library(&bytes, &name, &mut report.borrow_mut());
+            tobj::load_mtl_buf(&mut lines.as_slice())
+        }
         Err(error) => {
             let mut report = report.borrow_mut();
             report.note(
@@ -103,7 +105,7 @@ fn read_library(files: &Files, library: &Path, report: &RefCell<ImportReport>) -
 }
 
 /// The triangles of one part.
-fn read_part(source: &tobj::Mesh, slot: u32, is_exact: bool) -> Mesh {
+fn read_part(source: &tobj::Mesh, slot: u32, normal_texture: Option<TextureRef>) -> Mesh {
     let positions = source.positions.as_chunks::<3>().0;
     let count = positions.len();
     let normals = source.normals.as_chunks::<3>().0;
@@ -143,7 +145,8 @@ fn read_part(source: &tobj::Mesh, slot: u32, is_exact: bool) -> Mesh {
         mesh.normals = normals.iter().map(|normal| Vec3::from_array(*normal)).collect();
         mesh.repair_normals();
     }
-    mesh.make_tangents(IDENTITY, is_exact);
+    let texture_from_uv = normal_texture.map_or(IDENTITY, |texture| texture.texture_from_mesh_uv);
+    mesh.make_tangents(texture_from_uv, normal_texture.is_some());
     mesh
 }
 
@@ -206,7 +209,8 @@ impl<'a> Slots<'a> {
         // Blinn-Phong's exponent as the α of a microfacet distribution: Walter et al. 2007.
         let alpha = (2.0 / (shininess + 2.0)).sqrt();
         let specular = material.specular.unwrap_or([0.0; 3]);
-        let opacity = material.dissolve.unwrap_or(1.0).clamp(0.0, 1.0);
+        let opacity = material.dissolve.or_else(|| Some(1.0 - number("Tr")?));
+        let opacity = opacity.unwrap_or(1.0).clamp(0.0, 1.0);
         let mut slot = Slot {
             name: material.name.clone(),
             base_color: unit(material.diffuse.unwrap_or([0.6; 3])),
@@ -230,38 +234,29 @@ impl<'a> Slots<'a> {
             coat_roughness: number("Pcr").unwrap_or(0.0).clamp(0.0, 1.0),
             ..Slot::default()
         };
-        slot.base_color_texture = self.texture(material.diffuse_texture.as_deref(), true, report);
-        if slot.base_color_texture.is_some() && slot.base_color == [0.0; 3] {
-            // Many exporters write black beside a texture and mean white.
-            slot.base_color = [1.0; 3];
-        }
-        if material.dissolve_texture.is_some() && material.dissolve_texture == material.diffuse_texture {
-            slot.alpha_mode = AlphaMode::Blend;
-        } else if material.dissolve_texture.is_some() {
-            report.note(Fate::Ignored, "a texture of opacity of its own", &material.name);
-        }
+        self.read_color(material, &mut slot, report);
         let normal = material.unknown_param.get("norm").or(material.normal_texture.as_ref());
-        slot.normal_texture = self.texture(normal.map(String::as_str), false, report);
+        let normal = normal.map(|line| Map::parse(line));
+        slot.normal_texture = self.texture(normal.as_ref(), false, report).found();
+        slot.normal_scale = normal.map_or(1.0, |map| map.strength);
         if let Some(reference) = slot.normal_texture
             && is_height(&self.textures[reference.texture])
         {
             report.note(Fate::Ignored, "a bump texture, which holds heights", &material.name);
             slot.normal_texture = None;
         }
-        let emissive = material.unknown_param.get("map_Ke");
-        slot.emissive_texture = self.texture(emissive.map(String::as_str), true, report);
-        if slot.emissive_texture.is_some() && slot.emission == [0.0; 3] {
-            slot.emission = [1.0; 3];
+        let emissive = material.unknown_param.get("map_Ke").map(|line| Map::parse(line));
+        match self.texture(emissive.as_ref(), true, report) {
+            Picture::Found(texture) => {
+                slot.emissive_texture = Some(texture);
+                if slot.emission == [0.0; 3] {
+                    slot.emission = [1.0; 3];
+                }
+            }
+            Picture::Missing => slot.emission = [0.0; 3],
+            Picture::Unnamed => {}
         }
-        let others = [
-            ("map_Ks", material.specular_texture.is_some()),
-            ("map_Ns", material.shininess_texture.is_some()),
-            ("map_Pr", material.unknown_param.contains_key("map_Pr")),
-            ("map_Pm", material.unknown_param.contains_key("map_Pm")),
-        ];
-        for (key, _) in others.iter().filter(|(_, is_there)| *is_there) {
-            report.note(Fate::Ignored, format!("a texture given by {key}"), &material.name);
-        }
+        note_ignored(material, report);
         report.note(
             Fate::Approximated,
             "a .mtl material, as metalness and roughness",
@@ -270,46 +265,117 @@ impl<'a> Slots<'a> {
         slot
     }
 
-    /// A picture that a line of the library names, after its options.
-    fn texture(&mut self, line: Option<&str>, is_color: bool, report: &mut ImportReport) -> Option<TextureRef> {
-        let line = line?.trim();
-        let last = line.rsplit_once(char::is_whitespace).map_or(line, |(_, last)| last);
-        // Names may have spaces; options come first and begin with a hyphen.
-        let name = if line.starts_with('-') { last } else { line };
-        let known = self.textures.iter().position(|texture| texture.name == name);
-        let texture = known.or_else(|| {
-            let decoded = self
-                .files
-                .read(name)
-                .map_err(|error| error.to_string())
-                .and_then(|bytes| decode_bytes(name.to_owned(), &bytes));
-            match decoded {
-                Ok(texture) => {
-                    report.note(Fate::Used, "textures", name);
-                    let (texture, scaled_from) = scaled_to(texture.texture(is_color), self.side_max, is_color);
-                    if let Some([width, height]) = scaled_from {
-                        let what = format!(
-                            "a picture of {width} × {height}, used at {} × {}",
-                            texture.width, texture.height
-                        );
-                        report.note(Fate::Approximated, what, name);
-                    }
-                    self.textures.push(texture);
-                    Some(self.textures.len() - 1)
-                }
-                Err(reason) => {
-                    report.note(Fate::Missing, format!("a texture ({reason})"), name);
-                    None
-                }
-            }
-        })?;
-        Some(TextureRef {
+    /// The base colour's picture, and whether it has the opacity.
+    fn read_color(&mut self, material: &Material, slot: &mut Slot, report: &mut ImportReport) {
+        let [color, opacity] =
+            [&material.diffuse_texture, &material.dissolve_texture].map(|line| line.as_deref().map(Map::parse));
+        let texture = self.texture(color.as_ref(), true, report);
+        if texture != Picture::Unnamed && slot.base_color == [0.0; 3] {
+            // Many exporters write black beside a texture and mean white.
+            slot.base_color = [1.0; 3];
+        }
+        if texture == Picture::Missing {
+            slot.base_color = slot.base_color.map(|factor| 0.5 * factor);
+        }
+        slot.base_color_texture = texture.found();
+        let Some(opacity) = opacity else { return };
+        if color.is_some_and(|color| color.name == opacity.name) {
+            slot.alpha_mode = AlphaMode::Blend;
+        } else {
+            report.note(Fate::Ignored, "a texture of opacity of its own", &material.name);
+        }
+    }
+
+    /// The picture of a line of the library.
+    fn texture(&mut self, map: Option<&Map<'_>>, is_color: bool, report: &mut ImportReport) -> Picture {
+        let Some(map) = map else { return Picture::Unnamed };
+        for option in &map.ignored {
+            report.note(Fate::Ignored, format!("the option {option} of a texture"), map.name);
+        }
+        let known = self.textures.iter().position(|texture| texture.name == map.name);
+        let Some(texture) = known.or_else(|| self.read_picture(map.name, is_color, report)) else {
+            return Picture::Missing;
+        };
+        Picture::Found(TextureRef {
             texture,
             uv_set: 0,
-            texture_from_mesh_uv: IDENTITY,
-            wrap: [Wrap::Repeat; 2],
+            texture_from_mesh_uv: map.texture_from_mesh_uv(),
+            wrap: [if map.is_clamped {
+                Wrap::ClampToEdge
+            } else {
+                Wrap::Repeat
+            }; 2],
             filter: Filter::Linear,
         })
+    }
+
+    /// Adds the picture in a file to those of the model; its number.
+    fn read_picture(&mut self, name: &str, is_color: bool, report: &mut ImportReport) -> Option<usize> {
+        let decoded = self
+            .files
+            .read(name)
+            .map_err(|error| error.to_string())
+            .and_then(|bytes| decode_bytes(name.to_owned(), &bytes));
+        let decoded = match decoded {
+            Ok(decoded) => decoded,
+            Err(reason) => {
+                report.note(Fate::Missing, format!("a texture, grey instead ({reason})"), name);
+                return None;
+            }
+        };
+        report.note(Fate::Used, "textures", name);
+        if let Some(note) = decoded.note.filter(|_| is_color) {
+            report.note(Fate::Approximated, note, name);
+        }
+        let (texture, scaled_from) = scaled_to(decoded.texture(is_color), self.side_max, is_color);
+        if let Some([width, height]) = scaled_from {
+            let what = format!(
+                "a picture of {width} × {height}, used at {} × {}",
+                texture.width, texture.height
+            );
+            report.note(Fate::Approximated, what, name);
+        }
+        self.textures.push(texture);
+        Some(self.textures.len() - 1)
+    }
+}
+
+/// What became of a picture that a material may name.
+#[derive(Clone, Copy, PartialEq)]
+enum Picture {
+    Unnamed,
+    Missing,
+    Found(TextureRef),
+}
+
+impl Picture {
+    fn found(self) -> Option<TextureRef> {
+        match self {
+            Self::Found(texture) => Some(texture),
+            _ => None,
+        }
+    }
+}
+
+/// What is read of the keywords that tobj does not know.
+const READ: [&str; 7] = ["Pm", "Pr", "Pc", "Pcr", "Tr", "norm", "map_Ke"];
+
+/// Tells which keywords of a material are not read.
+fn note_ignored(material: &Material, report: &mut ImportReport) {
+    let known = [
+        ("map_Ks", material.specular_texture.is_some()),
+        ("map_Ns", material.shininess_texture.is_some()),
+    ];
+    let known = known.into_iter().filter_map(|(key, is_there)| is_there.then_some(key));
+    let mut others: Vec<&str> = material.unknown_param.keys().map(String::as_str).collect();
+    others.sort_unstable();
+    for key in known.chain(others.into_iter().filter(|key| !READ.contains(key))) {
+        let what = if key.starts_with("map_") {
+            format!("a texture given by {key}")
+        } else {
+            format!("{key} of a .mtl material")
+        };
+        report.note(Fate::Ignored, what, &material.name);
     }
 }
 

@@ -1,0 +1,81 @@
+//! Texels of whole numbers whose channels are some of their bits each.
+
+/// The bits of a texel's bytes that are each channel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Masks {
+    /// Bytes a texel, at most 4.
+    pub bytes: usize,
+    /// The bits of red, green, blue and opacity; none where a channel is not there.
+    pub channels: [u32; 4],
+}
+
+/// Some texels have an opacity.
+const WITH_OPACITY: u32 = 0x1;
+/// Texels have nothing but an opacity.
+const OPACITY: u32 = 0x2;
+/// The format stands in a code.
+const CODE: u32 = 0x4;
+/// Texels have colours.
+const COLORS: u32 = 0x40;
+/// Texels are grey.
+const GREY: u32 = 0x2_0000;
+
+impl Masks {
+    /// Those of a DDS file that says them itself.
+    pub fn of_dds(bytes: &[u8]) -> Option<Self> {
+        let number = |at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+        let (flags, bits) = (number(80)?, number(88)?);
+        let [red, green, blue, opacity] = [number(92)?, number(96)?, number(100)?, number(104)?];
+        let has = |flag: u32| flags & flag != 0;
+        let [red, green, blue] = match (has(COLORS), has(GREY), has(OPACITY)) {
+            (true, ..) => [red, green, blue],
+            (_, true, _) => [red; 3],
+            (_, _, true) => [0; 3],
+            _ => return None,
+        };
+        let opacity = if has(WITH_OPACITY | OPACITY) { opacity } else { 0 };
+        let is_read = !has(CODE) && matches!(bits, 8 | 16 | 24 | 32);
+        is_read.then_some(Self {
+            bytes: bits as usize / 8,
+            channels: [red, green, blue, opacity],
+        })
+    }
+
+    /// Codes of 8 bits, four a texel: a colour that is not there is 0, opacity 255.
+    pub fn codes(self, bytes: &[u8]) -> Vec<u8> {
+        let [red, green, blue, opacity] = self.channels;
+        let texel = |texel: &[u8]| {
+            let word = texel.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte));
+            let code = |mask, otherwise| code(word, mask).unwrap_or(otherwise);
+            [code(red, 0), code(green, 0), code(blue, 0), code(opacity, 255)]
+        };
+        bytes.chunks_exact(self.bytes).flat_map(texel).collect()
+    }
+}
+
+/// The code of 8 bits in some bits of a word; none where there are no bits.
+fn code(word: u32, mask: u32) -> Option<u8> {
+    let [value, most] = [word & mask, mask].map(|bits| u64::from(bits.checked_shr(mask.trailing_zeros()).unwrap_or(0)));
+    Some(((value * 255 + most / 2).checked_div(most)?) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_are_spread_over_the_codes() {
+        let masks = |bytes, channels| Masks { bytes, channels };
+        let r5g6b5 = masks(2, [0xf800, 0x7e0, 0x1f, 0]);
+        assert_eq!(
+            r5g6b5.codes(&[0x1f, 0xf8, 0xe0, 0x03]),
+            [255, 0, 255, 255, 0, 121, 0, 255]
+        );
+        assert_eq!(masks(1, [0, 0, 0, 0xff]).codes(&[7]), [0, 0, 0, 7]);
+        assert_eq!(masks(3, [0xff0000, 0xff00, 0xff, 0]).codes(&[1, 2, 3]), [3, 2, 1, 255]);
+        assert_eq!(
+            masks(4, [0x3ff, 0, 0, 0xc000_0000]).codes(&[0xff, 3, 0, 0x80]),
+            [255, 0, 0, 170]
+        );
+    }
+}

@@ -1,0 +1,117 @@
+//! What a line of a library of materials says of a picture: options that begin with a hyphen, then the file's name.
+
+/// A picture's file and how it is laid on the surface.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Map<'a> {
+    /// Its name, which may have spaces.
+    pub name: &'a str,
+    /// How often it is there along u and v.
+    pub scale: [f32; 2],
+    /// By how much it is moved, along u and v upwards.
+    pub offset: [f32; 2],
+    /// What is beyond it is as its edge.
+    pub is_clamped: bool,
+    /// Factor of a bump's height or a normal's tilt.
+    pub strength: f32,
+    /// Options that are not read, with their values.
+    pub ignored: Vec<&'a str>,
+}
+
+/// The options with the most and the least values that each has.
+const OPTIONS: [(&str, usize, usize); 12] = [
+    ("-blendu", 1, 1),
+    ("-blendv", 1, 1),
+    ("-bm", 1, 1),
+    ("-boost", 1, 1),
+    ("-cc", 1, 1),
+    ("-clamp", 1, 1),
+    ("-imfchan", 1, 1),
+    ("-mm", 2, 2),
+    ("-o", 3, 1),
+    ("-s", 3, 1),
+    ("-t", 3, 1),
+    ("-texres", 1, 1),
+];
+
+impl<'a> Map<'a> {
+    /// Reads a line after its keyword.
+    pub fn parse(line: &'a str) -> Self {
+        let mut map = Self {
+            name: line.trim(),
+            scale: [1.0; 2],
+            offset: [0.0; 2],
+            is_clamped: false,
+            strength: 1.0,
+            ignored: Vec::new(),
+        };
+        while let Some((option, values, rest)) = next_option(map.name) {
+            let whole = map.name[..map.name.len() - rest.len()].trim_end();
+            map.take(option, &values, whole);
+            map.name = rest;
+        }
+        map
+    }
+
+    fn take(&mut self, option: &str, values: &[&str], whole: &'a str) {
+        let number = |place: usize| values.get(place).and_then(|value| value.parse::<f32>().ok());
+        match (option, number(0)) {
+            ("-s", Some(u)) => self.scale = [u, number(1).unwrap_or(1.0)],
+            ("-o", Some(u)) => self.offset = [u, number(1).unwrap_or(0.0)],
+            ("-bm", Some(strength)) => self.strength = strength,
+            ("-clamp", _) => self.is_clamped = values == ["on"],
+            // As it is without them.
+            ("-blendu" | "-blendv", _) if values == ["on"] => {}
+            ("-mm", Some(0.0)) if number(1) == Some(1.0) => {}
+            ("-t", Some(u)) if u == 0.0 && number(1).unwrap_or(0.0) == 0.0 => {}
+            _ => self.ignored.push(whole),
+        }
+    }
+
+    /// Places in the picture from a mesh's coordinates, whose v goes downwards.
+    pub fn texture_from_mesh_uv(&self) -> [f32; 6] {
+        let ([scale_u, scale_v], [offset_u, offset_v]) = (self.scale, self.offset);
+        [scale_u, 0.0, offset_u, 0.0, scale_v, 1.0 - scale_v - offset_v]
+    }
+}
+
+/// The option at the start of a line, its values, and what follows them.
+fn next_option(line: &str) -> Option<(&str, Vec<&str>, &str)> {
+    let (option, mut rest) = next_word(line)?;
+    let (option, most, least) = OPTIONS.into_iter().find(|(known, ..)| *known == option)?;
+    let mut values = Vec::new();
+    while values.len() < most {
+        let Some((word, after)) = next_word(rest) else { break };
+        // A name follows where numbers may be left out.
+        if values.len() >= least && (word.parse::<f32>().is_err() || after.is_empty()) {
+            break;
+        }
+        values.push(word);
+        rest = after;
+    }
+    Some((option, values, rest))
+}
+
+fn next_word(line: &str) -> Option<(&str, &str)> {
+    let line = line.trim_start();
+    let end = line.find(char::is_whitespace).unwrap_or(line.len());
+    (end > 0).then(|| (&line[..end], line[end..].trim_start()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_come_before_a_name_with_spaces() {
+        let map = Map::parse("-s 4 4 1 -o 0.25 0 0 -clamp on -bm 0.5 -blendu on four columns.png");
+        assert_eq!(map.name, "four columns.png");
+        assert_eq!((map.scale, map.offset), ([4.0; 2], [0.25, 0.0]));
+        assert_eq!((map.is_clamped, map.strength, map.ignored.len()), (true, 0.5, 0));
+        assert_eq!(map.texture_from_mesh_uv(), [4.0, 0.0, 0.25, 0.0, 4.0, -3.0]);
+        let map = Map::parse(" -s 2 -imfchan r -t 0.1 0.1 7");
+        assert_eq!((map.name, map.scale), ("7", [2.0, 1.0]));
+        assert_eq!(map.ignored, ["-imfchan r", "-t 0.1 0.1"]);
+        assert_eq!(Map::parse("-odd name.png").name, "-odd name.png");
+        assert_eq!(Map::parse("my file.png").name, "my file.png");
+    }
+}

@@ -1,0 +1,131 @@
+//! Colours of OpenEXR files by the primaries that they name, as colours and as luminance and chroma.
+
+use std::path::Path;
+
+use glossmith::scene::environment::{Environment, EnvironmentSource, load};
+use tempfile::TempDir;
+
+const SIZE: [usize; 2] = [4, 2];
+/// Red, green, blue and white of CIE XYZ.
+const XYZ: [f32; 8] = [1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0 / 3.0, 1.0 / 3.0];
+
+/// A channel's name, how many pixels one of its samples stands for along each side, and its value everywhere.
+type Channel = (&'static str, i32, f32);
+
+/// An OpenEXR file of one colour: scan lines of floats, not compressed. The channels are in the order of their names.
+fn write(path: &Path, channels: &[Channel], chromaticities: Option<[f32; 8]>) {
+    let [width, height] = SIZE;
+    let ints = |numbers: &[i32]| {
+        numbers
+            .iter()
+            .flat_map(|number| number.to_le_bytes())
+            .collect::<Vec<u8>>()
+    };
+    let floats = |numbers: &[f32]| {
+        numbers
+            .iter()
+            .flat_map(|number| number.to_le_bytes())
+            .collect::<Vec<u8>>()
+    };
+    let mut list = Vec::new();
+    for (name, step, _) in channels {
+        list.extend(name.bytes());
+        // Its end; floats.
+        list.push(0);
+        list.extend(ints(&[2, 0, *step, *step]));
+    }
+    list.push(0);
+    let window = ints(&[0, 0, width as i32 - 1, height as i32 - 1]);
+    let mut attributes = vec![
+        ("channels", "chlist", list),
+        ("compression", "compression", vec![0]),
+        ("dataWindow", "box2i", window.clone()),
+        ("displayWindow", "box2i", window),
+        ("lineOrder", "lineOrder", vec![0]),
+        ("pixelAspectRatio", "float", floats(&[1.0])),
+        ("screenWindowCenter", "v2f", floats(&[0.0; 2])),
+        ("screenWindowWidth", "float", floats(&[1.0])),
+    ];
+    attributes.extend(chromaticities.map(|places| ("chromaticities", "chromaticities", floats(&places))));
+    let mut bytes = vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0];
+    for (name, kind, value) in attributes {
+        bytes.extend([name.as_bytes(), &[0], kind.as_bytes(), &[0]].concat());
+        bytes.extend(ints(&[value.len() as i32]));
+        bytes.extend(value);
+    }
+    bytes.push(0);
+    let line = |row: usize| -> Vec<u8> {
+        let held = channels
+            .iter()
+            .filter(|(_, step, _)| row.is_multiple_of(*step as usize));
+        held.flat_map(|(_, step, value)| floats(&vec![*value; width / *step as usize]))
+            .collect()
+    };
+    let mut start = bytes.len() + 8 * height;
+    for row in 0..height {
+        bytes.extend((start as u64).to_le_bytes());
+        start += 8 + line(row).len();
+    }
+    for row in 0..height {
+        let line = line(row);
+        bytes.extend(ints(&[row as i32, line.len() as i32]));
+        bytes.extend(line);
+    }
+    std::fs::write(path, bytes).expect("a writable folder");
+}
+
+fn read(channels: &[Channel], chromaticities: Option<[f32; 8]>) -> Environment {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("colour.exr");
+    write(&path, channels, chromaticities);
+    load(&EnvironmentSource::File(path)).expect("loads")
+}
+
+#[track_caller]
+fn assert_is(environment: &Environment, expected: [f32; 3]) {
+    for texel in &environment.texels {
+        for (found, expected) in texel.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-3, "{texel:?} in place of {expected:?}");
+        }
+    }
+}
+
+/// The same colour in linear Rec. 709, by its matrix alone: XYZ has no white that would be brought to another.
+const OF_XYZ: [f32; 3] = [0.2285, 0.5752, 0.5545];
+
+#[test]
+fn xyz_is_brought_to_rec_709() {
+    let colors = read(&[("B", 1, 0.6), ("G", 1, 0.5), ("R", 1, 0.4)], Some(XYZ));
+    assert_is(&colors, OF_XYZ);
+    assert!(
+        !colors.warnings.iter().any(|told| told.contains("space")),
+        "{:?}",
+        colors.warnings
+    );
+}
+
+/// RY = (R − Y) / Y, BY = (B − Y) / Y; the luminance is that of the file's own primaries.
+#[test]
+fn luminance_and_chroma_are_of_the_files_primaries() {
+    for step in [1, 2] {
+        let channels = [("BY", step, 0.2), ("RY", step, -0.2), ("Y", 1, 0.5)];
+        assert_is(&read(&channels, Some(XYZ)), OF_XYZ);
+        let green = (0.5 - 0.2126 * 0.4 - 0.0722 * 0.6) / 0.7152;
+        assert_is(&read(&channels, None), [0.4, green, 0.6]);
+    }
+}
+
+/// Primaries in a line span no space: the numbers stay as they are, which is told.
+#[test]
+fn what_has_no_conversion_is_told() {
+    let line = [0.3, 0.3, 0.4, 0.4, 0.5, 0.5, 0.3127, 0.329];
+    for channels in [
+        &[("B", 1, 0.6), ("G", 1, 0.5), ("R", 1, 0.4)][..],
+        &[("BY", 2, 0.0), ("RY", 2, 0.0), ("Y", 1, 0.5)],
+    ] {
+        let environment = read(channels, Some(line));
+        let is_told = |told: &String| told.contains("no space of colours");
+        assert!(environment.warnings.iter().any(is_told), "{:?}", environment.warnings);
+        assert!((environment.texels[0][1] - 0.5).abs() < 1e-3);
+    }
+}

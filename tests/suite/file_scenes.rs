@@ -1,0 +1,235 @@
+//! What a glTF file says beside its shapes and materials, as pictures: lights in candela and lux, cameras, hidden nodes,
+//! thin walls.
+
+use std::f64::consts::PI;
+
+use glossmith::document::of_model::materials_of;
+use glossmith::document::{AreaLightShape, Document, ImportLobe};
+use glossmith::optics::random::Sequence;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::scene::{Fate, LIGHTS_MAX, Model, ModelSource, load};
+use serde_json::{Value, json};
+
+use super::gltf_builder::{Buffer, Folder, glb, square};
+use super::gltf_extensions::{load_plain, says};
+use super::renders::{document, render};
+
+const ENGINES: [EngineChoice; 2] = [EngineChoice::Cpu, EngineChoice::Gpu];
+
+/// A white matt square [0, 1]² that faces +Z, with nodes beside it and lights for them.
+fn lit(nodes: &[Value], lights: &[Value]) -> (Buffer, Value) {
+    let (buffer, mut document) = square();
+    document["materials"] = json!([{
+        "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 1},
+        "extensions": {"KHR_materials_specular": {"specularFactor": 0}},
+    }]);
+    document["meshes"][0]["primitives"][0]["material"] = json!(0);
+    document["extensions"] = json!({"KHR_lights_punctual": {"lights": lights}});
+    document["nodes"] = [&[json!({"mesh": 0})], nodes].concat().into();
+    document["scenes"][0]["nodes"] = (0..=nodes.len()).collect();
+    (buffer, document)
+}
+
+/// The scene of a file in the dark but for its own lights.
+fn opened(folder: &Folder, (buffer, file): &(Buffer, Value)) -> (Document, Model) {
+    let path = folder.path("scene.glb");
+    std::fs::write(&path, glb(file, &buffer.bytes)).unwrap();
+    let source = ModelSource::File(path);
+    let model = load(&source).unwrap();
+    let mut document = document(source, EnvironmentSource::Furnace, &[]);
+    document.materials = materials_of(&model, ImportLobe::Ggx);
+    document.lighting.strength = 0.0;
+    assert_eq!(document.add_lights_and_cameras(&model), 0);
+    document.check().expect("in range");
+    (document, model)
+}
+
+/// The radiance of a place of the square, seen from aside.
+fn seen(document: &Document, engine: EngineChoice, [x, y]: [f64; 2]) -> f64 {
+    let mut document = document.clone();
+    document.camera.position = Some([0.5, -0.8, 0.9]);
+    document.camera.target = Some([x, y, 0.0]);
+    document.camera.fov_deg = 0.2;
+    (document.render.width, document.render.height, document.render.samples) = (8, 8, 512);
+    document.render.bounces = 1;
+    document.render.sequence = Sequence::Sobol;
+    let luminance = render(engine, &document).luminance();
+    luminance.iter().sum::<f64>() / luminance.len() as f64
+}
+
+const MIDDLE: [f64; 2] = [0.5, 0.5];
+const ASIDE: [f64; 2] = [0.9, 0.5];
+
+/// 25 cd at a distance of 1, or 25 lx: the radiance is 25 / π.
+#[test]
+fn candela_and_lux_of_a_file_are_right() {
+    let spot = json!({"type": "spot", "intensity": 25, "spot": {"innerConeAngle": 0.19, "outerConeAngle": 0.2}});
+    let straight = 25.0 / PI;
+    let above = json!([0.5, 0.5, 1.0]);
+    let placed = |rotation: Value| json!({"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": above, "rotation": rotation});
+    let ahead = json!([0.0, 0.0, 0.0, 1.0]);
+    let of_point = straight / 1.16_f64.powf(1.5);
+    for (name, light, rotation, expected) in [
+        ("spot", &spot, &ahead, [straight, 0.0]),
+        ("spot that looks away", &spot, &json!([0.0, 1.0, 0.0, 0.0]), [0.0, 0.0]),
+        (
+            "point",
+            &json!({"type": "point", "intensity": 25}),
+            &ahead,
+            [straight, of_point],
+        ),
+        (
+            "sun",
+            &json!({"type": "directional", "intensity": 25}),
+            &ahead,
+            [straight; 2],
+        ),
+    ] {
+        let folder = Folder::new();
+        let (document, _) = opened(&folder, &lit(&[placed(rotation.clone())], &[light.clone()]));
+        for engine in ENGINES {
+            for (place, expected) in [MIDDLE, ASIDE].into_iter().zip(expected) {
+                let found = seen(&document, engine, place);
+                assert!(
+                    (found - expected).abs() <= 0.006 * expected,
+                    "{name} at {place:?}, {engine:?}: {found}, not {expected}"
+                );
+            }
+        }
+    }
+}
+
+/// A spot's cone and direction, whatever the middle of the model; its intensity, however small the model.
+#[test]
+fn spots_keep_their_cone_and_direction() {
+    for scale in [1.0, 1e-3] {
+        let node = json!({"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [2.0 * scale, 0, scale]});
+        let spot = json!({"type": "spot", "intensity": 100, "color": [4, 2, 0], "range": 3,
+            "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}});
+        let (buffer, mut file) = lit(&[node], &[spot]);
+        file["nodes"][0]["scale"] = json!([scale, scale, scale]);
+        let folder = Folder::new();
+        let (document, model) = opened(&folder, &(buffer, file));
+        let light = document.lighting.area_lights[0];
+        assert_eq!(light.shape, AreaLightShape::Spot);
+        assert!((light.cone_deg - 1.0_f64.to_degrees()).abs() < 1e-4 && (light.softness - 0.5).abs() < 1e-6);
+        let frame = light.shape().frame();
+        assert!(frame.outwards.distance(glam::DVec3::Z) < 1e-6, "{:?}", frame.outwards);
+        let place = frame.middle * model.radius + glam::DVec3::from_array(model.center);
+        let expected = glam::dvec3(2.0 * scale, 0.0, scale);
+        assert!(place.distance(expected) < 1e-6 * scale, "{place}, not {expected}");
+        let area = 0.25 * PI * (light.width * model.radius).powi(2);
+        let intensity = f64::from(light.strength) * area;
+        assert!((intensity / 400.0 - 1.0).abs() < 1e-5, "{intensity}");
+        assert_eq!(light.color, [1.0, 0.5, 0.0]);
+        says(&model, Fate::Ignored, "the range of a light");
+    }
+}
+
+#[test]
+fn lights_beyond_those_that_there_may_be_are_told() {
+    let of_count = |count: usize| {
+        let node = |place: usize| json!({"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [0.0, 0.0, 1.0 + place as f64 / 8.0]});
+        let nodes: Vec<Value> = (0..count).map(node).collect();
+        let (buffer, file) = lit(&nodes, &[json!({"type": "point"})]);
+        let model = load_plain(&file, &buffer);
+        let mut document = Document::default();
+        let left_out = document.add_lights_and_cameras(&model);
+        (left_out, document.lighting.area_lights.len(), model)
+    };
+    let (left_out, there, model) = of_count(10);
+    assert_eq!((left_out, there), (0, 10));
+    assert!(!model.report.entries.iter().any(|entry| entry.what.contains("too many")));
+    let (left_out, there, model) = of_count(LIGHTS_MAX + 6);
+    assert_eq!((left_out, there), (6, LIGHTS_MAX));
+    let told = model
+        .report
+        .of(Fate::Ignored)
+        .find(|entry| entry.what == "lights of too many");
+    assert_eq!(told.map(|entry| entry.count), Some(6));
+}
+
+/// A camera keeps what is up; one of parallel lines of sight is far away; one on a hidden node is there.
+#[test]
+fn cameras_keep_their_roll_and_hidden_nodes_are_not_seen() {
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let nodes = [
+        json!({"camera": 0, "name": "rolled", "translation": [0.5, 0.5, 3.0], "rotation": [0.0, 0.0, half, half]}),
+        json!({"camera": 1, "name": "flat", "translation": [0.5, 0.5, 2.0],
+            "extensions": {"KHR_node_visibility": {"visible": false}}, "children": [3]}),
+        json!({"mesh": 0, "translation": [5, 0, 0], "extensions": {"KHR_node_visibility": {"visible": true}}}),
+    ];
+    let (buffer, mut file) = lit(&nodes, &[]);
+    file["scenes"][0]["nodes"] = json!([0, 1, 2]);
+    file["cameras"] = json!([
+        {"type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.01, "aspectRatio": 1.5}},
+        {"type": "orthographic", "orthographic": {"xmag": 1, "ymag": 0.5, "znear": 0.01, "zfar": 10}},
+    ]);
+    let folder = Folder::new();
+    let (mut document, model) = opened(&folder, &(buffer, file));
+    assert_eq!(model.mesh.triangles.len(), 2);
+    says(&model, Fate::Used, "hidden nodes");
+    says(&model, Fate::Ignored, "aspect ratio");
+    says(&model, Fate::Approximated, "an orthographic camera");
+    let [rolled, flat] = &document.bookmarks[..] else {
+        panic!("{:?}", document.bookmarks)
+    };
+    assert!((rolled.camera.roll_deg + 90.0).abs() < 1e-6 && flat.camera.roll_deg == 0.0);
+    let position = flat.camera.position.expect("a place");
+    let seen = 2.0 * position[2] * (0.5 * flat.camera.fov_deg.to_radians()).tan();
+    assert!((seen - 1.0).abs() < 1e-6, "{seen} of 1");
+    document.camera = rolled.camera;
+    let mut session = Session::open(EngineChoice::Cpu).unwrap();
+    session.submit(&document).unwrap();
+    let camera = session.job().unwrap().settings.camera;
+    let [up, right] = [camera.up, camera.right].map(|axis| glam::DVec3::from_array(axis.to_f64()).normalize());
+    assert!(
+        up.distance(glam::DVec3::NEG_X) < 1e-6 && right.distance(glam::DVec3::Y) < 1e-6,
+        "{up} {right}"
+    );
+}
+
+/// A stripe behind a pane without thickness is where it is beside the pane.
+#[test]
+fn thin_walls_bend_nothing() {
+    let (buffer, mut file) = square();
+    file["materials"] = json!([
+        {"name": "pane", "doubleSided": true, "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
+            "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}}},
+        {"name": "stripe", "extensions": {"KHR_materials_unlit": {}}},
+    ]);
+    let mesh = |material: usize| {
+        let mut mesh = file["meshes"][0].clone();
+        mesh["primitives"][0]["material"] = json!(material);
+        mesh
+    };
+    file["meshes"] = json!([mesh(0), mesh(1)]);
+    file["nodes"] = json!([
+        {"mesh": 0, "translation": [-1, 0, 0], "scale": [2, 1, 1]},
+        {"mesh": 1, "translation": [0, -1, -0.5], "scale": [0.3, 2, 1]},
+    ]);
+    file["scenes"][0]["nodes"] = json!([0, 1]);
+    let folder = Folder::new();
+    let (mut document, model) = opened(&folder, &(buffer, file));
+    let pane = &model.slots[0];
+    assert_eq!(
+        (pane.ior, pane.coat, pane.coat_ior),
+        (1.0, 1.0, 1.5),
+        "it mirrors as a coat"
+    );
+    says(&model, Fate::Approximated, "a thin wall");
+    let (yaw, distance) = (40.0_f64.to_radians(), 4.0);
+    document.camera.position = Some([distance * yaw.sin(), 0.0, distance * yaw.cos()]);
+    document.camera.target = Some([0.0, 0.0, -0.25]);
+    (document.render.width, document.render.height, document.render.samples) = (64, 64, 16);
+    for engine in ENGINES {
+        let luminance = render(engine, &document).luminance();
+        let edge = |row: usize| luminance[64 * row..][..64].iter().position(|value| *value > 0.4);
+        let (through, beside) = (edge(24).expect("behind the pane"), edge(40).expect("below it"));
+        assert!(through.abs_diff(beside) <= 1, "{engine:?}: {through} and {beside}");
+        // What the pane does not mirror: (1 − R) of a dielectric of 1.5 under 40°.
+        let [seen, bare] = [24, 40].map(|row: usize| luminance[64 * row..][..64].iter().copied().fold(0.0, f64::max));
+        assert!((0.9..0.98).contains(&(seen / bare)), "{engine:?}: {seen} of {bare}");
+    }
+}
