@@ -108,28 +108,41 @@ fn every_folder_has_its_place_in_the_order() {
     for entry in fs::read_dir(src).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap();
-        let is_known = MAY_USE.iter().any(|(folder, _)| *folder == name) || ["lib", "main"].contains(&name);
+        let is_known = MAY_USE.iter().any(|(folder, _)| *folder == name) || ["lib", "main", "engine"].contains(&name);
         assert!(is_known, "src/{name} has no place in the order of the folders");
     }
+}
+
+/// The folders and files of `src/` that are of the engine, which is a package of its own.
+fn of_the_engine(src: &Path) -> Vec<String> {
+    let list = fs::read_to_string(src.join("engine.rs")).unwrap();
+    let modules = list.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
+    modules.map(str::to_owned).collect()
 }
 
 #[test]
 fn every_dependency_is_used() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let manifest: toml::Table = fs::read_to_string(root.join("Cargo.toml")).unwrap().parse().unwrap();
-    let mut files = Vec::new();
-    sources(&root.join("src"), &mut files);
-    let code: String = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
-    let unused: Vec<&String> = manifest["dependencies"]
-        .as_table()
-        .unwrap()
-        .keys()
-        .filter(|name| {
-            let path = format!("{}::", name.replace('-', "_"));
-            !code.contains(&path)
-        })
-        .collect();
-    assert!(unused.is_empty(), "nothing in src uses {unused:?}");
+    let src = root.join("src");
+    let engine = of_the_engine(&src);
+    assert!(engine.iter().any(|module| module == "optics"), "{engine:?}");
+    let code = |of_engine: bool| {
+        let mut files = Vec::new();
+        sources(&src, &mut files);
+        let top = |file: &Path| {
+            let first = file.strip_prefix(&src).unwrap().components().next().unwrap();
+            Path::new(first.as_os_str()).file_stem().unwrap().to_str().unwrap().to_owned()
+        };
+        files.retain(|file| engine.contains(&top(file)) == of_engine);
+        files.iter().map(|file| fs::read_to_string(file).unwrap()).collect::<String>()
+    };
+    for (manifest, code) in [(root.join("Cargo.toml"), code(false)), (src.join("engine/Cargo.toml"), code(true))] {
+        let manifest: toml::Table = fs::read_to_string(manifest).unwrap().parse().unwrap();
+        let names = manifest["dependencies"].as_table().unwrap().keys();
+        let is_unused = |name: &&String| !code.contains(&format!("{}::", name.replace('-', "_")));
+        let unused: Vec<&String> = names.filter(is_unused).collect();
+        assert!(unused.is_empty(), "nothing in the package's sources uses {unused:?}");
+    }
 }
 
 /// The parts of the window, each after those that it may use.
