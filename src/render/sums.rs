@@ -2,8 +2,8 @@
 //!
 //! Beside the picture's own channels a file has, for each half of the samples, `sums.even.R.high` and `.low` and so on: the
 //! upper and lower 32 bits of the f64 sum, as EXR's unsigned integers. Two f32 would hold 48 of its 53 bits. The sums of
-//! what the first samples of each half saw first are f32 (`sums.guides.even.…`), with their number. The document and the numbers of the samples
-//! are attributes.
+//! what the first samples of each half saw first are f32 (`sums.guides.even.…`), with their number. An attribute has
+//! the document and the numbers of the samples.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,10 @@ use crate::render::denoise::Noisy;
 use crate::store::FileError;
 use crate::store::project::{document_text, parse_document};
 
-/// The attributes of a file with sums.
+/// The attribute of a file with sums: a line with the numbers of the samples, one with the world's units, and the document.
+/// One alone, as several are written in another order each time.
+const KEPT: &str = "glossmithSums";
+/// The attributes that older files have in its place.
 const DOCUMENT: &str = "glossmithDocument";
 const SAMPLES: &str = "glossmithSamples";
 const UNITS: &str = "glossmithWorldUnits";
@@ -162,15 +165,11 @@ impl KeptFilm {
     /// Where the document has no place in a file.
     pub fn attributes(&self, path: &Path) -> Result<LayerAttributes, FileError> {
         let samples: Vec<String> = self.samples.iter().map(|[from, to]| format!("{from}-{to}")).collect();
+        let document = document_text(path, &self.document)?;
+        let kept = format!("{}\n{}\n{document}", samples.join(","), self.world_units_per_unit);
         let mut attributes = LayerAttributes::default();
-        for (name, value) in [
-            (DOCUMENT, document_text(path, &self.document)?),
-            (SAMPLES, samples.join(",")),
-            (UNITS, self.world_units_per_unit.to_string()),
-        ] {
-            let value = Text::from(value.as_str());
-            attributes.other.insert(Text::from(name), AttributeValue::Text(value));
-        }
+        let value = AttributeValue::Text(Text::from(kept.as_str()));
+        attributes.other.insert(Text::from(KEPT), value);
         Ok(attributes)
     }
 
@@ -219,9 +218,9 @@ impl KeptFilm {
     /// What is wrong with the file.
     pub fn read(path: &Path) -> Result<Self, SumsError> {
         let file = Sums::open(path)?;
-        let document = parse_document(path, file.attribute(DOCUMENT)?.as_bytes())?.value;
-        let samples = ranges(&file.attribute(SAMPLES)?).ok_or_else(|| file.missing(SAMPLES))?;
-        let units = file.attribute(UNITS)?;
+        let [samples, units, document] = file.kept()?;
+        let document = parse_document(path, document.as_bytes())?.value;
+        let samples = ranges(&samples).ok_or_else(|| file.missing(SAMPLES))?;
         let world_units_per_unit = units.parse().map_err(|_| file.missing(UNITS))?;
         let extras = Extras {
             coverage: file.find("coverage.high").is_some(),
@@ -368,6 +367,19 @@ impl<'a> Sums<'a> {
             Some(AttributeValue::Text(text)) => Ok(text.to_string()),
             _ => Err(self.missing(name)),
         }
+    }
+
+    /// The numbers of the samples, the world's units and the document.
+    fn kept(&self) -> Result<[String; 3], SumsError> {
+        let Ok(text) = self.attribute(KEPT) else {
+            return Ok([
+                self.attribute(SAMPLES)?,
+                self.attribute(UNITS)?,
+                self.attribute(DOCUMENT)?,
+            ]);
+        };
+        let parts: Vec<String> = text.splitn(3, '\n').map(str::to_owned).collect();
+        parts.try_into().map_err(|_| self.missing(KEPT))
     }
 
     fn find(&self, name: &str) -> Option<&FlatSamples> {

@@ -2,6 +2,7 @@
 #![cfg(unix)]
 
 use std::io::{BufRead as _, BufReader, Read as _};
+use std::os::unix::process::CommandExt as _;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -14,7 +15,18 @@ const RENDER: &str =
 /// Starts the program by way of a shell, which does `before` first, and waits until the engine is told: from then on signals
 /// are watched.
 fn begun(place: &Workplace, before: &str, arguments: &str) -> (Child, BufReader<std::process::ChildStderr>) {
-    let mut child = Command::new("sh")
+    let mut command = Command::new("sh");
+    // SAFETY: between fork and exec only signals are set, which may be done there. A shell in the background has its children
+    // ignore SIGINT.
+    unsafe {
+        command.pre_exec(|| {
+            for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGHUP] {
+                libc::signal(signal, libc::SIG_DFL);
+            }
+            Ok(())
+        });
+    }
+    let mut child = command
         .args([
             "-c",
             &format!("{before} exec \"$0\" {arguments}"),
@@ -29,7 +41,7 @@ fn begun(place: &Workplace, before: &str, arguments: &str) -> (Child, BufReader<
     let mut told = BufReader::new(child.stderr.take().unwrap());
     let mut line = String::new();
     told.read_line(&mut line).unwrap();
-    assert!(line.starts_with("CPU on"), "{line}");
+    assert!(line.starts_with("cpu on"), "{line}");
     (child, told)
 }
 
