@@ -220,8 +220,8 @@ commands! {
 pub(super) fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option<Command> {
     let focused = ctx.memory(|memory| memory.focused());
     let is_typing = match focused {
-        None => keys::take_search(ctx),
-        Some(_) => focused != viewport,
+        Some(_) if focused != viewport => true,
+        _ => keys::take_search(ctx),
     };
     // Shift first: a shortcut without it would match, too.
     let mut commands: Vec<_> = Command::ALL.iter().filter_map(|c| Some((*c, c.shortcut()?))).collect();
