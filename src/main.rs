@@ -8,11 +8,19 @@ use clap::Parser;
 use glossmith::cli::Arguments;
 
 fn main() -> ExitCode {
-    env_logger::Builder::from_env(
+    let mut logger = env_logger::Builder::from_env(
         env_logger::Env::default().default_filter_or("warn,wgpu=error,wgpu_hal=off,naga=error"),
-    )
-    .format(log_line)
-    .init();
+    );
+    logger.format(log_line);
+    #[cfg(feature = "window")]
+    {
+        let logger = logger.build();
+        let level = logger.filter();
+        // Nothing has set another one before.
+        let _ = glossmith::app::listen(logger, level);
+    }
+    #[cfg(not(feature = "window"))]
+    logger.init();
     match run(Arguments::parse()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -193,6 +193,8 @@ mod transmission;
 mod ui;
 #[path = "suite/ui_browser.rs"]
 mod ui_browser;
+#[path = "suite/ui_edges.rs"]
+mod ui_edges;
 #[path = "suite/ui_export.rs"]
 mod ui_export;
 #[path = "suite/ui_files.rs"]

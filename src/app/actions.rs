@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
+use crate::app::kit::keys;
 use crate::app::pane::Pane;
 use crate::app::services::compare::Rival;
 use crate::app::services::library::Change;
@@ -28,6 +29,8 @@ pub enum Action {
     Drop(Vec<PathBuf>),
     /// Takes text that was pasted into the window: names of files.
     Paste(String),
+    /// Says what to do with a picture that was pasted.
+    PastePicture,
     /// Cancels what is being loaded or prepared.
     CancelLoading,
     /// Changes the model.
@@ -165,6 +168,7 @@ commands! {
     OpenMeasured, File, "Open measured material…", "Opens a measured material (.binary of the MERL database) to match looks with.", None, 0;
     ModelFile, File, "Model file…", "What became of the parts of the model's file; its scenes, variants and poses.", None, 0;
     Reload, File, "Reload files", "Reads model and environment again.", keys(CTRL, Key::R), 0;
+    TypePaths, File, "Type file names", "Files are chosen by typing their paths in the window; or again in the system's dialog.", None, 0;
     Save, File, "Save project", "Saves materials, light, camera and settings (.json).", keys(CTRL, Key::S), 1;
     SaveAs, File, "Save project as…", "Saves the project under another name.", keys(CTRL_SHIFT, Key::S), 1;
     SaveMaterial, File, "Save material…", "Saves the selected material (.json).", None, 1;
@@ -215,7 +219,10 @@ commands! {
 /// unless that is the viewport.
 pub(super) fn pressed(ctx: &egui::Context, viewport: Option<egui::Id>) -> Option<Command> {
     let focused = ctx.memory(|memory| memory.focused());
-    let is_typing = focused.is_some() && focused != viewport;
+    let is_typing = match focused {
+        Some(_) if focused != viewport => true,
+        _ => keys::take_search(ctx),
+    };
     // Shift first: a shortcut without it would match, too.
     let mut commands: Vec<_> = Command::ALL.iter().filter_map(|c| Some((*c, c.shortcut()?))).collect();
     commands.sort_by_key(|(_, shortcut)| !shortcut.modifiers.shift);

@@ -30,12 +30,13 @@ pub use desk::Resolution;
 use desk::{Desk, Shared};
 use handlers::dropped;
 use handlers::models::ENVIRONMENT_CHANGED;
-use kit::theme;
+use kit::{keys, theme};
 use layout::Pane;
 use panels::Panels;
 use services::autosave::{self, Autosave, Leftover};
 pub use services::crash::report_panics;
 use services::edits::Edits;
+pub use services::heard::listen;
 use services::recent::Recent;
 pub use services::{compare, library, snapshots};
 use services::{environments, messages};
@@ -47,17 +48,17 @@ use sheets::turntable::TurntableSheet;
 use sheets::unsaved::Unsaved;
 use viewport::Viewport;
 
-use crate::document::{Change, Denoise, Document, MaterialSettings};
+use crate::document::{Denoise, Document, MaterialSettings};
 use crate::render::queue::Queue;
 use crate::render::shown::Shown;
 use crate::render::study::references::ReferenceCache;
-use crate::render::worker::{Activity, Event, Level, Pace, Picture, Snapshot, Worker};
+use crate::render::worker::{Activity, Event, Level, Picture, Snapshot, Worker};
 use crate::render::{EngineChoice, RayQueries};
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
 use crate::store::examples::EXAMPLES;
 
-/// A picture that has cost this much time keeps its size while nothing but the viewport's size changes.
+/// A finished picture that has cost this much time keeps its size while nothing but the viewport's size changes.
 const KEPT_FROM: Duration = Duration::from_secs(10);
 /// Changes that follow each other within this are rendered as moving.
 const MOVING: Duration = Duration::from_millis(150);
@@ -103,7 +104,7 @@ pub struct Options {
     pub cache: Option<PathBuf>,
     /// At least so long between two copies of unsaved edits, instead of 5 s.
     pub autosave_interval: Option<Duration>,
-    /// The render time from which a picture keeps its size when the viewport gets another, instead of 10 s.
+    /// The render time from which a finished picture keeps its size when the viewport gets another, instead of 10 s.
     pub keep_pictures_from: Option<Duration>,
     /// Files are chosen by typing a path that begins with this folder, even where the system has a dialog for it.
     pub typed_paths: Option<PathBuf>,
@@ -141,6 +142,8 @@ pub struct App {
     unsaved: Unsaved,
     /// The file that a picture of the window is wanted for.
     window_picture: Option<PathBuf>,
+    /// What to say once the clipboard has taken a copy.
+    copied: Option<String>,
     meter: FrameMeter,
     title: String,
     theme: egui::ThemePreference,
@@ -250,6 +253,7 @@ impl App {
             leftovers: Vec::new(),
             unsaved: Unsaved::default(),
             window_picture: None,
+            copied: None,
             meter: FrameMeter::default(),
             title: String::new(),
             theme: kept.theme,
@@ -370,55 +374,6 @@ impl App {
         }
     }
 
-    /// Records the frame's edit and hands the renderer what differs from what it has.
-    fn record_and_submit(&mut self, ctx: &egui::Context) {
-        let is_dragging = is_dragging(ctx);
-        self.record(is_dragging);
-        if self.awaited > 0 {
-            return;
-        }
-        let (mut wanted, is_turning) = self.document_shown(ctx);
-        match self.viewport.fill_size(self.shared.resolution) {
-            Some(size) => self.set_size(&mut wanted, size),
-            // The first frame has not been laid out: the size would be wrong.
-            None if self.shared.resolution != Resolution::Document => return,
-            None => {}
-        }
-        let change = self
-            .submitted
-            .as_ref()
-            .map_or(Change::everything(), |old| Change::between(old, &wanted));
-        let is_moving = is_turning || is_dragging || (self.edits.is_in_flow() && self.submitted_at.elapsed() < MOVING);
-        let pace = if is_moving { Pace::Moving } else { Pace::Still };
-        self.keep_up_rival(ctx, &wanted, pace);
-        if change.is_none() {
-            return;
-        }
-        self.revision = self.worker.submit(&wanted, pace);
-        self.submitted = Some(wanted);
-        self.submitted_resolution = self.shared.resolution;
-        self.submitted_at = Instant::now();
-    }
-
-    /// Gives a document that is to be rendered the viewport's size, unless nothing else would make the renderer start over
-    /// and the picture has cost too much for that.
-    fn set_size(&self, wanted: &mut Document, [width, height]: [u32; 2]) {
-        (wanted.render.width, wanted.render.height) = (width, height);
-        let Some(old) = &self.submitted else { return };
-        let old_size = (old.render.width, old.render.height);
-        if old_size == (width, height) || self.submitted_resolution != self.shared.resolution {
-            return;
-        }
-        let snapshot = self.worker.snapshot();
-        let is_its_picture = |picture: &Picture| picture.revision == self.revision && picture.reduction == 1;
-        let is_costly = snapshot.progress.render_seconds >= self.keep_pictures_from.as_secs_f64()
-            && snapshot.picture.as_deref().is_some_and(is_its_picture);
-        (wanted.render.width, wanted.render.height) = old_size;
-        if !is_costly || Change::between(old, wanted).restarts() {
-            (wanted.render.width, wanted.render.height) = (width, height);
-        }
-    }
-
     /// Small pictures of materials wait until the picture is there, and while something is being changed; so do renders.
     fn hold_thumbnails(&self, ctx: &egui::Context) {
         let has_picture = self.worker.snapshot().picture.is_some();
@@ -483,8 +438,10 @@ impl App {
             (model, self.shared.import_lobe),
             actions,
         );
-        if let Some((purpose, path)) = self.dialogs.show(ui) {
-            self.chosen(purpose, path);
+        match self.dialogs.show(ui, self.shared.recent.paths()) {
+            Some((purpose, Some(path))) => self.chosen(purpose, path),
+            Some((purpose, None)) if purpose.is_saving() => self.say_unsaved(purpose),
+            _ => {}
         }
         self.show_turntable(ui.ctx());
         self.show_export(ui.ctx());
@@ -536,9 +493,11 @@ impl eframe::App for App {
         self.meter.begin(Instant::now(), is_running, frame.info().cpu_usage);
         settings::fit_to_screen(&ctx);
         self.take_events(&ctx);
+        self.tell_of_clipboard();
         self.watch_files();
         self.picture_window(&ctx);
         let mut actions = std::mem::take(&mut self.queue);
+        keys::hold_typing(&ctx);
         if !self.is_covered() {
             actions.extend(actions::pressed(&ctx, self.viewport.id()).map(Action::Do));
         }
@@ -562,6 +521,7 @@ impl eframe::App for App {
         }
         self.record_and_submit(&ctx);
         self.hand_over_pictures(&ctx);
+        self.watch_copies(&ctx);
         self.hold_thumbnails(&ctx);
         self.put_aside(&ctx);
         self.guard_close(&ctx);

@@ -6,8 +6,6 @@ use super::{AreaLight, range};
 use crate::named::named;
 use crate::scene::camera::Camera;
 
-/// Degrees of a turn for a pull of one point, where the light is not in the picture.
-const DEG_PER_POINT: f64 = 0.35;
 /// Degrees to which angles snap.
 const SNAP_DEG: f64 = 15.0;
 /// Bounding radii to which lengths snap.
@@ -22,7 +20,7 @@ const ARM: f64 = 46.0;
 named! {
     /// A part of a light that can be taken hold of.
     LightHandle {
-        Direction, "direction", "Move", "Moves the light around its target; with ctrl in steps of 15°, with shift finely.";
+        Direction, "direction", "Move", "Moves the light around its target, or away from it where it is pulled farther; with ctrl in steps of 15°, with shift finely.";
         Width, "width", "Width", "Makes the light wider or narrower; the sun larger.";
         Height, "height", "Height", "Makes the light higher or lower.";
         Distance, "distance", "Distance", "Moves the light to its target or away from it.";
@@ -190,36 +188,45 @@ pub fn nudged(light: &AreaLight, handle: LightHandle, steps: DVec2) -> AreaLight
     moved
 }
 
-/// Moves a light over the sphere around its target: so that it stays under the pointer, or where it is not in the picture,
-/// as if the sphere were rolled.
+/// Moves a light so that it is under the pointer: over the sphere around its target, on the side that it was on, or where
+/// the pointer is beside that sphere, farther away from the target. One that was not in the picture comes into it.
 fn move_around(light: &mut AreaLight, view: &View, middle: Option<DVec2>, pull: &Pull) {
-    let by = pull.to - pull.from;
-    let frame = light.shape().frame();
-    let forward = vector(view.camera.forward.to_f64());
-    match middle {
+    let shape = light.shape();
+    let (frame, distance) = (shape.frame(), shape.distance);
+    let target = frame.middle - distance * frame.outwards;
+    // Along the ray through a point: where the target is beside it, and how far from there the sphere is.
+    let nearest = |at: DVec2| {
+        let [origin, along] = view.ray(at);
+        let half = (target - origin).dot(along);
+        (
+            origin,
+            along,
+            half,
+            half * half - (origin - target).length_squared() + distance * distance,
+        )
+    };
+    let is_far = match middle {
         Some(middle) => {
-            let target = frame.middle - light.shape().distance * frame.outwards;
-            let distance = light.shape().distance;
-            let nearest = |at: DVec2| {
-                let [origin, along] = view.ray(at);
-                let half = (target - origin).dot(along);
-                let below_root = half * half - (origin - target).length_squared() + distance * distance;
-                (origin, along, half, below_root.max(0.0).sqrt())
-            };
             let (origin, _, half, _) = nearest(middle);
-            let is_far = frame.middle.distance(origin) > half;
-            let (origin, along, half, root) = nearest(middle + by);
-            let near = half - root;
-            let t = if is_far || near <= 0.0 { half + root } else { near };
-            let outwards = (origin + t * along - target).normalize_or(frame.outwards);
-            light.look_from(outwards);
+            frame.middle.distance(origin) > half
         }
-        None => {
-            // Rolled by its near side, or by its far side.
-            let sign = if frame.outwards.dot(forward) <= 0.0 { 1.0 } else { -1.0 };
-            light.yaw_deg = wrapped_deg(light.yaw_deg + sign * DEG_PER_POINT * by.x);
-            light.pitch_deg = (light.pitch_deg - DEG_PER_POINT * by.y).clamp(-90.0, 90.0);
-        }
+        None => frame.outwards.dot(vector(view.camera.forward.to_f64())) > 0.0,
+    };
+    let (origin, along, half, below_root) = nearest(middle.unwrap_or(pull.from) + pull.to - pull.from);
+    let root = below_root.max(0.0).sqrt();
+    let t = match half - root {
+        near if near > 0.0 && !is_far => near,
+        // It was behind the camera: it stays on the viewer's side of the target.
+        _ if !is_far && half > 0.0 && !light.is_sun() => 0.5 * half,
+        _ => half + root,
+    };
+    // With the target behind the camera nothing that is seen is nearest to it.
+    let t = if t > 0.0 { t } else { distance };
+    let away = origin + t * along - target;
+    light.look_from(away.normalize_or(frame.outwards));
+    if !light.is_sun() {
+        let (least, most) = range::AREA_LENGTH.into_inner();
+        light.distance = away.length().clamp(least, most);
     }
     light.yaw_deg = snapped(light.yaw_deg, SNAP_DEG, pull.snaps);
     light.pitch_deg = snapped(light.pitch_deg, SNAP_DEG, pull.snaps);
@@ -284,7 +291,7 @@ mod tests {
             let moved = pulled(&light, LightHandle::Direction, &view(), &pull(grabbed, by));
             let now = middle(&moved).expect("it still is");
             assert!(now.distance(at + by) < 1e-6, "yaw {yaw_deg}: {at} to {now}");
-            assert_eq!(moved.distance, light.distance);
+            assert!((moved.distance - light.distance).abs() < 1e-9);
             assert_eq!(
                 pulled(&light, LightHandle::Direction, &view(), &pull(grabbed, DVec2::ZERO)).width,
                 light.width
@@ -293,8 +300,8 @@ mod tests {
     }
 
     #[test]
-    fn a_light_beside_the_picture_is_rolled_by_its_near_or_far_side() {
-        for (yaw_deg, sign) in [(60.0, 1.0), (120.0, -1.0)] {
+    fn a_light_beside_the_picture_comes_to_the_pointer() {
+        for yaw_deg in [60.0, 120.0] {
             let light = AreaLight {
                 yaw_deg,
                 distance: 30.0,
@@ -308,10 +315,45 @@ mod tests {
                 at.x > 400.0 && at.x <= 588.0 + 1e-6 && at.y >= 12.0 - 1e-6,
                 "at an edge, to the right: {at}"
             );
-            let moved = pulled(&light, handle, &view(), &pull(at, DVec2::new(100.0, -20.0)));
-            assert!((moved.yaw_deg - yaw_deg - sign * 35.0).abs() < 1e-9);
-            assert!((moved.pitch_deg - light.pitch_deg - 7.0).abs() < 1e-9);
+            let by = DVec2::new(-60.0, -20.0);
+            let moved = pulled(&light, handle, &view(), &pull(at, by));
+            let now = middle(&moved).expect("it is in the picture");
+            assert!(now.distance(at + by) < 1e-6, "{now} instead of {}", at + by);
+            assert_eq!(moved.yaw_deg.abs() > 90.0, yaw_deg > 90.0, "{yaw_deg}: {moved:?}");
         }
+    }
+
+    #[test]
+    fn a_light_behind_the_camera_comes_before_it_and_stays_on_its_side() {
+        let light = AreaLight {
+            yaw_deg: 0.0,
+            pitch_deg: 10.0,
+            distance: 30.0,
+            ..AreaLight::default()
+        };
+        assert_eq!(middle(&light), None);
+        let [(handle, at)] = handles(&light, &view(), 12.0)[..] else {
+            panic!("one handle")
+        };
+        let by = DVec2::new(40.0, 60.0);
+        let moved = pulled(&light, handle, &view(), &pull(at, by));
+        assert!(middle(&moved).expect("it is in the picture").distance(at + by) < 1e-6);
+        assert!(moved.yaw_deg.abs() < 90.0 && moved.distance < 8.0, "{moved:?}");
+    }
+
+    #[test]
+    fn a_light_pulled_beside_its_sphere_goes_away_from_its_target() {
+        let light = AreaLight {
+            yaw_deg: 20.0,
+            pitch_deg: 0.0,
+            distance: 1.0,
+            ..AreaLight::default()
+        };
+        let at = middle(&light).expect("it is in the picture");
+        let by = DVec2::new(200.0, -90.0);
+        let moved = pulled(&light, LightHandle::Direction, &view(), &pull(at, by));
+        assert!(middle(&moved).expect("it still is").distance(at + by) < 1e-6);
+        assert!(moved.distance > 1.5, "{moved:?}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::app::actions::{Action, Command};
 use crate::app::desk::{PICTURE_SIZE, Resolution};
-use crate::app::kit::widgets;
+use crate::app::kit::keys;
 use crate::app::layout::{self, Pane};
 use crate::app::services::{library, snapshots};
 use crate::app::sheets::dialogs::Purpose;
@@ -30,6 +30,7 @@ impl App {
             Action::Drop(paths) => self.drop_files(paths),
             Action::CancelLoading => self.worker.cancel_loading(),
             Action::Paste(text) => self.paste(&text),
+            Action::PastePicture => self.refuse_pasted_picture(),
             Action::UseModel(source) => self.worker.open_model(source, ModelOptions::default()),
             Action::ImportModel(source, options) => self.worker.open_model(source, options),
             Action::UseEnvironment(source) => self.worker.open_environment(source),
@@ -106,7 +107,7 @@ impl App {
     fn edit_parameter(&mut self, ctx: &egui::Context, key: &str) {
         if let Ok(parameter) = parameter(key) {
             self.reveal(Pane::Material);
-            widgets::wish_focus(ctx, parameter.group, parameter.full_name());
+            keys::wish_focus(ctx, parameter.group, parameter.full_name());
         } else if let Some(setting) = setting(key) {
             let is_light = key.starts_with("lighting.") || key == "scene.ground";
             self.reveal(if is_light { Pane::Lighting } else { Pane::Camera });
@@ -116,7 +117,7 @@ impl App {
                 self.shared.resolution = Resolution::Document;
                 group = "Picture";
             }
-            widgets::wish_focus(ctx, group, setting.full_name());
+            keys::wish_focus(ctx, group, setting.full_name());
         }
     }
 

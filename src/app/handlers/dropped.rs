@@ -27,12 +27,15 @@ pub(in crate::app) fn handed_over(ctx: &egui::Context, takes_text: bool) -> Vec<
             .map(|file| file.path().to_owned())
             .collect();
         let text = |event: &egui::Event| match event {
-            egui::Event::Paste(text) if takes_text => Some(text.trim().to_owned()),
+            egui::Event::Paste(text) if takes_text && !text.trim().is_empty() => {
+                Some(Action::Paste(text.trim().to_owned()))
+            }
+            egui::Event::PasteImage(_) if takes_text => Some(Action::PastePicture),
             _ => None,
         };
-        let pasted = input.events.iter().filter_map(text).filter(|text| !text.is_empty());
+        let pasted = input.events.iter().filter_map(text);
         let files = (!dropped.is_empty()).then_some(Action::Drop(dropped));
-        files.into_iter().chain(pasted.map(Action::Paste)).collect()
+        files.into_iter().chain(pasted).collect()
     })
 }
 

@@ -64,7 +64,7 @@ impl App {
         match copied {
             Ok((text, words)) => {
                 ctx.copy_text(text);
-                self.say(Level::Info, words);
+                self.copied = Some(words);
             }
             Err(error) => self.say(Level::Error, error),
         }

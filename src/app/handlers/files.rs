@@ -281,6 +281,10 @@ impl App {
             Command::OpenMaterial => (Purpose::OpenMaterial, String::new()),
             Command::OpenMeasured => (Purpose::OpenMeasured, String::new()),
             Command::WatchFolder => (Purpose::WatchFolder, String::new()),
+            Command::TypePaths => {
+                self.toggle_typed_paths();
+                return;
+            }
             Command::SaveMaterial => (Purpose::SaveMaterial, material_file()),
             Command::Export => {
                 self.ask_export(ctx, None);
@@ -308,7 +312,7 @@ impl App {
             Purpose::WatchFolder => self.shared.shelves.watch(path),
             // The ending says what is saved: a picture has the document inside, too.
             Purpose::SaveProject if is_picture(&path) => self.want_picture(Destination::File(path)),
-            Purpose::SaveProject => self.save_project(as_json(path)),
+            Purpose::SaveProject => self.save_project(as_project(path)),
             Purpose::SaveMaterial => self.save_material(as_json(path)),
             Purpose::Export => self.prepare_export(path),
             Purpose::SaveLayers => self.worker.make_layers(path.with_extension("exr")),
@@ -316,6 +320,24 @@ impl App {
             Purpose::QueuePicture => self.enqueue_picture(with_ending(path, "png")),
             Purpose::SavePicture => self.want_picture(Destination::File(with_ending(path, "png"))),
         }
+    }
+
+    /// The system's dialog was left without a file, or was never seen: which, it does not tell.
+    pub(in crate::app) fn say_unsaved(&mut self, purpose: Purpose) {
+        let text = format!(
+            "{}: no file was chosen, nothing is saved. If no dialog was seen: File › Type file names",
+            purpose.title()
+        );
+        self.say(Level::Warning, text);
+    }
+
+    /// Changes how files are chosen.
+    pub(in crate::app) fn toggle_typed_paths(&mut self) {
+        let text = match self.dialogs.toggle_typed() {
+            true => "files are chosen by typing their paths in the window",
+            false => "files are chosen in the system's dialog",
+        };
+        self.say(Level::Info, text);
     }
 
     /// Shows the picture through a table of colours.
@@ -370,6 +392,17 @@ fn as_json(path: PathBuf) -> PathBuf {
     name.into()
 }
 
+/// The same for a project. What has been called .json by the user, without more, is left so.
+fn as_project(path: PathBuf) -> PathBuf {
+    if ending(&path) == "json" {
+        return path;
+    }
+    let is_kind = path.to_string_lossy().to_lowercase().ends_with(KIND);
+    let mut name = path.into_os_string();
+    name.push(if is_kind { "" } else { KIND });
+    as_json(name.into())
+}
+
 /// The path, with an ending where it has none.
 fn with_ending(path: PathBuf, ending: &str) -> PathBuf {
     if path.extension().is_some() {
@@ -393,6 +426,15 @@ mod tests {
             ("a.png", "a.png.json"),
         ] {
             assert_eq!(as_json(typed.into()), PathBuf::from(named));
+        }
+        for (typed, named) in [
+            ("proj", "proj.glossmith.json"),
+            ("proj.glossmith", "proj.glossmith.json"),
+            ("v1.2", "v1.2.glossmith.json"),
+            ("proj.json", "proj.json"),
+            ("a.glossmith.json", "a.glossmith.json"),
+        ] {
+            assert_eq!(as_project(typed.into()), PathBuf::from(named));
         }
         assert!(is_picture(Path::new("001.PNG")) && !is_picture(Path::new("001")));
     }

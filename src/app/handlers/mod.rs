@@ -1,5 +1,6 @@
 //! What the window does about actions, commands, files and answers: the methods of the editor, by what they concern.
 
+mod clipboard;
 mod commands;
 mod compare;
 pub(super) mod dropped;
@@ -10,6 +11,7 @@ pub(super) mod models;
 mod queue;
 mod recovery;
 mod snapshots;
+mod submit;
 mod take_picture;
 mod textures;
 mod turntable;

@@ -62,8 +62,7 @@ impl App {
     fn copy_picture(&mut self, ctx: &egui::Context, picture: &Picture) {
         let size = [picture.width as usize, picture.height as usize];
         ctx.copy_image(egui::ColorImage::from_rgba_premultiplied(size, &picture.rgba));
-        let words = format!("copied the picture ({} × {})", picture.width, picture.height);
-        self.say(Level::Info, words);
+        self.copied = Some(format!("copied the picture ({} × {})", picture.width, picture.height));
     }
 
     /// Writes the layers that the renderer made.

@@ -4,8 +4,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use crate::app::App;
+use crate::app::desk::Resolution;
 use crate::app::kit::theme;
-use crate::app::sheets::turntable::Preview;
+use crate::app::sheets::turntable::{Preview, SIZE};
 use crate::document::Document;
 use crate::document::turntable::turned_by;
 use crate::render::queue::Task;
@@ -28,7 +29,11 @@ impl App {
             .map_or(&self.document.render, |submitted| &submitted.render);
         let sheet = &mut self.turntable;
         sheet.is_open = true;
-        sheet.size = [render.width, render.height];
+        // What fills the viewport has no size of its own.
+        sheet.size = match self.shared.resolution {
+            Resolution::Document => [render.width, render.height],
+            _ => SIZE,
+        };
         sheet.samples = render.samples.min(65536);
         if sheet.output.is_empty() {
             sheet.output = folder.display().to_string();
@@ -67,12 +72,13 @@ impl App {
             return;
         }
         let mut begins = false;
+        let speed = self.worker.snapshot().samples_per_second;
         let sheet = &mut self.turntable;
         let modal = egui::Modal::new(egui::Id::unique("turntable")).show(ctx, |ui| {
             ui.set_width(440.0);
             ui.heading("Turntable");
             ui.add_space(theme::GAP);
-            begins = sheet.settings(ui);
+            begins = sheet.settings(ui, speed);
         });
         if modal.should_close() || begins {
             sheet.is_open = false;

@@ -2,6 +2,7 @@
 
 pub(super) mod charts;
 pub(super) mod icons;
+pub(super) mod keys;
 pub(super) mod parameter_row;
 pub(super) mod start_stop;
 pub(super) mod theme;

@@ -8,6 +8,7 @@ use egui::{
     Ui, UiBuilder, Vec2,
 };
 
+use crate::app::kit::keys::{fulfil_wish, note_wished, wish};
 use crate::app::kit::theme::{self, ROW_HEIGHT};
 use crate::optics::tone::{linear_from_srgb, srgb_from_linear};
 use crate::optics::vector::vec3;
@@ -51,64 +52,6 @@ pub(in crate::app) struct RowResponse {
     pub(in crate::app) changed: bool,
     /// It is to go back to its default.
     pub(in crate::app) reset: bool,
-}
-
-/// A row that is to have the keys as soon as it is shown.
-#[derive(Clone)]
-struct Wish {
-    group: &'static str,
-    row: String,
-    /// Its control, once it has been seen. It is given the keys before it is shown again: what is typed then replaces all
-    /// of a number.
-    control: Option<egui::Id>,
-    frame: u64,
-}
-
-/// For how many frames a request stands: a panel that was brought to the front appears in the next one.
-const WISH_FRAMES: u64 = 4;
-
-fn wish_id() -> egui::Id {
-    egui::Id::unique("wished focus")
-}
-
-fn wish(ui: &Ui) -> Option<Wish> {
-    let frame = ui.ctx().cumulative_frame_nr();
-    let wish: Option<Wish> = ui.data(|data| data.get_temp(wish_id()));
-    wish.filter(|wish| frame <= wish.frame + WISH_FRAMES)
-}
-
-/// Gives the row of this name (see [`Name::full`]) the keys, and opens its group.
-pub(in crate::app) fn wish_focus(ctx: &egui::Context, group: &'static str, row: String) {
-    let wish = Wish {
-        group,
-        row,
-        control: None,
-        frame: ctx.cumulative_frame_nr(),
-    };
-    ctx.data_mut(|data| data.insert_temp(wish_id(), wish));
-    ctx.request_repaint();
-}
-
-/// Gives the row's control the keys where that was wished for and it has been seen; true where it is still to be seen.
-fn fulfil_wish(ui: &Ui, row: &str) -> bool {
-    let Some(wish) = wish(ui).filter(|wish| wish.row == row) else {
-        return false;
-    };
-    if let Some(control) = wish.control {
-        ui.data_mut(|data| data.remove::<Wish>(wish_id()));
-        ui.memory_mut(|memory| memory.request_focus(control));
-        log::debug!("the keys go to {row}");
-    }
-    wish.control.is_none()
-}
-
-fn note_wished(ui: &Ui, control: &Response) {
-    if let Some(mut wish) = wish(ui) {
-        wish.control = Some(control.id);
-        ui.data_mut(|data| data.insert_temp(wish_id(), wish));
-    }
-    control.scroll_to_me(Some(Align::Center));
-    ui.ctx().request_repaint();
 }
 
 /// A label and a control that fills the rest of the row. Double-clicking the label, or its menu, resets.
@@ -182,6 +125,16 @@ pub(in crate::app) struct NumberStyle<'a> {
 
 /// A number as a bar to drag (with shift: finely) or to type into.
 pub(in crate::app) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N, style: &NumberStyle<'_>) -> Response {
+    number_or(ui, value, style, None)
+}
+
+/// The same, with a word in place of 0.
+pub(in crate::app) fn number_or<N: egui::emath::Numeric>(
+    ui: &mut Ui,
+    value: &mut N,
+    style: &NumberStyle<'_>,
+    zero: Option<&'static str>,
+) -> Response {
     let size = Vec2::new(ui.available_width(), ROW_HEIGHT);
     let rect = Rect::from_min_size(ui.next_widget_position() - Vec2::new(0.0, 0.5 * size.y), size);
     let background = ui.painter().add(Shape::Noop);
@@ -203,7 +156,10 @@ pub(in crate::app) fn number<N: egui::emath::Numeric>(ui: &mut Ui, value: &mut N
             let drag = DragValue::new(value)
                 .range(style.range.clone())
                 .speed(speed)
-                .custom_formatter(|value, _| trimmed(value, style.decimals))
+                .custom_formatter(|value, _| match zero {
+                    Some(word) if value == 0.0 => word.to_owned(),
+                    _ => trimmed(value, style.decimals),
+                })
                 .suffix(style.unit.to_owned());
             ui.add_sized(size, drag)
         })

@@ -36,6 +36,15 @@ pub(in crate::app) fn percent(share: f64) -> String {
     format!("{value:.decimals$} %")
 }
 
+/// An error relative to the mean: above all of it the estimate is worth nothing yet.
+pub(in crate::app) fn error(share: f64) -> String {
+    if share < 1.0 {
+        percent(share)
+    } else {
+        "not yet known".to_owned()
+    }
+}
+
 /// A number with three digits and a prefix.
 pub(in crate::app) fn short_number(value: f64) -> String {
     let (scaled, prefix) = match value {
@@ -66,5 +75,9 @@ mod tests {
         let percents = [0.0, 2e-9, 0.000_412, 0.0123, 0.5, 2.0].map(percent);
         let expected = ["0.00 %", "< 0.0001 %", "0.0412 %", "1.23 %", "50.0 %", "200 %"];
         assert_eq!(percents, expected);
+        assert_eq!(
+            [0.229, 1.0, f64::NAN].map(error),
+            ["22.9 %", "not yet known", "not yet known"]
+        );
     }
 }

@@ -176,7 +176,8 @@ fn quantile_plot(ui: &mut Ui, state: &mut CurvePanel, curve: Curve, table: &[f32
         // The help would lie over what is being drawn.
         return;
     }
-    response.on_hover_ui_at_pointer(|ui| {
+    // Beside the plot: at the pointer it would lie over what is looked at.
+    response.on_hover_ui(|ui| {
         ui.label("The share ξ of the samples stays within the distance D of the mirror direction.");
         if curve.has_table() {
             widgets::note(

@@ -7,6 +7,7 @@ pub(super) mod disk;
 pub(super) mod edits;
 pub(super) mod environments;
 pub(super) mod export;
+pub mod heard;
 pub mod library;
 pub(super) mod look;
 pub(super) mod messages;

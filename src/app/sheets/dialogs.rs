@@ -1,4 +1,5 @@
-//! Choosing files: the system's dialog on a thread of its own, or a path field where there is none.
+//! Choosing files: the system's dialog on a thread of its own, or a sheet to type a path into: where there is no dialog,
+//! where one does not answer, and where it was asked for.
 
 use std::path::{Path, PathBuf};
 use std::pin::Pin;
@@ -7,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use egui::{Key, Ui};
 
-use crate::app::kit::theme;
+use crate::app::kit::{theme, widgets};
+use crate::app::services::heard;
 use crate::scene::MODEL_ENDINGS;
 use crate::scene::environment::ENDINGS;
 use crate::scene::texture::{TextureTarget, set};
@@ -16,6 +18,8 @@ use crate::scene::texture::{TextureTarget, set};
 const NO_DIALOG: Duration = Duration::from_millis(400);
 /// Most completions that are listed.
 const COMPLETIONS: usize = 12;
+/// Most folders that are offered.
+const FOLDERS: usize = 6;
 
 /// Endings of the files that materials are opened from.
 const MATERIALS: [&str; 11] = [
@@ -47,7 +51,7 @@ pub(in crate::app) enum Purpose {
 }
 
 impl Purpose {
-    fn title(self) -> &'static str {
+    pub(in crate::app) fn title(self) -> &'static str {
         match self {
             Self::Open => "Open",
             Self::SaveProject => "Save the project",
@@ -92,7 +96,7 @@ impl Purpose {
         }
     }
 
-    fn is_saving(self) -> bool {
+    pub(in crate::app) fn is_saving(self) -> bool {
         matches!(
             self,
             Self::SaveProject
@@ -112,8 +116,8 @@ pub(in crate::app) struct Dialogs {
     pending: Option<Pending>,
     field: Option<PathField>,
     folder: Option<PathBuf>,
-    /// Paths are typed even where the system has dialogs.
-    is_typed: bool,
+    /// Why paths are typed even where the system may have dialogs.
+    typed: Option<Why>,
 }
 
 struct Pending {
@@ -123,9 +127,39 @@ struct Pending {
     since: Instant,
 }
 
+/// Why a path is typed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Why {
+    /// It was asked for.
+    Asked,
+    /// The system's dialog did not open.
+    Missing,
+    /// The system's dialog is still to answer.
+    Waiting,
+}
+
+impl Why {
+    fn note(self) -> &'static str {
+        match self {
+            Self::Asked => "Type a path; Tab completes it.",
+            Self::Missing if cfg!(target_os = "linux") => {
+                "This system offers no file dialog: install xdg-desktop-portal-gtk or zenity to get one. Here a path is \
+                 typed; Tab completes it."
+            }
+            Self::Missing => "The system's file dialog did not open: type a path. Tab completes it.",
+            Self::Waiting => {
+                "The system's file dialog has not answered: choose a file there, or type its path here. Tab completes it."
+            }
+        }
+    }
+}
+
 struct PathField {
     purpose: Purpose,
     text: String,
+    why: Why,
+    /// To begin with; filled when it is shown first.
+    folders: Vec<PathBuf>,
     is_new: bool,
 }
 
@@ -134,9 +168,18 @@ impl Dialogs {
     pub(in crate::app) fn typed(folder: PathBuf) -> Self {
         Self {
             folder: Some(folder),
-            is_typed: true,
+            typed: Some(Why::Asked),
             ..Self::default()
         }
+    }
+
+    /// Changes between typed paths and the system's dialogs; true where paths are typed from now on.
+    pub(in crate::app) fn toggle_typed(&mut self) -> bool {
+        self.typed = match self.typed {
+            None => Some(Why::Asked),
+            Some(_) => None,
+        };
+        self.typed.is_some()
     }
 
     /// The folder of the file that was chosen last, if any.
@@ -154,15 +197,39 @@ impl Dialogs {
         self.field.is_some() || self.pending.is_some()
     }
 
-    /// Asks for a file, unless a dialog is open already. `suggestion` is a file's name to save under.
+    /// Asks for a file; `suggestion` is a file's name to save under. While the system's dialog is open, or does as if it
+    /// were, the path field opens beside it.
     pub(in crate::app) fn ask(&mut self, purpose: Purpose, suggestion: String, ctx: &egui::Context) {
-        if self.pending.is_some() || self.field.is_some() {
+        if self.field.is_some() {
             return;
         }
-        if self.is_typed {
-            self.open_field(purpose, &suggestion);
+        let waits = self.pending.is_some().then_some(Why::Waiting);
+        if let Some(why) = waits.or(self.typed) {
+            self.open_field(purpose, &suggestion, why);
             return;
         }
+        // What an earlier one has said.
+        heard::dialog_failed();
+        match self.open_dialog(purpose, &suggestion, ctx) {
+            Some(answer) => {
+                self.pending = Some(Pending {
+                    purpose,
+                    suggestion,
+                    answer,
+                    since: Instant::now(),
+                });
+            }
+            None => self.open_field(purpose, &suggestion, Why::Missing),
+        }
+    }
+
+    /// Opens the system's dialog, which answers on a thread of its own; `None` where there can be no thread.
+    fn open_dialog(
+        &self,
+        purpose: Purpose,
+        suggestion: &str,
+        ctx: &egui::Context,
+    ) -> Option<Receiver<Option<PathBuf>>> {
         let (name, endings) = purpose.kind();
         let mut dialog = rfd::AsyncFileDialog::new().set_title(purpose.title());
         if !endings.is_empty() {
@@ -176,7 +243,7 @@ impl Dialogs {
         // The future must be made here: some systems have dialogs only on this thread.
         let chosen: Pin<Box<dyn Future<Output = Option<rfd::FileHandle>> + Send>> = match purpose {
             Purpose::WatchFolder => Box::pin(dialog.pick_folder()),
-            _ if purpose.is_saving() => Box::pin(dialog.set_file_name(&suggestion).save_file()),
+            _ if purpose.is_saving() => Box::pin(dialog.set_file_name(suggestion).save_file()),
             _ => Box::pin(dialog.pick_file()),
         };
         let spawned = std::thread::Builder::new()
@@ -187,19 +254,10 @@ impl Dialogs {
                 let _ = sender.send(chosen.map(|file| file.path().to_owned()));
                 ctx.request_repaint();
             });
-        if spawned.is_ok() {
-            self.pending = Some(Pending {
-                purpose,
-                suggestion,
-                answer,
-                since: Instant::now(),
-            });
-        } else {
-            self.open_field(purpose, &suggestion);
-        }
+        spawned.is_ok().then_some(answer)
     }
 
-    fn open_field(&mut self, purpose: Purpose, suggestion: &str) {
+    fn open_field(&mut self, purpose: Purpose, suggestion: &str, why: Why) {
         let folder = self
             .folder
             .clone()
@@ -211,39 +269,56 @@ impl Dialogs {
         self.field = Some(PathField {
             purpose,
             text,
+            why,
+            folders: Vec::new(),
             is_new: true,
         });
     }
 
-    /// Shows the path field where it is open; a file that has been chosen in either way.
-    pub(in crate::app) fn show(&mut self, ui: &mut Ui) -> Option<(Purpose, PathBuf)> {
-        let chosen = self.poll().or_else(|| self.show_field(ui))?;
-        self.folder = chosen.1.parent().map(Path::to_owned);
+    /// Shows the path field where it is open. What a file was chosen for, in either way, with the file; without one
+    /// where the system's dialog was left without a choice. `recent` are the folders of files opened and saved last.
+    pub(in crate::app) fn show(&mut self, ui: &mut Ui, recent: &[PathBuf]) -> Option<(Purpose, Option<PathBuf>)> {
+        let chosen = self
+            .poll(heard::dialog_failed)
+            .or_else(|| self.show_field(ui, recent).map(|(purpose, path)| (purpose, Some(path))))?;
+        if let Some(folder) = chosen.1.as_ref().and_then(|path| path.parent()) {
+            self.folder = Some(folder.to_owned());
+        }
         Some(chosen)
     }
 
-    fn poll(&mut self) -> Option<(Purpose, PathBuf)> {
+    /// Takes the system's dialog's answer. `failed` tells whether the dialog could not be opened: it answers then as if it
+    /// had been cancelled, sooner or later.
+    fn poll(&mut self, failed: impl FnOnce() -> bool) -> Option<(Purpose, Option<PathBuf>)> {
         let answer = self.pending.as_ref()?.answer.try_recv();
         if answer == Err(TryRecvError::Empty) {
             return None;
         }
         let pending = self.pending.take()?;
-        match answer.ok().flatten() {
-            Some(path) => Some((pending.purpose, path)),
-            None => {
-                if pending.since.elapsed() < NO_DIALOG {
-                    self.open_field(pending.purpose, &pending.suggestion);
-                }
-                None
+        let path = answer.ok().flatten();
+        if path.is_some() {
+            // The same file need not be typed any more.
+            self.field.take_if(|field| field.purpose == pending.purpose);
+        } else if failed() || pending.since.elapsed() < NO_DIALOG {
+            self.typed = Some(Why::Missing);
+            if self.field.is_none() {
+                self.open_field(pending.purpose, &pending.suggestion, Why::Missing);
             }
+            return None;
+        } else if self.field.is_some() {
+            return None;
         }
+        Some((pending.purpose, path))
     }
 
-    fn show_field(&mut self, ui: &mut Ui) -> Option<(Purpose, PathBuf)> {
+    fn show_field(&mut self, ui: &mut Ui, recent: &[PathBuf]) -> Option<(Purpose, PathBuf)> {
         let field = self.field.as_mut()?;
+        if field.is_new {
+            field.folders = to_begin_with(self.folder.as_deref(), recent);
+        }
         let mut outcome = None;
         let modal = egui::Modal::new(egui::Id::unique("path field")).show(ui.ctx(), |ui| {
-            ui.set_width(520.0);
+            ui.set_width(520.0_f32.min(0.9 * ui.ctx().content_rect().width()));
             outcome = field.show(ui);
         });
         if modal.should_close() {
@@ -256,11 +331,33 @@ impl Dialogs {
     }
 }
 
+/// The folders that a path may begin with and that are there, each once: the last one, those of recent files, the user's.
+fn to_begin_with(last: Option<&Path>, recent: &[PathBuf]) -> Vec<PathBuf> {
+    let recent = recent.iter().filter_map(|file| file.parent());
+    let home = std::env::home_dir();
+    let mut folders: Vec<PathBuf> = Vec::new();
+    for folder in last.into_iter().chain(recent).chain(home.as_deref()) {
+        if folders.len() < FOLDERS && !folders.iter().any(|known| known == folder) && folder.is_dir() {
+            folders.push(folder.to_owned());
+        }
+    }
+    folders
+}
+
+/// The path that a text names: `~` stands for the user's folder.
+fn path_of(text: &str) -> PathBuf {
+    let text = text.trim();
+    match (text.strip_prefix("~/"), std::env::home_dir()) {
+        (Some(rest), Some(home)) => home.join(rest),
+        _ => PathBuf::from(text),
+    }
+}
+
 impl PathField {
     /// `Some(None)`: cancelled.
     fn show(&mut self, ui: &mut Ui) -> Option<Option<PathBuf>> {
         ui.heading(self.purpose.title());
-        crate::app::kit::widgets::note(ui, "This system offers no file dialog: type a path. Tab completes it.");
+        widgets::note(ui, self.why.note());
         ui.add_space(theme::GAP);
         let (_, endings) = self.purpose.kind();
         let completions = completions(&self.text, endings);
@@ -281,6 +378,10 @@ impl PathField {
             move_cursor_to_end(ui.ctx(), id, &self.text);
         }
         let is_entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+        if self.begin_in(ui) {
+            response.request_focus();
+            move_cursor_to_end(ui.ctx(), id, &self.text);
+        }
         let height = 22.0 * COMPLETIONS as f32;
         egui::ScrollArea::vertical()
             .max_height(height)
@@ -303,9 +404,13 @@ impl PathField {
                 }
             });
         let mut outcome = None;
-        let path = PathBuf::from(self.text.trim());
+        let path = path_of(&self.text);
+        // A bare name stands for one in the current folder.
+        let has_folder = path
+            .parent()
+            .is_some_and(|folder| folder.as_os_str().is_empty() || folder.is_dir());
         let is_usable = if self.purpose.is_saving() {
-            path.file_name().is_some() && !path.is_dir()
+            path.file_name().is_some() && !path.is_dir() && has_folder
         } else if self.purpose == Purpose::WatchFolder {
             path.is_dir()
         } else {
@@ -326,12 +431,36 @@ impl PathField {
             }
             if self.purpose.is_saving() && path.is_file() {
                 ui.colored_label(ui.visuals().warn_fg_color, "This file will be replaced");
+            } else if !has_folder {
+                ui.colored_label(ui.visuals().warn_fg_color, "There is no such folder");
             }
         });
         if is_entered && outcome.is_none() {
             response.request_focus();
         }
         outcome
+    }
+
+    /// Folders to begin with; true where one was chosen. The file's name stays.
+    fn begin_in(&mut self, ui: &mut Ui) -> bool {
+        let mut is_chosen = false;
+        ui.horizontal_wrapped(|ui| {
+            for folder in &self.folders {
+                let full = folder.display().to_string();
+                let name = folder.file_name().unwrap_or(folder.as_os_str()).to_string_lossy();
+                let button = ui.small_button(name).on_hover_text(&full);
+                if button.clicked() {
+                    let file = match self.text.rfind(['/', std::path::MAIN_SEPARATOR]) {
+                        Some(end) => self.text[end + 1..].to_owned(),
+                        None => self.text.clone(),
+                    };
+                    self.text = folder.join("").display().to_string() + &file;
+                    is_chosen = true;
+                }
+                button.accessible_name(format!("Begin in {full}"));
+            }
+        });
+        is_chosen
     }
 }
 
@@ -350,9 +479,9 @@ fn completions(text: &str, endings: &[&str]) -> Vec<String> {
         None => ("", text),
     };
     let folder_path = if folder.is_empty() {
-        Path::new(".")
+        PathBuf::from(".")
     } else {
-        Path::new(folder)
+        path_of(folder)
     };
     let Ok(entries) = std::fs::read_dir(folder_path) else {
         return Vec::new();
@@ -382,6 +511,55 @@ fn completions(text: &str, endings: &[&str]) -> Vec<String> {
 mod tests {
     use super::*;
     use crate::store::exchange::FORMATS;
+
+    /// A dialog of the system that has been asked for so long ago, and what it is answered by.
+    fn waiting(ago: Duration) -> (Dialogs, std::sync::mpsc::Sender<Option<PathBuf>>) {
+        let (sender, answer) = channel();
+        let since = Instant::now().checked_sub(ago).unwrap_or_else(Instant::now);
+        let pending = Pending {
+            purpose: Purpose::SaveProject,
+            suggestion: "untitled.glossmith.json".to_owned(),
+            answer,
+            since,
+        };
+        let dialogs = Dialogs {
+            pending: Some(pending),
+            ..Dialogs::default()
+        };
+        (dialogs, sender)
+    }
+
+    #[test]
+    fn a_dialog_that_fails_late_is_followed_by_the_path_field() {
+        let (mut dialogs, sender) = waiting(10 * NO_DIALOG);
+        assert_eq!(dialogs.poll(|| true), None);
+        assert!(!dialogs.is_open(), "it has not answered");
+        sender.send(None).expect("somebody listens");
+        assert_eq!(dialogs.poll(|| true), None);
+        let field = dialogs.field.take().expect("the path field");
+        assert_eq!((field.purpose, field.why), (Purpose::SaveProject, Why::Missing));
+        assert!(field.text.ends_with("untitled.glossmith.json"));
+        // From now on without trying.
+        dialogs.ask(Purpose::Open, String::new(), &egui::Context::default());
+        assert!(dialogs.is_open() && dialogs.pending.is_none());
+    }
+
+    #[test]
+    fn a_dialog_left_without_a_choice_is_told_and_one_that_hangs_can_be_done_without() {
+        let (mut dialogs, sender) = waiting(10 * NO_DIALOG);
+        sender.send(None).expect("somebody listens");
+        assert_eq!(dialogs.poll(|| false), Some((Purpose::SaveProject, None)));
+        let (mut dialogs, sender) = waiting(10 * NO_DIALOG);
+        dialogs.ask(Purpose::SaveProject, String::new(), &egui::Context::default());
+        assert_eq!(dialogs.field.as_ref().map(|field| field.why), Some(Why::Waiting));
+        // The file that is chosen there after all.
+        sender.send(Some("/a.json".into())).expect("somebody listens");
+        assert_eq!(
+            dialogs.poll(|| false),
+            Some((Purpose::SaveProject, Some("/a.json".into())))
+        );
+        assert!(!dialogs.is_asking());
+    }
 
     #[test]
     fn the_endings_of_other_programs_are_those_of_the_formats() {

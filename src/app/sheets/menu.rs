@@ -18,6 +18,8 @@ use crate::store::examples::EXAMPLES;
 
 /// Width of the account of a path where there is room, points.
 const PATH_WIDTH: f32 = 900.0;
+/// Share of the window's height that long sheets scroll within.
+const SHEET_SHARE: f32 = 0.7;
 
 /// What is open over the window.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -244,23 +246,26 @@ fn shortcuts(ui: &mut Ui) {
     ui.set_width(440.0);
     ui.heading("Keys and mouse");
     ui.add_space(theme::GAP);
-    egui::Grid::new("keys")
-        .num_columns(2)
-        .spacing(vec2(24.0, 5.0))
-        .show(ui, |ui| {
-            for (how, what) in MOUSE {
-                ui.label(RichText::new(how).strong());
-                ui.label(what);
-                ui.end_row();
-            }
-            for command in Command::ALL {
-                if let Some(shortcut) = command.shortcut() {
-                    ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).strong());
-                    ui.label(command.label());
+    let height = SHEET_SHARE * ui.ctx().content_rect().height();
+    egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
+        egui::Grid::new("keys")
+            .num_columns(2)
+            .spacing(vec2(24.0, 5.0))
+            .show(ui, |ui| {
+                for (how, what) in MOUSE {
+                    ui.label(RichText::new(how).strong());
+                    ui.label(what);
                     ui.end_row();
                 }
-            }
-        });
+                for command in Command::ALL {
+                    if let Some(shortcut) = command.shortcut() {
+                        ui.label(RichText::new(ui.ctx().format_shortcut(&shortcut)).strong());
+                        ui.label(command.label());
+                        ui.end_row();
+                    }
+                }
+            });
+    });
     ui.add_space(theme::GAP);
     if ui.button("Close").clicked() {
         ui.close();
@@ -285,7 +290,7 @@ fn path(ui: &mut Ui, text: &str) {
     ui.set_width(PATH_WIDTH.min(0.9 * ui.ctx().content_rect().width()));
     ui.heading("One path");
     ui.add_space(theme::GAP);
-    let height = 0.7 * ui.ctx().content_rect().height();
+    let height = SHEET_SHARE * ui.ctx().content_rect().height();
     egui::ScrollArea::vertical().max_height(height).show(ui, |ui| {
         ui.add(egui::Label::new(RichText::new(text).monospace()).wrap());
     });

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use egui::{RichText, Ui};
 
 use crate::app::actions::Action;
-use crate::app::kit::words::{percent, short_number};
+use crate::app::kit::words::{error, percent, short_number};
 use crate::render::Progress;
 use crate::render::worker::{Activity, Snapshot};
 
@@ -266,14 +266,14 @@ fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
             ui.label("Samples a pixel: rendered (in the mean, where some rest), and to be rendered");
         }));
         if let Some(noise) = progress.noise {
-            let text = format!("error {}", percent(noise.relative));
+            let text = format!("error {}", error(noise.relative));
             parts.push(Part::text(ui, Rank::Error, text, move |ui| {
                 ui.label("Standard error of a pixel, root mean square, relative to the mean luminance");
                 band(ui, noise.low, noise.high);
             }));
         }
         if let Some(told) = snapshot.denoised {
-            let text = format!("denoised {}", percent(told.value));
+            let text = format!("denoised {}", error(told.value));
             parts.push(Part::text(ui, Rank::Denoised, text, move |ui| {
                 ui.label("Error of the denoised picture, its bias included: root mean square over the mean luminance");
                 band(ui, told.low, told.high);
@@ -300,6 +300,10 @@ fn progress<'a>(ui: &Ui, snapshot: &'a Snapshot) -> Vec<Part<'a>> {
 }
 
 fn band(ui: &mut Ui, low: f64, high: f64) {
+    if high >= 1.0 {
+        ui.label("Too few samples have been taken to know it well.");
+        return;
+    }
     let (low, high) = (percent(low), percent(high));
     ui.label(format!("The true one lies between {low} and {high} (95 %)."));
 }

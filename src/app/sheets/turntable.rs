@@ -5,14 +5,17 @@ use std::time::Instant;
 
 use egui::Ui;
 
+use crate::app::kit::words::duration;
 use crate::app::kit::{theme, widgets};
 use crate::document::turntable::Turn;
 use crate::document::{CameraSettings, Document};
 use crate::render::turntable::{FPS, Turntable};
 use crate::store::video;
 
-/// Frames at first.
-const FRAMES: u32 = 36;
+/// Frames at first: four seconds.
+const FRAMES: u32 = 96;
+/// Columns and rows at first, where the picture's own size only follows from the window's.
+pub(in crate::app) const SIZE: [u32; 2] = [1920, 1080];
 
 /// What a turntable is written as.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -102,8 +105,14 @@ impl TurntableSheet {
         }
     }
 
-    /// The settings; true to begin.
-    pub(in crate::app) fn settings(&mut self, ui: &mut Ui) -> bool {
+    /// How long all frames take at so many pixel samples a second.
+    fn seconds(&self, samples_per_second: f64) -> f64 {
+        let pixels = self.size.map(f64::from);
+        f64::from(self.frames) * f64::from(self.samples) * pixels[0] * pixels[1] / samples_per_second
+    }
+
+    /// The settings; true to begin. `samples_per_second`: how fast pixels are sampled at present.
+    pub(in crate::app) fn settings(&mut self, ui: &mut Ui, samples_per_second: f64) -> bool {
         let turns: Vec<_> = Turn::ALL
             .iter()
             .map(|turn| (*turn, turn.label(), turn.help()))
@@ -158,6 +167,12 @@ impl TurntableSheet {
                     .margin(egui::vec2(6.0, 4.0)),
             )
         });
+        let mut told = format!("A turn of {}", duration(f64::from(self.frames) / self.fps));
+        if samples_per_second > 0.0 {
+            let seconds = self.seconds(samples_per_second);
+            told += &format!(", rendered in about {} at the present speed", duration(seconds));
+        }
+        widgets::note(ui, told + ".");
         ui.add_space(theme::GAP);
         let mut begins = false;
         ui.horizontal(|ui| {

@@ -141,7 +141,7 @@ fn view() -> Vec<Parameter<Document>> {
             .named("Automatic exposure").flag("auto-exposure"),
         of("view.denoise", Stage::Goal, "Denoise", "Takes the picture's noise out with Open Image Denoise, led by what is seen, and tells how far it then is from the truth. With auto a noise to reach is that of the denoised picture.", choices::<Denoise>(), choice!(view.denoise))
             .named("Denoise").flag("denoise"),
-        of("view.denoise_when", Display, "When", "When the window takes the noise out: from the first sample on, or once all has been rendered.", choices::<DenoiseWhen>(), choice!(view.denoise_when))
+        of("view.denoise_when", Display, "Denoise when", "When the window takes the noise out: from the first sample on, or once all has been rendered.", choices::<DenoiseWhen>(), choice!(view.denoise_when))
             .named("Denoise when").applies(|document| document.view.denoise != Denoise::Off),
     ]
 }
@@ -181,7 +181,7 @@ fn stopping() -> Vec<Parameter<Document>> {
             .named("Time limit").group("Picture").flag("time"),
         of("render.noise", Goal, "Noise limit", "Stops rendering at this relative error of the picture (standard error of a pixel, root mean square over the picture, over its mean luminance); 0.01 is 1 %.", off(real(range::NOISE, ""), Value::Real(0.01)), optional!(Real render.noise))
             .named("Noise limit").group("Accuracy").flag("noise").percent(),
-        of("render.min_samples", Goal, "At least", "Samples that each pixel has before its error is believed, so that small lights are not missed.", count(range::MIN_SAMPLES), field!(Count render.min_samples))
+        of("render.min_samples", Goal, "Least samples", "Samples that each pixel has before its error is believed, so that small lights are not missed.", count(range::MIN_SAMPLES), field!(Count render.min_samples))
             .named("Minimum samples").group("Accuracy").flag("min-samples"),
         of("render.adaptive", Goal, "Adaptive", "Whether samples go where the error is, or evenly over the picture; auto: where a noise is to be reached.", auto(Kind::Toggle), optional!(Toggle render.adaptive))
             .named("Adaptive sampling").group("Accuracy").flag("adaptive"),

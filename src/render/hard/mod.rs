@@ -61,9 +61,10 @@ impl HardCase {
     /// Runs the case on an engine.
     ///
     /// # Errors
-    /// Where the engine fails or a file of the case can't be written.
+    /// Where the engine fails, a file of the case can't be written, or the stage is stopped.
     pub fn run(&'static self, stage: &mut Stage) -> Result<HardRow, HardError> {
         let begun = Instant::now();
+        stage.go_on()?;
         stage.take_picture();
         let value = (self.find)(stage)?;
         Ok(HardRow {
@@ -156,4 +157,30 @@ pub fn markdown(engines: &[(EngineInfo, Vec<HardRow>)]) -> String {
 /// A division by zero as naive code makes it, in words.
 fn over_zero(numerator: f32) -> String {
     (numerator / 0.0).to_string().to_lowercase()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicBool, Ordering};
+
+    use super::*;
+
+    /// Cases that take minutes, begun and stopped by another thread.
+    #[test]
+    fn a_case_stops_within_its_measure() {
+        for name in ["ten-million-samples", "f32-against-f64-geometric"] {
+            let stop = Arc::new(AtomicBool::new(false));
+            let mut stage = Stage::open(EngineChoice::Cpu, true)
+                .expect("a stage")
+                .until(stop.clone());
+            let case = catalogue().find(|case| case.name == name).expect("a case of this name");
+            let stopping = std::thread::spawn(move || {
+                std::thread::sleep(std::time::Duration::from_millis(300));
+                stop.store(true, Ordering::Relaxed);
+            });
+            assert!(matches!(case.run(&mut stage), Err(HardError::Stopped)), "{name}");
+            stopping.join().expect("it only waits");
+        }
+    }
 }

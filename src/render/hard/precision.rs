@@ -1,5 +1,7 @@
 //! f32 against f64 over random pairs of a document's material and a ray, a case a lobe.
 
+use std::sync::atomic::Ordering;
+
 use rayon::prelude::*;
 
 use super::{HardCase, HardError, Stage};
@@ -141,11 +143,16 @@ fn largest_error(stage: &mut Stage, lobe: Lobe) -> Result<f64, HardError> {
         geometry: None,
     };
     let answers = stage.prober.materials(&scene, &questions)?;
+    let stop = stage.stop();
     let errors: Vec<Option<f64>> = questions
         .par_iter()
         .zip(&answers)
-        .map(|(question, answer)| error(&scene, question, answer))
+        .map(|(question, answer)| match stop.load(Ordering::Relaxed) {
+            true => None,
+            false => error(&scene, question, answer),
+        })
         .collect();
+    stage.go_on()?;
     let singular = errors.iter().filter(|error| error.is_none()).count();
     log::debug!("{}: {singular} of {pairs} pairs are singular", lobe.name());
     let regular = (0..pairs).filter_map(|pair| Some((pair, errors[pair]?)));

@@ -1,7 +1,8 @@
 //! What cases run on: an engine, asked for pictures and for single functions, and a folder for files.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::time::Duration;
 use std::{fs, io};
 
@@ -16,6 +17,9 @@ use crate::render::probe::Prober;
 use crate::render::session::{Session, SessionError};
 use crate::scene::environment::EnvironmentSource;
 use crate::scene::{ModelSource, environment};
+
+/// How long a case goes on before it looks whether it is to stop.
+pub(super) const SLICE: Duration = Duration::from_millis(100);
 
 /// Why a case can't be run.
 #[derive(Debug, thiserror::Error)]
@@ -34,6 +38,9 @@ pub enum HardError {
         /// What the system says.
         source: io::Error,
     },
+    /// It was stopped.
+    #[error("stopped")]
+    Stopped,
 }
 
 impl From<GpuError> for HardError {
@@ -54,6 +61,7 @@ pub struct Stage {
     folder: Folder,
     /// The last picture that was rendered.
     picture: Option<Image>,
+    stop: Arc<AtomicBool>,
 }
 
 impl Stage {
@@ -71,7 +79,30 @@ impl Stage {
             session,
             folder: Folder::new()?,
             picture: None,
+            stop: Arc::default(),
         })
+    }
+
+    /// The same stage, whose cases end as soon as `stop` is set.
+    #[must_use]
+    pub fn until(self, stop: Arc<AtomicBool>) -> Self {
+        Self { stop, ..self }
+    }
+
+    /// Whether cases are to go on; to be asked within everything that takes long.
+    ///
+    /// # Errors
+    /// [`HardError::Stopped`] where they are to end.
+    pub fn go_on(&self) -> Result<(), HardError> {
+        match self.stop.load(Ordering::Relaxed) {
+            true => Err(HardError::Stopped),
+            false => Ok(()),
+        }
+    }
+
+    /// What says that cases are to end, for other threads.
+    pub(super) fn stop(&self) -> &AtomicBool {
+        &self.stop
     }
 
     /// The last picture that was rendered since this was asked for.
@@ -92,16 +123,19 @@ impl Stage {
     /// Renders a document to its end.
     ///
     /// # Errors
-    /// A model or environment that can't be loaded, or an engine that fails.
+    /// A model or environment that can't be loaded, an engine that fails, or a stop.
     pub fn film(&mut self, document: &Document) -> Result<Film, HardError> {
         let mut document = document.clone();
         if self.choice == EngineChoice::Gpu {
             // One kernel for all pictures: compiling one for each takes longer than they do.
             document.render.effects = EffectSwitches::all_on();
         }
+        self.go_on()?;
         self.session.forget();
         self.session.submit(&document)?;
-        while !self.session.step(Duration::from_secs(1))?.is_done {}
+        while !self.session.step(SLICE)?.is_done {
+            self.go_on()?;
+        }
         let film = self.session.film()?.clone();
         self.picture = Some(film.image());
         Ok(film)

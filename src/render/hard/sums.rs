@@ -1,14 +1,12 @@
 //! Sums over many samples and many bounces, and the random numbers behind them.
 
-use std::time::Duration;
-
 use glam::DVec3;
 use rayon::prelude::*;
 use serde_json::json;
 
 use super::glb::Glb;
 use super::meshes::cube;
-use super::stage::document;
+use super::stage::{SLICE, document};
 use super::{HardCase, HardError, Stage};
 use crate::cpu::CpuEngine;
 use crate::cpu::probe::probe_random;
@@ -136,7 +134,8 @@ fn many_samples(stage: &mut Stage) -> Result<f64, HardError> {
     let mut oracle = CpuEngine::default();
     oracle.submit(job);
     while oracle.samples_per_pixel() < samples {
-        oracle.step_double(Duration::from_secs(10), samples);
+        stage.go_on()?;
+        oracle.step_double(SLICE, samples);
     }
     let expected = oracle.film();
     let of = |film: &crate::job::film::Film| [film.luminance()[0], film.variance_of_mean()[0]];

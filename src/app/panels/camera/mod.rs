@@ -135,23 +135,23 @@ fn bookmarks(ui: &mut Ui, desk: &mut Desk<'_>) {
                 desk.document.camera = bookmark.camera;
                 desk.edits.note("Apply bookmark", "");
             }
-            let width = (ui.available_width() - 72.0).max(40.0);
-            let field = egui::TextEdit::singleline(&mut bookmark.name).desired_width(width);
-            if ui.add(field).accessible_name(name.as_str()).changed() {
-                desk.edits.note("Rename bookmark", name.clone());
-            }
-            if ui
-                .button("Update")
-                .on_hover_text("Replaces it by the present camera.")
-                .clicked()
-            {
-                bookmark.camera = desk.document.camera;
-                desk.edits.note("Update bookmark", "");
-            }
-            let remove = format!("Remove {}", name.to_lowercase());
-            if icons::button(ui, Icon::Close, &remove, "Remove this bookmark").clicked() {
-                removed = Some(index);
-            }
+            // From the right, so that the name has what the buttons leave and none is pushed out of the panel.
+            let rest = egui::Layout::right_to_left(egui::Align::Center);
+            ui.with_layout(rest, |ui| {
+                let remove = format!("Remove {}", name.to_lowercase());
+                if icons::button(ui, Icon::Close, &remove, "Remove this bookmark").clicked() {
+                    removed = Some(index);
+                }
+                let update = ui.button("Update");
+                if update.on_hover_text("Replaces it by the present camera.").clicked() {
+                    bookmark.camera = desk.document.camera;
+                    desk.edits.note("Update bookmark", "");
+                }
+                let field = egui::TextEdit::singleline(&mut bookmark.name).desired_width(f32::INFINITY);
+                if ui.add(field).accessible_name(name.as_str()).changed() {
+                    desk.edits.note("Rename bookmark", name.clone());
+                }
+            });
         });
     }
     if let Some(index) = removed {

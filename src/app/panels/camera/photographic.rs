@@ -106,9 +106,9 @@ impl Photographic {
             decimals: 4,
         };
         let help = "Focal length over the lens's diameter, where a unit of the scene is a metre: the smaller, the less is sharp. \
-                    At 0 it is a pinhole, with which everything is.";
+                    Off (0) is a pinhole, with which everything is.";
         let name = Name::new("f-number", "f-number", help);
-        let response = widgets::row(ui, name, |ui| widgets::number(ui, &mut number, &style));
+        let response = widgets::row(ui, name, |ui| widgets::number_or(ui, &mut number, &style, Some("off")));
         if response.changed {
             desk.document.camera.aperture = exchanged(number).min(*range::APERTURE.end());
         }

@@ -11,7 +11,7 @@ use crate::document::ViewSettings;
 use crate::render::EngineChoice;
 use crate::render::background::Background;
 use crate::render::display::display;
-use crate::render::hard::{HardOptions, HardRow, Stage, catalogue};
+use crate::render::hard::{HardError, HardOptions, HardRow, Stage, catalogue};
 use crate::render::priority::work_apart;
 
 /// Side of a case's picture in points.
@@ -30,8 +30,26 @@ struct Standing {
 pub(super) struct HardState {
     worker: Option<Background<HardOptions, Standing>>,
     stop: Arc<AtomicBool>,
+    /// What a run that was stopped had found.
+    stopped: Option<Standing>,
     /// Pictures by case, as textures of this run.
     textures: Vec<(&'static str, TextureHandle)>,
+}
+
+impl HardState {
+    /// Ends a run at once as far as the window is concerned: its thread ends at its next look, and is not waited for, as a
+    /// driver that compiles can't be interrupted.
+    fn stop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        self.stopped = self.worker.take().map(|worker| worker.latest().unwrap_or_default());
+        self.stop = Arc::default();
+    }
+}
+
+impl Drop for HardState {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+    }
 }
 
 /// The page, for the engine that renders.
@@ -41,40 +59,35 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
         "Places where naive code breaks, each with what it does here: measured against its limit.",
     );
     if state.worker.is_none() {
-        let (ctx, stop) = (ui.ctx().clone(), state.stop.clone());
-        let work = move |options: HardOptions, desk: &crate::render::background::Desk<'_, HardOptions, Standing>| {
-            work_apart();
-            let ends = || stop.load(Ordering::Relaxed) || desk.is_superseded();
-            run(&options, &|standing| desk.publish(standing), &ends);
-        };
-        state.worker = Background::spawn("hard cases", move || ctx.request_repaint(), work).ok();
+        state.worker = spawn(ui, &state.stop);
     }
     let Some(worker) = &state.worker else {
         widgets::note(ui, "Cannot start a thread to check.");
         return;
     };
     let row = ui.horizontal(|ui| start_or_stop(ui, "Run the hard cases", worker.is_busy(), true, |button| button));
+    widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
+    let standing = worker.latest();
     match row.inner {
         Pressed::Start => {
             state.textures.clear();
-            state.stop.store(false, Ordering::Relaxed);
+            state.stopped = None;
             worker.ask(HardOptions {
                 engine,
                 thorough: false,
                 only: String::new(),
             });
         }
-        Pressed::Stop => state.stop.store(true, Ordering::Relaxed),
+        Pressed::Stop => state.stop(),
         Pressed::Nothing => {}
     }
-    widgets::comes_and_goes(ui, |ui| widgets::failure(ui, worker.failure()));
-    let Some(standing) = worker.latest() else {
+    let is_stopped = state.stopped.is_some();
+    let Some(standing) = state.stopped.clone().or(standing) else {
         return;
     };
     widgets::comes_and_goes(ui, |ui| match standing.running {
-        Some(_) if worker.is_busy() && state.stop.load(Ordering::Relaxed) => widgets::note(ui, "Stopping …"),
-        Some(name) if worker.is_busy() => widgets::note(ui, name),
-        Some(_) => widgets::note(ui, "Stopped."),
+        _ if is_stopped => widgets::note(ui, "Stopped."),
+        Some(name) => widgets::note(ui, in_words(name)),
         None => {}
     });
     if let Some(error) = &standing.error {
@@ -91,24 +104,32 @@ pub(super) fn show(ui: &mut Ui, state: &mut HardState, engine: EngineChoice) {
         });
 }
 
-/// Runs case after case, publishing after each, until the results are no longer wanted.
-fn run(options: &HardOptions, publish: &dyn Fn(Standing), ends: &dyn Fn() -> bool) {
+/// The thread that runs the cases, apart from those that render.
+fn spawn(ui: &Ui, stop: &Arc<AtomicBool>) -> Option<Background<HardOptions, Standing>> {
+    let (ctx, stop) = (ui.ctx().clone(), stop.clone());
+    let work = move |options: HardOptions, desk: &crate::render::background::Desk<'_, HardOptions, Standing>| {
+        work_apart();
+        run(&options, &stop, &|standing| desk.publish(standing));
+    };
+    Background::spawn("hard cases", move || ctx.request_repaint(), work).ok()
+}
+
+/// Runs case after case, publishing after each, until it is stopped.
+fn run(options: &HardOptions, stop: &Arc<AtomicBool>, publish: &dyn Fn(Standing)) {
     let mut standing = Standing::default();
     let mut stage = match Stage::open(options.engine, options.thorough) {
-        Ok(stage) => stage,
+        Ok(stage) => stage.until(stop.clone()),
         Err(error) => {
             standing.error = Some(error.to_string());
             return publish(standing);
         }
     };
     for case in catalogue() {
-        if ends() {
-            return;
-        }
         standing.running = Some(case.name);
         publish(standing.clone());
         match case.run(&mut stage) {
             Ok(row) => standing.rows.push(row),
+            Err(HardError::Stopped) => return,
             Err(error) => standing.error = Some(error.to_string()),
         }
     }
@@ -138,13 +159,27 @@ fn line(ui: &mut Ui, row: &HardRow, textures: &mut Vec<(&'static str, TextureHan
         }
     }
     let told = format!("{}\n\n{}\n\n{}", case.danger, case.made, case.must);
-    ui.label(case.name).on_hover_text(told);
-    let verdict = format!("{} {:.1e}", check.measure, check.value);
-    let hover = format!("at most {:.0e}; naive: {}", check.limit, (case.naive)());
+    ui.label(in_words(case.name)).on_hover_text(told);
+    let verdict = format!("{} {}", check.measure, short(check.measure, check.value));
+    let most = short(check.measure, check.limit);
+    let hover = format!("at most {most}; naive: {}", (case.naive)());
     if check.passed {
         ui.label(format!("✔ {verdict}")).on_hover_text(hover);
     } else {
         ui.colored_label(ui.visuals().error_fg_color, format!("✖ {verdict}"))
             .on_hover_text(hover);
+    }
+}
+
+/// A case's name as a person would write it.
+fn in_words(name: &str) -> String {
+    name.replace('-', " ")
+}
+
+/// A measure's value: things that are counted as they are.
+fn short(measure: &str, value: f64) -> String {
+    match measure {
+        "count" => format!("{value:.0}"),
+        _ => format!("{value:.1e}"),
     }
 }

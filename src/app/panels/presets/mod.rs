@@ -2,14 +2,14 @@
 
 mod entries;
 
-use egui::{Ui, vec2};
+use egui::Ui;
 
 use super::Panel;
 use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
 use crate::app::kit::tile::{self, Layout};
-use crate::app::kit::widgets;
+use crate::app::kit::{keys, widgets};
 use crate::app::services::library::Change;
 use crate::app::services::shelves::{LIST, SIDE_MAX};
 use entries::{Entry, groups};
@@ -48,11 +48,7 @@ impl Panel for PresetsPanel {
 impl PresetsPanel {
     /// Search, tags, and the size of the pictures.
     fn header(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
-        let search = egui::TextEdit::singleline(&mut self.search)
-            .hint_text("Search")
-            .desired_width(f32::INFINITY)
-            .margin(vec2(6.0, 4.0));
-        ui.add(search).accessible_name("Search presets");
+        keys::search_field(ui, &mut self.search, "Search", "Search presets");
         ui.horizontal(|ui| {
             let kept = &mut desk.shared.shelves.kept;
             let slider = egui::Slider::new(&mut kept.picture_side, LIST..=SIDE_MAX)

@@ -8,7 +8,7 @@ use egui::{Response, RichText, Sense, Ui, vec2};
 use super::Panel;
 use crate::app::actions::Action;
 use crate::app::desk::Desk;
-use crate::app::kit::{theme, widgets};
+use crate::app::kit::{keys, theme, widgets};
 use crate::app::pane::Pane;
 use crate::app::services::environments::environment_label;
 use crate::app::services::selection::Thing;
@@ -35,11 +35,7 @@ struct Renaming {
 impl Panel for ScenePanel {
     fn show(&mut self, ui: &mut Ui, desk: &mut Desk<'_>) {
         desk.shared.selection.is_shown = true;
-        let search = egui::TextEdit::singleline(&mut self.search)
-            .hint_text("Search the scene")
-            .desired_width(f32::INFINITY)
-            .margin(vec2(6.0, 4.0));
-        ui.add(search).accessible_name("Search the scene");
+        keys::search_field(ui, &mut self.search, "Search the scene", "Search the scene");
         ui.add_space(0.5 * theme::GAP);
         widgets::comes_and_goes(ui, |ui| objects::show(ui, desk, self));
         widgets::comes_and_goes(ui, |ui| materials::show(ui, desk, self));

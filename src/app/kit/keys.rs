@@ -1,0 +1,122 @@
+//! Where keys go that are typed before anything has them: to a row that was asked for, to the search of a panel.
+
+use egui::{Align, Response, Ui, Vec2};
+
+/// A row that is to have the keys as soon as it is shown.
+#[derive(Clone, Default)]
+pub(super) struct Wish {
+    pub(super) group: &'static str,
+    row: String,
+    /// Its control, once it has been seen. It is given the keys before it is shown again: what is typed then replaces all
+    /// of a number.
+    control: Option<egui::Id>,
+    frame: u64,
+    /// What was typed meanwhile.
+    typed: Vec<egui::Event>,
+    /// The control was given the keys, and has selected what it shows.
+    is_given: bool,
+}
+
+/// For how many frames a request stands: a panel that was brought to the front appears in the next one.
+const WISH_FRAMES: u64 = 4;
+
+fn wish_id() -> egui::Id {
+    egui::Id::unique("wished focus")
+}
+
+pub(super) fn wish(ui: &Ui) -> Option<Wish> {
+    let frame = ui.ctx().cumulative_frame_nr();
+    let wish: Option<Wish> = ui.data(|data| data.get_temp(wish_id()));
+    wish.filter(|wish| frame <= wish.frame + WISH_FRAMES)
+}
+
+/// Gives the row of this name (see [`Name::full`](super::widgets::Name::full)) the keys, and opens its group.
+pub(in crate::app) fn wish_focus(ctx: &egui::Context, group: &'static str, row: String) {
+    let wish = Wish {
+        group,
+        row,
+        frame: ctx.cumulative_frame_nr(),
+        ..Wish::default()
+    };
+    ctx.data_mut(|data| data.insert_temp(wish_id(), wish));
+    ctx.request_repaint();
+}
+
+/// What is typed before the row has the keys waits for it: at the start of each frame it is taken out of the input, and put
+/// back once the row's number is selected, which it then replaces.
+pub(in crate::app) fn hold_typing(ctx: &egui::Context) {
+    let frame = ctx.cumulative_frame_nr();
+    let Some(mut wish) = ctx.data_mut(|data| data.remove_temp::<Wish>(wish_id())) else {
+        return;
+    };
+    if wish.is_given || frame > wish.frame + WISH_FRAMES {
+        ctx.input_mut(|input| input.events.splice(0..0, wish.typed).count());
+        return;
+    }
+    let is_typed = |event: &egui::Event| match event {
+        egui::Event::Text(_) => true,
+        egui::Event::Key { modifiers, .. } => !modifiers.command && !modifiers.alt,
+        _ => false,
+    };
+    let typed = ctx.input_mut(|input| input.events.extract_if(.., |event| is_typed(event)).collect::<Vec<_>>());
+    wish.typed.extend(typed);
+    ctx.data_mut(|data| data.insert_temp(wish_id(), wish));
+    ctx.request_repaint();
+}
+
+/// Gives the row's control the keys where that was wished for and it has been seen; true where it is still to be seen.
+pub(super) fn fulfil_wish(ui: &Ui, row: &str) -> bool {
+    let Some(mut wish) = wish(ui).filter(|wish| wish.row == row && !wish.is_given) else {
+        return false;
+    };
+    let Some(control) = wish.control else { return true };
+    wish.is_given = true;
+    ui.data_mut(|data| data.insert_temp(wish_id(), wish));
+    ui.memory_mut(|memory| memory.request_focus(control));
+    ui.ctx().request_repaint();
+    log::debug!("the keys go to {row}");
+    false
+}
+
+pub(super) fn note_wished(ui: &Ui, control: &Response) {
+    if let Some(mut wish) = wish(ui) {
+        wish.control = Some(control.id);
+        ui.data_mut(|data| data.insert_temp(wish_id(), wish));
+    }
+    control.scroll_to_me(Some(Align::Center));
+    ui.ctx().request_repaint();
+}
+
+fn search_id() -> egui::Id {
+    egui::Id::unique("search under the pointer")
+}
+
+/// A field to search a panel with. Letters that are typed while the pointer is over the panel and nothing has the keys
+/// are meant for it, see [`take_search`].
+pub(in crate::app) fn search_field(ui: &mut Ui, text: &mut String, hint: &str, name: &str) -> Response {
+    let field = egui::TextEdit::singleline(text)
+        .hint_text(hint)
+        .desired_width(f32::INFINITY)
+        .margin(Vec2::new(6.0, 4.0));
+    let response = ui.add(field).accessible_name(name);
+    if ui.rect_contains_pointer(ui.clip_rect()) {
+        let meant = (response.id, ui.ctx().cumulative_frame_nr());
+        ui.data_mut(|data| data.insert_temp(search_id(), meant));
+    }
+    response
+}
+
+/// Gives the search field of the panel under the pointer the keys where a word is begun; true where that was done.
+pub(in crate::app) fn take_search(ctx: &egui::Context) -> bool {
+    let meant: Option<(egui::Id, u64)> = ctx.data(|data| data.get_temp(search_id()));
+    let is_word = |event: &egui::Event| matches!(event, egui::Event::Text(text) if !text.trim().is_empty());
+    let Some((field, frame)) = meant.filter(|_| ctx.input(|input| input.events.iter().any(is_word))) else {
+        return false;
+    };
+    // Of the frame before this one: the panel may be gone by now.
+    let is_there = frame + 1 >= ctx.cumulative_frame_nr();
+    if is_there {
+        ctx.memory_mut(|memory| memory.request_focus(field));
+    }
+    is_there
+}

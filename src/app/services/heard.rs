@@ -1,0 +1,145 @@
+//! Failures that other libraries only write to the log and that the window has to tell: a file dialog that could not
+//! open, a clipboard that could not be reached. Neither rfd nor egui-winit returns them.
+
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use log::{Level, LevelFilter, Log, Metadata, Record};
+
+/// What was heard and not told yet.
+struct Heard {
+    no_dialog: bool,
+    no_clipboard: Option<String>,
+    failed_copy: Option<String>,
+}
+
+static HEARD: Mutex<Heard> = Mutex::new(Heard {
+    no_dialog: false,
+    no_clipboard: None,
+    failed_copy: None,
+});
+
+fn heard() -> MutexGuard<'static, Heard> {
+    HEARD.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Installs a logger, whose most verbose level is `level`, and listens to what passes through it.
+///
+/// # Errors
+/// Where there is a logger already.
+pub fn listen(logger: impl Log + 'static, level: LevelFilter) -> Result<(), log::SetLoggerError> {
+    log::set_boxed_logger(Box::new(Listening(logger)))?;
+    log::set_max_level(level.max(LevelFilter::Warn));
+    Ok(())
+}
+
+/// A logger that is listened to.
+struct Listening<L>(L);
+
+fn is_of(metadata: &Metadata<'_>, library: &str) -> bool {
+    metadata.level() <= Level::Warn && metadata.target().starts_with(library)
+}
+
+impl<L: Log> Log for Listening<L> {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        is_of(metadata, "rfd") || is_of(metadata, "egui_winit::clipboard") || self.0.enabled(metadata)
+    }
+
+    fn log(&self, record: &Record<'_>) {
+        if is_of(record.metadata(), "rfd") {
+            // Zenity is what rfd tries last: before that, another dialog may still open.
+            heard().no_dialog |= record.level() == Level::Error && record.args().to_string().contains("zenity");
+        } else if is_of(record.metadata(), "egui_winit::clipboard") {
+            hear_of_clipboard(record.level(), record.args().to_string());
+        }
+        if self.0.enabled(record.metadata()) {
+            self.0.log(record);
+        }
+    }
+
+    fn flush(&self) {
+        self.0.flush();
+    }
+}
+
+/// A warning says at the start that there is no clipboard; an error, that something was not copied or pasted.
+fn hear_of_clipboard(level: Level, text: String) {
+    let mut heard = heard();
+    match level {
+        Level::Error => heard.failed_copy = Some(text),
+        _ => heard.no_clipboard = Some(text),
+    }
+}
+
+/// Whether a file dialog failed to open since this was asked last.
+pub(in crate::app) fn dialog_failed() -> bool {
+    std::mem::take(&mut heard().no_dialog)
+}
+
+/// Why something could not be copied or pasted since this was asked last.
+pub(in crate::app) fn clipboard_failure() -> Option<String> {
+    heard().failed_copy.take()
+}
+
+/// Why this session has no system clipboard.
+pub(in crate::app) fn no_clipboard() -> Option<String> {
+    heard().no_clipboard.clone()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Counts what it is handed.
+    #[derive(Default)]
+    struct Counting(std::sync::atomic::AtomicUsize);
+
+    impl Log for &'static Counting {
+        fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+            metadata.level() == Level::Error
+        }
+        fn log(&self, _: &Record<'_>) {
+            self.0.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        }
+        fn flush(&self) {}
+    }
+
+    #[test]
+    fn failures_of_dialogs_and_clipboard_are_heard_and_logged() {
+        let counting: &'static Counting = Box::leak(Box::default());
+        let listening = Listening(counting);
+        let say = |level, target: &str, text: &str| {
+            let record = |args| Record::builder().level(level).target(target).args(args).build();
+            listening.log(&record(format_args!("{text}")));
+        };
+        // Not the last that is tried.
+        say(
+            Level::Error,
+            "rfd::backend::xdg_desktop_portal::portal",
+            "OpenFile failed",
+        );
+        assert!(!dialog_failed());
+        say(
+            Level::Error,
+            "rfd::backend::xdg_desktop_portal",
+            "Failed to pick file with zenity: No such file or directory",
+        );
+        assert!(dialog_failed() && !dialog_failed());
+        say(
+            Level::Warn,
+            "egui_winit::clipboard",
+            "Failed to initialize arboard clipboard: none",
+        );
+        say(
+            Level::Error,
+            "egui_winit::clipboard",
+            "arboard copy/cut error: occupied",
+        );
+        say(Level::Error, "wgpu", "something else");
+        assert_eq!(clipboard_failure().as_deref(), Some("arboard copy/cut error: occupied"));
+        assert_eq!(clipboard_failure(), None);
+        assert!(no_clipboard().is_some_and(|why| why.contains("none")));
+        heard().no_clipboard = None;
+        // What the logger does not want itself is only heard.
+        assert_eq!(counting.0.load(std::sync::atomic::Ordering::Relaxed), 4);
+    }
+}
