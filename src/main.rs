@@ -1,11 +1,15 @@
 //! The program: picks a face, prints the error chain, sets the exit code.
 
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 use std::io::{self, Write as _};
 use std::process::ExitCode;
 use std::time::{Duration, SystemTime};
 
+use anyhow::Context as _;
 use clap::Parser;
 use glossmith::cli::Arguments;
+use glossmith::say;
 
 fn main() -> ExitCode {
     env_logger::Builder::from_env(
@@ -13,10 +17,12 @@ fn main() -> ExitCode {
     )
     .format(log_line)
     .init();
-    match run(Arguments::parse()) {
+    let done = run(Arguments::parse());
+    let printed = say::finish().context("standard output could not be written to");
+    match done.and(printed) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("glossmith: {}", message(&error));
+            say::line(format_args!("glossmith: {}", message(&error)));
             ExitCode::from(glossmith::cli::exit_code(&error))
         }
     }
@@ -84,9 +90,13 @@ fn open_window(arguments: Arguments) -> anyhow::Result<()> {
     if has_display() {
         return glossmith::app::run(arguments.files, arguments.engine);
     }
-    eprintln!("There is no display to open a window on: rendering a quick picture to glossmith.png instead.");
+    say::line(format_args!(
+        "There is no display to open a window on: rendering a quick picture to glossmith.png instead."
+    ));
     glossmith::cli::render_default_scene(&arguments.files, arguments.engine)?;
-    eprintln!("Next: `glossmith render --help` lists what can be rendered; on a desktop the editor opens here.");
+    say::line(format_args!(
+        "Next: `glossmith render --help` lists what can be rendered; on a desktop the editor opens here."
+    ));
     Ok(())
 }
 

@@ -101,6 +101,8 @@ mod hierarchy;
 mod import_report;
 #[path = "suite/installed.rs"]
 mod installed;
+#[path = "suite/kept_files.rs"]
+mod kept_files;
 #[path = "suite/killed.rs"]
 mod killed;
 #[path = "suite/lanes.rs"]
@@ -135,6 +137,8 @@ mod monkey;
 mod monkey_deeds;
 #[path = "suite/moved_lights.rs"]
 mod moved_lights;
+#[path = "suite/nobody_listens.rs"]
+mod nobody_listens;
 #[path = "suite/noise.rs"]
 mod noise;
 #[path = "suite/nothing_lost.rs"]

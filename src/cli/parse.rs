@@ -117,15 +117,15 @@ pub(super) fn picture(text: &str) -> Result<PathBuf, OutputError> {
 /// # Errors
 /// What the system says.
 pub(super) fn check_writable(path: &Path) -> anyhow::Result<()> {
+    if path.exists() && !path.is_file() {
+        // To open a pipe would wait for its reader.
+        return Ok(check_saving(path)?);
+    }
     check_opens(path)?;
     Ok(check_saving(path)?)
 }
 
-/// Whether a file can be opened for writing, or a pipe: what is not replaced, but written into.
-///
-/// # Errors
-/// What the system says.
-pub(super) fn check_opens(path: &Path) -> anyhow::Result<()> {
+fn check_opens(path: &Path) -> anyhow::Result<()> {
     let existed = path.exists();
     let opened = OpenOptions::new().append(true).create(true).open(path);
     opened.with_context(|| {
