@@ -70,6 +70,9 @@ fn message(error: &anyhow::Error) -> String {
 fn run(arguments: Arguments) -> anyhow::Result<()> {
     arguments.instructions.force()?;
     arguments.ray_queries.choose();
+    if arguments.allow_outside {
+        glossmith::scene::resource::allow_everything();
+    }
     match arguments.command {
         Some(command) => command.run(),
         None => open_window(arguments),

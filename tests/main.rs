@@ -179,6 +179,8 @@ mod shadow_catcher;
 mod signals;
 #[path = "suite/statistics.rs"]
 mod statistics;
+#[path = "suite/strangers.rs"]
+mod strangers;
 #[path = "suite/structure.rs"]
 mod structure;
 #[path = "suite/study.rs"]

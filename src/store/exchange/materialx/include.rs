@@ -4,6 +4,7 @@ use std::path::{Component, Path, PathBuf};
 
 use roxmltree::{Document, Node};
 
+use crate::scene::resource::Reach;
 use crate::store::exchange::xml::escaped;
 
 /// Most files that one document includes, those that these include among them.
@@ -62,6 +63,8 @@ fn included(path: &Path, name: &str, files: &mut Vec<PathBuf>) -> Result<String,
     if files.len() >= FILES_MAX {
         return Err(wrong(format!("there are more than {FILES_MAX} files")));
     }
+    let reach = Reach::of_folder(files[0].parent().unwrap_or(Path::new("")));
+    reach.check(&file).map_err(|error| wrong(error.to_string()))?;
     files.push(file.clone());
     let bytes = crate::store::file::read(&file).map_err(|error| error.to_string())?;
     let text = expanded(&file, String::from_utf8_lossy(&bytes).into_owned(), files).map_err(wrong)?;
