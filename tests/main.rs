@@ -13,6 +13,8 @@ mod analytic_scenes;
 mod assets;
 #[path = "suite/batch.rs"]
 mod batch;
+#[path = "suite/bounds.rs"]
+mod bounds;
 #[path = "suite/brushed.rs"]
 mod brushed;
 #[path = "suite/check.rs"]

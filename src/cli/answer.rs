@@ -1,11 +1,10 @@
 //! Where a command's answer goes: a file, or standard output for the program that called.
 
-use std::convert::Infallible;
+use std::ffi::OsString;
 use std::fmt;
 use std::fs::File;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
 use anyhow::Context;
 use clap::Args;
@@ -23,14 +22,13 @@ pub(super) enum Destination {
     File(PathBuf),
 }
 
-impl FromStr for Destination {
-    type Err = Infallible;
-    fn from_str(text: &str) -> Result<Self, Infallible> {
-        Ok(if text == "-" {
+impl From<OsString> for Destination {
+    fn from(name: OsString) -> Self {
+        if name == "-" {
             Self::Output
         } else {
-            Self::File(PathBuf::from(text))
-        })
+            Self::File(name.into())
+        }
     }
 }
 

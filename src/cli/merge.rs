@@ -21,7 +21,7 @@ pub struct MergeArguments {
     #[arg(required = true, value_name = "FILM.exr")]
     films: Vec<PathBuf>,
     /// Picture to write: .exr (with the sums, to be merged again), .png or .hdr. May be repeated.
-    #[arg(long = "output", required = true, value_name = "FILE", value_parser = parse::picture)]
+    #[arg(long = "output", required = true, value_name = "FILE", value_parser = parse::picture())]
     outputs: Vec<PathBuf>,
     /// Write albedo, normal, depth, number of samples and variance as layers into .exr pictures.
     #[arg(long)]

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use crate::document::parameter::parse_color;
 use crate::document::{Background, Document, ParameterError, range};
@@ -106,10 +107,9 @@ pub(super) fn assignment(text: &str) -> Result<String, ParameterError> {
 }
 
 /// The name of a picture; its ending is one of those that are written.
-pub(super) fn picture(text: &str) -> Result<PathBuf, OutputError> {
-    let path = PathBuf::from(text);
-    format_of(&path)?;
-    Ok(path)
+pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
+    let checked = |path: PathBuf| -> Result<PathBuf, OutputError> { format_of(&path).map(|_| path) };
+    PathBufValueParser::new().try_map(checked)
 }
 
 /// Whether a file can be saved there, asked before the work that fills it. What is there stays as it is.

@@ -28,7 +28,7 @@ pub struct RenderArguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// Picture to write: .png (with exposure and tone curve, the document inside), .exr or .hdr (linear). May be repeated.
-    #[arg(long = "output", default_value = "glossmith.png", value_name = "FILE", value_parser = parse::picture)]
+    #[arg(long = "output", default_value = "glossmith.png", value_name = "FILE", value_parser = parse::picture())]
     outputs: Vec<PathBuf>,
     /// Write albedo, normal, depth, number of samples and variance as layers into .exr pictures.
     #[arg(long)]

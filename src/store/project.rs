@@ -17,6 +17,8 @@ use crate::scene::texture::{OwnTexture, TextureTarget};
 
 /// The version of the format.
 pub const VERSION: u64 = 1;
+/// Slots before which older files may put a picture: each makes the materials before it.
+const SLOTS_MAX: usize = 1 << 12;
 /// The key of the version, by which such a file is known.
 pub const MARK: &str = "glossmith-document";
 
@@ -104,8 +106,7 @@ fn pictures_of_slots(object: &mut Map<String, Json>) -> Vec<(usize, PathBuf)> {
         return Vec::new();
     };
     let picture = |picture: &Json| Some((picture["slot"].as_u64()? as usize, picture["file"].as_str()?.into()));
-    // A model has no more slots.
-    let is_meant = |(slot, _): &(usize, PathBuf)| *slot < 1 << 16;
+    let is_meant = |(slot, _): &(usize, PathBuf)| *slot < SLOTS_MAX;
     pictures.iter().filter_map(picture).filter(is_meant).collect()
 }
 

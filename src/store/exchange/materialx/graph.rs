@@ -135,7 +135,7 @@ struct Graph<'p> {
 impl Graph<'_> {
     fn input(&self, input: Node<'_, '_>, depth: usize) -> Result<Option<Worth>, Unknown> {
         if depth > DEPTH_MAX {
-            return Err(Unknown::missing("a graph that goes in a circle"));
+            return Err(Unknown::missing("a graph that goes in a circle, or is too deep"));
         }
         if let Some(value) = input.attribute("value") {
             return Ok(value_of(input, value).map(Worth::of));
