@@ -2,7 +2,7 @@
 # ARGS is handed on: make run ARGS="render --material gold --output gold.png"
 
 .DEFAULT_GOAL := help
-.PHONY: help run install uninstall check test test-thorough bench pictures mutants
+.PHONY: help run install uninstall check test test-thorough bench pictures mutants fuzz
 
 help: ## Print this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' $(firstword $(MAKEFILE_LIST))
@@ -30,6 +30,11 @@ test: ## Check format and lints, then run every test
 	@if cargo clippy --version >/dev/null 2>&1; then set -x; cargo clippy --all-targets -- -D warnings; \
 	else echo "note: clippy is not installed, lints are not checked (rustup component add clippy)"; fi
 	cargo test $(ARGS)
+
+fuzz: ## Damaged files of all formats through the program for a while (MINUTES=10); what fails is kept in fuzz/failures
+	@scripts/setup run
+	cargo build --release
+	scripts/fuzz --minutes $(or $(MINUTES),10) $(ARGS)
 
 test-thorough: export GLOSSMITH_THOROUGH = 1
 test-thorough: test ## The same, for an hour more: what is random or repeats others at greater length, shaders on a second Vulkan driver and OpenGL

@@ -4,7 +4,11 @@
 //! [`optics`] ← [`scene`] ← [`job`] ← [`cpu`], [`gpu`] ← [`render`] ← [`cli`], [`app`] ← `main`, and between [`job`] and
 //! [`render`] also [`analysis`] ← [`plot`] ← [`document`] ← [`store`].
 
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 pub use glossmith_engine::{analysis, cpu, gpu, instructions, job, named, optics, panics, scene};
+
+pub mod say;
 
 pub mod plot;
 

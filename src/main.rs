@@ -1,15 +1,20 @@
 //! The program: picks a face, prints the error chain, sets the exit code.
 
+#![deny(clippy::print_stdout, clippy::print_stderr)]
+
 use std::io::{self, Write as _};
 use std::process::ExitCode;
 use std::time::{Duration, SystemTime};
 
+use anyhow::Context as _;
 use clap::Parser;
 use glossmith::cli::Arguments;
+use glossmith::say;
 
 fn main() -> ExitCode {
     let mut logger = env_logger::Builder::from_env(
         env_logger::Env::default().default_filter_or("warn,wgpu=error,wgpu_hal=off,naga=error"),
+<<<<<<< HEAD
     );
     logger.format(log_line);
     #[cfg(feature = "window")]
@@ -22,9 +27,17 @@ fn main() -> ExitCode {
     #[cfg(not(feature = "window"))]
     logger.init();
     match run(Arguments::parse()) {
+=======
+    )
+    .format(log_line)
+    .init();
+    let done = run(Arguments::parse());
+    let printed = say::finish().context("standard output could not be written to");
+    match done.and(printed) {
+>>>>>>> w_guard
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("glossmith: {}", message(&error));
+            say::line(format_args!("glossmith: {}", message(&error)));
             ExitCode::from(glossmith::cli::exit_code(&error))
         }
     }
@@ -72,6 +85,9 @@ fn message(error: &anyhow::Error) -> String {
 fn run(arguments: Arguments) -> anyhow::Result<()> {
     arguments.instructions.force()?;
     arguments.ray_queries.choose();
+    if arguments.allow_outside {
+        glossmith::scene::resource::allow_everything();
+    }
     match arguments.command {
         Some(command) => command.run(),
         None => open_window(arguments),
@@ -92,9 +108,13 @@ fn open_window(arguments: Arguments) -> anyhow::Result<()> {
     if has_display() {
         return glossmith::app::run(arguments.files, arguments.engine);
     }
-    eprintln!("There is no display to open a window on: rendering a quick picture to glossmith.png instead.");
+    say::line(format_args!(
+        "There is no display to open a window on: rendering a quick picture to glossmith.png instead."
+    ));
     glossmith::cli::render_default_scene(&arguments.files, arguments.engine)?;
-    eprintln!("Next: `glossmith render --help` lists what can be rendered; on a desktop the editor opens here.");
+    say::line(format_args!(
+        "Next: `glossmith render --help` lists what can be rendered; on a desktop the editor opens here."
+    ));
     Ok(())
 }
 

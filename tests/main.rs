@@ -13,6 +13,8 @@ mod analytic_scenes;
 mod assets;
 #[path = "suite/batch.rs"]
 mod batch;
+#[path = "suite/bounds.rs"]
+mod bounds;
 #[path = "suite/brushed.rs"]
 mod brushed;
 #[path = "suite/check.rs"]
@@ -101,6 +103,8 @@ mod hierarchy;
 mod import_report;
 #[path = "suite/installed.rs"]
 mod installed;
+#[path = "suite/kept_files.rs"]
+mod kept_files;
 #[path = "suite/killed.rs"]
 mod killed;
 #[path = "suite/lanes.rs"]
@@ -135,6 +139,8 @@ mod monkey;
 mod monkey_deeds;
 #[path = "suite/moved_lights.rs"]
 mod moved_lights;
+#[path = "suite/nobody_listens.rs"]
+mod nobody_listens;
 #[path = "suite/noise.rs"]
 mod noise;
 #[path = "suite/nothing_lost.rs"]
@@ -175,6 +181,8 @@ mod shadow_catcher;
 mod signals;
 #[path = "suite/statistics.rs"]
 mod statistics;
+#[path = "suite/strangers.rs"]
+mod strangers;
 #[path = "suite/structure.rs"]
 mod structure;
 #[path = "suite/study.rs"]

@@ -13,6 +13,7 @@ use crate::app::services::shelves::KeptShelves;
 use crate::document::{Denoise, ImportLobe};
 use crate::render::denoise::Library;
 use crate::render::{EngineChoice, RayQueries};
+use crate::scene::resource;
 
 /// Under which the window's state is stored.
 const KEY: &str = "editor";
@@ -135,6 +136,8 @@ pub(super) struct Kept {
     pub(super) hints_seen: usize,
     /// What the browser remembers.
     pub(super) shelves: KeptShelves,
+    /// Files that others may name, wherever they lie.
+    pub(super) allowed: Vec<PathBuf>,
     /// Nothing was left by an earlier start.
     #[serde(skip)]
     pub(super) is_first: bool,
@@ -153,6 +156,7 @@ impl Default for Kept {
             recent: Vec::new(),
             hints_seen: usize::MAX,
             shelves: KeptShelves::default(),
+            allowed: Vec::new(),
             is_first: false,
         }
     }
@@ -171,6 +175,7 @@ impl Kept {
             eframe::get_value(storage, KEY).unwrap_or_else(first)
         });
         kept.layout = kept.layout.and_then(layout::complete);
+        resource::allow(&kept.allowed);
         kept
     }
 

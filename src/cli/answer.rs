@@ -1,14 +1,17 @@
 //! Where a command's answer goes: a file, or standard output for the program that called.
 
-use std::convert::Infallible;
+use std::ffi::OsString;
 use std::fmt;
+use std::fs::File;
 use std::io::Write as _;
-use std::path::PathBuf;
-use std::str::FromStr;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::Args;
 use serde::Serialize;
+
+use crate::say::put;
+use crate::store::replace::save_atomically;
 
 /// Where an answer goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,14 +22,13 @@ pub(super) enum Destination {
     File(PathBuf),
 }
 
-impl FromStr for Destination {
-    type Err = Infallible;
-    fn from_str(text: &str) -> Result<Self, Infallible> {
-        Ok(if text == "-" {
+impl From<OsString> for Destination {
+    fn from(name: OsString) -> Self {
+        if name == "-" {
             Self::Output
         } else {
-            Self::File(PathBuf::from(text))
-        })
+            Self::File(name.into())
+        }
     }
 }
 
@@ -37,20 +39,20 @@ impl Destination {
     /// What the system says.
     pub(super) fn check_writable(&self) -> anyhow::Result<()> {
         match self {
-            Self::Output => Ok(()),
-            Self::File(path) => super::parse::check_opens(path),
+            Self::File(path) if !is_special(path) => super::parse::check_writable(path),
+            _ => Ok(()),
         }
     }
 
-    /// Opens it; an existing file is overwritten.
-    fn open(&self) -> anyhow::Result<Box<dyn std::io::Write>> {
-        Ok(match self {
-            Self::Output => Box::new(std::io::stdout()),
-            Self::File(path) => Box::new(
-                std::fs::File::create(path)
-                    .with_context(|| format!("{}: cannot be written; check the folder", path.display()))?,
-            ),
-        })
+    /// The file, opened to be written into; an existing one is overwritten. None for standard output.
+    fn open(&self) -> anyhow::Result<Option<File>> {
+        let open = |path: &PathBuf| {
+            File::create(path).with_context(|| format!("{}: cannot be written; check the folder", path.display()))
+        };
+        match self {
+            Self::Output => Ok(None),
+            Self::File(path) => open(path).map(Some),
+        }
     }
 }
 
@@ -99,7 +101,7 @@ impl Answer {
 /// Values that are printed as they become known: a line of JSON each.
 pub(super) struct Lines {
     to: Destination,
-    file: Box<dyn std::io::Write>,
+    file: Option<File>,
 }
 
 impl Lines {
@@ -123,15 +125,28 @@ impl Lines {
     }
 
     fn text(&mut self, text: &str) -> anyhow::Result<()> {
-        let written = writeln!(self.file, "{text}").and_then(|()| self.file.flush());
+        let Some(file) = &mut self.file else {
+            put!("{text}");
+            return Ok(());
+        };
+        let written = file.write_all(format!("{text}\n").as_bytes());
         written.with_context(|| format!("{}: the answer could not be written; is there room?", self.to))
     }
 }
 
-/// Writes a value as JSON.
+/// Writes a value as JSON. A file has the old answer or the new, never a part; pipes and devices are written into.
 ///
 /// # Errors
 /// If it cannot be written there.
 pub(super) fn write_json(destination: &Destination, value: &impl Serialize) -> anyhow::Result<()> {
-    Lines::open(destination)?.text(&serde_json::to_string_pretty(value)?)
+    let text = serde_json::to_string_pretty(value)?;
+    match destination {
+        Destination::File(path) if !is_special(path) => Ok(save_atomically(path, (text + "\n").as_bytes())?),
+        _ => Lines::open(destination)?.text(&text),
+    }
+}
+
+/// Whether this is a pipe or a device, into which is written.
+fn is_special(path: &Path) -> bool {
+    path.metadata().is_ok_and(|found| !found.is_file() && !found.is_dir())
 }

@@ -1,15 +1,17 @@
 //! `glossmith check`: proof on the user's own machine.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::Args;
 
 use super::answer::{Destination, write_json};
 use crate::render::check::{Check, CheckOptions, GroupSummary, run as run_checks, summaries};
 use crate::render::hard::{self, HardOptions, HardRow};
 use crate::render::{EngineChoice, EngineInfo, EngineKind};
+use crate::say::{put, say};
+use crate::store::replace::save_atomically;
 
 /// Arguments of `glossmith check`.
 #[derive(Debug, Args)]
@@ -57,7 +59,7 @@ pub fn run(arguments: &CheckArguments) -> anyhow::Result<()> {
         thorough: arguments.thorough,
     };
     let never = AtomicBool::new(false);
-    let checks = run_checks(options, &never, |group| eprintln!("checking {group} …"))?.unwrap_or_default();
+    let checks = run_checks(options, &never, |group| say!("checking {group} …"))?.unwrap_or_default();
     if arguments.has_words() {
         print_table(&checks, arguments.verbose);
     }
@@ -92,7 +94,7 @@ fn run_hard(arguments: &CheckArguments) -> anyhow::Result<()> {
             thorough: arguments.thorough,
             only: arguments.only.clone(),
         };
-        hard::run(&options, |name| eprintln!("{name} …"))
+        hard::run(&options, |name| say!("{name} …"))
     };
     let (engine, rows) = run_on(arguments.engine)?;
     if arguments.has_words() {
@@ -104,14 +106,14 @@ fn run_hard(arguments: &CheckArguments) -> anyhow::Result<()> {
         if engines[0].0.kind != EngineKind::Cpu {
             engines.push(run_on(EngineChoice::Cpu)?);
         }
-        write(path, &hard::markdown(&engines))?;
+        save_atomically(path, hard::markdown(&engines).as_bytes())?;
     }
     conclude(arguments, &checks)
 }
 
 /// A line a case, and more of those that fail (or of every one).
 fn print_hard(engine: &EngineInfo, rows: &[HardRow], verbose: bool) {
-    println!("{engine}\n{:8} {:34} {:>7}  verdict", "group", "case", "seconds");
+    put!("{engine}\n{:8} {:34} {:>7}  verdict", "group", "case", "seconds");
     for row in rows {
         let HardRow {
             case, check, seconds, ..
@@ -120,25 +122,21 @@ fn print_hard(engine: &EngineInfo, rows: &[HardRow], verbose: bool) {
         let Check {
             measure, value, limit, ..
         } = check;
-        println!(
+        put!(
             "{:8} {:34} {seconds:>7.2}  {verdict}: {measure} {value:.2e}, limit {limit:.0e}; naive: {}",
             case.group,
             case.name,
             (case.naive)()
         );
         if verbose || !check.passed {
-            println!("         {}; {}; {}", case.danger, case.made, case.must);
+            put!("         {}; {}; {}", case.danger, case.made, case.must);
         }
     }
 }
 
-fn write(path: &Path, text: &str) -> anyhow::Result<()> {
-    std::fs::write(path, text).with_context(|| format!("{}: could not be written", path.display()))
-}
-
 /// A line a group, and a line for each check that failed (or every one).
 fn print_table(checks: &[Check], verbose: bool) {
-    println!("{:12} {:>7} {:>7}  worst", "group", "passed", "failed");
+    put!("{:12} {:>7} {:>7}  worst", "group", "passed", "failed");
     for of_group in summaries(checks) {
         let GroupSummary {
             group,
@@ -146,10 +144,10 @@ fn print_table(checks: &[Check], verbose: bool) {
             failed,
             worst,
         } = of_group;
-        println!("{group:12} {passed:>7} {failed:>7}  {worst}");
+        put!("{group:12} {passed:>7} {failed:>7}  {worst}");
     }
     for check in checks.iter().filter(|check| verbose || !check.passed) {
         let verdict = if check.passed { "  ok  " } else { "FAILED" };
-        println!("{verdict} {}: {check}", check.group);
+        put!("{verdict} {}: {check}", check.group);
     }
 }

@@ -10,6 +10,7 @@ use super::names;
 use crate::document::ImportLobe;
 use crate::plot::{PictureSheet, write_picture_sheet};
 use crate::render::looks::compared;
+use crate::say::say;
 use crate::store::exchange::report::Report;
 use crate::store::exchange::{self, FORMATS, ReadOptions, Registered, Subject};
 use crate::store::preset;
@@ -91,12 +92,12 @@ pub fn run(arguments: &ConvertArguments) -> anyhow::Result<()> {
     for (input, target) in inputs.iter().zip(&targets) {
         match convert(input, target, arguments) {
             Ok(report) => {
-                eprintln!("{report}");
+                say!("{report}");
                 reports.push(report);
             }
             Err(error) if inputs.len() == 1 => return Err(error),
             Err(error) => {
-                eprintln!("{error:#}");
+                say!("{error:#}");
                 failed += 1;
             }
         }
@@ -175,7 +176,7 @@ fn compare(report: &mut Report, path: &Path) -> anyhow::Result<()> {
         };
         let picture = path.with_file_name(format!("{stem}-{of_file}{number}.png"));
         save_by(&picture, |file| write_picture_sheet(file, &sheet))?;
-        eprintln!("wrote {}", picture.display());
+        say!("wrote {}", picture.display());
     }
     Ok(())
 }

@@ -16,6 +16,7 @@ use crate::optics::lobe::Lobe;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::vector::Vec3;
 use crate::plot::lobe_view::LobeView;
+use crate::say::{put, say};
 use crate::store::save_material;
 
 /// View angles where none is given.
@@ -88,7 +89,7 @@ pub fn run(arguments: &FitArguments) -> anyhow::Result<()> {
     };
     found.apply(&mut material);
     save_material(&arguments.output, &material)?;
-    eprintln!("wrote {}", arguments.output.display());
+    say!("wrote {}", arguments.output.display());
     if let Some(path) = &arguments.plot {
         write_view(path, &LobeView::Lines(comparison(&target, &found)?))?;
     }
@@ -121,28 +122,29 @@ fn json(found: &LookMatch, arguments: &FitArguments) -> serde_json::Value {
 
 /// The residuals and what was found, a line each.
 fn print_match(found: &LookMatch) {
-    println!("target   {}, view angle {}°", found.target, found.view_angle_deg);
+    put!("target   {}, view angle {}°", found.target, found.view_angle_deg);
     let line = |word: &str, candidate: &Candidate| {
-        println!(
+        put!(
             "{word:<8} TV {:.4}  {}",
-            candidate.total_variation, candidate.model.name
+            candidate.total_variation,
+            candidate.model.name
         );
     };
     line("before", &found.before);
     line("nearest", &found.nearest);
     line("after", &found.after);
-    println!("R        {}", found.after.model.roughness);
+    put!("R        {}", found.after.model.roughness);
     if let Some(curve) = &found.curve {
         let points: Vec<String> = curve
             .points()
             .iter()
             .map(|[xi, distance]| format!("{xi}:{distance}"))
             .collect();
-        println!("curve    {}", points.join(","));
+        put!("curve    {}", points.join(","));
     }
     if let Some(colors) = &found.colors {
         let text = |color: Vec3<f64>| color.to_f64().map(|x| format!("{x:.4}")).join(",");
-        println!("base     {}", text(colors.base));
-        println!("specular {}", text(colors.highlight));
+        put!("base     {}", text(colors.base));
+        put!("specular {}", text(colors.highlight));
     }
 }

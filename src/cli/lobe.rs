@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::Args;
 
 use super::answer::Answer;
@@ -13,7 +13,9 @@ use crate::optics::lobe::Horizon;
 use crate::optics::lobe::model::LobeModel;
 use crate::plot::lobe_view::{LobeView, ViewKind, lobe_view};
 use crate::plot::lobe_view_file;
+use crate::say::say;
 use crate::store::exchange::{self, ReadOptions};
+use crate::store::replace::save_atomically;
 
 /// Arguments of `glossmith lobe`.
 #[derive(Debug, Args)]
@@ -86,12 +88,13 @@ pub(super) fn check_ending(path: &Path) -> anyhow::Result<()> {
 
 /// Writes a view in the format that the file's ending says.
 pub(super) fn write_view(path: &Path, view: &LobeView) -> anyhow::Result<()> {
-    if path.extension().is_some_and(|ending| ending == "csv") {
-        std::fs::write(path, view.csv()).with_context(|| format!("{}: could not be written", path.display()))?;
+    let contents = if path.extension().is_some_and(|ending| ending == "csv") {
+        view.csv().into_bytes()
     } else {
-        lobe_view_file(path, view)?;
-    }
-    eprintln!("wrote {}", path.display());
+        lobe_view_file(path, view)?
+    };
+    save_atomically(path, &contents)?;
+    say!("wrote {}", path.display());
     Ok(())
 }
 

@@ -6,12 +6,13 @@ use anyhow::bail;
 use clap::Args;
 
 use super::answer::Answer;
-use super::render::{add_denoised, check_takes, write_pictures};
+use super::render::{add_denoised, check_takes, say_written, write_pictures};
 use super::{names, parse};
 use crate::document::Denoise;
 use crate::render::denoise::{Denoised, Denoiser};
 use crate::render::output::{Layers, Rendered};
 use crate::render::sums::KeptFilm;
+use crate::say::say;
 
 /// Arguments of `glossmith merge`.
 #[derive(Debug, Args)]
@@ -20,7 +21,7 @@ pub struct MergeArguments {
     #[arg(required = true, value_name = "FILM.exr")]
     films: Vec<PathBuf>,
     /// Picture to write: .exr (with the sums, to be merged again), .png or .hdr. May be repeated.
-    #[arg(long = "output", required = true, value_name = "FILE", value_parser = parse::picture)]
+    #[arg(long = "output", required = true, value_name = "FILE", value_parser = parse::picture())]
     outputs: Vec<PathBuf>,
     /// Write albedo, normal, depth, number of samples and variance as layers into .exr pictures.
     #[arg(long)]
@@ -53,7 +54,6 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
         false => None,
     };
     let denoised = denoised(&whole)?;
-    eprintln!("{samples:.0} samples a pixel of {} films", arguments.films.len());
     let rendered = Rendered {
         denoised: denoised.as_ref().map(|denoised| denoised.image.as_ref()),
         layers: layers.as_ref(),
@@ -61,6 +61,8 @@ pub fn run(arguments: &MergeArguments) -> anyhow::Result<()> {
         ..Rendered::from(&image)
     };
     write_pictures(&arguments.outputs, rendered, &whole.document)?;
+    say!("{samples:.0} samples a pixel of {} films", arguments.films.len());
+    say_written(&arguments.outputs);
     let mut answer = serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
         "films": arguments.films,

@@ -56,6 +56,9 @@ pub struct Arguments {
     /// Whether the GPU engine asks the adapter what rays meet: where that was measured to be faster; wherever it can; never.
     #[arg(long, global = true, default_value = "auto", value_name = "auto|on|off")]
     pub ray_queries: RayQueries,
+    /// Read what files name wherever it lies. Without it they may name what is in the folder above their own, and below.
+    #[arg(long, global = true)]
+    pub allow_outside: bool,
 }
 
 const EXIT_CODES: &str = "Exit codes: 0 done; 1 something could not be read, rendered or written; 2 wrong \

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
+use clap::builder::{PathBufValueParser, TypedValueParser};
 
 use crate::document::parameter::parse_color;
 use crate::document::{Background, Document, ParameterError, range};
@@ -106,10 +107,9 @@ pub(super) fn assignment(text: &str) -> Result<String, ParameterError> {
 }
 
 /// The name of a picture; its ending is one of those that are written.
-pub(super) fn picture(text: &str) -> Result<PathBuf, OutputError> {
-    let path = PathBuf::from(text);
-    format_of(&path)?;
-    Ok(path)
+pub(super) fn picture() -> impl TypedValueParser<Value = PathBuf> {
+    let checked = |path: PathBuf| -> Result<PathBuf, OutputError> { format_of(&path).map(|_| path) };
+    PathBufValueParser::new().try_map(checked)
 }
 
 /// Whether a file can be saved there, asked before the work that fills it. What is there stays as it is.
@@ -117,15 +117,15 @@ pub(super) fn picture(text: &str) -> Result<PathBuf, OutputError> {
 /// # Errors
 /// What the system says.
 pub(super) fn check_writable(path: &Path) -> anyhow::Result<()> {
+    if path.exists() && !path.is_file() {
+        // To open a pipe would wait for its reader.
+        return Ok(check_saving(path)?);
+    }
     check_opens(path)?;
     Ok(check_saving(path)?)
 }
 
-/// Whether a file can be opened for writing, or a pipe: what is not replaced, but written into.
-///
-/// # Errors
-/// What the system says.
-pub(super) fn check_opens(path: &Path) -> anyhow::Result<()> {
+fn check_opens(path: &Path) -> anyhow::Result<()> {
     let existed = path.exists();
     let opened = OpenOptions::new().append(true).create(true).open(path);
     opened.with_context(|| {

@@ -8,6 +8,7 @@ use super::scene::SceneArguments;
 use crate::job::effect::{Decision, EffectId};
 use crate::job::plan::Plan;
 use crate::render::{EngineChoice, Session};
+use crate::say::put;
 
 /// Arguments of `glossmith plan`: those of `glossmith render` that describe the scene.
 #[derive(Debug, Args)]
@@ -38,9 +39,9 @@ fn print(plan: &Plan) {
     let width = plan.table().map(|(effect, _)| effect.name().len()).max().unwrap_or(0);
     for (effect, decision) in plan.table() {
         let word = if decision.is_on { "on" } else { "off" };
-        println!("{:width$}  {word:3}  {}", effect.name(), decision.reason);
+        put!("{:width$}  {word:3}  {}", effect.name(), decision.reason);
     }
-    println!(
+    put!(
         "{} of {} effects are simulated; the kernel leaves out {}",
         plan.effects().len(),
         plan.table().count(),

@@ -17,6 +17,7 @@ use crate::document::{Denoise, Document};
 use crate::render::denoise::{Attendant, Denoised};
 use crate::render::output::{self, Format, Rendered};
 use crate::render::{EngineChoice, Progress, Session, StopReason, to_end};
+use crate::say::say;
 
 /// Time limit of the picture that is rendered where no window can be opened, seconds.
 const DEFAULT_SCENE_SECONDS: f64 = 8.0;
@@ -27,7 +28,7 @@ pub struct RenderArguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// Picture to write: .png (with exposure and tone curve, the document inside), .exr or .hdr (linear). May be repeated.
-    #[arg(long = "output", default_value = "glossmith.png", value_name = "FILE", value_parser = parse::picture)]
+    #[arg(long = "output", default_value = "glossmith.png", value_name = "FILE", value_parser = parse::picture())]
     outputs: Vec<PathBuf>,
     /// Write albedo, normal, depth, number of samples and variance as layers into .exr pictures.
     #[arg(long)]
@@ -144,14 +145,13 @@ fn render(
     to_end::submit(&mut session, engine, document)?;
     drop(waiting);
     let signals = Signals::watch()?;
-    eprintln!("{} ({})", session.engine(), session.engine().reason);
+    say!("{} ({})", session.engine(), session.engine().reason);
     let setup_seconds = begun.elapsed().as_secs_f64();
     let (progress, denoised) = step_to_end(&mut session, engine, document, &|| signals.received().is_none())?;
     let ended_by = signals.received().filter(|_| !progress.is_done);
     if let (Some(signal), true) = (ended_by, progress.mean_samples == 0.0) {
         return Err(anyhow::Error::new(signal).context("nothing was rendered yet, and nothing is written"));
     }
-    eprintln!("{}", told(&progress));
     let image = session.image()?;
     let layers = targets.has_layers.then(|| session.layers()).transpose()?;
     let sums = targets.has_sums.then(|| session.kept_film()).transpose()?;
@@ -162,6 +162,9 @@ fn render(
         ..Rendered::from(&image)
     };
     write_pictures(targets.outputs, rendered, document)?;
+    // Words come after the picture: who does not read them must not hold it up.
+    say!("{}", told(&progress));
+    say_written(targets.outputs);
     if let Some(destination) = targets.report {
         let mut report = json_report(&mut session, document, setup_seconds, progress, targets.has_layers)?;
         add_denoised(&mut report, document, denoised.as_ref());
@@ -173,18 +176,21 @@ fn render(
     }
     let dropped = session.film()?.dropped();
     if dropped > 0 {
-        eprintln!("{dropped} samples were left out because they were not finite");
+        say!("{dropped} samples were left out because they were not finite");
     }
     ended_by.map_or(Ok(()), |signal| Err(signal.into()))
 }
 
 /// Writes a picture in all formats that are asked for.
 pub(super) fn write_pictures(outputs: &[PathBuf], rendered: Rendered<'_>, document: &Document) -> anyhow::Result<()> {
-    for path in outputs {
-        output::write(path, rendered, document)?;
-        eprintln!("wrote {}", path.display());
-    }
-    Ok(())
+    outputs
+        .iter()
+        .try_for_each(|path| Ok(output::write(path, rendered, document)?))
+}
+
+/// Says where pictures are.
+pub(super) fn say_written(outputs: &[PathBuf]) {
+    outputs.iter().for_each(|path| say!("wrote {}", path.display()));
 }
 
 /// Whether layers or sums have a place: in .exr pictures alone.

@@ -1,10 +1,9 @@
 //! `glossmith scatter`: samples of a lobe as numbers or as a picture.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write as _};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, bail};
+use anyhow::bail;
 use clap::Args;
 
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
@@ -12,7 +11,9 @@ use crate::optics::curve::Curve;
 use crate::optics::lobe::model::LobeModel;
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::render::EngineChoice;
+use crate::say::say;
 use crate::store::file::ending;
+use crate::store::replace::{save_atomically, save_by};
 
 use super::answer::Answer;
 use super::names::choice;
@@ -80,17 +81,20 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
     };
     let cloud = crate::render::Sampler::open(arguments.engine)?.draw(&request)?;
     if cloud.absorbed > 0 {
-        eprintln!(
+        say!(
             "{} of {} samples were absorbed at the horizon",
-            cloud.absorbed, request.count
+            cloud.absorbed,
+            request.count
         );
     }
     match format_of(&arguments.output)? {
-        Format::Csv => write_csv(&arguments.output, &cloud)
-            .with_context(|| format!("{}: could not be written; is there room?", arguments.output.display()))?,
-        Format::Png => crate::plot::scatter_png(&arguments.output, &request, &cloud)?,
+        Format::Csv => save_by(&arguments.output, |file| write_csv(file, &cloud))?,
+        Format::Png => {
+            let contents = crate::plot::scatter_png(&arguments.output, &request, &cloud)?;
+            save_atomically(&arguments.output, &contents)?;
+        }
     }
-    eprintln!("wrote {}", arguments.output.display());
+    say!("wrote {}", arguments.output.display());
     arguments.answer.write(&serde_json::json!({
         "version": env!("CARGO_PKG_VERSION"),
         "lobe": arguments.lobe.name(),
@@ -103,13 +107,12 @@ pub fn run(arguments: &ScatterArguments) -> anyhow::Result<()> {
     }))
 }
 
-fn write_csv(path: &Path, cloud: &ScatterCloud) -> io::Result<()> {
-    let mut file = BufWriter::new(File::create(path)?);
+fn write_csv(file: &mut impl Write, cloud: &ScatterCloud) -> io::Result<()> {
     writeln!(file, "x,y,z,density")?;
     for [x, y, z, density] in &cloud.samples {
         writeln!(file, "{x},{y},{z},{density}")?;
     }
-    file.flush()
+    Ok(())
 }
 
 /// How samples are written.

@@ -1,12 +1,11 @@
 //! What a shell knows about the program: `glossmith completions` and `glossmith manual`.
 
-use std::io::{self, Write as _};
-
 use anyhow::Context;
 use clap::{Args, CommandFactory};
 use clap_complete::Shell;
 
 use super::Arguments;
+use crate::say::print_bytes;
 
 /// Arguments of `glossmith completions`.
 #[derive(Debug, Args)]
@@ -26,17 +25,18 @@ pub struct ManualArguments {
 /// Prints a script that completes the program's arguments in a shell.
 ///
 /// # Errors
-/// Where standard output can't be written to.
+/// None.
 pub fn completions(arguments: &CompletionsArguments) -> anyhow::Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Arguments::command(), "glossmith", &mut script);
-    print(&script)
+    print_bytes(&script);
+    Ok(())
 }
 
 /// Prints a manual page in roff.
 ///
 /// # Errors
-/// Where there is no such subcommand, or standard output can't be written to.
+/// Where there is no such subcommand.
 pub fn manual(arguments: &ManualArguments) -> anyhow::Result<()> {
     let mut command = Arguments::command();
     // Gives subcommands their names in full: glossmith render.
@@ -47,11 +47,6 @@ pub fn manual(arguments: &ManualArguments) -> anyhow::Result<()> {
     }
     let mut page = Vec::new();
     clap_mangen::Man::new(command).render(&mut page)?;
-    print(&page)
-}
-
-fn print(bytes: &[u8]) -> anyhow::Result<()> {
-    io::stdout()
-        .write_all(bytes)
-        .context("standard output could not be written to")
+    print_bytes(&page);
+    Ok(())
 }

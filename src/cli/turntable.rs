@@ -14,6 +14,7 @@ use super::{names, parse};
 use crate::document::turntable::Turn;
 use crate::render::Session;
 use crate::render::turntable::{FPS, Turntable, frame_path, render};
+use crate::say::say;
 use crate::store::video::{self, VideoFormat};
 
 /// Arguments of `glossmith turntable`.
@@ -83,7 +84,7 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         keeps_part: true,
     };
     let signals = Signals::watch()?;
-    eprintln!("{} ({})", session.engine(), session.engine().reason);
+    say!("{} ({})", session.engine(), session.engine().reason);
     let bar = bar(
         "{bar:40} frame {msg}, {eta} left",
         u64::from(table.frames) * BAR_STEPS as u64,
@@ -99,14 +100,14 @@ pub fn run(arguments: &TurntableArguments) -> anyhow::Result<()> {
         None => Vec::new(),
     };
     if let Some(last) = pictures.last() {
-        eprintln!("wrote {} frames up to {}", outcome.frames, last.display());
+        say!("wrote {} frames up to {}", outcome.frames, last.display());
     }
     let video = table.video.as_ref().filter(|_| outcome.frames > 0);
     if let Some(path) = video {
-        eprintln!("wrote {}: {} frames", path.display(), outcome.frames);
+        say!("wrote {}: {} frames", path.display(), outcome.frames);
     }
     if outcome.dropped > 0 {
-        eprintln!("{} samples were left out because they were not finite", outcome.dropped);
+        say!("{} samples were left out because they were not finite", outcome.dropped);
     }
     let ended_by = signals.received().filter(|_| outcome.frames < table.frames);
     let ended = ended_by.map_or(Ok(()), |signal| Err(signal.into()));

@@ -1,6 +1,7 @@
 //! What all figures share: files, fonts, colours.
 
 use std::error::Error;
+use std::io::Cursor;
 use std::path::Path;
 
 use plotters::coord::Shift;
@@ -78,35 +79,33 @@ pub(super) trait Figure {
         DB::ErrorType: 'static;
 }
 
-/// Writes a figure as .svg, or else as .png.
-pub(super) fn write(path: &Path, figure: &impl Figure) -> Result<(), PlotError> {
+/// The contents of a figure's file: .svg, or else .png.
+pub(super) fn contents(path: &Path, figure: &impl Figure) -> Result<Vec<u8>, PlotError> {
     register_fonts();
     let is_svg = path
         .extension()
         .is_some_and(|ending| ending.eq_ignore_ascii_case("svg"));
-    let written = if is_svg {
-        write_svg(path, figure)
-    } else {
-        write_png(path, figure)
+    let drawn = match is_svg {
+        true => svg(figure),
+        false => picture(figure, Style::light(1.0)).and_then(|picture| png(&picture)),
     };
-    written.map_err(|error| PlotError {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    })
+    drawn.map_err(|error| PlotError::of(path, &*error))
 }
 
-fn write_svg(path: &Path, figure: &impl Figure) -> Outcome {
+fn svg(figure: &impl Figure) -> Result<Vec<u8>, Box<dyn Error>> {
     let mut text = String::new();
     {
         let root = SVGBackend::with_string(&mut text, figure.size()).into_drawing_area();
         draw_on_paper(&root, figure, Style::light(1.0))?;
     }
-    Ok(std::fs::write(path, text)?)
+    Ok(text.into_bytes())
 }
 
-fn write_png(path: &Path, figure: &impl Figure) -> Outcome {
-    let picture = picture(figure, Style::light(1.0))?;
-    Ok(picture.save_with_format(path, image::ImageFormat::Png)?)
+/// A picture as a file has it.
+pub(super) fn png(picture: &image::RgbImage) -> Result<Vec<u8>, Box<dyn Error>> {
+    let mut file = Cursor::new(Vec::new());
+    picture.write_to(&mut file, image::ImageFormat::Png)?;
+    Ok(file.into_inner())
 }
 
 /// A figure as pixels.

@@ -25,12 +25,21 @@ use lobe_view::{LinePlot, LobeView};
 use crate::job::scatter::{ScatterCloud, ScatterRequest};
 use crate::optics::vector::Vec3;
 
-/// A plot that can't be written.
+/// A plot that can't be drawn.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: the plot could not be written: {reason}. Is there room, and may the folder be written to?", path.display())]
+#[error("{}: the plot could not be drawn: {reason}", path.display())]
 pub struct PlotError {
     path: PathBuf,
     reason: String,
+}
+
+impl PlotError {
+    fn of(path: &Path, error: &dyn std::error::Error) -> Self {
+        Self {
+            path: path.to_owned(),
+            reason: error.to_string(),
+        }
+    }
 }
 
 /// Makes the font known under the name that plots use. plotters without system fonts has none of its own.
@@ -48,15 +57,15 @@ pub fn series_color(group: usize) -> [u8; 3] {
     [r, g, b]
 }
 
-/// A view of lobes as .svg, or else as .png.
+/// The contents of a view's file: .svg, or else .png.
 ///
 /// # Errors
-/// Where the file can't be written.
-pub fn lobe_view_file(path: &Path, view: &LobeView) -> Result<(), PlotError> {
+/// Where it can't be drawn.
+pub fn lobe_view_file(path: &Path, view: &LobeView) -> Result<Vec<u8>, PlotError> {
     match view {
         LobeView::Lines(plot) => line_plot_file(path, plot),
-        LobeView::Maps(plot) => figure::write(path, plot),
-        LobeView::Solids(plot) => figure::write(path, plot),
+        LobeView::Maps(plot) => figure::contents(path, plot),
+        LobeView::Solids(plot) => figure::contents(path, plot),
     }
 }
 
@@ -72,28 +81,28 @@ pub fn lobe_view_picture(view: &LobeView, zoom: f64, is_dark: bool) -> Option<im
     drawn.ok()
 }
 
-/// A line plot as .svg, or else as .png.
+/// A line plot as the contents of a file: .svg, or else .png.
 ///
 /// # Errors
-/// Where the file can't be written.
-pub fn line_plot_file(path: &Path, plot: &LinePlot) -> Result<(), PlotError> {
-    figure::write(path, plot)
+/// Where it can't be drawn.
+pub fn line_plot_file(path: &Path, plot: &LinePlot) -> Result<Vec<u8>, PlotError> {
+    figure::contents(path, plot)
 }
 
-/// Points with names as .svg, or else as .png.
+/// Points with names as the contents of a file: .svg, or else .png.
 ///
 /// # Errors
-/// Where the file can't be written.
-pub fn point_plot_file(path: &Path, plot: &PointPlot) -> Result<(), PlotError> {
-    figure::write(path, plot)
+/// Where it can't be drawn.
+pub fn point_plot_file(path: &Path, plot: &PointPlot) -> Result<Vec<u8>, PlotError> {
+    figure::contents(path, plot)
 }
 
-/// Bars as .svg, or else as .png.
+/// Bars as the contents of a file: .svg, or else .png.
 ///
 /// # Errors
-/// Where the file can't be written.
-pub fn bar_plot_file(path: &Path, plot: &BarPlot) -> Result<(), PlotError> {
-    figure::write(path, plot)
+/// Where it can't be drawn.
+pub fn bar_plot_file(path: &Path, plot: &BarPlot) -> Result<Vec<u8>, PlotError> {
+    figure::contents(path, plot)
 }
 
 /// Pictures in rows as .png, into a file that is open.
@@ -111,15 +120,12 @@ pub fn write_picture_sheet(file: &mut (impl io::Write + io::Seek), sheet: &Pictu
 /// incidence (to the right: away from the normal), the circle has the radius of the lobe's roughness.
 ///
 /// # Errors
-/// Where the file can't be written.
-pub fn scatter_png(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> Result<(), PlotError> {
+/// Where it can't be drawn.
+pub fn scatter_png(path: &Path, request: &ScatterRequest, cloud: &ScatterCloud) -> Result<Vec<u8>, PlotError> {
     register_fonts();
     let picture = figure::drawn((800, 810), |root| draw_scatter(root, request, cloud));
-    let written = picture.and_then(|picture| Ok(picture.save_with_format(path, image::ImageFormat::Png)?));
-    written.map_err(|error| PlotError {
-        path: path.to_owned(),
-        reason: error.to_string(),
-    })
+    let drawn = picture.and_then(|picture| figure::png(&picture));
+    drawn.map_err(|error| PlotError::of(path, &*error))
 }
 
 fn draw_scatter(

@@ -116,6 +116,36 @@ pub(super) fn limit() -> Option<u64> {
     Some(mib.saturating_mul(1 << 20))
 }
 
+/// The bytes that the process may take besides what it has, where it has a limit (`ulimit -v`).
+#[cfg(target_os = "linux")]
+fn of_process() -> u64 {
+    let mut limit = libc::rlimit {
+        rlim_cur: 0,
+        rlim_max: 0,
+    };
+    // SAFETY: it writes into what it is given.
+    let is_known = unsafe { libc::getrlimit(libc::RLIMIT_AS, &raw mut limit) } == 0;
+    if !is_known || limit.rlim_cur == libc::RLIM_INFINITY {
+        return u64::MAX;
+    }
+    let sizes = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let taken_kib = sizes.lines().find_map(|line| {
+        line.strip_prefix("VmSize:")?
+            .trim()
+            .strip_suffix(" kB")?
+            .parse::<u64>()
+            .ok()
+    });
+    // Nothing is left where it is full; 0 would say that it is not known.
+    limit.rlim_cur.saturating_sub(taken_kib.unwrap_or(0) << 10).max(1)
+}
+
+/// Other systems have no such limit.
+#[cfg(not(target_os = "linux"))]
+fn of_process() -> u64 {
+    u64::MAX
+}
+
 /// The bytes that a picture may take where none are named. `held` is what goes when it is begun.
 pub(super) fn free(held: u64) -> u64 {
     let ram = MemoryRefreshKind::nothing().with_ram();
@@ -124,7 +154,7 @@ pub(super) fn free(held: u64) -> u64 {
     };
     // A container may have less than the machine.
     let of_container = system.cgroup_limits().map_or(u64::MAX, |limits| limits.free_memory);
-    match system.available_memory().min(of_container) {
+    match system.available_memory().min(of_container).min(of_process()) {
         // The system does not say.
         0 => u64::MAX,
         free => (SHARE * free.saturating_add(held) as f64) as u64,

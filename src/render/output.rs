@@ -19,7 +19,7 @@ use crate::optics::primaries::REC709;
 use crate::store::FileError;
 use crate::store::file::ending;
 use crate::store::picture::png_bytes;
-use crate::store::project::document_text;
+use crate::store::project::own_text;
 use crate::store::replace::save_by;
 
 /// Why a picture can't be written.
@@ -154,7 +154,7 @@ pub fn write_layers(path: &Path, layers: &Layers) -> Result<(), OutputError> {
 
 /// The bytes of a .png to lie at `path`, beside the files that the document inside names.
 fn png(path: &Path, image: &Image, document: &Document) -> io::Result<Vec<u8>> {
-    let text = document_text(path, document);
+    let text = own_text(path, document);
     if let Err(error) = &text {
         log::warn!("the picture is saved without its document: {error}");
     }

@@ -1,21 +1,27 @@
 //! Proof that a scene is one convex body, so that rays that leave it outwards meet nothing.
 
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+
 use glam::DVec3;
 use rayon::prelude::*;
+
+use super::loading::{Cancelled, Loading};
 
 /// How far a place may lie above a face's plane, in bounding radii: the rounding of f32 corners.
 const TOLERANCE: f64 = 1e-6;
 /// Places that are looked at together; they follow each other in the order of the hierarchy's leaves, so they are near
 /// each other.
 const CLUSTER: usize = 64;
-/// Products of faces and clusters beyond which the proof is not attempted: a second on two cores.
+/// The most tests of a plane against a cluster or a place: a second on two cores. Beyond, the proof is given up.
 const EFFORT_MAX: usize = 1 << 29;
 
-/// Places near each other, and a sphere around them.
+/// Places near each other, with a sphere and a box around them.
 struct Cluster {
     places: Vec<DVec3>,
     center: DVec3,
     radius: f64,
+    middle: DVec3,
+    half_sides: DVec3,
 }
 
 impl Cluster {
@@ -26,23 +32,51 @@ impl Cluster {
             .collect();
         let center = places.iter().sum::<DVec3>() / places.len() as f64;
         let radius = places.iter().map(|place| place.distance(center)).fold(0.0, f64::max);
-        Self { places, center, radius }
+        let least = places.iter().copied().reduce(DVec3::min).unwrap_or(center);
+        let most = places.iter().copied().reduce(DVec3::max).unwrap_or(center);
+        Self {
+            places,
+            center,
+            radius,
+            middle: (least + most) / 2.0,
+            half_sides: (most - least) / 2.0,
+        }
     }
 
-    /// Whether nothing lies above the plane through `corner` with this unit normal.
-    fn is_below(&self, corner: DVec3, normal: DVec3) -> bool {
-        (self.center - corner).dot(normal) + self.radius <= TOLERANCE
-            || self
-                .places
-                .iter()
-                .all(|place| (*place - corner).dot(normal) <= TOLERANCE)
+    /// Whether nothing lies above the plane through `corner` with this unit normal. The box settles what lies in a plane of
+    /// two axes, which no sphere does. Adds to `effort` what was tested.
+    fn is_below(&self, corner: DVec3, normal: DVec3, effort: &mut usize) -> bool {
+        *effort += 1;
+        if (self.center - corner).dot(normal) + self.radius <= TOLERANCE
+            || (self.middle - corner).dot(normal) + self.half_sides.dot(normal.abs()) <= TOLERANCE
+        {
+            return true;
+        }
+        *effort += self.places.len();
+        let is_below = |place: &DVec3| (*place - corner).dot(normal) <= TOLERANCE;
+        self.places.iter().all(is_below)
     }
 }
 
 /// True where no place lies above the plane of any face, seen from the side on which its corners run counter-clockwise.
 /// A ray that leaves a face on that side then meets nothing. Most bodies that are not convex are found out by their
-/// first faces.
-pub(super) fn is_convex(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> bool {
+/// first faces; what takes too long to prove counts as not convex.
+///
+/// # Errors
+/// Where it was cancelled.
+pub(super) fn is_convex(positions: &[[f32; 3]], triangles: &[[u32; 3]], loading: &Loading) -> Result<bool, Cancelled> {
+    let effort = AtomicUsize::new(0);
+    let is_proven = is_proven(positions, triangles, &effort, &|| loading.check().is_ok());
+    loading.check().map(|()| is_proven)
+}
+
+/// The proof, with what it took: at most [`EFFORT_MAX`], but for the faces that are looked at just then.
+fn is_proven(
+    positions: &[[f32; 3]],
+    triangles: &[[u32; 3]],
+    effort: &AtomicUsize,
+    is_wanted: &(impl Fn() -> bool + Sync),
+) -> bool {
     if positions.len().div_ceil(CLUSTER).saturating_mul(triangles.len()) > EFFORT_MAX {
         return false;
     }
@@ -50,6 +84,57 @@ pub(super) fn is_convex(positions: &[[f32; 3]], triangles: &[[u32; 3]]) -> bool 
     triangles.par_iter().all(|triangle| {
         let [a, b, c] = triangle.map(|vertex| DVec3::from_array(positions[vertex as usize].map(f64::from)));
         let normal = (b - a).cross(c - a).normalize_or_zero();
-        clusters.iter().all(|cluster| cluster.is_below(a, normal))
+        let mut here = 0;
+        let is_below = clusters.iter().all(|cluster| cluster.is_below(a, normal, &mut here));
+        is_below && effort.fetch_add(here, Relaxed) + here <= EFFORT_MAX && is_wanted()
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Grid = (Vec<[f32; 3]>, Vec<[u32; 3]>);
+
+    /// A sheet of `side`² squares within the unit ball, at this height.
+    fn sheet(side: u32, height: impl Fn(f32, f32) -> f32) -> Grid {
+        let place = |i: u32| i as f32 / side as f32 - 0.5;
+        let places = (0..=side).flat_map(|j| (0..=side).map(move |i| (i, j)));
+        let positions = places.map(|(i, j)| [place(i), place(j), height(place(i), place(j))]);
+        let squares = (0..side).flat_map(|j| (0..side).map(move |i| j * (side + 1) + i));
+        let triangles = squares.flat_map(|a| [[a, a + 1, a + side + 2], [a, a + side + 2, a + side + 1]]);
+        (positions.collect(), triangles.collect())
+    }
+
+    fn proven((positions, triangles): &Grid) -> (bool, usize) {
+        let effort = AtomicUsize::new(0);
+        let is_proven = is_proven(positions, triangles, &effort, &|| true);
+        (is_proven, effort.into_inner())
+    }
+
+    #[test]
+    fn a_flat_sheet_takes_a_test_a_cluster() {
+        let flat = sheet(64, |_, _| 0.0);
+        let products = flat.0.len().div_ceil(CLUSTER) * flat.1.len();
+        assert_eq!(proven(&flat), (true, products));
+    }
+
+    /// A sheet aslant has no box that settles it: every place is looked at, and that is counted.
+    #[test]
+    fn a_proof_that_takes_too_long_is_given_up() {
+        let (is_proven, effort) = proven(&sheet(32, |x, _| x));
+        assert!(is_proven && effort > 32 * 2048, "{effort}");
+        let (is_proven, effort) = proven(&sheet(150, |x, _| x));
+        assert!(!is_proven, "{effort}");
+        assert!(effort < EFFORT_MAX + EFFORT_MAX / 8, "{effort}");
+    }
+
+    #[test]
+    fn a_proof_can_be_cancelled() {
+        let (positions, triangles) = sheet(8, |_, _| 0.0);
+        let loading = Loading::default();
+        assert_eq!(is_convex(&positions, &triangles, &loading), Ok(true));
+        loading.cancel();
+        assert_eq!(is_convex(&positions, &triangles, &loading), Err(Cancelled));
+    }
 }

@@ -8,9 +8,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use zip::ZipArchive;
 
 use super::loading::Loading;
-
-/// The most that one file of an archive may unpack to.
-const UNPACKED_MAX: u64 = 4 << 30;
+use super::resource::{self, BYTES_MAX, Reach, is_elsewhere};
 
 /// The files that a model may name, and what is told while it is read.
 #[derive(Debug)]
@@ -69,7 +67,7 @@ impl Files {
 
     /// Those in an archive.
     pub(super) fn in_archive(path: &Path, asked: &Seen, loading: &Loading) -> io::Result<Self> {
-        let archive = ZipArchive::new(BufReader::new(File::open(path)?))?;
+        let archive = ZipArchive::new(BufReader::new(resource::open(path)?))?;
         let place = Place::Archive(Mutex::new(archive), String::new());
         Ok(Self::at(place, &[], asked, loading))
     }
@@ -111,6 +109,10 @@ impl Files {
         match &self.place {
             Place::Folder(folder) => {
                 let wanted = folder.join(&name);
+                let reach = Reach::of_folder(folder);
+                if is_elsewhere(&wanted) {
+                    reach.check(&wanted)?;
+                }
                 let found = if wanted.is_file() {
                     wanted
                 } else {
@@ -119,8 +121,11 @@ impl Files {
                         .or_else(|| self.given.iter().find(|given| is_called(given, base)).cloned())
                         .unwrap_or(wanted)
                 };
+                if !self.given.contains(&found) {
+                    reach.check(&found)?;
+                }
                 self.asked.note(&found);
-                fs::read(found)
+                resource::read(&found, BYTES_MAX)
             }
             Place::Archive(archive, folder) => {
                 let mut archive = archive.lock().unwrap_or_else(PoisonError::into_inner);
@@ -137,7 +142,7 @@ impl Files {
                 let found = found.or_else(|| names.iter().find(|known| last(known)));
                 let mut bytes = Vec::new();
                 let file = archive.by_name(found.ok_or(io::ErrorKind::NotFound)?)?;
-                file.take(UNPACKED_MAX).read_to_end(&mut bytes)?;
+                file.take(BYTES_MAX).read_to_end(&mut bytes)?;
                 Ok(bytes)
             }
         }

@@ -97,7 +97,7 @@ impl Geometry {
         };
         part.build(loading)?;
         Ok(Self {
-            model_is_convex: is_convex(&part.positions, &part.triangles),
+            model_is_convex: is_convex(&part.positions, &part.triangles, loading)?,
             model_is_coarse: is_coarse(&part),
             model: Arc::new(part),
             around: Part::default(),

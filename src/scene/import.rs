@@ -1,12 +1,13 @@
 //! Models from files, folders and archives: which reader, and what all of them have in common.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::files::{Files, Seen};
 use super::geometry::Framing;
 use super::loading::Loading;
 use super::model::{Model, ModelError, ModelOptions, Texture};
 use super::report::{Fate, ImportReport};
+use super::resource::{self, Reach};
 use super::stage::{LIGHTS_MAX, LightKind, ModelLight};
 use super::{gltf, obj, ply, stl};
 
@@ -52,7 +53,20 @@ pub(super) fn load(path: &Path, options: &ModelOptions, loading: &Loading) -> Re
     }
     finish(&mut model);
     model.files = seen.take();
+    note_outside(&mut model, path, &options.beside);
     Ok(model)
+}
+
+/// Tells which files were read that lie outside of the model's surroundings: they may be in what is exported.
+fn note_outside(model: &mut Model, path: &Path, given: &[PathBuf]) {
+    let folder = if path.is_dir() { Some(path) } else { path.parent() };
+    let reach = Reach::of_folder(folder.unwrap_or(Path::new("")));
+    for file in &model.files {
+        if file != path && !given.contains(file) && !reach.encloses(file) {
+            let what = "files from outside of the model's surroundings";
+            model.report.note(Fate::Used, what, &file.to_string_lossy());
+        }
+    }
 }
 
 /// Loads one model.
@@ -72,7 +86,7 @@ fn load_one(path: &Path, options: &ModelOptions, seen: &Seen, loading: &Loading)
         let files = Files::in_archive(path, seen, loading).map_err(read)?;
         return load_inside(path, files, options);
     }
-    let bytes = std::fs::read(path).map_err(read)?;
+    let bytes = resource::read(path, resource::BYTES_MAX).map_err(read)?;
     load_file(path, in_folder(path.parent().unwrap_or(Path::new(""))), bytes, options)
 }
 

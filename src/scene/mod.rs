@@ -29,6 +29,7 @@ mod part;
 pub mod picture;
 mod ply;
 pub mod report;
+pub mod resource;
 mod rle_bmp;
 pub mod shapes;
 mod stage;

@@ -11,6 +11,7 @@ use super::environment::open_exr;
 use super::float_tiff;
 use super::gpu_picture::{self, Texels};
 use super::model::Texture;
+use super::resource;
 use super::rle_bmp;
 use super::texture::scale::scaled_to;
 use crate::optics::primaries::{Matrix, NoSpace, transformed};
@@ -94,7 +95,7 @@ impl Decoded {
 /// # Errors
 /// Why it can't be had, in a few words.
 pub fn read_texture(path: &Path, is_color: bool, side_max: u32) -> Result<Texture, String> {
-    let bytes = std::fs::read(path).map_err(|error| error.to_string())?;
+    let bytes = resource::read(path, resource::BYTES_MAX).map_err(|error| error.to_string())?;
     let name = path
         .file_name()
         .unwrap_or(path.as_os_str())

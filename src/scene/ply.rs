@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3, Vec4};
 use ply_rs_bw::parser::{Parser, Reader};
-use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{Encoding, Property, PropertyAccess, PropertyAccessResult};
 
 use super::mesh::Mesh;
 use super::model::{Model, ModelError, Slot};
@@ -109,6 +109,12 @@ pub(super) fn load(path: &Path, bytes: &[u8]) -> Result<Model, ModelError> {
     let mut faces = Vec::new();
     let mut report = ImportReport::default();
     for element in header.elements.values() {
+        if element.properties.is_empty() && header.encoding != Encoding::Ascii {
+            // They take no bytes, so that nothing ends their reading but their number.
+            let what = format!("elements called {}, which are empty", element.name);
+            report.count(Fate::Ignored, what, "", element.count);
+            continue;
+        }
         let read = match element.name.as_str() {
             "vertex" => vertex
                 .read_payload_for_element(&mut reader, element, &header)

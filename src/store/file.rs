@@ -1,13 +1,13 @@
 //! Reading and writing JSON files with care: errors that say what to do.
 
-use std::fs::File;
 use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value as Json};
 
-use super::{picture, preset, project};
+use super::{own, picture, preset, project};
 use crate::document::{Document, MaterialSettings};
+use crate::scene::resource::{self, Reach};
 
 /// Files larger than this many bytes are taken for something else.
 pub(super) const SIZE_MAX: u64 = 16 << 20;
@@ -70,6 +70,14 @@ pub enum FileError {
         /// What is wrong and what would be right.
         reason: String,
     },
+    /// It names files that lie elsewhere.
+    #[error("{}: names files outside of its surroundings, which are read only where that is allowed: {}; where you trust it, allow them (--allow-outside)", path.display(), list(files))]
+    Outside {
+        /// The file.
+        path: PathBuf,
+        /// What it names.
+        files: Vec<PathBuf>,
+    },
     /// No such preset, no such file.
     #[error("no material is called {name} and there is no such file; the shipped ones are {known}")]
     UnknownMaterial {
@@ -86,6 +94,30 @@ pub enum FileError {
         /// What the system says.
         source: io::Error,
     },
+}
+
+fn list(files: &[PathBuf]) -> String {
+    let names: Vec<String> = files.iter().map(|file| file.display().to_string()).collect();
+    names.join(", ")
+}
+
+/// Refuses a file from elsewhere that names what lies outside of its surroundings; says what of it was allowed. What was saved
+/// by this user is trusted.
+///
+/// # Errors
+/// [`FileError::Outside`].
+pub(super) fn check_reach(path: &Path, mark: Option<&Json>, named: &[PathBuf]) -> Result<Vec<String>, FileError> {
+    let reach = Reach::of_folder(folder(path));
+    let is_own = mark.is_some_and(|mark| mark.as_str() == own::mark(path, named).as_deref());
+    let is_meant = |named: &PathBuf| is_own && own::leads_away(path, named);
+    let outside = named.iter().filter(|named| !is_meant(named) && !reach.encloses(named));
+    let (allowed, files): (Vec<_>, Vec<_>) = outside.cloned().partition(|named| reach.has(named));
+    if !files.is_empty() {
+        let path = path.to_owned();
+        return Err(FileError::Outside { path, files });
+    }
+    let told = |named: &PathBuf| format!("{}: names {}, which lies elsewhere", path.display(), named.display());
+    Ok(allowed.iter().map(told).collect())
 }
 
 /// A file that holds what is edited.
@@ -105,20 +137,24 @@ pub enum Opened {
 /// What is wrong with the file.
 pub fn open(path: &Path) -> Result<Opened, FileError> {
     if picture::is_png(path) {
-        return Ok(Opened::Picture(Box::new(picture::load_picture_document(path)?)));
+        let text = picture::document_text_in(path)?;
+        return Ok(Opened::Picture(Box::new(project::open_document(
+            path,
+            text.as_bytes(),
+        )?)));
     }
     let bytes = read(path)?;
     if object(path, &bytes)?.contains_key(project::MARK) {
-        Ok(Opened::Document(Box::new(project::parse_document(path, &bytes)?)))
+        Ok(Opened::Document(Box::new(project::open_document(path, &bytes)?)))
     } else {
-        Ok(Opened::Material(Box::new(preset::parse_material(path, &bytes)?)))
+        Ok(Opened::Material(Box::new(preset::open_material(path, &bytes)?)))
     }
 }
 
 /// A whole file, unless it is far too large.
 pub(super) fn read(path: &Path) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
-    let result = File::open(path).and_then(|file| file.take(SIZE_MAX + 1).read_to_end(&mut bytes));
+    let result = resource::open(path).and_then(|file| file.take(SIZE_MAX + 1).read_to_end(&mut bytes));
     match result {
         Err(source) => Err(FileError::Read {
             path: path.to_owned(),

@@ -9,6 +9,7 @@ pub mod library;
 pub mod lut;
 #[cfg_attr(not(feature = "video"), path = "mp4_not_built.rs")]
 mod mp4;
+mod own;
 pub mod picture;
 pub mod preset;
 pub mod project;

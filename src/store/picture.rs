@@ -10,6 +10,7 @@ use png::text_metadata::ITXtChunk;
 use super::file::{self, FileError, Loaded};
 use super::project;
 use crate::document::Document;
+use crate::scene::resource;
 
 /// The keyword of the chunk.
 pub const KEYWORD: &str = "glossmith";
@@ -22,7 +23,7 @@ pub fn is_png(path: &Path) -> bool {
         let mut start = [0; SIGNATURE.len()];
         std::io::Read::read_exact(&mut file, &mut start).is_ok() && start == SIGNATURE
     };
-    File::open(path).is_ok_and(begins)
+    resource::open(path).is_ok_and(begins)
 }
 
 /// A PNG file's bytes: 8 bits of red, green, blue and alpha (not premultiplied) a pixel, row by row from the top, with a
@@ -57,11 +58,16 @@ pub fn png_bytes([width, height]: [u32; 2], rgba: &[u8], document_text: Option<&
 /// # Errors
 /// [`FileError`] where the file cannot be read, is no PNG, or carries no document; what is wrong with the document.
 pub fn load_picture_document(path: &Path) -> Result<Loaded<Document>, FileError> {
-    let file = File::open(path).map_err(|source| FileError::Read {
+    project::parse_document(path, document_text_in(path)?.as_bytes())
+}
+
+/// The text of the document in a picture.
+pub(super) fn document_text_in(path: &Path) -> Result<String, FileError> {
+    let file = resource::open(path).map_err(|source| FileError::Read {
         path: path.to_owned(),
         source,
     })?;
-    parse_picture_document(path, BufReader::new(file))
+    text_in(path, BufReader::new(file))
 }
 
 /// The document in a picture's contents. Relative file names are relative to `path`'s folder.
@@ -69,6 +75,10 @@ pub fn load_picture_document(path: &Path) -> Result<Loaded<Document>, FileError>
 /// # Errors
 /// As [`load_picture_document`].
 pub fn parse_picture_document(path: &Path, contents: impl BufRead + Seek) -> Result<Loaded<Document>, FileError> {
+    project::parse_document(path, text_in(path, contents)?.as_bytes())
+}
+
+fn text_in(path: &Path, contents: impl BufRead + Seek) -> Result<String, FileError> {
     let damaged = |error: png::DecodingError| FileError::Content {
         path: path.to_owned(),
         reason: format!("not a whole PNG picture ({error}); save it again where it came from"),
@@ -89,7 +99,6 @@ pub fn parse_picture_document(path: &Path, contents: impl BufRead + Seek) -> Res
             path: path.to_owned(),
             reason: format!("the document in the picture is damaged ({error}); open its project instead"),
         })
-        .and_then(|text| project::parse_document(path, text.as_bytes()))
 }
 
 #[cfg(test)]

@@ -4,12 +4,13 @@
 //! "material" the keys of [`PARAMETERS`]; those left out have their defaults. What this version does not know is kept
 //! and written back.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
 use serde_json::{Map, Value as Json, json};
 
 use super::file::{self, FileError, Loaded};
+use super::own;
 use super::replace::save_atomically;
 use crate::document::parameter::nearest_key;
 use crate::document::{
@@ -82,7 +83,25 @@ pub fn find(name_or_path: &str) -> Result<Loaded<MaterialSettings>, FileError> {
             known: known.join(", "),
         });
     }
-    load_material(path)
+    open_material(path, &file::read(path)?)
+}
+
+/// The material in a file's contents that may come from elsewhere: what lies outside of its surroundings is only named by the
+/// user's own.
+///
+/// # Errors
+/// As [`parse_material`], and [`FileError::Outside`].
+pub(super) fn open_material(path: &Path, bytes: &[u8]) -> Result<Loaded<MaterialSettings>, FileError> {
+    let mut loaded = parse_material(path, bytes)?;
+    let mark = file::object(path, bytes)?.shift_remove(own::KEY);
+    let allowed = file::check_reach(path, mark.as_ref(), &named(&loaded.value))?;
+    loaded.warnings.extend(allowed);
+    Ok(loaded)
+}
+
+/// The files that a material names.
+fn named(material: &MaterialSettings) -> Vec<PathBuf> {
+    material.own.iter().map(|(_, texture)| texture.file.clone()).collect()
 }
 
 /// The material in a file.
@@ -187,10 +206,12 @@ pub fn save_material(path: &Path, material: &MaterialSettings) -> Result<(), Fil
 /// The contents of a material's file at `path`.
 pub fn material_text(path: &Path, material: &MaterialSettings) -> String {
     let mut material = material.clone();
+    let mark = own::mark(path, &named(&material));
     material.own.map_files(file::seen_from(path));
     let mut object = Map::new();
     object.insert(MARK.to_owned(), json!(VERSION));
     object.extend(Map::from(material));
+    object.extend(mark.map(|mark| (own::KEY.to_owned(), mark.into())));
     file::text(&object)
 }
 
@@ -237,6 +258,7 @@ impl TryFrom<Map<String, Json>> for MaterialSettings {
             }
         }
         object.shift_remove(MARK);
+        object.shift_remove(own::KEY);
         material.extra = values;
         material.file_extra = object;
         Ok(material)

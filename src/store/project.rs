@@ -2,13 +2,14 @@
 //! has its default; what this version does not know is kept and written back. Files inside the project's folder are
 //! named relative to it, so that the folder can be moved.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value as Json, json};
 
 use super::file::{self, FileError, Loaded};
-use super::preset;
 use super::replace::save_atomically;
+use super::{own, preset};
 use crate::document::Document;
 use crate::scene::ModelSource;
 use crate::scene::environment::EnvironmentSource;
@@ -16,6 +17,8 @@ use crate::scene::texture::{OwnTexture, TextureTarget};
 
 /// The version of the format.
 pub const VERSION: u64 = 1;
+/// Slots before which older files may put a picture: each makes the materials before it.
+const SLOTS_MAX: usize = 1 << 12;
 /// The key of the version, by which such a file is known.
 pub const MARK: &str = "glossmith-document";
 
@@ -25,6 +28,29 @@ pub const MARK: &str = "glossmith-document";
 /// What is wrong with the file.
 pub fn load_document(path: &Path) -> Result<Loaded<Document>, FileError> {
     parse_document(path, &file::read(path)?)
+}
+
+/// The document in a project's contents that may come from elsewhere: what lies outside of its surroundings is only named by
+/// the user's own.
+///
+/// # Errors
+/// As [`parse_document`], and [`FileError::Outside`].
+pub(super) fn open_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, FileError> {
+    let mut loaded = parse_document(path, bytes)?;
+    let mark = file::object(path, bytes)?.shift_remove(own::KEY);
+    let allowed = file::check_reach(path, mark.as_ref(), &named(&loaded.value))?;
+    loaded.warnings.extend(allowed);
+    Ok(loaded)
+}
+
+/// The files that a document names.
+fn named(document: &Document) -> Vec<PathBuf> {
+    let files = RefCell::new(Vec::new());
+    map_paths(&mut document.clone(), |path| {
+        files.borrow_mut().push(path.to_owned());
+        path.to_owned()
+    });
+    files.into_inner()
 }
 
 /// The document in a project file's contents. Relative file names are relative to `path`'s folder.
@@ -47,6 +73,7 @@ pub fn parse_document(path: &Path, bytes: &[u8]) -> Result<Loaded<Document>, Fil
     document.check().map_err(|error| content(error.to_string()))?;
     document.extra = unknown_part(&object, &known_part(&document).map_err(content)?);
     document.extra.shift_remove(MARK);
+    document.extra.shift_remove(own::KEY);
     for (slot, file) in pictures {
         let texture = OwnTexture::of(file);
         document
@@ -79,8 +106,7 @@ fn pictures_of_slots(object: &mut Map<String, Json>) -> Vec<(usize, PathBuf)> {
         return Vec::new();
     };
     let picture = |picture: &Json| Some((picture["slot"].as_u64()? as usize, picture["file"].as_str()?.into()));
-    // A model has no more slots.
-    let is_meant = |(slot, _): &(usize, PathBuf)| *slot < 1 << 16;
+    let is_meant = |(slot, _): &(usize, PathBuf)| *slot < SLOTS_MAX;
     pictures.iter().filter_map(picture).filter(is_meant).collect()
 }
 
@@ -99,14 +125,30 @@ fn document_from_json(object: &Map<String, Json>) -> Result<Document, String> {
 /// # Errors
 /// [`FileError::Write`]; the old file is then untouched.
 pub fn save_document(path: &Path, document: &Document) -> Result<(), FileError> {
-    save_atomically(path, document_text(path, document)?.as_bytes())
+    save_atomically(path, own_text(path, document)?.as_bytes())
 }
 
-/// The contents of a document's file at `path`.
+/// The contents of a document's file at `path`, with the mark of the user's own where it names files elsewhere.
+///
+/// # Errors
+/// As [`document_text`].
+pub fn own_text(path: &Path, document: &Document) -> Result<String, FileError> {
+    let mut object = document_object(path, document)?;
+    if let Some(mark) = own::mark(path, &named(document)) {
+        object.insert(own::KEY.to_owned(), mark.into());
+    }
+    Ok(file::text(&object))
+}
+
+/// The contents of a document's file at `path`, the same whoever saves it.
 ///
 /// # Errors
 /// [`FileError::Content`] for file names that are no Unicode.
 pub fn document_text(path: &Path, document: &Document) -> Result<String, FileError> {
+    Ok(file::text(&document_object(path, document)?))
+}
+
+fn document_object(path: &Path, document: &Document) -> Result<Map<String, Json>, FileError> {
     let mut document = document.clone();
     map_paths(&mut document, file::seen_from(path));
     let content = |reason: String| FileError::Content {
@@ -127,7 +169,7 @@ pub fn document_text(path: &Path, document: &Document) -> Result<String, FileErr
     object.insert(MARK.to_owned(), json!(VERSION));
     object.extend(known);
     add_unknown(&mut object, &document.extra);
-    Ok(file::text(&object))
+    Ok(object)
 }
 
 /// The document as JSON, `extra` left out. By way of text, so that an f32 is written with no more digits than it has.

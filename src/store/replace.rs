@@ -28,7 +28,8 @@ pub fn save_atomically(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
 /// As [`save_atomically`].
 pub fn save_by(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<(), FileError> {
     let target = target_of(path);
-    let saved = Growing::beside(&target).and_then(|growing| {
+    let saved = check_target(&target).and_then(|()| Growing::beside(&target));
+    let saved = saved.and_then(|growing| {
         let mut file = BufWriter::new(&growing.file);
         write(&mut file)?;
         file.flush()?;
@@ -43,7 +44,8 @@ pub fn save_by(path: &Path, write: impl FnOnce(&mut BufWriter<&File>) -> io::Res
 /// # Errors
 /// As [`save_atomically`].
 pub fn check_saving(path: &Path) -> Result<(), FileError> {
-    let growing = Growing::beside(&target_of(path));
+    let target = target_of(path);
+    let growing = check_target(&target).and_then(|()| Growing::beside(&target));
     growing.map(drop).map_err(cannot_write(path))
 }
 
@@ -72,6 +74,15 @@ fn cannot_write(path: &Path) -> impl FnOnce(io::Error) -> FileError {
 /// The file itself, where the path is a link.
 fn target_of(path: &Path) -> PathBuf {
     fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())
+}
+
+/// Devices, pipes and folders are not replaced: programs rely on them.
+fn check_target(target: &Path) -> io::Result<()> {
+    match fs::metadata(target) {
+        Ok(found) if found.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        Ok(found) if !found.is_file() => Err(io::Error::other("a device or a pipe, which is not replaced")),
+        _ => Ok(()),
+    }
 }
 
 /// A hidden file with contents to come; removed unless it takes another's place.

@@ -1,7 +1,5 @@
 //! Views of lobes: their numbers against known ones, their files.
 
-use std::path::Path;
-
 use glossmith::optics::curve::Curve;
 use glossmith::optics::lobe::model::{LobeModel, NORMAL, view_direction};
 use glossmith::optics::lobe::{Horizon, Lobe, lobe_sample};
@@ -162,8 +160,9 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
             );
         }
         let [png, svg] = ["png", "svg"].map(|ending| folder.path().join(format!("{}.{ending}", kind.name())));
-        lobe_view_file(&png, &view).unwrap();
-        lobe_view_file(&svg, &view).unwrap();
+        for path in [&png, &svg] {
+            std::fs::write(path, lobe_view_file(path, &view).unwrap()).unwrap();
+        }
         let picture = image::open(&png).unwrap().to_rgb8();
         let spread = |pixel: &image::Rgb<u8>| {
             let [r, g, b] = pixel.0;
@@ -178,11 +177,6 @@ fn csv_has_its_columns_and_every_view_is_drawn() {
             kind.name()
         );
     }
-    let error = lobe_view_file(
-        Path::new("/no such folder/x.png"),
-        &lobe_view(ViewKind::Polar, &lobes, &[0.0]),
-    );
-    assert!(error.unwrap_err().to_string().contains("/no such folder/x.png"));
 }
 
 #[test]

@@ -200,7 +200,13 @@ impl App {
             {
                 self.put_pictures(&[path]);
             }
-            Err(error) => self.say(Level::Error, error.to_string()),
+            Err(error) => {
+                self.say(Level::Error, error.to_string());
+                if let ExchangeError::File(FileError::Outside { path, files }) = error {
+                    self.unsaved.outside.ask(files);
+                    self.unsaved.outside.named_by = Some(path);
+                }
+            }
         }
         self.awaited = self.awaited.saturating_sub(1);
     }

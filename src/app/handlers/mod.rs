@@ -8,6 +8,7 @@ mod export;
 pub(super) mod files;
 mod library;
 pub(super) mod models;
+mod outside;
 mod queue;
 mod recovery;
 mod snapshots;

@@ -62,8 +62,9 @@ impl App {
         }
     }
 
-    /// Shows the question where there is one.
+    /// Shows the questions where there are any.
     pub(in crate::app) fn show_question(&mut self, ctx: &egui::Context) {
+        self.show_outside(ctx);
         let name = self.files.project_name();
         let Some(question) = &mut self.unsaved.question else {
             return;

@@ -4,6 +4,7 @@ pub(super) mod dialogs;
 pub(super) mod export;
 pub(super) mod import;
 pub(super) mod menu;
+pub(super) mod outside;
 pub(super) mod palette;
 pub(super) mod recovery;
 pub mod status;

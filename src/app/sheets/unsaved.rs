@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use egui::Ui;
 
+use super::outside::Outside;
 use crate::app::kit::{theme, widgets};
 use crate::document::Document;
 use crate::store::Loaded;
@@ -28,7 +29,7 @@ impl Then {
     }
 }
 
-/// The question that is open, and what waits for a file to be saved.
+/// The questions that are open, and what waits for a file to be saved.
 #[derive(Default)]
 pub(in crate::app) struct Unsaved {
     pub(in crate::app) question: Option<Question>,
@@ -37,6 +38,8 @@ pub(in crate::app) struct Unsaved {
     pub(in crate::app) may_close: bool,
     /// The question whether to give renders in the queue up is open.
     pub(in crate::app) asks_about_queue: bool,
+    /// What files name elsewhere.
+    pub(in crate::app) outside: Outside,
     /// That was answered with yes.
     pub(in crate::app) gives_queue_up: bool,
 }
@@ -57,7 +60,7 @@ pub(in crate::app) enum Answer {
 impl Unsaved {
     /// Whether an answer is waited for.
     pub(in crate::app) fn is_open(&self) -> bool {
-        self.question.is_some() || self.asks_about_queue
+        self.question.is_some() || self.asks_about_queue || !self.outside.files.is_empty()
     }
 }
 

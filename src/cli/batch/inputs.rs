@@ -77,7 +77,7 @@ impl Inputs {
     }
 
     /// A file's contents, or those of a folder's files.
-    fn file(&mut self, path: &Path) -> anyhow::Result<()> {
+    pub(super) fn file(&mut self, path: &Path) -> anyhow::Result<()> {
         let told = || format!("{}: cannot be read; check the path and its permissions", path.display());
         if path.is_dir() {
             let entries: std::io::Result<Vec<_>> = std::fs::read_dir(path).with_context(told)?.collect();

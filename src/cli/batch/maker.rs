@@ -58,6 +58,9 @@ pub(super) struct Row {
     /// The hash of what it was made of.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) hash: Option<String>,
+    /// The hash of its files: one that was damaged since is made anew. Records of older versions have none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) files_hash: Option<String>,
     /// The numbers of the first sample and the one after the last, of a part.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) samples: Option<[u32; 2]>,
@@ -83,6 +86,7 @@ impl Row {
             status,
             files: Vec::new(),
             hash: None,
+            files_hash: None,
             samples: None,
             samples_per_pixel: None,
             render_seconds: None,
@@ -191,7 +195,11 @@ impl<'a> Maker<'a> {
         let row = Row::read(&self.record(wanted))?;
         let is_same = row.hash.as_ref() == Some(&wanted.hash);
         let files = self.files(wanted);
-        (is_same && files.iter().all(|file| file.is_file())).then_some(Row {
+        let is_whole = || match &row.files_hash {
+            Some(known) => hash_of(&files).is_ok_and(|hash| hash == *known),
+            None => files.iter().all(|file| file.is_file()),
+        };
+        (is_same && is_whole()).then_some(Row {
             number: wanted.number,
             status: Status::Kept,
             files,
@@ -276,7 +284,8 @@ impl<'a> Maker<'a> {
     }
 
     /// The record last: what has one is done.
-    fn finish(&self, wanted: &Wanted<'_>, row: Row) -> anyhow::Result<Row> {
+    fn finish(&self, wanted: &Wanted<'_>, mut row: Row) -> anyhow::Result<Row> {
+        row.files_hash = Some(hash_of(&row.files)?);
         let text = serde_json::to_string_pretty(&row)? + "\n";
         save_atomically(&self.record(wanted), text.as_bytes())?;
         Ok(row)
@@ -351,6 +360,13 @@ impl<'a> Maker<'a> {
         parts.sort_by_key(|([from, to], _)| (*from, std::cmp::Reverse(*to)));
         Ok(parts)
     }
+}
+
+/// The hash of files' contents.
+fn hash_of(files: &[PathBuf]) -> anyhow::Result<String> {
+    let mut contents = Inputs::new();
+    files.iter().try_for_each(|file| contents.file(file))?;
+    Ok(contents.hash())
 }
 
 /// Takes a part of the samples.

@@ -17,6 +17,7 @@ use self::maker::{Maker, Row, Status};
 use super::answer::{Destination, Lines};
 use super::{PartialFailure, parse};
 use crate::render::EngineChoice;
+use crate::say::say;
 use crate::store::replace::save_atomically;
 
 /// Arguments of `glossmith batch`.
@@ -133,7 +134,7 @@ pub fn run(arguments: &BatchArguments) -> anyhow::Result<()> {
             path,
             template::text(path, &file, all.len(), arguments.slices).as_bytes(),
         )?;
-        eprintln!(
+        say!(
             "wrote {}: {} pictures, {} tasks each",
             path.display(),
             all.len(),
@@ -217,8 +218,8 @@ fn tell(row: &Row, lines: &mut Lines, count: usize) -> anyhow::Result<()> {
         ..
     } = row;
     match &row.error {
-        Some(error) => eprintln!("{number} of {count}, {picture}: {error}"),
-        None => eprintln!("{number} of {count}, {picture}: {}", status.word()),
+        Some(error) => say!("{number} of {count}, {picture}: {error}"),
+        None => say!("{number} of {count}, {picture}: {}", status.word()),
     }
     Ok(())
 }

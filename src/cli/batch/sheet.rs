@@ -13,6 +13,7 @@ use crate::document::ViewSettings;
 use crate::job::film::Image;
 use crate::plot::{PictureSheet, write_picture_sheet};
 use crate::render::display::display;
+use crate::say::say;
 use crate::store::picture::png_bytes;
 use crate::store::replace::{save_atomically, save_by};
 
@@ -73,7 +74,7 @@ pub(super) fn write(file: &BatchFile, pictures: &[Picture]) -> anyhow::Result<()
     save_by(&path, |file| write_picture_sheet(file, &sheet))?;
     let page = folder.join(format!("{SHEET}.html"));
     save_atomically(&page, html(folder, &title, pictures).as_bytes())?;
-    eprintln!("wrote {} and {}", path.display(), page.display());
+    say!("wrote {} and {}", path.display(), page.display());
     Ok(())
 }
 

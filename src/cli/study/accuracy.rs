@@ -15,6 +15,7 @@ use crate::plot::{NamedPoint, PictureSheet, PointPlot, point_plot_file, write_pi
 use crate::render::display::display;
 use crate::render::study::race::{Race, RaceOptions, Runner, race};
 use crate::render::{EngineChoice, Session};
+use crate::say::{put, say};
 use crate::store::replace::save_by;
 
 /// Those that take part where none are named.
@@ -84,11 +85,15 @@ pub(super) fn run(arguments: &AccuracyArguments) -> anyhow::Result<()> {
 }
 
 fn print(race: &Race) {
-    println!(
+    put!(
         "{} on {}, {} x {}, {} s each",
-        race.machine.engine, race.machine.adapter, race.width, race.height, race.seconds
+        race.machine.engine,
+        race.machine.adapter,
+        race.width,
+        race.height,
+        race.seconds
     );
-    println!(
+    put!(
         "  time to {} %   bias      error     technique (* none is both faster and less biased)",
         100.0 * race.noise
     );
@@ -103,7 +108,7 @@ fn print(race: &Race) {
         } else {
             format!("<{:.2} %", 100.0 * runner.bias.high)
         };
-        println!(
+        put!(
             "{mark} {:>11.3} s   {bias:8}  {:6.2} %  {}",
             runner.time_to_noise,
             100.0 * runner.error.value,
@@ -168,7 +173,7 @@ fn write(common: &CommonArguments, document: &Document, race: &Race) -> anyhow::
         save_by(&path, |file| {
             write_picture_sheet(file, &PictureSheet { title, pictures })
         })?;
-        eprintln!("wrote {}", path.display());
+        say!("wrote {}", path.display());
         anyhow::Ok(())
     };
     let title = format!("After {} s each", race.seconds);

@@ -7,6 +7,7 @@ use super::{Bar, CacheArguments, CommonArguments, digits};
 use crate::plot::line_plot_file;
 use crate::plot::lobe_view::{Axis, LinePlot, Series};
 use crate::render::study::{ConvergencePoint, ConvergenceReport, DenoisedPoint, convergence};
+use crate::say::put;
 
 /// Longest time for the reference where none is given, seconds; the same quickly.
 const REFERENCE_SECONDS: f64 = 60.0;
@@ -70,7 +71,7 @@ pub(super) fn run(arguments: &ConvergenceArguments) -> anyhow::Result<()> {
     folder.csv(&head, report.points.iter().map(row))?;
     folder.plots(&plot(&report), line_plot_file)?;
     if let (true, Some(last), Some(slope)) = (common.answer.has_words(), report.points.last(), report.slope) {
-        println!(
+        put!(
             "error {:.3} % ({:.3} to {:.3}) after {:.2} s; against a reference {:.3} %; it falls with the time to the \
              power of {slope:.2}",
             100.0 * last.noise,

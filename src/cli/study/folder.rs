@@ -7,6 +7,8 @@ use serde::Serialize;
 
 use crate::cli::answer::Answer;
 use crate::plot::PlotError;
+use crate::say::say;
+use crate::store::replace::save_atomically;
 
 /// The folder that a study writes into, and the name that its files begin with.
 pub(super) struct Folder<'a> {
@@ -31,7 +33,7 @@ pub(super) fn prepare(path: &Path, answer: &Answer) -> anyhow::Result<()> {
 impl Folder<'_> {
     /// The numbers, whole; they are the answer, too.
     pub(super) fn json(&self, value: &impl Serialize, answer: &Answer) -> anyhow::Result<()> {
-        self.write("json", serde_json::to_string_pretty(value)? + "\n")?;
+        self.write("json", (serde_json::to_string_pretty(value)? + "\n").as_bytes())?;
         answer.write(value)
     }
 
@@ -42,28 +44,24 @@ impl Folder<'_> {
             let cells: Vec<String> = row.iter().map(|cell| quoted(cell)).collect();
             text += &(cells.join(",") + "\n");
         }
-        self.write("csv", text)
+        self.write("csv", text.as_bytes())
     }
 
     /// A plot, as .svg and as .png.
-    pub(super) fn plots<P>(&self, plot: &P, write: fn(&Path, &P) -> Result<(), PlotError>) -> anyhow::Result<()> {
-        for ending in ["svg", "png"] {
-            let path = self.file(ending);
-            write(&path, plot)?;
-            eprintln!("wrote {}", path.display());
-        }
-        Ok(())
+    pub(super) fn plots<P>(&self, plot: &P, draw: fn(&Path, &P) -> Result<Vec<u8>, PlotError>) -> anyhow::Result<()> {
+        ["svg", "png"]
+            .into_iter()
+            .try_for_each(|ending| self.write(ending, &draw(&self.file(ending), plot)?))
     }
 
     fn file(&self, ending: &str) -> PathBuf {
         self.path.join(format!("{}.{ending}", self.name))
     }
 
-    fn write(&self, ending: &str, text: String) -> anyhow::Result<()> {
+    fn write(&self, ending: &str, contents: &[u8]) -> anyhow::Result<()> {
         let path = self.file(ending);
-        std::fs::write(&path, text)
-            .with_context(|| format!("{}: could not be written; is there room?", path.display()))?;
-        eprintln!("wrote {}", path.display());
+        save_atomically(&path, contents)?;
+        say!("wrote {}", path.display());
         Ok(())
     }
 }

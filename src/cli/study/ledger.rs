@@ -8,6 +8,7 @@ use super::folder::Folder;
 use super::{Bar, CommonArguments, digits};
 use crate::plot::{BarPlot, bar_plot_file};
 use crate::render::study::ledger::{Entry, Ledger, LedgerOptions, ledger};
+use crate::say::put;
 
 /// Arguments of `glossmith study ledger`.
 #[derive(Debug, Args)]
@@ -73,13 +74,17 @@ pub(super) fn run(arguments: &LedgerArguments) -> anyhow::Result<()> {
 }
 
 fn print(found: &Ledger) {
-    println!(
+    put!(
         "{} on {}, {} x {}: {:.2} ms for one sample of every pixel",
-        found.machine.engine, found.machine.adapter, found.width, found.height, found.ms_per_sample
+        found.machine.engine,
+        found.machine.adapter,
+        found.width,
+        found.height,
+        found.ms_per_sample
     );
-    println!("{:>9} {:>7}", "ms", "share");
+    put!("{:>9} {:>7}", "ms", "share");
     for entry in &found.entries {
-        println!(
+        put!(
             "{:>9.3} {:>5.1} %  {}",
             entry.ms,
             100.0 * entry.share_of_frame,

@@ -11,6 +11,7 @@ use crate::cli::answer::Answer;
 use crate::plot::{BarPlot, bar_plot_file};
 use crate::render::EngineChoice;
 use crate::render::study::sampling::{PAPER, SAMPLES, SamplingOptions, SamplingReport, SamplingRow, sampling};
+use crate::say::put;
 
 /// The picture of `--quick`.
 const QUICK_SIZE: [u32; 2] = [48, 32];
@@ -103,26 +104,33 @@ fn plot(report: &SamplingReport) -> BarPlot {
 }
 
 fn print(report: &SamplingReport) {
-    println!(
+    put!(
         "{} on {}, {} x {}",
-        report.machine.engine, report.machine.adapter, report.width, report.height
+        report.machine.engine,
+        report.machine.adapter,
+        report.width,
+        report.height
     );
     for (index, samples) in SAMPLES.into_iter().enumerate() {
-        println!("\n{samples} a pixel, ms              alone  with rays  whole frame  against geometric/smooth");
+        put!("\n{samples} a pixel, ms              alone  with rays  whole frame  against geometric/smooth");
         for row in report.rows.iter().filter(|row| row.samples == samples) {
-            println!(
+            put!(
                 "{:24} {:9.3}  {:9.3}  {:11.2}  {:.2}",
-                row.name, row.sampling_ms, row.with_rays_ms, row.frame_ms, row.against_geometric
+                row.name,
+                row.sampling_ms,
+                row.with_rays_ms,
+                row.frame_ms,
+                row.against_geometric
             );
         }
-        println!("{:24} {:9.3}", "random numbers", report.numbers_ms[index]);
+        put!("{:24} {:9.3}", "random numbers", report.numbers_ms[index]);
         if report.measured_share[index] < 1.0 {
-            println!(
+            put!(
                 "measured on {:.1} % of the rows, and scaled",
                 100.0 * report.measured_share[index]
             );
         }
     }
-    println!();
-    report.verdict.iter().for_each(|line| println!("{line}"));
+    put!("");
+    report.verdict.iter().for_each(|line| put!("{line}"));
 }

@@ -149,11 +149,24 @@ impl Library {
                 return Self::load(&path);
             }
         }
-        // SAFETY: as in `load`.
-        match unsafe { libloading::Library::new(NAME) } {
+        match Self::of_system() {
             Ok(loaded) => Self::bind(loaded, Path::new(NAME)),
             Err(_) => Err(LibraryError::Missing),
         }
+    }
+
+    /// The library of the system, never one of the current folder, where what was downloaded may lie.
+    fn of_system() -> Result<libloading::Library, libloading::Error> {
+        // SAFETY: as in `load`.
+        #[cfg(not(windows))]
+        let loaded = unsafe { libloading::Library::new(NAME) };
+        #[cfg(windows)]
+        let loaded = {
+            use libloading::os::windows::{LOAD_LIBRARY_SEARCH_DEFAULT_DIRS, Library as Loaded};
+            // SAFETY: as in `load`.
+            unsafe { Loaded::load_with_flags(NAME, LOAD_LIBRARY_SEARCH_DEFAULT_DIRS) }.map(Into::into)
+        };
+        loaded
     }
 
     /// Loads the file.

@@ -5,6 +5,7 @@ use super::canvas::Canvas;
 use super::display_referred::Codes;
 use super::file::{Picture, Source, io};
 use crate::scene::gpu_picture::{self, Face, Refusal, Texels};
+use crate::scene::resource;
 
 /// The longest side of a cube's face that is of use: four of them are as wide as the widest map.
 const FACE_MAX: u32 = super::MAX_WIDTH / 4;
@@ -12,7 +13,7 @@ const FACE_MAX: u32 = super::MAX_WIDTH / 4;
 /// Reads a cube as a strip of its six faces, a flat picture as it is.
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
-    let bytes = io(path, std::fs::read(path))?;
+    let bytes = io(path, resource::read(path, resource::BYTES_MAX))?;
     if !gpu_picture::is_container(&bytes) {
         return Err(EnvironmentError::WrongContent {
             path: path.to_owned(),

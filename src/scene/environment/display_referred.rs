@@ -12,6 +12,7 @@ use crate::optics::vector::Vec3;
 use crate::panics::contained;
 use crate::scene::float_tiff;
 use crate::scene::picture::decode_image;
+use crate::scene::resource;
 
 /// What whole numbers stand for.
 pub(super) struct Codes {
@@ -50,7 +51,7 @@ impl Codes {
 /// Reads a panorama. Whole numbers are sRGB codes or linear, as the source's encoding says; numbers with a point are linear.
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
-    let bytes = io(path, std::fs::read(path))?;
+    let bytes = io(path, resource::read(path, resource::BYTES_MAX))?;
     let damaged = |detail: String| EnvironmentError::Damaged {
         path: path.to_owned(),
         detail,

@@ -4,7 +4,6 @@
 //! files of one part with scan lines. Y is the luminance, RY = (R − Y) / Y, BY = (B − Y) / Y (OpenEXR, "Technical
 //! Introduction", Luminance/Chroma Images).
 
-use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
@@ -21,10 +20,11 @@ use super::EnvironmentError;
 use super::file::{Picture, io};
 use super::open_exr::{exr_error, space, window};
 use crate::optics::primaries::REC709;
+use crate::scene::resource;
 
 /// Reads a file whose chroma is stored more coarsely than its luminance.
 pub(super) fn read(path: &Path) -> Result<Picture, EnvironmentError> {
-    let mut file = PeekRead::new(BufReader::new(io(path, File::open(path))?));
+    let mut file = PeekRead::new(BufReader::new(io(path, resource::open(path))?));
     let meta_data = read_header(&mut file).map_err(|error| exr_error(path, error))?;
     let header = &meta_data.headers[0];
     let (mut canvas, offset) = window(path, header)?;

@@ -1,6 +1,5 @@
 //! OpenEXR files, by the `exr` crate.
 
-use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
@@ -22,6 +21,7 @@ use super::file::{Picture, Source, io};
 use super::{EnvironmentError, luminance_chroma};
 use crate::optics::primaries::{Chromaticities, REC709};
 use crate::panics::contained;
+use crate::scene::resource;
 
 const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 /// The bit of the version field that says that some part is deep.
@@ -57,7 +57,7 @@ pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
 fn read_guarded(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
     let file_bytes = check_preamble(path)?;
-    let file = BufReader::new(io(path, File::open(path))?);
+    let file = BufReader::new(io(path, resource::open(path))?);
     let reader = match Reader::read_from_buffered(file, false) {
         Err(ExrError::NotSupported(what)) if what.contains("subsampling") => return luminance_chroma::read(path),
         result => result.map_err(|error| exr_error(path, error))?,
@@ -103,7 +103,7 @@ pub(in crate::scene) fn space(header: &Header) -> Chromaticities {
 
 /// Looks at the first eight bytes, which the crate's errors do not tell apart; returns the length of the file.
 fn check_preamble(path: &Path) -> Result<u64, EnvironmentError> {
-    let mut file = io(path, File::open(path))?;
+    let mut file = io(path, resource::open(path))?;
     let length = io(path, file.metadata())?.len();
     let mut preamble = Vec::new();
     io(path, file.by_ref().take(8).read_to_end(&mut preamble))?;

@@ -10,6 +10,7 @@ use image::{ImageDecoder, ImageError};
 use super::EnvironmentError;
 use super::canvas::Canvas;
 use super::file::{Picture, Source, io};
+use crate::scene::resource;
 
 /// Lines after which those who wait hear of it.
 const LINES_A_STEP: u32 = 256;
@@ -24,7 +25,7 @@ const RGB_FROM_XYZ: [[f32; 3]; 3] = [
 /// Reads a file line by line, so that memory grows with the lines that are really there and a cut is found where it is.
 pub(super) fn read(source: Source<'_>) -> Result<Picture, EnvironmentError> {
     let path = source.path;
-    let bytes = io(path, std::fs::read(path))?;
+    let bytes = io(path, resource::read(path, resource::BYTES_MAX))?;
     if bytes.is_empty() {
         return Err(EnvironmentError::Truncated {
             path: path.to_owned(),

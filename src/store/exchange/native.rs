@@ -6,7 +6,7 @@ use super::report::{Entry, MaterialReport};
 use super::{ExchangeError, Format, ReadOptions, Subject, Written};
 use crate::store::file::{self, Opened};
 use crate::store::preset::material_text;
-use crate::store::project::document_text;
+use crate::store::project::own_text;
 
 /// Materials, projects and pictures with a document inside.
 pub struct Native;
@@ -18,7 +18,7 @@ impl Format for Native {
             return Err(ExchangeError::NotWritten { path: path.to_owned() });
         }
         let text = match &subject.document {
-            Some(document) if subject.materials.len() > 1 => document_text(path, document)?,
+            Some(document) if subject.materials.len() > 1 => own_text(path, document)?,
             _ => material_text(path, subject.only(path)?),
         };
         let report = |material| MaterialReport::of(material, vec![Entry::exact("everything")]);

@@ -14,6 +14,7 @@ use super::{ExchangeError, Format, ReadOptions, Subject, Written, carried, shown
 use crate::document::ImportLobe;
 use crate::document::of_model::{import_report, materials_of};
 use crate::document::{Document, MaterialSettings};
+use crate::scene::resource;
 use crate::scene::texture::texture_mean;
 use crate::scene::{Fate, Model, ModelSource, Slot, Wrap, gltf_from_widths, load, load_with};
 use crate::store::picture::png_bytes;
@@ -184,7 +185,7 @@ fn losses_of(model: &Model, lobe: ImportLobe) -> Vec<Entry> {
 
 /// The JSON of a file; null if it can't be read.
 fn document_json(path: &Path) -> Json {
-    let Ok(bytes) = std::fs::read(path) else {
+    let Ok(bytes) = resource::read(path, u64::MAX - 1) else {
         return Json::Null;
     };
     let json = match bytes.strip_prefix(b"glTF") {

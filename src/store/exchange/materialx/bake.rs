@@ -66,6 +66,8 @@ fn program() -> Option<PathBuf> {
 fn in_path(name: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     std::env::split_paths(&path)
+        // A relative folder is seen from the current one, where what was downloaded may lie.
+        .filter(|folder| folder.is_absolute())
         .map(|folder| folder.join(name))
         .find(|path| path.is_file())
 }

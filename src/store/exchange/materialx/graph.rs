@@ -6,6 +6,7 @@ use roxmltree::Node;
 
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::Vec3;
+use crate::scene::resource::Reach;
 use crate::scene::texture::mean_of_file;
 
 /// Deepest chain of nodes that is followed.
@@ -134,7 +135,7 @@ struct Graph<'p> {
 impl Graph<'_> {
     fn input(&self, input: Node<'_, '_>, depth: usize) -> Result<Option<Worth>, Unknown> {
         if depth > DEPTH_MAX {
-            return Err(Unknown::missing("a graph that goes in a circle"));
+            return Err(Unknown::missing("a graph that goes in a circle, or is too deep"));
         }
         if let Some(value) = input.attribute("value") {
             return Ok(value_of(input, value).map(Worth::of));
@@ -203,7 +204,11 @@ impl Graph<'_> {
             .collect();
         let prefix: String = prefixes.into_iter().rev().collect();
         let file = PathBuf::from(format!("{prefix}{name}"));
-        let mean = mean_of_file(&self.folder.join(&file));
+        let path = self.folder.join(&file);
+        let reached = Reach::of_folder(self.folder).check(&path);
+        let mean = reached
+            .map_err(|error| error.to_string())
+            .and_then(|()| mean_of_file(&path));
         let mean = mean.map_err(|reason| Unknown::Missing(format!("{}: {reason}", file.display())))?;
         let is_encoded = colorspace(input).is_some_and(|space| space.starts_with("srgb"));
         let [r, g, b, a] = mean.codes;

@@ -2,9 +2,10 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use roxmltree::{Document, Node};
+use roxmltree::Node;
 
-use crate::store::exchange::xml::escaped;
+use crate::scene::resource::Reach;
+use crate::store::exchange::xml::{self, escaped};
 
 /// Most files that one document includes, those that these include among them.
 const FILES_MAX: usize = 256;
@@ -22,7 +23,7 @@ pub(super) fn whole_text(path: &Path, text: String) -> Result<String, String> {
 }
 
 fn expanded(path: &Path, text: String, files: &mut Vec<PathBuf>) -> Result<String, String> {
-    let document = Document::parse(&text).map_err(|error| error.to_string())?;
+    let document = xml::parse(&text)?;
     let includes = document.descendants().filter(is_include);
     let places: Vec<_> = includes
         .map(|node| (node.range(), node.attribute("href").unwrap_or_default().to_owned()))
@@ -62,10 +63,12 @@ fn included(path: &Path, name: &str, files: &mut Vec<PathBuf>) -> Result<String,
     if files.len() >= FILES_MAX {
         return Err(wrong(format!("there are more than {FILES_MAX} files")));
     }
+    let reach = Reach::of_folder(files[0].parent().unwrap_or(Path::new("")));
+    reach.check(&file).map_err(|error| wrong(error.to_string()))?;
     files.push(file.clone());
     let bytes = crate::store::file::read(&file).map_err(|error| error.to_string())?;
     let text = expanded(&file, String::from_utf8_lossy(&bytes).into_owned(), files).map_err(wrong)?;
-    let document = Document::parse(&text).map_err(|error| wrong(error.to_string()))?;
+    let document = xml::parse(&text).map_err(wrong)?;
     let folder = relative.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.map_or_else(String::new, |folder| format!("{}/", folder.display()));
     let root = document.root_element();

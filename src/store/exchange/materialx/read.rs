@@ -18,6 +18,7 @@ use crate::scene::widths_from_gltf;
 use crate::store::exchange::open_pbr::{NITS, widening};
 use crate::store::exchange::report::Entry;
 use crate::store::exchange::surface::Surface;
+use crate::store::exchange::xml;
 use crate::store::exchange::{ExchangeError, Format as _, ReadOptions, Subject, carried};
 
 /// Inputs that vary over the surface or have no meaning in one value: nothing of a graph is taken for them.
@@ -42,7 +43,7 @@ pub(super) fn read(path: &Path, options: ReadOptions) -> Result<Subject, Exchang
         reason,
     };
     let text = whole_text(path, String::from_utf8_lossy(&bytes).into_owned()).map_err(wrong)?;
-    let document = Document::parse(&text).map_err(|error| wrong(error.to_string()))?;
+    let document = xml::parse(&text).map_err(wrong)?;
     let root = document.root_element();
     if !root.has_tag_name("materialx") {
         return Err(wrong("it has no <materialx>".to_owned()));

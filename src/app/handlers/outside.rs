@@ -1,0 +1,39 @@
+//! What the window does about files that others name outside of their surroundings.
+
+use crate::app::App;
+use crate::scene::resource;
+
+impl App {
+    /// Asks once for all that was refused; what is allowed is remembered, and read.
+    pub(in crate::app) fn show_outside(&mut self, ctx: &egui::Context) {
+        let outside = &mut self.unsaved.outside;
+        outside.ask(resource::take_refused());
+        if outside.files.is_empty() {
+            outside.named_by = None;
+            return;
+        }
+        let mut answer = None;
+        let modal = egui::Modal::new(egui::Id::unique("outside")).show(ctx, |ui| {
+            answer = outside.show(ui);
+        });
+        if modal.should_close() {
+            answer = Some(false);
+        }
+        let Some(is_allowed) = answer else {
+            return;
+        };
+        let files = std::mem::take(&mut outside.files);
+        let named_by = outside.named_by.take();
+        if !is_allowed {
+            outside.denied.extend(files);
+            return;
+        }
+        resource::allow(&files);
+        match named_by {
+            Some(path) => {
+                self.open(path);
+            }
+            None => self.worker.reload(),
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! Files that other files name: which of them are read, and how.
+//!
+//! A file from a stranger may name what it likes. Read are regular files alone, and of these such as lie in the surroundings
+//! of the file that names them; others after the user has allowed them.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, ErrorKind, Read as _};
+use std::path::{Component, Path, PathBuf, Prefix};
+use std::sync::{Mutex, PoisonError};
+
+/// The most bytes of one file.
+pub(super) const BYTES_MAX: u64 = 4 << 30;
+
+/// What the user allows, and what was refused since that was last asked.
+static PERMITS: Mutex<Permits> = Mutex::new(Permits {
+    everything: false,
+    allowed: Vec::new(),
+    refused: Vec::new(),
+});
+
+struct Permits {
+    everything: bool,
+    allowed: Vec<PathBuf>,
+    refused: Vec<PathBuf>,
+}
+
+fn permits() -> std::sync::MutexGuard<'static, Permits> {
+    PERMITS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Files may name whatever they like, until the program ends.
+pub fn allow_everything() {
+    permits().everything = true;
+}
+
+/// Files may name these files.
+pub fn allow(files: &[PathBuf]) {
+    let mut permits = permits();
+    for file in files.iter().map(|file| real(file)) {
+        if !permits.allowed.contains(&file) {
+            permits.allowed.push(file);
+        }
+    }
+}
+
+/// The files that were allowed, as far as settings, which are text, can name them.
+pub fn allowed() -> Vec<PathBuf> {
+    let allowed = permits().allowed.clone();
+    allowed.into_iter().filter(|path| path.to_str().is_some()).collect()
+}
+
+/// The files that were refused since this was last asked.
+pub fn take_refused() -> Vec<PathBuf> {
+    std::mem::take(&mut permits().refused)
+}
+
+/// Opens a regular file. Devices and pipes, of which some never end and some never begin, are refused without waiting.
+///
+/// # Errors
+/// What the system says, or that it is no file.
+pub fn open(path: &Path) -> io::Result<File> {
+    let no_file = || io::Error::new(ErrorKind::InvalidInput, "no regular file");
+    // Opening a device may do something: it is asked before. What takes its place meanwhile is found out after.
+    if !path.metadata()?.is_file() {
+        return Err(no_file());
+    }
+    let mut options = OpenOptions::new();
+    options.read(true);
+    #[cfg(target_os = "linux")]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, libc::O_NONBLOCK | libc::O_NOCTTY);
+    let file = options.open(path)?;
+    if file.metadata()?.is_file() {
+        Ok(file)
+    } else {
+        Err(no_file())
+    }
+}
+
+/// The contents of a regular file of at most so many bytes.
+///
+/// # Errors
+/// What the system says, that it is no file, or that it is larger.
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let file = open(path)?;
+    let too_large = || io::Error::new(ErrorKind::FileTooLarge, format!("larger than {} MiB", most >> 20));
+    let length = file.metadata()?.len();
+    if length > most {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::with_capacity(length as usize);
+    match file.take(most + 1).read_to_end(&mut bytes)? as u64 {
+        read if read > most => Err(too_large()),
+        _ => Ok(bytes),
+    }
+}
+
+/// The surroundings of a file: the folder above its own, with all below.
+#[derive(Clone, Debug)]
+pub struct Reach(PathBuf);
+
+impl Reach {
+    /// That of the files in a folder.
+    pub fn of_folder(folder: &Path) -> Self {
+        let folder = match folder.as_os_str().is_empty() {
+            true => real(Path::new(".")),
+            false => real(folder),
+        };
+        // The root of a disk is nobody's surroundings.
+        let above = folder.parent().filter(|above| above.parent().is_some());
+        Self(above.map_or(folder.clone(), Path::to_owned))
+    }
+
+    /// Whether a file may be named; what may not is kept for [`take_refused`].
+    ///
+    /// # Errors
+    /// That it lies outside, with the remedy.
+    pub fn check(&self, path: &Path) -> io::Result<()> {
+        if self.has(path) {
+            return Ok(());
+        }
+        let mut permits = permits();
+        if !permits.refused.iter().any(|refused| refused == path) {
+            permits.refused.push(path.to_owned());
+        }
+        let why = format!(
+            "it lies outside of {}, and was not allowed (--allow-outside, or the window's question)",
+            self.0.display()
+        );
+        Err(io::Error::new(ErrorKind::PermissionDenied, why))
+    }
+
+    /// Whether a file lies within, or is allowed.
+    pub fn has(&self, path: &Path) -> bool {
+        let is_allowed = |permits: &Permits| permits.everything || permits.allowed.contains(&real(path));
+        is_allowed(&permits()) || self.encloses(path)
+    }
+
+    /// Whether a file lies within.
+    pub fn encloses(&self, path: &Path) -> bool {
+        // Another machine is not even asked.
+        !is_elsewhere(path) && real(path).starts_with(&self.0)
+    }
+}
+
+/// Whether a path names another machine or a device, as Windows has them.
+pub(super) fn is_elsewhere(path: &Path) -> bool {
+    let text = path.to_string_lossy();
+    let is_disk = |prefix: Prefix<'_>| matches!(prefix, Prefix::Disk(_) | Prefix::VerbatimDisk(_));
+    let is_local = path.components().all(|part| match part {
+        Component::Prefix(prefix) => is_disk(prefix.kind()),
+        _ => true,
+    });
+    !is_local || text.starts_with("//")
+}
+
+/// A path from the root without links and dots, as far as it is there.
+fn real(path: &Path) -> PathBuf {
+    if is_elsewhere(path) {
+        return path.to_owned();
+    }
+    if let Ok(found) = path.canonicalize() {
+        return found;
+    }
+    // What is not there can't be read, but a name that leads away may tell whether it is.
+    let mut named = PathBuf::new();
+    for part in std::path::absolute(path)
+        .unwrap_or_else(|_| path.to_owned())
+        .components()
+    {
+        match part {
+            Component::ParentDir => {
+                named.pop();
+            }
+            part => named.push(part),
+        }
+    }
+    let folder = named.parent().and_then(|folder| folder.canonicalize().ok());
+    match (folder, named.file_name()) {
+        (Some(folder), Some(name)) => folder.join(name),
+        _ => named,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surroundings_are_the_folder_above_and_what_is_below() {
+        let place = tempfile::tempdir().expect("a temporary folder");
+        let own = place.path().join("a/own");
+        std::fs::create_dir_all(&own).expect("made");
+        let reach = Reach::of_folder(&own);
+        for inside in ["x.png", "maps/x.png", "../x.png", "../b/x.png", "./../own/x.png"] {
+            assert!(reach.has(&own.join(inside)), "{inside}");
+        }
+        for outside in ["../../x.png", "/etc/passwd", "maps/../../../x.png", "//host/x.png"] {
+            assert!(!reach.has(&own.join(outside)), "{outside}");
+        }
+        let named = place.path().join("x.png");
+        std::fs::write(&named, b"x").expect("written");
+        assert!(reach.check(&own.join("../../x.png")).is_err());
+        assert!(take_refused().contains(&own.join("../../x.png")));
+        allow(std::slice::from_ref(&named));
+        assert!(reach.check(&own.join("../../x.png")).is_ok());
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink("/etc/passwd", own.join("link")).expect("a link");
+            assert!(!reach.has(&own.join("link")));
+        }
+    }
+
+    #[test]
+    fn devices_and_pipes_are_not_opened_and_what_is_large_is_not_read() {
+        let place = tempfile::tempdir().expect("a temporary folder");
+        let path = place.path().join("ten");
+        std::fs::write(&path, [0; 10]).expect("written");
+        assert_eq!(read(&path, 10).expect("a file").len(), 10);
+        assert!(read(&path, 9).is_err());
+        assert!(open(place.path()).is_err());
+        #[cfg(unix)]
+        {
+            let pipe = place.path().join("pipe");
+            let made = std::process::Command::new("mkfifo")
+                .arg(&pipe)
+                .status()
+                .expect("mkfifo");
+            assert!(made.success());
+            assert!(open(&pipe).is_err() && open(Path::new("/dev/zero")).is_err());
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! The mark by which files are known that this user saved here: they may name files anywhere, as their maker did.
+//!
+//! It is a hash of the names that lead away from the file, with a key that stays on this machine. Who changes a name does not
+//! have it.
+
+use std::hash::{BuildHasher as _, Hasher as _, RandomState};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use siphasher::sip128::{Hasher128 as _, SipHasher24};
+
+use super::file;
+
+/// The key under which the mark is kept.
+pub(super) const KEY: &str = "saved-by";
+/// The file of the user's key.
+const KEY_FILE: &str = "own-key";
+
+/// The mark of a file at `path` that names these files; none where all lie in its folder, or the system has no place for a key.
+pub(super) fn mark(path: &Path, named: &[PathBuf]) -> Option<String> {
+    let mut away: Vec<PathBuf> = named.iter().filter(|named| leads_away(path, named)).cloned().collect();
+    if away.is_empty() {
+        return None;
+    }
+    away.sort();
+    let mut hasher = SipHasher24::new_with_key(key()?);
+    for name in away {
+        hasher.write(name.as_os_str().as_encoded_bytes());
+        hasher.write(&[0]);
+    }
+    Some(format!("{:032x}", hasher.finish128().as_u128()))
+}
+
+/// Whether a name is written from the root, and counts for the mark.
+pub(super) fn leads_away(path: &Path, named: &Path) -> bool {
+    !file::seen_from(path)(named).is_relative()
+}
+
+/// The user's key, made when it is first needed.
+fn key() -> Option<&'static [u8; 16]> {
+    static OF_USER: OnceLock<Option<[u8; 16]>> = OnceLock::new();
+    OF_USER.get_or_init(read_key).as_ref()
+}
+
+fn read_key() -> Option<[u8; 16]> {
+    let folder = directories::ProjectDirs::from("", "", "glossmith")?
+        .data_local_dir()
+        .to_owned();
+    let path = folder.join(KEY_FILE);
+    let read = || std::fs::read(&path).ok()?.try_into().ok();
+    read().or_else(|| {
+        std::fs::create_dir_all(&folder).ok()?;
+        // Readable for the user alone; who is first makes it.
+        let mut file = tempfile::NamedTempFile::new_in(&folder).ok()?;
+        let numbers = [0; 2].map(|_| RandomState::new().build_hasher().finish().to_le_bytes());
+        file.write_all(&numbers.concat()).ok()?;
+        let _ = file.persist_noclobber(&path);
+        read()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mark_holds_for_its_names_alone() {
+        let path = Path::new("/work/p/a.json");
+        let away = |names: &[&str]| names.iter().map(PathBuf::from).collect::<Vec<_>>();
+        assert_eq!(mark(path, &away(&["/work/p/x.png"])), None);
+        if key().is_none() {
+            return;
+        }
+        let known = mark(path, &away(&["/far/x.png", "/far/y.png", "/work/p/z.png"]));
+        assert!(known.is_some());
+        assert_eq!(
+            known,
+            mark(Path::new("/moved/b.json"), &away(&["/far/y.png", "/far/x.png"]))
+        );
+        assert_ne!(known, mark(path, &away(&["/far/x.png", "/etc/passwd"])));
+        assert_ne!(known, mark(path, &away(&["/far/x.png"])));
+    }
+}

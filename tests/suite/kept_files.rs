@@ -1,0 +1,95 @@
+//! What was there before stays where something goes wrong.
+
+use super::cli_support::Workplace;
+
+/// A device that is linked to by the name of a picture is not replaced by it, and a pipe is not waited for.
+#[cfg(unix)]
+#[test]
+fn what_is_no_file_is_refused_as_a_target() {
+    let place = Workplace::new();
+    // Where a file would take its place nothing but the link is lost.
+    std::os::unix::fs::symlink("/dev/null", place.path("device.png")).unwrap();
+    let pipe = place.path("pipe.png");
+    let made = std::process::Command::new("mkfifo").arg(&pipe).status().unwrap();
+    assert!(made.success());
+    for name in ["device.png", "pipe.png"] {
+        for arguments in [
+            "render --engine cpu --size 16x16 --samples 1",
+            "lobe --plot polar --lobe ggx:0.3",
+        ] {
+            let words = [name, "cannot be saved", "a device or a pipe"];
+            place.refused(1, &format!("{arguments} --output {name}"), &words);
+        }
+    }
+    use std::os::unix::fs::FileTypeExt as _;
+    assert!(std::fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+    assert!(std::fs::metadata(&pipe).unwrap().file_type().is_fifo());
+}
+
+/// A folder in which no file can be made: what is there could be overwritten in place, and must not be.
+#[cfg(unix)]
+#[test]
+fn plots_numbers_and_reports_are_replaced_whole_or_not_at_all() {
+    use std::os::unix::fs::MetadataExt as _;
+    let place = Workplace::new();
+    for (name, arguments) in [
+        ("lobe.csv", "lobe --plot polar --lobe ggx:0.3 --output lobe.csv"),
+        ("lobe.svg", "lobe --plot polar --lobe ggx:0.3 --output lobe.svg"),
+        ("lobe.png", "lobe --plot polar --lobe ggx:0.3 --output lobe.png"),
+        (
+            "drawn.csv",
+            "scatter --lobe ggx --count 9 --engine cpu --output drawn.csv",
+        ),
+        (
+            "drawn.png",
+            "scatter --lobe ggx --count 9 --engine cpu --output drawn.png",
+        ),
+        ("plan.json", "plan --size 16x16 --json plan.json"),
+    ] {
+        place.write(name, b"old");
+        let old = std::fs::File::open(place.path(name)).unwrap();
+        place.done(arguments);
+        // A new file has taken the place of the old one, which was not written into.
+        assert_ne!(
+            old.metadata().unwrap().ino(),
+            place.path(name).metadata().unwrap().ino(),
+            "{name}"
+        );
+        assert_eq!(std::io::read_to_string(old).unwrap(), "old", "{name}");
+        assert!(place.path(name).metadata().unwrap().len() > 20, "{name}");
+    }
+    place.refused(
+        1,
+        "lobe --plot polar --lobe ggx:0.3 --output none/lobe.png",
+        &["none/lobe.png"],
+    );
+}
+
+#[test]
+fn a_batch_makes_a_picture_anew_that_was_damaged() {
+    let place = Workplace::new();
+    place.write(
+        "batch.toml",
+        b"materials = [\"gold\"]\n[common]\nsize = \"16x16\"\nsamples = 1\n",
+    );
+    let status = |run: &str| serde_json::from_str::<serde_json::Value>(run.lines().next().unwrap()).unwrap();
+    let first = place.done("batch batch.toml --engine cpu");
+    let row = status(&first.stdout);
+    assert_eq!(row["status"], "rendered");
+    let file = std::path::PathBuf::from(row["files"][0].as_str().unwrap());
+    let file = place.path("").join(file);
+    assert_eq!(
+        status(&place.done("batch batch.toml --engine cpu").stdout)["status"],
+        "kept"
+    );
+    let mut bytes = std::fs::read(&file).unwrap();
+    let whole = bytes.clone();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 0xff;
+    std::fs::write(&file, bytes).unwrap();
+    assert_eq!(
+        status(&place.done("batch batch.toml --engine cpu").stdout)["status"],
+        "rendered"
+    );
+    assert_eq!(std::fs::read(&file).unwrap(), whole);
+}

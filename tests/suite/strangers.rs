@@ -1,0 +1,154 @@
+//! Files from strangers: what they may name, and what becomes of what they may not.
+
+use glossmith::document::Document;
+use glossmith::scene::ModelSource;
+use glossmith::store::save_document;
+use serde_json::{Value as Json, json};
+
+use super::cli_support::Workplace;
+
+const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl far\nf 1 2 3\n";
+const FAR: &[u8] = b"newmtl far\nKd 0.125 0.25 0.5\n";
+const QUICK: &str = "--engine cpu --size 8x8 --samples 1 --output a.exr";
+
+/// A folder with a model two folders down.
+fn place(library: &str) -> Workplace {
+    let place = Workplace::new();
+    std::fs::create_dir_all(place.path("a/b")).unwrap();
+    place.write("a/b/m.obj", format!("mtllib {library}\n{TRIANGLE}").as_bytes());
+    place.write("far.mtl", FAR);
+    place.write("a/near.mtl", FAR);
+    place
+}
+
+/// The entries of the import's report with this fate.
+fn entries(place: &Workplace, arguments: &str, fate: &str) -> String {
+    place.done(&format!(
+        "render a/b/m.obj {QUICK} --import-report report.json {arguments}"
+    ));
+    let report: Json = serde_json::from_str(&place.read("report.json")).unwrap();
+    let entries = report["entries"].as_array().unwrap();
+    let of_fate: Vec<&Json> = entries.iter().filter(|entry| entry["fate"] == fate).collect();
+    json!(of_fate).to_string()
+}
+
+#[test]
+fn a_model_reads_its_surroundings_and_more_where_that_is_allowed() {
+    let near = place("../near.mtl");
+    assert_eq!(entries(&near, "", "missing"), "[]");
+    let far = place("../../far.mtl");
+    let absolute = place("far.mtl");
+    let library = absolute.path("far.mtl");
+    absolute.write(
+        "a/b/m.obj",
+        format!("mtllib {}\n{TRIANGLE}", library.display()).as_bytes(),
+    );
+    for place in [far, absolute] {
+        let missing = entries(&place, "", "missing");
+        assert!(
+            missing.contains("outside") && missing.contains("--allow-outside"),
+            "{missing}"
+        );
+        assert_eq!(entries(&place, "--allow-outside", "missing"), "[]");
+        let used = entries(&place, "--allow-outside", "used");
+        assert!(used.contains("files from outside"), "{used}");
+    }
+}
+
+/// A file that was exported must not carry what a stranger's model had read.
+#[test]
+fn what_lies_elsewhere_is_not_in_an_export() {
+    let place = place("../../far.mtl");
+    let color = |options: &str| {
+        place.done(&format!("convert a/b/m.obj out.gltf {options}"));
+        let json: Json = serde_json::from_str(&place.read("out.gltf")).unwrap();
+        json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][0].as_f64()
+    };
+    let is_of_far = |color: Option<f64>| color.is_some_and(|red| (red - 0.125).abs() < 0.01);
+    assert!(!is_of_far(color("")));
+    assert!(is_of_far(color("--allow-outside")));
+}
+
+#[cfg(unix)]
+#[test]
+fn devices_and_pipes_are_told_and_not_waited_for() {
+    let place = place("pipe.mtl");
+    let pipe = place.path("a/b/pipe.mtl");
+    assert!(
+        std::process::Command::new("mkfifo")
+            .arg(&pipe)
+            .status()
+            .unwrap()
+            .success()
+    );
+    let missing = entries(&place, "", "missing");
+    assert!(missing.contains("no regular file"), "{missing}");
+    std::fs::remove_file(&pipe).unwrap();
+    std::os::unix::fs::symlink("/dev/zero", &pipe).unwrap();
+    let missing = entries(&place, "--allow-outside", "missing");
+    assert!(missing.contains("no regular file"), "{missing}");
+    for (name, text) in [
+        ("p.json", json!({"glossmith-document": 1, "model": "/dev/zero"})),
+        (
+            "q.json",
+            json!({"glossmith-document": 1, "lighting": {"environment": "/dev/zero"}}),
+        ),
+    ] {
+        place.write(name, text.to_string().as_bytes());
+        place.refused(
+            1,
+            &format!("render {name} {QUICK} --allow-outside"),
+            &["/dev/zero", "no regular file"],
+        );
+    }
+}
+
+#[test]
+fn a_project_names_what_its_maker_may_read() {
+    let place = place("../near.mtl");
+    let model = place.path("far.obj");
+    std::fs::copy(place.path("a/b/m.obj"), &model).unwrap();
+    let render = |name: &str| format!("render a/b/{name} {QUICK}");
+    let document = Document {
+        model: ModelSource::File(model.clone()),
+        ..Document::default()
+    };
+    // The user's own.
+    save_document(&place.path("a/b/own.json"), &document).unwrap();
+    place.done(&render("own.json"));
+    // From elsewhere: without the mark, or with one that was made for other names.
+    let mut text: Json = serde_json::from_str(&place.read("a/b/own.json")).unwrap();
+    assert_eq!(text["saved-by"].as_str().map(str::len), Some(32));
+    std::fs::copy(&model, place.path("other.obj")).unwrap();
+    text["model"] = json!(place.path("other.obj"));
+    place.write("a/b/forged.json", text.to_string().as_bytes());
+    text["model"] = json!("../../far.obj");
+    place.write("a/b/upwards.json", text.to_string().as_bytes());
+    for name in ["forged.json", "upwards.json"] {
+        place.refused(
+            1,
+            &render(name),
+            &[name, "outside of its surroundings", ".obj", "--allow-outside"],
+        );
+        place.done(&format!("{} --allow-outside", render(name)));
+    }
+    // What stays in its folder has no mark: the file is the same whoever saves it.
+    let inside = Document {
+        model: ModelSource::File(place.path("a/b/m.obj")),
+        ..Document::default()
+    };
+    save_document(&place.path("a/b/inside.json"), &inside).unwrap();
+    assert!(!place.read("a/b/inside.json").contains("saved-by"));
+    place.done(&render("inside.json"));
+}
+
+#[test]
+fn a_document_of_materialx_includes_from_its_surroundings() {
+    let place = place("../near.mtl");
+    let library = r#"<materialx version="1.39"></materialx>"#;
+    place.write("far.mtlx", library.as_bytes());
+    let including = r#"<materialx version="1.39" xmlns:xi="http://www.w3.org/2001/XInclude"><xi:include href="../../far.mtlx"/><standard_surface name="s" type="surfaceshader"/></materialx>"#;
+    place.write("a/b/m.mtlx", including.as_bytes());
+    place.refused(1, "convert a/b/m.mtlx out.json", &["m.mtlx", "far.mtlx", "outside"]);
+    place.done("convert a/b/m.mtlx out.json --allow-outside");
+}
