@@ -4,12 +4,12 @@ use glossmith::document::of_model::materials_of;
 use glossmith::document::{Background, Document, ImportLobe};
 use glossmith::render::EngineChoice;
 use glossmith::scene::environment::EnvironmentSource;
-use glossmith::scene::{ModelOptions, ModelSource, load};
+use glossmith::scene::{Fate, GLTF_PARAMETERS, Goes, ModelOptions, ModelSource, load};
 use serde_json::{Value, json};
 
 use super::cli_support::Workplace;
-use super::gltf_builder::{Buffer, Folder, glb, square};
-use super::gltf_extensions::load_plain;
+use super::gltf_builder::{Buffer, Folder, glb, png, square};
+use super::gltf_extensions::{load_plain, says};
 use super::renders::render;
 
 const SIZE: u32 = 17;
@@ -223,13 +223,106 @@ fn specular_glossiness_without_specular_reflects_nothing() {
 fn a_mean_of_all_directions_stretches_nothing() {
     let png = strip(&[[255, 128, 255], [0, 128, 255], [128, 255, 255], [128, 0, 255]]);
     let anisotropy = json!({"anisotropyStrength": 1, "anisotropyTexture": {"index": 0}});
-    let mut file = painted(json!({"extensions": {"KHR_materials_anisotropy": anisotropy}}), None);
-    let view = file.0.view(&png);
-    let views = file.0.document(json!([]))["bufferViews"].clone();
-    file.1["bufferViews"] = views;
-    file.1["buffers"] = file.0.document(json!([]))["buffers"].clone();
-    file.1["images"] = json!([{"bufferView": view, "mimeType": "image/png"}]);
-    file.1["textures"] = json!([{"source": 0}]);
-    let slot = load_plain(&file.1, &file.0).slots[0].clone();
-    assert_eq!(slot.anisotropy, 0.0);
+    let material = json!({"extensions": {"KHR_materials_anisotropy": anisotropy}});
+    let file = pictured(material, &png);
+    assert_eq!(load_plain(&file.1, &file.0).slots[0].anisotropy, 0.0);
+}
+
+/// A square with this material, and a picture within the file.
+fn pictured(material: Value, png: &[u8]) -> (Buffer, Value) {
+    let (mut buffer, document) = square();
+    let view = buffer.view(png);
+    let mut file = buffer.document(document["meshes"][0]["primitives"].clone());
+    file["meshes"][0]["primitives"][0]["material"] = json!(0);
+    file["materials"] = json!([material]);
+    file["images"] = json!([{"bufferView": view, "mimeType": "image/png"}]);
+    file["textures"] = json!([{"source": 0}]);
+    (buffer, file)
+}
+
+/// A material in which every layer has some weight, so that no number is without effect; in the old workflow if told so.
+fn layered(is_old: bool) -> Value {
+    let mut extensions = json!({
+        "KHR_materials_clearcoat": {"clearcoatFactor": 0.5},
+        "KHR_materials_transmission": {"transmissionFactor": 0.5},
+        "KHR_materials_volume": {"attenuationDistance": 0.5},
+        "KHR_materials_anisotropy": {"anisotropyStrength": 0.5},
+        "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1]},
+        "KHR_materials_iridescence": {"iridescenceFactor": 0.5},
+        "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5},
+    });
+    if is_old {
+        extensions["KHR_materials_pbrSpecularGlossiness"] = json!({});
+    }
+    let pbr = json!({"roughnessFactor": 0.5, "metallicFactor": 0.5});
+    json!({"pbrMetallicRoughness": pbr, "emissiveFactor": [1, 1, 1], "alphaMode": "MASK", "extensions": extensions})
+}
+
+/// Puts a value where a pointer says, making the objects on the way.
+fn put(material: &mut Value, place: &str, value: Value) {
+    let keys = place.trim_start_matches('/').split('/');
+    *keys.fold(material, |at, key| &mut at[key]) = value;
+}
+
+/// Each parameter of the table, off its default, changes the material or the report.
+#[test]
+fn no_parameter_of_a_material_is_dropped_in_silence() {
+    let read = |material: &Value| {
+        let file = pictured(material.clone(), &png());
+        let model = load_plain(&file.1, &file.0);
+        let lines: Vec<_> = model
+            .report
+            .entries
+            .iter()
+            .map(|entry| (entry.fate, entry.what.clone()))
+            .collect();
+        (format!("{:?}", model.slots[0]), lines)
+    };
+    for parameter in GLTF_PARAMETERS {
+        let plain = layered(parameter.place.contains("pbrSpecularGlossiness"));
+        let mut changed = plain.clone();
+        put(
+            &mut changed,
+            parameter.place,
+            serde_json::from_str(parameter.example).unwrap(),
+        );
+        let (before, after) = (read(&plain), read(&changed));
+        assert!(before != after, "{} leaves no trace: {before:?}", parameter.place);
+        if let Goes::Nowhere(what) = parameter.goes {
+            assert!(
+                after.1.iter().any(|(_, said)| said == what),
+                "{}: {:?}",
+                parameter.place,
+                after.1
+            );
+        }
+    }
+}
+
+/// Neither is what no table has, nor an extension whose values are of the wrong kind.
+#[test]
+fn parameters_that_nobody_knows_are_told() {
+    let mut material = layered(false);
+    put(&mut material, "/pbrMetallicRoughness/porosity", json!(0.5));
+    put(
+        &mut material,
+        "/extensions/KHR_materials_specular/specularGloss",
+        json!(0.5),
+    );
+    put(&mut material, "/extensions/ACME_glitter/amount", json!(0.5));
+    put(
+        &mut material,
+        "/extensions/KHR_materials_anisotropy/anisotropyStrength",
+        json!("much"),
+    );
+    let file = pictured(material, &png());
+    let model = load_plain(&file.1, &file.0);
+    for words in [
+        "porosity",
+        "specularGloss",
+        "ACME_glitter",
+        "KHR_materials_anisotropy, whose values",
+    ] {
+        says(&model, Fate::Ignored, words);
+    }
 }

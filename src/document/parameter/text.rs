@@ -75,7 +75,7 @@ impl Kind {
             Kind::Place { range: [low, high] } => format!("x,y,z: three numbers, each from {low} to {high}"),
             Kind::Optional { kind, word, .. } => format!("{}, or {word}", kind.expected()),
             Kind::Color => COLOR_EXPECTED.to_owned(),
-            Kind::Tint { most } => format!("#RRGGBB (sRGB) or r,g,b (linear, each from 0 to {most})"),
+            Kind::Tint { most } => format!("#rrggbb (sRGB) or r,g,b (linear, each from 0 to {most})"),
             Kind::Triple { range: [low, high] } => format!("r,g,b: three numbers, each from {low} to {high}"),
             Kind::Choice(choices) => {
                 let names: Vec<_> = choices.iter().map(|choice| choice.name).collect();

@@ -1,6 +1,7 @@
 //! Materials as slots.
 
 mod pictures;
+mod table;
 
 use std::collections::HashMap;
 
@@ -13,10 +14,11 @@ use rayon::prelude::*;
 use serde_json::Value as Json;
 
 use self::pictures::{PictureKey, affine, without_missing};
+pub use self::table::{FileParameter, GLTF_PARAMETERS, Goes};
 use super::anisotropy::convert_widths;
 use super::container::Document;
 use super::material_extensions::{
-    Anisotropy, Clearcoat, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension, kept,
+    Anisotropy, Clearcoat, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension, kept, unreadable,
 };
 use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
 use crate::scene::model::{AlphaMode, ModelOptions, Slot, Texture, TextureRef};
@@ -276,8 +278,9 @@ impl<'a> Materials<'a> {
             self.report
                 .note(Fate::Approximated, "an unlit material, which shines", &read.name);
         }
-        if material.occlusion_texture.is_some() {
-            let what = "an occlusion texture, which path tracing needs none of";
+        table::tell(raw, &root.extensions_used, &read.name, &mut self.report);
+        for extension in unreadable(raw) {
+            let what = format!("{extension}, whose values are not of the kinds that it has");
             self.report.note(Fate::Ignored, what, &read.name);
         }
         let (kept, names) = kept(raw);
@@ -379,10 +382,6 @@ impl<'a> Materials<'a> {
                         slot.coat_roughness *= mean.codes[1];
                     },
                 ));
-            }
-            if coat.clearcoat_normal_texture.is_some() {
-                self.report
-                    .note(Fate::Ignored, "a coat normal texture: coats lie smooth", &read.name);
             }
         }
         if let Some(anisotropy) = extension::<Anisotropy>(raw, "KHR_materials_anisotropy") {
