@@ -53,7 +53,7 @@ fn pixels(file: &(Buffer, Value), picture: Option<&[u8]>, choice: EngineChoice, 
     };
     document.ground = false;
     document.lighting.environment = EnvironmentSource::Furnace;
-    document.lighting.environment_strength = light;
+    document.lighting.strength = light;
     document.lighting.background = Background::Transparent;
     (document.camera.yaw_deg, document.camera.pitch_deg) = (0.0, 0.0);
     (document.render.width, document.render.height, document.render.samples) = (SIZE, SIZE, 64);
