@@ -106,7 +106,7 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     var color = vec3f(1.0);
     let may_be_colored = PLAN_COLOR_TEXTURES == 1u || PLAN_VERTEX_COLORS == 1u;
     if may_be_colored && has_flag(material, VERTEX_BASE | VERTEX_EMISSION) {
-        color = vertex_color(a).xyz * w + vertex_color(b).xyz * hit.u + vertex_color(c).xyz * hit.v;
+        color = corner_color(a).xyz * w + corner_color(b).xyz * hit.u + corner_color(c).xyz * hit.v;
     }
     return SurfacePoint(surface, place.position, place.error, slot, uvs, color);
 }

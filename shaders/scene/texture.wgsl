@@ -200,7 +200,7 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
 }
 
 // The linear colour of a vertex that multiplies the material's, and its alpha.
-fn vertex_color(vertex: Vertex) -> vec4f {
+fn corner_color(vertex: Vertex) -> vec4f {
     let alpha = f32((vertex.blue_side >> 16u) & 0x7fffu) / 32767.0;
     return vec4f(unpack2x16unorm(vertex.red_green), unpack2x16unorm(vertex.blue_side).x, alpha);
 }
@@ -215,7 +215,7 @@ fn vertex_factors(material: Material, triangle: Triangle, weights: vec3f) -> vec
     var weight = weights;
     var sum = vec4f(0.0);
     while any(weight != vec3f(0.0)) {
-        sum += vertex_color(vertex_at(corners.x)) * weight.x;
+        sum += corner_color(vertex_at(corners.x)) * weight.x;
         corners = corners.yzx;
         weight = vec3f(weight.yz, 0.0);
     }
