@@ -14,7 +14,6 @@ use glossmith::say;
 fn main() -> ExitCode {
     let mut logger = env_logger::Builder::from_env(
         env_logger::Env::default().default_filter_or("warn,wgpu=error,wgpu_hal=off,naga=error"),
-<<<<<<< HEAD
     );
     logger.format(log_line);
     #[cfg(feature = "window")]
@@ -26,15 +25,9 @@ fn main() -> ExitCode {
     }
     #[cfg(not(feature = "window"))]
     logger.init();
-    match run(Arguments::parse()) {
-=======
-    )
-    .format(log_line)
-    .init();
     let done = run(Arguments::parse());
     let printed = say::finish().context("standard output could not be written to");
     match done.and(printed) {
->>>>>>> w_guard
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             say::line(format_args!("glossmith: {}", message(&error)));
