@@ -17,7 +17,7 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::halves::Distance;
-use super::noise::{BAND, MAP_RADIUS, bands, box_sums};
+use super::noise::{BAND, KURTOSIS, MAP_RADIUS, bands, box_sums};
 use crate::job::film::luminance;
 use crate::job::tiles::{TILE_SIDE, TileGrid};
 
@@ -60,7 +60,10 @@ struct Moments {
     /// The same from tiles as wholes, by the differences of the halves' squares: too much where noise has long tails, of which
     /// there the error is in doubt, too.
     by_squares: f64,
-    /// Squares of that of each tile.
+    /// The same from how far the two denoised halves are apart in each pixel: where the filter leaves noise as it is, and that
+    /// differs from pixel to pixel, the two above see too little of it.
+    by_pixels: f64,
+    /// Squares of the variance from tiles, of each tile.
     fourth_powers: f64,
     /// Squared difference of the two pictures.
     difference: f64,
@@ -76,6 +79,7 @@ impl std::ops::AddAssign for Moments {
         self.product += other.product;
         self.variance += other.variance;
         self.by_squares += other.by_squares;
+        self.by_pixels += other.by_pixels;
         self.fourth_powers += other.fourth_powers;
         self.difference += other.difference;
         self.pixels += other.pixels;
@@ -90,7 +94,7 @@ impl Moments {
 
     /// Standard error of the first.
     fn deviation(&self) -> f64 {
-        self.variance.max(self.by_squares).sqrt()
+        self.variance.max(self.by_squares).max(self.by_pixels).sqrt()
     }
 
     /// How many standard errors make the band: Student's quantile, as the standard error is itself an estimate, from the few
@@ -193,6 +197,7 @@ impl Errors {
             product: clean * noise / 4.0,
             variance: self.variances[pixel],
             by_squares: of_pixel.square(),
+            by_pixels: squared_variance(known),
             fourth_powers: 0.0,
             difference: ((of_pixel.noisy[0] + of_pixel.noisy[1]) / 2.0).powi(2),
             pixels: 1.0,
@@ -238,11 +243,16 @@ impl Errors {
             let clean = 1.0 - samples;
             let (denoised, known) = squares(&moments, clean, samples);
             let spread = clean.powi(4) + samples.powi(4);
+            // Of the mixture's own halves.
+            let apart = clean * clean * moments.known
+                + 2.0 * clean * samples * moments.product
+                + samples * samples * moments.noisy;
             Moments {
                 denoised,
                 known,
                 variance: spread * moments.variance,
                 by_squares: spread.sqrt() * moments.by_squares,
+                by_pixels: squared_variance(apart),
                 ..moments
             }
         };
@@ -309,6 +319,12 @@ impl Errors {
         };
         (0..tiles.len()).map(around).collect()
     }
+}
+
+/// The square of a half's variance, from a quarter of the squared difference of the two: at least so much for any noise whose
+/// half differences have a kurtosis up to [`KURTOSIS`].
+fn squared_variance(apart: f64) -> f64 {
+    (2.0 * apart).powi(2) / KURTOSIS
 }
 
 /// The numbers of the tiles around a tile, itself included.
@@ -394,6 +410,7 @@ mod tests {
                 moments.product,
                 moments.variance,
                 moments.by_squares,
+                moments.by_pixels,
                 moments.fourth_powers,
                 moments.difference,
                 moments.pixels,
@@ -406,9 +423,10 @@ mod tests {
             product: 4.0 * unit,
             variance: 5.0 * unit,
             by_squares: 6.0 * unit,
-            fourth_powers: 7.0 * unit,
-            difference: 8.0 * unit,
-            pixels: 9.0 * unit,
+            by_pixels: 7.0 * unit,
+            fourth_powers: 8.0 * unit,
+            difference: 9.0 * unit,
+            pixels: 10.0 * unit,
         });
         sum += other;
         assert_eq!(fields(&sum), std::array::from_fn(|i| 101.0 * (i as f64 + 1.0)));

@@ -20,7 +20,7 @@ pub(super) const BAND: f64 = 1.959_964;
 const MEASURED_SHARE: f64 = 0.99;
 /// Fourth moment of a pixel's half difference over its squared variance, where it is skewed: between a normal
 /// distribution's 3 and the 6 of the difference of two exponential ones.
-const KURTOSIS: f64 = 4.5;
+pub(super) const KURTOSIS: f64 = 4.5;
 /// Pixels to each side over which the gain of the sequence is averaged for a map.
 pub(super) const MAP_RADIUS: usize = 3;
 
