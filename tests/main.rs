@@ -95,6 +95,8 @@ mod gltf_damaged;
 mod gltf_extensions;
 #[path = "suite/gltf_materials.rs"]
 mod gltf_materials;
+#[path = "suite/gltf_meaning.rs"]
+mod gltf_meaning;
 #[path = "suite/hierarchy.rs"]
 mod hierarchy;
 #[path = "suite/import_report.rs"]

@@ -71,5 +71,5 @@ fn rough_albedo(terms: FresnelTerms, integrals: vec4f) -> vec3f {
     if PLAN_EDGE_TINT == 1u {
         metal = max(metal - edge_darkening(terms.metal_f0, terms.edge_tint) * integrals.w, vec3f(0.0));
     }
-    return terms.weight * mix(dielectric, metal * terms.tint, terms.metalness);
+    return mix(terms.weight * dielectric, metal * terms.metal_tint, terms.metalness);
 }

@@ -10,6 +10,7 @@ struct FresnelTerms {
     metalness: f32,
     edge_tint: vec3f,
     tint: vec3f,
+    metal_tint: vec3f,
     weight: f32,
     ior: f32,
     eta: vec3f,
@@ -27,11 +28,13 @@ fn fresnel(terms: FresnelTerms, cosine: f32) -> vec3f {
         case FRESNEL_NONE: { return terms.weight * terms.tint; }
         case FRESNEL_SCHLICK: {
             let dielectric = fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine);
-            return terms.weight * mix(dielectric, fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.tint, terms.metalness);
+            let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine);
+            return mix(terms.weight * dielectric, metal * terms.metal_tint, terms.metalness);
         }
         case FRESNEL_DIELECTRIC: {
             let dielectric = terms.tint * fresnel_dielectric(cosine, terms.ior);
-            return terms.weight * mix(dielectric, fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.tint, terms.metalness);
+            let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine);
+            return mix(terms.weight * dielectric, metal * terms.metal_tint, terms.metalness);
         }
         default: {
             return terms.weight * terms.tint * vec3f(

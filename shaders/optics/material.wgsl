@@ -63,17 +63,28 @@ fn material_ior_ahead(material: Material, is_inside: bool) -> f32 {
 
 fn material_fresnel_terms(material: Material, is_inside: bool) -> FresnelTerms {
     let is_bare = is_inside && material_transmits(material);
+    let tint = select(material.specular_color, vec3f(1.0), is_bare);
+    let weight = select(material.specular_weight, 1.0, is_bare);
     return FresnelTerms(
-        planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.edge_tint,
-        select(material.specular_color, vec3f(1.0), is_bare), select(material.specular_weight, 1.0, is_bare),
-        material_ior_ahead(material, is_inside), material.eta, material.k,
+        planned(material.fresnel, PLAN_FRESNEL), material.base_color, material.metalness, material.edge_tint, tint,
+        select(weight * tint, vec3f(1.0), has_flag(material, SPARES_METAL)), weight, material_ior_ahead(material, is_inside), material.eta, material.k,
     );
 }
 
 fn material_has_holes(material: Material) -> bool {
     let is_masked = material.alpha_cutoff > material.opacity;
     let is_clear = material.alpha_cutoff < 0.0 && material.opacity < 1.0;
-    return PLAN_ALPHA == 1u && (is_masked || is_clear || material.opacity_texture != NO_TEXTURE);
+    let is_varied = material.opacity_texture != NO_TEXTURE || has_vertex_flag(material, VERTEX_OPACITY);
+    return PLAN_ALPHA == 1u && (is_masked || is_clear || is_varied);
+}
+
+fn has_flag(material: Material, flag: u32) -> bool {
+    return (material.flags & flag) != 0u;
+}
+
+// What vertices say of opacity and emission.
+fn has_vertex_flag(material: Material, flag: u32) -> bool {
+    return PLAN_VERTEX_COLORS == 1u && has_flag(material, flag);
 }
 
 fn material_has_base(material: Material) -> bool {
@@ -86,7 +97,12 @@ fn material_transmits(material: Material) -> bool {
 }
 
 fn material_has_specular(material: Material) -> bool {
-    return PLAN_SPECULAR == 1u && (material.specular_weight > 0.0 || material_transmits(material));
+    if PLAN_SPECULAR == 0u {
+        return false;
+    }
+    let may_be_metal = material.metalness > 0.0 || material.metalness_texture != NO_TEXTURE;
+    let is_spared = may_be_metal && has_flag(material, SPARES_METAL);
+    return material.specular_weight > 0.0 || is_spared || material_transmits(material);
 }
 
 fn material_layers(material: Material, surface: Surface) -> Layers {

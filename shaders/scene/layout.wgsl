@@ -58,6 +58,12 @@ struct Globals {
     roulette_floor: f32,
 }
 
+// Bits of a material's flags: what vertices say, and whether weight and tint of the reflection leave metals alone.
+const VERTEX_BASE: u32 = 1u;
+const VERTEX_EMISSION: u32 = 2u;
+const VERTEX_OPACITY: u32 = 4u;
+const SPARES_METAL: u32 = 8u;
+
 struct Material {
     base_color: vec3f,
     metalness: f32,
@@ -98,7 +104,8 @@ struct Material {
     has_rough_tables: u32,
     texture_roughness: f32,
     roughness_table: u32,
-    has_vertex_colors: u32,
+    // VERTEX_BASE and the others.
+    flags: u32,
     // The ramp of a spot's share over the cosine to the way it faces.
     spot_scale: f32,
     spot_offset: f32,
@@ -118,7 +125,7 @@ struct Vertex {
     // Linear red and green, as 16-bit fractions.
     red_green: u32,
     tangent: vec3f,
-    // Blue, and which side of the tangent the bitangent is on: 0 or 1, for -1 and 1.
+    // Blue; alpha in 15 bits; and which side of the tangent the bitangent is on: 0 or 1, for -1 and 1.
     blue_side: u32,
     // Both sets of texture coordinates.
     uvs: vec4f,

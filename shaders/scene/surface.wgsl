@@ -121,8 +121,9 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     }
     let surface = Surface(frame, horizon, wo, coat_normal, place.is_back);
     var color = vec3f(1.0);
-    if PLAN_COLOR_TEXTURES == 1u && material.has_vertex_colors == 1u {
-        color = vertex_color(a) * w + vertex_color(b) * hit.u + vertex_color(c) * hit.v;
+    let may_be_colored = PLAN_COLOR_TEXTURES == 1u || PLAN_VERTEX_COLORS == 1u;
+    if may_be_colored && has_flag(material, VERTEX_BASE | VERTEX_EMISSION) {
+        color = corner_color(a).xyz * w + corner_color(b).xyz * hit.u + corner_color(c).xyz * hit.v;
     }
     return SurfacePoint(surface, place.position, place.error, slot, uvs, color, normal, rise);
 }
@@ -134,14 +135,9 @@ fn rise_to_plane(position: vec3f, corner: vec3f, normal: vec3f, weight: f32, is_
     return normal * (select(max(depth, 0.0), min(depth, 0.0), is_turned) * weight);
 }
 
-// The linear colour of a vertex that multiplies the material's.
-fn vertex_color(vertex: Vertex) -> vec3f {
-    return vec3f(unpack2x16unorm(vertex.red_green), unpack2x16unorm(vertex.blue_side).x);
-}
-
 // The sign of a vertex's bitangent.
 fn vertex_side(vertex: Vertex) -> f32 {
-    return select(1.0, -1.0, (vertex.blue_side >> 16u) == 0u);
+    return select(1.0, -1.0, (vertex.blue_side >> 31u) == 0u);
 }
 
 fn looks_up_textures() -> bool {
@@ -161,7 +157,9 @@ fn hit_opacity(hit: Hit) -> f32 {
     if !material_has_holes(material) {
         return 1.0;
     }
-    return opacity_at(material, hit_uvs(hit, material));
+    let weights = vec3f(1.0 - hit.u - hit.v, hit.u, hit.v);
+    let of_vertices = vertex_factors(material, triangle_at(hit.triangle), weights);
+    return opacity_at(material, hit_uvs(hit, material), of_vertices.w);
 }
 
 // How far off its plane, along the normal, the place may be that is interpolated between a triangle's corners.

@@ -145,7 +145,8 @@ fn texel(record: TextureRecord, column: u32, row: u32) -> vec4f {
 }
 
 fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Material {
-    if PLAN_COLOR_TEXTURES + PLAN_ROUGHNESS_TEXTURES + PLAN_EMISSION_TEXTURES + PLAN_COAT_TEXTURES == 0u {
+    let pictures = PLAN_COLOR_TEXTURES + PLAN_ROUGHNESS_TEXTURES + PLAN_EMISSION_TEXTURES + PLAN_COAT_TEXTURES;
+    if pictures + PLAN_VERTEX_COLORS == 0u {
         return material;
     }
     // A picture that has both roughness and metalness is looked up once.
@@ -171,7 +172,7 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
     }
     var at_point = material;
     if PLAN_COLOR_TEXTURES == 1u {
-        let color = vertex_color * found[0].xyz;
+        let color = select(vec3f(1.0), vertex_color, has_flag(material, VERTEX_BASE)) * found[0].xyz;
         at_point.base_color = material.base_color * color;
         at_point.transmission_tint = material.transmission_tint * color;
     }
@@ -189,17 +190,44 @@ fn textured_material(material: Material, uvs: Uvs, vertex_color: vec3f) -> Mater
     if PLAN_EMISSION_TEXTURES == 1u {
         at_point.emission = material.emission * found[2].xyz;
     }
+    if has_vertex_flag(material, VERTEX_EMISSION) {
+        at_point.emission *= vertex_color;
+    }
     if PLAN_COAT_TEXTURES == 1u {
         at_point.coat_weight = material.coat_weight * found[4].x;
     }
     return at_point;
 }
 
-// What a surface point emits, its holes left out.
-fn emission_at(material: Material, uvs: Uvs) -> vec3f {
+// The linear colour of a vertex that multiplies the material's, and its alpha.
+fn corner_color(vertex: Vertex) -> vec4f {
+    let alpha = f32((vertex.blue_side >> 16u) & 0x7fffu) / 32767.0;
+    return vec4f(unpack2x16unorm(vertex.red_green), unpack2x16unorm(vertex.blue_side).x, alpha);
+}
+
+// Factors of emission and opacity that the vertices of a triangle give a place on it.
+fn vertex_factors(material: Material, triangle: Triangle, weights: vec3f) -> vec4f {
+    if !has_vertex_flag(material, VERTEX_EMISSION | VERTEX_OPACITY) {
+        return vec4f(1.0);
+    }
+    // A loop, so that the code that loads a corner is there once.
+    var corners = vec3u(triangle.corners[0].w, triangle.corners[1].w, triangle.corners[2].w);
+    var weight = weights;
+    var sum = vec4f(0.0);
+    while any(weight != vec3f(0.0)) {
+        sum += corner_color(vertex_at(corners.x)) * weight.x;
+        corners = corners.yzx;
+        weight = vec3f(weight.yz, 0.0);
+    }
+    let color = select(vec3f(1.0), sum.xyz, has_flag(material, VERTEX_EMISSION));
+    return vec4f(color, select(1.0, sum.w, has_flag(material, VERTEX_OPACITY)));
+}
+
+// What a surface point emits, its holes left out; `of_vertices` from vertex_factors.
+fn emission_at(material: Material, uvs: Uvs, of_vertices: vec4f) -> vec3f {
     // The picture of what is emitted, and that of the holes: a loop, so that the look-up's code is there once.
-    var emission = material.emission;
-    var opacity = material.opacity;
+    var emission = material.emission * of_vertices.xyz;
+    var opacity = material.opacity * of_vertices.w;
     let has_emission = PLAN_EMISSION_TEXTURES == 1u && material.textures.w != NO_TEXTURE;
     let has_holes = material_has_holes(material);
     let has_opacity = has_holes && material.opacity_texture != NO_TEXTURE;
@@ -217,9 +245,9 @@ fn emission_at(material: Material, uvs: Uvs) -> vec3f {
     return emission * select(1.0, stopped_share(material, opacity), has_holes);
 }
 
-// The share of light that a surface point stops.
-fn opacity_at(material: Material, uvs: Uvs) -> f32 {
-    var opacity = material.opacity;
+// The share of light that a surface point stops; `alpha` is that of the vertices.
+fn opacity_at(material: Material, uvs: Uvs, alpha: f32) -> f32 {
+    var opacity = material.opacity * alpha;
     if material.opacity_texture != NO_TEXTURE {
         opacity *= texture_lookup(material.opacity_texture, uvs).w;
     }

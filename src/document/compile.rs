@@ -6,9 +6,11 @@ use super::MaterialSettings;
 use super::import::{MATCHED, ggx_under_texture};
 use crate::optics::albedo::{albedo_table, rough_albedo_table};
 use crate::optics::coat::coat_shape;
-use crate::optics::fresnel::Fresnel;
+use crate::optics::fresnel::{Fresnel, fresnel_f0};
 use crate::optics::lobe::Width;
-use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
+use crate::optics::material::{
+    MATCHED_NODES, Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY,
+};
 use crate::optics::table::{append_table, table_lookup};
 use crate::optics::vector::Vec3;
 use crate::scene::texture::{SlotTextures, TextureTarget};
@@ -106,7 +108,7 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
         has_rough_tables: 0,
         texture_roughness: settings.roughness,
         roughness_table: NO_TEXTURE,
-        has_vertex_colors: u32::from(uses.color && slot.has_vertex_colors),
+        flags: flags(settings, slot),
         spot_scale: 0.0,
         spot_offset: 1.0,
         metalness_texture: looked_up(uses.roughness, slot.metalness),
@@ -130,7 +132,28 @@ fn without_tables(settings: &MaterialSettings, slot: SlotTextures) -> Material<f
             material.transmission_tint = material.transmission_tint * color;
         }
     }
+    // Schlick's reflectance head-on may be tinted up to 1; the others are 1 at grazing angles already.
+    let is_schlick = material.fresnel == Fresnel::Schlick as u32;
+    let most = if is_schlick {
+        fresnel_f0(material.ior).recip()
+    } else {
+        1.0
+    };
+    material.specular_color = material.specular_color.map(|x: f32| x.min(most));
     material
+}
+
+/// What the vertices say where it is looked up, and whether metals keep their reflection.
+fn flags(settings: &MaterialSettings, slot: SlotTextures) -> u32 {
+    let uses = settings.textures;
+    let vertex = [
+        (uses.color, VERTEX_BASE),
+        (uses.emission, VERTEX_EMISSION),
+        (uses.opacity, VERTEX_OPACITY),
+    ];
+    let looked_up = vertex.iter().filter(|(is_on, _)| *is_on).map(|(_, flag)| flag);
+    let spares = if settings.specular_on_metal { 0 } else { SPARES_METAL };
+    (slot.vertex_flags & looked_up.sum::<u32>()) | spares
 }
 
 /// The roughness that a texture's value gives: such values are meant for GGX.
@@ -248,7 +271,8 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         normal_strength: 0.0,
         texture_roughness: 0.0,
         roughness_table: NO_TEXTURE,
-        has_vertex_colors: 0,
+        // What vertices say has no part in it.
+        flags: material.flags & SPARES_METAL,
         base_color: Vec3::zero(),
         emission: Vec3::zero(),
         rotation_rad: 0.0,

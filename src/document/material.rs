@@ -11,6 +11,9 @@ use crate::optics::fresnel::{Fresnel, METALS, Metal};
 use crate::optics::lobe::{Horizon, Lobe};
 use crate::scene::{AlphaMode, Slot};
 
+/// The largest tint of a reflection: Schlick's reflectance at normal incidence may be tinted up to 1.
+pub const SPECULAR_COLOR_MAX: f32 = 1000.0;
+
 /// A material as it is edited. Ranges, labels and meanings of the fields: [`super::PARAMETERS`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Map<String, Json>", into = "Map<String, Json>")]
@@ -25,6 +28,8 @@ pub struct MaterialSettings {
     pub metalness: f32,
     /// In [0, 1].
     pub specular_weight: f32,
+    /// Weight and tint of the reflection are a metal's too; else only the dielectric's, as in glTF.
+    pub specular_on_metal: bool,
     /// The specular lobe.
     pub lobe: Lobe,
     /// In [0, 1].
@@ -43,7 +48,7 @@ pub struct MaterialSettings {
     pub fresnel: Fresnel,
     /// The dielectric's index of refraction, in [1, 4].
     pub ior: f32,
-    /// Tint of the reflection, linear RGB in [0, 1].
+    /// Tint of the reflection, linear RGB in [0, [`SPECULAR_COLOR_MAX`]]. What would reflect more than all reflects all.
     pub specular_color: [f32; 3],
     /// What a metal's reflection is multiplied by near 82 degrees, linear RGB in [0, 1].
     pub edge_tint: [f32; 3],
@@ -96,6 +101,7 @@ impl Default for MaterialSettings {
             base_color: [0.8; 3],
             metalness: 1.0,
             specular_weight: 1.0,
+            specular_on_metal: true,
             lobe: Lobe::Geometric,
             roughness: 0.3,
             anisotropy: 0.0,
@@ -156,7 +162,8 @@ impl MaterialSettings {
             roughness: unit(slot.roughness),
             ior: slot.ior.clamp(1.0, 4.0),
             specular_weight: unit(slot.specular),
-            specular_color: slot.specular_color.map(unit),
+            specular_on_metal: false,
+            specular_color: slot.specular_color.map(specular_color),
             anisotropy: slot.anisotropy.clamp(-1.0, 1.0),
             rotation_deg: slot.anisotropy_rotation_rad.to_degrees(),
             extra: slot.kept.clone(),
@@ -164,10 +171,10 @@ impl MaterialSettings {
         };
         lobe.of_slot(slot).apply(&mut material);
         material.textures = TextureUse {
-            color: slot.base_color_texture.is_some() || slot.has_vertex_colors,
+            color: slot.base_color_texture.is_some() || (slot.has_vertex_colors && !slot.is_unlit),
             roughness: slot.metallic_roughness_texture.is_some(),
             normal: slot.normal_texture.is_some(),
-            emission: slot.emissive_texture.is_some(),
+            emission: slot.emissive_texture.is_some() || (slot.has_vertex_colors && slot.is_unlit),
             opacity: slot.alpha_mode != AlphaMode::Opaque,
             coat: slot.coat_texture.is_some(),
         };
@@ -194,6 +201,17 @@ impl MaterialSettings {
         material
     }
 
+    /// True where the specular lobe reflects anything.
+    pub fn reflects(&self) -> bool {
+        let is_spared_metal = self.metalness > 0.0 && !self.specular_on_metal;
+        self.specular_weight > 0.0 || is_spared_metal || self.transmits()
+    }
+
+    /// True where light goes through the surface.
+    pub fn transmits(&self) -> bool {
+        self.transmission_weight > 0.0 && self.metalness < 1.0
+    }
+
     /// Takes a metal's η and k over; [`Conductor::Custom`] leaves them as they are.
     pub fn set_conductor(&mut self, conductor: Conductor) {
         self.conductor = conductor;
@@ -210,6 +228,11 @@ impl MaterialSettings {
         }
         (self.eta, self.k) = (eta, k);
     }
+}
+
+/// A tint of the reflection brought into its range.
+pub fn specular_color(tint: f32) -> f32 {
+    tint.clamp(0.0, SPECULAR_COLOR_MAX)
 }
 
 /// Which textures a material looks up: its own, and else its slot's. None, unless the material comes with the model or was

@@ -11,7 +11,7 @@ pub mod history;
 pub mod import;
 pub mod light_handle;
 pub mod match_look;
-mod material;
+pub mod material;
 pub mod measured_look;
 pub mod of_model;
 mod own_textures;
@@ -32,7 +32,7 @@ pub use custom_curve::CustomCurve;
 pub use ground::{GroundKind, GroundSettings};
 pub use history::History;
 pub use import::ImportLobe;
-pub use material::{Conductor, MaterialSettings, TextureUse};
+pub use material::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX, TextureUse};
 pub use own_textures::{
     OwnTextures, TextureError, map_key, target_of_key, texture_assignments, texture_from_json, texture_to_json,
 };

@@ -85,6 +85,7 @@ effects! {
     RoughTables "rough-tables" flag "PLAN_ROUGH_TABLES";
     NormalMap "normal-map" flag "PLAN_NORMAL_MAPS";
     EmissionTexture "emission-texture" flag "PLAN_EMISSION_TEXTURES";
+    VertexColors "vertex-colors" flag "PLAN_VERTEX_COLORS";
     CoatTexture "coat-texture" flag "PLAN_COAT_TEXTURES";
     BoxProjection "box-projection" flag "PLAN_BOX_PROJECTION";
     Alpha "alpha" flag "PLAN_ALPHA";

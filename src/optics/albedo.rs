@@ -199,6 +199,6 @@ pub fn rough_albedo<T: Real>(terms: &FresnelTerms<T>, integrals: [T; 4]) -> Vec3
     };
     let darkening = edge_darkening(terms.metal_f0, terms.edge_tint) * edge;
     let metal = terms.metal_f0 * constant + Vec3::splat(grazing);
-    let metal = (metal - darkening).at_least_zero() * terms.tint;
-    dielectric.mix(metal, terms.metalness) * terms.weight
+    let metal = (metal - darkening).at_least_zero() * terms.metal_tint;
+    (dielectric * terms.weight).mix(metal, terms.metalness)
 }

@@ -26,9 +26,11 @@ pub struct FresnelTerms<T> {
     pub metalness: T,
     /// Tint: of the reflectance at normal incidence where the model is Schlick's for a dielectric, else of all of it.
     pub tint: Vec3<T>,
+    /// Factor of a metal's reflection, where the model has metalness: tint times weight, or 1 where those spare metals.
+    pub metal_tint: Vec3<T>,
     /// What the metal's reflection is multiplied by near 82 degrees; 1 leaves it as it is.
     pub edge_tint: Vec3<T>,
-    /// Share of the reflection that is kept at any angle, in [0, 1].
+    /// Share of the reflection that is kept at any angle, in [0, 1]; a metal's is in `metal_tint`.
     pub weight: T,
     /// Index of refraction of the dielectric against what surrounds it.
     pub ior: T,
@@ -50,16 +52,16 @@ impl<T: Real> FresnelTerms<T> {
 /// The share reflected, linear RGB in [0, 1]; `cosine` between the half vector and either direction, in [0, 1].
 #[inline(always)]
 pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
-    let share = match terms.model {
-        Fresnel::None => terms.tint,
+    match terms.model {
+        Fresnel::None => terms.tint * terms.weight,
         Fresnel::Schlick | Fresnel::Dielectric => {
             let dielectric = if terms.model == Fresnel::Schlick {
                 fresnel_schlick(terms.tint * fresnel_f0(terms.ior), cosine)
             } else {
                 terms.tint * fresnel_dielectric(cosine, terms.ior)
             };
-            let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.tint;
-            dielectric.mix(metal, terms.metalness)
+            let metal = fresnel_metal(terms.metal_f0, terms.edge_tint, cosine) * terms.metal_tint;
+            (dielectric * terms.weight).mix(metal, terms.metalness)
         }
         Fresnel::Conductor => {
             let channels = vec3(
@@ -67,10 +69,9 @@ pub fn fresnel<T: Real>(terms: &FresnelTerms<T>, cosine: T) -> Vec3<T> {
                 fresnel_conductor(cosine, terms.eta.y, terms.k.y),
                 fresnel_conductor(cosine, terms.eta.z, terms.k.z),
             );
-            channels * terms.tint
+            channels * terms.tint * terms.weight
         }
-    };
-    share * terms.weight
+    }
 }
 
 /// The cosine at the half vector of two unit directions: half the length of their sum. √(½ + ½ wo·wi) would lose its digits

@@ -20,7 +20,7 @@ use super::mesh::Mesh;
 use super::part::Part;
 use super::shapes;
 use super::surface::{POSITION_ERROR, position_error};
-use super::texture::{Textures, emission_at, uvs_at};
+use super::texture::{Textures, emission_at, uvs_at, vertex_factors};
 use crate::optics::material::Material;
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real, Scalar};
@@ -312,9 +312,10 @@ pub fn light_sample<T: Scalar>(
     let normal = normalize_or(triangle_normal([p0, p1, p2]), direction);
     let material = &emitters.materials[geometry.slot(triangle) as usize];
     let mut radiance = material.emission;
-    if material.is_textured() || material.has_holes() {
+    if material.is_varied() || material.has_holes() {
         let uvs = uvs_at(geometry, triangle, weights, material.has_box_projection == 1);
-        radiance = emission_at(emitters.textures, material, uvs);
+        let of_vertices = vertex_factors(geometry, material, triangle, weights);
+        radiance = emission_at(emitters.textures, material, uvs, of_vertices);
     }
     if is_spot(material) {
         radiance = radiance * spot_share(material, -normal.dot(direction));

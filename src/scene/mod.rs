@@ -39,7 +39,7 @@ pub mod teapot;
 pub mod texture;
 
 pub use geometry::{Geometry, NO_OBJECT};
-pub use gltf::{Widths, gltf_from_widths, kept_keys, widths_from_gltf};
+pub use gltf::{FileParameter, GLTF_PARAMETERS, Goes, Widths, gltf_from_widths, kept_keys, widths_from_gltf};
 pub use hierarchy::{Compressed, PACKET, Packet, WAYS, ray_way};
 pub use import::{MODEL_ENDINGS, holds_model, is_model};
 pub use intersect::{Hit, RayFrame, intersect_triangle, triangle_normal};

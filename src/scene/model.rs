@@ -260,14 +260,18 @@ pub struct Slot {
     pub coat_texture: Option<TextureRef>,
     /// Share of the specular reflection that is kept, in [0, 1] (KHR_materials_specular).
     pub specular: f32,
-    /// Tint of the specular reflection of what is no metal, linear, each in [0, 1].
+    /// Tint of the reflection at normal incidence of what is no metal, linear, not negative; may be above 1.
     pub specular_color: [f32; 3],
     /// Stretch of the reflection along the tangent, in [0, 1], as lobes have it (KHR_materials_anisotropy).
     pub anisotropy: f32,
     /// Turn of the stretch from the tangent towards the bitangent, radians.
     pub anisotropy_rotation_rad: f32,
-    /// The base colour is multiplied by the colours at the vertices.
+    /// The base colour is multiplied by the colours at the vertices, or the emission of what is unlit.
     pub has_vertex_colors: bool,
+    /// Some of these colours have an alpha below 1.
+    pub has_vertex_alpha: bool,
+    /// It shows its colour whatever the light (KHR_materials_unlit).
+    pub is_unlit: bool,
     /// What the renderer cannot show yet, under the keys of a material's file.
     pub kept: serde_json::Map<String, serde_json::Value>,
 }
@@ -305,6 +309,8 @@ impl Default for Slot {
             anisotropy: 0.0,
             anisotropy_rotation_rad: 0.0,
             has_vertex_colors: false,
+            has_vertex_alpha: false,
+            is_unlit: false,
             kept: serde_json::Map::new(),
         }
     }

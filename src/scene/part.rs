@@ -10,6 +10,9 @@ use super::loading::{Cancelled, Loading};
 use super::memory::{in_large_pages, room_in_large_pages};
 use super::mesh::{Mesh, any_tangent};
 
+/// What an alpha of 1 is stored as.
+const ALPHA_MAX: f32 = 32767.0;
+
 /// What shading needs of a vertex besides its position: three times 16 bytes, the same layout in WGSL.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
@@ -20,7 +23,7 @@ pub struct Vertex {
     pub red_green: u32,
     /// Unit tangent, see [`Mesh::tangents`].
     pub tangent: [f32; 3],
-    /// Blue, and which side of the tangent the bitangent is on: 0 or 1, for −1 and 1.
+    /// Blue; alpha in 15 bits; and in the last bit which side of the tangent the bitangent is on: 0 or 1, for −1 and 1.
     pub blue_side: u32,
     /// Texture coordinates, v downwards, and the second set of them.
     pub uvs: [f32; 4],
@@ -35,8 +38,9 @@ impl Vertex {
         } else {
             any_tangent(normal).extend(1.0)
         };
-        let [red, green, blue, _] = mesh.colors.get(index).copied().unwrap_or([1.0; 4]);
-        let side = f32::from(u8::from(tangent.w >= 0.0));
+        let [red, green, blue, alpha] = mesh.colors.get(index).copied().unwrap_or([1.0; 4]);
+        let side = u32::from(tangent.w >= 0.0) << 31;
+        let alpha = (alpha.clamp(0.0, 1.0) * ALPHA_MAX).round() as u32;
         let fractions = |low: f32, high: f32| {
             let [low, high] = [low, high].map(|value| (value.clamp(0.0, 1.0) * 65535.0).round() as u32);
             low | high << 16
@@ -46,7 +50,7 @@ impl Vertex {
             normal: normal.to_array(),
             red_green: fractions(red, green),
             tangent: tangent.truncate().to_array(),
-            blue_side: fractions(blue, side),
+            blue_side: fractions(blue, 0.0) | alpha << 16 | side,
             uvs: [uv.x, uv.y, second_uv.x, second_uv.y],
         }
     }
@@ -61,9 +65,14 @@ impl Vertex {
         ]
     }
 
+    /// The share of the material's opacity that is left here, in [0, 1].
+    pub fn alpha(&self) -> f32 {
+        (self.blue_side >> 16 & 0x7fff) as f32 / ALPHA_MAX
+    }
+
     /// The sign of the bitangent: 1 or −1.
     pub fn side(&self) -> f32 {
-        if self.blue_side >> 16 == 0 { -1.0 } else { 1.0 }
+        if self.blue_side >> 31 == 0 { -1.0 } else { 1.0 }
     }
 }
 

@@ -1,12 +1,12 @@
 //! A ray's hit made into a surface to shade.
 
 use crate::optics::frame::{frame_from_normal, frame_from_tangent};
-use crate::optics::material::{Material, NO_TEXTURE, Surface};
+use crate::optics::material::{Material, NO_TEXTURE, Surface, VERTEX_BASE, VERTEX_EMISSION};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Mask, Real, Scalar};
 use crate::optics::vector::Vec3;
 
-use super::texture::{Textures, Uvs, mapped_normal, opacity_at, uvs_at};
+use super::texture::{Textures, Uvs, mapped_normal, opacity_at, uvs_at, vertex_factors};
 use super::{Geometry, Hit, Vertex, triangle_normal};
 
 /// Rounding of the position's three products and sums, with what the box test and the transforms add.
@@ -239,7 +239,7 @@ pub fn surfaces_at<T: Real>(
         });
     }
     let mut vertex_color = Vec3::splat(T::one());
-    if of_lane.has_vertex_colors == 1 {
+    if of_lane.has_flag(VERTEX_BASE | VERTEX_EMISSION) {
         let colors = at_corners(hits, |triangle| geometry.vertices(triangle).map(Vertex::rgb));
         vertex_color = between(&colors, &weights);
     }
@@ -307,13 +307,10 @@ pub fn hit_opacity<T: Scalar>(geometry: &Geometry, materials: &[Material<T>], te
         return T::one();
     }
     let has_box = material.has_box_projection == 1;
-    let uvs = uvs_at(
-        geometry,
-        hit.triangle as usize,
-        hit_weights::<T>(&T::each(|_| *hit)),
-        has_box,
-    );
-    opacity_at(textures, material, uvs)
+    let (triangle, weights) = (hit.triangle as usize, hit_weights::<T>(&T::each(|_| *hit)));
+    let uvs = uvs_at(geometry, triangle, weights, has_box);
+    let (_, alpha) = vertex_factors(geometry, material, triangle, weights);
+    opacity_at(textures, material, uvs, alpha)
 }
 
 /// How far off its plane, along the unit `normal`, the place may be that is interpolated between a triangle's corners

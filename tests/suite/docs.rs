@@ -13,6 +13,7 @@ use glossmith::optics::fresnel::Fresnel;
 use glossmith::optics::lobe::Lobe;
 use glossmith::optics::tone::{ToneCurve, linear_from_srgb, srgb_from_linear};
 use glossmith::optics::vector::Vec3;
+use glossmith::scene::{FileParameter, GLTF_PARAMETERS, Goes};
 use glossmith::store::PRESETS;
 use glossmith::store::exchange::{FORMATS, Registered};
 use glossmith::store::preset::command_line_name;
@@ -224,6 +225,28 @@ fn option_name(option: &str) -> &str {
     option.trim_matches('`').split(' ').next().unwrap_or_default()
 }
 
+/// What becomes of the parameters of a file.
+fn file_parameters(all: &[FileParameter]) -> String {
+    let row = |parameter: &FileParameter| {
+        let goes = match parameter.goes {
+            Goes::To(to) => to.to_owned(),
+            Goes::Kept("") => String::new(),
+            Goes::Kept(key) => format!("kept as `{key}`, not shown yet"),
+            Goes::Nowhere(what) => format!("ignored: {what}"),
+        };
+        let place = parameter
+            .place
+            .trim_start_matches("/extensions")
+            .trim_start_matches('/');
+        vec![
+            format!("`{}`", place.replace('/', ".")),
+            goes,
+            parameter.told.to_owned(),
+        ]
+    };
+    table(&["parameter", "goes to", "told"], all.iter().map(row))
+}
+
 fn block(name: &str) -> String {
     match name {
         "parameters" => parameters(&PARAMETERS),
@@ -237,6 +260,7 @@ fn block(name: &str) -> String {
         "effects" => effects(),
         "presets" => presets(),
         "formats" => formats(),
+        "parameters of glTF" => file_parameters(GLTF_PARAMETERS),
         name => match name.strip_prefix("options of glossmith") {
             Some(command) => options(command.trim()),
             None => panic!("the guide asks for '{name}', which nobody makes"),
@@ -258,7 +282,16 @@ fn made_anew(guide: &str) -> String {
 
 #[test]
 fn the_guide_tells_what_the_program_knows() {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/GUIDE.md");
+    tells_what_the_program_knows("docs/GUIDE.md");
+}
+
+#[test]
+fn the_formats_tell_what_becomes_of_each_parameter() {
+    tells_what_the_program_knows("docs/FORMATS.md");
+}
+
+fn tells_what_the_program_knows(name: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
     let guide = std::fs::read_to_string(&path).unwrap();
     let expected = made_anew(&guide);
     if std::env::var_os("UPDATE_DOCS").is_some() {
@@ -269,13 +302,13 @@ fn the_guide_tells_what_the_program_knows() {
         assert_eq!(
             found,
             expected,
-            "docs/GUIDE.md, line {}: run UPDATE_DOCS=1 cargo test docs",
+            "{name}, line {}: run UPDATE_DOCS=1 cargo test docs",
             line + 1
         );
     }
     assert!(
         guide == expected,
-        "docs/GUIDE.md ends elsewhere: run UPDATE_DOCS=1 cargo test docs"
+        "{name} ends elsewhere: run UPDATE_DOCS=1 cargo test docs"
     );
 }
 

@@ -86,6 +86,7 @@ fn what_a_facet_leaves_over_is_what_it_does_not_reflect() {
             metal_f0: vec3(0.9, 0.6, 0.2),
             metalness: 0.0,
             tint: vec3(1.0, 0.8, 0.1),
+            metal_tint: vec3(1.0, 1.0, 1.0),
             edge_tint: vec3(0.5, 1.0, 0.9),
             weight: 0.7,
             ior: 1.5,

@@ -169,6 +169,10 @@ fn reflectance_apart(a: &MaterialSettings, b: &MaterialSettings) -> f64 {
         metal_f0: Vec3::from_f32(m.base_color) * f64::from(m.base_weight),
         metalness: f64::from(m.metalness),
         tint: Vec3::from_f32(m.specular_color),
+        metal_tint: match m.specular_on_metal {
+            true => Vec3::from_f32(m.specular_color) * f64::from(m.specular_weight),
+            false => Vec3::splat(1.0),
+        },
         edge_tint: Vec3::from_f32(m.edge_tint),
         weight: f64::from(m.specular_weight),
         ior: f64::from(m.ior),

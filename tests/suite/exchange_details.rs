@@ -191,6 +191,7 @@ fn what_a_format_shows_of_a_stretch_is_what_its_widths_are() {
         eta_and_k: false,
         edge_tint: false,
         specular: true,
+        weighs_metal: false,
         ior: true,
         widths: |_| [0.4, 0.1],
         coat: true,

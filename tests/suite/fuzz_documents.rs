@@ -63,7 +63,7 @@ fn setting_color(random: &mut Random) -> [f32; 3] {
 fn value(random: &mut Random, kind: &Kind) -> Value {
     match kind {
         Kind::Number { range, .. } => Value::Number(number(random, *range)),
-        Kind::Color => Value::Color(color(random)),
+        Kind::Color | Kind::Tint { .. } => Value::Color(color(random)),
         Kind::Triple { range } => Value::Triple([(); 3].map(|()| number(random, *range))),
         Kind::Choice(all) => Value::Choice(all[random.below(all.len())].name),
         Kind::Toggle => Value::Toggle(random.below(2) == 0),

@@ -62,7 +62,7 @@ fn rust_layouts() -> Vec<Layout> {
             horizon, fresnel, curve_table, albedo_table, inner_albedo_table, edge_tint, opacity,
             coat_color, coat_weight, coat_roughness, coat_ior, coat_table, light_luminance, textures,
             opacity_texture, alpha_cutoff, normal_strength, has_rough_tables, texture_roughness, roughness_table,
-            has_vertex_colors, spot_scale, spot_offset, metalness_texture, coat_texture,
+            flags, spot_scale, spot_offset, metalness_texture, coat_texture,
             has_box_projection,
         }),
         layout!(Triangle: Triangle { corners }),

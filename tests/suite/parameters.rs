@@ -19,6 +19,7 @@ fn values_of(kind: &Kind) -> Vec<Value> {
         Kind::Place { range: [low, high] } => vec![Value::Place([*low, *high, 0.1])],
         Kind::Optional { kind, .. } => values_of(kind).into_iter().chain([Value::Absent]).collect(),
         Kind::Color => vec![Value::Color([0.0, 1.0, 0.123_456_7]), Value::Color([0.9; 3])],
+        Kind::Tint { most } => vec![Value::Color([0.0, *most, 0.123_456_7]), Value::Color([0.9; 3])],
         Kind::Triple { range: [low, high] } => {
             vec![Value::Triple([*low, *high, 0.765_432_1]), Value::Triple([*low; 3])]
         }
@@ -54,6 +55,7 @@ fn invalid_texts(kind: &Kind) -> Vec<String> {
         Kind::Color => &[
             "#12345", "#+1+2+3", "#äöü", "1,1", "1,1,1,1", "-0.1,0,0", "1.1,0,0", "red", "NaN,0,0", "",
         ],
+        Kind::Tint { .. } => &["#12345", "1,1", "-0.1,0,0", "1e9,0,0", "red", "NaN,0,0", ""],
         Kind::Triple { .. } => &["1", "1,2", "1,2,x", "-1,0,0", "21,0,0", "inf,0,0"],
         Kind::Choice(_) => &["", "no such", "Geometric"],
         Kind::Toggle => &["", "1", "yes"],

@@ -198,7 +198,7 @@ fn a_mask_without_a_cutoff_cuts_at_a_half() {
     let textures = Textures::new(&model);
     let settings = MaterialSettings::from_slot(&model.slots[0], ImportLobe::Geometric);
     let (materials, _) = compile_textured(&[settings], &textures.slots);
-    let opacity = |u: f32| opacity_at::<f32>(&textures, &materials[0], [[u, 0.5], [0.0; 2], [0.0; 2]]);
+    let opacity = |u: f32| opacity_at::<f32>(&textures, &materials[0], [[u, 0.5], [0.0; 2], [0.0; 2]], 1.0);
     assert_eq!([opacity(0.25), opacity(0.75)], [0.0, 1.0]);
 }
 

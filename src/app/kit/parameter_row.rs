@@ -69,6 +69,17 @@ fn of_kind(ui: &mut Ui, kind: &Kind, row: &RowStyle, full: &str, value: &mut Val
             *linear = linear.map(|x| x.clamp(0.0, 1.0));
             response
         }
+        (Kind::Tint { most }, Value::Color(linear)) => {
+            // A colour of at most 1 is picked; what it is multiplied by stays.
+            let strength = linear.iter().fold(1.0_f32, |most, x| most.max(*x));
+            let shown = linear.map(|x| x / strength);
+            let mut picked = shown;
+            let response = widgets::color(ui, full, &mut picked);
+            if picked != shown {
+                *linear = picked.map(|x| (x * strength).clamp(0.0, *most));
+            }
+            response
+        }
         (Kind::Triple { range }, Value::Triple(values)) => {
             let range = f64::from(range[0])..=f64::from(range[1]);
             widgets::triple(ui, full, values, range, ["red", "green", "blue"])

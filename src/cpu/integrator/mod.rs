@@ -228,7 +228,7 @@ impl<'a, T: Real> Integrator<'a, T> {
             _ => point.slot,
         };
         let materials = (&self.materials[slot as usize], &self.of_lane[slot as usize]);
-        if materials.1.is_textured() || materials.1.has_vertex_colors == 1 {
+        if materials.1.is_varied() {
             let (textures, tables) = (self.textures, self.tables);
             Cow::Owned(T::out_of_line(
                 #[inline(always)]

@@ -6,7 +6,7 @@ use crate::job::effect::{ANY, Decision, EffectId};
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
 use crate::optics::lobe::Lobe;
-use crate::optics::material::{Material, NO_TEXTURE};
+use crate::optics::material::{Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::vector::Vec3;
 
 /// Every effect, in the order of [`EffectId::ALL`].
@@ -177,6 +177,7 @@ pub static EFFECTS: &[Effect] = &[
         remove: Some(|document| {
             for material in &mut document.materials {
                 material.specular_weight = 0.0;
+                material.specular_on_metal = true;
                 material.transmission_weight = 0.0;
             }
         }),
@@ -283,7 +284,7 @@ pub static EFFECTS: &[Effect] = &[
         label: "Colour textures",
         help: "Base colours looked up in pictures, or given at the model's vertices.",
         decide: |facts| {
-            let is_colored = |m: &Material<f32>| m.textures[0] != NO_TEXTURE || m.has_vertex_colors == 1;
+            let is_colored = |m: &Material<f32>| m.textures[0] != NO_TEXTURE || m.has_flag(VERTEX_BASE);
             facts.needed_by(is_colored, "takes its colour from a texture or from its vertices")
         },
         remove: Some(|document| each_material(document, |material| material.textures.color = false)),
@@ -323,6 +324,23 @@ pub static EFFECTS: &[Effect] = &[
         help: "Emission looked up in pictures.",
         decide: |facts| facts.needed_by(|m| m.textures[3] != NO_TEXTURE, "takes its emission from a texture"),
         remove: Some(|document| each_material(document, |material| material.textures.emission = false)),
+    },
+    Effect {
+        id: EffectId::VertexColors,
+        label: "Light and opacity of vertices",
+        help: "Emission and opacity that change from vertex to vertex.",
+        decide: |facts| {
+            facts.needed_by(
+                |m| m.has_flag(VERTEX_EMISSION | VERTEX_OPACITY),
+                "shines or is clear by the colours of its vertices",
+            )
+        },
+        remove: Some(|document| {
+            each_material(document, |material| {
+                material.textures.emission = false;
+                material.textures.opacity = false;
+            });
+        }),
     },
     Effect {
         id: EffectId::CoatTexture,

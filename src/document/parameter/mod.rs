@@ -86,6 +86,11 @@ pub enum Kind {
     },
     /// Linear RGB, each in [0, 1].
     Color,
+    /// Linear RGB that may be above 1.
+    Tint {
+        /// Largest value that each takes.
+        most: f32,
+    },
     /// A number for each colour channel.
     Triple {
         /// Least and largest value that each takes.
@@ -406,6 +411,7 @@ impl<T> Parameter<T> {
             (Kind::Count { range }, Value::Count(n)) => within(*range, *n),
             (Kind::Place { range }, Value::Place(place)) => place.iter().all(|x| within(*range, *x)),
             (Kind::Color, Value::Color(color)) => color.iter().all(|x| within([0.0, 1.0], *x)),
+            (Kind::Tint { most }, Value::Color(color)) => color.iter().all(|x| within([0.0, *most], *x)),
             (Kind::Triple { range }, Value::Triple(triple)) => triple.iter().all(|x| within(*range, *x)),
             (Kind::Choice(choices), Value::Choice(name)) => choices.iter().any(|choice| choice.name == *name),
             (Kind::Toggle, Value::Toggle(_)) => true,
@@ -488,6 +494,7 @@ impl<T> Parameter<T> {
     fn expected_in_json(&self) -> String {
         match &self.kind {
             Kind::Color => "give [r, g, b] (linear, each from 0 to 1)".to_owned(),
+            Kind::Tint { most } => format!("give [r, g, b] (linear, each from 0 to {most})"),
             Kind::Triple { range: [low, high] } => format!("give [r, g, b], each from {low} to {high}"),
             Kind::Curve => "give points [[ξ, D], …] such as [[0, 0], [0.5, 0.4], [1, 1]]".to_owned(),
             _ => self.expected(),

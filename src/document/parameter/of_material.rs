@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use super::{Choice, Kind, Parameter, RowStyle, Stage, Value, choices};
 use crate::document::custom_curve::CustomCurve;
-use crate::document::{Conductor, MaterialSettings};
+use crate::document::{Conductor, MaterialSettings, SPECULAR_COLOR_MAX};
 use crate::named::Named;
 use crate::optics::curve::Curve;
 use crate::optics::fresnel::Fresnel;
@@ -109,6 +109,12 @@ fn specular_shape() -> Vec<Parameter> {
             ..of("specular.weight", unit_number(), field!(Number specular_weight))
         },
         Parameter {
+            label: "Metals too",
+            help: "Weight and tint are a metal's too; off, they are the dielectric's alone, as in glTF.",
+            applies: |material| material.metalness > 0.0 && has_metalness(material),
+            ..of("specular.on_metal", Kind::Toggle, field!(Toggle specular_on_metal))
+        },
+        Parameter {
             label: "Lobe",
             help: "The model of how reflected light is spread.",
             ..of("specular.lobe", choices::<Lobe>(), choice_field!(lobe))
@@ -199,16 +205,19 @@ fn specular_fresnel() -> Vec<Parameter> {
         },
         Parameter {
             label: "Tint",
-            help: "Colours the reflection.",
-            ..of("specular.color", Kind::Color, field!(Color specular_color))
+            help: "Colours the reflection. Above 1 it raises Schlick's reflectance of a dielectric seen head-on, up to 1.",
+            ..of(
+                "specular.color",
+                Kind::Tint {
+                    most: SPECULAR_COLOR_MAX,
+                },
+                field!(Color specular_color),
+            )
         },
         Parameter {
             label: "Edge tint",
             help: "Colours a metal's reflection towards the edge, strongest at 82° (F82 tint); white leaves it alone.",
-            applies: |material| {
-                let of_metal = !matches!(material.fresnel, Fresnel::None | Fresnel::Conductor) || transmits(material);
-                has_specular(material) && of_metal && material.metalness > 0.0
-            },
+            applies: |material| has_specular(material) && has_metalness(material) && material.metalness > 0.0,
             ..of("specular.edge_tint", Kind::Color, field!(Color edge_tint))
         },
         Parameter {
@@ -411,11 +420,16 @@ fn bar(low: f64, high: f64) -> RowStyle {
 }
 
 fn has_specular(material: &MaterialSettings) -> bool {
-    material.specular_weight > 0.0 || transmits(material)
+    material.reflects()
 }
 
 fn transmits(material: &MaterialSettings) -> bool {
-    material.transmission_weight > 0.0 && material.metalness < 1.0
+    material.transmits()
+}
+
+/// True where the Fresnel model tells metals from dielectrics.
+fn has_metalness(material: &MaterialSettings) -> bool {
+    !matches!(material.fresnel, Fresnel::None | Fresnel::Conductor) || transmits(material)
 }
 
 fn has_curves(material: &MaterialSettings) -> bool {

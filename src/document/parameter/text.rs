@@ -21,6 +21,7 @@ impl Kind {
             Kind::Optional { word, .. } if text == *word => Some(Value::Absent),
             Kind::Optional { kind, .. } => kind.parse(text),
             Kind::Color => parse_color(text).ok().map(Value::Color),
+            Kind::Tint { .. } => parse_hex_color(text).or_else(|| parse_list(text)).map(Value::Color),
             Kind::Triple { .. } => parse_list(text).map(Value::Triple),
             Kind::Choice(choices) => choose(choices, text),
             Kind::Toggle => match text {
@@ -44,7 +45,7 @@ impl Kind {
             }
             (Kind::Optional { .. }, Json::Null) => Some(Value::Absent),
             (Kind::Optional { kind, .. }, json) => kind.value_from_json(json),
-            (Kind::Color, json) => json_numbers(json).map(Value::Color),
+            (Kind::Color | Kind::Tint { .. }, json) => json_numbers(json).map(Value::Color),
             (Kind::Triple { .. }, json) => json_numbers(json).map(Value::Triple),
             (Kind::Choice(choices), Json::String(name)) => choose(choices, name),
             (Kind::Toggle, Json::Bool(on)) => Some(Value::Toggle(*on)),
@@ -74,6 +75,7 @@ impl Kind {
             Kind::Place { range: [low, high] } => format!("x,y,z: three numbers, each from {low} to {high}"),
             Kind::Optional { kind, word, .. } => format!("{}, or {word}", kind.expected()),
             Kind::Color => COLOR_EXPECTED.to_owned(),
+            Kind::Tint { most } => format!("#rrggbb (sRGB) or r,g,b (linear, each from 0 to {most})"),
             Kind::Triple { range: [low, high] } => format!("r,g,b: three numbers, each from {low} to {high}"),
             Kind::Choice(choices) => {
                 let names: Vec<_> = choices.iter().map(|choice| choice.name).collect();
@@ -100,7 +102,7 @@ impl Kind {
             Kind::Count { .. } => "N".to_owned(),
             Kind::Place { .. } => "X,Y,Z".to_owned(),
             Kind::Optional { kind, word, .. } => format!("{}|{word}", kind.placeholder()),
-            Kind::Color => "#RRGGBB".to_owned(),
+            Kind::Color | Kind::Tint { .. } => "#RRGGBB".to_owned(),
             Kind::Triple { .. } => "R,G,B".to_owned(),
             Kind::Choice(choices) => choices.iter().map(|choice| choice.name).collect::<Vec<_>>().join("|"),
             Kind::Toggle => "on|off".to_owned(),

@@ -198,7 +198,7 @@ impl Setting {
 
 /// Gives every material that reflects this lobe, looks matched where they can be: mirrors stay as narrow as they are.
 fn change_lobes(document: &mut Document, lobe: Lobe, curve: Curve) {
-    let reflecting = document.materials.iter_mut().filter(|m| m.specular_weight > 0.0);
+    let reflecting = document.materials.iter_mut().filter(|m| m.reflects());
     for material in reflecting {
         let is_same_curve = !lobe.has_curves() || material.curve == curve || curve == Curve::Smooth;
         if material.lobe == lobe && is_same_curve {

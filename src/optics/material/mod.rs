@@ -28,6 +28,15 @@ pub const NO_TEXTURE: u32 = u32::MAX;
 /// Nodes of the table that has a lobe's roughness for that of GGX.
 pub const MATCHED_NODES: usize = 17;
 
+/// Flag: the colours at the vertices multiply the base colour.
+pub const VERTEX_BASE: u32 = 1;
+/// Flag: the colours at the vertices multiply the emission.
+pub const VERTEX_EMISSION: u32 = 2;
+/// Flag: the alpha at the vertices multiplies the opacity.
+pub const VERTEX_OPACITY: u32 = 4;
+/// Flag: weight and tint of the reflection are the dielectric's alone.
+pub const SPARES_METAL: u32 = 8;
+
 /// A material with its tables' places. The f32 form is what the GPU reads, byte for byte (`shaders/optics/material.wgsl`).
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
@@ -107,8 +116,8 @@ pub struct Material<T> {
     pub texture_roughness: T,
     /// Where the table begins that has the lobe's roughness for that of GGX; [`NO_TEXTURE`] where both are the same.
     pub roughness_table: u32,
-    /// 1 where the colours at the vertices multiply the base colour.
-    pub has_vertex_colors: u32,
+    /// [`VERTEX_BASE`] and the others.
+    pub flags: u32,
     /// With `spot_offset`: the ramp of a spot's share over the cosine to the way it faces
     /// ([`spot_share`](crate::scene::light::spot_share)); 0 and 1 where the surface shines into all directions.
     pub spot_scale: T,
@@ -173,7 +182,7 @@ impl<T: Real> Material<T> {
             has_rough_tables: self.has_rough_tables,
             texture_roughness: number(self.texture_roughness),
             roughness_table: self.roughness_table,
-            has_vertex_colors: self.has_vertex_colors,
+            flags: self.flags,
             spot_scale: number(self.spot_scale),
             spot_offset: number(self.spot_offset),
             metalness_texture: self.metalness_texture,
@@ -218,13 +227,18 @@ impl<T: Real> Material<T> {
     #[inline(always)]
     pub fn fresnel_terms(&self, is_inside: T::Mask) -> FresnelTerms<T> {
         let is_bare = is_inside & self.transmits();
+        let white = Vec3::splat(T::one());
+        let tint = Vec3::select(is_bare, white, self.specular_color);
+        let weight = T::select(is_bare, T::one(), self.specular_weight);
+        let spares_metal = self.has_flag(SPARES_METAL);
         FresnelTerms {
             model: by_index(Fresnel::ALL, self.fresnel),
             metal_f0: self.base_color,
             metalness: self.metalness,
             edge_tint: self.edge_tint,
-            tint: Vec3::select(is_bare, Vec3::splat(T::one()), self.specular_color),
-            weight: T::select(is_bare, T::one(), self.specular_weight),
+            tint,
+            metal_tint: if spares_metal { white } else { tint * weight },
+            weight,
             ior: self.ior_ahead(is_inside),
             eta: self.eta,
             k: self.k,
@@ -250,7 +264,20 @@ impl<T: Real> Material<T> {
     pub fn has_holes(&self) -> bool {
         let is_masked = self.opacity.less(self.alpha_cutoff);
         let is_clear = self.alpha_cutoff.less(T::zero()) & self.opacity.less(T::one());
-        is_masked.any() || is_clear.any() || self.opacity_texture != NO_TEXTURE
+        let is_varied = self.opacity_texture != NO_TEXTURE || self.has_flag(VERTEX_OPACITY);
+        is_masked.any() || is_clear.any() || is_varied
+    }
+
+    /// True where this flag is set.
+    #[inline(always)]
+    pub fn has_flag(&self, flag: u32) -> bool {
+        self.flags & flag != 0
+    }
+
+    /// True where it changes from point to point: by a texture, or between the vertices.
+    #[inline(always)]
+    pub fn is_varied(&self) -> bool {
+        self.is_textured() || self.has_flag(VERTEX_BASE | VERTEX_EMISSION)
     }
 
     /// True where a Lambertian base shows.
@@ -277,7 +304,9 @@ impl<T: Real> Material<T> {
     /// True where the specular lobe reflects anything: if not from without, then from within.
     #[inline(always)]
     pub fn has_specular(&self) -> T::Mask {
-        T::zero().less(self.specular_weight) | self.transmits()
+        let is_spared = T::Mask::splat(self.has_flag(SPARES_METAL));
+        let may_be_metal = T::zero().less(self.metalness) | T::Mask::splat(self.metalness_texture != NO_TEXTURE);
+        T::zero().less(self.specular_weight) | (is_spared & may_be_metal) | self.transmits()
     }
 }
 

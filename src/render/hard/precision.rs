@@ -72,7 +72,7 @@ fn random_material(numbers: &mut Numbers) -> MaterialSettings {
         };
         let value = match &parameter.kind {
             Kind::Number { range, .. } => Value::Number(within(*range)),
-            Kind::Color => Value::Color([(); 3].map(|()| within([0.0, 1.0]))),
+            Kind::Color | Kind::Tint { .. } => Value::Color([(); 3].map(|()| within([0.0, 1.0]))),
             Kind::Triple { range } => Value::Triple([(); 3].map(|()| within(*range))),
             Kind::Choice(all) => Value::Choice(all[numbers.below(all.len())].name),
             Kind::Toggle => Value::Toggle(numbers.below(2) == 0),

@@ -37,7 +37,6 @@ pub(super) struct Clearcoat {
     pub clearcoat_texture: Option<TextureInfo>,
     pub clearcoat_roughness_factor: f32,
     pub clearcoat_roughness_texture: Option<TextureInfo>,
-    pub clearcoat_normal_texture: Option<TextureInfo>,
 }
 
 /// KHR_materials_specular.
@@ -110,6 +109,27 @@ impl Default for SpecularGlossiness {
 /// An extension of a material; none where the material has none, or where it is not as it should be.
 pub(super) fn extension<T: DeserializeOwned>(material: &Json, name: &str) -> Option<T> {
     T::deserialize(material.get("extensions")?.get(name)?).ok()
+}
+
+/// The extensions of a material of which [`extension`] can read nothing.
+pub(super) fn unreadable(material: &Json) -> impl Iterator<Item = &'static str> {
+    fn is_unreadable<T: DeserializeOwned>(material: &Json, name: &str) -> bool {
+        let is_there = material.get("extensions").is_some_and(|all| all.get(name).is_some());
+        is_there && extension::<T>(material, name).is_none()
+    }
+    let checks: [(&'static str, fn(&Json, &str) -> bool); 6] = [
+        ("KHR_materials_clearcoat", is_unreadable::<Clearcoat>),
+        ("KHR_materials_specular", is_unreadable::<Specular>),
+        ("KHR_materials_anisotropy", is_unreadable::<Anisotropy>),
+        ("KHR_materials_transmission", is_unreadable::<Transmission>),
+        ("KHR_materials_volume", is_unreadable::<Volume>),
+        (
+            "KHR_materials_pbrSpecularGlossiness",
+            is_unreadable::<SpecularGlossiness>,
+        ),
+    ];
+    let unreadable = checks.into_iter().filter(|(name, check)| check(material, name));
+    unreadable.map(|(name, _)| name).collect::<Vec<_>>().into_iter()
 }
 
 /// A number or list of an extension, and the key under which a material keeps it.

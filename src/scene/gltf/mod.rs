@@ -23,6 +23,7 @@ use std::path::Path;
 use glam::DMat4;
 
 pub use self::anisotropy::{Widths, gltf_from_widths, widths_from_gltf};
+pub use self::material::{FileParameter, GLTF_PARAMETERS, Goes};
 pub use self::material_extensions::kept_keys;
 
 use self::container::Document;

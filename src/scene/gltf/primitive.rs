@@ -113,7 +113,8 @@ fn read_primitive(
     };
     let mesh = reader.read(mode, slot, &materials.uvs(slot), bending, report)?;
     if !mesh.colors.is_empty() {
-        materials.has_vertex_colors(slot);
+        let has_alpha = mesh.colors.iter().any(|[_, _, _, alpha]| *alpha < 1.0);
+        materials.has_vertex_colors(slot, has_alpha);
         report.note(Fate::Used, "vertex colours", name);
     }
     Ok(mesh)

@@ -8,7 +8,7 @@ use crate::optics::vector::{Vec3, vec3};
 use crate::scene::model::Texture;
 
 /// What dielectrics reflect at normal incidence.
-const DIELECTRIC: f64 = 0.04;
+pub(super) const DIELECTRIC: f64 = 0.04;
 /// Below this share a quotient would be noise.
 const EPSILON: f64 = 1e-6;
 

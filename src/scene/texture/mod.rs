@@ -17,7 +17,7 @@ use super::geometry::Geometry;
 use super::part::Vertex;
 use super::triangle_normal;
 use crate::optics::frame::frame_from_tangent;
-use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE};
+use crate::optics::material::{MATCHED_NODES, Material, NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::numeric::normalize_or;
 use crate::optics::real::{Real, Scalar};
 use crate::optics::table::table_lookup;
@@ -239,8 +239,13 @@ pub fn textured_material<T: Scalar>(
     vertex_color: Vec3<T>,
 ) -> Material<T> {
     let mut at_point = *material;
-    at_point.base_color = material.base_color * vertex_color;
-    at_point.transmission_tint = material.transmission_tint * vertex_color;
+    if material.has_flag(VERTEX_BASE) {
+        at_point.base_color = material.base_color * vertex_color;
+        at_point.transmission_tint = material.transmission_tint * vertex_color;
+    }
+    if material.has_flag(VERTEX_EMISSION) {
+        at_point.emission = material.emission * vertex_color;
+    }
     let [base_color, roughness, _, emission] = material.textures;
     if base_color != NO_TEXTURE {
         let (color, _) = texture_lookup(textures, base_color, uvs);
@@ -267,7 +272,7 @@ pub fn textured_material<T: Scalar>(
         at_point.metalness = material.metalness * of_metalness.z;
     }
     if emission != NO_TEXTURE {
-        at_point.emission = material.emission * texture_lookup(textures, emission, uvs).0;
+        at_point.emission = at_point.emission * texture_lookup(textures, emission, uvs).0;
     }
     if material.coat_texture != NO_TEXTURE {
         at_point.coat_weight = material.coat_weight * texture_lookup(textures, material.coat_texture, uvs).0.x;
@@ -314,23 +319,53 @@ struct TexturedNumbers<T> {
     numbers: [T; 4],
 }
 
-/// What a surface point emits, linear RGB, its holes left out.
-pub fn emission_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> Vec3<T> {
+/// Factors of emission and opacity that the vertices of a triangle give a place on it.
+pub fn vertex_factors<T: Scalar>(
+    geometry: &Geometry,
+    material: &Material<T>,
+    triangle: usize,
+    weights: [T; 3],
+) -> (Vec3<T>, T) {
+    let (mut color, mut alpha) = (Vec3::splat(T::one()), T::one());
+    if !material.has_flag(VERTEX_EMISSION | VERTEX_OPACITY) {
+        return (color, alpha);
+    }
+    let corners = geometry.vertices(triangle);
+    if material.has_flag(VERTEX_EMISSION) {
+        let [a, b, c] = corners.map(|corner| Vec3::from_f32(corner.rgb()));
+        color = a * weights[0] + b * weights[1] + c * weights[2];
+    }
+    if material.has_flag(VERTEX_OPACITY) {
+        let [a, b, c] = corners.map(|corner| T::from_f64(f64::from(corner.alpha())));
+        alpha = a * weights[0] + b * weights[1] + c * weights[2];
+    }
+    (color, alpha)
+}
+
+/// What a surface point emits, linear RGB, its holes left out; `of_vertices` from [`vertex_factors`].
+pub fn emission_at<T: Scalar>(
+    textures: &Textures,
+    material: &Material<T>,
+    uvs: Uvs<T>,
+    of_vertices: (Vec3<T>, T),
+) -> Vec3<T> {
+    let (color, alpha) = of_vertices;
     let share = if material.has_holes() {
-        opacity_at(textures, material, uvs)
+        opacity_at(textures, material, uvs, alpha)
     } else {
         T::one()
     };
+    let radiance = material.emission * color * share;
     let emission = material.textures[3];
     if emission == NO_TEXTURE {
-        return material.emission * share;
+        return radiance;
     }
-    material.emission * texture_lookup(textures, emission, uvs).0 * share
+    radiance * texture_lookup(textures, emission, uvs).0
 }
 
-/// The share of light that a surface point stops, in [0, 1].
-pub fn opacity_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>) -> T {
-    let mut opacity = material.opacity;
+/// The share of light that a surface point stops, in [0, 1]; `alpha` is that of the vertices.
+pub fn opacity_at<T: Scalar>(textures: &Textures, material: &Material<T>, uvs: Uvs<T>, alpha: T) -> T {
+    let mut opacity = material.opacity * alpha;
     if material.opacity_texture != NO_TEXTURE {
         opacity = opacity * texture_lookup(textures, material.opacity_texture, uvs).1;
     }

@@ -8,10 +8,10 @@ use super::own::TextureTarget;
 use super::scale::{fraction, halved};
 use super::uses::{SlotUses, TextureAssignment, Use, of_own, of_slot};
 use super::{CHANNEL_SHIFT, IS_BOX, IS_FINE, IS_SRGB, TextureRecord};
-use crate::optics::material::NO_TEXTURE;
+use crate::optics::material::{NO_TEXTURE, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use crate::optics::tone::linear_from_srgb;
 use crate::optics::vector::{Vec3, vec3};
-use crate::scene::model::{AlphaMode, Model, Texture};
+use crate::scene::model::{AlphaMode, Model, Slot, Texture};
 
 /// Words before the first texel: the linear values of sRGB codes.
 const DECODED: usize = 256;
@@ -80,8 +80,8 @@ pub struct SlotTextures {
     pub constant_metalness: Option<f32>,
     /// The same of the coat's.
     pub constant_coat: Option<f32>,
-    /// Colours at the vertices multiply the base colour.
-    pub has_vertex_colors: bool,
+    /// What the vertices' colours multiply: flags of a material.
+    pub vertex_flags: u32,
     /// Which of them, by target, lie on the surface as on a box.
     pub on_box: [bool; TextureTarget::ALL.len()],
 }
@@ -103,10 +103,18 @@ impl Default for SlotTextures {
             constant_roughness: None,
             constant_metalness: None,
             constant_coat: None,
-            has_vertex_colors: false,
+            vertex_flags: 0,
             on_box: [false; TextureTarget::ALL.len()],
         }
     }
+}
+
+/// What the colours at a slot's vertices multiply, as a material's flags.
+fn vertex_flags(slot: &Slot) -> u32 {
+    let of_color = if slot.is_unlit { VERTEX_EMISSION } else { VERTEX_BASE };
+    let is_clear = slot.has_vertex_alpha && slot.alpha_mode != AlphaMode::Opaque;
+    let flag = |is_on: bool, flag: u32| if is_on { flag } else { 0 };
+    flag(slot.has_vertex_colors, of_color) | flag(is_clear, VERTEX_OPACITY)
 }
 
 /// The texels of all pictures that are used, and what is known of each: all that does not depend on how they are put on a
@@ -259,7 +267,7 @@ impl Pack {
         };
         for (slot, uses) in model.slots.iter().zip(self.uses(model, assigned)) {
             let mut packed = SlotTextures {
-                has_vertex_colors: slot.has_vertex_colors,
+                vertex_flags: vertex_flags(slot),
                 ..SlotTextures::default()
             };
             if slot.alpha_mode == AlphaMode::Mask {

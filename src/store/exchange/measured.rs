@@ -90,8 +90,7 @@ impl Reflectance {
         }
         let (materials, tables) = compile(std::slice::from_ref(settings));
         let material: Material<f64> = materials[0].cast();
-        let is_sharp =
-            settings.specular_weight > 0.0 && !crate::document::match_look::lobe_of_material(settings).has_density();
+        let is_sharp = settings.reflects() && !crate::document::match_look::lobe_of_material(settings).has_density();
         if material.is_mirror() || is_sharp {
             return Err("a mirror's reflection fits in no table; give it some roughness".to_owned());
         }

@@ -49,6 +49,7 @@ impl Kind {
             eta_and_k: self == Self::Conductor,
             edge_tint: false,
             specular: self == Self::Glass,
+            weighs_metal: false,
             ior: true,
             widths: if is_principled {
                 Surface::disney_widths

@@ -40,6 +40,7 @@ impl Takes {
         eta_and_k: false,
         edge_tint: true,
         specular: true,
+        weighs_metal: true,
         ior: true,
         widths,
         coat: true,

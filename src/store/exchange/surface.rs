@@ -3,6 +3,7 @@
 use super::report::{Entry, Residual};
 use crate::document::import::{ggx_from_geometric, ggx_under_texture};
 use crate::document::match_look::{lobe_of_material, nearest_ggx};
+use crate::document::material::specular_color;
 use crate::document::{ImportLobe, MaterialSettings, TextureUse};
 use crate::optics::fresnel::{
     Fresnel, FresnelTerms, fresnel, fresnel_dielectric, fresnel_f0, fresnel_metal, fresnel_schlick,
@@ -21,8 +22,10 @@ pub struct Surface {
     pub metalness: f32,
     /// Factor of what a dielectric reflects, in [0, 1].
     pub specular_weight: f32,
-    /// Tint of what a dielectric reflects.
+    /// Tint of what a dielectric reflects; above 1 it raises Schlick's reflectance head-on.
     pub specular_color: [f32; 3],
+    /// Weight and tint are a metal's too.
+    pub specular_on_metal: bool,
     /// What a metal's reflection is multiplied by near 82 degrees.
     pub edge_tint: [f32; 3],
     /// Of the dielectric.
@@ -73,6 +76,8 @@ pub struct Takes {
     pub edge_tint: bool,
     /// Weight and tint of a dielectric's reflection.
     pub specular: bool,
+    /// The weight is a metal's too.
+    pub weighs_metal: bool,
     /// The dielectric's index of refraction.
     pub ior: bool,
     /// The widths of a stretched highlight that it shows, as GGX's α, the longer one first.
@@ -104,6 +109,7 @@ impl Default for Surface {
             metalness: 0.0,
             specular_weight: 1.0,
             specular_color: [1.0; 3],
+            specular_on_metal: false,
             edge_tint: [1.0; 3],
             ior: 1.5,
             roughness: 0.5,
@@ -137,13 +143,20 @@ fn rounded(x: f32) -> f32 {
 
 /// The Fresnel factor's terms of a material as it is edited.
 fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
+    let tint = Vec3::from_f32(shown_tint(material));
+    let weight = f64::from(material.specular_weight);
     FresnelTerms {
         model: law_of(material),
         metal_f0: Vec3::from_f32(material.base_color) * f64::from(material.base_weight),
         metalness: f64::from(material.metalness),
-        tint: Vec3::from_f32(material.specular_color),
+        tint,
+        metal_tint: if material.specular_on_metal {
+            tint * weight
+        } else {
+            Vec3::splat(1.0)
+        },
         edge_tint: Vec3::from_f32(material.edge_tint),
-        weight: f64::from(material.specular_weight),
+        weight,
         ior: f64::from(material.ior),
         eta: Vec3::from_f32(material.eta),
         k: Vec3::from_f32(material.k),
@@ -152,12 +165,20 @@ fn fresnel_terms(material: &MaterialSettings) -> FresnelTerms<f64> {
 
 /// The Fresnel model that counts: only the exact equations know total reflection.
 fn law_of(material: &MaterialSettings) -> Fresnel {
-    let transmits = material.transmission_weight > 0.0 && material.metalness < 1.0;
-    if transmits {
+    if material.transmits() {
         Fresnel::Dielectric
     } else {
         material.fresnel
     }
+}
+
+/// The tint that shows: only Schlick's reflectance head-on can be raised, up to 1.
+fn shown_tint(material: &MaterialSettings) -> [f32; 3] {
+    let most = match law_of(material) {
+        Fresnel::Schlick => fresnel_f0(material.ior).recip(),
+        _ => 1.0,
+    };
+    material.specular_color.map(|x| x.min(most))
 }
 
 impl Surface {
@@ -169,7 +190,8 @@ impl Surface {
             base_color: material.base_color.map(|x| rounded(x * material.base_weight)),
             metalness: material.metalness,
             specular_weight: material.specular_weight,
-            specular_color: material.specular_color,
+            specular_color: shown_tint(material),
+            specular_on_metal: material.specular_on_metal,
             edge_tint: material.edge_tint,
             ior: material.ior,
             roughness,
@@ -201,7 +223,7 @@ impl Surface {
             Fresnel::None | Fresnel::Conductor if material.specular_weight == 0.0 => {}
             Fresnel::None => {
                 self.metalness = 1.0;
-                self.base_color = scaled(material.specular_color, weight);
+                self.base_color = scaled(self.specular_color, weight);
             }
             Fresnel::Conductor => {
                 let terms = fresnel_terms(material);
@@ -213,9 +235,10 @@ impl Surface {
                 let tint = [there.x / plain.x, there.y / plain.y, there.z / plain.z];
                 self.edge_tint = tint.map(|x| rounded(unit(x as f32)));
             }
-            _ if material.metalness == 1.0 => {
-                self.base_color = scaled(scaled(self.base_color, material.specular_color), weight).map(rounded);
+            _ if material.metalness == 1.0 && material.specular_on_metal => {
+                self.base_color = scaled(scaled(self.base_color, self.specular_color), weight).map(rounded);
             }
+            _ if material.metalness == 1.0 => {}
             _ => return,
         }
         if self.metalness == 1.0 {
@@ -231,7 +254,8 @@ impl Surface {
             base_color: self.base_color.map(unit),
             metalness: unit(self.metalness),
             specular_weight: unit(self.specular_weight),
-            specular_color: self.specular_color.map(unit),
+            specular_color: self.specular_color.map(specular_color),
+            specular_on_metal: self.specular_on_metal,
             edge_tint: self.edge_tint.map(unit),
             ior: self.ior.clamp(1.0, 4.0),
             roughness: unit(self.roughness),
@@ -269,6 +293,10 @@ impl Surface {
         if !takes.edge_tint {
             taken.edge_tint = [1.0; 3];
         }
+        if takes.law == Law::Exact {
+            taken.specular_color = taken.specular_color.map(unit);
+        }
+        taken.specular_on_metal = takes.weighs_metal;
         let reflects = self.specular_weight > 0.0 || self.coat_weight > 0.0;
         if !takes.specular && reflects {
             (taken.specular_weight, taken.specular_color) = (1.0, [1.0; 3]);
@@ -336,7 +364,7 @@ impl Surface {
         if self.metalness > 0.5 {
             self.edge_tint
         } else {
-            self.specular_color
+            self.specular_color.map(unit)
         }
     }
 
@@ -380,9 +408,10 @@ impl Surface {
             true => (Vec3::from_f32(self.specular_color), f64::from(self.specular_weight)),
             false => (white, 1.0),
         };
+        let metal = if takes.weighs_metal { metal * weight } else { metal };
         let ior = if takes.ior { f64::from(self.ior) } else { 1.5 };
         let dielectric = match takes.law {
-            Law::Exact => tint * (fresnel_dielectric(cosine, ior) * weight),
+            Law::Exact => Vec3::from_f32(self.specular_color.map(unit)) * (fresnel_dielectric(cosine, ior) * weight),
             Law::Schlick => fresnel_schlick(tint * fresnel_f0(ior), cosine) * weight,
         };
         dielectric.mix(metal, f64::from(self.metalness))
@@ -391,7 +420,7 @@ impl Surface {
     /// What becomes of a material's parts, other than the highlight's shape.
     pub fn losses(&self, material: &MaterialSettings, takes: &Takes) -> Vec<Entry> {
         let mut entries = vec![Entry::exact("base colour, metalness")];
-        let is_specular = material.specular_weight > 0.0 || material.transmission_weight > 0.0;
+        let is_specular = material.reflects();
         if is_specular && !(takes.eta_and_k && material.fresnel == Fresnel::Conductor && self.metalness == 1.0) {
             entries.push(self.fresnel_loss(material, takes));
         }
@@ -480,8 +509,7 @@ impl Surface {
 /// The roughness of GGX that looks like a material's highlight, and how near it comes.
 fn highlight(material: &MaterialSettings) -> (f32, Entry) {
     let what = "highlight";
-    let is_specular = material.specular_weight > 0.0 || material.transmission_weight > 0.0;
-    if !is_specular {
+    if !material.reflects() {
         return (material.roughness, Entry::exact("no highlight"));
     }
     if matches!(material.lobe, Lobe::Ggx | Lobe::Ggx2018 | Lobe::GgxNdf) {

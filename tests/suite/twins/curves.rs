@@ -74,8 +74,8 @@ fn fresnel_factors_agree() {
     let (share, shares) = (Output::Number(0.01), Output::Vector(0.01));
     let mut all = Case::new(
         "fresnel",
-        "model metal_f0 metalness edge_tint tint weight ior eta k cosine behind",
-        "let terms = FresnelTerms(model, metal_f0, metalness, edge_tint, tint, weight, ior, eta, k);",
+        "model metal_f0 metalness edge_tint tint metal_tint weight ior eta k cosine behind",
+        "let terms = FresnelTerms(model, metal_f0, metalness, edge_tint, tint, metal_tint, weight, ior, eta, k);",
         twin!(|row| {
             let terms = FresnelTerms {
                 model: Fresnel::ALL[row.bits() as usize],
@@ -83,6 +83,7 @@ fn fresnel_factors_agree() {
                 metalness: row.number(),
                 edge_tint: row.vector(),
                 tint: row.vector(),
+                metal_tint: row.vector(),
                 weight: row.number(),
                 ior: row.number(),
                 eta: row.vector(),
@@ -99,7 +100,7 @@ fn fresnel_factors_agree() {
         all = all.group(model.name(), move |rng, _| {
             let mut color = |high: f32| Value::Vector([(); 3].map(|()| high * rng.unit()));
             let (f0, tint, eta, k) = (color(1.0), color(1.0), color(4.0), color(8.0));
-            let edge_tint = color(1.0);
+            let [edge_tint, metal_tint] = [color(1.0), color(1.0)];
             let (metalness, weight) = (rng.unit(), rng.unit());
             inputs![
                 model as u32,
@@ -107,6 +108,7 @@ fn fresnel_factors_agree() {
                 metalness,
                 edge_tint,
                 tint,
+                metal_tint,
                 weight,
                 ior(rng),
                 eta,

@@ -104,10 +104,10 @@ fn textured_materials_agree() {
                 twin!(|row| {
                     let material: Material<T> = SCENE.material(row.bits());
                     let uvs = uvs(row);
-                    row.put(opacity_at(&SCENE.textures, &material, uvs));
+                    row.put(opacity_at(&SCENE.textures, &material, uvs, T::from_f64(0.75)));
                 }),
             )
-            .output("opacity_at(material_at(material), uvs)", SHARE)
+            .output("opacity_at(material_at(material), uvs, 0.75)", SHARE)
             .group("", |rng, _| {
                 let material = any_material(rng);
                 with_uvs(rng, material)

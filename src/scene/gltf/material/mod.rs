@@ -1,6 +1,7 @@
 //! Materials as slots.
 
 mod pictures;
+mod table;
 
 use std::collections::HashMap;
 
@@ -13,12 +14,13 @@ use rayon::prelude::*;
 use serde_json::Value as Json;
 
 use self::pictures::{PictureKey, affine, without_missing};
+pub use self::table::{FileParameter, GLTF_PARAMETERS, Goes};
 use super::anisotropy::convert_widths;
 use super::container::Document;
 use super::material_extensions::{
-    Anisotropy, Clearcoat, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension, kept,
+    Anisotropy, Clearcoat, Specular, SpecularGlossiness, TextureInfo, Transmission, Volume, extension, kept, unreadable,
 };
-use super::specular_glossiness::{Factors, convert, convert_textures};
+use super::specular_glossiness::{DIELECTRIC, Factors, convert, convert_textures};
 use crate::scene::model::{AlphaMode, ModelOptions, Slot, Texture, TextureRef};
 use crate::scene::report::{Fate, ImportReport};
 use crate::scene::texture::{TextureMean, texture_mean};
@@ -159,9 +161,11 @@ impl<'a> Materials<'a> {
         self.slots[slot as usize].1
     }
 
-    /// Says that a mesh with this slot has colours at its vertices.
-    pub fn has_vertex_colors(&mut self, slot: u32) {
-        self.slots[slot as usize].0.has_vertex_colors = true;
+    /// Says that a mesh with this slot has colours at its vertices, with an alpha below 1 or without.
+    pub fn has_vertex_colors(&mut self, slot: u32, has_alpha: bool) {
+        let slot = &mut self.slots[slot as usize].0;
+        slot.has_vertex_colors = true;
+        slot.has_vertex_alpha |= has_alpha;
     }
 
     /// The slots with their pictures decoded. What of them is missing becomes grey.
@@ -259,7 +263,7 @@ impl<'a> Materials<'a> {
             }
         }
         match extension::<SpecularGlossiness>(raw, "KHR_materials_pbrSpecularGlossiness") {
-            Some(workflow) => self.read_specular_glossiness(index, &workflow, &mut read, &mut sets),
+            Some(workflow) => self.read_specular_glossiness((index, slot), &workflow, &mut read, &mut sets),
             None => {
                 read.base_color_texture = self.texture(info(&pbr.base_color_texture), &mut sets, &read.name);
                 read.metallic_roughness_texture =
@@ -274,8 +278,9 @@ impl<'a> Materials<'a> {
             self.report
                 .note(Fate::Approximated, "an unlit material, which shines", &read.name);
         }
-        if material.occlusion_texture.is_some() {
-            let what = "an occlusion texture, which path tracing needs none of";
+        table::tell(raw, &root.extensions_used, &read.name, &mut self.report);
+        for extension in unreadable(raw) {
+            let what = format!("{extension}, whose values are not of the kinds that it has");
             self.report.note(Fate::Ignored, what, &read.name);
         }
         let (kept, names) = kept(raw);
@@ -291,7 +296,7 @@ impl<'a> Materials<'a> {
     /// The old workflow of diffuse and specular colours.
     fn read_specular_glossiness(
         &mut self,
-        material: usize,
+        (material, slot): (usize, usize),
         workflow: &SpecularGlossiness,
         read: &mut Slot,
         sets: &mut [Option<u32>; 2],
@@ -308,6 +313,15 @@ impl<'a> Materials<'a> {
         );
         let [red, green, blue, opacity] = factors.diffuse;
         read.opacity = unit(opacity);
+        if factors.specular.iter().all(|x| f64::from(*x) < DIELECTRIC) {
+            // All dielectric, and of less reflectance than the other workflow's dielectrics have by themselves.
+            read.specular_color = factors.specular.map(|x| x.max(0.0) / DIELECTRIC as f32);
+            let what = "a specular colour texture, by its mean";
+            let applied = mean(&workflow.specular_glossiness_texture, what, |slot, mean| {
+                slot.specular_color = [0, 1, 2].map(|i| slot.specular_color[i] * mean.linear[i]);
+            });
+            self.add_means(slot, applied.into_iter().collect());
+        }
         let textures = [&workflow.diffuse_texture, &workflow.specular_glossiness_texture];
         let images = textures.map(|info| self.image(info.as_ref()?.index));
         let Some(placed) = textures.into_iter().flatten().next() else {
@@ -340,11 +354,7 @@ impl<'a> Materials<'a> {
         let mut means = Vec::new();
         if let Some(specular) = extension::<Specular>(raw, "KHR_materials_specular") {
             read.specular = unit(specular.specular_factor);
-            read.specular_color = specular.specular_color_factor.map(unit);
-            if specular.specular_color_factor.iter().any(|factor| *factor > 1.0) {
-                let what = "a specular colour above 1, taken as 1";
-                self.report.note(Fate::Approximated, what, &read.name);
-            }
+            read.specular_color = specular.specular_color_factor.map(not_negative);
             means.extend(mean(
                 &specular.specular_texture,
                 "a specular texture, by its mean",
@@ -373,10 +383,6 @@ impl<'a> Materials<'a> {
                     },
                 ));
             }
-            if coat.clearcoat_normal_texture.is_some() {
-                self.report
-                    .note(Fate::Ignored, "a coat normal texture: coats lie smooth", &read.name);
-            }
         }
         if let Some(anisotropy) = extension::<Anisotropy>(raw, "KHR_materials_anisotropy") {
             read.anisotropy = unit(anisotropy.anisotropy_strength);
@@ -385,8 +391,8 @@ impl<'a> Materials<'a> {
                 &anisotropy.anisotropy_texture,
                 "an anisotropy texture, by its mean",
                 |slot, mean| {
-                    slot.anisotropy *= mean.codes[2];
                     let [x, y] = [0, 1].map(|i| 2.0_f32 * mean.codes[i] - 1.0);
+                    slot.anisotropy *= mean.codes[2] * mean_strength(x.hypot(y));
                     slot.anisotropy_rotation_rad += y.atan2(x);
                 },
             ));
@@ -429,6 +435,10 @@ impl<'a> Materials<'a> {
             let what = "a base colour under a volume, which colours what is seen through instead";
             self.report.note(Fate::Approximated, what, &read.name);
         }
+        if read.specular_color.iter().any(|factor| *factor > 1.0) {
+            let what = "a specular colour above 1 of what transmits, taken as 1";
+            self.report.note(Fate::Approximated, what, &read.name);
+        }
         let transmission = extension::<Transmission>(raw, "KHR_materials_transmission").unwrap_or_default();
         let what = "a transmission texture, by its mean";
         let applied = mean(&transmission.transmission_texture, what, |slot, mean| {
@@ -451,8 +461,20 @@ impl<'a> Materials<'a> {
     }
 }
 
+/// The strength of a mean of directions of this length: what points everywhere stretches nothing. Below a step of eight
+/// bits, and nearer to 1 than that, it is rounding.
+fn mean_strength(length: f32) -> f32 {
+    const STEP: f32 = 2.0 / 255.0;
+    match length {
+        none if none < STEP => 0.0,
+        whole if whole > 1.0 - STEP => 1.0,
+        part => part,
+    }
+}
+
 /// A material that shows its colour whatever the light: it shines with it, and reflects nothing.
 fn make_unlit(slot: &mut Slot) {
+    slot.is_unlit = true;
     slot.emission = slot.base_color;
     slot.emissive_texture = slot.base_color_texture;
     slot.base_color = [0.0; 3];

@@ -26,6 +26,7 @@ const TAKES: Takes = Takes {
     eta_and_k: false,
     edge_tint: false,
     specular: true,
+    weighs_metal: false,
     ior: true,
     widths: shown_widths,
     coat: true,

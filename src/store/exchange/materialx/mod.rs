@@ -25,6 +25,7 @@ pub struct MaterialX {
 pub(super) const CARRIER: &str = carried::MARK;
 const STANDARD: Takes = Takes {
     widths: standard_widths,
+    weighs_metal: false,
     ..Takes::OPEN_PBR
 };
 
@@ -157,7 +158,7 @@ fn standard_surface(surface: &Surface, name: &str) -> Element {
             if surface.metalness > 0.5 {
                 edge_color(surface.base_color, surface.edge_tint)
             } else {
-                surface.specular_color
+                surface.tint()
             },
         ))
         .child(number("specular_roughness", surface.roughness))

@@ -307,6 +307,8 @@ fn open_pbr(inputs: &mut Inputs) -> Surface {
         metalness,
         specular_weight: inputs.number("specular_weight", 1.0),
         specular_color: tint,
+        // The weight is a metal's too, the tint is not: where both are, neither.
+        specular_on_metal: tint == [1.0; 3],
         edge_tint,
         ior: inputs.number("specular_ior", 1.5),
         roughness: inputs.number("specular_roughness", 0.3) / widening(ratio),
