@@ -271,8 +271,8 @@ fn albedo_key(material: &Material<f32>, curve_table: &[f32], is_inside: bool) ->
         normal_strength: 0.0,
         texture_roughness: 0.0,
         roughness_table: NO_TEXTURE,
-        // What vertices say has no part in it.
-        flags: material.flags & SPARES_METAL,
+        // A dielectric without vertices.
+        flags: 0,
         base_color: Vec3::zero(),
         emission: Vec3::zero(),
         rotation_rad: 0.0,

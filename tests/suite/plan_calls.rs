@@ -276,6 +276,8 @@ fn calls_for(effect: &str) -> Calls {
         ),
         "normal-map" => (metal, &[|d, _| d.materials[0].textures.normal = true]),
         "emission-texture" => (metal, &[|d, _| d.materials[0].textures.emission = true]),
+        // What vertices say comes with a model: its own tests are in gltf_meaning.rs.
+        "vertex-colors" => (metal, &[]),
         "coat-texture" => (
             metal,
             &[|d, _| (d.materials[0].textures.coat, d.materials[0].coat_weight) = (true, LEAST)],

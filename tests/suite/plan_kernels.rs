@@ -12,7 +12,7 @@ use glossmith::job::effect::{ANY, Decision};
 use glossmith::job::film::Film;
 use glossmith::job::plan::Plan;
 use glossmith::job::{Job, Settings};
-use glossmith::optics::material::{Material, NO_TEXTURE};
+use glossmith::optics::material::{Material, NO_TEXTURE, SPARES_METAL, VERTEX_BASE, VERTEX_EMISSION, VERTEX_OPACITY};
 use glossmith::optics::vector::Vec3;
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::ModelSource;
@@ -45,25 +45,33 @@ fn take_out(effect: &str, value: u32, settings: &mut Settings, materials: &mut [
                 material.base_color = Vec3::zero();
             }
         },
-        "specular" => |material, _| material.specular_weight = 0.0,
+        "specular" => |material, _| {
+            material.specular_weight = 0.0;
+            material.flags &= !SPARES_METAL;
+        },
         "emission" => |material, _| material.emission = Vec3::zero(),
         "spot" => |material, _| (material.spot_scale, material.spot_offset) = (0.0, 1.0),
         "transmission" => |material, _| material.transmission_weight = 0.0,
         "absorption" => |material, _| material.absorption = Vec3::zero(),
         "edge-tint" => |material, _| material.edge_tint = Vec3::splat(1.0),
         "coat" => |material, _| material.coat_weight = 0.0,
-        "color-texture" => |material, _| material.textures[0] = NO_TEXTURE,
+        "color-texture" => |material, _| {
+            material.textures[0] = NO_TEXTURE;
+            material.flags &= !VERTEX_BASE;
+        },
         "roughness-texture" => |material, _| {
             (material.textures[1], material.metalness_texture) = (NO_TEXTURE, NO_TEXTURE);
         },
         "normal-map" => |material, _| material.textures[2] = NO_TEXTURE,
         "emission-texture" => |material, _| material.textures[3] = NO_TEXTURE,
+        "vertex-colors" => |material, _| material.flags &= !(VERTEX_EMISSION | VERTEX_OPACITY),
         "coat-texture" => |material, _| material.coat_texture = NO_TEXTURE,
         "box-projection" => |material, _| material.has_box_projection = 0,
         "rough-tables" => |material, _| material.has_rough_tables = 0,
         "alpha" => |material, _| {
             (material.opacity, material.alpha_cutoff) = (1.0, -1.0);
             material.opacity_texture = NO_TEXTURE;
+            material.flags &= !VERTEX_OPACITY;
         },
         other => panic!("say here what a kernel reads that does without {other}"),
     };

@@ -59,7 +59,7 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
         "baseColorFactor" "[0.5, 0.25, 0, 0.5]" => To "base.color, geometry.opacity" "";
         "baseColorTexture" TEXTURE => To "base.color_texture" "";
         "metallicFactor" "0.25" => To "base.metalness" "";
-        "roughnessFactor" "0.25" => To "specular.roughness" "matched to the lobe that is chosen";
+        "roughnessFactor" "0.25" => To "specular.roughness" "matched to the lobe that is chosen; above 0.7 GGX";
         "metallicRoughnessTexture" TEXTURE => To "specular.roughness_texture" "";
     }
     "/extensions/KHR_materials_emissive_strength/" {
@@ -86,7 +86,7 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
         "transmissionTexture" TEXTURE => To "transmission.weight" "by its mean";
     }
     "/extensions/KHR_materials_volume/" {
-        "thicknessFactor" "1" => To "nothing, solids are as thick as they are" "0 is a thin wall, which mirrors as a coat on the outside and bends nothing";
+        "thicknessFactor" "1" => To "nothing, solids are as thick as they are" "0 is a thin wall, which bends nothing";
         "thicknessTexture" TEXTURE => Nowhere "a thickness texture: solids are as thick as they are" "";
         "attenuationDistance" "0.25" => To "transmission.depth" "";
         "attenuationColor" "[0.5, 0.25, 0.125]" => To "transmission.color" "";
