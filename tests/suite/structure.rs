@@ -116,7 +116,9 @@ fn every_folder_has_its_place_in_the_order() {
 /// The folders and files of `src/` that are of the engine, which is a package of its own.
 fn of_the_engine(src: &Path) -> Vec<String> {
     let list = fs::read_to_string(src.join("engine.rs")).unwrap();
-    let modules = list.lines().filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
+    let modules = list
+        .lines()
+        .filter_map(|line| line.strip_prefix("pub mod ")?.strip_suffix(';'));
     modules.map(str::to_owned).collect()
 }
 
@@ -131,12 +133,23 @@ fn every_dependency_is_used() {
         sources(&src, &mut files);
         let top = |file: &Path| {
             let first = file.strip_prefix(&src).unwrap().components().next().unwrap();
-            Path::new(first.as_os_str()).file_stem().unwrap().to_str().unwrap().to_owned()
+            Path::new(first.as_os_str())
+                .file_stem()
+                .unwrap()
+                .to_str()
+                .unwrap()
+                .to_owned()
         };
         files.retain(|file| engine.contains(&top(file)) == of_engine);
-        files.iter().map(|file| fs::read_to_string(file).unwrap()).collect::<String>()
+        files
+            .iter()
+            .map(|file| fs::read_to_string(file).unwrap())
+            .collect::<String>()
     };
-    for (manifest, code) in [(root.join("Cargo.toml"), code(false)), (src.join("engine/Cargo.toml"), code(true))] {
+    for (manifest, code) in [
+        (root.join("Cargo.toml"), code(false)),
+        (src.join("engine/Cargo.toml"), code(true)),
+    ] {
         let manifest: toml::Table = fs::read_to_string(manifest).unwrap().parse().unwrap();
         let names = manifest["dependencies"].as_table().unwrap().keys();
         let is_unused = |name: &&String| !code.contains(&format!("{}::", name.replace('-', "_")));
