@@ -110,7 +110,7 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
     }
     var horizon = normal;
     var rise = vec3f(0.0);
-    if PLAN_SHADOW_TERMINATOR == 1u && globals.rounds_surfaces == 1u && material.transmission_weight == 0.0 {
+    if PLAN_SHADOW_TERMINATOR == 1u && globals.rounds_surfaces == 1u && !transmits_anywhere(material) {
         let turned = side < 0.0;
         rise = rise_to_plane(place.position, bitcast<vec3f>(triangle.corners[0].xyz), a.normal, w, turned) +
             rise_to_plane(place.position, bitcast<vec3f>(triangle.corners[1].xyz), b.normal, hit.u, turned) +
@@ -126,6 +126,12 @@ fn surface_of(hit: Hit, direction: vec3f, slot: u32, material: Material) -> Surf
         color = corner_color(a).xyz * w + corner_color(b).xyz * hit.u + corner_color(c).xyz * hit.v;
     }
     return SurfacePoint(surface, place.position, place.error, slot, uvs, color, normal, rise);
+}
+
+// Whether light goes through where textures make the material the least metallic.
+fn transmits_anywhere(material: Material) -> bool {
+    let is_metal = material.metalness >= 1.0 && material.metalness_texture == NO_TEXTURE;
+    return PLAN_TRANSMISSION == 1u && material.transmission_weight > 0.0 && !is_metal;
 }
 
 // From a position in a triangle to the tangent plane at one of its corners, where the position lies below that; times the

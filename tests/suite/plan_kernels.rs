@@ -23,6 +23,7 @@ use crate::own_textures::coated_on_a_box;
 use crate::plan::job_in;
 use crate::random_documents::{apart, of_material, random_document, small};
 use crate::support::Random;
+use crate::terminator::coarse;
 use crate::textures::all_at_once;
 
 /// Takes out of a job what the kernel does without whose constant for this effect has this value.
@@ -226,7 +227,13 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
     glass.lighting.area_lights.push(AreaLight::spot());
     glass.ground = true;
     glass.lighting.ground.kind = GroundKind::ShadowCatcher;
-    vec![metals, glass, small(all_at_once(folder)), coated_on_a_box(folder)]
+    vec![
+        metals,
+        glass,
+        small(all_at_once(folder)),
+        coated_on_a_box(folder),
+        small(coarse(folder)),
+    ]
 }
 
 /// What the kernels of weak effects do without: nothing that shows. Shown on the processor to be seen where it does.

@@ -33,6 +33,15 @@ fn file(folder: &Folder, name: &str, mesh: &Mesh) -> ModelSource {
     ModelSource::File(path)
 }
 
+/// A coarse ball of matt 0.8 in a studio.
+pub fn coarse(folder: &Folder) -> Document {
+    Document {
+        materials: vec![MaterialSettings::diffuse("ball", [0.8; 3])],
+        model: file(folder, "coarse.glb", &shapes::sphere(12, 6)),
+        ..Document::default()
+    }
+}
+
 /// A ball of matt 0.8 in a furnace.
 fn ball(model: ModelSource) -> Document {
     Document {

@@ -196,8 +196,7 @@ impl<'a, T: Real> Integrator<'a, T> {
         let materials = (&self.materials[slot as usize], &self.of_lane[slot as usize]);
         let mut point = surfaces_at(self.geometry, slot, materials, self.textures, &hits, arrival.direction);
         // Behind a surface that transmits, light goes on from the triangle itself.
-        let transmits = T::Scalar::zero().less(materials.1.transmission_weight);
-        if self.settings.rounds_surfaces && !transmits.any() {
+        if self.settings.rounds_surfaces && !materials.1.least_metallic().transmits().any() {
             point.round(self.geometry, &hits);
         }
         arrival.members.record(&mut paths.found, arrival.on, |lane| Event::Hit {
