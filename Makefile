@@ -2,6 +2,8 @@
 # ARGS is handed on: make run ARGS="render --material gold --output gold.png"
 
 .DEFAULT_GOAL := help
+# Tests of AVX-512 where the machine has it; elsewhere it could not run, and would take a compilation of the engine more.
+EVERY_LEVEL := $(if $(shell grep -sm1 avx512f /proc/cpuinfo),--features every-level)
 .PHONY: help run install uninstall check test test-thorough bench pictures mutants fuzz
 
 help: ## Print this list
@@ -29,7 +31,7 @@ test: ## Check format and lints, then run every test
 	else echo "note: rustfmt is not installed, the format is not checked (rustup component add rustfmt)"; fi
 	@if cargo clippy --version >/dev/null 2>&1; then set -x; cargo clippy --all-targets -- -D warnings; \
 	else echo "note: clippy is not installed, lints are not checked (rustup component add clippy)"; fi
-	cargo test $(ARGS)
+	cargo test $(EVERY_LEVEL) $(ARGS)
 
 fuzz: ## Damaged files of all formats through the program for a while (MINUTES=10); what fails is kept in fuzz/failures
 	@scripts/setup run

@@ -315,7 +315,7 @@ mod tests {
                 at.x > 400.0 && at.x <= 588.0 + 1e-6 && at.y >= 12.0 - 1e-6,
                 "at an edge, to the right: {at}"
             );
-            let by = DVec2::new(-60.0, -20.0);
+            let by = DVec2::new(-60.0, 20.0);
             let moved = pulled(&light, handle, &view(), &pull(at, by));
             let now = middle(&moved).expect("it is in the picture");
             assert!(now.distance(at + by) < 1e-6, "{now} instead of {}", at + by);

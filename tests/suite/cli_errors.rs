@@ -114,7 +114,7 @@ fn places_that_cannot_be_written_are_refused_before_the_work() {
     place.refused(
         1,
         &format!("{long} --output folder.png"),
-        &["folder.png", "cannot be written"],
+        &["folder.png", "cannot be saved", "a directory"],
     );
     place.refused(
         1,

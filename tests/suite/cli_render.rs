@@ -445,11 +445,11 @@ fn area_lights_shine_from_where_they_are_put() {
         effects.contains(&"emitter-sampling") && !effects.contains(&"light-sampling"),
         "{effects:?}"
     );
-    let nine = "--area-light 0,45,3,1,1,10 ".repeat(9);
+    let too_many = "--area-light 0,45,3,1,1,10 ".repeat(65);
     place.refused(
         1,
-        &format!("render {nine}"),
-        &["lighting.area_lights", "between 0 and 8"],
+        &format!("render {too_many}"),
+        &["lighting.area_lights", "between 0 and 64"],
     );
 }
 

@@ -57,6 +57,8 @@ impl Workplace {
             .env_remove("DISPLAY")
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("RUST_LOG")
+            // Without it libraries of the system complain on standard error.
+            .env("XDG_RUNTIME_DIR", self.0.path())
             .output()
             .unwrap();
         Run {

@@ -418,13 +418,12 @@ fn coarse_chroma_is_spread_over_the_luminance() {
         let (x, luminance) = (index % width, (1 + index % width) as f32);
         // Between the third and the fifth column the chroma is interpolated.
         let ry = [-0.5, -0.5, -0.5, 0.0, 0.5, 0.5, 0.5, 0.5][x];
-        assert_eq!(
-            (*red, *blue),
-            ((1.0 + ry) * luminance, 0.5 * luminance),
-            "texel {index}"
-        );
+        // The weights of the luminance are of the primaries, so that it is theirs to the digits that those have.
+        for (found, expected) in [(*red, (1.0 + ry) * luminance), (*blue, 0.5 * luminance)] {
+            assert!((found / expected - 1.0).abs() < 1e-5, "texel {index}: {found}");
+        }
         let sum = 0.2126 * red + 0.7152 * green + 0.0722 * blue;
-        assert!((sum - luminance).abs() < 1e-5, "texel {index}: {sum}");
+        assert!((sum / luminance - 1.0).abs() < 1e-4, "texel {index}: {sum}");
     }
     for length in (0..bytes.len()).step_by(7) {
         std::fs::write(&path, &bytes[..length]).unwrap();

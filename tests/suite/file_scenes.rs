@@ -51,7 +51,7 @@ fn seen(document: &Document, engine: EngineChoice, [x, y]: [f64; 2]) -> f64 {
     document.camera.position = Some([0.5, -0.8, 0.9]);
     document.camera.target = Some([x, y, 0.0]);
     document.camera.fov_deg = 0.2;
-    (document.render.width, document.render.height, document.render.samples) = (8, 8, 512);
+    (document.render.width, document.render.height, document.render.samples) = (8, 8, 4096);
     document.render.bounces = 1;
     document.render.sequence = Sequence::Sobol;
     let luminance = render(engine, &document).luminance();
@@ -91,8 +91,9 @@ fn candela_and_lux_of_a_file_are_right() {
         for engine in ENGINES {
             for (place, expected) in [MIDDLE, ASIDE].into_iter().zip(expected) {
                 let found = seen(&document, engine, place);
+                // Half of the samples of a ball go to its far side: 262 144 of them are right to 0.25 % (1σ).
                 assert!(
-                    (found - expected).abs() <= 0.006 * expected,
+                    (found - expected).abs() <= 0.012 * expected,
                     "{name} at {place:?}, {engine:?}: {found}, not {expected}"
                 );
             }
@@ -222,14 +223,19 @@ fn thin_walls_bend_nothing() {
     let (yaw, distance) = (40.0_f64.to_radians(), 4.0);
     document.camera.position = Some([distance * yaw.sin(), 0.0, distance * yaw.cos()]);
     document.camera.target = Some([0.0, 0.0, -0.25]);
-    (document.render.width, document.render.height, document.render.samples) = (64, 64, 16);
+    (document.render.width, document.render.height, document.render.samples) = (64, 64, 256);
     for engine in ENGINES {
         let luminance = render(engine, &document).luminance();
         let edge = |row: usize| luminance[64 * row..][..64].iter().position(|value| *value > 0.4);
         let (through, beside) = (edge(24).expect("behind the pane"), edge(40).expect("below it"));
         assert!(through.abs_diff(beside) <= 1, "{engine:?}: {through} and {beside}");
         // What the pane does not mirror: (1 − R) of a dielectric of 1.5 under 40°.
-        let [seen, bare] = [24, 40].map(|row: usize| luminance[64 * row..][..64].iter().copied().fold(0.0, f64::max));
+        let [seen, bare] = [24, 40].map(|row: usize| {
+            let mut bright: Vec<f64> = luminance[64 * row..][..64].to_vec();
+            bright.retain(|value| *value > 0.4);
+            bright.sort_by(f64::total_cmp);
+            bright[bright.len() / 2]
+        });
         assert!((0.9..0.98).contains(&(seen / bare)), "{engine:?}: {seen} of {bare}");
     }
 }

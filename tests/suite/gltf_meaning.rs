@@ -245,7 +245,7 @@ fn layered(is_old: bool) -> Value {
     let mut extensions = json!({
         "KHR_materials_clearcoat": {"clearcoatFactor": 0.5},
         "KHR_materials_transmission": {"transmissionFactor": 0.5},
-        "KHR_materials_volume": {"attenuationDistance": 0.5},
+        "KHR_materials_volume": {"thicknessFactor": 0.5, "attenuationDistance": 0.5},
         "KHR_materials_anisotropy": {"anisotropyStrength": 0.5},
         "KHR_materials_sheen": {"sheenColorFactor": [1, 1, 1]},
         "KHR_materials_iridescence": {"iridescenceFactor": 0.5},

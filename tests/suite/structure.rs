@@ -9,6 +9,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("named", &[]),
     ("instructions", &["named"]),
     ("panics", &[]),
+    ("say", &[]),
     ("optics", &["named"]),
     ("scene", &["named", "panics", "instructions", "optics"]),
     ("job", &["named", "optics", "scene"]),
@@ -27,7 +28,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "named",
+            "named", "say",
             "instructions",
             "optics",
             "scene",

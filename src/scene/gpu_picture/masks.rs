@@ -69,7 +69,7 @@ mod tests {
         let r5g6b5 = masks(2, [0xf800, 0x7e0, 0x1f, 0]);
         assert_eq!(
             r5g6b5.codes(&[0x1f, 0xf8, 0xe0, 0x03]),
-            [255, 0, 255, 255, 0, 121, 0, 255]
+            [255, 0, 255, 255, 0, 125, 0, 255]
         );
         assert_eq!(masks(1, [0, 0, 0, 0xff]).codes(&[7]), [0, 0, 0, 7]);
         assert_eq!(masks(3, [0xff0000, 0xff00, 0xff, 0]).codes(&[1, 2, 3]), [3, 2, 1, 255]);

@@ -426,8 +426,12 @@ impl<'a> Materials<'a> {
         }
         let thickness = extension::<Volume>(raw, "KHR_materials_volume").map_or(0.0, |volume| volume.thickness_factor);
         if thickness <= 0.0 {
+            let what = if read.coat == 0.0 {
+                "a thin wall, which mirrors as a coat on the outside and bends nothing".to_owned()
+            } else {
+                format!("a thin wall of index {} under a coat, which alone mirrors; it bends nothing", read.ior)
+            };
             make_thin(read);
-            let what = "a thin wall, which mirrors as a coat on the outside and bends nothing";
             self.report.note(Fate::Approximated, what, &read.name);
         }
         let [red, green, blue] = read.base_color;

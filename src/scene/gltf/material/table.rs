@@ -86,7 +86,7 @@ pub const GLTF_PARAMETERS: &[FileParameter] = table! {
         "transmissionTexture" TEXTURE => To "transmission.weight" "by its mean";
     }
     "/extensions/KHR_materials_volume/" {
-        "thicknessFactor" "1" => To "nothing, solids are as thick as they are" "0 is a thin wall, which bends nothing";
+        "thicknessFactor" "0" => To "nothing, solids are as thick as they are" "0 is a thin wall, which bends nothing";
         "thicknessTexture" TEXTURE => Nowhere "a thickness texture: solids are as thick as they are" "";
         "attenuationDistance" "0.25" => To "transmission.depth" "";
         "attenuationColor" "[0.5, 0.25, 0.125]" => To "transmission.color" "";
