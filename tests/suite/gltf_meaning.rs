@@ -27,6 +27,26 @@ fn painted(material: Value, colors: Option<[[f32; 4]; 4]>) -> (Buffer, Value) {
     (buffer, document)
 }
 
+/// A document of a square that shines with the colours of its vertices.
+pub fn shining_by_vertices(folder: &Folder) -> Document {
+    let material = json!({"extensions": {"KHR_materials_unlit": {}}});
+    let colors = [
+        [0.9, 0.1, 0.1, 1.0],
+        [0.1, 0.5, 0.1, 1.0],
+        [0.1, 0.1, 0.7, 1.0],
+        [0.3, 0.3, 0.3, 1.0],
+    ];
+    let (buffer, file) = painted(material, Some(colors));
+    let path = folder.path("shining.glb");
+    std::fs::write(&path, glb(&file, &buffer.bytes)).unwrap();
+    let model = ModelSource::File(path);
+    Document {
+        materials: materials_of(&load(&model).unwrap(), ImportLobe::Geometric),
+        model,
+        ..Document::default()
+    }
+}
+
 /// A picture of these texels beside each other.
 fn strip(texels: &[[u8; 3]]) -> Vec<u8> {
     let picture = image::RgbImage::from_fn(texels.len() as u32, 1, |x, _| image::Rgb(texels[x as usize]));

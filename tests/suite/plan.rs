@@ -18,9 +18,11 @@ use glossmith::store::PRESETS;
 
 use crate::cli_support::Workplace;
 use crate::gltf_builder::Folder;
+use crate::gltf_meaning::shining_by_vertices;
 use crate::own_textures::coated_on_a_box;
 use crate::plan_kernels::{ROUNDED_PIXELS, ROUNDED_WHOLE, assert_same_but_for_rounding};
 use crate::random_documents::{apart, of_material, small};
+use crate::terminator::coarse;
 use crate::textures::all_at_once;
 
 type Edit = fn(&mut Document);
@@ -207,6 +209,10 @@ fn a_plan_that_leaves_out_what_is_needed_is_found_out() {
             coated_on_a_box(&folder)
         } else if is_of_texture {
             small(all_at_once(&folder))
+        } else if effect.id == EffectId::ShadowTerminator {
+            small(coarse(&folder))
+        } else if effect.id == EffectId::VertexColors {
+            small(shining_by_vertices(&folder))
         } else {
             needing(effect.name())
         };

@@ -19,6 +19,7 @@ use glossmith::scene::ModelSource;
 use glossmith::store::PRESETS;
 
 use crate::gltf_builder::Folder;
+use crate::gltf_meaning::shining_by_vertices;
 use crate::own_textures::coated_on_a_box;
 use crate::plan::job_in;
 use crate::random_documents::{apart, of_material, random_document, small};
@@ -178,10 +179,10 @@ fn what_kernels_leave_out_shows_nowhere() {
     }
     assert!(plans.len() > 40, "only {} plans were met", plans.len());
     for (effect, count) in EFFECTS.iter().zip(left_out) {
-        // No built-in model has textures: theirs are the next test's.
-        let is_of_texture =
-            effect.name().ends_with("-texture") || ["normal-map", "box-projection"].contains(&effect.name());
-        let Some(constant) = effect.id.constant().filter(|_| !is_of_texture) else {
+        // No built-in model has textures, colours at vertices or coarse triangles: theirs are the next test's.
+        let of_models = ["normal-map", "box-projection", "vertex-colors", "shadow-terminator"];
+        let is_of_model = effect.name().ends_with("-texture") || of_models.contains(&effect.name());
+        let Some(constant) = effect.id.constant().filter(|_| !is_of_model) else {
             continue;
         };
         // One material reflects in each of them: a choice is always narrowed down.
@@ -233,6 +234,7 @@ fn weak_documents(folder: &Folder) -> Vec<Document> {
         small(all_at_once(folder)),
         coated_on_a_box(folder),
         small(coarse(folder)),
+        small(shining_by_vertices(folder)),
     ]
 }
 

@@ -13,10 +13,11 @@ use glossmith::optics::albedo::{ALBEDO_NODES, ROUGHNESS_NODES, TOTAL_NODES};
 use glossmith::optics::chord;
 use glossmith::optics::curve::{CUSTOM_INTERVALS, LONG_TAIL_MAX};
 use glossmith::optics::lobe::{ALPHA_MIN, Facets, Lobe, MIRROR_WIDTH};
-use glossmith::optics::material::{MATCHED_NODES, NO_TEXTURE};
+use glossmith::optics::material::{self, MATCHED_NODES, NO_TEXTURE};
 use glossmith::render::{EngineChoice, Session};
 use glossmith::scene::camera::{self, GAUSSIAN_RADIUS, GAUSSIAN_SIGMA};
 use glossmith::scene::inversion::DRAW_BITS;
+use glossmith::scene::medium::NO_MEDIUM;
 use glossmith::scene::{light, surface, texture};
 use naga::back::{hlsl, msl, spv};
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
@@ -253,6 +254,12 @@ fn twin_constants() -> Vec<(String, Vec<f64>)> {
         ("ROUGHNESS_NODES", ROUGHNESS_NODES as f64),
         ("MATCHED_NODES", MATCHED_NODES as f64),
         ("NO_TEXTURE", f64::from(NO_TEXTURE)),
+        ("NO_MEDIUM", f64::from(NO_MEDIUM)),
+        ("BASE_EDGE", material::BASE_EDGE),
+        ("VERTEX_BASE", f64::from(material::VERTEX_BASE)),
+        ("VERTEX_EMISSION", f64::from(material::VERTEX_EMISSION)),
+        ("VERTEX_OPACITY", f64::from(material::VERTEX_OPACITY)),
+        ("SPARES_METAL", f64::from(material::SPARES_METAL)),
         ("WRAP_REPEAT", f64::from(texture::WRAP_REPEAT)),
         ("WRAP_MIRRORED", f64::from(texture::WRAP_MIRRORED)),
         ("WRAP_CLAMP", f64::from(texture::WRAP_CLAMP)),

@@ -28,7 +28,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     (
         "cli",
         &[
-            "named", "say",
+            "named",
+            "say",
             "instructions",
             "optics",
             "scene",

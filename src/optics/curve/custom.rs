@@ -31,10 +31,7 @@ pub fn distance<T: Real>(table: &[f32], xi: T) -> T {
         step /= 2;
     }
     let width = distance_max::<T>(table) * c(1.0 / CUSTOM_INTERVALS as f64);
-    let (left, right) = (
-        look_up_number::<1, T>(table, low),
-        look_up_number::<2, T>(table, low),
-    );
+    let (left, right) = (look_up_number::<1, T>(table, low), look_up_number::<2, T>(table, low));
     let missing = (xi - look_up_number::<0, T>(table, low)).max(T::zero());
     let root = (left * left + c(2.0) * (right - left) / width * missing).safe_sqrt();
     let step = c(2.0) * missing / (left + root).max(c(1e-12));

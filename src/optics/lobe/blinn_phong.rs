@@ -3,11 +3,11 @@
 
 use super::{Facets, LobeShape, LobeTraits, Width};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
-use crate::optics::real::Real;
-use crate::optics::vector::{Vec3, vec3};
 use crate::optics::lobe::alpha_from_roughness;
 use crate::optics::microfacet::{distribution_weight, facet, isotropic_alpha};
 use crate::optics::numeric::{expm1, log1p};
+use crate::optics::real::Real;
+use crate::optics::vector::{Vec3, vec3};
 
 /// What is special about the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {

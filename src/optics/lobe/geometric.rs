@@ -59,14 +59,30 @@ pub fn density<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>,
     let mirror = wo.mirrored_about(frame.normal);
     if !is_stretched(shape) {
         let stretch = T::one() / shape.roughness;
-        return chord_density(shape.curve, shape.table, shape.roughness, stretch, frame.normal, mirror, wi);
+        return chord_density(
+            shape.curve,
+            shape.table,
+            shape.roughness,
+            stretch,
+            frame.normal,
+            mirror,
+            wi,
+        );
     }
     let width = widths(shape);
     let (mirror, light) = (unstretched(frame, width, mirror), unstretched(frame, width, wi));
     let (mirror_length, light_length) = (mirror.length(), light.length());
     let up = vec3(T::zero(), T::zero(), T::one());
     let (mirror, light) = (mirror / mirror_length, light / light_length);
-    let value = chord_density(shape.curve, shape.table, shape.roughness, mirror_length, up, mirror, light);
+    let value = chord_density(
+        shape.curve,
+        shape.table,
+        shape.roughness,
+        mirror_length,
+        up,
+        mirror,
+        light,
+    );
     let density = value / (width.x * width.y * width.z * light_length * light_length * light_length);
     // A mirror has none: there the widths and the lengths measured in them are 0 and infinite.
     T::select(T::zero().less(shape.roughness), density, T::zero())

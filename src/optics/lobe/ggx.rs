@@ -3,10 +3,10 @@
 
 use super::{Facets, LobeShape, LobeTraits, Width};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
-use crate::optics::real::Real;
-use crate::optics::vector::{Vec3, vec3};
 use crate::optics::microfacet::{microfacet_alpha, visible_density, visible_weight};
 use crate::optics::numeric::normalize_or;
+use crate::optics::real::Real;
+use crate::optics::vector::{Vec3, vec3};
 
 /// What is special about the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {

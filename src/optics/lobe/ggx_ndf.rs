@@ -3,10 +3,10 @@
 
 use super::{Facets, LobeShape, LobeTraits, Width};
 use crate::optics::frame::{Frame, local_from_world, world_from_local};
-use crate::optics::real::Real;
-use crate::optics::vector::{Vec3, vec3};
 use crate::optics::microfacet::{distribution_weight, facet, ggx_distribution, microfacet_alpha};
 use crate::optics::numeric::normalize_or;
+use crate::optics::real::Real;
+use crate::optics::vector::{Vec3, vec3};
 
 /// What is special about the lobe.
 pub const TRAITS: LobeTraits = LobeTraits {
@@ -27,7 +27,14 @@ pub fn sample<T: Real>(shape: &LobeShape<'_, T>, frame: &Frame<T>, wo: Vec3<T>, 
     let slope = (xi[0] / (T::one() - xi[0])).sqrt();
     let phi_rad = T::from_f64(std::f64::consts::TAU) * xi[1];
     let up = vec3(T::zero(), T::zero(), T::one());
-    let h = normalize_or(vec3(alpha.x * slope * phi_rad.cos(), alpha.y * slope * phi_rad.sin(), T::one()), up);
+    let h = normalize_or(
+        vec3(
+            alpha.x * slope * phi_rad.cos(),
+            alpha.y * slope * phi_rad.sin(),
+            T::one(),
+        ),
+        up,
+    );
     world_from_local(frame, local_from_world(frame, wo).mirrored_about(h))
 }
 

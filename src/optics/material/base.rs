@@ -9,7 +9,7 @@ use crate::optics::real::{Mask, Real};
 use crate::optics::vector::Vec3;
 
 /// Rounding of a squared sine at the edge of the cone.
-const EDGE: f64 = 1.00001;
+pub const BASE_EDGE: f64 = 1.00001;
 
 /// Lambert's lobe, its rare samples below the geometric surface mirrored.
 #[inline(always)]
@@ -74,7 +74,7 @@ pub(super) fn base_evaluate<T: Real>(material: &Material<T>, surface: &Surface<T
 #[inline(always)]
 fn narrow_density<T: Real>(cosine: T, spread: T) -> T {
     let square = spread * spread;
-    let is_in_cone = (T::one() - cosine * cosine).less(square * T::from_f64(EDGE));
+    let is_in_cone = (T::one() - cosine * cosine).less(square * T::from_f64(BASE_EDGE));
     let density = cosine * T::from_f64(std::f64::consts::FRAC_1_PI) / square;
     T::select(T::zero().less(cosine) & is_in_cone, density, T::zero())
 }

@@ -19,6 +19,7 @@ use super::fresnel::{Fresnel, FresnelTerms};
 use super::lobe::{Horizon, Lobe, LobeShape, is_mirror};
 use super::real::{Mask, Real, Scalar};
 use super::vector::Vec3;
+pub use base::BASE_EDGE;
 pub use evaluate::material_evaluate;
 pub use layers::{Layers, decides_by_facet, material_albedo, material_layers, material_normal, passes_on};
 pub use sample::{Layer, MaterialNumbers, MaterialSample, material_sample};

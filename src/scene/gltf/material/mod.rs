@@ -429,7 +429,10 @@ impl<'a> Materials<'a> {
             let what = if read.coat == 0.0 {
                 "a thin wall, which mirrors as a coat on the outside and bends nothing".to_owned()
             } else {
-                format!("a thin wall of index {} under a coat, which alone mirrors; it bends nothing", read.ior)
+                format!(
+                    "a thin wall of index {} under a coat, which alone mirrors; it bends nothing",
+                    read.ior
+                )
             };
             make_thin(read);
             self.report.note(Fate::Approximated, what, &read.name);
