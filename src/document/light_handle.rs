@@ -214,17 +214,19 @@ fn move_around(light: &mut AreaLight, view: &View, middle: Option<DVec2>, pull: 
     };
     let (origin, along, half, below_root) = nearest(middle.unwrap_or(pull.from) + pull.to - pull.from);
     let root = below_root.max(0.0).sqrt();
-    let t = match half - root {
-        near if near > 0.0 && !is_far => near,
+    let meets_sphere = below_root >= 0.0;
+    let (t, is_on_sphere) = match half - root {
+        near if near > 0.0 && !is_far => (near, meets_sphere),
         // It was behind the camera: it stays on the viewer's side of the target.
-        _ if !is_far && half > 0.0 && !light.is_sun() => 0.5 * half,
-        _ => half + root,
+        _ if !is_far && half > 0.0 && !light.is_sun() => (0.5 * half, false),
+        _ => (half + root, meets_sphere),
     };
     // With the target behind the camera nothing that is seen is nearest to it.
-    let t = if t > 0.0 { t } else { distance };
+    let (t, is_on_sphere) = if t > 0.0 { (t, is_on_sphere) } else { (distance, false) };
     let away = origin + t * along - target;
     light.look_from(away.normalize_or(frame.outwards));
-    if !light.is_sun() {
+    // On the sphere the distance is what it was, to the last digit.
+    if !light.is_sun() && !is_on_sphere {
         let (least, most) = range::AREA_LENGTH.into_inner();
         light.distance = away.length().clamp(least, most);
     }
@@ -291,7 +293,7 @@ mod tests {
             let moved = pulled(&light, LightHandle::Direction, &view(), &pull(grabbed, by));
             let now = middle(&moved).expect("it still is");
             assert!(now.distance(at + by) < 1e-6, "yaw {yaw_deg}: {at} to {now}");
-            assert!((moved.distance - light.distance).abs() < 1e-9);
+            assert_eq!(moved.distance, light.distance);
             assert_eq!(
                 pulled(&light, LightHandle::Direction, &view(), &pull(grabbed, DVec2::ZERO)).width,
                 light.width

@@ -1,5 +1,8 @@
 //! Basis Universal, the texels of most KTX2 files, decoded by the basisu crate.
 
+/// Columns and rows of a picture, and red, green, blue and opacity of its texels, 8 bits each.
+pub(super) type Codes = ([u32; 2], Vec<u8>);
+
 /// The level of so many that `level_of` chooses for columns and rows, of each of the faces: its columns and rows, and red,
 /// green, blue and opacity of its texels.
 ///
@@ -10,7 +13,7 @@ pub(super) fn decode(
     bytes: &[u8],
     faces: usize,
     level_of: impl Fn([u32; 2], u32) -> u32,
-) -> Result<Vec<([u32; 2], Vec<u8>)>, String> {
+) -> Result<Vec<Codes>, String> {
     use basisu::{DecodeFlags, TargetFormat, Transcoder};
     /// Texels that a byte may stand for, and beyond them.
     const GROWTH: [u64; 2] = [64, 1 << 20];
@@ -37,6 +40,6 @@ pub(super) fn decode(
     _bytes: &[u8],
     _faces: usize,
     _level_of: impl Fn([u32; 2], u32) -> u32,
-) -> Result<Vec<([u32; 2], Vec<u8>)>, String> {
+) -> Result<Vec<Codes>, String> {
     Err("this program was built without Basis Universal (the feature `basis`)".to_owned())
 }

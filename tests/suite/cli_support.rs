@@ -87,15 +87,22 @@ impl Workplace {
         serde_json::from_str(&self.read("report.json")).unwrap()
     }
 
-    /// Runs the program, which must refuse with this exit code and all these words in one line. Exit code 2 comes from
-    /// the parser of arguments, which adds where to find help.
+    /// Runs the program, which must refuse with this exit code and all these words in one line, after warnings at most.
+    /// Exit code 2 comes from the parser of arguments, which adds where to find help.
     pub fn refused(&self, code: i32, arguments: &str, words: &[&str]) {
         let run = self.run(arguments);
         let stderr = run.stderr.trim_end();
         assert_eq!(run.code, Some(code), "{arguments}\n{stderr}");
         assert!(!stderr.contains("panicked"), "{arguments}\n{stderr}");
         let is_notice = |line: &&str| line.starts_with("There is no display");
-        let lines: Vec<_> = stderr.lines().skip_while(is_notice).collect();
+        // As the log writes it: [time WARN place] text.
+        let is_warning = |line: &&str| {
+            let head = line.strip_prefix('[').and_then(|rest| rest.split_once(']'));
+            head.is_some_and(|(head, _)| head.contains(" WARN "))
+        };
+        let is_before = |line: &&str| is_notice(line) || is_warning(line);
+        let lines: Vec<_> = stderr.lines().skip_while(is_before).collect();
+        assert!(!lines.is_empty(), "nothing is told: {arguments}\n{stderr}");
         for word in words {
             assert!(
                 lines[0].contains(word),

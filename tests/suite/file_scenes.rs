@@ -87,7 +87,7 @@ fn candela_and_lux_of_a_file_are_right() {
         ),
     ] {
         let folder = Folder::new();
-        let (document, _) = opened(&folder, &lit(&[placed(rotation.clone())], &[light.clone()]));
+        let (document, _) = opened(&folder, &lit(&[placed(rotation.clone())], std::slice::from_ref(light)));
         for engine in ENGINES {
             for (place, expected) in [MIDDLE, ASIDE].into_iter().zip(expected) {
                 let found = seen(&document, engine, place);

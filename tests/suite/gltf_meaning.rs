@@ -272,7 +272,7 @@ fn layered(is_old: bool) -> Value {
         "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.5},
     });
     if is_old {
-        extensions["KHR_materials_pbrSpecularGlossiness"] = json!({});
+        extensions["KHR_materials_pbrSpecularGlossiness"] = json!({"specularFactor": [0.2, 0.2, 0.2]});
     }
     let pbr = json!({"roughnessFactor": 0.5, "metallicFactor": 0.5});
     json!({"pbrMetallicRoughness": pbr, "emissiveFactor": [1, 1, 1], "alphaMode": "MASK", "extensions": extensions})

@@ -76,7 +76,7 @@ fn render_with(session: &mut Session, document: &Document) -> Film {
 }
 
 /// The share of pixels whose luminances differ by more than three standard deviations of their noise.
-fn beyond_three_sigma(a: &Film, b: &Film) -> f64 {
+pub(super) fn beyond_three_sigma(a: &Film, b: &Film) -> f64 {
     let (mean_a, mean_b) = (a.luminance(), b.luminance());
     // Rounding of f32 radiance beside the noise.
     let floored = |film: &Film, mean: &[f64]| -> Vec<f64> {

@@ -6,6 +6,8 @@ use glossmith::store::save_document;
 use serde_json::{Value as Json, json};
 
 use super::cli_support::Workplace;
+use super::gltf_builder::{glb, png};
+use super::textures::textured_square;
 
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl far\nf 1 2 3\n";
 const FAR: &[u8] = b"newmtl far\nKd 0.125 0.25 0.5\n";
@@ -58,15 +60,31 @@ fn a_model_reads_its_surroundings_and_more_where_that_is_allowed() {
 /// A file that was exported must not carry what a stranger's model had read.
 #[test]
 fn what_lies_elsewhere_is_not_in_an_export() {
-    let place = place("../../far.mtl");
-    let color = |options: &str| {
-        place.done(&format!("convert a/b/m.obj out.gltf {options}"));
+    let place = place("../near.mtl");
+    place.write("far.png", &png());
+    let material = json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}});
+    let (buffer, mut document) = textured_square(&material, &[], &json!({}));
+    document["images"] = json!([{"uri": "../../far.png"}]);
+    document["textures"] = json!([{"source": 0}]);
+    place.write("a/b/m.glb", &glb(&document, &buffer.bytes));
+    // The pictures of the export, decoded.
+    let pictures = |options: &str| -> Vec<image::RgbaImage> {
+        place.done(&format!("convert a/b/m.glb out.gltf {options}"));
         let json: Json = serde_json::from_str(&place.read("out.gltf")).unwrap();
-        json["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"][0].as_f64()
+        let binary = std::fs::read(place.path("out.bin")).unwrap();
+        let images = json["images"].as_array().into_iter().flatten();
+        let decoded = images.map(|entry| {
+            let view = &json["bufferViews"][entry["bufferView"].as_u64().unwrap() as usize];
+            let from = view["byteOffset"].as_u64().unwrap_or(0) as usize;
+            let bytes = &binary[from..][..view["byteLength"].as_u64().unwrap() as usize];
+            image::load_from_memory(bytes).unwrap().to_rgba8()
+        });
+        decoded.collect()
     };
-    let is_of_far = |color: Option<f64>| color.is_some_and(|red| (red - 0.125).abs() < 0.01);
-    assert!(!is_of_far(color("")));
-    assert!(is_of_far(color("--allow-outside")));
+    assert!(pictures("").is_empty());
+    let allowed = pictures("--allow-outside");
+    assert_eq!(allowed.len(), 1);
+    assert_eq!(allowed[0].get_pixel(0, 0).0, [10, 20, 30, 255]);
 }
 
 #[cfg(unix)]

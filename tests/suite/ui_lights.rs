@@ -183,8 +183,15 @@ fn a_light_beside_the_picture_is_moved_by_its_mark_at_the_edge() {
         at.x > viewport.center().x + 0.3 * viewport.width(),
         "{at} in {viewport}"
     );
-    drag(&mut harness, at, Vec2::new(-60.0, 0.0));
-    assert!((light(&harness).yaw_deg - 59.0).abs() < 0.5, "{:?}", light(&harness));
+    let by = Vec2::new(-60.0, 0.0);
+    drag(&mut harness, at, by);
+    settle(&mut harness);
+    let now = place(&harness, "Move area light 1");
+    assert!(now.distance(at + by) < 1.0, "from {at} to {now}");
+    // Before its target still, and as far from it.
+    let moved = light(&harness);
+    assert!(moved.yaw_deg > 0.0 && moved.yaw_deg < 80.0, "{moved:?}");
+    assert_eq!(moved.distance, AreaLight::default().distance, "{moved:?}");
     // Lights are marked where their list is, and nowhere else.
     harness.state_mut().reveal(Pane::Camera);
     harness.run_steps(4);

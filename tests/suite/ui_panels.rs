@@ -182,7 +182,11 @@ fn a_group_of_textures_comes_without_making_the_next_ones_others() {
 #[test]
 fn opened_models_get_the_lobe_that_the_menu_says() {
     let folder = Folder::new();
-    let path = textured_file(&folder);
+    // Smooth enough for either: what is rougher than 0.7 is GGX whatever the menu says.
+    let material = json!({"pbrMetallicRoughness": {"roughnessFactor": 0.5}});
+    let (buffer, document) = textured_square(&material, &[], &json!({}));
+    let path = folder.path("smooth.glb");
+    std::fs::write(&path, glb(&document, &buffer.bytes)).expect("a temporary file");
     let mut harness = editor();
     for (label, lobe) in [("GGX", Lobe::Ggx), ("Geometric", Lobe::Geometric)] {
         harness.get_by_role_and_label(Role::Button, "File").click();

@@ -181,10 +181,11 @@ fn solve(target: &CurveTarget, rows: &[Vec<f64>], weights: &[f64]) -> Option<Vec
     }
     // A little more on the diagonal: hats that the target does not see get the weight 0 instead of any.
     let ridge = 1e-11 * (0..count).map(|i| gram[i][i]).sum::<f64>();
-    for i in 0..count {
-        gram[i][i] += ridge;
-        for j in 0..i {
-            gram[j][i] = gram[i][j];
+    let lower = gram.clone();
+    for (i, row) in gram.iter_mut().enumerate() {
+        row[i] += ridge;
+        for (number, below) in row.iter_mut().zip(&lower).skip(i + 1) {
+            *number = below[i];
         }
     }
     non_negative(&gram, &right)

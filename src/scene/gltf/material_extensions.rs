@@ -117,7 +117,8 @@ pub(super) fn unreadable(material: &Json) -> impl Iterator<Item = &'static str> 
         let is_there = material.get("extensions").is_some_and(|all| all.get(name).is_some());
         is_there && extension::<T>(material, name).is_none()
     }
-    let checks: [(&'static str, fn(&Json, &str) -> bool); 6] = [
+    type Check = fn(&Json, &str) -> bool;
+    let checks: [(&'static str, Check); 6] = [
         ("KHR_materials_clearcoat", is_unreadable::<Clearcoat>),
         ("KHR_materials_specular", is_unreadable::<Specular>),
         ("KHR_materials_anisotropy", is_unreadable::<Anisotropy>),
