@@ -188,19 +188,32 @@ impl Window<'_> {
 
     /// Names a file in the field that stands in for a file dialog.
     pub fn name_file(&mut self, path: &Path) {
-        self.keys("ctrl+a");
-        self.write(path.to_str().expect("a name of letters"));
-        self.until_said(&format!("saved {}", path.display()), |window| window.keys("Return"));
+        let words = format!("saved {}", path.display());
+        let before = self.said().matches(&words).count();
+        self.wait(&words, |window| {
+            // What is typed before the field's first frame goes nowhere: each try types all of it.
+            window.keys("ctrl+a");
+            window.write(path.to_str().expect("a name of letters"));
+            window.keys("Return");
+            (0..200).any(|_| {
+                std::thread::sleep(GLANCE);
+                window.said().matches(&words).count() > before
+            })
+        });
     }
 
     /// Drags with the left button from the middle of the picture until the title shows that something was changed.
     pub fn drag_until_changed(&mut self) {
-        self.xdotool(&["mousemove", "--window", &self.id, "680", "450", "mousedown", "1"]);
         self.wait("a changed document", |window| {
-            window.xdotool(&["mousemove_relative", "--", "24", "6"]);
+            // A press during the first frames may be lost: each try has its own.
+            window.xdotool(&["mousemove", "--window", &window.id, "680", "450", "mousedown", "1"]);
+            for _ in 0..8 {
+                window.xdotool(&["mousemove_relative", "--", "12", "3"]);
+                std::thread::sleep(GLANCE);
+            }
+            window.xdotool(&["mouseup", "1"]);
             window.title().contains('*')
         });
-        self.xdotool(&["mouseup", "1"]);
     }
 
     /// Ends it without a warning, as a crash would.

@@ -105,18 +105,24 @@ fn devices_and_pipes_are_told_and_not_waited_for() {
     std::os::unix::fs::symlink("/dev/zero", &pipe).unwrap();
     let missing = entries(&place, "--allow-outside", "missing");
     assert!(missing.contains("no regular file"), "{missing}");
-    for (name, text) in [
-        ("p.json", json!({"glossmith-document": 1, "model": "/dev/zero"})),
+    for (name, text, why) in [
+        (
+            "p.json",
+            json!({"glossmith-document": 1, "model": "/dev/zero"}),
+            "no regular file",
+        ),
         (
             "q.json",
-            json!({"glossmith-document": 1, "lighting": {"environment": "/dev/zero"}}),
+            json!({"glossmith-document": 1, "lighting": {"environment": {"file": "/dev/zero"}}}),
+            // Of environments the ending says what they are, before they are opened.
+            "neither a .hdr",
         ),
     ] {
         place.write(name, text.to_string().as_bytes());
         place.refused(
             1,
             &format!("render {name} {QUICK} --allow-outside"),
-            &["/dev/zero", "no regular file"],
+            &["/dev/zero", why],
         );
     }
 }
