@@ -188,18 +188,9 @@ impl Window<'_> {
 
     /// Names a file in the field that stands in for a file dialog.
     pub fn name_file(&mut self, path: &Path) {
-        let words = format!("saved {}", path.display());
-        let before = self.said().matches(&words).count();
-        self.wait(&words, |window| {
-            // What is typed before the field's first frame goes nowhere: each try types all of it.
-            window.keys("ctrl+a");
-            window.write(path.to_str().expect("a name of letters"));
-            window.keys("Return");
-            (0..200).any(|_| {
-                std::thread::sleep(GLANCE);
-                window.said().matches(&words).count() > before
-            })
-        });
+        self.keys("ctrl+a");
+        self.write(path.to_str().expect("a name of letters"));
+        self.until_said(&format!("saved {}", path.display()), |window| window.keys("Return"));
     }
 
     /// Drags with the left button from the middle of the picture until the title shows that something was changed.

@@ -161,6 +161,8 @@ struct PathField {
     /// To begin with; filled when it is shown first.
     folders: Vec<PathBuf>,
     is_new: bool,
+    /// It has had the keys: before, what is typed goes nowhere.
+    has_had_keys: bool,
 }
 
 impl Dialogs {
@@ -265,13 +267,13 @@ impl Dialogs {
             .unwrap_or_default();
         let mut text = folder.join("").display().to_string();
         text.push_str(suggestion);
-        log::debug!("no file dialog: a path is asked for");
         self.field = Some(PathField {
             purpose,
             text,
             why,
             folders: Vec::new(),
             is_new: true,
+            has_had_keys: false,
         });
     }
 
@@ -376,6 +378,11 @@ impl PathField {
         if std::mem::take(&mut self.is_new) {
             response.request_focus();
             move_cursor_to_end(ui.ctx(), id, &self.text);
+        }
+        if response.has_focus() && !std::mem::replace(&mut self.has_had_keys, true) {
+            log::debug!("no file dialog: a path is asked for");
+        } else if !self.has_had_keys {
+            ui.ctx().request_repaint();
         }
         let is_entered = response.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
         if self.begin_in(ui) {
