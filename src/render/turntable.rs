@@ -117,12 +117,13 @@ pub fn render(
             // Frame 0 does not need it.
             center_world = job.geometry.center_world.to_array();
         }
+        let mut is_stopped = false;
         let ended = step_to_end(session, engine, &document, &mut attendant, &mut |progress| {
             let share = progress.share_done(document.render.time_s);
-            go_on(TurntableProgress { done: frame, share })
+            is_stopped = !go_on(TurntableProgress { done: frame, share });
+            !is_stopped
         })?;
         if !ended.progress.is_done {
-            video = video.filter(|_| table.keeps_part && outcome.frames > 0);
             break;
         }
         outcome.render_seconds += ended.progress.render_seconds;
@@ -140,7 +141,12 @@ pub fn render(
             video.add(&display(denoised.unwrap_or(&image), &document.view))?;
         }
         outcome.frames = frame + 1;
+        // A frame that takes a single step is done in the step that was to be the last.
+        if is_stopped {
+            break;
+        }
     }
-    video.map_or(Ok(()), Video::finish)?;
+    let keeps_video = outcome.frames == table.frames || (table.keeps_part && outcome.frames > 0);
+    video.filter(|_| keeps_video).map_or(Ok(()), Video::finish)?;
     Ok(outcome)
 }

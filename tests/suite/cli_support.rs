@@ -17,6 +17,17 @@ pub struct Run {
     pub stderr: String,
 }
 
+/// Runs an ignored test of this program in a process of its own, since it changes what holds for a whole process.
+pub fn passes_alone(test: &str) {
+    let child = Command::new(std::env::current_exe().expect("a path"))
+        .args(["--ignored", "--exact", test])
+        .output()
+        .expect("this very program");
+    let told = String::from_utf8_lossy(&child.stdout);
+    assert!(child.status.success(), "{told}");
+    assert!(told.contains("1 passed"), "{told}");
+}
+
 /// A folder in which the program runs.
 pub struct Workplace(TempDir);
 

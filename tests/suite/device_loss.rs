@@ -1,6 +1,5 @@
 //! A GPU that is lost, at every moment at which it can be: opened anew thrice, then the processor goes on.
 
-use std::process::Command;
 use std::time::{Duration, Instant};
 
 use glossmith::document::Document;
@@ -9,6 +8,7 @@ use glossmith::job::film::Image;
 use glossmith::render::worker::{Event, Level, Pace, Worker};
 use glossmith::render::{EngineChoice, EngineKind, RayQueries, Session, SessionError};
 
+use super::cli_support::passes_alone;
 use super::worker::{finished, small_document, wait};
 
 const MOMENTS: [Moment; 4] = [Moment::Compiling, Moment::Uploading, Moment::Rendering, Moment::Reading];
@@ -143,11 +143,5 @@ fn with_ray_queries() {
 /// The adapter's own hierarchies are lost with it, and built again.
 #[test]
 fn a_lost_device_comes_back_with_its_ray_queries() {
-    let child = Command::new(std::env::current_exe().expect("a path"))
-        .args(["--ignored", "--exact", "device_loss::with_ray_queries"])
-        .output()
-        .expect("this very program");
-    let told = String::from_utf8_lossy(&child.stdout);
-    assert!(child.status.success(), "{told}");
-    assert!(told.contains("1 passed"), "{told}");
+    passes_alone("device_loss::with_ray_queries");
 }
