@@ -37,6 +37,8 @@ mod coat;
 mod compare;
 #[path = "suite/crashed.rs"]
 mod crashed;
+#[path = "suite/default_look.rs"]
+mod default_look;
 #[path = "suite/denoise.rs"]
 mod denoise;
 #[path = "suite/denoise_cases.rs"]

@@ -46,9 +46,9 @@ pub struct SceneArguments {
     /// Write what became of the parts of the model's file (used, approximated, ignored, missing), as JSON.
     #[arg(long, value_name = "FILE")]
     pub(super) import_report: Option<PathBuf>,
-    /// Where the light comes from: a built-in environment, a picture of the whole sphere (.hdr, .exr, .ktx2, .dds, .png,
-    /// .jpg, .tif, .webp; lat-long or cube map), or a folder with the six faces of a cube [default: studio].
-    #[arg(long, value_name = "FILE|studio|sky|furnace")]
+    /// Where the light comes from: a built-in environment (product, studio, portrait, rim, warehouse, overcast, sky, furnace), a picture of the whole sphere (.hdr, .exr, .ktx2, .dds, .png,
+    /// .jpg, .tif, .webp; lat-long or cube map), or a folder with the six faces of a cube [default: product].
+    #[arg(long, value_name = "FILE|NAME")]
     environment: Option<EnvironmentSource>,
     /// What the numbers of a .png, .jpg, .tif or .webp environment stand for: colours of a screen, or light [default: display].
     #[arg(long, value_name = "display|linear", value_parser = parse::environment_encoding)]

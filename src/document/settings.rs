@@ -13,7 +13,7 @@ use crate::job::effect::EffectId;
 use crate::job::{LightPaths, Strategy};
 use crate::named::named;
 use crate::optics::random::Sequence;
-use crate::optics::tone::ToneCurve;
+use crate::optics::tone::{Grade, ToneCurve};
 use crate::scene::camera::PixelFilter;
 use crate::scene::environment::{EnvironmentEncoding, EnvironmentSource};
 
@@ -43,6 +43,12 @@ pub mod range {
     pub const APERTURE: RangeInclusive<f64> = 0.0..=10.0;
     /// Exposure, stops.
     pub const EXPOSURE_EV: RangeInclusive<f64> = -32.0..=32.0;
+    /// Temperature of the light that appears white, K.
+    pub const WHITE_K: RangeInclusive<f64> = 2000.0..=20_000.0;
+    /// Power around middle grey.
+    pub const CONTRAST: RangeInclusive<f64> = 0.1..=4.0;
+    /// Factor of the distance from grey.
+    pub const SATURATION: RangeInclusive<f64> = 0.0..=4.0;
     /// Width and height, pixels; the random numbers' counters have 16 bits for each.
     pub const SIZE: RangeInclusive<f64> = 1.0..=65535.0;
     /// Samples a pixel.
@@ -194,7 +200,7 @@ pub struct Bookmark {
 }
 
 /// How radiance becomes a picture.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ViewSettings {
     /// The tone curve.
@@ -203,6 +209,12 @@ pub struct ViewSettings {
     pub exposure_ev: f32,
     /// The exposure is added to one that brings the picture's mean brightness to middle grey.
     pub auto_exposure: bool,
+    /// The temperature of the light that appears white, in K.
+    pub white_k: f32,
+    /// The power around middle grey by which radiance is steepened before the tone curve.
+    pub contrast: f32,
+    /// The distance from grey by which colours are multiplied before it.
+    pub saturation: f32,
     /// A table of colours in a `.cube` file that the picture goes through last, as codes of sRGB.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lut: Option<PathBuf>,
@@ -210,6 +222,22 @@ pub struct ViewSettings {
     pub denoise: Denoise,
     /// When that is done in the window.
     pub denoise_when: DenoiseWhen,
+}
+
+impl Default for ViewSettings {
+    fn default() -> Self {
+        Self {
+            tone_map: ToneCurve::default(),
+            exposure_ev: 0.0,
+            auto_exposure: false,
+            white_k: Grade::NEUTRAL_K,
+            contrast: 1.0,
+            saturation: 1.0,
+            lut: None,
+            denoise: Denoise::default(),
+            denoise_when: DenoiseWhen::default(),
+        }
+    }
 }
 
 named! {

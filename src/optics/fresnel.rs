@@ -231,7 +231,8 @@ pub struct Metal {
     pub k: [f64; 3],
 }
 
-/// Measured metals, sampled at the primaries (refractiveindex.info: Johnson and Christy 1972 and 1974, Rakić 1998).
+/// Measured metals, sampled at the primaries (refractiveindex.info: Johnson and Christy 1972 and 1974, Rakić 1998; brass: Querry
+/// 1985; mercury: Inagaki 1981).
 pub const METALS: &[Metal] = &[
     Metal {
         name: "gold",
@@ -262,5 +263,25 @@ pub const METALS: &[Metal] = &[
         name: "chromium",
         eta: [3.108, 3.180, 2.230],
         k: [3.317, 3.330, 3.147],
+    },
+    Metal {
+        name: "brass",
+        eta: [0.444, 0.527, 1.094],
+        k: [3.695, 2.765, 1.829],
+    },
+    Metal {
+        name: "platinum",
+        eta: [2.376, 2.085, 1.845],
+        k: [4.266, 3.715, 3.137],
+    },
+    Metal {
+        name: "titanium",
+        eta: [2.741, 2.542, 2.237],
+        k: [3.814, 3.435, 3.024],
+    },
+    Metal {
+        name: "mercury",
+        eta: [2.073, 1.552, 1.061],
+        k: [5.338, 4.651, 3.863],
     },
 ];

@@ -43,10 +43,8 @@ impl Chromaticities {
         if self.is_near(&XYZ) {
             return Ok(Some(rec709_from_xyz));
         }
-        let cones_from_xyz = CONES_FROM_XYZ;
-        let [from, to] = [self.white, REC709.white].map(|white| transformed(&cones_from_xyz, white_xyz(white)));
-        let gain: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { to[i] / from[i] } else { 0.0 }));
-        let adapted = product(&inverse(&cones_from_xyz)?, &product(&gain, &cones_from_xyz));
+        let [from, to] = [self.white, REC709.white].map(white_xyz);
+        let adapted = adaptation(&CONES_FROM_XYZ, from, to)?;
         let matrix = product(&rec709_from_xyz, &product(&adapted, &self.xyz_from_rgb()?));
         let is_finite = matrix.iter().flatten().all(|x| x.is_finite());
         is_finite.then_some(Some(matrix)).ok_or(NoSpace)
@@ -66,7 +64,11 @@ impl Chromaticities {
         std::iter::zip(self.primaries, primaries).all(|(own, other)| is_near(own, *other))
     }
 
-    fn xyz_from_rgb(&self) -> Result<Matrix, NoSpace> {
+    /// CIE XYZ from linear colours of this space.
+    ///
+    /// # Errors
+    /// Where its primaries span no space.
+    pub fn xyz_from_rgb(&self) -> Result<Matrix, NoSpace> {
         // Not over y: of the primaries of XYZ two have none.
         let columns = self.primaries.map(|[x, y]| [x, y, 1.0 - x - y]);
         let unscaled: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| columns[j][i]));
@@ -92,6 +94,25 @@ fn white_xyz([x, y]: [f64; 2]) -> [f64; 3] {
 /// A matrix times a colour.
 pub fn transformed(matrix: &Matrix, color: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| (0..3).map(|i| row[i] * color[i]).sum())
+}
+
+/// What turns linear Rec. 709 in which one colour is white into linear Rec. 709 in which another is, by Bradford's adaptation;
+/// nothing changes where a colour is too dark to be white.
+pub fn rec709_adapted(from: [f64; 3], to: [f64; 3]) -> Matrix {
+    let matrix = REC709
+        .xyz_from_rgb()
+        .and_then(|xyz_from_rgb| adaptation(&product(&CONES_FROM_XYZ, &xyz_from_rgb), from, to));
+    matrix.unwrap_or([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+}
+
+/// What scales the cones' responses such that the white `from` becomes the white `to`, both and the result in the colours from
+/// which `cones_from` leads.
+fn adaptation(cones_from: &Matrix, from: [f64; 3], to: [f64; 3]) -> Result<Matrix, NoSpace> {
+    let [from, to] = [from, to].map(|white| transformed(cones_from, white));
+    let gain: Matrix = std::array::from_fn(|i| std::array::from_fn(|j| if i == j { to[i] / from[i] } else { 0.0 }));
+    let matrix = product(&inverse(cones_from)?, &product(&gain, cones_from));
+    let is_finite = matrix.iter().flatten().all(|x| x.is_finite());
+    is_finite.then_some(matrix).ok_or(NoSpace)
 }
 
 fn product(a: &Matrix, b: &Matrix) -> Matrix {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::shown::MIDDLE_GREY;
 use crate::document::ViewSettings;
 use crate::job::film::Image;
-use crate::optics::tone::{srgb_from_linear, tone_map};
+use crate::optics::tone::{Grade, srgb_from_linear, tone_map};
 use crate::optics::vector::vec3;
 use crate::store::lut;
 
@@ -33,15 +33,17 @@ pub fn exposure(image: &Image, view: &ViewSettings) -> f32 {
     }
 }
 
-/// Exposure, tone curve, sRGB encoding and the view's table of colours: red, green, blue and alpha of 8 bits, row by row from the top; alpha is not
-/// premultiplied.
+/// Exposure, white balance, contrast, saturation, tone curve, sRGB encoding and the view's table of colours: red, green, blue and
+/// alpha of 8 bits, row by row from the top; alpha is not premultiplied.
 pub fn display(image: &Image, view: &ViewSettings) -> Vec<u8> {
     let exposure = exposure(image, view);
+    let grade = Grade::new(view.white_k, view.contrast, view.saturation);
     let lut = view.lut.as_deref().and_then(lut::remembered);
     let encode = |pixel: &[f32; 4]| -> [u8; 4] {
         let [r, g, b, alpha] = *pixel;
         let straight = if alpha > 0.0 { exposure / alpha } else { 0.0 };
-        let mapped = tone_map(view.tone_map, vec3(r * straight, g * straight, b * straight));
+        let graded = grade.apply(vec3(r * straight, g * straight, b * straight));
+        let mapped = tone_map(view.tone_map, graded);
         let codes = srgb_from_linear(mapped);
         let [r, g, b] = lut.as_ref().map_or(codes, |lut| lut.apply(codes)).to_f32();
         [r, g, b, alpha].map(|x| (255.0 * x.clamp(0.0, 1.0) + 0.5) as u8)

@@ -14,7 +14,7 @@ use crate::scene::environment::{Environment, EnvironmentError, EnvironmentSource
 /// Columns and rows of a thumbnail.
 pub const SIZE: [u32; 2] = [256, 128];
 /// Version of the thumbnails: raise it when the same environment is drawn differently.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// An environment whose picture is wanted.
 #[derive(Clone)]

@@ -24,7 +24,7 @@ const SAMPLES: u32 = 24;
 /// How long to render before looking whether something else is wanted.
 const STEP: Duration = Duration::from_millis(30);
 /// To be raised where thumbnails of the same material come out otherwise than before.
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// A picture: red, green, blue and alpha of 8 bits, alpha not premultiplied; [`SIDE`] × [`SIDE`] pixels from the top.
 pub type Thumbnail = Arc<Vec<u8>>;

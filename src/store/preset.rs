@@ -33,9 +33,13 @@ macro_rules! shipped {
 
 /// The files of the shipped materials, in the order of the menus.
 pub const SHIPPED: &[&str] = shipped! {
-    "porcelain" "lambert-white" "plastic-blue" "rubber" "satin-black" "car-paint-red" "pearl"
-    "glass" "frosted-glass" "bottle-glass" "amber"
-    "chrome" "silver" "aluminium" "brushed-steel" "gold" "copper"
+    "plastic-blue" "plastic-red" "plastic-white" "plastic-yellow" "rubber" "satin-black" "soft-touch-black"
+    "lambert-white" "clay" "chalk" "eggshell-paint" "matt-green-paint" "terracotta" "stoneware" "porcelain"
+    "celadon-glaze" "cobalt-glaze" "obsidian" "jade" "pearl" "lacquered-walnut" "lacquered-oak"
+    "car-paint-red" "car-paint-blue" "car-paint-black" "car-paint-silver" "candy-red"
+    "glass" "frosted-glass" "acrylic" "water" "bottle-glass" "amber" "emerald-glass" "ruby-glass" "sapphire-glass" "diamond"
+    "chrome" "silver" "aluminium" "brushed-aluminium" "brushed-steel" "gold" "satin-gold" "brass" "brushed-brass"
+    "copper" "platinum" "titanium" "cast-iron" "mercury"
 };
 
 /// The shipped materials, in the order of the menus.

@@ -222,10 +222,7 @@ fn cases((curve, table): (Curve, &'static [f32])) -> Vec<Case> {
     for &horizon in Horizon::ALL {
         for (stretch, eta) in KINDS {
             let grid = Case::grid(Lobe::Geometric, curve, horizon, &[stretch], &ROUGHNESS, &ANGLES_DEG);
-            // What is refracted is a sixth as wide: so that it is no narrower than what is reflected, not the smoothest.
-            let is_wide = |case: &Case| eta == 0.0 || case.roughness > 0.02;
-            let wide = grid.into_iter().filter(is_wide);
-            cases.extend(wide.map(|case| Case { eta, table, ..case }));
+            cases.extend(grid.into_iter().map(|case| Case { eta, table, ..case }));
         }
     }
     cases
@@ -243,14 +240,22 @@ fn density<T: Scalar>(inputs: &Inputs<T>, light: Vec3<T>) -> T {
     lobe_evaluate(&inputs.shape, &inputs.frame, inputs.frame.normal, inputs.wo, light)[1]
 }
 
-/// The largest relative change of the reference where the direction moves by one rounding of f32: what no f32 function of
-/// rounded directions can avoid.
+/// The largest relative change of the reference where either direction moves by one rounding of f32: what no f32 function
+/// of rounded directions can avoid. Near total reflection the refracted direction moves by far more than the view.
 fn conditioning(double: &Inputs<f64>, rules: &Rules, light: Vec3<f64>) -> f64 {
     let here = reference(double, rules, light);
-    let around = frame_from_normal(light);
-    let moves = [around.tangent, around.bitangent].map(|axis| axis * f64::from(f32::EPSILON));
-    let moved = |by: Vec3<f64>| (reference(double, rules, light + by) / here - 1.0).abs();
-    moves.iter().flat_map(|&by| [by, -by]).map(moved).fold(0.0, f64::max)
+    let change = |moved: f64| (moved / here - 1.0).abs();
+    let moves = |direction: Vec3<f64>| {
+        let around = frame_from_normal(direction);
+        [around.tangent, around.bitangent, -around.tangent, -around.bitangent]
+            .map(|axis| axis * f64::from(f32::EPSILON))
+    };
+    let light_moves = moves(light).map(|by| change(reference(double, rules, light + by)));
+    let view_moves = moves(double.wo).map(|by| {
+        let wo = (double.wo + by).normalize();
+        change(reference(&Inputs { wo, ..*double }, rules, light))
+    });
+    light_moves.into_iter().chain(view_moves).fold(0.0, f64::max)
 }
 
 /// How many directions were drawn, how many are off by [`ERROR_MAX`] or more, and how many of those by more than rounding

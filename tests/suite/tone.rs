@@ -111,6 +111,17 @@ fn agx_and_aces_have_their_published_values() {
         .map(|(power, factor)| factor * x.powi(power as i32))
         .sum();
     assert_near(mapped(ToneCurve::Agx, [0.18; 3]), [sigmoid.powf(2.2); 3], 1e-6);
+    // The punchy look's saturation does nothing to grey.
+    assert_near(
+        mapped(ToneCurve::AgxPunchy, [0.18; 3]),
+        [sigmoid.powf(1.35 * 2.2); 3],
+        1e-6,
+    );
+    let [plain, punchy] = [ToneCurve::Agx, ToneCurve::AgxPunchy].map(|curve| mapped(curve, [0.5, 0.3, 0.1]));
+    assert!(
+        punchy[0] - punchy[2] > plain[0] - plain[2],
+        "{punchy:?} after {plain:?}"
+    );
     assert_near(
         mapped(ToneCurve::Agx, [0.18 * 6.5_f64.exp2(); 3]),
         [0.99858_f64.powf(2.2); 3],

@@ -239,22 +239,17 @@ fn strategies_agree_on_rough_glass() {
         ],
     ] {
         let mut document = glass(EnvironmentSource::Studio, assignments);
-        document.render.samples = 256;
+        // So many that the sums of rare bright paths are near to normal.
+        document.render.samples = 1024;
         (document.render.width, document.render.height) = (32, 32);
         let mis = render(EngineChoice::Cpu, &document);
         let lobe = render(EngineChoice::Cpu, &with_strategy(&document, Strategy::Lobe, 2));
         let what = format!("mis against lobe, {assignments:?}");
         let off = mis.difference_in_sigma(&lobe);
         assert!(off.abs() < 4.0, "{what}: {off:.1} sigma");
-        // Where a base lies beside the refraction, rare paths find bright lights through it, and pixels are skewed more.
         let beyond = beyond_three_sigma(&mis, &lobe);
-        let limit = if assignments.len() == 3 && assignments[1].starts_with("transmission") {
-            0.03
-        } else {
-            0.02
-        };
         assert!(
-            beyond < limit,
+            beyond < 0.02,
             "{what}: {:.2} % of pixels beyond 3 sigma",
             100.0 * beyond
         );

@@ -12,27 +12,14 @@ use crate::render::environment_thumbnails::{
 };
 use crate::scene::environment::{Environment, EnvironmentSource};
 
-/// The environments that come with the program.
-pub(in crate::app) const BUILT_IN: [(&str, &str, EnvironmentSource); 3] = [
-    ("Studio", "Soft boxes in a dark room.", EnvironmentSource::Studio),
-    ("Sky", "A clear sky with its sun.", EnvironmentSource::Sky),
-    (
-        "Furnace",
-        "White light from everywhere: a material that keeps all light vanishes.",
-        EnvironmentSource::Furnace,
-    ),
-];
-
 /// What to call an environment in a menu.
 pub(in crate::app) fn environment_label(source: &EnvironmentSource) -> String {
-    let built_in = BUILT_IN.iter().find(|(.., of)| of == source);
-    match (built_in, source) {
-        (Some((label, ..)), _) => (*label).to_owned(),
-        (None, EnvironmentSource::File(path)) => path.file_name().map_or_else(
+    match source {
+        EnvironmentSource::File(path) => path.file_name().map_or_else(
             || path.display().to_string(),
             |name| name.to_string_lossy().into_owned(),
         ),
-        (None, other) => other.to_string(),
+        other => other.built_in().map_or("", |built_in| built_in.label).to_owned(),
     }
 }
 

@@ -6,11 +6,12 @@ use crate::app::actions::{Action, Command, do_and_close};
 use crate::app::desk::{Desk, RESOLUTIONS};
 use crate::app::kit::icons::{self, Icon};
 use crate::app::kit::{theme, widgets};
-use crate::app::services::environments;
+use crate::app::services::environments::environment_label;
 use crate::document::{Denoise, LightPaths};
 use crate::optics::tone::ToneCurve;
 use crate::render::shown::Shown;
 use crate::scene::ModelSource;
+use crate::scene::environment::BUILT_IN;
 
 /// What stands in the bar beside model and environment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,15 +130,12 @@ fn environments(ui: &mut Ui, desk: &mut Desk<'_>) {
     let current = desk.document.lighting.environment.clone();
     let combo = egui::ComboBox::from_id_salt("environment")
         .width(120.0)
-        .selected_text(environments::environment_label(&current));
+        .selected_text(environment_label(&current));
     let shown = combo.show_ui(ui, |ui| {
-        for (label, help, source) in &environments::BUILT_IN {
-            if ui
-                .selectable_label(current == *source, *label)
-                .on_hover_text(*help)
-                .clicked()
-            {
-                do_and_close(ui, desk.actions, Action::UseEnvironment(source.clone()));
+        for built_in in &BUILT_IN {
+            let label = ui.selectable_label(current == built_in.source, built_in.label);
+            if label.on_hover_text(built_in.help).clicked() {
+                do_and_close(ui, desk.actions, Action::UseEnvironment(built_in.source.clone()));
             }
         }
         ui.separator();

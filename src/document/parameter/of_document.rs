@@ -139,6 +139,12 @@ fn view() -> Vec<Parameter<Document>> {
             .named("Exposure").flag("exposure").bar(-6.0, 6.0).decimals(2),
         of("view.auto_exposure", Display, "Automatic", "Brings the picture's mean brightness to middle grey; the exposure is added to that.", Kind::Toggle, field!(Toggle view.auto_exposure))
             .named("Automatic exposure").flag("auto-exposure"),
+        of("view.white_balance", Display, "White balance", "Temperature of the light that appears white: lower takes warmth out, higher adds it.", single(range::WHITE_K, "K"), field!(Number view.white_k))
+            .named("White balance").flag("white-balance").bar(2500.0, 12_000.0).decimals(0),
+        of("view.contrast", Display, "Contrast", "Steepens the picture around middle grey, before the tone map.", single(range::CONTRAST, ""), field!(Number view.contrast))
+            .named("Contrast").flag("contrast").bar(0.5, 2.0).decimals(2),
+        of("view.saturation", Display, "Saturation", "Distance of colours from grey, before the tone map; at 0 all is grey.", single(range::SATURATION, ""), field!(Number view.saturation))
+            .named("Saturation").flag("saturation").bar(0.0, 2.0).decimals(2),
         of("view.denoise", Stage::Goal, "Denoise", "Takes the picture's noise out with Open Image Denoise, led by what is seen, and tells how far it then is from the truth. With auto a noise to reach is that of the denoised picture.", choices::<Denoise>(), choice!(view.denoise))
             .named("Denoise").flag("denoise"),
         of("view.denoise_when", Display, "Denoise when", "When the window takes the noise out: from the first sample on, or once all has been rendered.", choices::<DenoiseWhen>(), choice!(view.denoise_when))

@@ -3,6 +3,7 @@
 //! To add a curve: a function here, a line in the list of curves, one in [`tone_map`].
 
 mod aces2;
+mod grade;
 mod lut;
 
 use super::real::Scalar;
@@ -10,6 +11,7 @@ use super::vector::{Vec3, vec3};
 use crate::named::named;
 
 pub use aces2::tone_aces2;
+pub use grade::Grade;
 pub use lut::Lut;
 
 named! {
@@ -17,6 +19,7 @@ named! {
     #[derive(Default)]
     ToneCurve {
         #[default]
+        AgxPunchy = 5, "agx-punchy", "AgX Punchy", "AgX with more contrast and saturation: metals and paints keep their colour.";
         Agx = 0, "agx", "AgX", "Bright colours fade to white as on film: for any picture with strong light.";
         Aces = 1, "aces", "ACES", "Strong contrast and saturation, as in films and games (Hill's fit of ACES 1.0).";
         Aces2 = 2, "aces2", "ACES 2", "The Academy's transform of 2024 for screens: softer than the first, colours keep their hue up to white.";
@@ -32,6 +35,7 @@ pub fn tone_map<T: Scalar>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
     let scene = rgb_linear.map(|x| x.clamp(T::zero(), T::from_f64(SCENE_MAX)));
     let display = match curve {
         ToneCurve::Agx => tone_agx(scene),
+        ToneCurve::AgxPunchy => tone_agx_punchy(scene),
         ToneCurve::Aces => tone_aces(scene),
         ToneCurve::PbrNeutral => tone_pbr_neutral(scene),
         ToneCurve::None => tone_none(scene),
@@ -43,18 +47,41 @@ pub fn tone_map<T: Scalar>(curve: ToneCurve, rgb_linear: Vec3<T>) -> Vec3<T> {
 /// The largest scene-referred value told from others: the largest half float.
 pub const SCENE_MAX: f64 = 65504.0;
 
+/// [`tone_agx`] with the look that its author calls punchy.
+#[inline(always)]
+pub fn tone_agx_punchy<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
+    agx(scene, |encoded| {
+        let powered = encoded.map(|x| x.max(T::zero()).powf(T::from_f64(PUNCHY_POWER)));
+        let luminance = powered.dot(Vec3::from_f64(LUMINANCE));
+        Vec3::splat(luminance).mix(powered, T::from_f64(PUNCHY_SATURATION))
+    })
+}
+
+/// The power of AgX's punchy look, on encoded values.
+const PUNCHY_POWER: f64 = 1.35;
+/// Its saturation.
+const PUNCHY_SATURATION: f64 = 1.4;
+/// Luminance of Rec. 709's primaries.
+pub(super) const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
 /// AgX (Sobotka 2022) in the form of Filament and three.js: its inset in Rec. 2020, here one matrix with the change of
 /// primaries; Wrensch's polynomial fit of the sigmoid over 16.5 stops around middle grey ("Minimal AgX implementation",
 /// 2023); the outset; display gamma 2.2.
 #[inline(always)]
 pub fn tone_agx<T: Scalar>(scene: Vec3<T>) -> Vec3<T> {
+    agx(scene, |encoded| encoded)
+}
+
+/// [`tone_agx`] with a look: a change of what its sigmoid gave, before the outset.
+#[inline(always)]
+fn agx<T: Scalar>(scene: Vec3<T>, look: impl Fn(Vec3<T>) -> Vec3<T>) -> Vec3<T> {
     let c = T::from_f64;
     let inset = transform(AGX_INSET_FROM_REC709, scene);
     let log = inset.map(|x| {
         let stops = x.max(c(1e-10)).ln() * c(std::f64::consts::LOG2_E);
         ((stops - c(AGX_STOPS_MIN)) / c(AGX_STOPS_MAX - AGX_STOPS_MIN)).clamp(T::zero(), T::one())
     });
-    let encoded = transform(AGX_OUTSET, log.map(agx_contrast));
+    let encoded = transform(AGX_OUTSET, look(log.map(agx_contrast)));
     let linear = encoded.map(|x| x.max(c(1e-10)).powf(c(2.2)));
     transform(REC709_FROM_REC2020, linear)
 }

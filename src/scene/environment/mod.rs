@@ -41,17 +41,29 @@ pub use distribution::{Cell, Distribution};
 use distribution::{Luminances, Map};
 pub use error::EnvironmentError;
 pub use file::{ENDINGS, MAX_HEIGHT, MAX_WIDTH};
-pub use procedural::{SkyParams, furnace, sky, studio, sun_direction, sun_irradiance};
+pub use procedural::{
+    SkyParams, furnace, overcast, portrait, product, rim, sky, studio, sun_direction, sun_irradiance, warehouse,
+};
 pub use thumbnail::{brightened, thumbnail};
 
-/// Where an environment comes from. Written `studio`, `sky`, `furnace` or the name of a file; a file of one of those three
-/// names is reached as `./studio`.
+/// Where an environment comes from. Written as one of the names in [`BUILT_IN`] or the name of a file; a file of such a name
+/// is reached as `./studio`.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EnvironmentSource {
-    /// Soft boxes in a dark room.
+    /// Large warm and cool soft boxes in a bright room.
     #[default]
+    Product,
+    /// Soft boxes in a dark room.
     Studio,
+    /// One large warm lamp near the camera.
+    Portrait,
+    /// Narrow lamps behind the object, warm and cool.
+    Rim,
+    /// A hall with skylights, windows and a gate.
+    Warehouse,
+    /// A sky full of clouds.
+    Overcast,
     /// A clear sky with its sun, see [`SkyParams`].
     Sky,
     /// Radiance 1 from everywhere.
@@ -72,26 +84,97 @@ pub enum EnvironmentEncoding {
     Linear,
 }
 
+/// An environment that needs no file.
+pub struct BuiltIn {
+    /// What it is.
+    pub source: EnvironmentSource,
+    /// Its name on the command line and in files.
+    pub name: &'static str,
+    /// Its name in the window.
+    pub label: &'static str,
+    /// What it is like.
+    pub help: &'static str,
+}
+
+/// All environments that need no file, in the order in which they are offered.
+pub static BUILT_IN: [BuiltIn; 8] = [
+    built_in(
+        EnvironmentSource::Product,
+        "product",
+        "Product",
+        "Large warm and cool soft boxes in a bright room.",
+    ),
+    built_in(
+        EnvironmentSource::Studio,
+        "studio",
+        "Studio",
+        "Soft boxes in a dark room.",
+    ),
+    built_in(
+        EnvironmentSource::Portrait,
+        "portrait",
+        "Portrait",
+        "One large warm lamp near the camera, and reflectors.",
+    ),
+    built_in(
+        EnvironmentSource::Rim,
+        "rim",
+        "Rim",
+        "Two narrow lamps behind the object, warm and cool, in the dark.",
+    ),
+    built_in(
+        EnvironmentSource::Warehouse,
+        "warehouse",
+        "Warehouse",
+        "A hall with skylights, windows and a gate.",
+    ),
+    built_in(
+        EnvironmentSource::Overcast,
+        "overcast",
+        "Overcast",
+        "A sky full of clouds: soft light from above.",
+    ),
+    built_in(EnvironmentSource::Sky, "sky", "Sky", "A clear sky with its sun."),
+    built_in(
+        EnvironmentSource::Furnace,
+        "furnace",
+        "Furnace",
+        "White light from everywhere: a material that keeps all light vanishes.",
+    ),
+];
+
+const fn built_in(source: EnvironmentSource, name: &'static str, label: &'static str, help: &'static str) -> BuiltIn {
+    BuiltIn {
+        source,
+        name,
+        label,
+        help,
+    }
+}
+
+impl EnvironmentSource {
+    /// The entry of [`BUILT_IN`]; `None` for a file.
+    pub fn built_in(&self) -> Option<&'static BuiltIn> {
+        BUILT_IN.iter().find(|built_in| built_in.source == *self)
+    }
+}
+
 impl FromStr for EnvironmentSource {
     type Err = EnvironmentError;
     fn from_str(text: &str) -> Result<Self, EnvironmentError> {
-        match text {
-            "" => Err(EnvironmentError::NoName),
-            "studio" => Ok(Self::Studio),
-            "sky" => Ok(Self::Sky),
-            "furnace" => Ok(Self::Furnace),
-            file => Ok(Self::File(PathBuf::from(file))),
+        if text.is_empty() {
+            return Err(EnvironmentError::NoName);
         }
+        let built_in = BUILT_IN.iter().find(|built_in| built_in.name == text);
+        Ok(built_in.map_or_else(|| Self::File(PathBuf::from(text)), |found| found.source.clone()))
     }
 }
 
 impl fmt::Display for EnvironmentSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Studio => f.write_str("studio"),
-            Self::Sky => f.write_str("sky"),
-            Self::Furnace => f.write_str("furnace"),
             Self::File(path) => path.display().fmt(f),
+            other => f.write_str(other.built_in().map_or("", |built_in| built_in.name)),
         }
     }
 }
@@ -219,7 +302,12 @@ pub fn load_watched(
     loading: &Loading,
 ) -> Result<Environment, EnvironmentError> {
     match source {
+        EnvironmentSource::Product => product(),
         EnvironmentSource::Studio => studio(),
+        EnvironmentSource::Portrait => portrait(),
+        EnvironmentSource::Rim => rim(),
+        EnvironmentSource::Warehouse => warehouse(),
+        EnvironmentSource::Overcast => overcast(),
         EnvironmentSource::Sky => sky(&SkyParams::default()),
         EnvironmentSource::Furnace => furnace(),
         EnvironmentSource::File(path) => file::load(Path::new(path), encoding, loading),

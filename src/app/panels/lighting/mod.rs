@@ -11,9 +11,9 @@ use crate::app::actions::{Action, Command};
 use crate::app::desk::Desk;
 use crate::app::kit::theme;
 use crate::app::kit::widgets::{self, Name, PictureRow};
-use crate::app::services::environments::{BUILT_IN, environment_label};
+use crate::app::services::environments::environment_label;
 use crate::document::{Background, GroundKind};
-use crate::scene::environment::EnvironmentSource;
+use crate::scene::environment::{BUILT_IN, EnvironmentSource};
 
 /// Size of an environment's picture in the list, points.
 const PICTURE: egui::Vec2 = vec2(48.0, 24.0);
@@ -54,7 +54,7 @@ fn ground(ui: &mut Ui, desk: &mut Desk<'_>) {
 /// All there are to choose from: those that come with the program, and files, the one in use and those opened last.
 fn sources(ui: &mut Ui, desk: &mut Desk<'_>) {
     let current = desk.document.lighting.environment.clone();
-    let mut sources: Vec<EnvironmentSource> = BUILT_IN.iter().map(|(.., source)| source.clone()).collect();
+    let mut sources: Vec<EnvironmentSource> = BUILT_IN.iter().map(|built_in| built_in.source.clone()).collect();
     for source in std::iter::once(current).chain(desk.shared.recent.environments()) {
         if !sources.contains(&source) && sources.len() < BUILT_IN.len() + FILES_MAX {
             sources.push(source);
@@ -87,12 +87,12 @@ fn rows(ui: &mut Ui, desk: &mut Desk<'_>, sources: &[EnvironmentSource]) {
             color: ui.visuals().extreme_bg_color,
             is_current,
         };
-        let help = match (source, BUILT_IN.iter().find(|(.., of)| of == source)) {
-            (EnvironmentSource::File(path), _) if environments.is_missing(source) => {
+        let help = match source {
+            EnvironmentSource::File(path) if environments.is_missing(source) => {
                 format!("{}: not there any more, or not to be read", path.display())
             }
-            (EnvironmentSource::File(path), _) => path.display().to_string(),
-            (_, built_in) => built_in.map_or_else(String::new, |(_, help, _)| (*help).to_owned()),
+            EnvironmentSource::File(path) => path.display().to_string(),
+            other => other.built_in().map_or("", |built_in| built_in.help).to_owned(),
         };
         if row.show(ui).on_hover_text(help).clicked() && !is_current {
             desk.actions.push(Action::UseEnvironment(source.clone()));

@@ -9,11 +9,11 @@ use crate::app::desk::Desk;
 use crate::app::kit::tile::{Layout, Tile};
 use crate::app::kit::widgets;
 use crate::app::services::compare::Rival;
-use crate::app::services::environments::{BUILT_IN, environment_label};
+use crate::app::services::environments::environment_label;
 use crate::app::services::library::Change;
 use crate::app::services::shelves::KeptShelves;
 use crate::document::MaterialSettings;
-use crate::scene::environment::EnvironmentSource;
+use crate::scene::environment::{BUILT_IN, EnvironmentSource};
 use crate::store::PRESETS;
 use crate::store::exchange::FORMATS;
 use crate::store::preset::command_line_name;
@@ -346,7 +346,7 @@ fn environments(desk: &Desk<'_>) -> Vec<Entry> {
         EnvironmentSource::File(path) => !folders.iter().any(|folder| path.starts_with(folder)),
         _ => true,
     };
-    let mut sources: Vec<EnvironmentSource> = BUILT_IN.iter().map(|(.., source)| source.clone()).collect();
+    let mut sources: Vec<EnvironmentSource> = BUILT_IN.iter().map(|built_in| built_in.source.clone()).collect();
     let current = std::iter::once(desk.document.lighting.environment.clone());
     for source in current.chain(desk.shared.recent.environments()).filter(is_shown) {
         if !sources.contains(&source) {

@@ -1,6 +1,8 @@
 //! Environments that need no file.
 
+mod rooms;
 mod sky;
+mod soft_box;
 mod studio;
 
 use rayon::prelude::*;
@@ -8,6 +10,7 @@ use rayon::prelude::*;
 use super::{Environment, EnvironmentError, environment_direction};
 use crate::optics::vector::Vec3;
 
+pub use rooms::{overcast, portrait, product, rim, warehouse};
 pub use sky::{SkyParams, sky, sun_direction, sun_irradiance};
 pub use studio::studio;
 

@@ -1,0 +1,332 @@
+//! Rooms to photograph in, each a page of numbers: large warm and cool lamps that wrap around an object of about unit size at
+//! the origin, walls and a floor that reflect them. The object is seen from +Z, slightly above.
+
+use super::super::{Environment, EnvironmentError};
+use super::soft_box::{SoftBox, mix, room_with, smoothstep};
+use super::texels_of;
+use crate::optics::vector::{Vec3, vec3};
+
+/// Radiance of the floor, the walls and the ceiling, linear Rec. 709; from one to the other it changes smoothly.
+struct Walls {
+    floor: [f64; 3],
+    wall: [f64; 3],
+    ceiling: [f64; 3],
+    /// Half of the height, as the sine of an elevation, over which the floor becomes the wall.
+    bend: f64,
+}
+
+impl Walls {
+    fn radiance(&self, direction: Vec3<f64>) -> Vec3<f64> {
+        let [floor, wall, ceiling] = [self.floor, self.wall, self.ceiling].map(Vec3::from_f64);
+        let above = wall.mix(ceiling, smoothstep(0.2, 0.8, direction.y));
+        above.mix(floor, smoothstep(0.25 - self.bend, 0.25 + self.bend, -direction.y))
+    }
+}
+
+/// Bright and warm, so that what reflects has something to reflect.
+const PRODUCT_WALLS: Walls = Walls {
+    floor: [0.575, 0.529, 0.471],
+    wall: [0.414, 0.385, 0.345],
+    ceiling: [0.391, 0.391, 0.402],
+    bend: 0.25,
+};
+/// For products.
+const PRODUCT: [SoftBox; 5] = [
+    // From the left above, in front: large and warm, shapes the object.
+    SoftBox {
+        centre: [-2.6, 2.3, 2.2],
+        half_width: 2.1,
+        half_height: 1.9,
+        radiance: 7.5,
+        corner_share: 0.4,
+        edge: 0.6,
+        tint: [1.0, 0.92, 0.8],
+    },
+    // From the right: large and cool, opens the shadows.
+    SoftBox {
+        centre: [3.5, 1.0, 1.2],
+        half_width: 1.8,
+        half_height: 2.2,
+        radiance: 2.0,
+        corner_share: 0.35,
+        edge: 0.7,
+        tint: [0.8, 0.9, 1.0],
+    },
+    // Above, a little behind: draws the upper edges.
+    SoftBox {
+        centre: [0.3, 3.8, -1.2],
+        half_width: 2.4,
+        half_height: 1.0,
+        radiance: 4.1,
+        corner_share: 0.5,
+        edge: 0.3,
+        tint: [1.0, 0.98, 0.95],
+    },
+    // Behind on the right, narrow and cool.
+    SoftBox {
+        centre: [2.9, 1.2, -2.6],
+        half_width: 0.5,
+        half_height: 2.2,
+        radiance: 8.0,
+        corner_share: 0.5,
+        edge: 0.2,
+        tint: [0.88, 0.94, 1.0],
+    },
+    // Behind on the left, narrow and warm.
+    SoftBox {
+        centre: [-3.4, 0.9, -2.0],
+        half_width: 0.4,
+        half_height: 2.0,
+        radiance: 5.8,
+        corner_share: 0.5,
+        edge: 0.2,
+        tint: [1.0, 0.9, 0.78],
+    },
+];
+
+/// Dim, so that the lamps alone shape the object.
+const PORTRAIT_WALLS: Walls = Walls {
+    floor: [0.16, 0.145, 0.13],
+    wall: [0.12, 0.115, 0.115],
+    ceiling: [0.07, 0.07, 0.075],
+    bend: 0.25,
+};
+/// For faces.
+const PORTRAIT: [SoftBox; 4] = [
+    // The main lamp, large, warm and near the camera.
+    SoftBox {
+        centre: [-2.4, 2.0, 2.6],
+        half_width: 1.5,
+        half_height: 1.5,
+        radiance: 13.0,
+        corner_share: 0.35,
+        edge: 0.5,
+        tint: [1.0, 0.9, 0.76],
+    },
+    // A reflector at the side.
+    SoftBox {
+        centre: [3.2, 0.6, 2.2],
+        half_width: 1.5,
+        half_height: 2.0,
+        radiance: 1.1,
+        corner_share: 0.3,
+        edge: 0.7,
+        tint: [0.75, 0.86, 1.0],
+    },
+    // A reflector below.
+    SoftBox {
+        centre: [0.0, -2.2, 2.4],
+        half_width: 1.8,
+        half_height: 0.8,
+        radiance: 1.0,
+        corner_share: 0.4,
+        edge: 0.5,
+        tint: [1.0, 0.9, 0.8],
+    },
+    // Behind on the right above: parts the object from what is behind it.
+    SoftBox {
+        centre: [2.2, 2.2, -2.6],
+        half_width: 0.9,
+        half_height: 1.1,
+        radiance: 8.0,
+        corner_share: 0.5,
+        edge: 0.3,
+        tint: [0.85, 0.92, 1.0],
+    },
+];
+
+/// Nearly black.
+const RIM_WALLS: Walls = Walls {
+    floor: [0.05, 0.05, 0.055],
+    wall: [0.035, 0.035, 0.04],
+    ceiling: [0.03, 0.03, 0.035],
+    bend: 0.25,
+};
+/// For outlines.
+const RIM: [SoftBox; 4] = [
+    // Behind on the left, warm.
+    SoftBox {
+        centre: [-3.2, 1.2, -1.9],
+        half_width: 0.55,
+        half_height: 2.3,
+        radiance: 16.0,
+        corner_share: 0.5,
+        edge: 0.2,
+        tint: [1.0, 0.8, 0.58],
+    },
+    // Behind on the right, cool.
+    SoftBox {
+        centre: [3.2, 1.2, -1.9],
+        half_width: 0.55,
+        half_height: 2.3,
+        radiance: 16.0,
+        corner_share: 0.5,
+        edge: 0.2,
+        tint: [0.62, 0.8, 1.0],
+    },
+    // Above.
+    SoftBox {
+        centre: [0.0, 3.8, -0.9],
+        half_width: 2.2,
+        half_height: 0.5,
+        radiance: 5.0,
+        corner_share: 0.5,
+        edge: 0.25,
+        tint: [1.0, 1.0, 1.0],
+    },
+    // In front, weak: the side that is seen is not black.
+    SoftBox {
+        centre: [-1.2, 1.6, 3.8],
+        half_width: 1.4,
+        half_height: 0.9,
+        radiance: 0.9,
+        corner_share: 0.4,
+        edge: 0.5,
+        tint: [1.0, 0.96, 0.9],
+    },
+];
+
+/// Concrete and wood.
+const WAREHOUSE_WALLS: Walls = Walls {
+    floor: [0.23, 0.21, 0.19],
+    wall: [0.2, 0.175, 0.15],
+    ceiling: [0.1, 0.1, 0.105],
+    bend: 0.15,
+};
+/// Skylights, windows, a gate.
+const WAREHOUSE: [SoftBox; 8] = [
+    // A skylight.
+    SoftBox {
+        centre: [-2.2, 3.4, 0.2],
+        half_width: 0.34,
+        half_height: 2.6,
+        radiance: 4.2,
+        corner_share: 0.8,
+        edge: 0.1,
+        tint: [1.0, 0.97, 0.9],
+    },
+    // A skylight.
+    SoftBox {
+        centre: [-0.75, 3.4, 0.2],
+        half_width: 0.34,
+        half_height: 2.6,
+        radiance: 4.2,
+        corner_share: 0.8,
+        edge: 0.1,
+        tint: [1.0, 0.97, 0.9],
+    },
+    // A skylight.
+    SoftBox {
+        centre: [0.75, 3.4, 0.2],
+        half_width: 0.34,
+        half_height: 2.6,
+        radiance: 4.2,
+        corner_share: 0.8,
+        edge: 0.1,
+        tint: [1.0, 0.97, 0.9],
+    },
+    // A skylight.
+    SoftBox {
+        centre: [2.2, 3.4, 0.2],
+        half_width: 0.34,
+        half_height: 2.6,
+        radiance: 4.2,
+        corner_share: 0.8,
+        edge: 0.1,
+        tint: [1.0, 0.97, 0.9],
+    },
+    // A window on the left.
+    SoftBox {
+        centre: [-4.2, 1.0, -1.6],
+        half_width: 0.62,
+        half_height: 1.3,
+        radiance: 5.5,
+        corner_share: 0.8,
+        edge: 0.08,
+        tint: [0.78, 0.89, 1.0],
+    },
+    // A window on the left.
+    SoftBox {
+        centre: [-4.2, 1.0, 0.0],
+        half_width: 0.62,
+        half_height: 1.3,
+        radiance: 5.5,
+        corner_share: 0.8,
+        edge: 0.08,
+        tint: [0.78, 0.89, 1.0],
+    },
+    // A window on the left.
+    SoftBox {
+        centre: [-4.2, 1.0, 1.6],
+        half_width: 0.62,
+        half_height: 1.3,
+        radiance: 5.5,
+        corner_share: 0.8,
+        edge: 0.08,
+        tint: [0.78, 0.89, 1.0],
+    },
+    // The open gate on the right, in the evening.
+    SoftBox {
+        centre: [4.2, 0.3, 0.4],
+        half_width: 1.6,
+        half_height: 1.5,
+        radiance: 1.3,
+        corner_share: 0.7,
+        edge: 0.15,
+        tint: [1.0, 0.72, 0.45],
+    },
+];
+
+/// A photographer's table: large warm and cool soft boxes in a bright room. 1024 × 512.
+///
+/// # Errors
+/// None in practice; the signature is that of the other environments.
+pub fn product() -> Result<Environment, EnvironmentError> {
+    room_with("product", &PRODUCT, |direction| PRODUCT_WALLS.radiance(direction))
+}
+
+/// A portrait studio: one large warm lamp near the camera, reflectors, a dim room. 1024 × 512.
+///
+/// # Errors
+/// None in practice; the signature is that of the other environments.
+pub fn portrait() -> Result<Environment, EnvironmentError> {
+    room_with("portrait", &PORTRAIT, |direction| PORTRAIT_WALLS.radiance(direction))
+}
+
+/// Two narrow lamps behind the object, warm and cool, in the dark. 1024 × 512.
+///
+/// # Errors
+/// None in practice; the signature is that of the other environments.
+pub fn rim() -> Result<Environment, EnvironmentError> {
+    room_with("rim", &RIM, |direction| RIM_WALLS.radiance(direction))
+}
+
+/// A hall: skylights, windows on one side, a gate on the other. 1024 × 512.
+///
+/// # Errors
+/// None in practice; the signature is that of the other environments.
+pub fn warehouse() -> Result<Environment, EnvironmentError> {
+    room_with("warehouse", &WAREHOUSE, |direction| WAREHOUSE_WALLS.radiance(direction))
+}
+
+/// An overcast sky with a bright place where the sun is, over dry ground, 512 × 256. Its luminance is that of CIE's standard
+/// overcast sky, (1 + 2 sin elevation)/3 of that at the zenith (Moon and Spencer 1942).
+///
+/// # Errors
+/// None in practice; the signature is that of the other environments.
+pub fn overcast() -> Result<Environment, EnvironmentError> {
+    let sun = vec3(-0.55, 0.62, 0.56).normalize();
+    let texels = texels_of(512, 256, |direction| {
+        let height = direction.y.max(0.0);
+        let clouds = vec3(0.93, 0.985, 1.06) * (ZENITH * mix(1.0 / 3.0, 1.0, height));
+        let glow = vec3(1.0, 0.96, 0.88) * (SUN_GLOW * ((direction.dot(sun) - 1.0) / 0.1).exp());
+        let ground = vec3(0.28, 0.25, 0.215);
+        ground.mix(clouds + glow, smoothstep(-0.06, 0.02, direction.y)).to_f32()
+    });
+    Environment::from_texels("overcast", 512, 256, texels)
+}
+
+/// Radiance of the clouds at the zenith.
+const ZENITH: f64 = 1.3;
+/// Radiance that the sun behind the clouds adds where it stands.
+const SUN_GLOW: f64 = 2.2;

@@ -1,0 +1,73 @@
+//! Soft boxes: rectangular lamps behind cloth, of which rooms to photograph in are made.
+
+use super::super::{Environment, EnvironmentError};
+use super::texels_of;
+use crate::optics::vector::{Vec3, vec3};
+
+const WIDTH: u32 = 1024;
+const HEIGHT: u32 = 512;
+
+/// A rectangular soft box with rounded corners, facing the origin, its sides level. Lengths in units of the object.
+pub(super) struct SoftBox {
+    pub(super) centre: [f64; 3],
+    pub(super) half_width: f64,
+    pub(super) half_height: f64,
+    /// Radiance in the middle.
+    pub(super) radiance: f64,
+    /// Radiance at the corners as a share of that in the middle: cloth in front of one lamp.
+    pub(super) corner_share: f64,
+    /// Width of the soft edge.
+    pub(super) edge: f64,
+    pub(super) tint: [f64; 3],
+}
+
+/// The map of a room, 1024 × 512: soft boxes before its walls, the last one in front.
+pub(super) fn room_with(
+    name: &str,
+    boxes: &[SoftBox],
+    walls: impl Fn(Vec3<f64>) -> Vec3<f64> + Sync,
+) -> Result<Environment, EnvironmentError> {
+    let texels = texels_of(WIDTH, HEIGHT, |direction| {
+        let over = |behind, soft_box: &SoftBox| soft_box.over(behind, direction);
+        boxes.iter().fold(walls(direction), over).to_f32()
+    });
+    Environment::from_texels(name, WIDTH, HEIGHT, texels)
+}
+
+impl SoftBox {
+    /// The light from a direction when the box stands in front of `behind`.
+    fn over(&self, behind: Vec3<f64>, direction: Vec3<f64>) -> Vec3<f64> {
+        let centre = Vec3::from_f64(self.centre);
+        let normal = centre.normalize();
+        let facing = direction.dot(normal);
+        if facing <= 0.0 {
+            return behind;
+        }
+        let right = vec3(0.0, 1.0, 0.0).cross(normal).normalize();
+        let up = normal.cross(right);
+        let offset = direction * (centre.length() / facing) - centre;
+        let (x, y) = (offset.dot(right), offset.dot(up));
+        let cover = 1.0 - smoothstep(-self.edge, 0.0, self.distance(x, y));
+        let from_middle = ((x / self.half_width).powi(2) + (y / self.half_height).powi(2)) / 2.0;
+        let radiance = self.radiance * mix(1.0, self.corner_share, from_middle.min(1.0));
+        behind.mix(Vec3::from_f64(self.tint) * radiance, cover)
+    }
+
+    /// The signed distance, negative inside, of a point in the box's plane to its outline with rounded corners.
+    fn distance(&self, x: f64, y: f64) -> f64 {
+        let corner = 0.35 * self.half_width.min(self.half_height);
+        let (dx, dy) = (x.abs() - self.half_width + corner, y.abs() - self.half_height + corner);
+        dx.max(0.0).hypot(dy.max(0.0)) + dx.max(dy).min(0.0) - corner
+    }
+}
+
+/// `a` at t = 0, `b` at t = 1.
+pub(super) fn mix(a: f64, b: f64, t: f64) -> f64 {
+    a + (b - a) * t
+}
+
+/// 0 up to `low`, 1 from `high`, smooth between.
+pub(super) fn smoothstep(low: f64, high: f64, x: f64) -> f64 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}

@@ -1,0 +1,97 @@
+//! What metals and paints look like at first sight: the shipped light and the default tone curve.
+
+use std::time::Duration;
+
+use glossmith::document::{Document, ViewSettings};
+use glossmith::optics::primaries::{REC709, transformed};
+use glossmith::optics::tone::{ToneCurve, linear_from_srgb};
+use glossmith::optics::vector::Vec3;
+use glossmith::render::display::display;
+use glossmith::render::{EngineChoice, Session};
+use glossmith::scene::ModelSource;
+use glossmith::scene::environment::EnvironmentSource;
+use glossmith::store::material_by_name;
+
+const SIDE: u32 = 48;
+
+/// Lightness, chroma and hue in degrees in CIELAB.
+type Look = [f64; 3];
+
+fn look_of([r, g, b]: [f64; 3]) -> Look {
+    let xyz_from_rgb = REC709.xyz_from_rgb().expect("a space");
+    let white = transformed(&xyz_from_rgb, [1.0; 3]);
+    let f = |t: f64| {
+        if t > (6.0 / 29.0_f64).powi(3) {
+            t.cbrt()
+        } else {
+            t * (29.0 / 6.0_f64).powi(2) / 3.0 + 4.0 / 29.0
+        }
+    };
+    let xyz = transformed(&xyz_from_rgb, [r, g, b]);
+    let [x, y, z] = [0, 1, 2].map(|i| f(xyz[i] / white[i]));
+    let (a, b) = (500.0 * (x - y), 200.0 * (y - z));
+    [116.0 * y - 16.0, a.hypot(b), b.atan2(a).to_degrees()]
+}
+
+/// The mean of the displayed picture of a ball, as light from a screen, over the ball.
+fn ball(name: &str, environment: EnvironmentSource, tone_map: ToneCurve) -> Look {
+    let mut document = Document {
+        model: ModelSource::Sphere,
+        materials: vec![material_by_name(name).expect("shipped").clone()],
+        ground: true,
+        view: ViewSettings {
+            tone_map,
+            ..ViewSettings::default()
+        },
+        ..Document::default()
+    };
+    document.lighting.environment = environment;
+    (document.render.width, document.render.height, document.render.samples) = (SIDE, SIDE, 64);
+    let mut session = Session::open(EngineChoice::Cpu).expect("always");
+    session.submit(&document).expect("a sphere");
+    while !session.step(Duration::from_secs(1)).expect("it renders").is_done {}
+    let codes = display(&session.image().expect("it is done"), &document.view);
+    let middle = SIDE as usize / 3..2 * SIDE as usize / 3;
+    let pixels = middle
+        .clone()
+        .flat_map(|y| middle.clone().map(move |x| 4 * (y * SIDE as usize + x)));
+    let colors: Vec<Vec3<f64>> = pixels
+        .map(|at| linear_from_srgb(Vec3::from_f64([0, 1, 2].map(|i| f64::from(codes[at + i]) / 255.0))))
+        .collect();
+    let sum = colors.iter().fold(Vec3::splat(0.0), |sum, color| sum + *color);
+    look_of((sum / colors.len() as f64).to_f64())
+}
+
+/// The range of hues, in degrees, and the least chroma; without a hue what is to be grey, with the most chroma.
+const LOOKS: [(&str, Option<[f64; 2]>, f64); 6] = [
+    ("gold", Some([72.0, 98.0]), 25.0),
+    ("copper", Some([20.0, 65.0]), 12.0),
+    ("car-paint-red", Some([15.0, 45.0]), 40.0),
+    ("chrome", None, 8.0),
+    ("porcelain", None, 12.0),
+    ("rubber", None, 8.0),
+];
+
+/// The table of docs/PERFORMANCE.md is what this prints; before is the dark studio under AgX.
+#[test]
+fn gold_copper_and_red_look_like_themselves() {
+    println!("| material | before: lightness, chroma, hue | now |");
+    for (name, hues, chroma) in LOOKS {
+        let before = ball(name, EnvironmentSource::Studio, ToneCurve::Agx);
+        let now = ball(name, EnvironmentSource::default(), ToneCurve::default());
+        println!("| {name} | {before:.0?} | {now:.0?} |");
+        match hues {
+            Some([from, to]) => {
+                assert!((from..=to).contains(&now[2]), "{name}: hue {:.0}°", now[2]);
+                assert!(now[1] >= chroma, "{name}: chroma {:.0}", now[1]);
+                assert!(
+                    now[1] > before[1],
+                    "{name}: chroma {:.0} after {:.0}",
+                    now[1],
+                    before[1]
+                );
+            }
+            None => assert!(now[1] <= chroma, "{name}: chroma {:.0}", now[1]),
+        }
+    }
+}
