@@ -1,6 +1,7 @@
 //! Shader modules that are generated from Rust's lists, so that no number is copied by hand.
 
 use super::array::TEXEL_ROW_BITS;
+use super::generated_layers::layer_registry;
 use super::layout::BACKGROUNDS;
 use super::material_array::FEW_MATERIALS;
 use super::sums::TILE_COLUMNS;
@@ -22,6 +23,7 @@ pub type Generated = (&'static str, fn() -> String);
 pub const GENERATED: &[Generated] = &[
     ("optics/lobe/registry", lobe_registry),
     ("optics/curve/registry", curve_registry),
+    ("optics/layer/registry", layer_registry),
     ("optics/choices", optics_choices),
     ("scene/choices", scene_choices),
     ("scene/plan_constants", plan_constants),

@@ -1,5 +1,5 @@
 //! The material as the integrators see it: a specular lobe over a base that is Lambertian, or refracts, or is a mixture
-//! of both.
+//! of both, and covers over all. What each layer does with light is said in [`layer`](super::layer).
 //!
 //! The specular lobe reflects the Fresnel share; what it leaves over reaches the base. How much that is on average over
 //! the lobe, its albedo, is tabulated for each material ([`albedo_table`]), so that a white base under any lobe reflects
@@ -7,22 +7,12 @@
 //! views from within, from where the base's light is refracted into the solid, so that all of it gets out again. Lobes made
 //! of facets refract at each facet what that facet does not reflect.
 
-mod base;
-mod evaluate;
-mod layers;
-mod sample;
-
-use super::coat::coat_shape;
 use super::curve::Curve;
-use super::frame::Frame;
+use super::frame::{Frame, frame_from_normal};
 use super::fresnel::{Fresnel, FresnelTerms};
-use super::lobe::{Horizon, Lobe, LobeShape, is_mirror};
+use super::lobe::{Horizon, Lobe, LobeShape};
 use super::real::{Mask, Real, Scalar};
-use super::vector::Vec3;
-pub use base::BASE_EDGE;
-pub use evaluate::material_evaluate;
-pub use layers::{Layers, decides_by_facet, material_albedo, material_layers, material_normal, passes_on};
-pub use sample::{Layer, MaterialNumbers, MaterialSample, material_sample};
+use super::vector::{Vec3, vec3};
 
 /// The number of a texture that is not there.
 pub const NO_TEXTURE: u32 = u32::MAX;
@@ -294,14 +284,6 @@ impl<T: Real> Material<T> {
         T::zero().less(self.transmission_weight) & self.metalness.less(T::one())
     }
 
-    /// True where every direction that it can draw is weighed as a mirror's.
-    pub fn is_mirror(&self) -> T::Mask {
-        let through = self.transmission_shape(&[], T::Mask::splat(false));
-        let reflects_alike = !self.has_specular() | is_mirror(&self.shape(&[]));
-        let is_coat_alike = !T::zero().less(self.coat_weight) | is_mirror(&coat_shape(self));
-        !self.has_base() & reflects_alike & is_coat_alike & (!self.transmits() | is_mirror(&through))
-    }
-
     /// True where the specular lobe reflects anything: if not from without, then from within.
     #[inline(always)]
     pub fn has_specular(&self) -> T::Mask {
@@ -313,7 +295,7 @@ impl<T: Real> Material<T> {
 
 /// The registry's entry with this index; the first one where there is none.
 #[inline(always)]
-fn by_index<E: Copy>(all: &[E], index: u32) -> E {
+pub(super) fn by_index<E: Copy>(all: &[E], index: u32) -> E {
     all[(index as usize).min(all.len() - 1)]
 }
 
@@ -330,4 +312,18 @@ pub struct Surface<T: Real> {
     pub coat_normal: Vec3<T>,
     /// True where the viewer is on the back of the triangle: within the solid, if its mesh is closed.
     pub is_inside: T::Mask,
+}
+
+impl<T: Real> Surface<T> {
+    /// A surface whose normal is z, seen from without along `wo`.
+    pub fn upwards(wo: Vec3<T>) -> Self {
+        let normal = vec3(T::zero(), T::zero(), T::one());
+        Self {
+            frame: frame_from_normal(normal),
+            normal,
+            wo,
+            coat_normal: normal,
+            is_inside: T::Mask::splat(false),
+        }
+    }
 }
